@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from leblanc.results.fit import FitResult
     from leblanc.results.layer import FreeWaveResult, LayerPeriodsResult, LayerResult
     from leblanc.results.liquid import ModesResult, VolumeResult
-    from leblanc.results.magnetic import MagneticResult
+    from leblanc.results.magnetic import MagneticExplanation, MagneticResult
     from leblanc.results.models.comparison import Comparison
     from leblanc.results.optimum import OptimumResult
     from leblanc.results.response import RunResult
@@ -89,7 +89,7 @@ def run(
     return run_scene(machine, holding=Holding(workers, solver=solver or COUPLED), cycles=cycles)
 
 
-def explain(scene: SceneOrPath) -> Explanation | ExciterExplanation:
+def explain(scene: SceneOrPath) -> Explanation | ExciterExplanation | MagneticExplanation:
     """A scene's dimensionless numbers, the liquid model that answers at each speed, and why.
 
     Parameters
@@ -107,6 +107,10 @@ def explain(scene: SceneOrPath) -> Explanation | ExciterExplanation:
     True
     """
     machine = _scene(scene)
+    if machine.rotor.kind == "magnetic":
+        from leblanc.studies.magnetic import explain_magnetic
+
+        return explain_magnetic(machine)
     from leblanc.studies.explain import explain_exciter, explain_scene
 
     return explain_exciter(machine) if machine.rotor.kind == "exciter" else explain_scene(machine)

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from leblanc.results.magnetic import Controlled, LoadAnswer, MagneticResult
+from leblanc.results.base import one_line
+from leblanc.results.magnetic import Controlled, LoadAnswer, MagneticExplanation, MagneticResult
 from leblanc.text.numbers import ranges
 from leblanc.text.run import Limit
 from leblanc.units import CURRENT, LENGTH, NOT_FOUND, TIME, in_rpm, number, with_unit
@@ -158,6 +159,47 @@ def lines(result: MagneticResult) -> list[str]:
     result : the answer
     """
     return [answer(result)]
+
+
+def explanation_rows(answer: MagneticExplanation) -> list[tuple[str, str]]:
+    """A rotor in magnetic bearings in numbers; label and text.
+
+    Parameters
+    ----------
+    answer : to tell
+    """
+    found = [
+        (name, f"{number(getattr(answer.numbers, name))}: {text[0].lower()}{text[1:]}")
+        for name, text in NUMBERS.items()
+        if math.isfinite(getattr(answer.numbers, name))
+    ]
+    fastest = [
+        (f"fastest pole, {NAMES[name]}", f"{number(-decay)} 1/s{_asks(decay)}")
+        for name, decay in answer.fastest.items()
+    ]
+    return [
+        *found,
+        ("force by current", f"{number(answer.current_stiffness)} N/A, of a pair of magnets in the centre"),
+        ("force by deflection", f"{number(answer.position_stiffness)} N/m outwards, of a pair of magnets"),
+        ("without control", f"a deflection grows by {number(answer.growth)} 1/s"),
+        ("holds", f"{number(answer.holds)} N along an axis, in the centre"),
+        ("comes home from", f"{with_unit(answer.reach, LENGTH)} along an axis"),
+        *fastest,
+    ]
+
+
+def _asks(decay: float) -> str:
+    return ": faster than coils are" if decay > FASTEST else ""
+
+
+def explanation_facts(answer: MagneticExplanation) -> list[tuple[str, str]]:
+    """Main numbers: label and value.
+
+    Parameters
+    ----------
+    answer : to tell
+    """
+    return [("Scene", one_line(answer.name)), *explanation_rows(answer)]
 
 
 def load_words(result: MagneticResult) -> Sequence[str]:

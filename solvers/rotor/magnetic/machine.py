@@ -226,6 +226,28 @@ class MagneticRotor:
         pair = np.stack((turning.real, turning.imag), axis=-1)
         return np.concatenate((self.unbalance[0] * pair, self.unbalance[1] * pair), axis=-1)
 
+    def outward_force(self, displacement: ArrayLike, current: ArrayLike) -> Array:
+        """Force outwards on a rotor that does not lean, of both bearings and the motor, along one axis, N.
+
+        Parameters
+        ----------
+        displacement : of the rotor outwards, m, shape (...,)
+        current : control current of the axis in both bearings, A, shape (...,)
+        """
+        x = np.asarray(displacement, dtype=float)
+        return np.asarray(2.0 * self.magnets.force(x, current) + self.motor_stiffness * x)
+
+    @property
+    def reach(self) -> float:
+        """Largest deflection along an axis from which the magnets bring the rotor home, m: the gap at most."""
+        from scipy.optimize import brentq
+
+        def outwards(x: float) -> float:
+            return float(self.outward_force(x, -self.magnets.limit))
+
+        end = self.magnets.gap * (1.0 - 1e-9)
+        return float(brentq(outwards, 0.0, end)) if outwards(end) > 0.0 else self.magnets.gap
+
     def energy(self, place: ArrayLike, rate: ArrayLike, current: ArrayLike = 0.0) -> Array:
         """Energy of the motion across the axis, of motor and magnets at held currents [theory: magnetic, eq. 7].
 
