@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 GROUPS = (
     *("errata", "optimal_volume", "vector_model", "horizontal_rig", "vertical_rig", "layer", "whirl", "tub"),
-    *("two_plane", "exciter", "runup", "fill_sweep", "baffles", "exact_wave"),
+    *("two_plane", "exciter", "runup", "fill_sweep", "baffles", "exact_wave", "blood_pump"),
 )
 
 
@@ -76,6 +76,7 @@ def _group(name: str) -> Callable[[], list[Case]]:
     """The function that computes a group."""
     from validation.cases import (
         baffles,
+        blood_pump,
         errata,
         exact_wave,
         exciter,
@@ -105,6 +106,7 @@ def _group(name: str) -> Callable[[], list[Case]]:
         "fill_sweep": fill_sweep.cases,
         "baffles": baffles.cases,
         "exact_wave": exact_wave.cases,
+        "blood_pump": blood_pump.cases,
     }[name]
 
 

@@ -93,7 +93,7 @@ def force_figure(answer: MagneticExplanation) -> Figure:
             f"Force outwards over the deflection for three currents; the rotor comes home from "
             f"{with_unit(answer.reach, LENGTH)}."
         )
-        text = "Force of both bearings and the motor on a rotor that does not lean, by the squares of currents and gaps."
+        text = "Force of both bearings and the motor on a rotor that does not lean."
         assumed = ", ".join(map(one_line, answer.assumed)) or "nothing"
         origin = f"Scene: {one_line(answer.name)}. Assumed: {assumed}."
         frame = Frame(left=0.72, top=0.12, between=0.0, below=0.42)

@@ -1,4 +1,4 @@
-"""The reports of `run` (rotors, exciters, rotors in magnetic bearings) and `map`: the answer, where it holds, figures, models and why."""
+"""The reports of `run` (rotors of every kind) and `map`: answer, where it holds, figures, models and why."""
 
 from __future__ import annotations
 
@@ -230,8 +230,8 @@ def write_magnetic_report(result: MagneticResult, what: About, figure: FigureFil
     """
     low, high = number(float(result.speed[0]) * RPM), number(float(result.speed[-1]) * RPM)
     machine = (
-        f"A rigid rotor of {number(result.machine.mass * 1e3)} g in two magnetic bearings, from {low} to {high} "
-        f"rpm in {result.speed.size} speeds."
+        f"A rigid rotor of {number(result.machine.mass * 1e3)} g in two magnetic bearings, from {low} to "
+        f"{high} rpm in {result.speed.size} speeds."
     )
     numbers = [
         (text, number(getattr(result.numbers, name)))

@@ -1,4 +1,4 @@
-"""What `run` answers of a rotor in magnetic bearings: poles, margins, what unbalance and loads do, a trial in time."""
+"""What `run` answers of a rotor in magnetic bearings: poles, margins, loads, a trial in time."""
 
 from __future__ import annotations
 
@@ -177,14 +177,14 @@ class MagneticResult(Result):
 
     @property
     def amplitude(self) -> Array:
-        """Largest deflection in a bearing, of the unbalances alone, with the first controller, m, shape (n,)."""
+        """Largest deflection in a bearing, by the unbalances, with the first controller, m, shape (n,)."""
         return self.controllers[0].amplitude
 
     amplitude_dry = amplitude
 
     @property
     def phase(self) -> Array:
-        """Angle from the unbalance to the first bearing's deflection, rad, negative where it lags, shape (n,)."""
+        """Angle from the unbalance to the deflection, rad, negative where it lags, shape (n,)."""
         return np.asarray(np.angle(self.controllers[0].unbalance))
 
     @property
@@ -236,7 +236,7 @@ class MagneticResult(Result):
         }
 
     def named_arrays(self) -> NamedArrays:
-        """Arrays over `control`, `speed`, `pole`, and of trials `time` and `axis`, nan after a trial's end."""
+        """Arrays over `control`, `speed`, `pole`; of trials `time` and `axis`, nan after their end."""
         over, each = ("speed",), ("control", "speed")
         widest = max(control.poles.shape[1] for control in self.controllers)
         poles = np.full((len(self.controllers), self.speed.size, widest), np.nan + 0j)
@@ -284,7 +284,7 @@ class MagneticExplanation(Result):
     reach : largest deflection along an axis from which the currents can bring the rotor home, m
     fastest : decay of the fastest pole with each controller at the last speed, 1/s, by name
     place : deflections along an axis, m, shape (n,)
-    force : outwards of both bearings and the motor, at the largest current home, none and out, N, shape (3, n)
+    force : outwards of both bearings and the motor, at the largest current home, none, out, N, shape (3, n)
     source, assumed, digest : of the scene
 
     Examples

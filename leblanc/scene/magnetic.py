@@ -1,4 +1,4 @@
-"""A rotor in magnetic bearings as a scene gives it: magnets, motor, fluid, control, loads, a trial in time."""
+"""A rotor in magnetic bearings as a scene gives it: magnets, motor, fluid, control, loads, trial."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 from pydantic import Field
 
 from leblanc import units
-from leblanc.scene.rows import Row, RowTable, Value, degrees, mm, row, rpm
+from leblanc.scene.rows import Row, RowTable, Value, mm, row, rpm
 from leblanc.scene.schema.part import Conflict, Part
 from leblanc.scene.schema.rules import (
     STIFFNESS,
@@ -249,7 +249,8 @@ class MagneticRotor(Part):
         """What the scene asks to be controlled by, each knowing this rotor."""
         from solvers.rotor.magnetic import control
 
-        machine, found = self.machine(), []
+        machine = self.machine()
+        found: list[Controller] = []
         if self.synergetic is not None:
             found.append(control.Synergetic(machine, **self.synergetic.model_dump()))
         if self.pid is not None:
@@ -276,7 +277,7 @@ class MagneticRotor(Part):
             ("trial", _trial_rows),
         ):
             if (part := getattr(self, name)) is not None:
-                found += rows(part)  # type: ignore[operator]
+                found += rows(part)
         return found
 
     def tables(self) -> list[RowTable]:

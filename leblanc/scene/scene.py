@@ -17,8 +17,8 @@ from fluid.friction.laws import Friction, FrictionLaw
 from leblanc import units
 from leblanc.scene.cabinet import MAX_POINTS, Cabinet, Point, cabinet_conflicts
 from leblanc.scene.chambers import Chamber
-from leblanc.scene.programme.table import Programme as Programme
 from leblanc.scene.magnetic import MagneticRotor as MagneticRotor
+from leblanc.scene.programme.table import Programme as Programme
 from leblanc.scene.rotors import WITHOUT_CHAMBERS as WITHOUT_CHAMBERS
 from leblanc.scene.rotors import AnyRotor
 from leblanc.scene.rotors import Exciter as Exciter  # what a scene's rotor may be

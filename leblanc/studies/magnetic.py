@@ -1,4 +1,4 @@
-"""What a scene of kind "magnetic" answers: poles, margins, deflection by unbalance and loads, a trial in time."""
+"""What a scene of kind "magnetic" answers: poles, margins, loads, a trial in time."""
 
 from __future__ import annotations
 

@@ -25,7 +25,7 @@ NUMBERS = {
     "gyroscopic": "Inertia about the axis over that across it",
     "slenderness": "Mass times the square of the bearings' distance over the inertia across the axis",
     "drag": "Drag of the fluid on the lean",
-    "magnets": "Force constant times the square of the bias current, over the motor's pull and the gap's cube",
+    "magnets": "Force constant times bias current squared, over the motor's pull and the gap's cube",
     "time": "Time scale, square root of the mass over the motor's pull (s)",
 }
 
@@ -211,8 +211,8 @@ def load_words(result: MagneticResult) -> Sequence[str]:
     """
     at = in_rpm(result.load_speed)
     return (
-        f"Loads are answered at {at}, each by itself; of a constant load the deflection is the largest after it "
-        "comes on, of a harmonic one the amplitude.",
+        f"Loads are answered at {at}, each by itself; of a constant load the deflection is the largest "
+        "after it comes on, of a harmonic one the amplitude.",
         "Margins are those of all four currents changed alike; no model error of the magnets is in them.",
         "The numbers over speed and time are printed by the same command with --json.",
     )

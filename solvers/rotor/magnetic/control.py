@@ -177,7 +177,7 @@ class Synergetic:
             spread @ model.circulation,
             spread @ (model.damping - np.diag(inertia * on_rate)),
             spread @ model.gyroscopic,
-            spread @ np.diag(-inertia * on_memory),
+            np.asarray(spread @ np.diag(-inertia * on_memory), dtype=np.float64),
         )
 
     @cached_property
@@ -191,7 +191,7 @@ class Synergetic:
 
 @dataclass(frozen=True)
 class Pid:
-    """Each axis of each bearing by itself: proportional, integral and filtered derivative part [theory: magnetic, eq. 18].
+    """PID control of each axis of each bearing by itself, its derivative filtered [theory: magnetic, eq. 18].
 
     Parameters
     ----------
@@ -275,7 +275,7 @@ class Uncontrolled:
 def source_times(
     machine: MagneticRotor, time: float, weight: float, rate: float, tilt_rate: float
 ) -> Synergetic:
-    """Synergetic control from the numbers of the source, which are over powers of sqrt(m/c_m) [BG18, section 4].
+    """Synergetic control from numbers over powers of sqrt(m/c_m), as the source has them [BG18, section 4].
 
     Parameters
     ----------

@@ -20,7 +20,7 @@ _FACTORS = np.geomspace(1.0, 1e4, 161)  # of the loop gain
 
 @dataclass(frozen=True)
 class Loop:
-    """Linear closed loop at one speed: s' = (A - B K) s + load, opened at the currents [theory: magnetic, eq. 19].
+    """Linear closed loop at one speed, s' = (A - B K) s + load [theory: magnetic, eq. 19].
 
     s holds the four coordinates, their rates, the controller's state and, where coils take time, the four
     currents.
@@ -84,7 +84,7 @@ class Loop:
 
         Returns
         -------
-        Complex amplitudes of the bearings' displacements, m, and of the wanted currents, A, each of shape (4,)
+        Complex amplitudes of the bearings' displacements, m, and of the wanted currents, A, shape (4,) each
         """
         size = self.free.shape[0]
         right = np.zeros(size, dtype=np.complex128)
@@ -98,7 +98,7 @@ class Loop:
         return self.answer(np.array([force, -1j * force, couple, -1j * couple]), self.speed)
 
     def step(self, load: ArrayLike, time: ArrayLike) -> tuple[Array, Array]:
-        """Motion after a constant load comes on at time 0 on the rotor at rest, linear [theory: magnetic, eq. 23].
+        """Motion after a constant load comes on a rotor at rest, linear [theory: magnetic, eq. 23].
 
         Parameters
         ----------
@@ -157,7 +157,7 @@ def closed_loop(machine: MagneticRotor, controller: Controller, speed: float) ->
 
 @dataclass(frozen=True)
 class Margins:
-    """How far a stable loop is from instability, if all four currents change alike [theory: magnetic, eq. 20-21].
+    """How far a stable loop is from instability, all four currents alike [theory: magnetic, eq. 20-21].
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""A rigid rotor in two radial magnetic bearings: inertia, gyroscopic terms, magnets, motor, drag of a fluid."""
+"""A rigid rotor in two radial magnetic bearings: inertia, magnets, motor, drag of a fluid."""
 
 from __future__ import annotations
 
@@ -122,7 +122,7 @@ class Magnets:
 
 @dataclass(frozen=True)
 class MagneticRotor:
-    """A rigid rotor between two bearings; coordinates x, y, alpha, beta of its centre [theory: magnetic, eq. 1].
+    """A rigid rotor between two bearings; x, y, alpha, beta of its centre [theory: magnetic, eq. 1].
 
     Parameters
     ----------
@@ -177,7 +177,7 @@ class MagneticRotor:
 
     @property
     def bearing_motion(self) -> Array:
-        """T, displacements along the axes of the bearings for unit coordinates, shape (4, 4) [theory: magnetic, eq. 3]."""
+        """T, displacements in the bearings for unit coordinates, shape (4, 4) [theory: magnetic, eq. 3]."""
         rows = [((1, 0, 0, z), (0, 1, -z, 0)) for z in (self.first, self.second)]
         return np.array([row for pair in rows for row in pair], dtype=float)
 
@@ -199,14 +199,14 @@ class MagneticRotor:
 
     @property
     def circulation(self) -> Array:
-        """Moment of the fluid across the lean, for a spin of 1 rad/s, shape (4, 4) [theory: magnetic, eq. 9]."""
+        """Moment of the fluid across the lean, for 1 rad/s, shape (4, 4) [theory: magnetic, eq. 9]."""
         found = np.zeros((4, 4))
         found[2, 3], found[3, 2] = self.drag, -self.drag
         return found
 
     @property
     def unbalance(self) -> Array:
-        """Amplitudes m e and (I_x - I_z) gamma of x and alpha; y and beta follow a quarter turn later, shape (2,)."""
+        """m e and (I_x - I_z) gamma, of x and alpha; y and beta follow a quarter turn later, shape (2,)."""
         couple = (self.transverse_inertia - self.polar_inertia) * self.inertia_tilt
         return np.array([self.mass * self.eccentricity, couple])
 
@@ -239,7 +239,7 @@ class MagneticRotor:
 
     @property
     def reach(self) -> float:
-        """Largest deflection along an axis from which the magnets bring the rotor home, m: the gap at most."""
+        """Largest deflection along an axis from which the magnets bring it home, m: the gap at most."""
         from scipy.optimize import brentq
 
         def outwards(x: float) -> float:
@@ -249,7 +249,7 @@ class MagneticRotor:
         return float(brentq(outwards, 0.0, end)) if outwards(end) > 0.0 else self.magnets.gap
 
     def energy(self, place: ArrayLike, rate: ArrayLike, current: ArrayLike = 0.0) -> Array:
-        """Energy of the motion across the axis, of motor and magnets at held currents [theory: magnetic, eq. 7].
+        """Energy of the motion, of motor and magnets at held currents [theory: magnetic, eq. 7].
 
         Parameters
         ----------
@@ -309,7 +309,7 @@ def dimensionless(machine: MagneticRotor, length: float | None = None) -> Dimens
 
 
 def screw_drag(coefficient: float, viscosity: float, radius: float, length: float) -> float:
-    """Moment of the fluid on a turning body over its speed, c_w eta pi r^2 l, N m s [theory: magnetic, eq. 9].
+    """Moment of the fluid over the speed of turning, c_w eta pi r^2 l, N m s [theory: magnetic, eq. 9].
 
     Parameters
     ----------

@@ -153,7 +153,7 @@ def integrate(
     rate: ArrayLike = (0.0, 0.0, 0.0, 0.0),
     samples: int = 1001,
 ) -> Motion:
-    """Motion from some place, by scipy's LSODA, anew from each time at which a load comes on [theory: magnetic, eq. 2].
+    """Motion by scipy's LSODA, anew where a load comes on [theory: magnetic, eq. 1 and 2].
 
     Parameters
     ----------

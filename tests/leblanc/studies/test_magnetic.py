@@ -1,4 +1,4 @@
-"""The answer of a scene in magnetic bearings: loads, gravity, trial, JSON, arrays, words, figure, report, refusals."""
+"""The answer of a scene in magnetic bearings: loads, trial, JSON, arrays, words, figure, report."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def test_the_scene_is_the_table_of_the_source() -> None:
 @kills(AT + "_load", "load.frequency or 0.0", "0.0")
 @kills(AT + "_controlled", "orbit_size(place).max()", "orbit_size(place).min() / 2.0")
 def test_closed_forms_of_the_synergetic_control() -> None:
-    """Of each coordinate x = s w/(m (s^3 + D s^2 + P s + mu Z)), at s = i p and in the unbalance; 1e-6 as the scene."""
+    """Of each coordinate x = s w/(m (s^3 + D s^2 + P s + mu Z)), s = i p; 1e-6 as the scene."""
     bare = {"rotor.trial.duration": 1e-3, "speeds.stop": "9000 rpm", "speeds.count": 1}
     found = run_magnetic(load_scene(PUMP).replace(SHORT | bare)).controls["synergetic"]
     control = synergetic()
@@ -129,7 +129,7 @@ def test_words(record: MagneticResult) -> None:
 
 
 def test_what_does_not_hold_is_said() -> None:
-    """A PID control that is softer than the magnets' pull: no margins, no loads, and the rotor at a magnet."""
+    """A PID control softer than the magnets' pull: no margins, no loads, the rotor at a magnet."""
     weak = load_scene(PUMP).replace(SHORT | {"rotor.pid.proportional": 5e3})
     found = run_magnetic(weak)
     control = found.controls["pid"]

@@ -24,7 +24,7 @@ AT = "solvers.rotor.magnetic.machine:"
 
 @cache
 def euler_equations() -> tuple[Any, ...]:
-    """Force and moments across the axis that the rotor's motion needs, to first order, from H = R I R^T omega."""
+    """Force and moments that the rotor's motion needs, to first order, from H = R I R^T omega."""
     import sympy as sp
 
     t, small = sp.symbols("t small")
@@ -63,7 +63,7 @@ def euler_equations() -> tuple[Any, ...]:
 )
 @kills(AT + "MagneticRotor.unbalance_load", "speed**2 - 1j", "speed**2 + 1j")
 def test_equations_of_motion() -> None:
-    """Inertia, gyroscopic terms and unbalances against the derivative of momentum, speed changing; rounding only."""
+    """Inertia, gyroscopic terms and unbalances against the derivative of momentum; rounding only."""
     import sympy as sp
 
     first, letters, motion, t = euler_equations()
@@ -102,7 +102,7 @@ def test_bearings_as_printed() -> None:
 @kills(AT + "MagneticRotor.motor_pull", "middle = 0.5 * (self.first + self.second)", "middle = 0.0")
 @kills(AT + "motor_length", "3.0 * shape", "12.0 * shape")
 def test_motor_as_printed() -> None:
-    """A pull spread evenly over the motor's length is [BG18, eq. 31 and 32], also off the middle; rounding."""
+    """A pull spread over the motor's length is [BG18, eq. 31 and 32], also off the middle."""
     shape, place = 0.202, (-8e-3, 11e-3)
     rotor = replace(ROTOR, first=place[0], second=place[1], motor_length=motor_length(shape, *place))
     much, little = 1.0 + shape, 1.0 - shape
@@ -118,7 +118,7 @@ def test_motor_as_printed() -> None:
 
 @kills(AT + "MagneticRotor.circulation", "self.drag, -self.drag", "-self.drag, self.drag")
 def test_drag_as_printed() -> None:
-    """[BG18, eq. 34]: against the whole rate of turning, of which a part lies across where the rotor leans."""
+    """[BG18, eq. 34]: against the whole turning, of which a part lies across where the rotor leans."""
     speed, q, v = 900.0, np.array([0.0, 0.0, 2e-3, 5e-3]), np.array([0.0, 0.0, 0.4, -0.3])
     turning = np.array([v[2] + speed * q[3], v[3] - speed * q[2]])
     found = -(ROTOR.damping @ v + speed * ROTOR.circulation @ q)
@@ -168,7 +168,7 @@ def test_a_force_that_is_too_large(place: float, much: float) -> None:
 @kills(AT + "Magnets.position_stiffness", "self.gap**3", "self.gap**2")
 @kills(AT + "Magnets.energy", "-self.force_constant", "self.force_constant")
 def test_slopes_of_the_force() -> None:
-    """Differences of the force and of its potential: errors h^2 f'''/6, 1e-8 of the slope with h = 1e-4 delta."""
+    """Differences of force and potential: errors h^2 f'''/6, 1e-8 of the slope with h = 1e-4 delta."""
     h, i = 1e-4 * MAGNETS.gap, 1e-4 * MAGNETS.bias_current
     along = (MAGNETS.force(h, 0.0) - MAGNETS.force(-h, 0.0)) / (2.0 * h)
     assert along == pytest.approx(MAGNETS.position_stiffness, rel=1e-7)
@@ -205,7 +205,7 @@ def test_energy_of_the_uncontrolled_rotor() -> None:
 @kills(AT + "dimensionless", "machine.drag * time / inertia", "machine.drag * time")
 @kills(AT + "dimensionless", "machine.mass * length**2 / inertia", "machine.mass * length / inertia")
 def test_numbers_of_the_table() -> None:
-    """[BG18, table 1 and eq. 41]: the inertias are rounded to two digits, so the numbers hold to half a per cent."""
+    """[BG18, table 1 and eq. 41]: inertias of two digits, so the numbers hold to half a per cent."""
     numbers = dimensionless(ROTOR, 22e-3)
     assert numbers.gyroscopic == pytest.approx(0.548, rel=5e-3)
     assert numbers.slenderness == pytest.approx(8.714, rel=5e-3)

@@ -86,7 +86,7 @@ def test_poles_of_the_pid_control() -> None:
     "machine.damping + machine.gyroscopic",
 )
 def test_gyroscopic_splitting() -> None:
-    """A rotor on springs alone: the tilting mode splits into w = +-g/2 + sqrt(g^2/4 + k), g = Omega I_z/I_x."""
+    """On springs alone the tilting mode splits into w = +-g/2 + sqrt(g^2/4 + k), g = Omega I_z/I_x."""
     rotor = replace(ROTOR, drag=0.0)
     control = Pid(rotor, proportional=20e3, integral=0.0, derivative=0.0, cutoff=1e4)
     net = 2.0 * 9e-3**2 * (20e3 - MAGNETS.position_stiffness) - rotor.motor_pull[2, 2]
@@ -100,7 +100,7 @@ def test_gyroscopic_splitting() -> None:
 
 
 def test_poles_with_coils_that_take_time() -> None:
-    """1/(1 + s/w) in the currents: s^4/w + s^3 + (D - n/w) s^2 + (P - n) s + Z for x, n the outward pull over m."""
+    """1/(1 + s/w) in the currents: s^4/w + s^3 + (D - n/w) s^2 + (P - n) s + Z, n the pull over m."""
     coils = replace(MAGNETS, bandwidth=2.0e4)
     rotor = replace(ROTOR, magnets=coils)
     control = synergetic(rotor)
@@ -162,7 +162,7 @@ def test_margins_at_rest() -> None:
 )
 @kills(LINEAR + "_sensitivity", "np.eye(4) + loop.transfer", "np.eye(4) - loop.transfer")
 def test_margins_lead_to_the_edge() -> None:
-    """At each margin of a loop with lagging coils there is a pole on the imaginary axis: 1 + L is singular."""
+    """At each margin of a loop with lagging coils a pole is on the imaginary axis: 1 + L is singular."""
     rotor = replace(ROTOR, magnets=replace(MAGNETS, bandwidth=1e5))
     loop = closed_loop(rotor, pid(rotor), SPEED)
     found = margins(loop)
@@ -202,7 +202,7 @@ def test_margins_of_what_is_not_stable() -> None:
 @kills(CONTROL + "Synergetic.answer", "self._rates * place", "-self._rates * place")
 @kills(CONTROL + "Pid.answer", "self.cutoff * (at - memory[4:])", "self.cutoff * (at + memory[4:])")
 def test_small_motions_in_time_are_the_linear_loop() -> None:
-    """Central differences of the rates of change with all the magnets' nonlinearity, against the loop's matrix.
+    """Central differences of the nonlinear rates of change, against the loop's matrix.
 
     Steps of 1e-6 of each scale leave 1e-12 of the third derivatives and 1e-10 by rounding, of the largest
     entry in a row; what the unbalance adds is the same on both sides.
@@ -248,7 +248,7 @@ def test_unbalance_and_harmonic_load_in_time() -> None:
 @kills(LINEAR + "Loop.step", "/ self.machine.inertia", "/ self.machine.inertia[::-1]")
 @pytest.mark.parametrize("make", [synergetic, pid])
 def test_step_in_time(make: type[Controller]) -> None:
-    """A small step of load: the linear answer to (x/delta)^2 + (i/i_0)^2, 1e-4 here, and back to the centre."""
+    """A small step of load: the linear answer to (x/delta)^2 + (i/i_0)^2, 1e-4 here."""
     rotor = replace(ROTOR, eccentricity=0.0, inertia_tilt=0.0)
     control = make(rotor)  # type: ignore[call-arg]
     load = Load((0.02, 0.01), (1e-5, -1e-5), start=0.1)
@@ -262,7 +262,7 @@ def test_step_in_time(make: type[Controller]) -> None:
 
 
 def test_the_claims_of_accuracy() -> None:
-    """Under a load of c_m delta the rotor leaves the centre by less than 4 um and is back after 0.4 s [BG18]."""
+    """A load of c_m delta moves the rotor by less than 4 um, and it is back after 0.4 s [BG18]."""
     load = ROTOR.motor_stiffness * MAGNETS.gap
     place, _ = closed_loop(ROTOR, synergetic(), SPEED).step([load, 0.0, 0.0, 0.0], np.linspace(0.0, 0.4, 401))
     size = orbit_size(place)
@@ -291,7 +291,7 @@ def changed(name: str, factor: float) -> MagneticRotor:
 @pytest.mark.parametrize("factor", [0.5, 2.0])
 @pytest.mark.parametrize("name", CHANGES)
 def test_the_controller_need_not_know_the_rotor(name: str, factor: float) -> None:
-    """Twice and half the value, with the controller of the nominal one: stable, as quick, no nearer a magnet."""
+    """Twice and half the value, with the controller of the nominal one: stable and as quick."""
     if (name, factor) in (("transverse_inertia", 0.5), ("polar_inertia", 4.0)):
         factor = 0.6  # a body has I_z <= 2 I_x
     loop = closed_loop(changed(name, factor), synergetic(), SPEED)
