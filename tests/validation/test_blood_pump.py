@@ -42,7 +42,7 @@ def test_every_parameter_is_changed_twice() -> None:
 
 
 def test_the_condition_of_the_source_is_not_enough() -> None:
-    """With h = 1 the rotor is at a magnet soon, in the equations as they stand; by Routh's rule, D P < mu Z."""
+    """With h = 1 the rotor is soon at a magnet, in the full equations; by Routh's rule, D P < mu Z."""
     weak: Synergetic = control(weight=1.0)
     assert weak.weight * weak.rate > 0.0
     place, rate, memory = weak.feedback

@@ -53,7 +53,11 @@ class Loop:
     def poles(self) -> Complex:
         """Eigenvalues of the closed loop, the slowest first, 1/s, shape (p,)."""
         found = np.linalg.eigvals(self.closed().real)
-        return np.asarray(found[np.lexsort((found.imag, -found.real))], dtype=np.complex128)
+        # Poles of x and y are equal but for rounding, which must not decide on their order.
+        size = np.maximum(np.abs(found.real), 1e-12 * np.abs(found).max() + 1e-30)
+        digits = 10.0 ** (8.0 - np.floor(np.log10(size)))
+        decay = np.round(found.real * digits) / digits
+        return np.asarray(found[np.lexsort((found.imag, -decay))], dtype=np.complex128)
 
     @property
     def stable(self) -> bool:
