@@ -26,7 +26,8 @@ if TYPE_CHECKING:
     from leblanc.results.fit import FitResult
     from leblanc.results.layer import FreeWaveResult, LayerPeriodsResult, LayerResult
     from leblanc.results.liquid import ModesResult, VolumeResult
-    from leblanc.results.magnetic import MagneticExplanation, MagneticResult
+    from leblanc.results.magnetic.control import MagneticResult
+    from leblanc.results.magnetic.explanation import MagneticExplanation
     from leblanc.results.models.comparison import Comparison
     from leblanc.results.optimum import OptimumResult
     from leblanc.results.response import RunResult
@@ -79,7 +80,7 @@ def run(
 
         return run_exciter(machine)
     if machine.rotor.kind == "magnetic":
-        from leblanc.studies.magnetic import run_magnetic
+        from leblanc.studies.magnetic.run import run_magnetic
 
         return run_magnetic(machine)
     from leblanc.studies.held.holding import Holding
@@ -108,7 +109,7 @@ def explain(scene: SceneOrPath) -> Explanation | ExciterExplanation | MagneticEx
     """
     machine = _scene(scene)
     if machine.rotor.kind == "magnetic":
-        from leblanc.studies.magnetic import explain_magnetic
+        from leblanc.studies.magnetic.explain import explain_magnetic
 
         return explain_magnetic(machine)
     from leblanc.studies.explain import explain_exciter, explain_scene

@@ -31,7 +31,7 @@ def explain(
             print_table(exciter_rows(table), indent=2)
         return
     if machine.rotor.kind == "magnetic":
-        from leblanc.studies.magnetic import explain_magnetic
+        from leblanc.studies.magnetic.explain import explain_magnetic
         from leblanc.text.magnetic import explanation_rows
 
         told = explain_magnetic(machine)

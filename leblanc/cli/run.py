@@ -126,11 +126,11 @@ def _run_exciter(machine: Scene, scene: Path, folder: Path, json: bool) -> None:
 def _run_magnetic(machine: Scene, scene: Path, folder: Path, json: bool) -> None:
     """Poles, margins, deflections and a trial in time of a rotor in magnetic bearings."""
     with working("control") as update:
-        from leblanc.studies.magnetic import run_magnetic
+        from leblanc.studies.magnetic.run import run_magnetic
 
         result = run_magnetic(machine, lambda what: update(what=what))
 
-    from leblanc.figures.magnetic import write_magnetic_figure
+    from leblanc.figures.magnetic.control import write_magnetic_figure
     from leblanc.report.page import about, command_line
     from leblanc.report.run import write_magnetic_report
     from leblanc.results.netcdf import write_netcdf

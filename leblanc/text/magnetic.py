@@ -8,7 +8,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from leblanc.results.base import one_line
-from leblanc.results.magnetic import Controlled, LoadAnswer, MagneticExplanation, MagneticResult
+from leblanc.results.magnetic.control import Controlled, LoadAnswer, MagneticResult
+from leblanc.results.magnetic.explanation import MagneticExplanation
 from leblanc.text.numbers import ranges
 from leblanc.text.run import Limit
 from leblanc.units import CURRENT, LENGTH, NOT_FOUND, TIME, in_rpm, number, with_unit

@@ -27,7 +27,8 @@ from leblanc.scene.tasks import Optimisation
 from leblanc.studies.compare import compare_models
 from leblanc.studies.exciter import run_exciter
 from leblanc.studies.explain import explain_exciter, explain_scene
-from leblanc.studies.magnetic import explain_magnetic, run_magnetic
+from leblanc.studies.magnetic.explain import explain_magnetic
+from leblanc.studies.magnetic.run import run_magnetic
 from leblanc.studies.models.choose import choose_all, prepare
 from leblanc.studies.run import run_scene
 from leblanc.studies.volume import answer_volume

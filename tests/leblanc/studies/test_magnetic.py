@@ -11,10 +11,11 @@ import pytest
 
 import leblanc as lb
 from leblanc.cli import main
-from leblanc.figures.magnetic import magnetic_figure
-from leblanc.results.magnetic import MagneticResult
+from leblanc.figures.magnetic.control import magnetic_figure
+from leblanc.results.magnetic.control import MagneticResult
 from leblanc.scene.scene import load_scene
-from leblanc.studies.magnetic import explain_magnetic, run_magnetic
+from leblanc.studies.magnetic.explain import explain_magnetic
+from leblanc.studies.magnetic.run import run_magnetic
 from leblanc.text import magnetic as text_magnetic
 from meshes.errors import InputError
 from tests.mutants import kills
@@ -30,7 +31,7 @@ SHORT = {
     "rotor.loads.0.start": 0.04,
     "rotor.loads.1.start": 0.05,
 }
-AT = "leblanc.studies.magnetic:"
+AT = "leblanc.studies.magnetic.run:"
 
 
 @pytest.fixture(scope="module")

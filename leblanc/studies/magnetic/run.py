@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from leblanc.results.magnetic import Controlled, Followed, LoadAnswer, MagneticExplanation, MagneticResult
+from leblanc.results.magnetic.control import Controlled, Followed, LoadAnswer, MagneticResult
 from meshes.arrays import Array
 from meshes.errors import InputError
-from solvers.rotor.magnetic.control import Controller, Uncontrolled
+from solvers.rotor.magnetic.control import Controller
 from solvers.rotor.magnetic.linear import Loop, closed_loop, margins, orbit_size
 from solvers.rotor.magnetic.machine import MagneticRotor, dimensionless
 from solvers.rotor.magnetic.motion import Load, integrate, settling_time
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 
 BAND = 0.02  # of the gap, within which the rotor has settled; 4 um of the source's gap, its requirement
 _STEPS = 400  # times at which a step is looked at
-_PLACES = 91  # up to 0.9 of the gap
 
 
 def run_magnetic(scene: Scene, progress: Callable[[str], object] = lambda what: None) -> MagneticResult:
@@ -38,7 +37,7 @@ def run_magnetic(scene: Scene, progress: Callable[[str], object] = lambda what: 
     ------
     InputError : its rotor is of another kind
     """
-    rotor = _rotor_of(scene)
+    rotor = rotor_of(scene)
     machine, speed, trial = rotor.machine(), scene.speed_array(), rotor.trial
     loads = {f"load {k + 1}": part.load() for k, part in enumerate(rotor.loads)}
     if rotor.axis == "horizontal":
@@ -64,43 +63,13 @@ def run_magnetic(scene: Scene, progress: Callable[[str], object] = lambda what: 
     )
 
 
-def explain_magnetic(scene: Scene) -> MagneticExplanation:
-    """Numbers that determine how a rotor in magnetic bearings behaves [theory: magnetic, eq. 4-10].
-
-    Parameters
-    ----------
-    scene : with a rotor of kind "magnetic"
+def rotor_of(scene: Scene) -> MagneticOfScene:
+    """The scene's rotor, which is in magnetic bearings.
 
     Raises
     ------
-    InputError : its rotor is of another kind
+    InputError : it is of another kind
     """
-    rotor = _rotor_of(scene)
-    machine, last = rotor.machine(), scene.speeds.stop
-    magnets, place = machine.magnets, np.linspace(0.0, 0.9 * machine.magnets.gap, _PLACES)
-    currents = np.array([-magnets.limit, 0.0, magnets.limit])[:, None]
-    return MagneticExplanation(
-        name=scene.name,
-        numbers=dimensionless(machine),
-        current_stiffness=magnets.current_stiffness,
-        position_stiffness=magnets.position_stiffness,
-        growth=float(closed_loop(machine, Uncontrolled(), last).poles.real.max()),
-        holds=float(machine.outward_force(0.0, magnets.limit)),
-        reach=machine.reach,
-        fastest={
-            control.name: float(-closed_loop(machine, control, last).poles.real.min())
-            for control in rotor.controllers()
-        },
-        place=place,
-        force=machine.outward_force(place, currents),
-        source=scene.source,
-        assumed=scene.assumed,
-        digest=scene.digest,
-    )
-
-
-def _rotor_of(scene: Scene) -> MagneticOfScene:
-    """The scene's rotor, which is in magnetic bearings."""
     from leblanc.scene.magnetic import MagneticRotor as OfScene
 
     if not isinstance(scene.rotor, OfScene):
