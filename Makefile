@@ -15,7 +15,7 @@ net: $(BIN)/.installed-test
 	$(BIN)/python -m tests.net check
 
 test-slow: $(BIN)/.installed-test
-	$(BIN)/python -m pytest -m slow
+	$(BIN)/python -m pytest -m slow --timeout 0 -o faulthandler_timeout=0
 
 # A thousand random machines, each asked again in other units, scaled, split, permuted, turned and mirrored: an hour
 # or two in one process. COUNT and JOBS change that.

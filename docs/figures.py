@@ -172,6 +172,12 @@ RECIPES = (
     Recipe(("validation.exact_whirl.figure",), ("exact_whirl",)),
     Recipe(("validation.figures.baffles",), ("whirl_baffles",)),
     Recipe(("validation.cases.baffles.figure",), ("baffles_decay",)),
+    Recipe(("validation.cases.claims.figure",), ("claims_rings",)),
+    Recipe(
+        ("leblanc", "optimise", "examples/tub.toml", "--objective", "layout"),
+        ("tub_layout",),
+        {"tub_layout": "layout"},
+    ),
     Recipe(("validation.figures.fill_sweep",), ("fill_sweep",)),
     Recipe(("validation.figures.runup_trends",), ("runup_trends",), minutes=True),
     Recipe(

@@ -6,6 +6,9 @@ leaves the energy stationary; the rotation is stable where its second variation 
 
 from __future__ import annotations
 
+import itertools
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -16,6 +19,70 @@ from meshes.errors import InputError, require_positive
 # The integrand is a polynomial of third degree in r^2, for which two Gauss points are exact; it is positive,
 # so that nothing cancels.
 _NODES = 0.5 + np.array([-1.0, 1.0]) / np.sqrt(12.0)
+# Moments of the liquid are polynomials of at most third degree in r^2 on each piece: two points do as well.
+_TWO = np.array([-1.0, 1.0]) / np.sqrt(3.0)
+
+
+class FrozenLiquid(NamedTuple):
+    """Moments of a liquid that turns with its chamber as one body; shapes (...,).
+
+    Parameters
+    ----------
+    polar : about the axis, kg m^2
+    transverse : about a line across the axis through the fixed point, kg m^2
+    static : first moment of the heights above the fixed point, kg m
+    """
+
+    polar: Array
+    transverse: Array
+    static: Array
+
+
+def frozen_liquid(
+    chamber: Chamber,
+    floor: float,
+    surface_constant: ArrayLike,
+    speed: ArrayLike,
+    gravity: float,
+    density: float,
+) -> FrozenLiquid:
+    """Moments of the liquid below its paraboloid, as if it were frozen [theory: statics, eq. 20].
+
+    Parameters
+    ----------
+    chamber, floor, surface_constant, speed, gravity, density : see `free_surface_term`
+
+    Returns
+    -------
+    Its share in C_0, A_0 and M x_c3 of the whole
+
+    Raises
+    ------
+    InputError : a density or gravity that is not positive, a value that is not finite
+
+    Examples
+    --------
+    >>> full = frozen_liquid(Chamber(radius=0.2, height=0.1), 0.0, 0.1, 0.0, 9.81, 1000.0)
+    >>> print(f"{full.polar:.6f} {full.static:.6f}")
+    0.251327 0.628319
+    """
+    constant, beta = _surface(floor, surface_constant, speed, gravity, density)
+    inner, outer = _waterlines(chamber, constant, beta)
+    # In s = r^2 the liquid is cut where its surface leaves the floor and where it meets the lid.
+    low = np.full(constant.shape, chamber.inner_radius**2)
+    marks = [low, inner, outer, np.full(constant.shape, chamber.radius**2)]
+    polar, transverse, static = np.zeros((3, *constant.shape))
+    for start, stop in itertools.pairwise(marks):
+        half = 0.5 * (stop - start)[..., None]
+        s = start[..., None] + half * (1.0 + _TWO)
+        top = np.clip(constant[..., None] + beta[..., None] * s, 0.0, chamber.height)
+        high = floor + top
+        ring = np.pi * density * half
+        cubed = (high**3 - floor**3) / 3.0
+        polar = polar + np.sum(ring * s * top, axis=-1)
+        transverse = transverse + np.sum(ring * (0.5 * s * top + cubed), axis=-1)
+        static = static + np.sum(ring * 0.5 * top * (high + floor), axis=-1)
+    return FrozenLiquid(polar, transverse, static)
 
 
 def free_surface_term(
@@ -49,6 +116,21 @@ def free_surface_term(
     ------
     InputError : a density or gravity that is not positive, a value that is not finite
     """
+    constant, beta = _surface(floor, surface_constant, speed, gravity, density)
+    inner, outer = _waterlines(chamber, constant, beta)
+    width = (outer - inner)[..., None]
+    s = inner[..., None] + width * _NODES
+    height = floor + constant[..., None] + beta[..., None] * s
+    stiffening = 1.0 + 2.0 * beta[..., None] * height
+    # int r^3 dr = int s/2 ds with s = r^2; the angle contributes pi; each Gauss point weighs 1/2.
+    integral = np.sum(np.square(stiffening) * s * width, axis=-1) / 4.0
+    return np.asarray(density * gravity * np.pi * integral)
+
+
+def _surface(
+    floor: float, surface_constant: ArrayLike, speed: ArrayLike, gravity: float, density: float
+) -> tuple[Array, Array]:
+    """C and beta of the surface z = beta r^2 + C, checked, of one shape."""
     require_positive("gravity", gravity)
     require_positive("density", density)
     constant, omega = np.broadcast_arrays(
@@ -57,16 +139,7 @@ def free_surface_term(
     for field, value in (("floor", floor), ("surface_constant", constant), ("speed", omega)):
         if not np.all(np.isfinite(value)):
             raise InputError(field, value, "finite")
-
-    beta = np.square(omega) / (2.0 * gravity)
-    inner, outer = _waterlines(chamber, constant, beta)
-    width = (outer - inner)[..., None]
-    s = inner[..., None] + width * _NODES
-    height = floor + constant[..., None] + beta[..., None] * s
-    stiffening = 1.0 + np.square(omega)[..., None] * height / gravity
-    # int r^3 dr = int s/2 ds with s = r^2; the angle contributes pi; each Gauss point weighs 1/2.
-    integral = np.sum(np.square(stiffening) * s * width, axis=-1) / 4.0
-    return np.asarray(density * gravity * np.pi * integral)
+    return constant, np.asarray(np.square(omega) / (2.0 * gravity))
 
 
 def _waterlines(chamber: Chamber, constant: Array, beta: Array) -> tuple[Array, Array]:

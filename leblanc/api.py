@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from leblanc.results.fit import FitResult
     from leblanc.results.layer import FreeWaveResult, LayerPeriodsResult, LayerResult
     from leblanc.results.liquid import ModesResult, VolumeResult
+    from leblanc.results.machine.layout import LayoutResult
     from leblanc.results.magnetic.control import MagneticResult
     from leblanc.results.magnetic.explanation import MagneticExplanation
     from leblanc.results.models.comparison import Comparison
@@ -215,13 +216,13 @@ def optimise(
     emulator: str | PathLike[str] | None = None,
     front: bool = True,
     progress: Callable[[int], None] | None = None,
-) -> OptimumResult:
-    """Best volume of liquid for each chamber.
+) -> OptimumResult | LayoutResult:
+    """Best volume of liquid for each chamber, or the best layout of a tub's springs and dampers.
 
     Parameters
     ----------
     scene : the machine, or the path of its file, with or without a table [optimise]
-    objective : working_speed, peak, mean, least_mass or robust; the scene's if None
+    objective : working_speed, peak, mean, least_mass, robust or layout; the scene's if None
     deflection : given, m: the least liquid that covers the walls at it
     limit : of the vibration, for least_mass, m
     steady : the peak is that of the steady response even if the scene has a run-up
@@ -244,10 +245,15 @@ def optimise(
     machine = _scene(scene)
     from leblanc.questions import optimisation_of
     from leblanc.studies.optimise.emulated import emulated_vibration
+    from leblanc.studies.optimise.layout import optimise_layout
     from leblanc.studies.optimise.optimise import optimise_scene
 
     with _keywords():
         task = optimisation_of(machine, objective, deflection, limit, steady, seed)
+        if task.objective == "layout":
+            return optimise_layout(
+                machine, task, None if progress is None else lambda count, _: progress(count)
+            )
         surrogate = None if emulator is None else emulated_vibration(Path(emulator), machine, task)
         told = None if progress is None else lambda count, _: progress(count)
         return optimise_scene(machine, task=task, front=front, progress=told, emulator=surrogate)

@@ -13,7 +13,8 @@ if TYPE_CHECKING:
 
 GROUPS = (
     *("errata", "optimal_volume", "vector_model", "horizontal_rig", "vertical_rig", "layer", "whirl", "tub"),
-    *("two_plane", "exciter", "runup", "fill_sweep", "baffles", "exact_wave", "blood_pump"),
+    *("two_plane", "exciter", "runup", "fill_sweep", "baffles", "exact_wave", "claims"),
+    "blood_pump",
 )
 
 
@@ -77,6 +78,7 @@ def _group(name: str) -> Callable[[], list[Case]]:
     from validation.cases import (
         baffles,
         blood_pump,
+        claims,
         errata,
         exact_wave,
         exciter,
@@ -107,6 +109,7 @@ def _group(name: str) -> Callable[[], list[Case]]:
         "baffles": baffles.cases,
         "exact_wave": exact_wave.cases,
         "blood_pump": blood_pump.cases,
+        "claims": claims.cases,
     }[name]
 
 

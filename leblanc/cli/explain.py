@@ -51,6 +51,7 @@ def explain(
 def _print(answer: Explanation) -> None:
     """The explanation as text."""
     from leblanc.results.base import percent
+    from leblanc.text.closed_forms import closed_form_rows
     from leblanc.text.explanation import (
         ESTIMATES,
         estimate_rows,
@@ -78,6 +79,11 @@ def _print(answer: Explanation) -> None:
         print("  estimated: error of the means, ripple about them once a turn by gravity")
         print_table(rows, ESTIMATES, indent=4)
     print_table(described(span.model for span in answer.models), indent=2)
+    told = closed_form_rows(answer.closed_forms)
+    told += [("not told", text) for text in answer.closed_forms.lacking]
+    if told:
+        print("closed forms")
+        print_table(told, indent=2)
     if answer.runup:
         print("liquid model of the run-up")
         print_table([(answer.runup,)], indent=2)

@@ -24,7 +24,8 @@ def optimise(
         str | None,
         typer.Option(
             help="working_speed, peak, mean, least_mass, robust, floor_force, walking_margin, "
-            "point_clearance or motor_torque [default: the scene's, or working_speed]."
+            "point_clearance, motor_torque, or layout of a tub's mounts [default: the scene's, or "
+            "working_speed]."
         ),
     ] = None,
     deflection: Annotated[
@@ -49,11 +50,14 @@ def optimise(
     ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> None:
-    """Best volume(s) for an objective, within constraints. Figures, data file, report."""
+    """Best volume(s) for an objective, or layout of a tub's mounts. Figures, data file, report."""
     from leblanc.questions import optimisation_of
 
     machine = load(scene)
     task = optimisation_of(machine, objective, deflection, limit, steady, seed)
+    if task.objective == "layout":
+        _layout(machine, task, results_dir(machine.name, out, scene, machine.digest, "layout.nc"), json)
+        return
     folder = results_dir(machine.name, out, scene, machine.digest, "optimum.nc", "optimise.html")
     result = _run(machine, task, not no_front, emulator)
 
@@ -85,6 +89,37 @@ def optimise(
         print("\n".join(describe_optimum(result)))
         print(f"Read {folder / 'optimise.html'}; the data are in {folder / 'optimum.nc'}")
     _finish(result, scene)
+
+
+def _layout(machine: Scene, task: Optimisation, folder: Path, json: bool) -> None:
+    """Where the mounts of a tub sit best."""
+    from leblanc.cli.terminal.output import print_table
+    from leblanc.cli.terminal.progress import working
+    from leblanc.figures.drawing.page import save
+    from leblanc.figures.machine import layout_figure
+    from leblanc.results.netcdf import write_netcdf
+    from leblanc.studies.optimise.layout import optimise_layout
+    from leblanc.text.layout import MOUNTS, PAIR_HEAD, answer, coupling_rows, facts, mount_rows
+
+    with working("layouts") as update:
+        result = optimise_layout(machine, task, lambda count, _: update(what=f"{count} layouts judged"))
+    write_netcdf(result.named_arrays(), folder / "layout.nc")
+    files = save(layout_figure(result), folder, "layout", "Layout of springs and dampers")
+    if json:
+        print_json(result.to_json())
+    else:
+        print(answer(result))
+        print_table(facts(result)[2:], indent=2)
+        print()
+        print_table(mount_rows(result), MOUNTS)
+        print()
+        print_table(coupling_rows(result), PAIR_HEAD)
+        print(f"See {files.png}; the data are in {folder / 'layout.nc'}")
+    if not result.feasible:
+        from leblanc.scene.schema.load import NotConverged
+
+        raise NotConverged([f"{machine.name}: {answer(result)}"])
+    say(f"{result.name}: {result.evaluations} layouts judged")
 
 
 def _finish(result: OptimumResult, scene: Path) -> None:

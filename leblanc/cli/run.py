@@ -56,6 +56,7 @@ def run(
     from leblanc.report.page import about, command_line
     from leblanc.report.run import write_run_report
     from leblanc.results.netcdf import write_netcdf
+    from leblanc.text.closed_forms import closed_form_rows
     from leblanc.text.machine import load_table
     from leblanc.text.run import amplitude_place, comparisons, limit_rows, unanswered
 
@@ -79,6 +80,9 @@ def run(
             head, lines = load_table(result.loads)
             print()
             print_table(lines, head)
+        if forms := closed_form_rows(result.closed_forms):
+            print("\nClosed forms beside the answer")
+            print_table(forms, indent=2)
         print("\nLimits of the answer")
         print_table(limit_rows(result), indent=2)
         print(f"Read {folder / 'summary.html'}; the data are in {folder / 'response.nc'}")

@@ -18,6 +18,8 @@ from leblanc.results.notes.response import OF_MODELS, RunCode
 from leblanc.results.response import RunResult
 from leblanc.results.whirl_map import WhirlMap
 from leblanc.text import magnetic
+from leblanc.text.closed_forms import HEAD as VECTOR
+from leblanc.text.closed_forms import closed_form_rows, vector_rows
 from leblanc.text.exciter import NUMBERS
 from leblanc.text.exciter import answer as exciter_answer
 from leblanc.text.exciter import facts as exciter_facts
@@ -74,6 +76,7 @@ def write_run_report(result: RunResult, what: About, figures: Sequence[FigureFil
         ),
         "loads": load_part(result.loads),
         "facts": table("", (), facts(result)),
+        "closed_forms": closed_form_tables(result),
         "checks": response_checks(result),
         "pictures": [picture(files) for files in shown],
         "why": why(result.models) if result.models else _used(result),
@@ -82,6 +85,17 @@ def write_run_report(result: RunResult, what: About, figures: Sequence[FigureFil
         "remarks": [*notes(result.notes, elsewhere), *remarks(result)],
     }
     write_page("run", what, parts, path)
+
+
+def closed_form_tables(result: RunResult) -> list[Table]:
+    """What closed forms say beside the answer, and the angles of the vector model at some speeds."""
+    forms = result.closed_forms
+    if forms is None or not (rows := closed_form_rows(forms)):
+        return []
+    found = [table("", ("Closed form", ""), [(label.strip(), text) for label, text in rows])]
+    if forms.vector is not None:
+        found.append(table("", VECTOR, vector_rows(result.speed, forms.vector)))
+    return found
 
 
 def held_motions(result: RunResult) -> list[Table]:

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass, field, fields
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from fluid.numbers import LayerNumbers
-from leblanc.results.base import Result, attributes
+from leblanc.results.base import Result, attributes, carried
 from leblanc.results.choice import HeldCost, ModelSpan, SpeedEstimate
 from leblanc.results.exciter import named_speeds, number_or_none
+from leblanc.results.motion.closed_forms import ClosedForms
 from leblanc.results.motion.tilting import RestMode
 from leblanc.results.netcdf import NamedArrays, Variable, flags
 from leblanc.results.netcdf import variable as var
@@ -115,7 +116,8 @@ class WhirlOutlook:
     lag: float
 
 
-_ABOUT = ("source", "assumed", "digest")  # of the scene; not part of the JSON
+# Of the scene, not part of the JSON, and what has keys of its own there.
+_ABOUT = ("source", "assumed", "digest", "closed_forms")
 
 
 @dataclass(frozen=True)
@@ -139,6 +141,7 @@ class Explanation(Result):
     whirl : how large the whirl grows by itself; None where none does, or nothing bounds it
     held : what it takes to hold in time what steady models do not answer; None where they answer all
     source, assumed, digest : of the scene
+    closed_forms : what the sources' closed forms say of it without an answer, and what it lacks for them
 
     Examples
     --------
@@ -168,10 +171,17 @@ class Explanation(Result):
     source: str = ""
     assumed: tuple[str, ...] = ()
     digest: str = ""
+    closed_forms: ClosedForms = field(default_factory=ClosedForms)
+
+    upright = carried("closed_forms.upright")
+    balancing = carried("closed_forms.balancing")
+    cage_speed = carried("closed_forms.cage_speed")
+    not_told = carried("closed_forms.lacking")
 
     def to_json(self) -> dict[str, Any]:
         """What `explain` prints for scripts, SI; what is not finite becomes null when it is printed."""
-        return {name: value for name, value in asdict(self).items() if name not in _ABOUT}
+        own = {name: value for name, value in asdict(self).items() if name not in _ABOUT}
+        return {**own, **self.closed_forms.to_json(), "not_told": list(self.closed_forms.lacking)}
 
     def named_arrays(self) -> NamedArrays:
         """Arrays over the dimensions `chamber`, `end` (first and last speed) and `span` (of one model)."""
@@ -179,8 +189,8 @@ class Explanation(Result):
         ends = np.array(self.speed_ratio) * self.critical_speed_dry
         captured = math.nan if self.captured_from is None else self.captured_from
         spans = {
-            field.name: np.array([getattr(span, field.name) for span in self.models])
-            for field in fields(ModelSpan)
+            each.name: np.array([getattr(span, each.name) for span in self.models])
+            for each in fields(ModelSpan)
         }
         return NamedArrays(
             {
@@ -199,6 +209,7 @@ class Explanation(Result):
                 "reason": var(span, spans["reason"], "1", "why that model"),
                 **_layer_variables(self.layers),
                 **_estimate_variables(self.estimates),
+                **self.closed_forms.variables("at"),
             },
             coords={"speed": var(("end",), ends, rate, "spin speed", "first and last of the scene")},
             attrs=attributes(self, "explain", {}, ()),
@@ -261,13 +272,13 @@ def _layer_variables(layers: tuple[LayerExplanation | None, ...]) -> dict[str, V
         )
         for name, unit in units.items()
     }
-    for field in fields(LayerNumbers):
+    for each in fields(LayerNumbers):
         values = [
-            np.full(2, math.nan) if layer is None else np.broadcast_to(getattr(layer.numbers, field.name), 2)
+            np.full(2, math.nan) if layer is None else np.broadcast_to(getattr(layer.numbers, each.name), 2)
             for layer in layers
         ]
         table = np.array(values, dtype=float).reshape(-1, 2)
-        found[field.name] = var(("chamber", "end"), table, "1", field.name.replace("_", " "))
+        found[each.name] = var(("chamber", "end"), table, "1", each.name.replace("_", " "))
     return found
 
 

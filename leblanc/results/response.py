@@ -14,6 +14,7 @@ from leblanc.results.base import FilledChamber, Note, Result, attributes, carrie
 from leblanc.results.choice import ModelSpan
 from leblanc.results.machine.keys import Loaded
 from leblanc.results.machine.loads import MachineLoads
+from leblanc.results.motion.closed_forms import ClosedForms
 from leblanc.results.motion.encoding import finite, pair
 from leblanc.results.motion.held import HELD_MODELS, MOTIONS, Held, numbered
 from leblanc.results.motion.self_excited import SelfExcited
@@ -112,6 +113,7 @@ class RunResult(Loaded, Result):
     loads : forces and clearances at the speeds of `curve`; None where the scene asks for none
     carried_from : speed from which the walls carry the liquid round from rest, rad/s, inf where nothing drags
         on it; None where that is not asked or not known
+    closed_forms : what the sources' closed forms say beside the answer; None where nobody asked
 
     Raises
     ------
@@ -153,6 +155,7 @@ class RunResult(Loaded, Result):
     held: Held | None = None
     loads: MachineLoads | None = None
     carried_from: float | None = None
+    closed_forms: ClosedForms | None = None
 
     def __post_init__(self) -> None:
         if self.axis not in ("horizontal", "vertical"):
@@ -357,6 +360,10 @@ class RunResult(Loaded, Result):
     natural_damping_ratio = carried("motion.natural_damping_ratio")
     critical_speeds_dry = carried("motion.critical_speeds_dry")
     critical_speeds_wet = carried("motion.critical_speeds_wet")
+    upright = carried("closed_forms.upright")
+    vector_model = carried("closed_forms.vector")
+    balancing = carried("closed_forms.balancing")
+    cage_speed = carried("closed_forms.cage_speed")
 
     def to_json(self) -> dict[str, Any]:
         """What `run` prints for scripts: plain Python values, SI, radians, complex numbers as [re, im].
@@ -398,6 +405,7 @@ class RunResult(Loaded, Result):
             **_refined_json(self.refined),
             **({} if self.held is None else self.held.to_json()),
             **({} if self.loads is None else self.loads.to_json()),
+            **({} if self.closed_forms is None else self.closed_forms.to_json()),
         }
 
     def named_arrays(self) -> NamedArrays:
@@ -489,6 +497,7 @@ def _variables(result: RunResult) -> dict[str, Variable]:
         **({} if result.whirl is None else result.whirl.variables()),
         **({} if result.held is None else result.held.variables()),
         **({} if result.loads is None else result.loads.variables()),
+        **({} if result.closed_forms is None else result.closed_forms.variables()),
     }
 
 

@@ -10,10 +10,10 @@ from fluid.liquid import KNOWN_LIQUIDS, Liquid
 from fluid.temperature import Expansion, GivenLaw, PropertyLaw, Tabulated, Vogel, Walther
 from leblanc.scene.cabinet import point_table
 from leblanc.scene.rotors import JeffcottRotor
-from leblanc.scene.rows import Row, RowTable, Value, curve_words, degrees, mm, row, rpm
+from leblanc.scene.rows import Row, RowTable, Value, curve_words, degrees, mm, row, rpm, three
 from leblanc.scene.scene import Model, Scene
 from leblanc.scene.schema.load import escaped
-from leblanc.scene.tasks import Optimisation, Runup, pairs_of
+from leblanc.scene.tasks import Layout, Optimisation, Runup, pairs_of
 from leblanc.units import (
     ANGULAR_SPEED,
     LENGTH,
@@ -327,6 +327,7 @@ def optimise_rows(wanted: Optimisation) -> list[Row]:
         ("motor_torque", "Largest torque of the motor", _plain(wanted.motor_torque, " N m")),
         ("balance_quality", "Balance quality", _grade(wanted.balance_quality)),
         ("volumes", "Volumes", _volumes(wanted)),
+        ("layout", "Layout of the mounts", _layout(wanted.layout)),
     ):
         if getattr(wanted, name) != getattr(_DEFAULT, name):
             said.append(row(label, text, f"optimise.{name}"))
@@ -388,6 +389,16 @@ def _duty(wanted: Optimisation) -> str:
     if len(parts) <= MOST:
         return ", ".join(parts)
     return f"{len(parts)} speeds from {parts[0]} to {parts[-1]}"
+
+
+def _layout(wanted: Layout | None) -> str:
+    if wanted is None:
+        return ""
+    found = (
+        f"{wanted.measure}, places by {three(wanted.reach, MM)} mm, directions by {degrees(wanted.turn)} deg"
+    )
+    band = "" if wanted.band is None else f", running at {_span(wanted.band, ANGULAR_SPEED)}"
+    return found + band + ("" if wanted.sag is None else f", sag at most {mm(wanted.sag)}")
 
 
 def _volumes(wanted: Optimisation) -> str:

@@ -15,10 +15,11 @@ from pydantic import Field, PlainValidator
 from leblanc import units
 from leblanc.scene.loads import Load, PlaneUnbalance, Sheds, unbalance_table
 from leblanc.scene.magnetic import MagneticRotor
-from leblanc.scene.rows import Row, RowTable, Value, mm, row, three, unbalance
+from leblanc.scene.rows import Row, RowTable, Value, degrees, mm, row, three, unbalance
 from leblanc.scene.schema.part import Conflict, Part
 from leblanc.scene.schema.rules import (
     DAMPING,
+    LENGTH,
     POSITION,
     SPEED,
     STIFFNESS,
@@ -182,10 +183,17 @@ class TwoPlaneRotor(Part):
         tuple[PlaneUnbalance, ...], entries(0, MAX_PARTS, "tables headed [[rotor.unbalances]]")
     ] = Field((), description="one table each")
     axis: Axis = Field(description=_AXIS)
+    pivot: Annotated[float | None, POSITION] = Field(
+        None,
+        description="place of a ball joint on a vertical axis, upwards from the centre of mass: whether the "
+        "rotor stands upright about it is told; the response moves on the supports alone",
+    )
 
     @classmethod
     def conflicts(cls, values: Mapping[str, Any], given: Mapping[str, Any]) -> Iterator[Conflict]:
-        """No body has more inertia about an axis than about the two across it together."""
+        """No body has more inertia about an axis than about the two across; a ball joint carries upright."""
+        if values.get("pivot") is not None and values.get("axis") == "horizontal":
+            yield Conflict(("pivot",), "left out unless the axis is vertical")
         if {"transverse_inertia", "polar_inertia"} <= values.keys():
             most = 2.0 * values["transverse_inertia"]
             if values["polar_inertia"] > most * (1.0 + 1e-9):
@@ -221,6 +229,7 @@ class TwoPlaneRotor(Part):
             row("Mass", with_unit(self.mass, MASS), "rotor.mass"),
             row("Inertia across the axis", across, "rotor.transverse_inertia"),
             row("Inertia about the axis", about, "rotor.polar_inertia"),
+            *([] if self.pivot is None else [row("Ball joint at", mm(self.pivot), "rotor.pivot")]),
         ]
 
     def tables(self) -> list[RowTable]:
@@ -321,6 +330,27 @@ class Bearing(Part):
     """A bearing of the drum in its tub."""
 
     position: Position = Field(description="along the axis: y, from the tub's centre of mass")
+    ball_diameter: Annotated[float | None, LENGTH] = Field(
+        None, description="of its balls; the speed of its cage is told with this and pitch_diameter"
+    )
+    pitch_diameter: Annotated[float | None, LENGTH] = Field(
+        None, description="of the circle of the balls' centres"
+    )
+    contact_angle: Annotated[float, quantity(units.ANGLE, 0.0, 1.57)] = Field(
+        0.0, description="of the balls with the rings, from the plane across the axis"
+    )
+
+    @classmethod
+    def conflicts(cls, values: Mapping[str, Any], given: Mapping[str, Any]) -> Iterator[Conflict]:
+        """Balls and their circle belong together."""
+        ball, pitch = values.get("ball_diameter"), values.get("pitch_diameter")
+        for key, other in (("ball_diameter", "pitch_diameter"), ("pitch_diameter", "ball_diameter")):
+            if key in given and other not in given:
+                yield Conflict((other,), f"given with {key}")
+        if ball is not None and pitch is not None and not ball < pitch:
+            yield Conflict(("ball_diameter",), f"below pitch_diameter, {pitch:g} m")
+        if "contact_angle" in given and "ball_diameter" not in given:
+            yield Conflict(("contact_angle",), "left out without ball_diameter and pitch_diameter")
 
 
 class TubRotor(Part):
@@ -443,12 +473,24 @@ class TubRotor(Part):
         if self.loads:
             found.append(unbalance_table("Load", "rotor.loads", self.loads))
         if self.bearings:
-            places = tuple(
-                (Value(f"{k + 1}"), Value(number(part.position * MM), (f"rotor.bearings.{k}.position",)))
-                for k, part in enumerate(self.bearings)
-            )
-            found.append(RowTable(("Bearing", "at y (mm)"), places))
+            found.append(_bearing_table(self.bearings))
         return found
+
+
+def _bearing_table(bearings: Sequence[Bearing]) -> RowTable:
+    """Bearings for readers; columns of their balls where some are given."""
+    known = any(part.ball_diameter is not None for part in bearings)
+    lines = []
+    for k, part in enumerate(bearings):
+        at = f"rotor.bearings.{k}"
+        sizes = [
+            Value("not given" if size is None else number(size * MM), (f"{at}.{name}",))
+            for name, size in (("ball_diameter", part.ball_diameter), ("pitch_diameter", part.pitch_diameter))
+        ]
+        balls = [*sizes, Value(degrees(part.contact_angle), (f"{at}.contact_angle",))] if known else []
+        lines.append((Value(f"{k + 1}"), Value(number(part.position * MM), (f"{at}.position",)), *balls))
+    more = ("balls (mm)", "their circle (mm)", "contact angle (deg)") if known else ()
+    return RowTable(("Bearing", "at y (mm)", *more), tuple(lines))
 
 
 class Balls(Part):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 import re
 from collections.abc import Iterator, Mapping
 from typing import Annotated, Any
@@ -47,7 +48,8 @@ class GradeRule:
 
 # Objectives that are loads of the machine, see `leblanc.studies.optimise.loads`.
 LOADS = ("floor_force", "walking_margin", "point_clearance", "motor_torque")
-OBJECTIVES = ("working_speed", "peak", "mean", "least_mass", "robust", *LOADS)
+OBJECTIVES = ("working_speed", "peak", "mean", "least_mass", "robust", *LOADS, "layout")
+MEASURES = ("couplings", "separation")  # of a layout
 LOADS_OVER = ("operating", "runup", "both")
 MAX_DUTY = 1000
 MAX_SAMPLES = 100_000
@@ -72,8 +74,35 @@ class DutyPoint(Part):
     )
 
 
+_Reach = Annotated[float, quantity(units.LENGTH, 0.0, 1e3)]
+
+
+class Layout(Part):
+    """How far the springs and dampers of a tub may move, and what for."""
+
+    measure: Annotated[str, one_of(*MEASURES)] = Field(
+        "couplings",
+        description="what is made least: the squared couplings of stiffness and damping about the centre of "
+        "mass (couplings), or how near natural frequencies come to a band of speeds (separation)",
+    )
+    reach: Annotated[tuple[_Reach, _Reach, _Reach], entries(3, 3, "lengths, along x, y, z")] = Field(
+        (0.05, 0.1, 0.05), description="how far each place may move either way; 0 keeps it"
+    )
+    turn: Annotated[float, quantity(units.ANGLE, 0.0, 1.2)] = Field(
+        math.radians(20.0),
+        description="how far each direction may lean, in each of two ways across it; 0 keeps it",
+    )
+    band: Annotated[_Pair | None, PlainValidator(Span(Quantity(units.ANGULAR_SPEED, 1e-6, 1e6)))] = Field(
+        None, description="running speeds for separation, the lower first; the scene's if left out"
+    )
+    sag: Annotated[float | None, quantity(units.LENGTH, 1e-9, 1e3)] = Field(
+        None,
+        description="largest sag of tub and drum under their weight; a tenth above the scene's if left out",
+    )
+
+
 class Optimisation(Part):
-    """What the liquid of a scene is chosen for."""
+    """What the liquid of a scene, or the layout of its mounts, is chosen for."""
 
     objective: Annotated[str, one_of(*OBJECTIVES)] = Field(
         "working_speed",
@@ -81,7 +110,8 @@ class Optimisation(Part):
         "duty cycle, the mass of liquid that keeps a limit, the amplitude over ranges (robust), or a load, "
         "see loads_over: the largest force under a foot of the cabinet (floor_force), the share of its hold "
         "on the floor that the machine uses (walking_margin), the share of its gap that a point takes "
-        "(point_clearance), the largest torque of the motor (motor_torque)",
+        "(point_clearance), the largest torque of the motor (motor_torque); or the mounts of a tub are "
+        "chosen in place of its liquid (layout)",
     )
     working_speed: Annotated[float | None, SPEED] = Field(
         None, description="the last of the scene's speeds if left out"
@@ -174,6 +204,9 @@ class Optimisation(Part):
     )
     volumes: Annotated[tuple[_Volumes, ...], entries(1, 1000, "pairs of volumes, one for each chamber")] = (
         Field((), description="least and most of each chamber; from nothing to what it holds if left out")
+    )
+    layout: Layout | None = Field(
+        None, description="for the objective layout of a tub; its defaults if left out"
     )
 
 

@@ -27,6 +27,7 @@ from leblanc.results.motion.tilting import RestMode
 from leblanc.scene.rotors import Exciter as ExciterOfScene
 from leblanc.scene.rows import baffle_words
 from leblanc.scene.scene import Runup, Scene
+from leblanc.studies.closed_forms.told import closed_forms
 from leblanc.studies.exciter import printed_critical
 from leblanc.studies.models.choose import Prepared, balance_from, choose_all, costed, held_cost, prepare
 from leblanc.studies.models.liquid import synchronous_model
@@ -120,6 +121,7 @@ def explain_scene(scene: Scene) -> Explanation:
         source=scene.source,
         assumed=scene.assumed,
         digest=scene.digest,
+        closed_forms=closed_forms(scene, machine.speed),
     )
 
 

@@ -21,6 +21,7 @@ from leblanc.results.response import RunResult
 from leblanc.scene.inputs import input_rows
 from leblanc.scene.scene import Scene, TubRotor
 from leblanc.scene.unbalances import left_in_the_end, sheds_of
+from leblanc.studies.closed_forms.told import closed_forms
 from leblanc.studies.held.holding import HERE, Began, Holding
 from leblanc.studies.machine import loaded_machine, loads_over_speed
 from leblanc.studies.models.choose import (
@@ -282,6 +283,7 @@ def run_scene(
         chambers=tuple(_chamber(fill, motion) for fill in scene.fills),
         capture_speed=choice.captured_from,
         carried_from=carried_from(scene),
+        closed_forms=closed_forms(scene, answer.speed, answer),
         critical_speed_dry=dry,
         critical_speed_wet=wet,
         motion=motion,

@@ -7,6 +7,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from meshes.arrays import Array
 from meshes.errors import InputError, require_not_negative, require_positive
@@ -138,22 +139,21 @@ class Tub:
         )
 
 
-def displacement(position: Vector) -> Array:
-    """Displacement of a point of the tub for unit coordinates [theory: rotor, eq. 20].
+def displacement(position: ArrayLike) -> Array:
+    """Displacement of points of the tub for unit coordinates [theory: rotor, eq. 20].
 
     Parameters
     ----------
-    position : (x, y, z) of the point, m
+    position : (x, y, z) of each point, m, shape (..., 3)
 
     Returns
     -------
-    J, shape (3, 6): rows along x, y, z; columns x, y, z, alpha, beta, gamma
+    J, shape (..., 3, 6): rows along x, y, z; columns x, y, z, alpha, beta, gamma
     """
-    x, y, z = position
-    return np.array(
-        [
-            [1.0, 0.0, 0.0, 0.0, z, -y],
-            [0.0, 1.0, 0.0, -z, 0.0, x],
-            [0.0, 0.0, 1.0, y, -x, 0.0],
-        ]
-    )
+    x, y, z = np.moveaxis(np.asarray(position, dtype=float), -1, 0)
+    found = np.zeros((*x.shape, 3, 6))
+    found[..., (0, 1, 2), (0, 1, 2)] = 1.0
+    found[..., 0, 4], found[..., 0, 5] = z, -y
+    found[..., 1, 3], found[..., 1, 5] = -z, x
+    found[..., 2, 3], found[..., 2, 4] = y, -x
+    return found

@@ -2,111 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from itertools import pairwise
-
 import numpy as np
 import pytest
-from scipy import optimize
 
-from fluid.upright import free_surface_term
+from fluid.upright import free_surface_term, frozen_liquid
 from meshes.chamber import Chamber
 from meshes.errors import InputError
 from tests.mutants import kills
+from tests.oracles.bowl import BOWLS, GRAVITY, RHO, Bowl
 
-G = 9.81
-RHO = 998.0
 EPS = np.finfo(float).eps
-
-
-@dataclass(frozen=True)
-class Bowl:
-    """A chamber whose floor lies `floor` above the fixed point, spun at `speed` and filled to `fill`."""
-
-    chamber: Chamber
-    floor: float
-    speed: float
-    fill: float
-
-    @property
-    def volume(self) -> float:
-        return self.fill * self.chamber.capacity
-
-    def layers(self, tilt: float, level: float) -> tuple[float, float]:
-        """Volume of the liquid {Phi < level} and the integral of level - Phi over it, chamber tilted.
-
-        Phi = g z' - Omega^2 r'^2/2 in the axes fixed in space, written in those of the chamber: quadratic
-        along each vertical line of the chamber and each ray of its floor, so that the surface and its
-        waterlines are roots of quadratics and each piece is smooth.
-        """
-        s, c, w2 = np.sin(tilt), np.cos(tilt), self.speed**2
-        phi = 2.0 * np.pi * (np.arange(64) + 0.5) / 64
-        k = 1.0 - (np.cos(phi) * s) ** 2
-        lines = []
-        for z in (self.floor, self.floor + self.chamber.height):
-            b = np.cos(phi) * s * (G + w2 * z * c)
-            d = G * z * c - 0.5 * w2 * (z * s) ** 2 - level
-            root = np.sqrt(np.maximum(b * b + 2.0 * w2 * k * d, 0.0))
-            radius = np.where(d > 0.0, (b + root) / (w2 * k), 0.0)
-            lines.append(np.clip(radius, self.chamber.inner_radius, self.chamber.radius))
-        lines.append(np.full(phi.shape, self.chamber.radius))
-
-        node, weight = np.polynomial.legendre.leggauss(20)
-        volume = energy = 0.0
-        for low, high in pairwise(lines):
-            half = 0.5 * (high - low)
-            r = (low + half)[:, None] + half[:, None] * node
-            plan = half[:, None] * weight * r * (2.0 * np.pi / 64)
-            x = r * np.cos(phi)[:, None]
-            slope = c * (G + w2 * x * s)
-            rest = level - G * x * s + 0.5 * w2 * (r * r - (x * s) ** 2)
-            surface = 2.0 * rest / (slope + np.sqrt(slope**2 - 2.0 * w2 * s * s * rest))
-            top = np.clip(surface, self.floor, self.floor + self.chamber.height)
-            volume += float(np.sum(plan * (top - self.floor)))
-
-            def below(z: np.ndarray) -> np.ndarray:
-                return rest * z - slope * z * z / 2.0 + w2 * s * s * z**3 / 6.0  # noqa: B023
-
-            energy += float(np.sum(plan * (below(top) - below(np.full(top.shape, self.floor)))))
-        return volume, energy
-
-    def level(self, tilt: float) -> float:
-        """Level of Phi that holds the volume."""
-        span = self.speed**2 * self.chamber.radius**2 + G * (self.chamber.height + abs(self.floor))
-        return float(
-            optimize.brentq(lambda c: self.layers(tilt, c)[0] - self.volume, -2 * span, 2 * span, xtol=1e-14)
-        )
-
-    def energy(self, tilt: float) -> float:
-        """Least energy of the liquid at fixed volume: an error in the level counts only in second order."""
-        level = self.level(tilt)
-        return RHO * (level * self.volume - self.layers(tilt, level)[1])
-
-    def frozen(self) -> tuple[float, float]:
-        """C0 - A0 and the static moment M x_c3 of the upright liquid, ring by ring."""
-        beta, constant = self.speed**2 / (2.0 * G), self.level(0.0) / G
-        node, weight = np.polynomial.legendre.leggauss(8)
-        cuts = (np.array([self.floor, self.floor + self.chamber.height]) - constant) / beta
-        low, high = self.chamber.inner_radius**2, self.chamber.radius**2
-        marks = [low, *np.clip(cuts, low, high), high]
-        difference = moment = 0.0
-        for start, stop in pairwise(marks):
-            t = 0.5 * (start + stop) + 0.5 * (stop - start) * node
-            ring = np.pi * 0.5 * (stop - start) * weight
-            top = np.clip(beta * t + constant, self.floor, self.floor + self.chamber.height)
-            depth, second = top - self.floor, (top**3 - self.floor**3) / 3.0
-            difference += float(np.sum(ring * (0.5 * t * depth - second)))
-            moment += float(np.sum(ring * 0.5 * (top**2 - self.floor**2)))
-        return RHO * difference, RHO * moment
-
-
-BOWLS = {
-    "surface on the wall only": Bowl(Chamber(0.2, 0.2), 0.15, 5.0, 0.5),
-    "surface from floor to lid": Bowl(Chamber(0.2, 0.05), 0.1, 14.0, 0.5),
-    "floor dry, wall wetted": Bowl(Chamber(0.2, 0.2), -0.1, 14.0, 0.2),
-    "below the fixed point": Bowl(Chamber(0.2, 0.1), -0.4, 9.0, 0.6),
-    "annulus": Bowl(Chamber(0.2, 0.08, inner_radius=0.08), 0.1, 11.0, 0.5),
-}
 
 
 def assert_second_variation(bowl: Bowl) -> None:
@@ -116,12 +21,12 @@ def assert_second_variation(bowl: Bowl) -> None:
     # with an error of tilt^4 left, tell each other's accuracy. Rounding of E is divided by tilt^2.
     second = np.array([2.0 * (bowl.energy(t) - level) / t**2 for t in tilts])
     coarse, fine = (4.0 * second[1:] - second[:-1]) / 3.0
-    rounding = 20.0 * EPS * max(abs(level), RHO * G * bowl.volume) * 4.0 / tilts[-1] ** 2
+    rounding = 20.0 * EPS * max(abs(level), RHO * GRAVITY * bowl.volume) * 4.0 / tilts[-1] ** 2
 
     difference, moment = bowl.frozen()
-    constant = bowl.level(0.0) / G - bowl.floor
-    a = float(free_surface_term(bowl.chamber, bowl.floor, constant, bowl.speed, G, RHO))
-    margin = difference * bowl.speed**2 - moment * G - a  # [DR18, eq. 21; theory: statics, eq. 20]
+    constant = bowl.level(0.0) / GRAVITY - bowl.floor
+    a = float(free_surface_term(bowl.chamber, bowl.floor, constant, bowl.speed, GRAVITY, RHO))
+    margin = difference * bowl.speed**2 - moment * GRAVITY - a  # [DR18, eq. 21; theory: statics, eq. 20]
     tolerance = abs(fine - coarse) + rounding
     # The tolerance must be able to tell a from a slightly wrong a.
     assert tolerance < 1e-3 * a
@@ -152,22 +57,59 @@ def test_floor_to_lid() -> None:
     assert_second_variation(BOWLS["surface from floor to lid"])
 
 
+def assert_frozen(bowl: Bowl) -> None:
+    """A sum over rings by other points, which is exact for these polynomials: rounding alone is left."""
+    difference, moment = bowl.frozen()
+    constant = bowl.level(0.0) / GRAVITY - bowl.floor
+    found = frozen_liquid(bowl.chamber, bowl.floor, constant, bowl.speed, GRAVITY, RHO)
+    # The level is found to 1e-14 of its span; moments go with it.
+    size = RHO * bowl.volume * (bowl.chamber.radius + abs(bowl.floor) + bowl.chamber.height) ** 2
+    assert float(found.polar - found.transverse) == pytest.approx(difference, abs=1e-11 * size)
+    assert float(found.static) == pytest.approx(moment, abs=1e-11 * size / bowl.chamber.radius)
+
+
+@pytest.mark.parametrize("name", BOWLS)
+def test_frozen_liquid_is_summed_ring_by_ring(name: str) -> None:
+    assert_frozen(BOWLS[name])
+
+
+@kills("fluid.upright:frozen_liquid", "(0.5 * s * top + cubed)", "(s * top + cubed)")
+@kills("fluid.upright:frozen_liquid", "0.5 * top * (high + floor)", "0.5 * top * (high - floor)")
+@kills("fluid.upright:frozen_liquid", "chamber.height)\n", "2.0 * chamber.height)\n")
+def test_frozen_liquid_from_floor_to_lid() -> None:
+    assert_frozen(BOWLS["surface from floor to lid"])
+
+
+@kills("fluid.upright:frozen_liquid", "ring * s * top", "ring * 0.5 * s * top")
+def test_full_annulus_is_a_solid_ring() -> None:
+    chamber = Chamber(0.2, 0.06, inner_radius=0.12)
+    mass, floor = RHO * chamber.capacity, 0.05
+    # A constant above the lid everywhere: full at any speed.
+    polar, transverse, static = frozen_liquid(chamber, floor, 0.06, [0.0, 30.0], GRAVITY, RHO)
+    squares = 0.2**2 + 0.12**2
+    np.testing.assert_allclose(polar, 0.5 * mass * squares, rtol=1e-13)
+    height = floor + 0.03
+    np.testing.assert_allclose(transverse, mass * (squares / 4.0 + 0.06**2 / 12.0 + height**2), rtol=1e-13)
+    np.testing.assert_allclose(static, mass * height, rtol=1e-13)
+
+
 def test_still_liquid() -> None:
     # Without spin a = rho g times the plan's second moment: the metacentric loss of every tank.
-    a = free_surface_term(Chamber(0.2, 0.1), 0.3, [-0.01, 0.05, 0.11], 0.0, G, RHO)
-    np.testing.assert_allclose(a, [0.0, RHO * G * np.pi * 0.2**4 / 4.0, 0.0], rtol=1e-14)
+    a = free_surface_term(Chamber(0.2, 0.1), 0.3, [-0.01, 0.05, 0.11], 0.0, GRAVITY, RHO)
+    np.testing.assert_allclose(a, [0.0, RHO * GRAVITY * np.pi * 0.2**4 / 4.0, 0.0], rtol=1e-14)
 
 
 def test_full_and_empty_chambers_have_no_free_surface() -> None:
-    beta = 90.0**2 / (2 * G)
-    a = free_surface_term(Chamber(0.2, 0.05), 0.1, [0.05, -beta * 0.2**2], 90.0, G, RHO)
+    beta = 90.0**2 / (2 * GRAVITY)
+    a = free_surface_term(Chamber(0.2, 0.05), 0.1, [0.05, -beta * 0.2**2], 90.0, GRAVITY, RHO)
     np.testing.assert_array_equal(a, 0.0)
 
 
 def test_a_partition_can_only_help() -> None:
     # An inner wall takes plan away from the free surface.
     whole, ring = (
-        free_surface_term(Chamber(0.2, 0.1, inner_radius=r), 0.1, -0.02, 10.0, G, RHO) for r in (0.0, 0.15)
+        free_surface_term(Chamber(0.2, 0.1, inner_radius=r), 0.1, -0.02, 10.0, GRAVITY, RHO)
+        for r in (0.0, 0.15)
     )
     assert 0.0 < float(ring) < float(whole)
 
@@ -175,11 +117,11 @@ def test_a_partition_can_only_help() -> None:
 @pytest.mark.parametrize(
     ("arguments", "field"),
     [
-        ((np.nan, 0.0, 9.0, G, RHO), "floor"),
-        ((0.0, np.inf, 9.0, G, RHO), "surface_constant"),
-        ((0.0, 0.0, np.nan, G, RHO), "speed"),
+        ((np.nan, 0.0, 9.0, GRAVITY, RHO), "floor"),
+        ((0.0, np.inf, 9.0, GRAVITY, RHO), "surface_constant"),
+        ((0.0, 0.0, np.nan, GRAVITY, RHO), "speed"),
         ((0.0, 0.0, 9.0, 0.0, RHO), "gravity"),
-        ((0.0, 0.0, 9.0, G, -1.0), "density"),
+        ((0.0, 0.0, 9.0, GRAVITY, -1.0), "density"),
     ],
 )
 def test_bad_input(arguments: tuple[float, ...], field: str) -> None:

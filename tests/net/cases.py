@@ -93,7 +93,8 @@ def _long() -> Iterator[Case]:
     )
     for group in (
         *("two_plane", "whirl", "layer", "runup", "fill_sweep", "exciter", "errata", "optimal_volume"),
-        *("vector_model", "horizontal_rig", "vertical_rig", "tub", "baffles", "exact_wave", "blood_pump"),
+        *("vector_model", "horizontal_rig", "vertical_rig", "tub", "baffles", "exact_wave", "claims"),
+        "blood_pump",
     ):
         yield _case(f"validate-{group}", f"validate {group} --json")
 
@@ -105,6 +106,9 @@ def _runs() -> Iterator[Case]:
     yield _case("explain-top_loader", f"explain {_scene('top_loader')} --json")
     yield _case("run-exact", "run small/horizontal_rig_exact.toml --workers 1 --json --out out")
     yield _case("run-top_loader", f"run {_scene('top_loader')} --json --out out")
+    for command in ("explain", "run"):
+        out = " --out out" if command == "run" else ""
+        yield _case(f"{command}-spinning_top", f"{command} docs/examples/spinning_top.toml --json{out}")
 
 
 def _comparisons() -> Iterator[Case]:
@@ -133,6 +137,7 @@ def _optimums() -> Iterator[Case]:
             f"optimise-{objective}",
             f"optimise small/horizontal_rig.toml --objective {objective} --steady --no-front --json",
         )
+    yield _case("optimise-layout", "optimise examples/tub.toml --objective layout --json --out out")
     typed = "optimise examples/tub.toml --objective floor_force --no-front --json --out out"
     yield _case("optimise-floor_force", typed)
     yield _case("optimise-front", "optimise small/centrifuge.toml --json --out out")

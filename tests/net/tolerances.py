@@ -74,6 +74,9 @@ TABLE: tuple[tuple[str, str, Tolerance, str], ...] = (
     ),
     ("explain-*", "*error", Tolerance(1e-7, 1e-11), "the same"),
     ("trade-*", "*error", Tolerance(absolute=1e-11), "difference of the answers of two models: 1e-15"),
+    # The layout of mounts
+    ("optimise-layout", "*evaluations", Tolerance(relative=0.5), "a population is together, or not yet"),
+    ("optimise-layout", "*", Tolerance(1e-5, 1e-12), "the end of a way downhill: 4e-7"),
     # The machine at its speeds
     (
         *("run-two_plane_rig", "*backward*", Tolerance(absolute=1e-15)),

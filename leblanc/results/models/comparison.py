@@ -118,9 +118,9 @@ class Comparison(Result):
     Examples
     --------
     >>> import leblanc as lb
-    >>> comparison = lb.compare(lb.example("horizontal_rig"), models=["statics", "linear", "fem"])
+    >>> comparison = lb.compare(lb.example("horizontal_rig"), models=["statics", "linear"])
     >>> [answer.model for answer in comparison.answers if answer.answered]
-    ['statics', 'linear', 'fem']
+    ['statics', 'linear']
     """
 
     figure: ClassVar[str] = "leblanc.figures.comparison:comparison_figure"

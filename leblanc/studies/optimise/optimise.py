@@ -104,6 +104,8 @@ def optimise_scene(
     """
     task = task or scene.optimise or Optimisation()
     task = task if objective is None else task.altered(objective=objective)
+    if task.objective == "layout":
+        raise InputError("--objective", "layout", "one of the liquid here; optimise_layout answers this one")
     if not scene.fills:
         raise InputError("chambers", "none", "at least one to choose the volume of")
     require_clear(scene, "a search over volumes, which rests on the equilibrium in a ring", baffles=True)

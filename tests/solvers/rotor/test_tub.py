@@ -76,8 +76,8 @@ def derived(angle: float = 0.7) -> dict[str, np.ndarray]:
     }
 
 
-@kills("solvers.rotor.tub:displacement", "[0.0, 1.0, 0.0, -z, 0.0, x]", "[0.0, 1.0, 0.0, 0.0, -z, x]")
-@kills("solvers.rotor.tub:displacement", "[0.0, 0.0, 1.0, y, -x, 0.0]", "[0.0, 0.0, 1.0, y, x, 0.0]")
+@kills("solvers.rotor.tub:displacement", "found[..., 1, 3], found", "found[..., 1, 4], found")
+@kills("solvers.rotor.tub:displacement", "[..., 2, 4] = y, -x", "[..., 2, 4] = y, x")
 @kills("solvers.rotor.tub:Mount.matrix", "/ math.hypot(*self.direction)", "")
 @kills(
     "solvers.rotor.tub:Mount.matrix",
@@ -143,7 +143,7 @@ def test_symmetry() -> None:
     assert np.linalg.eigvalsh(system.stiffness).min() > 0.0
 
 
-@kills("solvers.rotor.tub:displacement", "[1.0, 0.0, 0.0, 0.0, z, -y]", "[1.0, 0.0, 0.0, 0.0, -z, -y]")
+@kills("solvers.rotor.tub:displacement", "[..., 0, 5] = z, -y", "[..., 0, 5] = -z, -y")
 def test_displacement() -> None:
     """Points of the tub and of the drum's axis move as under a small rotation about x, y, z."""
     q = np.array([0.1, 0.2, 0.3, 1e-7, -2e-7, 3e-7])

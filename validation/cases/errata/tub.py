@@ -104,6 +104,9 @@ def cases() -> list[Case]:
         *_order_cases(matrices),
         *_row_cases(matrices),
         *_energy_cases(matrices),
+        _energy_of_unbalance(),
+        _energy_of_spin(matrices),
+        _groups(matrices),
     ]
 
 
@@ -272,3 +275,65 @@ def _energy_cases(matrices: TubMatrices) -> list[Case]:
         )
         for first, second, unit, printed, note in _PRODUCTS
     ]
+
+
+def _energy_of_unbalance() -> Case:
+    """Eq. 4: the energy that the unbalanced mass has by its own circle alone."""
+    import sympy as sp
+
+    mass, radius, spin, time = sp.symbols("m_2 e omega t", positive=True)
+    place = sp.Matrix([-radius * sp.cos(spin * time), radius * sp.sin(spin * time)])
+    energy = sp.simplify(mass * place.diff(time).dot(place.diff(time)) / 2)
+    unit = mass * spin**2 * radius**2
+    return compare(
+        "errata/dr-eq-4-unbalance",
+        "DR18, eq. 4",
+        "energy of the eccentric mass on its circle over m_2 omega^2 e^2, at t = 0",
+        1.0,
+        float(sp.simplify(energy / unit)),
+        tolerance=0.0,
+        otherwise="erratum",
+        note="printed with a factor cos(omega t), derived constant; neither moves the tub",
+    )
+
+
+def _energy_of_spin(matrices: TubMatrices) -> Case:
+    """Eq. 4: what its last bracket makes of the coupling of alpha and gamma."""
+    import sympy as sp
+
+    unit = sp.symbols("J_b") * sp.symbols("omega")
+    return compare(
+        "errata/dr-eq-4-gyroscopic",
+        "DR18, eq. 4",
+        "gyroscopic coupling by the bracket that multiplies I_b2 omega, over J_b omega",
+        2.0,
+        float(sp.simplify(matrices.gyroscopic[5, 3] / unit)),
+        tolerance=0.0,
+        otherwise="erratum",
+        note="printed are equal products of rates that cancel; with one rate in each, alpha' gamma - alpha "
+        "gamma', it is twice what turns the drum: the 2 J_b omega of the equations",
+    )
+
+
+def _groups(matrices: TubMatrices) -> Case:
+    """Which coefficients of the stiffness matrix are static moments, linear in a place."""
+    import sympy as sp
+
+    place, scale = sp.symbols("x y z"), sp.Symbol("s")
+    static = []
+    for row, column in _PLACES:
+        entry = matrices.stiffness[row - 1, column - 1]
+        scaled = entry.subs({length: scale * length for length in place}, simultaneous=True)
+        if entry != 0 and sp.expand(scaled - scale * entry) == 0:
+            static.append((row, column))
+    inside = sum(row <= 3 and column <= 3 for row, column in static)
+    return Case(
+        "errata/dr-third-group",
+        "DR18, groups of coefficients below eq. 8",
+        "places of the static moments of rigidity in the stiffness matrix",
+        "i, j <= 3 and i different from j",
+        f"i <= 3 < j: {len(static) - inside} of them, and {inside} with i, j <= 3",
+        "another block",
+        "erratum",
+        "with i, j <= 3 all but the diagonal are 0 for springs along the axes",
+    )

@@ -1,0 +1,134 @@
+"""What closed forms say of a scene: each where the scene has what it needs."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from fluid.printed import liquid_angle_as_printed
+from leblanc.results.motion.closed_forms import Cage, ClosedForms, VectorModel
+from leblanc.scene.scene import Scene, TubRotor, TwoPlaneRotor
+from leblanc.studies.closed_forms.upright import lacking, upright
+from meshes.arrays import Array
+from meshes.errors import InputError
+from solvers.rotor.jeffcott import Jeffcott
+from solvers.rotor.system import cage_speed
+from solvers.rotor.two_plane_balance import Balancing, dynamic_balancing, of_two_planes
+from solvers.rotor.vector_model import balance_angles, deflection_lag, unbalance_left
+from solvers.synchronous.response import Response
+
+
+def closed_forms(scene: Scene, speed: Array, answer: Response | None = None) -> ClosedForms:
+    """Closed forms that a scene has the data for.
+
+    Parameters
+    ----------
+    scene : the machine; not an exciter
+    speed : the scene's speeds, rad/s, shape (n,)
+    answer : its response at them; None where it was not solved
+    """
+    balancing, why_not = _balancing(scene, speed)
+    missing = [lacking(scene), why_not, _no_balls(scene)]
+    machine, liquid = scene.rotor.machine(), sum(fill.mass for fill in scene.fills)
+    vector = None
+    if answer is not None and isinstance(machine, Jeffcott):
+        vector = vector_model(machine, answer, liquid)
+    return ClosedForms(
+        upright=upright(scene, speed),
+        vector=vector,
+        balancing=balancing,
+        cages=_cages(scene, speed),
+        lacking=tuple(text for text in missing if text is not None),
+    )
+
+
+def vector_model(rotor: Jeffcott, answer: Response, liquid_mass: float) -> VectorModel:
+    """Angles of the vector model beside those of a response [DR18, eq. 24-26; theory: rotor, eq. 9-14].
+
+    The ratio takes the liquid's unbalance from its law alone, the angle is that of the balance with the
+    rotor: they fit each other only where the response solves it.
+
+    Parameters
+    ----------
+    rotor : without liquid
+    answer : of the rotor with its liquid, shape (n,)
+    liquid_mass : of all chambers, kg
+    """
+    lag = deflection_lag(answer.speed, rotor.mass, rotor.damping, rotor.stiffness)
+    liquid = answer.liquid_offset * liquid_mass
+    known = np.isfinite(liquid) & (liquid > 0.0)
+    ratio = np.full(liquid.shape, math.nan)
+    np.divide(rotor.unbalance, liquid, out=ratio, where=known)
+    angle = np.where(known, -answer.liquid_angle, math.nan)
+    left = np.full(ratio.shape, math.nan)
+    turning = known & (ratio > 0.0)
+    left[turning] = unbalance_left(angle[turning], ratio[turning])
+    return VectorModel(
+        lag=lag,
+        ratio=ratio,
+        angle=angle,
+        balance_angle=_nearest_balance(lag, ratio, angle),
+        printed_angle=np.array([_printed(*each) for each in zip(lag.tolist(), ratio.tolist(), strict=True)]),
+        unbalance_left=left,
+    )
+
+
+def _nearest_balance(lag: Array, ratio: Array, angle: Array) -> Array:
+    """Of the two angles that balance the one nearer to that of the answer, rad; nan where there is none."""
+    found = np.full(angle.shape, math.nan)
+    real = (ratio > 0.0) & (ratio >= np.sin(lag))
+    both = np.stack(balance_angles(lag[real], ratio[real]))
+    # Whole turns do not count; the difference is kept beside the answer's own angle.
+    apart = np.mod(both - angle[real] + math.pi, 2.0 * math.pi) - math.pi
+    nearest = np.abs(apart).argmin(axis=0)
+    found[real] = angle[real] + np.take_along_axis(apart, nearest[None], axis=0)[0]
+    return found
+
+
+def _printed(lag: float, ratio: float) -> float:
+    """Angle of the source's formula, rad; nan where it is not real."""
+    if not ratio > 0.0:
+        return math.nan
+    try:
+        return liquid_angle_as_printed(lag, ratio)
+    except InputError:
+        return math.nan
+
+
+def _balancing(scene: Scene, speed: Array) -> tuple[Balancing | None, str | None]:
+    """Conditions of balancing in two planes of a rotor that tilts, or why they are not told."""
+    if not isinstance(scene.rotor, TwoPlaneRotor):
+        return None, None
+    refused = "Conditions of balancing in two planes"
+    if len({fill.chamber.plane for fill in scene.fills if fill.volume > 0.0}) < 2:
+        return None, f"{refused}: liquid is in fewer than two planes."
+    liquid = sum(fill.mass for fill in scene.fills)
+    try:
+        rotor = of_two_planes(scene.rotor.machine(), liquid)
+    except InputError as error:
+        return None, f"{refused}: {error}."
+    return dynamic_balancing(rotor, speed), None
+
+
+def _no_balls(scene: Scene) -> str | None:
+    """Why the speed of no cage is told, though there are bearings."""
+    rotor = scene.rotor
+    if not isinstance(rotor, TubRotor) or not rotor.bearings or any(b.ball_diameter for b in rotor.bearings):
+        return None
+    return (
+        "Speed of the bearings' cages: ball_diameter and pitch_diameter are not given in [[rotor.bearings]]."
+    )
+
+
+def _cages(scene: Scene, speed: Array) -> tuple[Cage, ...]:
+    """Speeds of the cages of the bearings whose balls are given."""
+    found = []
+    for k, bearing in enumerate(scene.rotor.bearings if isinstance(scene.rotor, TubRotor) else ()):
+        ball, pitch = bearing.ball_diameter, bearing.pitch_diameter
+        if ball is None or pitch is None:
+            continue
+        printed = 0.5 * speed if bearing.contact_angle == 0.0 else np.full(speed.shape, math.nan)
+        cage = cage_speed(speed, pitch, ball, bearing.contact_angle)
+        found.append(Cage(f"bearing {k + 1}", cage, printed))
+    return tuple(found)

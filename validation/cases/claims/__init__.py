@@ -1,0 +1,16 @@
+"""Claims of the sources that print no equation: several chambers, a swing of 35 mm, rules for a layout.
+
+`chambers` shares equal liquid between one to four rings, `swing` asks what 35 g do, `layout` keeps and breaks
+the rules for a washing machine, `figure` draws the rings.
+"""
+
+from __future__ import annotations
+
+from validation.cases.case import Case
+
+
+def cases() -> list[Case]:
+    """Every claim with its verdict."""
+    from validation.cases.claims import chambers, layout, swing
+
+    return [*chambers.cases(), *swing.cases(), *layout.cases()]

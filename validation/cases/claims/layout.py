@@ -1,0 +1,159 @@
+"""Rules for the layout of a washing machine, each with the couplings that it takes away.
+
+They stand in words in DR18, sections 2 and 8. The machine is the suspended tub of DG21 with mounts along its
+axes in the plane of its centre, so that one rule at a time can be kept or broken. All but masses and
+eccentricity is assumed.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from meshes.arrays import Array
+from solvers.rotor.layout import PAIRS, couplings
+from solvers.rotor.tub import Mount, Tub, Vector
+from solvers.rotor.two_plane import PlaneUnbalance
+from solvers.rotor.vibration import unbalance_response
+from validation.cases.case import Case, shape_verdict
+from validation.cases.tub import DAMPER, SPRING, suspended_tub
+
+NAMES = ("x", "y", "z", "alpha", "beta", "gamma")
+_SPREAD = (0.2, 0.15)  # m, of the mounts across and along the axis
+_SHIFT = 0.03  # m, by which a rule is broken
+_NONE = 1e-12  # a coupling that is rounding alone
+_SPEEDS = np.linspace(2.0, 60.0, 581)  # rad/s, over all resonances
+_ASSUMED = "inertias and places of the mounts are assumed; broken by 30 mm"
+
+
+def centred_tub(drum: Vector = (0.0, 0.0, 0.0), springs: float = 0.0, dampers: float = 0.0) -> Tub:
+    """A tub whose mounts couple nothing.
+
+    Parameters
+    ----------
+    drum : centre of the drum, m
+    springs, dampers : by which they sit above the centre and in front of it, m
+    """
+
+    def mounts(size: Vector, shift: float) -> tuple[Mount, ...]:
+        across, along = _SPREAD
+        return tuple(
+            Mount((x * across, y * along + shift, shift), along_axes=size) for x in (1, -1) for y in (1, -1)
+        )
+
+    return replace(
+        suspended_tub(),
+        springs=mounts((0.3 * SPRING, 0.2 * SPRING, 0.5 * SPRING), springs),
+        dampers=mounts((0.5 * DAMPER, 0.5 * DAMPER, 0.5 * DAMPER), dampers),
+        drum_position=drum,
+    )
+
+
+def cases() -> list[Case]:
+    """Each rule kept and broken, the drum's spin, and the two wordings of one rule."""
+    plain = centred_tub()
+    off_axis = centred_tub(drum=(_SHIFT, 0.0, _SHIFT))
+    along = centred_tub(drum=(0.0, _SHIFT, 0.0))
+    system = plain.system()
+    return [
+        _rule(
+            "1-axis",
+            "tub's centre of mass on the drum's axis: couplings of the mass",
+            _couplings(system.mass),
+            _couplings(off_axis.system().mass),
+            "the drum's centre off the tub's across the axis",
+        ),
+        _dynamic_unbalance(plain),
+        _rule(
+            "3-centres",
+            "drum's centre of mass in the tub's: couplings of the mass",
+            _couplings(system.mass),
+            _couplings(along.system().mass),
+            f"along the axis; largest turn under the unbalance {_turns(plain):.2g} rad kept, "
+            f"{_turns(along):.2g} rad broken",
+        ),
+        _rule(
+            "4-rigidity",
+            "centre and axes of rigidity in those of mass: couplings of the stiffness",
+            _couplings(system.stiffness),
+            _couplings(centred_tub(springs=_SHIFT).system().stiffness),
+            "the springs above the centre and in front of it",
+        ),
+        _rule(
+            "5-damping",
+            "axes of viscous friction in those of mass: couplings of the damping",
+            _couplings(system.damping),
+            _couplings(centred_tub(dampers=_SHIFT).system().damping),
+            "the dampers above the centre and in front of it",
+        ),
+        _separate(plain),
+    ]
+
+
+def _couplings(matrix: Array) -> dict[str, float]:
+    """Those that are not rounding, by pair."""
+    sizes = couplings(matrix)
+    return {
+        f"{NAMES[i]}-{NAMES[j]}": float(size)
+        for (i, j), size in zip(PAIRS, sizes.tolist(), strict=True)
+        if abs(size) > _NONE
+    }
+
+
+def _rule(name: str, meaning: str, kept: dict[str, float], broken: dict[str, float], broken_by: str) -> Case:
+    """A rule that must take every coupling away, and without which there are some."""
+    holds = not kept and bool(broken)
+    left = ", ".join(f"{pair} {size:.3f}" for pair, size in broken.items())
+    return Case(
+        name=f"claims/layout-{name}",
+        source="DR18, sections 2 and 8; DG21, section 5",
+        quantity=meaning,
+        printed="none where the rule is kept",
+        computed=f"none; broken: {left}" if not kept else ", ".join(kept),
+        difference="the same" if holds else "another",
+        verdict=shape_verdict(holds),
+        note=f"{_ASSUMED}: {broken_by}",
+    )
+
+
+def _turns(machine: Tub) -> float:
+    """Largest turn about x or z under the unbalance at any speed, rad."""
+    return float(np.abs(unbalance_response(machine.system(), _SPEEDS)[:, [3, 5]]).max())
+
+
+def _dynamic_unbalance(plain: Tub) -> Case:
+    """The drum's axis is one of its inertia: without the couple of an unbalance along its length."""
+    size = 0.1 * plain.unbalance
+    couple = replace(plain, loads=(PlaneUnbalance(0.06, size), PlaneUnbalance(-0.06, size, np.pi)))
+    kept, broken = _turns(plain), _turns(couple)
+    holds = kept < _NONE < broken
+    return Case(
+        name="claims/layout-2-inertia",
+        source="DR18, sections 2 and 8",
+        quantity="largest turn of the tub under a static unbalance, rad",
+        printed="none where the drum's axis is one of its main central axes of inertia",
+        computed=f"{kept:.1g}; with a tenth of the unbalance at 60 mm on both sides, opposite: {broken:.2g}",
+        difference="the same" if holds else "another",
+        verdict=shape_verdict(holds),
+        note="section 8 says: of the tank's inertia, section 2: of the drum's; both are needed, the tank's "
+        "for a diagonal mass matrix, which the coordinates suppose already",
+    )
+
+
+def _separate(plain: Tub) -> Case:
+    """With all rules the free motions at rest are separate; the spin couples two turns."""
+    system = plain.system()
+    rest = {**_couplings(system.mass), **_couplings(system.stiffness), **_couplings(system.damping)}
+    turning = [f"{NAMES[i]}-{NAMES[j]}" for i, j in PAIRS if abs(system.gyroscopic[i, j]) > 0.0]
+    holds = not rest and turning == ["alpha-gamma"]
+    return Case(
+        name="claims/layout-separate",
+        source="DR18, section 2",
+        quantity="couplings of the free motions with every rule kept",
+        printed="none while the drum does not turn",
+        computed=f"none at rest; {', '.join(turning)} by J_b omega while it turns",
+        difference="the same" if holds else "another",
+        verdict=shape_verdict(holds),
+        note="no place of a mount takes the gyroscopic coupling away",
+    )
