@@ -185,6 +185,7 @@ RECIPES = (
         ("exciter_table", "exciter_start", "exciter_regression"),
         minutes=True,
     ),
+    Recipe(("validation.figures.blood_pump",), ("blood_pump", "blood_pump_coils")),
     Recipe(("examples/ross_flexible_rotor.py",), ("ross_flexible_rotor",), minutes=True, needs="ross"),
 )
 

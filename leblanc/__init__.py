@@ -25,6 +25,7 @@ if TYPE_CHECKING:
         volume,
     )
     from leblanc.scene.examples import example
+    from leblanc.scene.magnetic import MagneticRotor
     from leblanc.scene.rotors import Exciter, JeffcottRotor, TubRotor, TwoPlaneRotor
     from leblanc.scene.scene import Scene, load_scene
     from leblanc.scene.schema.load import SceneError
@@ -38,6 +39,7 @@ __all__ = [
     "InputError",
     "JeffcottRotor",
     "Liquid",
+    "MagneticRotor",
     "Scene",
     "SceneError",
     "TubRotor",
@@ -66,6 +68,7 @@ _HOMES = {
     "InputError": ("meshes.errors", "InputError"),
     "JeffcottRotor": ("leblanc.scene.rotors", "JeffcottRotor"),
     "Liquid": ("fluid.liquid", "Liquid"),
+    "MagneticRotor": ("leblanc.scene.magnetic", "MagneticRotor"),
     "Scene": ("leblanc.scene.scene", "Scene"),
     "SceneError": ("leblanc.scene.schema.load", "SceneError"),
     "TubRotor": ("leblanc.scene.rotors", "TubRotor"),

@@ -27,6 +27,8 @@ if TYPE_CHECKING:
     from leblanc.results.layer import FreeWaveResult, LayerPeriodsResult, LayerResult
     from leblanc.results.liquid import ModesResult, VolumeResult
     from leblanc.results.machine.layout import LayoutResult
+    from leblanc.results.magnetic.control import MagneticResult
+    from leblanc.results.magnetic.explanation import MagneticExplanation
     from leblanc.results.models.comparison import Comparison
     from leblanc.results.optimum import OptimumResult
     from leblanc.results.response import RunResult
@@ -41,7 +43,7 @@ _OPTION = re.compile(r"--([a-z][a-z-]*)")
 
 def run(
     scene: SceneOrPath, *, workers: int = 1, solver: str | None = None, cycles: bool = False
-) -> RunResult | ExciterResult:
+) -> RunResult | ExciterResult | MagneticResult:
     """Response and the liquid's centre of mass at each speed of a scene.
 
     Parameters
@@ -56,7 +58,8 @@ def run(
 
     Returns
     -------
-    The response at each speed; of an exciter its stuck speeds and vibration
+    The response at each speed; of an exciter its stuck speeds and vibration, of a rotor in magnetic bearings
+    its poles, margins and motion
 
     Raises
     ------
@@ -77,6 +80,10 @@ def run(
         from leblanc.studies.exciter import run_exciter
 
         return run_exciter(machine)
+    if machine.rotor.kind == "magnetic":
+        from leblanc.studies.magnetic.run import run_magnetic
+
+        return run_magnetic(machine)
     from leblanc.studies.held.holding import Holding
     from leblanc.studies.run import run_scene
     from solvers.held.state import COUPLED
@@ -84,7 +91,7 @@ def run(
     return run_scene(machine, holding=Holding(workers, solver=solver or COUPLED), cycles=cycles)
 
 
-def explain(scene: SceneOrPath) -> Explanation | ExciterExplanation:
+def explain(scene: SceneOrPath) -> Explanation | ExciterExplanation | MagneticExplanation:
     """A scene's dimensionless numbers, the liquid model that answers at each speed, and why.
 
     Parameters
@@ -102,6 +109,10 @@ def explain(scene: SceneOrPath) -> Explanation | ExciterExplanation:
     True
     """
     machine = _scene(scene)
+    if machine.rotor.kind == "magnetic":
+        from leblanc.studies.magnetic.explain import explain_magnetic
+
+        return explain_magnetic(machine)
     from leblanc.studies.explain import explain_exciter, explain_scene
 
     return explain_exciter(machine) if machine.rotor.kind == "exciter" else explain_scene(machine)

@@ -79,11 +79,18 @@ TEMPERATURE_STEP = Dimension("difference of temperatures", "K", "900 K")
 EXPANSION = Dimension("thermal expansion", "1/K", "0.0007 1/K")
 VELOCITY = Dimension("velocity", "m/s", "6.3 mm/s")
 FORCE = Dimension("force", "N", "800 N")
+CURRENT = Dimension("electric current", "A", "30 mA")
+MAGNET = Dimension("force constant of a magnet", "N*m^2/A^2", "0.00002 N*m^2/A^2")
+DYNAMIC_VISCOSITY = Dimension("dynamic viscosity", "Pa*s", "3.5 mPa*s")
+INTEGRAL_GAIN = Dimension("integral gain", "N/(m*s)", "1000000 N/(m*s)")
+SQUARE_TIME = Dimension("square of a time", "s^2", "0.008 s^2")
+CUBIC_RATE = Dimension("cube of a rate", "1/s^3", "70000000 1/s^3")
 ANGULAR_SPEED = Dimension("angular speed", "rad/s", "1000 rpm", also=("1/s",))
 ANGULAR_ACCELERATION = Dimension("angular acceleration", "rad/s^2", "8 rad/s^2", also=("1/s^2",))
 _DIMENSIONS = (
     *(LENGTH, VOLUME, MASS, DENSITY, VISCOSITY, STIFFNESS, DAMPING, UNBALANCE, INERTIA, TORQUE, ANGLE, TIME),
-    *(RATE, ACCELERATION, TEMPERATURE, ANGULAR_SPEED, ANGULAR_ACCELERATION, FORCE),
+    *(RATE, ACCELERATION, TEMPERATURE, ANGULAR_SPEED, ANGULAR_ACCELERATION, FORCE, CURRENT, MAGNET),
+    *(DYNAMIC_VISCOSITY, INTEGRAL_GAIN, SQUARE_TIME, CUBIC_RATE),
 )
 
 # Units of usual scenes, each in the SI unit of its dimension; all others are left to pint, whose
@@ -110,6 +117,12 @@ _COMMON: dict[Dimension, dict[str, float]] = {
     INERTIA: {"kg*m^2": 1.0, "kg*cm^2": 1e-4, "kg*mm^2": 1e-6, "g*m^2": 1e-3, "g*cm^2": 1e-7},
     TORQUE: {"N*m": 1.0, "N*cm": 1e-2, "N*mm": 1e-3, "mN*m": 1e-3, "kN*m": 1e3},
     FORCE: {"N": 1.0, "mN": 1e-3, "kN": 1e3},
+    CURRENT: {"A": 1.0, "mA": 1e-3},
+    MAGNET: {"N*m^2/A^2": 1.0},
+    DYNAMIC_VISCOSITY: {"Pa*s": 1.0, "mPa*s": 1e-3},
+    INTEGRAL_GAIN: {"N/(m*s)": 1.0},
+    SQUARE_TIME: {"s^2": 1.0},
+    CUBIC_RATE: {"1/s^3": 1.0},
     ANGLE: {"rad": 1.0, "mrad": 1e-3, "deg": _TURN / 360.0},
     TIME: {"s": 1.0, "ms": 1e-3, "min": 60.0, "h": 3600.0},
     RATE: {"1/s": 1.0},
@@ -189,8 +202,10 @@ _UNITS: dict[Dimension, tuple[tuple[float, Unit], ...]] = {
     ),
     TIME: ((0.0, Unit("us", 1e6)), (1e-4, Unit("ms", 1e3)), (0.1, Unit("s", 1.0))),
     ANGULAR_SPEED: ((0.0, Unit("rpm", RPM)),),
+    CURRENT: ((0.0, Unit("uA", 1e6)), (1e-4, Unit("mA", 1e3)), (1.0, Unit("A", 1.0))),
 }
 _USUAL = {LENGTH: "mm", MASS: "g", VOLUME: "ml", UNBALANCE: "g mm", TIME: "s", ANGULAR_SPEED: "rpm"}
+_USUAL |= {CURRENT: "mA"}
 
 
 def units_of(dimension: Dimension) -> tuple[Unit, ...]:

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 GROUPS = (
     *("errata", "optimal_volume", "vector_model", "horizontal_rig", "vertical_rig", "layer", "whirl", "tub"),
     *("two_plane", "exciter", "runup", "fill_sweep", "baffles", "exact_wave", "claims"),
+    "blood_pump",
 )
 
 
@@ -76,6 +77,7 @@ def _group(name: str) -> Callable[[], list[Case]]:
     """The function that computes a group."""
     from validation.cases import (
         baffles,
+        blood_pump,
         claims,
         errata,
         exact_wave,
@@ -106,6 +108,7 @@ def _group(name: str) -> Callable[[], list[Case]]:
         "fill_sweep": fill_sweep.cases,
         "baffles": baffles.cases,
         "exact_wave": exact_wave.cases,
+        "blood_pump": blood_pump.cases,
         "claims": claims.cases,
     }[name]
 

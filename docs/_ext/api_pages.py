@@ -25,7 +25,16 @@ SECTIONS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
         "A scene is a machine with its liquid; what it may say stands on the :doc:`page of keys </scene>`.",
         (
             *("load_scene", "example", "Scene"),
-            *("JeffcottRotor", "TwoPlaneRotor", "TubRotor", "Exciter", "Chamber", "Fill", "Liquid"),
+            *(
+                "JeffcottRotor",
+                "TwoPlaneRotor",
+                "TubRotor",
+                "Exciter",
+                "MagneticRotor",
+                "Chamber",
+                "Fill",
+                "Liquid",
+            ),
         ),
     ),
     (

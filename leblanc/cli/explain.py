@@ -30,6 +30,17 @@ def explain(
             print(table.name)
             print_table(exciter_rows(table), indent=2)
         return
+    if machine.rotor.kind == "magnetic":
+        from leblanc.studies.magnetic.explain import explain_magnetic
+        from leblanc.text.magnetic import explanation_rows
+
+        told = explain_magnetic(machine)
+        if json:
+            print_json(told.to_json())
+        else:
+            print(told.name)
+            print_table(explanation_rows(told), indent=2)
+        return
     answer = explain_scene(machine)
     if json:
         print_json(answer.to_json())

@@ -36,12 +36,12 @@ def run(
     """Answer of the machine at each speed. Figures, data file, report."""
 
     machine = load(scene)
-    exciter = machine.rotor.kind == "exciter"
-    files = ["summary.html", *([] if exciter else ["response.nc"])]
+    kind = machine.rotor.kind
+    files = ["summary.html", *([] if kind == "exciter" else ["response.nc"])]
     folder = results_dir(machine.name, out, scene, machine.digest, *files)
 
-    if exciter:
-        _run_exciter(machine, scene, folder, json)
+    if kind in _OTHERS:
+        _OTHERS[kind](machine, scene, folder, json)
         return
 
     with working("preparing") as update:
@@ -125,3 +125,40 @@ def _run_exciter(machine: Scene, scene: Path, folder: Path, json: bool) -> None:
 
         raise NotConverged([f"{result.name}: a time integration beside the formulas did not stay finite"])
     say(f"{result.name}: {result.speed.size} speeds done")
+
+
+def _run_magnetic(machine: Scene, scene: Path, folder: Path, json: bool) -> None:
+    """Poles, margins, deflections and a trial in time of a rotor in magnetic bearings."""
+    with working("control") as update:
+        from leblanc.studies.magnetic.run import run_magnetic
+
+        result = run_magnetic(machine, lambda what: update(what=what))
+
+    from leblanc.figures.magnetic.control import write_magnetic_figure
+    from leblanc.report.page import about, command_line
+    from leblanc.report.run import write_magnetic_report
+    from leblanc.results.netcdf import write_netcdf
+    from leblanc.text.magnetic import heads, limits, lines, rows
+
+    write_netcdf(result.named_arrays(), folder / "response.nc")
+    figure = write_magnetic_figure(result, folder)
+    what = about(
+        machine, command_line("run", scene), "response.nc", unused=("model", "runup", "programme", "optimise")
+    )
+    write_magnetic_report(result, what, figure, folder / "summary.html")
+    if json:
+        print_json(result.to_json())
+    else:
+        print("\n".join(lines(result)))
+        print_table(rows(result), heads(result), right=True)
+        print("\nLimits of the answer")
+        print_table([(limit.label, limit.where) for limit in limits(result)], indent=2)
+        print(f"Read {folder / 'summary.html'}; the data are in {folder / 'response.nc'}")
+    if not result.converged:
+        from leblanc.scene.schema.load import NotConverged
+
+        raise NotConverged([f"{result.name}: the trial in time did not come to its end"])
+    say(f"{result.name}: {result.speed.size} speeds done")
+
+
+_OTHERS = {"exciter": _run_exciter, "magnetic": _run_magnetic}  # kinds with an answer of their own

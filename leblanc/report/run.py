@@ -1,4 +1,4 @@
-"""The reports of `run` (rotors, exciters) and `map`: the answer, where it holds, figures, models and why."""
+"""The reports of `run` (rotors of every kind) and `map`: answer, where it holds, figures, models and why."""
 
 from __future__ import annotations
 
@@ -13,9 +13,11 @@ from numpy.typing import NDArray
 from leblanc.report.page import About, models, notes, why, write_page
 from leblanc.report.parts import Cell, Table, doubt, load_part, picture, table
 from leblanc.results.exciter import ExciterResult
+from leblanc.results.magnetic.control import MagneticResult
 from leblanc.results.notes.response import OF_MODELS, RunCode
 from leblanc.results.response import RunResult
 from leblanc.results.whirl_map import WhirlMap
+from leblanc.text import magnetic
 from leblanc.text.closed_forms import HEAD as VECTOR
 from leblanc.text.closed_forms import closed_form_rows, vector_rows
 from leblanc.text.exciter import NUMBERS
@@ -222,6 +224,47 @@ def write_exciter_report(result: ExciterResult, what: About, figure: FigureFiles
         "remarks": [began, "The numbers over speed are printed by the same command with --json."],
     }
     write_page("exciter", what, parts, path)
+
+
+def magnetic_checks(result: MagneticResult) -> Table:
+    """Where the answer is not what it seems."""
+    rows = [(limit.label, Cell(limit.where, warning=limit.failed)) for limit in magnetic.limits(result)]
+    return table("", ("Limits of the answer", "at"), rows)
+
+
+def write_magnetic_report(result: MagneticResult, what: About, figure: FigureFiles, path: Path) -> None:
+    """Write the report of a rotor in magnetic bearings.
+
+    Parameters
+    ----------
+    result : the answer
+    what : it is about
+    figure : of it
+    path : the file to write or replace
+    """
+    low, high = number(float(result.speed[0]) * RPM), number(float(result.speed[-1]) * RPM)
+    machine = (
+        f"A rigid rotor of {number(result.machine.mass * 1e3)} g in two magnetic bearings, from {low} to "
+        f"{high} rpm in {result.speed.size} speeds."
+    )
+    numbers = [
+        (text, number(getattr(result.numbers, name)))
+        for name, text in magnetic.NUMBERS.items()
+        if math.isfinite(getattr(result.numbers, name))
+    ]
+    parts = {
+        "title": "Magnetic bearings and their control",
+        "machine": machine,
+        "answer": magnetic.answer(result),
+        "doubt": doubt(magnetic_checks(result)),
+        "controllers": table("", magnetic.heads(result), magnetic.rows(result)),
+        "numbers": table("", ("Dimensionless numbers", ""), numbers),
+        "checks": magnetic_checks(result),
+        "pictures": [picture(figure)],
+        "models": [("control", magnetic.CONTROL)],
+        "remarks": list(magnetic.load_words(result)),
+    }
+    write_page("magnetic", what, parts, path)
 
 
 def bands(result: WhirlMap) -> Table:

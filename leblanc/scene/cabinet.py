@@ -150,10 +150,11 @@ def cabinet_conflicts(values: Mapping[str, Any], kind: object) -> Iterator[Confl
     for k, name in enumerate(names):
         if name in names[:k]:
             yield Conflict(("points", k, "name"), "another name than those of the points before")
-    if kind == "exciter":
+    if kind in ("exciter", "magnetic"):
+        what = "an exciter" if kind == "exciter" else "a rotor in magnetic bearings"
         for key in ("cabinet", "points"):
             if values.get(key):
-                yield Conflict((key,), "left out for an exciter")
+                yield Conflict((key,), f"left out for {what}")
     elif kind in ("jeffcott", "two_plane"):
         for k, point in enumerate(values.get("points", ())):
             if point.on == "tub":

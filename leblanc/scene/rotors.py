@@ -14,6 +14,7 @@ from pydantic import Field, PlainValidator
 
 from leblanc import units
 from leblanc.scene.loads import Load, PlaneUnbalance, Sheds, unbalance_table
+from leblanc.scene.magnetic import MagneticRotor
 from leblanc.scene.rows import Row, RowTable, Value, degrees, mm, row, three, unbalance
 from leblanc.scene.schema.part import Conflict, Part
 from leblanc.scene.schema.rules import (
@@ -587,4 +588,5 @@ class Exciter(Part):
         return []
 
 
-AnyRotor = JeffcottRotor | TwoPlaneRotor | TubRotor | Exciter
+AnyRotor = JeffcottRotor | TwoPlaneRotor | TubRotor | Exciter | MagneticRotor
+WITHOUT_CHAMBERS = (Exciter, MagneticRotor)  # kinds that carry no liquid and have an answer of their own

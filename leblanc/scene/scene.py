@@ -17,7 +17,9 @@ from fluid.friction.laws import Friction, FrictionLaw
 from leblanc import units
 from leblanc.scene.cabinet import MAX_POINTS, Cabinet, Point, cabinet_conflicts
 from leblanc.scene.chambers import Chamber
+from leblanc.scene.magnetic import MagneticRotor as MagneticRotor
 from leblanc.scene.programme.table import Programme as Programme
+from leblanc.scene.rotors import WITHOUT_CHAMBERS as WITHOUT_CHAMBERS
 from leblanc.scene.rotors import AnyRotor
 from leblanc.scene.rotors import Exciter as Exciter  # what a scene's rotor may be
 from leblanc.scene.rotors import JeffcottRotor as JeffcottRotor
@@ -436,9 +438,9 @@ def dry_rotor(scene: Scene) -> Jeffcott | TwoPlane | Tub:
 
     Raises
     ------
-    InputError : the scene is that of an exciter, which has no linear equations of motion
+    InputError : the scene is that of a rotor without chambers: an exciter, or in magnetic bearings
     """
-    if isinstance(scene.rotor, Exciter):
+    if isinstance(scene.rotor, WITHOUT_CHAMBERS):
         raise InputError("rotor.kind", scene.rotor.kind, "jeffcott, two_plane or tub for this")
     return scene.rotor.machine()
 
@@ -469,6 +471,8 @@ def rotor_content(rotor: AnyRotor) -> dict[str, Any]:
         balls = rotor.balls.model_dump()
         balls |= {"kind": rotor.balls.name, "pendulum_inertia": rotor.balls.pendulum_inertia or 0.0}
         return rotor.model_dump(exclude={"balls"}) | {"balls": balls}
+    if isinstance(rotor, MagneticRotor):
+        return rotor.model_dump()
     machine = asdict(rotor.machine())
     if not machine.get("loads", True):
         del machine["loads"]

@@ -94,12 +94,13 @@ def _long() -> Iterator[Case]:
     for group in (
         *("two_plane", "whirl", "layer", "runup", "fill_sweep", "exciter", "errata", "optimal_volume"),
         *("vector_model", "horizontal_rig", "vertical_rig", "tub", "baffles", "exact_wave", "claims"),
+        "blood_pump",
     ):
         yield _case(f"validate-{group}", f"validate {group} --json")
 
 
 def _runs() -> Iterator[Case]:
-    for name in ("vibratory_table", *ROTORS, *DOCS):
+    for name in ("vibratory_table", "blood_pump", *ROTORS, *DOCS):
         yield _case(f"run-{name}", f"run {_scene(name)} --json --out out")
         yield _case(f"explain-{name}", f"explain {_scene(name)} --json")
     yield _case("explain-top_loader", f"explain {_scene('top_loader')} --json")
@@ -249,6 +250,7 @@ def _words() -> Iterator[Case]:
         yield _case(f"words-{name}", f"{name} small/runup.toml{options}{out}")
     yield _case("words-exciter", "run examples/vibratory_table.toml")
     yield _case("words-exciter-explain", "explain examples/vibratory_table.toml")
+    yield _case("words-magnetic-explain", "explain examples/blood_pump.toml")
     yield _case("words-compare", "compare small/runup.toml --models linear,statics --out out")
     fitted = f"fit {_scene('horizontal_rig')} docs/examples/measured.csv --unknown rotor.mass --starts 2"
     yield _case("words-fit", f"{fitted} --out out")
@@ -291,6 +293,7 @@ def _wrong() -> Iterator[Case]:
         command = "sweep" if name in studies else "run"
         yield _case(f"wrong-{name}", f"{command} wrong/{name}.toml --json --out out")
     table, rig, smallest = _scene("vibratory_table"), _scene("horizontal_rig"), _scene("smallest_scene")
+    pump = _scene("blood_pump")
     typed = {
         "no-file": "run nowhere.toml",
         "folder": "run examples",
@@ -300,6 +303,11 @@ def _wrong() -> Iterator[Case]:
         "map-exciter": f"map {table}",
         "runup-exciter": f"runup {table}",
         "optimise-exciter": f"optimise {table}",
+        "map-magnetic": f"map {pump}",
+        "runup-magnetic": f"runup {pump}",
+        "optimise-magnetic": f"optimise {pump}",
+        "compare-magnetic": f"compare {pump} --models statics",
+        "view-magnetic": f"view {pump}",
         "runup-missing": f"runup {smallest}",
         "map-volumes": f"map {rig} --volumes 0",
         "map-friction": f"map {rig} --friction sticky",

@@ -107,6 +107,17 @@ TABLE: tuple[tuple[str, str, Tolerance, str], ...] = (
         *("run-vertical_rig", "*", Tolerance(relative=1e-11)),
         "a damping ratio of 0.01 multiplies rounding by 50 at the resonance: 2e-13",
     ),
+    *(
+        (
+            *("run-blood_pump", path, Tolerance(1e-4, 1e-10)),
+            "stiff steps that keep 1e-8 of each state; a current follows the rate: 1.1e-7",
+        )
+        for path in ("*trial*", "*displacement*", "*control_current*")
+    ),
+    (
+        *("run-blood_pump", "*", Tolerance(relative=1e-8)),
+        "eigenvalues 1e5 times apart, margins by roots of them",
+    ),
     ("run-vibratory_table", "*.checks[]*", Tolerance(relative=1e-9), "integrated in time: 2e-12"),
     ("map-closed_baffles", "*", Tolerance(relative=1e-6), "the matrices of baffled liquid: 9e-9; see below"),
     # Searches

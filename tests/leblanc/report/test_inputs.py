@@ -100,7 +100,27 @@ ROTORS: dict[str, dict[str, Any]] = {
         "kind": "exciter", "platform_mass": 90.1, "stiffness": 1.4e5, "damping": 150, "unbalance": "10 kg*mm",
         "balls": {"count": 2, "mass": "325 g", "kind": "ball", "track_radius": "90 mm", "damping": 0.03},
     },
+    "magnetic": {
+        "kind": "magnetic", "mass": "12 g", "transverse_inertia": 7e-7, "polar_inertia": 3e-7,
+        "eccentricity": "0.4 um", "inertia_tilt": 2e-5, "axis": "horizontal",
+        "magnets": {
+            "gap": "0.2 mm", "force_constant": 2e-5, "bias_current": "30 mA", "most_current": "20 mA",
+            "bandwidth": "2 kHz", "first": "-8 mm", "second": "9 mm",
+        },
+        "motor": {"stiffness": 6000, "length": "14 mm"},
+        "drag": {"coefficient": 0.9, "viscosity": "0.05 Pa*s", "radius": "7 mm", "length": "22 mm"},
+        "synergetic": {
+            "manifold_time": "50 ms", "goal_time": "40 ms", "weight": 8e-3, "rate": 6e7, "tilt_rate": 4e8,
+        },
+        "pid": {"proportional": 1.5e5, "integral": 7e6, "derivative": 41, "cutoff": "8 kHz"},
+        "loads": [{"force": [1.2, 0], "moment": [0, 1e-5], "frequency": "50 Hz", "start": "0.4 s"}],
+        "trial": {
+            "duration": "1.5 s", "speed": "9000 rpm", "pulsation": "700 rpm", "pulsation_frequency": "1 Hz",
+            "offset": ["0.1 mm", 0], "samples": 300,
+        },
+    },
 }  # fmt: skip
+BARE = ("exciter", "magnetic")  # neither a cabinet nor points
 # One of two keys: the report shows both ways of saying the same.
 OTHER_WAY = {
     "rotor.stiffness": "rotor.critical_speed",
@@ -128,7 +148,7 @@ WAYS = ["ramp", "motor", "programme"]
 
 def full(kind: str, way: str = "ramp") -> dict[str, Any]:
     """A scene with every key that such a file may have, driven in one of the ways."""
-    table = copy.deepcopy(REST | ({} if kind == "exciter" else AROUND) | {"rotor": ROTORS[kind]})
+    table = copy.deepcopy(REST | ({} if kind in BARE else AROUND) | {"rotor": ROTORS[kind]})
     if way == "programme":
         del table["runup"]
         table["programme"] = copy.deepcopy(PROGRAMME)
@@ -177,13 +197,13 @@ def test_the_full_scene_has_every_key_there_is(kind: str) -> None:
     for place, model in tables_of(Scene, kind).items():
         if "friction" in place or place[-2:] == ("optimise", "duty"):
             continue
-        if kind == "exciter" and place[:1] in (("cabinet",), ("points",)):
+        if kind in BARE and place[:1] in (("cabinet",), ("points",)):
             continue
         for key in model.model_fields:
             path = ".".join((*place, key))
             known = any(one == path or one.startswith(f"{path}.") for one in pattern)
             other = OTHER_WAY.get(path, "")
-            left_out = kind == "exciter" and path in AROUND
+            left_out = kind in BARE and path in AROUND
             assert known or other in pattern or path in OTHERS or left_out, path
 
 
@@ -338,6 +358,18 @@ def test_units_of_other_rotors() -> None:
         "rotor.balls.track_radius": 90.0, "rotor.balls.damping": 0.03,
     }.items():  # fmt: skip
         assert math.isclose(number(table[path]), value, rel_tol=6e-4), path
+
+
+def test_units_of_magnetic_bearings() -> None:
+    table = told(scene_inputs(scene_from_table(full("magnetic"))))
+    for path, value in {
+        "rotor.mass": 12.0, "rotor.eccentricity": 0.4, "rotor.magnets.gap": 0.2,
+        "rotor.magnets.bias_current": 30.0, "rotor.magnets.bandwidth": 2000.0, "rotor.magnets.first": -8.0,
+        "rotor.drag.viscosity": 0.05, "rotor.synergetic.goal_time": 40.0, "rotor.pid.derivative": 41.0,
+        "rotor.pid.cutoff": 8000.0, "rotor.trial.speed": 9000.0, "rotor.trial.pulsation_frequency": 1.0,
+    }.items():  # fmt: skip
+        assert math.isclose(number(table[path]), value, rel_tol=6e-4), path
+    assert table["rotor.loads.0.force"] == "(1.2, 0)" and table["rotor.loads.0.frequency"] == "50 Hz"
 
 
 def test_values_that_the_report_does_not_need_stand_apart() -> None:

@@ -27,6 +27,8 @@ from leblanc.scene.tasks import Optimisation
 from leblanc.studies.compare import compare_models
 from leblanc.studies.exciter import run_exciter
 from leblanc.studies.explain import explain_exciter, explain_scene
+from leblanc.studies.magnetic.explain import explain_magnetic
+from leblanc.studies.magnetic.run import run_magnetic
 from leblanc.studies.models.choose import choose_all, prepare
 from leblanc.studies.run import run_scene
 from leblanc.studies.volume import answer_volume
@@ -75,6 +77,10 @@ RESULTS = {
     "modes": lambda: modes(**LAYER, count=3, segments=32),
     "volume": lambda: answer_volume(CHAMBER, 1e-3, 20.0, 9.81, 3e-5),
     "exciter": lambda: run_exciter(scene("vibratory_table")),
+    "magnetic": lambda: run_magnetic(
+        scene("blood_pump").replace({"speeds.count": 3, "rotor.trial.duration": 0.02})
+    ),
+    "explain a rotor in magnetic bearings": lambda: explain_magnetic(scene("blood_pump")),
 }
 
 

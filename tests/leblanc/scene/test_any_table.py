@@ -34,6 +34,7 @@ VALUES = st.one_of(
             "two_plane",
             "tub",
             "exciter",
+            "magnetic",
             "vertical",
             "stokes",
             10**400,

@@ -38,6 +38,7 @@ def test_shipped_scenes_load(file: Path) -> None:
 def test_the_examples_of_each_kind() -> None:
     names = {file.stem for file in EXAMPLES}
     assert names >= {
+        "blood_pump",
         "centrifuge",
         "horizontal_rig",
         "vertical_rig",
@@ -122,7 +123,7 @@ def test_new_lists_the_examples(capsys: pytest.CaptureFixture[str]) -> None:
     lines = capsys.readouterr().out.splitlines()
     assert [line.split()[0] for line in lines] == list(example_names())
     assert main(["new", "--example", "tbu"]) == 2
-    assert "must be one of: centrifuge" in capsys.readouterr().err
+    assert "must be one of: blood_pump" in capsys.readouterr().err
 
 
 def test_the_wheel_carries_the_examples() -> None:

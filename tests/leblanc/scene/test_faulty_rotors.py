@@ -9,14 +9,14 @@ import pytest
 from leblanc.scene.scene import load_scene
 from leblanc.scene.schema.load import SceneError
 from tests.leblanc.scene.test_faulty_scenes import Case, case, check, shell
-from tests.leblanc.scene.test_rotors import EXCITER, HEAD, MOTOR, TUB, TWO_PLANE
+from tests.leblanc.scene.test_rotors import EXCITER, HEAD, MAGNETIC, MOTOR, TUB, TWO_PLANE
 
 SUPPORTS = TWO_PLANE[TWO_PLANE.index("[[rotor.supports]]") : TWO_PLANE.index("[[rotor.unbalances]]")]
 SPRINGS = TUB[TUB.index("[[rotor.springs]]") : TUB.index("[[rotor.dampers]]")]
 
 CASES: dict[str, tuple[Case, ...]] = {
     TWO_PLANE: (
-        case('kind = "two_plane"', "", "rotor.kind", "jeffcott, two_plane, tub, exciter"),
+        case('kind = "two_plane"', "", "rotor.kind", "jeffcott, two_plane, tub, exciter, magnetic"),
         case('mass = "20 kg"', "", "rotor.mass", "must be given", "a mass"),
         case('transverse_inertia = "0.5 kg*m^2"', "", "rotor.transverse_inertia", "a moment of inertia"),
         case('"0.5 kg*m^2"', "0", "rotor.transverse_inertia", "from 0.000 000 000 001 to"),
@@ -92,6 +92,26 @@ CASES: dict[str, tuple[Case, ...]] = {
             "given alone",
         ),
         case('track_radius = "73.5 mm", ', "", "rotor.balls.track_radius", "a length"),
+    ),
+    MAGNETIC: (
+        case('eccentricity = "0.5 um"', "", "rotor.eccentricity", "a length"),
+        case('"3e-7 kg*m^2"', "1", "rotor.polar_inertia", "at most twice rotor.transverse_inertia"),
+        case("force_constant = 2e-5", 'force_constant = "2 N"', "rotor.magnets.force_constant", "0.00002"),
+        case(
+            'bias_current = "30 mA"',
+            'bias_current = "30 mA", most_current = "31 mA"',
+            "rotor.magnets.most_current",
+            "at most rotor.magnets.bias_current, 30 mA",
+        ),
+        case('second = "9 mm"', 'second = "-9 mm"', "rotor.magnets.second", "above rotor.magnets.first"),
+        case("pid = ", "controller = ", "rotor.controller", "left out or spelled"),
+        case('cutoff = "5e4 rad/s"', "cutoff = 0", "rotor.pid.cutoff", "an angular speed"),
+        case('frequency = "50 Hz"', "frequency = 0", "rotor.loads.0.frequency", "an angular speed"),
+        case('force = [0, "1 N"]', "force = [0]", "rotor.loads.0.force", "a list of 2 forces"),
+        case('["0.1 mm", "0 mm"]', '["0.2 mm", "0 mm"]', "rotor.trial.offset", "within rotor.magnets.gap"),
+        case(
+            'speed = "9000 rpm"', "speed = 9, pulsation = 10", "rotor.trial.pulsation", "at most rotor.trial"
+        ),
     ),
     TUB + MOTOR: (
         case("duration", "rate = 8\nduration", "runup.rate", "left out where runup.motor is given"),

@@ -180,7 +180,7 @@ CASES = (
     case(CHAMBER, CHAMBER * 1001, "chambers", "[...]", "0 to 1000"),
     case(GOOD[GOOD.index("[speeds]") : GOOD.index("[model]")], "[[speeds]]\n", "speeds", "a table of start"),
     # a word that is not known
-    case('"jeffcott"', '"top"', "rotor.kind", '"top"', "one of: jeffcott, two_plane, tub, exciter"),
+    case('"jeffcott"', '"top"', "rotor.kind", '"top"', "one of: jeffcott, two_plane, tub, exciter, magnetic"),
     case('"horizontal"', '"diagonal"', "rotor.axis", '"diagonal"', "horizontal, vertical"),
     case('"water"', '"beer"', "chambers.0.liquid", '"beer"', "water, sea_water", "density"),
     case('"water"', "7", "chambers.0.liquid", "= 7", "water"),

@@ -16,7 +16,7 @@ from leblanc.scene.examples import example, example_names
 from leblanc.scene.rotors import JeffcottRotor, Spring
 from leblanc.scene.scene import Scene, Speeds, scene_from_table
 from leblanc.scene.schema.load import SceneError
-from tests.leblanc.scene.test_rotors import EXCITER, HEAD, MOTOR, TUB, TWO_PLANE
+from tests.leblanc.scene.test_rotors import EXCITER, HEAD, MAGNETIC, MOTOR, TUB, TWO_PLANE
 from tests.leblanc.scene.test_scene import TEXT, read
 
 SCENES = [name for name in example_names() if not name.startswith("studies/")]
@@ -105,7 +105,7 @@ def test_nothing_replaced_is_the_same_scene(name: str) -> None:
     assert sent == scene and sent.digest == scene.digest
 
 
-@pytest.mark.parametrize("text", [TWO_PLANE, TUB, EXCITER, TUB + MOTOR])
+@pytest.mark.parametrize("text", [TWO_PLANE, TUB, EXCITER, MAGNETIC, TUB + MOTOR])
 def test_every_kind_gives_its_table(text: str) -> None:
     scene = scene_from_table(tomllib.loads(HEAD + text))
     assert scene.replace({"name": "x"}).digest == scene.digest

@@ -11,6 +11,7 @@ import pytest
 from leblanc.scene.rotors import Balls
 from leblanc.scene.scene import (
     Exciter,
+    MagneticRotor,
     Runup,
     Scene,
     TubRotor,
@@ -22,6 +23,9 @@ from leblanc.scene.scene import (
 from leblanc.scene.tasks import Motor
 from meshes.errors import InputError
 from solvers.rotor.exciter.machine import Exciter as Machine
+from solvers.rotor.magnetic.control import Pid
+from solvers.rotor.magnetic.machine import Magnets
+from solvers.rotor.magnetic.motion import Load, SpeedLaw
 from solvers.rotor.tub import Mount, Tub
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
 from tests.leblanc.scene.test_scene import TEXT
@@ -87,6 +91,22 @@ stiffness = "145083 N/m"
 damping = 150
 unbalance = "10.5 kg*mm"
 balls = { count = 2, mass = "0.325 kg", kind = "ball", track_radius = "73.5 mm", damping = "0.03 N*s/m" }
+"""
+
+MAGNETIC = """
+[rotor]
+kind = "magnetic"
+mass = "12 g"
+transverse_inertia = "7e-7 kg*m^2"
+polar_inertia = "3e-7 kg*m^2"
+eccentricity = "0.5 um"
+axis = "horizontal"
+magnets = { gap = "0.2 mm", force_constant = 2e-5, bias_current = "30 mA", first = "-8 mm", second = "9 mm" }
+motor = { stiffness = "6 N/mm", length = "14 mm" }
+drag = { coefficient = 0.9, viscosity = "50 mPa*s", radius = "7 mm", length = "2 cm" }
+pid = { proportional = "150 N/mm", integral = 7e6, derivative = 41, cutoff = "5e4 rad/s" }
+loads = [{ force = [0, "1 N"], frequency = "50 Hz" }, { moment = ["1 mN*m", 0], start = "20 ms" }]
+trial = { duration = "50 ms", speed = "9000 rpm", offset = ["0.1 mm", "0 mm"] }
 """
 
 MOTOR = """
@@ -162,6 +182,23 @@ def test_exciter() -> None:
         dry_rotor(read(EXCITER))
 
 
+def test_magnetic() -> None:
+    rotor = read(MAGNETIC).rotor
+    assert isinstance(rotor, MagneticRotor) and rotor.axis == "horizontal"
+    machine = rotor.machine()
+    assert machine.magnets == Magnets(2e-4, 2e-5, 0.03) and (machine.first, machine.second) == (-8e-3, 9e-3)
+    assert (machine.motor_stiffness, machine.motor_length) == (6000.0, 0.014)
+    assert machine.drag == pytest.approx(0.9 * 0.05 * math.pi * 0.007**2 * 0.02, rel=1e-14)
+    assert rotor.unbalance == pytest.approx(6e-9) and machine.unbalance[0] == pytest.approx(6e-9)
+    assert rotor.controllers() == (Pid(machine, 150e3, 7e6, 41.0, 5e4),)
+    swinging, constant = (load.load() for load in rotor.loads)
+    assert swinging == Load((0.0, 1.0), frequency=100.0 * math.pi)
+    assert constant == Load((0.0, 0.0), (1e-3, 0.0), start=0.02)
+    assert rotor.trial is not None and rotor.trial.law() == SpeedLaw(300.0 * math.pi)
+    with pytest.raises(InputError, match=r"rotor\.kind"):
+        dry_rotor(read(MAGNETIC))
+
+
 def test_the_planar_rotor_alone_is_a_jeffcott() -> None:
     assert jeffcott(read(TEXT[TEXT.index("[rotor]") : TEXT.index("[speeds]")])).mass == 4.0
     with pytest.raises(InputError, match=r"rotor\.kind"):
@@ -175,7 +212,7 @@ def test_motor() -> None:
     )
 
 
-@pytest.mark.parametrize("text", [TWO_PLANE, TUB, EXCITER, TUB + MOTOR])
+@pytest.mark.parametrize("text", [TWO_PLANE, TUB, EXCITER, MAGNETIC, TUB + MOTOR])
 def test_scenes_are_frozen_and_have_a_digest(text: str) -> None:
     scene = read(text)
     assert isinstance(hash(scene), int)

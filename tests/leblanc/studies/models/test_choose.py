@@ -30,8 +30,11 @@ from tests.leblanc.studies.test_explain import scene as small_scene
 from tests.leblanc.studies.test_runup import scene as upright_scene
 from tests.mutants import kills
 
+WITHOUT_LIQUID = ('kind = "exciter"', 'kind = "magnetic"')
 EXAMPLES = sorted(
-    path.stem for path in Path("examples").glob("*.toml") if 'kind = "exciter"' not in path.read_text()
+    path.stem
+    for path in Path("examples").glob("*.toml")
+    if not any(kind in path.read_text() for kind in WITHOUT_LIQUID)
 )
 
 

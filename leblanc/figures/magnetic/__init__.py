@@ -1,0 +1,1 @@
+"""Figures of rotors in magnetic bearings: `control` of `run`, `force` of `explain`."""

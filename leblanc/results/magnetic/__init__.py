@@ -1,0 +1,1 @@
+"""What is answered of a rotor in magnetic bearings: `control` by `run`, `explanation` by `explain`."""

@@ -1,0 +1,144 @@
+"""What a scene of kind "magnetic" answers: poles, margins, loads, a trial in time."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from leblanc.results.magnetic.control import Controlled, Followed, LoadAnswer, MagneticResult
+from meshes.arrays import Array
+from meshes.errors import InputError
+from solvers.rotor.magnetic.control import Controller
+from solvers.rotor.magnetic.linear import Loop, closed_loop, margins, orbit_size
+from solvers.rotor.magnetic.machine import MagneticRotor, dimensionless
+from solvers.rotor.magnetic.motion import Load, integrate, settling_time
+
+if TYPE_CHECKING:
+    from leblanc.scene.magnetic import MagneticRotor as MagneticOfScene
+    from leblanc.scene.magnetic import Trial
+    from leblanc.scene.scene import Scene
+
+BAND = 0.02  # of the gap, within which the rotor has settled; 4 um of the source's gap, its requirement
+_STEPS = 400  # times at which a step is looked at
+
+
+def run_magnetic(scene: Scene, progress: Callable[[str], object] = lambda what: None) -> MagneticResult:
+    """Answer of a scene of kind "magnetic" over its speeds [theory: magnetic, eq. 19-24].
+
+    Parameters
+    ----------
+    scene : the scene
+    progress : called with what is worked on
+
+    Raises
+    ------
+    InputError : its rotor is of another kind
+    """
+    rotor = rotor_of(scene)
+    machine, speed, trial = rotor.machine(), scene.speed_array(), rotor.trial
+    loads = {f"load {k + 1}": part.load() for k, part in enumerate(rotor.loads)}
+    if rotor.axis == "horizontal":
+        loads["gravity"] = Load((0.0, -machine.mass * scene.gravity))
+    load_speed = float(speed[-1]) if trial is None else trial.speed
+    band = BAND * machine.magnets.gap
+    found = []
+    for controller in rotor.controllers():
+        progress(controller.name)
+        found.append(_controlled(machine, controller, speed, loads, load_speed, trial, band))
+    return MagneticResult(
+        name=scene.name,
+        assumed=scene.assumed,
+        machine=machine,
+        numbers=dimensionless(machine),
+        speed=speed,
+        controllers=tuple(found),
+        loads=tuple(loads.values()),
+        load_speed=load_speed,
+        band=band,
+        source=scene.source,
+        digest=scene.digest,
+    )
+
+
+def rotor_of(scene: Scene) -> MagneticOfScene:
+    """The scene's rotor, which is in magnetic bearings.
+
+    Raises
+    ------
+    InputError : it is of another kind
+    """
+    from leblanc.scene.magnetic import MagneticRotor as OfScene
+
+    if not isinstance(scene.rotor, OfScene):
+        raise InputError("rotor.kind", scene.rotor.kind, "magnetic for this")
+    return scene.rotor
+
+
+def _controlled(
+    machine: MagneticRotor,
+    controller: Controller,
+    speed: Array,
+    loads: dict[str, Load],
+    load_speed: float,
+    trial: Trial | None,
+    band: float,
+) -> Controlled:
+    """One controller at all speeds."""
+    loops = [closed_loop(machine, controller, float(spin)) for spin in speed]
+    edges = [margins(loop) for loop in loops]
+    answers = [loop.unbalance() for loop in loops]
+    at = closed_loop(machine, controller, load_speed)
+    return Controlled(
+        name=controller.name,
+        poles=np.array([loop.poles for loop in loops]),
+        gain_up=np.array([edge.gain_up for edge in edges]),
+        gain_down=np.array([edge.gain_down for edge in edges]),
+        phase_margin=np.array([edge.phase for edge in edges]),
+        delay_margin=np.array([edge.delay for edge in edges]),
+        sensitivity=np.array([edge.sensitivity for edge in edges]),
+        unbalance=np.array([place[0] for place, _ in answers]),
+        amplitude=np.array([orbit_size(place).max() for place, _ in answers]),
+        current=np.array([np.abs(current).max() for _, current in answers]),
+        loads=tuple(_load(name, load, at) for name, load in loads.items()) if at.stable else (),
+        trial=None if trial is None else _followed(machine, controller, trial, tuple(loads.values()), band),
+    )
+
+
+def _load(name: str, load: Load, loop: Loop) -> LoadAnswer:
+    """What a load does to a stable loop."""
+    place, current = loop.answer(load.size, load.frequency or 0.0)
+    peak = math.nan
+    if load.frequency is None:
+        sizes = np.abs(loop.poles.real)
+        times = np.geomspace(1e-2 / sizes.max(), 10.0 / sizes.min(), _STEPS)
+        peak = float(orbit_size(loop.step(load.size, times)[0]).max())
+    return LoadAnswer(
+        name=name,
+        frequency=math.nan if load.frequency is None else load.frequency,
+        peak=peak,
+        settled=float(orbit_size(place).max()),
+        current=float(np.abs(current).max()),
+    )
+
+
+def _followed(
+    machine: MagneticRotor, controller: Controller, trial: Trial, loads: Sequence[Load], band: float
+) -> Followed:
+    """The trial in time, and what it shows."""
+    place = (*trial.offset, 0.0, 0.0)
+    motion = integrate(
+        machine, controller, trial.law(), trial.duration, loads, place=place, samples=trial.samples
+    )
+    later = min((load.start for load in loads if load.start > 0.0), default=math.inf)
+    after = motion.time >= later
+    distance = motion.distance
+    return Followed(
+        motion=motion,
+        settled=settling_time(motion, band, later),
+        after_loads=float(distance[after].max()) if after.any() else math.nan,
+        left=float(distance[motion.time >= 0.9 * motion.time[-1]].max()),
+        most_current=float(np.abs(motion.current).max()),
+    )
