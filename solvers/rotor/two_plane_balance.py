@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +11,9 @@ from numpy.typing import ArrayLike
 
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError, require_not_negative, require_positive
+from solvers.rotor.balls.balancers import BallRace
+from solvers.rotor.balls.stability import balanced_stability
+from solvers.rotor.system import RotorSystem
 from solvers.rotor.two_plane import TwoPlane
 
 
@@ -89,6 +93,8 @@ class Balancing:
     above : speed above which all hold, rad/s; infinite if at none
     resonances : resonance speeds of the rotor without damping, ascending, rad/s
     long : both transverse inertias exceed the polar one
+    growth : largest real part of the roots of rotor and balls about the balanced state, 1/s, shape (n,);
+        None where no balls were given
     """
 
     speed: Array
@@ -97,6 +103,12 @@ class Balancing:
     above: float
     resonances: tuple[float, ...]
     long: bool
+    growth: Array | None = None
+
+    @property
+    def holds(self) -> Flags:
+        """Where the balanced state is stable: by the roots, or by the conditions where there are none."""
+        return self.possible if self.growth is None else np.asarray(self.growth < 0.0)
 
     def why(self, index: int = 0) -> str:
         """The answer at one speed in words.
@@ -105,6 +117,15 @@ class Balancing:
         ----------
         index : of the speed
         """
+        said = self._conditions(index)
+        if self.growth is None:
+            return said
+        growth = float(self.growth[index])
+        if growth < 0.0:
+            return f"{said}; with these balls a disturbance dies out with {-growth:.3g} 1/s at least"
+        return f"{said}; with these balls a disturbance grows with {growth:.3g} 1/s"
+
+    def _conditions(self, index: int) -> str:
         if self.possible[index]:
             return f"yes: the rotor is long and {self.speed[index]:.6g} rad/s is above {self.above:.6g} rad/s"
         failed = [condition for condition in self.conditions if not condition.satisfied[index]]
@@ -117,20 +138,27 @@ class Balancing:
         return "no: " + "; ".join(reasons)
 
 
-def dynamic_balancing(rotor: RigidRotor, speed: ArrayLike) -> Balancing:
+def dynamic_balancing(
+    rotor: RigidRotor,
+    speed: ArrayLike,
+    balls: tuple[RotorSystem, Sequence[BallRace]] | None = None,
+) -> Balancing:
     """Whether two or more passive balancers of any type balance the rotor [theory: balls, eq. 26-27].
 
     Balancers in at least two planes, light beside the rotor, able to produce the unbalance it has. Damping of
-    the supports has no part in it [FF20, eq. 32-35].
+    the supports has no part in the conditions [FF20, eq. 32-35]; it has one in what balls really do: supports
+    that hardly damp let a whirl of rotor and balls grow far above them. With `balls` the roots of rotor and
+    balls stand beside the conditions.
 
     Parameters
     ----------
     rotor : with its supports
-    speed : spin speeds, rad/s, shape (n,) or one, 0 or above
+    speed : spin speeds, rad/s, shape (n,) or one, 0 or above; above 0 with balls
+    balls : the same rotor with its damping and unbalance, and the races on it; None for the conditions alone
 
     Raises
     ------
-    InputError : a speed that is negative or not finite
+    InputError : a speed that is negative or not finite; balls that cannot balance the unbalance
     """
     spin = np.atleast_1d(np.asarray(speed, dtype=float))
     if spin.ndim != 1 or not np.all(np.isfinite(spin) & (spin >= 0.0)):
@@ -139,6 +167,9 @@ def dynamic_balancing(rotor: RigidRotor, speed: ArrayLike) -> Balancing:
     k11, k14, k33 = rotor.support
     square = np.square(spin)
     v11, v22, v33 = (b - c) * square - k33, (a - c) * square - k33, rotor.mass * square - k11
+    growth = None
+    if balls is not None:
+        growth = np.array([balanced_stability(*balls, value).growth for value in spin.tolist()])
     tilts = (_tilt_limits(rotor, b - c), _tilt_limits(rotor, a - c))
     conditions = (
         _condition("A > C", np.full(spin.shape, a - c), 0.0 if a > c else math.inf),
@@ -157,6 +188,7 @@ def dynamic_balancing(rotor: RigidRotor, speed: ArrayLike) -> Balancing:
         above=max(condition.above for condition in conditions),
         resonances=_distinct((*tilts[0], *tilts[1])),
         long=a > c and b > c,
+        growth=growth,
     )
 
 
