@@ -28,6 +28,7 @@ from solvers.rotor.system import RotorSystem
 
 _RANK = 1e-9  # of the largest: smaller singular values are none
 _STEPS, _MOST = 32, 4096  # of half a turn
+_GONE = 1e-300  # a multiplier that is nothing
 _SETTLED = 1e-6  # over a radian: change of the logarithm of a multiplier between two numbers of steps
 
 
@@ -279,7 +280,9 @@ def balanced_exponents(
     neutral = neutral_directions(system, races, angles)
     steps, last = _STEPS, np.zeros(0)
     while steps <= _MOST:
-        found = np.log(np.linalg.eigvals(_half_turn(system, axes, balls, angles, speed, neutral, steps)))
+        found = np.linalg.eigvals(_half_turn(system, axes, balls, angles, speed, neutral, steps))
+        # What heavy drag leaves of a ball's speed may be below the least number.
+        found = np.log(np.where(np.abs(found) < _GONE, _GONE, found.astype(complex)))
         found = found[np.argsort(-found.real)]
         growth = found.real
         if last.size and np.abs(growth[0] - last[0]) <= _SETTLED * max(1.0, abs(growth[0])):
