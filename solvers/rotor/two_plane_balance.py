@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from meshes.arrays import Array, Flags
+from meshes.arrays import Array, Complex, Flags
 from meshes.errors import InputError, require_not_negative, require_positive
 from solvers.rotor.balls.balancers import BallRace
 from solvers.rotor.balls.stability import balanced_stability
@@ -233,6 +233,97 @@ def potential_hessian(rotor: RigidRotor, speed: float) -> Array:
             [k14, 0.0, 0.0, shift],
         ]
     )
+
+
+def circulatory(damping: Sequence[float], position: Sequence[float]) -> Array:
+    """B_1: what damping supports do to a deflection at rest in the rotor, over the speed [FF20, eq. 25].
+
+    Parameters
+    ----------
+    damping : b of each support, N s/m
+    position : of each along the axis from the centre of mass, m
+
+    Returns
+    -------
+    Skew matrix for (alpha, beta, x, y), shape (4, 4) [theory: balls, eq. 41]
+    """
+    pairs = list(zip(damping, position, strict=True))
+    b11, b14, b33 = (sum(b * z**k for b, z in pairs) for k in range(3))
+    return np.array(
+        [
+            [0.0, -b33, -b14, 0.0],
+            [b33, 0.0, 0.0, -b14],
+            [b14, 0.0, 0.0, -b11],
+            [0.0, b14, b11, 0.0],
+        ]
+    )
+
+
+def turning_state(rotor: RigidRotor, damping: Sequence[float], speed: float, unbalance: ArrayLike) -> Array:
+    """Steady deflection in the turning frame, by the source's matrices [FF20, eq. 27-29].
+
+    The source has its V with the other sign here, see theory: balls, eq. 42.
+
+    Parameters
+    ----------
+    rotor : with its supports
+    damping : of each of them, N s/m
+    speed : rad/s
+    unbalance : S = (-I_eta_zeta, I_xi_zeta, M xi_G, M eta_G), shape (4,)
+
+    Returns
+    -------
+    q = (alpha, beta, x, y), shape (4,)
+    """
+    matrix = speed * circulatory(damping, rotor.position) - potential_hessian(rotor, speed)
+    return np.linalg.solve(matrix, speed**2 * np.asarray(unbalance, dtype=float))
+
+
+def plane_compliance(
+    rotor: RigidRotor, position: float, speed: ArrayLike, damping: Sequence[float] | None = None
+) -> Complex:
+    """Deflection of one plane for a force there that turns with the rotor [theory: balls, eq. 44].
+
+    Parameters
+    ----------
+    rotor : A = B
+    position : of the plane along the axis from the centre of mass, m
+    speed : rad/s, shape (n,) or one
+    damping : of each support, N s/m; None for none
+
+    Returns
+    -------
+    g, m/N, shape of `speed`; its imaginary part is a quarter turn ahead
+
+    Raises
+    ------
+    InputError : a rotor whose transverse inertias differ
+    """
+    a, b, c = rotor.inertia
+    if a != b:
+        raise InputError("inertia", rotor.inertia, "A = B for one plane")
+    w = np.asarray(speed, dtype=float)
+    pairs = list(zip(damping or [0.0] * len(rotor.position), rotor.position, strict=True))
+    k11, k14, k33 = rotor.support
+    b11, b14, b33 = (sum(value * z**k for value, z in pairs) for k in range(3))
+    shift, both = k11 - rotor.mass * w**2 + 1j * w * b11, k14 + 1j * w * b14
+    tilt = k33 - (a - c) * w**2 + 1j * w * b33
+    above = tilt - 2.0 * position * both + position**2 * shift
+    return np.asarray(above / (shift * tilt - both**2))
+
+
+def single_plane_balancing(
+    rotor: RigidRotor, position: float, speed: ArrayLike, damping: Sequence[float] | None = None
+) -> Flags:
+    """Whether balancers in one plane take away an unbalance of this plane [theory: balls, eq. 44].
+
+    Light balancers whose drag outweighs their inertia: they do if and only if Re g < 0.
+
+    Parameters
+    ----------
+    rotor, position, speed, damping : see `plane_compliance`
+    """
+    return np.asarray(plane_compliance(rotor, position, speed, damping).real < 0.0)
 
 
 def _condition(name: str, value: Array, above: float) -> Condition:

@@ -237,6 +237,49 @@ def balanced_stability(
     return Stability(float(roots[0].real), float(abs(roots[0].imag)), neutral, angles, roots)
 
 
+def light_ball_roots(system: RotorSystem, races: Sequence[BallRace], speed: float) -> Complex:
+    """Forward whirls of a rotor with light balls evenly round their races [theory: balls, eq. 37-38].
+
+    To first order in the balls and in the damping of the supports. Above the speed of a whirl the drag of the
+    races, which turns with the rotor, feeds it; the supports must damp more than that.
+
+    Parameters
+    ----------
+    system : a rotor that is the same in every direction across its axis
+    races : two balls or more each
+    speed : Omega, rad/s, above 0
+
+    Returns
+    -------
+    lambda of each forward whirl in the standing frame, 1/s, by rising frequency, shape (n/2,) at most
+    """
+    require_positive("speed", speed)
+    quarter_turn(system)
+    axes, balls = race_arrays(system, races)
+    n = len(system.coordinates)
+    matrix = np.zeros((2 * n, 2 * n))
+    matrix[:n, n:] = np.eye(n)
+    forces = np.hstack((system.stiffness, speed * system.gyroscopic))
+    matrix[n:] = -np.linalg.solve(system.mass, forces)
+    found, vectors = np.linalg.eig(matrix)
+    roots = []
+    for root, shape in zip(found, vectors[:n].T, strict=True):
+        first, second = axes[:, 0] @ shape, axes[:, 1] @ shape
+        # The spin's way round: the second direction follows the first by a quarter.
+        size = max(float(np.abs(first).max()), float(np.abs(second).max()))
+        if root.imag <= 0.0 or np.abs(second + 1j * first).max() > 1e-6 * size:
+            continue
+        whirl = root.imag
+        slip = whirl - speed
+        held = -balls[:, 3] * balls[:, 0] * slip**2 + 1j * slip * balls[:, 2]
+        carried = np.square(np.abs(first)) * balls[:, 0] * whirl**2
+        push = np.sum(carried * (2.0 + balls[:, 0] * whirl**2 / held))
+        lost = 1j * whirl * (shape.conj() @ system.damping @ shape)
+        weight = shape.conj() @ (2j * whirl * system.mass + speed * system.gyroscopic) @ shape
+        roots.append(1j * whirl + (push - lost) / weight)
+    return np.array(sorted(roots, key=lambda root: root.imag))
+
+
 def is_isotropic(system: RotorSystem) -> bool:
     """Whether the rotor is the same in every direction across its axis.
 
