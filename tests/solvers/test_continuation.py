@@ -10,7 +10,9 @@ from solvers.continuation import End, follow
 
 
 def test_a_circle_closes_and_a_line_leaves_the_box() -> None:
-    circle = follow(lambda x: np.array([x[0] ** 2 + 4.0 * x[1] ** 2 - 1.0]), [1.0, 0.0], [1, 1], [-2, -2], [2, 2])
+    circle = follow(
+        lambda x: np.array([x[0] ** 2 + 4.0 * x[1] ** 2 - 1.0]), [1.0, 0.0], [1, 1], [-2, -2], [2, 2]
+    )
     assert circle.end is End.CLOSED
     # Newton's last change is below 1e-10, and what is left is of its square.
     assert np.abs(circle.points[:, 0] ** 2 + 4.0 * circle.points[:, 1] ** 2 - 1.0).max() < 1e-12

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import json
 import math
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from solvers.rotor.exciter.motion import RANGES
-from validation.cases import exciter, two_plane, two_plane_damping
+from solvers.rotor.exciter.machine import Dimensionless
+from solvers.rotor.exciter.motion import RANGES, critical_speed
+from validation.cases import exciter, exciter_more, two_plane, two_plane_damping
 from validation.figures import two_plane as two_plane_figures
 from validation.figures.exciter import Comparison, compare, sample, table
 
@@ -21,7 +23,10 @@ def test_cases_of_the_exciter() -> None:
     assert errata == {"exciter/n1", "exciter/table-drag-empty", "exciter/table-drag-loaded"}
     # Started in the motion itself it is kept to three times the printed speed, which is no trend any more.
     assert {name for name, case in found.items() if case.verdict == "differs"} == {
-        "exciter/critical-speed-by-start"
+        "exciter/critical-speed-by-start",
+        # Never seen: a motion at the third stuck speed, and one that does not settle.
+        "exciter/beyond-third",
+        "exciter/beyond-chaos",
     }
 
 
@@ -108,3 +113,16 @@ def test_the_regression_misses_its_six_per_cent() -> None:
     error = np.abs(compare(48).error)
     assert np.mean(error <= 0.06) < 0.6 < np.mean(error <= 0.3)
     assert math.isfinite(error.max())
+
+
+def test_a_kept_trend_and_regime_come_out_again() -> None:
+    """One point of a figure, and the runs on both sides of what two balls do beyond the critical speed."""
+    kept = json.loads(exciter_more.DATA.read_text(encoding="utf-8"))
+    panel = kept["panels"][0]
+    machine = Dimensionless(panel["others"][2], 0.4, 0.25, panel["values"][4])
+    # The search ends at a width of 0.05.
+    assert critical_speed(machine).holds == pytest.approx(panel["curves"][2][4], abs=0.05)
+    for name in ("one stuck", "dual"):
+        run = next(run for run in kept["regimes"] if run["regime"] == name)
+        machine = Dimensionless(run["smallness"], 0.4, run["unbalance"], 0.03)
+        assert exciter_more.regime(machine, run["speed"], run["start"], run["separation"]) == name

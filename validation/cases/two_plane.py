@@ -20,6 +20,7 @@ from validation.cases import two_plane_damping, two_plane_layers
 from validation.cases.case import Case
 from validation.cases.two_plane_machine import BALLS, LONG, RACES, SCATTERED, SHORT, bare_deflection
 
+
 @dataclass(frozen=True)
 class Balanced:
     """What balancers in two planes made of a rotor.

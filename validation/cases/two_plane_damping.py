@@ -226,13 +226,18 @@ def _long(runs: list[dict[str, float]]) -> list[Case]:
         start = "near the balanced places" if run["near"] else "scattered"
         found.append(
             Case(
-                name=f"two_plane/long-run-{run['damping']:g}-{run['speed']:g}" + ("-near" if run["near"] else ""),
+                name=f"two_plane/long-run-{run['damping']:g}-{run['speed']:g}"
+                + ("-near" if run["near"] else ""),
                 source=_SOURCE,
                 quantity=f"deflection over the bare one after {run['duration']:g} s, long rotor, supports of "
                 f"{run['damping']:g} N s/m, {run['speed']:g} rad/s, balls {start} at first",
                 printed="balanced",
                 computed=run["left"],
-                difference="none" if balanced else "not reached: the balls creep round" if stable else "it grows",
+                difference="none"
+                if balanced
+                else "not reached: the balls creep round"
+                if stable
+                else "it grows",
                 verdict="agrees" if balanced else "differs" if stable else "erratum",
                 note=rates,
             )

@@ -171,9 +171,7 @@ def damping_figure(directory: Path) -> Path:
             SIDES, ("x", "o"), ("in time: grows", "in time: dies out"), strict=True
         ):
             speeds = [share * edge(damping) for damping in DAMPINGS]
-            axes.plot(
-                speeds, np.log10(DAMPINGS), mark, color="black", markerfacecolor="none", label=label
-            )
+            axes.plot(speeds, np.log10(DAMPINGS), mark, color="black", markerfacecolor="none", label=label)
         ticks = [0, 1, 2, 3, 4]
         axes.set_yticks(ticks, [f"{10**tick:g}" for tick in ticks])
         axes.set_xlabel("Speed (rad/s)")
@@ -226,7 +224,10 @@ def _part(panels: Sequence[Any]) -> None:
 def table() -> str:
     """Bands of speed in which the balanced reference machine is stable, as a table in Markdown."""
     speeds = np.linspace(0.2, 8.0, 391)
-    lines = ["| drag over a ball's mass | supports alike | supports 5 and 45 in one direction |", "|---|---|---|"]
+    lines = [
+        "| drag over a ball's mass | supports alike | supports 5 and 45 in one direction |",
+        "|---|---|---|",
+    ]
     for drag in (0.01, 1.0, 100.0):
         cells = []
         for alike in (True, False):

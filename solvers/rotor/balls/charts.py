@@ -124,9 +124,7 @@ class State:
         return linearised(system, races, speed, found, deflection).matrix()
 
 
-def stability_chart(
-    family: Family, first: ArrayLike, second: ArrayLike, state: State | None = None
-) -> Chart:
+def stability_chart(family: Family, first: ArrayLike, second: ArrayLike, state: State | None = None) -> Chart:
     """Count growing roots on a grid, and follow every curve on which the count changes.
 
     A curve that passes between the lines of the grid is not seen; one that is seen is followed to its end

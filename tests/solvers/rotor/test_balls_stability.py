@@ -70,12 +70,18 @@ def motion_derivative(
 @kills("solvers.rotor.balls.stability:linearised", "-2.0 * speed * moment", "2.0 * speed * moment")
 @kills("solvers.rotor.balls.stability:linearised", "-(speed**2) * moment", "speed**2 * moment")
 @kills("solvers.rotor.balls.stability:linearised", "+ speed * damping @ turn", "- speed * damping @ turn")
-@kills("solvers.rotor.balls.stability:linearised", "np.diag(speed**2 * moment", "np.diag(-(speed**2) * moment")
+@kills(
+    "solvers.rotor.balls.stability:linearised", "np.diag(speed**2 * moment", "np.diag(-(speed**2) * moment"
+)
 @kills("solvers.rotor.balls.stability:linearised", "np.diag(balls[:, 2] *", "np.diag(0.5 * balls[:, 2] *")
 @kills("solvers.rotor.balls.states:turning_stiffness", "+ speed * turned", "- speed * turned")
 @pytest.mark.parametrize(
     ("system", "races"),
-    [(LOADED.system(), RACES), (LOADED.system(), THREE), (PLANAR, (RACES[0], replace(THREE[0], position=0.0)))],
+    [
+        (LOADED.system(), RACES),
+        (LOADED.system(), THREE),
+        (PLANAR, (RACES[0], replace(THREE[0], position=0.0))),
+    ],
     ids=["two balls", "more balls", "planar"],
 )
 def test_linear_equations_are_the_derivative_of_the_motion(

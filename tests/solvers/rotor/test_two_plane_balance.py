@@ -253,8 +253,8 @@ def test_steady_state_by_the_sources_matrices(speed: float) -> None:
     plane = PlaneUnbalance(0.15, 1e-3, 0.7)
     rotor = TwoPlane(10.0, 0.5, 0.1, supports, (plane,))
     system = rotor.system()
-    matrix = system.stiffness - speed**2 * system.mass + 1j * speed * (
-        system.damping + speed * system.gyroscopic
+    matrix = (
+        system.stiffness - speed**2 * system.mass + 1j * speed * (system.damping + speed * system.gyroscopic)
     )
     whirl = np.linalg.solve(matrix, speed**2 * system.unbalance)
     at = plane.size * np.array([math.cos(plane.angle), math.sin(plane.angle)])
