@@ -276,7 +276,7 @@ def turning_state(rotor: RigidRotor, damping: Sequence[float], speed: float, unb
     q = (alpha, beta, x, y), shape (4,)
     """
     matrix = speed * circulatory(damping, rotor.position) - potential_hessian(rotor, speed)
-    return np.linalg.solve(matrix, speed**2 * np.asarray(unbalance, dtype=float))
+    return np.asarray(np.linalg.solve(matrix, speed**2 * np.asarray(unbalance, dtype=float)), dtype=float)
 
 
 def plane_compliance(

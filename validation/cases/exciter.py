@@ -18,7 +18,8 @@ MACHINE = Dimensionless(smallness=0.01, drag=0.4, unbalance=0.25, damping=0.03)
 
 
 def cases() -> list[Case]:
-    """Stuck speeds, characteristic speeds, time integration, critical speed, the worked table, traces and trends."""
+    """Stuck speeds, characteristic speeds, time integration, critical "
+    "speed, the worked table, traces and trends."""
     return [
         *_roots(),
         *_characteristic(),

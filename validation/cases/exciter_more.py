@@ -1,6 +1,6 @@
 """The exciter's traces, trends and regimes beyond the critical speed [YF17, fig. 3 to 6, eq. 21].
 
-Trends and regimes take a minute or two; they are kept in `validation/data/exciter_more.json`, which `python -m
+Trends and regimes take minutes; they are kept in `validation/data/exciter_more.json`, which `python -m
 validation.cases.exciter_more` makes anew.
 """
 
@@ -311,7 +311,8 @@ def measure() -> dict[str, Any]:
                     }
                 )
     return {
-        "about": "Critical speeds of figures 5 and 6 of YF17, released, 0.3 rad apart, and the regimes of two "
+        "about": "Critical speeds of figures 5 and 6 of YF17, released, 0.3 "
+        "rad apart, and the regimes of two "
         "balls beyond the critical speed, b = 0.4, h = 0.03; by validation.cases.exciter_more.",
         "panels": panels,
         "regimes": runs,

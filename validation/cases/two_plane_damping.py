@@ -1,4 +1,4 @@
-"""Damping of the supports and balls in two planes [FF20, conclusion 2]: roots, and motion in time beside them.
+"""Damping of the supports and balls in two planes [FF20, conclusion 2]: roots, and motion in time.
 
 The runs of many minutes of a machine's time are kept in `validation/data/two_plane_damping.json`; `python -m
 validation.cases.two_plane_damping` makes them anew.
@@ -248,8 +248,10 @@ def _long(runs: list[dict[str, float]]) -> list[Case]:
 def measure() -> dict[str, Any]:
     """Make the kept runs anew."""
     return {
-        "about": "Motion in time of the long rotor of validation.cases.two_plane_damping from scattered places "
-        "of the balls, or near the balanced ones. left: largest deflection at the supports in the last tenth over that without balancers; "
+        "about": "Motion in time of the long rotor of "
+        "validation.cases.two_plane_damping from scattered places "
+        "of the balls, or near the balanced ones. left: largest deflection at "
+        "the supports in the last tenth over that without balancers; "
         "rate: of its logarithm over the last third, 1/s; root: real part of the leading root, 1/s.",
         "runs": [long_run(*run) for run in LONG_RUNS],
     }

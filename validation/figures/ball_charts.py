@@ -1,8 +1,8 @@
 """Charts of stability of ball balancers: `python -m validation.figures.ball_charts`.
 
 The long rotor of `leblanc validate two_plane` over speed and damping of its supports, and the dimensionless
-machine of the literature [RCFW08] over speed, unbalance and damping. Charts and tables are computed here alone:
-the source prints curves, of which no numbers are at hand.
+machine of the literature [RCFW08] over speed, unbalance and damping. Charts and tables are computed here
+alone: the source prints curves, of which no numbers are at hand.
 """
 
 from __future__ import annotations
@@ -96,7 +96,7 @@ def reference_charts(values: int = 21) -> tuple[Chart, Chart]:
     def held(speed: float, damping: float) -> Machine:
         return Machine(*reference(damping=damping), speed)
 
-    speeds = np.linspace(0.4, 4.0, values)
+    speeds = np.linspace(0.4, 4.0, 2 * values - 1)
     return (
         stability_chart(unbalanced, speeds, np.linspace(0.1, 1e5 * _MOST, values)),
         stability_chart(held, speeds, np.linspace(1e-3, 0.2, values)),
@@ -204,8 +204,10 @@ def reference_figure(directory: Path) -> Path:
         panels[1].set_ylabel("Damping over stiffness (\N{EN DASH})")
         panels[0].xaxis.set_major_formatter(number)
         text = (
-            "Balanced state of the dimensionless rotor with two races of two balls of RCFW08, by the roots of "
-            "small motions: stable where hatched. Left: damping 0.02. Right: both unbalances 5e-5. Drag of the "
+            "Balanced state of the dimensionless rotor with two races of two balls "
+            "of RCFW08, by the roots of "
+            "small motions: stable where hatched. Left: damping 0.02. Right: both "
+            "unbalances 5e-5. Drag of the "
             "races over a ball's mass 0.01; supports alike in both directions."
         )
         lay_out(figure, [panels], [2.7], _FRAME, text)

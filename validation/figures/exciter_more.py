@@ -49,8 +49,10 @@ def trace_figure(directory: Path) -> Path:
             axes.set_xlim(0.0, 3.0)
             axes.tick_params(labelbottom=axes is gap)
         text = (
-            "Dual-frequency motion at n = 5, eps = 0.01, b = 0.4, delta = 0.25, h = 0.03, in the machine\u2019s own "
-            "units: speed of both balls, motion of the platform, and what it differs by from the lowest order "
+            "Dual-frequency motion at n = 5, eps = 0.01, b = 0.4, delta = 0.25, h "
+            "= 0.03, in the machine\u2019s own "
+            "units: speed of both balls, motion of the platform, and what it "
+            "differs by from the lowest order "
             "(theory: balls, eq. 7), whose phase is fitted."
         )
         lay_out(figure, [[axes] for axes in panels], [1.2, 1.5, 1.2], _FRAME, text)
@@ -96,7 +98,8 @@ def trend_figure(directory: Path) -> Path:
                 axes.set_ylabel("Critical speed n (\N{EN DASH})")
             rows[-1].append(axes)
         text = (
-            "Critical speed of the exciter with two balls, released 0.3 rad apart, no gravity; numbers that are not "
+            "Critical speed of the exciter with two balls, released 0.3 rad apart, "
+            "no gravity; numbers that are not "
             "on a panel: b = 0.4, h = 0.03, delta = 0.25, and eps = 0.01 (0.005 in 5b)."
         )
         lay_out(figure, rows, [2.0, 2.0], Frame(left=0.6, top=0.25, between=0.75, below=0.45), text)

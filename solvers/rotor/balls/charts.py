@@ -1,7 +1,7 @@
 """Charts of stability over two parameters: where balls keep a rotor balanced, and the curves where that ends.
 
-On such a curve a root stands on the imaginary axis: a pair of them, where the balls begin to swing or the rotor
-to whirl (Hopf), or one at 0, where steady states meet or part (a fold or a branching).
+On such a curve a root stands on the imaginary axis: a pair of them, where the balls begin to swing or the
+rotor to whirl (Hopf), or one at 0, where steady states meet or part (a fold or a branching).
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from solvers.rotor.system import RotorSystem
 
 NONE = -1  # in counts of growing roots: the state is not there
 _HALVINGS = 40
-_NEAR = 0.6  # of a cell of the chart: a crossing this close to a known curve lies on it
+_NEAR = 0.03  # of a cell of the chart: a crossing this close to a known curve lies on it
 _STILL = 1e-6  # of the spin: a root slower than that is real
 
 
@@ -284,9 +284,10 @@ def _changes(x: Array, y: Array, growing: Indices) -> list[tuple[Array, Array]]:
     for i, a in enumerate(x):
         for j, b in enumerate(y):
             for k, m in ((i + 1, j), (i, j + 1)):
-                if k < x.size and m < y.size and growing[i, j] != growing[k, m]:
-                    if NONE not in (growing[i, j], growing[k, m]):
-                        found.append((np.array([a, b]), np.array([x[k], y[m]])))
+                if k == x.size or m == y.size or NONE in (growing[i, j], growing[k, m]):
+                    continue
+                if growing[i, j] != growing[k, m]:
+                    found.append((np.array([a, b]), np.array([x[k], y[m]])))
     return found
 
 
@@ -313,4 +314,4 @@ def _on(edge: Edge, where: Array, cell: Array) -> bool:
     begin, way = points[:-1], np.diff(points, axis=0)
     length = np.maximum(np.einsum("ka,ka->k", way, way), 1e-300)
     share = np.clip(np.einsum("ka,ka->k", at - begin, way) / length, 0.0, 1.0)
-    return bool(np.hypot(*(begin + share[:, None] * way - at).T).min() < _NEAR * 0.05)
+    return bool(np.hypot(*(begin + share[:, None] * way - at).T).min() < _NEAR)

@@ -17,8 +17,8 @@ from meshes.arrays import Array, Complex
 from meshes.errors import InputError, require_positive
 from solvers.rotor.balls.balancers import BallRace, race_arrays
 from solvers.rotor.balls.states import (
-    ball_moments,
     balanced_places,
+    ball_moments,
     checked_places,
     quarter_turn,
     require_balance,
@@ -321,13 +321,14 @@ def balanced_exponents(
     axes, balls = race_arrays(system, races)
     angles = checked_places(places, balls.shape[0])
     neutral = neutral_directions(system, races, angles)
-    steps, last = _STEPS, np.zeros(0)
+    steps = _STEPS
+    last: Array = np.zeros(0)
     while steps <= _MOST:
         found = np.linalg.eigvals(_half_turn(system, axes, balls, angles, speed, neutral, steps))
         # What heavy drag leaves of a ball's speed may be below the least number.
         found = np.log(np.where(np.abs(found) < _GONE, _GONE, found.astype(complex)))
         found = found[np.argsort(-found.real)]
-        growth = found.real
+        growth = np.asarray(found.real, dtype=np.float64)
         if last.size and np.abs(growth[0] - last[0]) <= _SETTLED * max(1.0, abs(growth[0])):
             return np.asarray(found * speed / np.pi)
         steps, last = 2 * steps, growth

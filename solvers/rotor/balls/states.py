@@ -160,9 +160,7 @@ def _arc(race: BallRace, share: complex) -> list[float]:
     wanted = abs(share) / moment
     if wanted > count * (1.0 + 1e-12):
         raise InputError("races", race.masses, f"balls of {abs(share):.6g} kg m or more together")
-    if count == 1:
-        gap = 0.0
-    elif wanted >= count:
+    if count == 1 or wanted >= count:
         gap = 0.0
     else:
         # The sum of unit vectors a gap apart falls from their number at 0 to 0 when they stand all round.
@@ -211,7 +209,7 @@ def turning_deflection(
 
 
 def pulls(system: RotorSystem, races: Sequence[BallRace], speed: float, places: ArrayLike) -> Array:
-    """Displacement of the axis along the race at each ball; none where the balls rest [theory: balls, eq. 31].
+    """Displacement of the axis along the race at each ball, 0 where balls rest [theory: balls, eq. 31].
 
     Parameters
     ----------
@@ -230,9 +228,9 @@ def pulls(system: RotorSystem, races: Sequence[BallRace], speed: float, places: 
 def steady_places(
     system: RotorSystem, races: Sequence[BallRace], speed: float, places: ArrayLike
 ) -> Array | None:
-    """Places next to given ones at which the balls rest in the rotor, balanced or not [theory: balls, eq. 31].
+    """Places next to given ones at which the balls rest in the rotor [theory: balls, eq. 31].
 
-    Newton's method on the pulls. Balls may sit in one another: nothing in the equations keeps them apart.
+    Balanced or not, by Newton's method on the pulls. Balls may sit in one another: nothing in the equations keeps them apart.
 
     Parameters
     ----------

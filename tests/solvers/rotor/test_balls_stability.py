@@ -178,7 +178,7 @@ def test_unlike_supports_grow_and_die_in_time_as_the_multipliers_say(speed: floa
     known = balanced_stability(system, race, speed)
     assert (known.growth > 0.0) == grows
     off = 1e-7 if grows else 1e-3
-    run = simulate(system, race, speed, 30.0, places=known.places + [off, 0.3 * off], samples=6001)
+    run = simulate(system, race, speed, 30.0, places=known.places + off * np.array([1.0, 0.3]), samples=6001)
     size = np.hypot(*run.coordinates.T)
     late = (run.time > (15.0 if grows else 4.0)) & (size < 1e-4) & (size > 1e-13)
     rate = np.polyfit(run.time[late], np.log(size[late]), 1)[0]
@@ -246,7 +246,7 @@ def test_balls_that_do_not_balance_are_refused() -> None:
 @kills("solvers.rotor.balls.stability:light_ball_roots", "-balls[:, 3] *", "balls[:, 3] *")
 @kills("solvers.rotor.balls.stability:light_ball_roots", "1j * slip * balls", "-1j * slip * balls")
 def test_light_balls_move_a_whirl_as_the_closed_form_says() -> None:
-    """Forward whirls; what the form leaves out is of the square of the balls' share: it falls a hundredfold."""
+    """Forward whirls; what the form leaves out is of the square of the balls' share."""
     weak, weaker = (
         replace(LONG, supports=tuple(replace(support, damping=damping) for support in SUPPORTS)).system()
         for damping in (0.5, 0.05)

@@ -10,9 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from meshes.errors import InputError
-from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
 from solvers.rotor.balls.balancers import BallRace
 from solvers.rotor.balls.stability import balanced_stability
+from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
 from solvers.rotor.two_plane_balance import (
     RigidRotor,
     circulatory,
@@ -222,7 +222,7 @@ def test_bad_speeds_are_refused() -> None:
 
 
 def test_dissipative_function_of_the_source() -> None:
-    """[FF20, eq. 22-26] expanded by sympy: three parts as printed, the matrix, and a half too much in eq. 26."""
+    """[FF20, eq. 22-26] by sympy: three parts as printed, the matrix, and a half too much in eq. 26."""
     sympy = pytest.importorskip("sympy")
     a, b, x, y, da, db, dx, dy, w, l1, l2, b1, b2 = sympy.symbols("a b x y da db dx dy w l1 l2 b1 b2")
     whole = 0
