@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from meshes.arrays import Array, Flags
+from meshes.arrays import Array, Complex, Flags
 from meshes.errors import InputError, require_not_negative, require_positive
+from solvers.rotor.balls.balancers import BallRace
+from solvers.rotor.balls.stability import balanced_stability
+from solvers.rotor.system import RotorSystem
 from solvers.rotor.two_plane import TwoPlane
 
 
@@ -89,6 +93,8 @@ class Balancing:
     above : speed above which all hold, rad/s; infinite if at none
     resonances : resonance speeds of the rotor without damping, ascending, rad/s
     long : both transverse inertias exceed the polar one
+    growth : largest real part of the roots of rotor and balls about the balanced state, 1/s, shape (n,);
+        None where no balls were given
     """
 
     speed: Array
@@ -97,6 +103,12 @@ class Balancing:
     above: float
     resonances: tuple[float, ...]
     long: bool
+    growth: Array | None = None
+
+    @property
+    def holds(self) -> Flags:
+        """Where the balanced state is stable: by the roots, or by the conditions where there are none."""
+        return self.possible if self.growth is None else np.asarray(self.growth < 0.0)
 
     def why(self, index: int = 0) -> str:
         """The answer at one speed in words.
@@ -105,6 +117,15 @@ class Balancing:
         ----------
         index : of the speed
         """
+        said = self._conditions(index)
+        if self.growth is None:
+            return said
+        growth = float(self.growth[index])
+        if growth < 0.0:
+            return f"{said}; with these balls a disturbance dies out with {-growth:.3g} 1/s at least"
+        return f"{said}; with these balls a disturbance grows with {growth:.3g} 1/s"
+
+    def _conditions(self, index: int) -> str:
         if self.possible[index]:
             return f"yes: the rotor is long and {self.speed[index]:.6g} rad/s is above {self.above:.6g} rad/s"
         failed = [condition for condition in self.conditions if not condition.satisfied[index]]
@@ -117,20 +138,27 @@ class Balancing:
         return "no: " + "; ".join(reasons)
 
 
-def dynamic_balancing(rotor: RigidRotor, speed: ArrayLike) -> Balancing:
+def dynamic_balancing(
+    rotor: RigidRotor,
+    speed: ArrayLike,
+    balls: tuple[RotorSystem, Sequence[BallRace]] | None = None,
+) -> Balancing:
     """Whether two or more passive balancers of any type balance the rotor [theory: balls, eq. 26-27].
 
     Balancers in at least two planes, light beside the rotor, able to produce the unbalance it has. Damping of
-    the supports has no part in it [FF20, eq. 32-35].
+    the supports has no part in the conditions [FF20, eq. 32-35]; it has one in what balls really do: supports
+    that hardly damp let a whirl of rotor and balls grow far above them. With `balls` the roots of rotor and
+    balls stand beside the conditions.
 
     Parameters
     ----------
     rotor : with its supports
-    speed : spin speeds, rad/s, shape (n,) or one, 0 or above
+    speed : spin speeds, rad/s, shape (n,) or one, 0 or above; above 0 with balls
+    balls : the same rotor with its damping and unbalance, and the races on it; None for the conditions alone
 
     Raises
     ------
-    InputError : a speed that is negative or not finite
+    InputError : a speed that is negative or not finite; balls that cannot balance the unbalance
     """
     spin = np.atleast_1d(np.asarray(speed, dtype=float))
     if spin.ndim != 1 or not np.all(np.isfinite(spin) & (spin >= 0.0)):
@@ -139,6 +167,9 @@ def dynamic_balancing(rotor: RigidRotor, speed: ArrayLike) -> Balancing:
     k11, k14, k33 = rotor.support
     square = np.square(spin)
     v11, v22, v33 = (b - c) * square - k33, (a - c) * square - k33, rotor.mass * square - k11
+    growth = None
+    if balls is not None:
+        growth = np.array([balanced_stability(*balls, value).growth for value in spin.tolist()])
     tilts = (_tilt_limits(rotor, b - c), _tilt_limits(rotor, a - c))
     conditions = (
         _condition("A > C", np.full(spin.shape, a - c), 0.0 if a > c else math.inf),
@@ -157,6 +188,7 @@ def dynamic_balancing(rotor: RigidRotor, speed: ArrayLike) -> Balancing:
         above=max(condition.above for condition in conditions),
         resonances=_distinct((*tilts[0], *tilts[1])),
         long=a > c and b > c,
+        growth=growth,
     )
 
 
@@ -201,6 +233,97 @@ def potential_hessian(rotor: RigidRotor, speed: float) -> Array:
             [k14, 0.0, 0.0, shift],
         ]
     )
+
+
+def circulatory(damping: Sequence[float], position: Sequence[float]) -> Array:
+    """B_1: what damping supports do to a deflection at rest in the rotor, over the speed [FF20, eq. 25].
+
+    Parameters
+    ----------
+    damping : b of each support, N s/m
+    position : of each along the axis from the centre of mass, m
+
+    Returns
+    -------
+    Skew matrix for (alpha, beta, x, y), shape (4, 4) [theory: balls, eq. 41]
+    """
+    pairs = list(zip(damping, position, strict=True))
+    b11, b14, b33 = (sum(b * z**k for b, z in pairs) for k in range(3))
+    return np.array(
+        [
+            [0.0, -b33, -b14, 0.0],
+            [b33, 0.0, 0.0, -b14],
+            [b14, 0.0, 0.0, -b11],
+            [0.0, b14, b11, 0.0],
+        ]
+    )
+
+
+def turning_state(rotor: RigidRotor, damping: Sequence[float], speed: float, unbalance: ArrayLike) -> Array:
+    """Steady deflection in the turning frame, by the source's matrices [FF20, eq. 27-29].
+
+    The source has its V with the other sign here, see theory: balls, eq. 42.
+
+    Parameters
+    ----------
+    rotor : with its supports
+    damping : of each of them, N s/m
+    speed : rad/s
+    unbalance : S = (-I_eta_zeta, I_xi_zeta, M xi_G, M eta_G), shape (4,)
+
+    Returns
+    -------
+    q = (alpha, beta, x, y), shape (4,)
+    """
+    matrix = speed * circulatory(damping, rotor.position) - potential_hessian(rotor, speed)
+    return np.asarray(np.linalg.solve(matrix, speed**2 * np.asarray(unbalance, dtype=float)), dtype=float)
+
+
+def plane_compliance(
+    rotor: RigidRotor, position: float, speed: ArrayLike, damping: Sequence[float] | None = None
+) -> Complex:
+    """Deflection of one plane for a force there that turns with the rotor [theory: balls, eq. 44].
+
+    Parameters
+    ----------
+    rotor : A = B
+    position : of the plane along the axis from the centre of mass, m
+    speed : rad/s, shape (n,) or one
+    damping : of each support, N s/m; None for none
+
+    Returns
+    -------
+    g, m/N, shape of `speed`; its imaginary part is a quarter turn ahead
+
+    Raises
+    ------
+    InputError : a rotor whose transverse inertias differ
+    """
+    a, b, c = rotor.inertia
+    if a != b:
+        raise InputError("inertia", rotor.inertia, "A = B for one plane")
+    w = np.asarray(speed, dtype=float)
+    pairs = list(zip(damping or [0.0] * len(rotor.position), rotor.position, strict=True))
+    k11, k14, k33 = rotor.support
+    b11, b14, b33 = (sum(value * z**k for value, z in pairs) for k in range(3))
+    shift, both = k11 - rotor.mass * w**2 + 1j * w * b11, k14 + 1j * w * b14
+    tilt = k33 - (a - c) * w**2 + 1j * w * b33
+    above = tilt - 2.0 * position * both + position**2 * shift
+    return np.asarray(above / (shift * tilt - both**2))
+
+
+def single_plane_balancing(
+    rotor: RigidRotor, position: float, speed: ArrayLike, damping: Sequence[float] | None = None
+) -> Flags:
+    """Whether balancers in one plane take away an unbalance of this plane [theory: balls, eq. 44].
+
+    Light balancers whose drag outweighs their inertia: they do if and only if Re g < 0.
+
+    Parameters
+    ----------
+    rotor, position, speed, damping : see `plane_compliance`
+    """
+    return np.asarray(plane_compliance(rotor, position, speed, damping).real < 0.0)
 
 
 def _condition(name: str, value: Array, above: float) -> Condition:

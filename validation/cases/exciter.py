@@ -10,6 +10,7 @@ from solvers.rotor.exciter.machine import (
     stuck_speeds,
 )
 from solvers.rotor.exciter.motion import Start, critical_speed, integrate, printed_critical_speed
+from validation.cases import exciter_more
 from validation.cases.case import Case, Effect, compare, shape_verdict
 
 # The typical experiment [YF17, section 5.3].
@@ -17,8 +18,16 @@ MACHINE = Dimensionless(smallness=0.01, drag=0.4, unbalance=0.25, damping=0.03)
 
 
 def cases() -> list[Case]:
-    """Stuck speeds, characteristic speeds, time integration, critical speed, the worked table."""
-    return [*_roots(), *_characteristic(), *_integrated(), *_critical(), *_table()]
+    """Stuck speeds, characteristic speeds, time integration, critical "
+    "speed, the worked table, traces and trends."""
+    return [
+        *_roots(),
+        *_characteristic(),
+        *_integrated(),
+        *_critical(),
+        *_table(),
+        *exciter_more.cases(),
+    ]
 
 
 def _roots() -> list[Case]:

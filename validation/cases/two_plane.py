@@ -8,23 +8,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solvers.rotor.balls.balancers import BallRace, simulate
-from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
+from solvers.rotor.balls.balancers import simulate
+from solvers.rotor.two_plane import TwoPlane
 from solvers.rotor.two_plane_balance import (
     RigidRotor,
     dynamic_balancing,
     of_two_planes,
     potential_hessian,
 )
-from validation.cases import two_plane_layers
+from validation.cases import two_plane_damping, two_plane_layers
 from validation.cases.case import Case
-
-SUPPORTS = (Support(0.2, 1e4, 40.0), Support(-0.22, 1.1e4, 40.0))
-UNBALANCES = (PlaneUnbalance(0.15, 1e-3, 0.0), PlaneUnbalance(-0.1, 8e-4, 2.0))
-LONG = TwoPlane(10.0, 0.5, 0.1, SUPPORTS, UNBALANCES)
-SHORT = TwoPlane(10.0, 0.1, 0.18, SUPPORTS, UNBALANCES)
-RACES = (BallRace(0.15, 0.08, (0.015, 0.015), 0.3), BallRace(-0.15, 0.08, (0.015, 0.015), 0.3))
-BALLS = sum(sum(race.masses) for race in RACES)
+from validation.cases.two_plane_machine import BALLS, LONG, RACES, SCATTERED, SHORT, bare_deflection
 
 
 @dataclass(frozen=True)
@@ -55,25 +49,12 @@ def balls_in_time(rotor: TwoPlane, speed: float, duration: float = 60.0) -> Bala
     duration : s
     """
     system = rotor.system()
-    run = simulate(system, RACES, speed, duration, places=[0.5, 1.5, 0.2, 3.0])
+    run = simulate(system, RACES, speed, duration, places=SCATTERED)
     last, ratios = -run.time.size // 10, []
     for support in rotor.supports:
         size = np.abs(run.deflection(system, support.position))[last:]
         ratios.append(float(size.max()) / bare_deflection(rotor, support.position, speed))
     return Balanced(max(ratios), run.converged)
-
-
-def bare_deflection(rotor: TwoPlane, position: float, speed: float) -> float:
-    """Size of the deflection without balancers, which is circular, m.
-
-    Parameters
-    ----------
-    rotor, position, speed : with its unbalances; along the axis, m; rad/s
-    """
-    system = rotor.system()
-    matrix = system.stiffness - speed**2 * system.mass + 1j * speed * system.damping
-    whirl = np.linalg.solve(matrix + 1j * speed**2 * system.gyroscopic, speed**2 * system.unbalance)
-    return float(abs(system.at(position)[0] @ whirl))
 
 
 def _hessian() -> Case:
@@ -147,4 +128,8 @@ def _balls() -> list[Case]:
 
 
 # Each kind of balancer adds its own function here.
-DEMONSTRATIONS: tuple[Callable[[], list[Case]], ...] = (_balls, two_plane_layers.cases)
+DEMONSTRATIONS: tuple[Callable[[], list[Case]], ...] = (
+    _balls,
+    two_plane_damping.cases,
+    two_plane_layers.cases,
+)

@@ -13,7 +13,7 @@ from leblanc.units import MM
 from solvers.rotor.balls.balancers import simulate
 from solvers.rotor.two_plane import TwoPlane
 from solvers.rotor.two_plane_balance import dynamic_balancing, of_two_planes
-from validation.cases.two_plane import BALLS, LONG, RACES, SHORT, bare_deflection
+from validation.cases.two_plane_machine import BALLS, LONG, RACES, SCATTERED, SHORT, bare_deflection
 
 _FRAME = Frame(left=0.74, top=0.3, between=0.42, below=0.45)
 _SPEEDS = (30.0, 120.0)
@@ -59,7 +59,7 @@ def balls_figure(directory: Path, duration: float = 12.0) -> Path:
 def _draw(axes: Any, name: str, rotor: TwoPlane, speed: float, duration: float) -> None:
     """One rotor at one speed."""
     system = rotor.system()
-    run = simulate(system, RACES, speed, duration, places=[0.5, 1.5, 0.2, 3.0], samples=800)
+    run = simulate(system, RACES, speed, duration, places=SCATTERED, samples=800)
     for k, (support, dashes) in enumerate(zip(rotor.supports, ("-", "--"), strict=True)):
         size = np.abs(run.deflection(system, support.position)) * MM
         axes.plot(

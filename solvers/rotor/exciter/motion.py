@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.integrate import solve_ivp
 
 from meshes.arrays import Array
 from meshes.errors import InputError, require_not_negative, require_positive
@@ -17,6 +18,7 @@ from solvers.rotor.exciter.machine import (
     Dimensionless,
     characteristic_speeds,
     platform_motion,
+    rates,
     stuck_speeds,
 )
 
@@ -204,6 +206,78 @@ def initial_state(machine: Dimensionless, speed: float, stuck: float, balls: int
     state[0] = (slow + fast).imag
     state[1] = (1j * (stuck * slow + speed * fast)).imag
     return state
+
+
+@dataclass(frozen=True)
+class Trace:
+    """Motion after transients have died out, in the machine's own units; s samples, N balls.
+
+    Parameters
+    ----------
+    time : from the start of the motion, shape (s,)
+    position, velocity, acceleration : v, v' and v'' of the platform, shape (s,)
+    ball_angle, ball_speed : of each ball, shape (s, N)
+    """
+
+    time: Array
+    position: Array
+    velocity: Array
+    acceleration: Array
+    ball_angle: Array
+    ball_speed: Array
+
+
+def trace(
+    machine: Dimensionless,
+    speed: float,
+    turns: float = 3.0,
+    balls: int = 2,
+    start: Start | None = None,
+    samples: int = 1200,
+) -> Trace:
+    """Platform and balls over some turns of the stuck balls, after as long a run as `integrate` makes.
+
+    Parameters
+    ----------
+    machine, speed, balls, start : see `integrate`
+    turns : of balls at the slowest stuck speed
+    samples : of the result
+
+    Raises
+    ------
+    InputError : a value out of its range
+    """
+    from solvers.rotor.exciter.steps import advance
+
+    require_positive("speed", speed)
+    require_positive("turns", turns)
+    if balls < 1 or samples < 2:
+        raise InputError("balls, samples", (balls, samples), "1 or more balls, 2 or more samples")
+    slowest = float(stuck_speeds(speed, machine)[0])
+    state = initial_state(machine, speed, slowest, balls, start or Start())
+    total = _duration(machine)
+    fastest = max(speed, 1.0, 2.0 * machine.damping, machine.smallness * machine.drag)
+    steps, numbers = math.ceil(total * 48 * fastest / (2.0 * math.pi)), machine.numbers(speed)
+    means, sums = np.zeros((1, balls + 1)), np.zeros(4)
+    advance(state, numbers, total / steps, steps, math.inf, means, 1, sums)
+
+    def rate(time: float, at: Array) -> Array:
+        out = np.zeros(at.size)
+        rates(time, at, numbers, out)
+        return out
+
+    times = total + np.linspace(0.0, turns * 2.0 * math.pi / slowest, samples)
+    span = (float(times[0]), float(times[-1]))
+    found = solve_ivp(rate, span, state, "DOP853", times, rtol=1e-10, atol=1e-12).y.T
+    moved = np.array([rate(time, at) for time, at in zip(times.tolist(), found, strict=True)])
+    return Trace(
+        time=times,
+        position=found[:, 0],
+        velocity=found[:, 1],
+        acceleration=moved[:, 1],
+        ball_angle=found[:, 2 : 2 + balls],
+        ball_speed=found[:, 2 + balls :],
+    )
 
 
 def critical_speed(

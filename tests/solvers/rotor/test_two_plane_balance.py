@@ -10,12 +10,18 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from meshes.errors import InputError
-from solvers.rotor.two_plane import Support, TwoPlane
+from solvers.rotor.balls.balancers import BallRace
+from solvers.rotor.balls.stability import balanced_stability
+from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
 from solvers.rotor.two_plane_balance import (
     RigidRotor,
+    circulatory,
     dynamic_balancing,
     of_two_planes,
+    plane_compliance,
     potential_hessian,
+    single_plane_balancing,
+    turning_state,
 )
 from tests.mutants import kills
 
@@ -213,3 +219,90 @@ def test_bad_speeds_are_refused() -> None:
     for speed in (-1.0, math.nan, [[1.0]]):
         with pytest.raises(InputError):
             dynamic_balancing(ROTOR, speed)
+
+
+def test_dissipative_function_of_the_source() -> None:
+    """[FF20, eq. 22-26] by sympy: three parts as printed, the matrix, and a half too much in eq. 26."""
+    sympy = pytest.importorskip("sympy")
+    a, b, x, y, da, db, dx, dy, w, l1, l2, b1, b2 = sympy.symbols("a b x y da db dx dy w l1 l2 b1 b2")
+    whole = 0
+    for drag, z in ((b1, l1), (b2, -l2)):
+        whole += drag / 2 * ((dx + z * db - w * (y - z * a)) ** 2 + (dy - z * da + w * (x + z * b)) ** 2)
+    b11, b14, b33 = b1 + b2, b1 * l1 - b2 * l2, b1 * l1**2 + b2 * l2**2
+    square = b11 * (dx**2 + dy**2) + 2 * b14 * (db * dx - da * dy) + b33 * (da**2 + db**2)
+    linear = b11 * (x * dy - y * dx) + b14 * (a * dx - x * da + b * dy - db * y) + b33 * (db * a - b * da)
+    rest = b11 * (x**2 + y**2) + 2 * b14 * (b * x - a * y) + b33 * (a**2 + b**2)
+    half = sympy.Rational(1, 2)
+    assert sympy.expand(whole - half * square - w * linear - half * w**2 * rest) == 0
+    q, rate = sympy.Matrix([a, b, x, y]), sympy.Matrix([da, db, dx, dy])
+    matrix = sympy.Matrix([[0, -b33, -b14, 0], [b33, 0, 0, -b14], [b14, 0, 0, -b11], [0, b14, b11, 0]])
+    # Eq. 26 prints half of this; eq. 27 goes on with the whole.
+    assert sympy.expand(w * linear - w * (rate.T * matrix * q)[0]) == 0
+    values = {b1: 3.0, b2: 5.0, l1: 0.2, l2: 0.3}
+    expected = np.array(matrix.subs(values).tolist(), dtype=float)
+    assert circulatory([3.0, 5.0], [0.2, -0.3]) == pytest.approx(expected, rel=1e-14)
+
+
+@kills("solvers.rotor.two_plane_balance:circulatory", "[b14, 0.0, 0.0, -b11]", "[b14, 0.0, 0.0, b11]")
+@kills("solvers.rotor.two_plane_balance:turning_state", "- potential_hessian", "+ potential_hessian")
+@kills("solvers.rotor.two_plane_balance:plane_compliance", "- 2.0 * position", "+ 2.0 * position")
+@pytest.mark.parametrize("speed", [20.0, 47.0, 130.0])
+def test_steady_state_by_the_sources_matrices(speed: float) -> None:
+    """[FF20, eq. 27-29], with V's sign as derived, against the response of the whole rotor."""
+    supports = (Support(0.2, 1e4, 40.0), Support(-0.25, 1.3e4, 15.0))
+    plane = PlaneUnbalance(0.15, 1e-3, 0.7)
+    rotor = TwoPlane(10.0, 0.5, 0.1, supports, (plane,))
+    system = rotor.system()
+    matrix = (
+        system.stiffness - speed**2 * system.mass + 1j * speed * (system.damping + speed * system.gyroscopic)
+    )
+    whirl = np.linalg.solve(matrix, speed**2 * system.unbalance)
+    at = plane.size * np.array([math.cos(plane.angle), math.sin(plane.angle)])
+    unbalance = np.array([-plane.position * at[1], plane.position * at[0], *at])
+    rigid = of_two_planes(rotor)
+    found = turning_state(rigid, [40.0, 15.0], speed, unbalance)
+    # q is the whirl at time 0: its real part; two solves of matrices of condition 1e3.
+    expected = whirl.real[[2, 3, 0, 1]]
+    assert found == pytest.approx(expected, rel=1e-9, abs=1e-12 * np.abs(expected).max())
+    compliance = plane_compliance(rigid, plane.position, speed, [40.0, 15.0])
+    seen = (system.at(plane.position)[0] @ whirl) / (speed**2 * plane.size * np.exp(0.7j))
+    assert complex(compliance) == pytest.approx(complex(seen), rel=1e-9)
+
+
+@kills("solvers.rotor.two_plane_balance:single_plane_balancing", ".real < 0.0", ".real > 0.0")
+@pytest.mark.parametrize("inertia", [(0.5, 0.1), (0.1, 0.18)], ids=["long", "short"])
+@pytest.mark.parametrize("damping", [0.5, 40.0, 400.0])
+def test_one_plane_balances_where_the_roots_say_so(inertia: tuple[float, float], damping: float) -> None:
+    """Balls of 1e-6 of the rotor with heavy drag, long and short rotors, planes on both sides: same answer.
+
+    Where |Re g| is small beside |g| the balls' share in the mass, 1e-6, could decide; none of the speeds is
+    that close.
+    """
+    supports = (Support(0.2, 1e4, damping), Support(-0.22, 1.1e4, damping))
+    seen = []
+    for position in (0.05, 0.25):
+        mass = 5e-6
+        race = BallRace(position, 0.08, (mass, mass), 0.5)
+        unbalance = PlaneUnbalance(position, 1.2 * mass * 0.08, 0.3)
+        rotor = TwoPlane(10.0, *inertia, supports, (unbalance,))
+        for speed in (25.0, 47.0, 60.0, 90.0, 160.0):
+            rigid = of_two_planes(rotor)
+            g = complex(plane_compliance(rigid, position, speed, [damping] * 2))
+            assert abs(g.real) > 1e-4 * abs(g)
+            said = bool(single_plane_balancing(rigid, position, speed, [damping] * 2))
+            assert said == balanced_stability(rotor.system(), (race,), speed).stable, (position, speed)
+            seen.append(said)
+    assert any(seen) and not all(seen)
+
+
+def test_the_roots_stand_beside_the_conditions() -> None:
+    """Weak supports: the conditions say yes at 60 rad/s, the balls whirl; with 40 N s/m both say yes."""
+    races = tuple(BallRace(z, 0.08, (0.015, 0.015), 0.3) for z in (0.15, -0.15))
+    for damping, holds in ((0.5, False), (40.0, True)):
+        supports = (Support(0.2, 1e4, damping), Support(-0.22, 1.1e4, damping))
+        rotor = TwoPlane(10.0, 0.5, 0.1, supports, (PlaneUnbalance(0.15, 1e-3),))
+        answer = dynamic_balancing(of_two_planes(rotor, 0.06), [60.0], (rotor.system(), races))
+        assert answer.possible[0] and bool(answer.holds[0]) == holds and answer.growth is not None
+        assert ("grows" in answer.why()) == (not holds)
+    alone = dynamic_balancing(of_two_planes(rotor, 0.06), [60.0])
+    assert alone.growth is None and alone.holds.tolist() == alone.possible.tolist()

@@ -14,7 +14,7 @@ from solvers.rotor.two_plane import TwoPlane
 from solvers.rotor.two_plane_balance import dynamic_balancing, of_two_planes
 from solvers.rotor.vibration import unbalance_response
 from validation.cases.case import Case, compare
-from validation.cases.two_plane import BALLS, LONG, RACES
+from validation.cases.two_plane_machine import BALLS, LONG, RACES
 
 
 def cases() -> list[Case]:

@@ -1,0 +1,175 @@
+"""Curves of solutions of m equations in m + 1 unknowns, followed by their arc length through every turn.
+
+Made for few unknowns: the derivative is taken by central differences. Waves and limit cycles, which have
+hundreds, are followed by their own rooms, whose equations know their derivatives.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from meshes.arrays import Array
+from meshes.errors import InputError, require_positive
+
+_ROUNDS = 12
+_DIFFERENCE = 1e-6  # of the unit of an unknown
+_SHORTEST = 1.0 / 256.0  # of the first step
+_STRAIGHT = 0.9  # least cosine between the directions of two points
+_EASY = 4  # rounds up to which the next step may be longer
+
+
+class End(Enum):
+    """Why a curve ends."""
+
+    LEFT = "it leaves the box"
+    CLOSED = "it closes"
+    LOST = "no further point is found"
+    LONG = "the most points are reached"
+
+
+@dataclass(frozen=True)
+class Curve:
+    """Points of a curve, one after the other.
+
+    Parameters
+    ----------
+    points : shape (k, m + 1)
+    end : why there are no more
+    """
+
+    points: Array
+    end: End
+
+
+Equations = Callable[[Array], Array]  # of the unknowns, shape (m + 1,), what is left, shape (m,)
+
+
+def follow(
+    equations: Equations,
+    start: ArrayLike,
+    unit: ArrayLike,
+    low: ArrayLike,
+    high: ArrayLike,
+    *,
+    step: float = 0.02,
+    way: int = 1,
+    tolerance: float = 1e-10,
+    most: int = 2000,
+    renew: Callable[[Array], object] = lambda _: None,
+) -> Curve:
+    """Follow a curve from a point on it by pseudo-arclength [KELL77].
+
+    A step goes along the tangent and is corrected by Newton's method on the plane across it. It becomes
+    shorter where Newton's method fails or the curve bends, and longer where both are easy.
+
+    Parameters
+    ----------
+    equations : what is left of each at a point
+    start : near the curve, shape (m + 1,)
+    unit : size of each unknown on which lengths are measured, shape (m + 1,)
+    low, high : corners of the box in which the curve is wanted; infinite where there is none
+    step : first and longest length of a step, in these units
+    way : 1 or -1, the direction in which the first unknown that changes grows or falls
+    tolerance : change of all unknowns, in their units, at which a point counts as found
+    most : points
+    renew : called with each new point, for equations that move their own frame along
+
+    Returns
+    -------
+    Curve; only its start, as given, and `End.LOST` where no point is found near it
+
+    Raises
+    ------
+    InputError : units or lengths that are not positive, a way that is not 1 or -1
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> circle = follow(lambda x: np.array([x @ x - 1.0]), [1.0, 0.0], [1, 1], [-2, -2], [2, 2])
+    >>> circle.end.name, bool(np.abs(np.hypot(*circle.points.T) - 1.0).max() < 1e-9)
+    ('CLOSED', True)
+    """
+    require_positive("step", step)
+    size, begin = np.asarray(unit, dtype=float), np.asarray(start, dtype=float)
+    corners = np.asarray(low, dtype=float), np.asarray(high, dtype=float)
+    if not np.all(np.isfinite(size) & (size > 0.0)) or way not in (1, -1):
+        raise InputError("unit, way", (size.tolist(), way), "positive sizes, and 1 or -1")
+    slope = _slope(equations, begin, size)
+    tangent = way * _tangent(slope)
+    found = _corrected(equations, begin, tangent, size, tolerance)
+    if found is None:
+        return Curve(begin[None], End.LOST)
+    points, length, travelled = [found[0]], step, 0.0
+    renew(points[0])
+    tangent = _onward(equations, points[0], size, tangent)
+    first = tangent
+    while len(points) < most:
+        guess = points[-1] + length * size * tangent
+        answer = _corrected(equations, guess, tangent, size, tolerance)
+        ahead = None if answer is None else _onward(equations, answer[0], size, tangent)
+        if answer is None or ahead is None or ahead @ tangent < _STRAIGHT:
+            length *= 0.5
+            if length < _SHORTEST * step:
+                return Curve(np.array(points), End.LOST)
+            continue
+        point = answer[0]
+        points.append(point)
+        travelled += length
+        if np.any((point < corners[0]) | (point > corners[1])):
+            return Curve(np.array(points), End.LEFT)
+        home = np.abs((point - points[0]) / size).max()
+        if travelled > 3.0 * step and home < length and ahead @ first > 0.0:
+            return Curve(np.array(points), End.CLOSED)
+        tangent = ahead
+        renew(point)
+        if answer[1] <= _EASY:
+            length = min(1.5 * length, step)
+    return Curve(np.array(points), End.LONG)
+
+
+def _slope(equations: Equations, point: Array, size: Array) -> Array:
+    """Derivatives by unknowns in their units, shape (m, m + 1)."""
+    columns = []
+    for k in range(point.size):
+        moved = np.zeros(point.size)
+        moved[k] = _DIFFERENCE * size[k]
+        columns.append((equations(point + moved) - equations(point - moved)) / (2.0 * _DIFFERENCE))
+    return np.array(columns).T
+
+
+def _tangent(slope: Array) -> Array:
+    """Unit vector that changes nothing; its first entry of weight above 0."""
+    tangent = np.linalg.svd(slope)[2][-1]
+    heavy = np.flatnonzero(np.abs(tangent) > 1e-6)[0]
+    return np.asarray(tangent * np.sign(tangent[heavy]))
+
+
+def _onward(equations: Equations, point: Array, size: Array, tangent: Array) -> Array:
+    """Direction of the curve at a point, on the side of the last one."""
+    ahead = np.linalg.svd(_slope(equations, point, size))[2][-1]
+    return np.asarray(ahead if ahead @ tangent >= 0.0 else -ahead)
+
+
+def _corrected(
+    equations: Equations, guess: Array, tangent: Array, size: Array, tolerance: float
+) -> tuple[Array, int] | None:
+    """Point of the curve on the plane across the tangent, and the rounds taken; None where none is found."""
+    point = guess.copy()
+    for count in range(1, _ROUNDS + 1):
+        left = equations(point)
+        if not np.isfinite(left).all():
+            return None
+        matrix = np.vstack((_slope(equations, point, size), tangent))
+        away = np.append(left, tangent @ ((point - guess) / size))
+        if not np.isfinite(matrix).all():
+            return None
+        change = np.linalg.lstsq(matrix, -away, rcond=None)[0]
+        point = point + size * change
+        if np.abs(change).max() <= tolerance:
+            return point, count
+    return None

@@ -1,0 +1,48 @@
+"""Curves followed by arc length: a circle, a fold, a box, a curve of two turning points."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from meshes.errors import InputError
+from solvers.continuation import End, follow
+
+
+def test_a_circle_closes_and_a_line_leaves_the_box() -> None:
+    circle = follow(
+        lambda x: np.array([x[0] ** 2 + 4.0 * x[1] ** 2 - 1.0]), [1.0, 0.0], [1, 1], [-2, -2], [2, 2]
+    )
+    assert circle.end is End.CLOSED
+    # Newton's last change is below 1e-10, and what is left is of its square.
+    assert np.abs(circle.points[:, 0] ** 2 + 4.0 * circle.points[:, 1] ** 2 - 1.0).max() < 1e-12
+    assert circle.points[:, 0].min() < -0.999 and np.abs(circle.points[:, 1]).max() > 0.499
+    line = follow(lambda x: np.array([x[1] - x[0]]), [0.0, 0.0], [1, 1], [-1, -1], [1, 1], way=-1)
+    assert line.end is End.LEFT and line.points[-1, 0] < -1.0
+
+
+def test_it_goes_through_folds() -> None:
+    """x^3 - x + a = 0 has folds at x = +-1/sqrt(3): all three branches are passed."""
+    curve = follow(
+        lambda p: np.array([p[0] ** 3 - p[0] + p[1]]), [-1.2, 0.5], [1, 1], [-2, -1.0], [2, 1.0], step=0.05
+    )
+    assert curve.points[-1, 0] > 1.0
+    rise = np.diff(curve.points[:, 1])
+    assert np.count_nonzero(np.sign(rise[1:]) != np.sign(rise[:-1])) == 2
+    # Between points half a step apart the extreme lies within their square.
+    assert curve.points[:, 1].min() == pytest.approx(-1.0, abs=2e-3) or curve.points[:, 1].max() < 1.0
+    inner = curve.points[np.abs(curve.points[:, 0]) < 0.9, 1]
+    assert inner.max() == pytest.approx(2.0 / (3.0 * np.sqrt(3.0)), abs=4e-3)
+
+
+def test_what_is_not_there_is_said() -> None:
+    lost = follow(lambda x: np.array([x @ x + 1.0]), [1.0, 0.0], [1, 1], [-2, -2], [2, 2])
+    assert lost.end is End.LOST and len(lost.points) == 1
+    short = follow(lambda x: np.array([x[1]]), [0.0, 0.0], [1, 1], [-9, -9], [9, 9], most=5)
+    assert short.end is End.LONG and len(short.points) == 5
+
+
+@pytest.mark.parametrize(("unit", "way"), [([0.0, 1.0], 1), ([1.0, 1.0], 0)])
+def test_bad_input_is_refused(unit: list[float], way: int) -> None:
+    with pytest.raises(InputError):
+        follow(lambda x: x[:1], [0.0, 0.0], unit, [-1, -1], [1, 1], way=way)
