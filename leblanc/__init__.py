@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from fluid.fill import Fill
     from fluid.liquid import Liquid
     from leblanc.api import (
+        bearing,
         compare,
         explain,
         fit,
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     from leblanc.scene.rotors import Exciter, JeffcottRotor, TubRotor, TwoPlaneRotor
     from leblanc.scene.scene import Scene, load_scene
     from leblanc.scene.schema.load import SceneError
+    from leblanc.scene.spindle import Spindle
     from meshes.chamber import Chamber
     from meshes.errors import InputError
 
@@ -40,8 +42,10 @@ __all__ = [
     "Liquid",
     "Scene",
     "SceneError",
+    "Spindle",
     "TubRotor",
     "TwoPlaneRotor",
+    "bearing",
     "compare",
     "example",
     "explain",
@@ -68,6 +72,7 @@ _HOMES = {
     "Liquid": ("fluid.liquid", "Liquid"),
     "Scene": ("leblanc.scene.scene", "Scene"),
     "SceneError": ("leblanc.scene.schema.load", "SceneError"),
+    "Spindle": ("leblanc.scene.spindle", "Spindle"),
     "TubRotor": ("leblanc.scene.rotors", "TubRotor"),
     "TwoPlaneRotor": ("leblanc.scene.rotors", "TwoPlaneRotor"),
     "example": ("leblanc.scene.examples", "example"),

@@ -79,11 +79,15 @@ TEMPERATURE_STEP = Dimension("difference of temperatures", "K", "900 K")
 EXPANSION = Dimension("thermal expansion", "1/K", "0.0007 1/K")
 VELOCITY = Dimension("velocity", "m/s", "6.3 mm/s")
 FORCE = Dimension("force", "N", "800 N")
+ELASTIC_MODULUS = Dimension("elastic modulus", "Pa", "210 GPa")
+ANGULAR_STIFFNESS = Dimension("angular stiffness", "N*m/rad", "2e5 N*m/rad")
+ANGULAR_DAMPING = Dimension("angular damping", "N*m*s/rad", "5 N*m*s/rad")
 ANGULAR_SPEED = Dimension("angular speed", "rad/s", "1000 rpm", also=("1/s",))
 ANGULAR_ACCELERATION = Dimension("angular acceleration", "rad/s^2", "8 rad/s^2", also=("1/s^2",))
 _DIMENSIONS = (
     *(LENGTH, VOLUME, MASS, DENSITY, VISCOSITY, STIFFNESS, DAMPING, UNBALANCE, INERTIA, TORQUE, ANGLE, TIME),
     *(RATE, ACCELERATION, TEMPERATURE, ANGULAR_SPEED, ANGULAR_ACCELERATION, FORCE),
+    *(ELASTIC_MODULUS, ANGULAR_STIFFNESS, ANGULAR_DAMPING),
 )
 
 # Units of usual scenes, each in the SI unit of its dimension; all others are left to pint, whose
@@ -110,6 +114,9 @@ _COMMON: dict[Dimension, dict[str, float]] = {
     INERTIA: {"kg*m^2": 1.0, "kg*cm^2": 1e-4, "kg*mm^2": 1e-6, "g*m^2": 1e-3, "g*cm^2": 1e-7},
     TORQUE: {"N*m": 1.0, "N*cm": 1e-2, "N*mm": 1e-3, "mN*m": 1e-3, "kN*m": 1e3},
     FORCE: {"N": 1.0, "mN": 1e-3, "kN": 1e3},
+    ELASTIC_MODULUS: {"Pa": 1.0, "MPa": 1e6, "GPa": 1e9},
+    ANGULAR_STIFFNESS: {"N*m/rad": 1.0, "N*m": 1.0},
+    ANGULAR_DAMPING: {"N*m*s/rad": 1.0, "N*m*s": 1.0},
     ANGLE: {"rad": 1.0, "mrad": 1e-3, "deg": _TURN / 360.0},
     TIME: {"s": 1.0, "ms": 1e-3, "min": 60.0, "h": 3600.0},
     RATE: {"1/s": 1.0},

@@ -150,10 +150,10 @@ def cabinet_conflicts(values: Mapping[str, Any], kind: object) -> Iterator[Confl
     for k, name in enumerate(names):
         if name in names[:k]:
             yield Conflict(("points", k, "name"), "another name than those of the points before")
-    if kind == "exciter":
+    if kind in ("exciter", "spindle"):
         for key in ("cabinet", "points"):
             if values.get(key):
-                yield Conflict((key,), "left out for an exciter")
+                yield Conflict((key,), f"left out for {'an exciter' if kind == 'exciter' else 'a spindle'}")
     elif kind in ("jeffcott", "two_plane"):
         for k, point in enumerate(values.get("points", ())):
             if point.on == "tub":

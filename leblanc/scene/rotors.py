@@ -37,6 +37,7 @@ from leblanc.scene.schema.rules import (
     quantity,
     whole,
 )
+from leblanc.scene.spindle import Spindle
 from leblanc.units import MASS, MM, in_rpm, number, with_unit
 
 if TYPE_CHECKING:
@@ -545,4 +546,4 @@ class Exciter(Part):
         return []
 
 
-AnyRotor = JeffcottRotor | TwoPlaneRotor | TubRotor | Exciter
+AnyRotor = JeffcottRotor | TwoPlaneRotor | TubRotor | Exciter | Spindle

@@ -27,6 +27,8 @@ from leblanc.scene.schema.load import SceneError, SceneFault, given_at, meant, r
 from leblanc.scene.schema.part import Conflict, Part, faults_of
 from leblanc.scene.schema.paths import keys_of, require_field, with_values
 from leblanc.scene.schema.rules import Entries, Refused, Speed, Text, entries, one_of, quantity, whole
+from leblanc.scene.spindle import Spindle as Spindle
+from leblanc.scene.spindle import without_liquid
 from leblanc.scene.tasks import Optimisation
 from leblanc.scene.tasks import Runup as Runup
 from leblanc.scene.unbalances import polar_inertia_of, sheds_of
@@ -222,6 +224,8 @@ class Scene(Part):
             missing = "chambers" not in given
             yield Conflict(("chambers",), f"{'given: ' if missing else ''}{_SOME_CHAMBERS.allowed}")
         yield from cabinet_conflicts(values, _kind(given.get("rotor")))
+        if _kind(given.get("rotor")) == "spindle":
+            yield from without_liquid(values, given)
         programme, rotor = values.get("programme"), values.get("rotor")
         if programme is not None:
             if given.get("runup") is not None:
@@ -436,9 +440,10 @@ def dry_rotor(scene: Scene) -> Jeffcott | TwoPlane | Tub:
 
     Raises
     ------
-    InputError : the scene is that of an exciter, which has no linear equations of motion
+    InputError : the scene is that of an exciter, which has no linear equations of motion, or of a spindle,
+        which has no matrices that hold at every frequency
     """
-    if isinstance(scene.rotor, Exciter):
+    if isinstance(scene.rotor, Exciter | Spindle):
         raise InputError("rotor.kind", scene.rotor.kind, "jeffcott, two_plane or tub for this")
     return scene.rotor.machine()
 
@@ -469,6 +474,8 @@ def rotor_content(rotor: AnyRotor) -> dict[str, Any]:
         balls = rotor.balls.model_dump()
         balls |= {"kind": rotor.balls.name, "pendulum_inertia": rotor.balls.pendulum_inertia or 0.0}
         return rotor.model_dump(exclude={"balls"}) | {"balls": balls}
+    if isinstance(rotor, Spindle):
+        return rotor.model_dump()
     machine = asdict(rotor.machine())
     if not machine.get("loads", True):
         del machine["loads"]

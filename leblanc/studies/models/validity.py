@@ -17,7 +17,7 @@ from leblanc.results.base import Note
 from leblanc.results.layer import Number
 from leblanc.results.notes.doubts import DoubtCode, doubt
 from leblanc.scene.rotors import JeffcottRotor, TubRotor, TwoPlaneRotor
-from leblanc.scene.scene import Exciter, Scene
+from leblanc.scene.scene import Exciter, Scene, Spindle
 from leblanc.units import DENSITY, LENGTH, MASS, UNBALANCE, VISCOSITY, in_rpm, number, rpm_range, with_unit
 from solvers.liquid_model import Range
 
@@ -104,7 +104,7 @@ def _rotor(scene: Scene) -> Iterator[Note]:
         places += [(f"rotor.loads.{k}.position", load.position) for k, load in enumerate(rotor.loads)]
         yield from _far(scene, places, gyration)
         yield from _free(scene)
-    else:
+    elif isinstance(rotor, Exciter):
         yield from _eccentricity(scene, "rotor.unbalance", rotor.unbalance, rotor.platform_mass)
 
 
@@ -184,7 +184,7 @@ def _size(field: str, name: str, size: float) -> Iterator[Note]:
 
 def _mass(scene: Scene) -> Iterator[Note]:
     rotor, liquid = scene.rotor, sum(fill.mass for fill in scene.fills)
-    if isinstance(rotor, Exciter) or not scene.fills:
+    if isinstance(rotor, Exciter | Spindle) or not scene.fills:
         return
     mass, field = (rotor.drum_mass, "drum_mass") if isinstance(rotor, TubRotor) else (rotor.mass, "mass")
     if liquid > LIQUID * mass:

@@ -12,7 +12,7 @@ import numpy as np
 
 from fluid.liquid import expansion, liquid_at
 from leblanc.results.optimum import ConditionTable
-from leblanc.scene.scene import Exciter, Scene
+from leblanc.scene.scene import Exciter, Scene, Spindle
 from leblanc.scene.tasks import Optimisation, pairs_of
 from leblanc.scene.unbalances import with_unbalances
 from leblanc.studies.optimise.answers import FilledMachine
@@ -195,7 +195,7 @@ def in_condition(scene: Scene, condition: OperatingCondition) -> tuple[Scene, li
     ----------
     scene, condition : the machine, and its unbalances and temperature
     """
-    if isinstance(scene.rotor, Exciter):
+    if isinstance(scene.rotor, Exciter | Spindle):
         raise InputError("rotor.kind", scene.rotor.kind, "jeffcott, two_plane or tub for this")
     rotor = with_unbalances(scene.rotor, condition.unbalance)
     if condition.temperature is None:

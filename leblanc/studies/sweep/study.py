@@ -16,7 +16,7 @@ from pydantic import Field, PlainValidator, ValidationError
 
 from leblanc import units
 from leblanc.files import native, path_text
-from leblanc.scene.scene import Exciter, Scene, scene_from_table
+from leblanc.scene.scene import Exciter, Scene, Spindle, scene_from_table
 from leblanc.scene.schema.load import (
     SceneError,
     SceneFault,
@@ -395,7 +395,7 @@ def _sweep_of(given: Mapping[str, Any], path: str | PathLike[str]) -> Sweep:
     scene_table = read_scene(scene_path)
     with with_lines(scene_path):
         scene = scene_from_table(scene_table, str(scene_path))
-    if isinstance(scene.rotor, Exciter):
+    if isinstance(scene.rotor, Exciter | Spindle):
         allowed = "a scene whose rotor answers at its speeds: jeffcott, two_plane or tub"
         raise SceneError([SceneFault(file, "scene", shown(table.scene), allowed)])
     fields = _fields(table.vary, scene_table, table.method, file)

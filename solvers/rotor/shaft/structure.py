@@ -63,8 +63,10 @@ class Joint:
         frequency : rad/s, shape (n,)
         damped : with its dampers
         """
-        rate = 1j * np.asarray(frequency) * damped
-        return self.stiffness + rate * self.damping, self.angular_stiffness + rate * self.angular_damping
+        rate: Complex = 1j * np.asarray(frequency, dtype=float) * damped
+        across: Complex = self.stiffness + rate * self.damping
+        turning: Complex = self.angular_stiffness + rate * self.angular_damping
+        return across, turning
 
 
 @dataclass(frozen=True)

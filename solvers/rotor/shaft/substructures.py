@@ -14,7 +14,7 @@ import numpy as np
 from meshes.arrays import Array, Complex
 from meshes.errors import InputError
 from solvers.rotor.shaft.section import transfer_matrices
-from solvers.rotor.shaft.structure import Coordinate, Joint, Station, Structure
+from solvers.rotor.shaft.structure import Coordinate, Station, Structure
 
 
 @dataclass(frozen=True)
@@ -221,7 +221,7 @@ def substructures(
         parts.append((own, acting, force))
     for k, spring in enumerate(springs):
         matrix[:, k, k] += spring.flexibility
-    reactions = np.linalg.solve(matrix, load[..., None])[..., 0]
+    reactions: Complex = np.linalg.solve(matrix, load[..., None])[..., 0]
     motions = [
         (own @ (reactions @ acting.T + force)[..., None])[..., 0].reshape(omega.size, -1, 2)
         for own, acting, force in parts
