@@ -1,4 +1,4 @@
-"""Questions of `layer`, `modes`, `volume`, `bearing` and `optimise`, from options of the command or keywords in Python.
+"""Questions of some commands and calls, from options of the command or keywords in Python.
 
 Quantities are numbers in SI units or texts with a unit. Faults name the option, as in "--whirl-speed".
 """

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 GROUPS = (
     *("errata", "optimal_volume", "vector_model", "horizontal_rig", "vertical_rig", "layer", "whirl", "tub"),
     *("two_plane", "exciter", "runup", "fill_sweep", "baffles", "exact_wave"),
+    *("spindle", "turning"),
 )
 
 
@@ -84,7 +85,9 @@ def _group(name: str) -> Callable[[], list[Case]]:
         optimal_volume,
         rigs,
         runup,
+        spindle,
         tub,
+        turning,
         two_plane,
         vector_model,
         whirl,
@@ -105,6 +108,8 @@ def _group(name: str) -> Callable[[], list[Case]]:
         "fill_sweep": fill_sweep.cases,
         "baffles": baffles.cases,
         "exact_wave": exact_wave.cases,
+        "spindle": spindle.cases,
+        "turning": turning.cases,
     }[name]
 
 

@@ -144,7 +144,7 @@ def _run_spindle(machine: Scene, scene: Path, folder: Path, json: bool) -> None:
     if json:
         print_json(result.to_json())
     else:
-        print_table([(answer(result),)])
+        print(answer(result))
         print()
         print_table(compliance_rows(result), HEAD, right=True)
         print("\nLimits of the answer")

@@ -37,8 +37,8 @@ def write_spindle_report(
     low, high = (number(float(result.frequency[k]) / (2.0 * math.pi)) for k in (0, -1))
     parts = {
         "title": "Dynamic compliance of a spindle unit",
-        "machine": f"A spindle unit of {len(result.beams)} beams with {len(result.stations)} stations, driven "
-        f"by a unit force from {low} to {high} Hz at {result.frequency.size} frequencies.",
+        "machine": f"A spindle unit of {len(result.beams)} beams with {len(result.stations)} stations, "
+        f"driven by a unit force from {low} to {high} Hz at {result.frequency.size} frequencies.",
         "answer": answer(result),
         "doubt": doubt(checks),
         "compliances": table(

@@ -435,6 +435,21 @@ def require_clear(scene: Scene, what: str, baffles: bool = False) -> None:
             )
 
 
+def require_whirl(scene: Scene) -> None:
+    """Refuse a spindle, which has no unbalance and no liquid, where a rotor that whirls is asked for.
+
+    Parameters
+    ----------
+    scene : the machine
+
+    Raises
+    ------
+    InputError : its rotor is a spindle
+    """
+    if isinstance(scene.rotor, Spindle):
+        raise InputError("rotor.kind", scene.rotor.kind, "jeffcott, two_plane or tub for this")
+
+
 def dry_rotor(scene: Scene) -> Jeffcott | TwoPlane | Tub:
     """The scene's rotor without liquid, whose `system()` gives its equations of motion.
 

@@ -146,7 +146,8 @@ class Spindle(Part):
     kind: Literal["spindle"] = Field("spindle", description="the kind of rotor")
     theory: Annotated[Literal["euler", "rayleigh", "timoshenko"], one_of(*THEORIES)] = Field(
         "timoshenko",
-        description="of the beams: euler has the mass alone, rayleigh also rotary inertia, timoshenko also shear",
+        description="of the beams: euler has the mass alone, rayleigh also rotary inertia, timoshenko also "
+        "shear",
     )
     driven: _At = Field(description=f"where the unit force acts: {_STATION_TEXT}")
     measured: _At = Field(description="where the vibration is measured, 1 in W = q2/q1")

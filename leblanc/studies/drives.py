@@ -12,7 +12,7 @@ from leblanc.results.motion.passages import Passage
 from leblanc.results.notes import runup as notes
 from leblanc.scene.programme.steps import Step
 from leblanc.scene.rotors import AnyRotor
-from leblanc.scene.scene import Programme, Runup, Scene, dry_rotor
+from leblanc.scene.scene import Programme, Runup, Scene, dry_rotor, require_whirl
 from leblanc.scene.unbalances import (
     polar_inertia_of,
     sheds_of,
@@ -34,8 +34,9 @@ def planned(scene: Scene) -> Runup | Programme:
 
     Raises
     ------
-    InputError : it has none
+    InputError : it has none, or is a spindle
     """
+    require_whirl(scene)
     if scene.speed_plan is None:
         allowed = (
             "a table [runup] in the scene with start, stop, duration, and rate or motor, or [programme]; "

@@ -184,8 +184,8 @@ def _fitted(
     free = np.asarray(found.active_mask == 0)
     over = len(given) - int(free.sum())
     spread = [math.nan, math.nan]
-    if over > 0 and free.any():
-        jacobian = found.jac[:, free]
+    jacobian = found.jac[:, free]
+    if over > 0 and free.any() and np.linalg.matrix_rank(jacobian) == free.sum():
         variance = 2.0 * found.cost / over * np.linalg.inv(jacobian.T @ jacobian)
         for place, value in zip(np.flatnonzero(free), np.sqrt(np.diagonal(variance)), strict=True):
             spread[place] = float(value)

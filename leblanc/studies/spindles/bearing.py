@@ -14,7 +14,7 @@ def answer_bearing(
     given: dict[str, float] | None = None,
     fit: BearingFit | None = None,
 ) -> BearingResult:
-    """Frequencies of a bearing at a speed of its shaft, and the slip of its cage [theory: spindle, eq. 17-19].
+    """Frequencies of a bearing at a speed of its shaft, slip of its cage [theory: spindle, eq. 17-19].
 
     Parameters
     ----------

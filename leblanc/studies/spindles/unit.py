@@ -78,7 +78,7 @@ def run_spindle(scene: Scene) -> SpindleResult:
 
 
 def _ways_apart(machine: Structure, frequency: Array, points: list[Coordinate], answers: Complex) -> float:
-    """How far the way by reactions in the joints is from the assembly, at frequencies spread over the band."""
+    """How far the way by reactions is from the assembly, at frequencies spread over the band."""
     if all(joint.second is None for joint in machine.joints):
         return float("nan")
     some = np.unique(np.linspace(0, frequency.size - 1, _CHECKED).round().astype(int))

@@ -22,8 +22,8 @@ def bearing_words(result: BearingResult) -> str:
     """The bearing in one sentence."""
     angle = number(math.degrees(result.contact_angle)) if result.contact_angle > 1e-6 else "0"
     return (
-        f"{result.balls} balls, ball over pitch diameter {number(result.diameter_ratio)}, contact angle {angle} "
-        f"deg, shaft at {in_rpm(result.speed)} ({hertz(result.speed)})"
+        f"{result.balls} balls, ball over pitch diameter {number(result.diameter_ratio)}, contact angle "
+        f"{angle} deg, shaft at {in_rpm(result.speed)} ({hertz(result.speed)})"
     )
 
 

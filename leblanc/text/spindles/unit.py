@@ -51,8 +51,8 @@ def answer(result: SpindleResult) -> str:
     return (
         f"Natural frequencies between {number(low)} and {high}: {every} Hz. A force of 1 N at "
         f"{result.driven_at} moves {result.wanted_at} most at {hertz(strongest.frequency)}, by "
-        f"{number(abs(strongest.wanted) * PER_NEWTON)} nm, {number(abs(strongest.wanted / strongest.measured))} "
-        f"times what {result.measured_at} shows."
+        f"{number(abs(strongest.wanted) * PER_NEWTON)} nm, "
+        f"{number(abs(strongest.wanted / strongest.measured))} times what {result.measured_at} shows."
     )
 
 
@@ -122,8 +122,8 @@ def remarks(result: SpindleResult) -> list[str]:
     result : the answer
     """
     return [
-        f"Beams of round sections with {THEORIES[result.theory]}, solved exactly at each frequency; joints are "
-        "springs with dampers.",
+        f"Beams of round sections with {THEORIES[result.theory]}, solved exactly at each frequency; joints "
+        "are springs with dampers.",
         "Motion in one plane; gyroscopic moments of the spinning shaft are left out, as in the source.",
         "Natural frequencies are those without damping; all of the band are found, by counting.",
     ]

@@ -50,7 +50,7 @@ class Section:
 
     @property
     def cutoff(self) -> float:
-        """Frequency from which on shear waves run across the section, rad/s; infinite where one of both is 0."""
+        """Frequency from which on shear waves run across it, rad/s; infinite where one of both is 0."""
         both = self.rotary_inertia * self.shear_flexibility
         return 1.0 / math.sqrt(both) if both > 0.0 else math.inf
 

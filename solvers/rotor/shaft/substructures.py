@@ -1,4 +1,4 @@
-"""The way of the source: compliances of free beams by transfer matrices, reactions in the joints between them.
+"""The way of the source: compliances of free beams by transfer matrices, reactions in the joints.
 
 Products of transfer matrices lose digits as waves grow along a beam, and free beams have rigid motions that
 grow without bounds towards rest. `structure` has neither fault; this way checks it, and it is told in the
@@ -102,7 +102,7 @@ def station_matrices(structure: Structure, beam: int, frequency: Array, spin: fl
 
 
 def transfer_of_beam(structure: Structure, beam: int, frequency: Array, spin: float = 0.0) -> Complex:
-    """Product of all matrices of a beam, from its first end to its last [theory: spindle, eq. 6] [DR18].
+    """Product of all matrices of a beam, first end to last [theory: spindle, eq. 6] [DP18, eq. 8-11].
 
     Parameters
     ----------
@@ -221,7 +221,7 @@ def substructures(
         parts.append((own, acting, force))
     for k, spring in enumerate(springs):
         matrix[:, k, k] += spring.flexibility
-    reactions: Complex = np.linalg.solve(matrix, load[..., None])[..., 0]
+    reactions = np.asarray(np.linalg.solve(matrix, load[..., None])[..., 0], dtype=complex)
     motions = [
         (own @ (reactions @ acting.T + force)[..., None])[..., 0].reshape(omega.size, -1, 2)
         for own, acting, force in parts
