@@ -14,6 +14,7 @@ from solvers.rotor.system import cage_speed
 
 ORDERS = ("ftf", "bpfo", "bpfi", "bsf")
 FEWEST_BALLS, MOST_BALLS = 3, 60
+_LEAST_RATIO, _MOST_RATIO, _GRID = 1e-3, 0.95, 2000  # of d cos(theta)/D
 _LEAST_COSINE = math.cos(math.radians(80.0))  # of contact angles that are looked for
 
 
@@ -143,7 +144,8 @@ def fit_bearing(
     if len(given) < sought:
         raise InputError("given", len(given), f"{sought} frequencies or more, as many as are sought")
     counts = range(FEWEST_BALLS, MOST_BALLS + 1) if balls is None else (balls,)
-    found = sorted((_fitted(given, count, contact_angle) for count in counts), key=lambda fit: fit[1])
+    likely = sorted(counts, key=lambda count: _least_error(given, count, contact_angle))[:2]
+    found = sorted((_fitted(given, count, contact_angle) for count in likely), key=lambda fit: fit[1])
     (values, rms, spread), other = found[0], found[1] if len(found) > 1 else None
     ratio, cosine, count = values
     angle = math.acos(min(1.0, cosine)) if contact_angle is None else contact_angle
@@ -159,25 +161,39 @@ def fit_bearing(
     )
 
 
+def _orders(balls: int, ratio: Array, cosine: Array) -> dict[str, Array]:
+    """Frequencies over the shaft's by d cos(theta)/D and cos(theta) [theory: spindle, eq. 17]."""
+    cage = 0.5 * (1.0 - ratio)
+    spin = 0.5 * cosine / ratio * (1.0 - ratio * ratio)
+    return dict(zip(ORDERS, (cage, balls * cage, balls * (1.0 - cage), spin), strict=True))
+
+
+def _least_error(given: Mapping[str, float], balls: int, contact_angle: float | None) -> float:
+    """Least sum of squares over a grid of ratios, the cosine the best for each: tells balls from balls."""
+    ratio = np.linspace(_LEAST_RATIO, _MOST_RATIO, _GRID)
+    cosine = np.full(ratio.shape, math.cos(contact_angle or 0.0))
+    if contact_angle is None:
+        at_one = _orders(balls, ratio, np.ones_like(ratio))["bsf"]
+        cosine = np.clip(given["bsf"] / at_one, _LEAST_COSINE, 1.0)  # bsf is in proportion to it
+    computed = _orders(balls, ratio, cosine)
+    errors = np.stack([computed[name] / value - 1.0 for name, value in given.items()])
+    return float(np.square(errors).sum(axis=0).min())
+
+
 def _fitted(
     given: Mapping[str, float], balls: int, contact_angle: float | None
 ) -> tuple[tuple[float, float, int], float, tuple[float, float]]:
     """Best ratio and cosine of one number of balls, the residual, standard errors."""
     from scipy.optimize import least_squares
 
-    def orders(values: Array) -> dict[str, float]:
-        ratio, cosine = values[0], values[-1] if contact_angle is None else math.cos(contact_angle)
-        cage = 0.5 * (1.0 - ratio)
-        spin = 0.5 * cosine / ratio * (1.0 - ratio * ratio)
-        return dict(zip(ORDERS, (cage, balls * cage, balls * (1.0 - cage), spin), strict=True))
-
     def errors(values: Array) -> Array:
-        computed = orders(values)
+        cosine = values[-1] if contact_angle is None else np.cos(contact_angle)
+        computed = _orders(balls, values[0], cosine)
         return np.array([computed[name] / value - 1.0 for name, value in given.items()])
 
-    least, most = [1e-3], [0.95]
+    least, most = [_LEAST_RATIO], [_MOST_RATIO]
     if contact_angle is None:
-        least, most = [1e-3, _LEAST_COSINE], [0.95, 1.0]
+        least, most = [_LEAST_RATIO, _LEAST_COSINE], [_MOST_RATIO, 1.0]
     start = [0.25, 0.95][: len(least)]
     tight = dict.fromkeys(("xtol", "ftol", "gtol"), 1e-15)
     found = least_squares(errors, start, bounds=(least, most), **tight)

@@ -84,7 +84,8 @@ def _contradictions() -> list[Case]:
             source="ZSK18, section 5 and conclusion 3",
             quantity="does modulating the speed at 1 to 5 Hz smooth the surface at 4500 rpm and more",
             printed="conclusion 3: proved, as a way to the least roughness",
-            computed="section 5, lathe 1700BF30: no clear result, within one class and within the error of the instrument",
+            computed="section 5, lathe 1700BF30: no clear result, within one class and within the "
+            "error of the instrument",
             difference="the two statements exclude one another",
             verdict="erratum",
             note="only the lathe 16K20T1 shows it, Ra 1.7 to 0.8 um, at 40 m/min on 60 mm: "
