@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from fluid.fill import Fill
     from fluid.liquid import Liquid
     from leblanc.api import (
+        bearing,
         compare,
         explain,
         fit,
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
     from leblanc.scene.rotors import Exciter, JeffcottRotor, TubRotor, TwoPlaneRotor
     from leblanc.scene.scene import Scene, load_scene
     from leblanc.scene.schema.load import SceneError
+    from leblanc.scene.spindle import Spindle
     from meshes.chamber import Chamber
     from meshes.errors import InputError
 
@@ -42,8 +44,10 @@ __all__ = [
     "MagneticRotor",
     "Scene",
     "SceneError",
+    "Spindle",
     "TubRotor",
     "TwoPlaneRotor",
+    "bearing",
     "compare",
     "example",
     "explain",
@@ -71,6 +75,7 @@ _HOMES = {
     "MagneticRotor": ("leblanc.scene.magnetic", "MagneticRotor"),
     "Scene": ("leblanc.scene.scene", "Scene"),
     "SceneError": ("leblanc.scene.schema.load", "SceneError"),
+    "Spindle": ("leblanc.scene.spindle", "Spindle"),
     "TubRotor": ("leblanc.scene.rotors", "TubRotor"),
     "TwoPlaneRotor": ("leblanc.scene.rotors", "TwoPlaneRotor"),
     "example": ("leblanc.scene.examples", "example"),

@@ -85,12 +85,16 @@ DYNAMIC_VISCOSITY = Dimension("dynamic viscosity", "Pa*s", "3.5 mPa*s")
 INTEGRAL_GAIN = Dimension("integral gain", "N/(m*s)", "1000000 N/(m*s)")
 SQUARE_TIME = Dimension("square of a time", "s^2", "0.008 s^2")
 CUBIC_RATE = Dimension("cube of a rate", "1/s^3", "70000000 1/s^3")
+ELASTIC_MODULUS = Dimension("elastic modulus", "Pa", "210 GPa")
+ANGULAR_STIFFNESS = Dimension("angular stiffness", "N*m/rad", "2e5 N*m/rad")
+ANGULAR_DAMPING = Dimension("angular damping", "N*m*s/rad", "5 N*m*s/rad")
 ANGULAR_SPEED = Dimension("angular speed", "rad/s", "1000 rpm", also=("1/s",))
 ANGULAR_ACCELERATION = Dimension("angular acceleration", "rad/s^2", "8 rad/s^2", also=("1/s^2",))
 _DIMENSIONS = (
     *(LENGTH, VOLUME, MASS, DENSITY, VISCOSITY, STIFFNESS, DAMPING, UNBALANCE, INERTIA, TORQUE, ANGLE, TIME),
     *(RATE, ACCELERATION, TEMPERATURE, ANGULAR_SPEED, ANGULAR_ACCELERATION, FORCE, CURRENT, MAGNET),
     *(DYNAMIC_VISCOSITY, INTEGRAL_GAIN, SQUARE_TIME, CUBIC_RATE),
+    *(ELASTIC_MODULUS, ANGULAR_STIFFNESS, ANGULAR_DAMPING),
 )
 
 # Units of usual scenes, each in the SI unit of its dimension; all others are left to pint, whose
@@ -123,6 +127,9 @@ _COMMON: dict[Dimension, dict[str, float]] = {
     INTEGRAL_GAIN: {"N/(m*s)": 1.0},
     SQUARE_TIME: {"s^2": 1.0},
     CUBIC_RATE: {"1/s^3": 1.0},
+    ELASTIC_MODULUS: {"Pa": 1.0, "MPa": 1e6, "GPa": 1e9},
+    ANGULAR_STIFFNESS: {"N*m/rad": 1.0, "N*m": 1.0},
+    ANGULAR_DAMPING: {"N*m*s/rad": 1.0, "N*m*s": 1.0},
     ANGLE: {"rad": 1.0, "mrad": 1e-3, "deg": _TURN / 360.0},
     TIME: {"s": 1.0, "ms": 1e-3, "min": 60.0, "h": 3600.0},
     RATE: {"1/s": 1.0},

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 GROUPS = (
     *("errata", "optimal_volume", "vector_model", "horizontal_rig", "vertical_rig", "layer", "whirl", "tub"),
     *("two_plane", "exciter", "runup", "fill_sweep", "baffles", "exact_wave", "claims"),
-    "blood_pump",
+    *("blood_pump", "spindle", "turning"),
 )
 
 
@@ -87,7 +87,9 @@ def _group(name: str) -> Callable[[], list[Case]]:
         optimal_volume,
         rigs,
         runup,
+        spindle,
         tub,
+        turning,
         two_plane,
         vector_model,
         whirl,
@@ -110,6 +112,8 @@ def _group(name: str) -> Callable[[], list[Case]]:
         "exact_wave": exact_wave.cases,
         "blood_pump": blood_pump.cases,
         "claims": claims.cases,
+        "spindle": spindle.cases,
+        "turning": turning.cases,
     }[name]
 
 

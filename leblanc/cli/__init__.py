@@ -19,6 +19,7 @@ import typer
 from typer.main import get_command
 
 from leblanc.cli import (
+    bearing,
     compare,
     explain,
     fit,
@@ -42,7 +43,7 @@ from meshes.errors import InputError
 DONE, UNREAD, WRONG_INPUT, NOT_CONVERGED = 0, 1, 2, 3
 
 # Modules with one command each, a function of the module's name, in the order of the help.
-COMMANDS = (new, explain, run, compare, fit, volume, layer, modes, map, runup, optimise, sweep, view)
+COMMANDS = (new, explain, run, compare, fit, volume, layer, modes, map, runup, optimise, sweep, view, bearing)
 
 # The current folder may hold a stranger's files: a pickle.py is not for the processes that are started from
 # here, nor is the .numba_config.yaml to say where compiled code is kept, which numba would unpickle.

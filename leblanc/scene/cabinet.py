@@ -138,6 +138,10 @@ def point_table(points: tuple[Point, ...]) -> RowTable:
     return RowTable(("Point", "on", "at x, y, z (mm)", "gap", "gap towards"), tuple(lines))
 
 
+# Kinds whose bodies no point of a cabinet moves with, in words.
+_ALONE = {"exciter": "an exciter", "magnetic": "a rotor in magnetic bearings", "spindle": "a spindle"}
+
+
 def cabinet_conflicts(values: Mapping[str, Any], kind: object) -> Iterator[Conflict]:
     """What a scene's cabinet and points must keep to together with its rotor.
 
@@ -150,11 +154,10 @@ def cabinet_conflicts(values: Mapping[str, Any], kind: object) -> Iterator[Confl
     for k, name in enumerate(names):
         if name in names[:k]:
             yield Conflict(("points", k, "name"), "another name than those of the points before")
-    if kind in ("exciter", "magnetic"):
-        what = "an exciter" if kind == "exciter" else "a rotor in magnetic bearings"
+    if kind in _ALONE:
         for key in ("cabinet", "points"):
             if values.get(key):
-                yield Conflict((key,), f"left out for {what}")
+                yield Conflict((key,), f"left out for {_ALONE[kind]}")
     elif kind in ("jeffcott", "two_plane"):
         for k, point in enumerate(values.get("points", ())):
             if point.on == "tub":

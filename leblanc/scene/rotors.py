@@ -39,6 +39,7 @@ from leblanc.scene.schema.rules import (
     quantity,
     whole,
 )
+from leblanc.scene.spindle import Spindle
 from leblanc.units import MASS, MM, in_rpm, number, with_unit
 
 if TYPE_CHECKING:
@@ -588,5 +589,6 @@ class Exciter(Part):
         return []
 
 
-AnyRotor = JeffcottRotor | TwoPlaneRotor | TubRotor | Exciter | MagneticRotor
-WITHOUT_CHAMBERS = (Exciter, MagneticRotor)  # kinds that carry no liquid and have an answer of their own
+AnyRotor = JeffcottRotor | TwoPlaneRotor | TubRotor | Exciter | MagneticRotor | Spindle
+# Kinds that carry no liquid and have an answer of their own.
+WITHOUT_CHAMBERS = (Exciter, MagneticRotor, Spindle)

@@ -29,6 +29,8 @@ from leblanc.scene.schema.load import SceneError, SceneFault, given_at, meant, r
 from leblanc.scene.schema.part import Conflict, Part, faults_of
 from leblanc.scene.schema.paths import keys_of, require_field, with_values
 from leblanc.scene.schema.rules import Entries, Refused, Speed, Text, entries, one_of, quantity, whole
+from leblanc.scene.spindle import Spindle as Spindle
+from leblanc.scene.spindle import without_liquid
 from leblanc.scene.tasks import Optimisation
 from leblanc.scene.tasks import Runup as Runup
 from leblanc.scene.unbalances import polar_inertia_of, sheds_of
@@ -224,6 +226,8 @@ class Scene(Part):
             missing = "chambers" not in given
             yield Conflict(("chambers",), f"{'given: ' if missing else ''}{_SOME_CHAMBERS.allowed}")
         yield from cabinet_conflicts(values, _kind(given.get("rotor")))
+        if _kind(given.get("rotor")) == "spindle":
+            yield from without_liquid(values, given)
         programme, rotor = values.get("programme"), values.get("rotor")
         if programme is not None:
             if given.get("runup") is not None:
@@ -433,12 +437,27 @@ def require_clear(scene: Scene, what: str, baffles: bool = False) -> None:
             )
 
 
+def require_whirl(scene: Scene) -> None:
+    """Refuse a spindle and a rotor in magnetic bearings where one that whirls with liquid is asked for.
+
+    Parameters
+    ----------
+    scene : the machine
+
+    Raises
+    ------
+    InputError : its rotor is a spindle, or in magnetic bearings
+    """
+    if isinstance(scene.rotor, MagneticRotor | Spindle):
+        raise InputError("rotor.kind", scene.rotor.kind, "jeffcott, two_plane or tub for this")
+
+
 def dry_rotor(scene: Scene) -> Jeffcott | TwoPlane | Tub:
     """The scene's rotor without liquid, whose `system()` gives its equations of motion.
 
     Raises
     ------
-    InputError : the scene is that of a rotor without chambers: an exciter, or in magnetic bearings
+    InputError : the scene is that of a rotor without chambers: an exciter, a spindle, or in magnetic bearings
     """
     if isinstance(scene.rotor, WITHOUT_CHAMBERS):
         raise InputError("rotor.kind", scene.rotor.kind, "jeffcott, two_plane or tub for this")
@@ -471,7 +490,7 @@ def rotor_content(rotor: AnyRotor) -> dict[str, Any]:
         balls = rotor.balls.model_dump()
         balls |= {"kind": rotor.balls.name, "pendulum_inertia": rotor.balls.pendulum_inertia or 0.0}
         return rotor.model_dump(exclude={"balls"}) | {"balls": balls}
-    if isinstance(rotor, MagneticRotor):
+    if isinstance(rotor, MagneticRotor | Spindle):
         return rotor.model_dump()
     machine = asdict(rotor.machine())
     if not machine.get("loads", True):

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from leblanc.scene.loads import Sheds
 from leblanc.scene.rotors import AnyRotor, JeffcottRotor, TubRotor, TwoPlaneRotor
+from leblanc.scene.spindle import Spindle
 
 
 def polar_inertia_of(rotor: AnyRotor) -> float | None:
@@ -29,6 +30,8 @@ def unbalances_of(rotor: AnyRotor) -> tuple[float, ...]:
     """
     if isinstance(rotor, TwoPlaneRotor):
         return tuple(part.size for part in rotor.unbalances)
+    if isinstance(rotor, Spindle):
+        return ()
     own = (rotor.unbalance,)
     if isinstance(rotor, TubRotor):
         return own * rotor.has_own_unbalance + tuple(load.size for load in rotor.loads)
@@ -47,7 +50,7 @@ def unbalance_places_of(rotor: AnyRotor) -> tuple[float, ...]:
     if isinstance(rotor, TubRotor):
         own = rotor.drum_position[1] if rotor.unbalance_position is None else rotor.unbalance_position
         return (own,) * rotor.has_own_unbalance + tuple(load.position for load in rotor.loads)
-    return (0.0,)
+    return () if isinstance(rotor, Spindle) else (0.0,)
 
 
 def sheds_of(rotor: AnyRotor) -> tuple[Sheds | None, ...]:
@@ -61,6 +64,8 @@ def sheds_of(rotor: AnyRotor) -> tuple[Sheds | None, ...]:
         return tuple(part.sheds for part in rotor.unbalances)
     if isinstance(rotor, TubRotor):
         return (rotor.sheds,) * rotor.has_own_unbalance + tuple(load.sheds for load in rotor.loads)
+    if isinstance(rotor, Spindle):
+        return ()
     return (rotor.sheds if isinstance(rotor, JeffcottRotor) else None,)
 
 
@@ -80,6 +85,8 @@ def with_unbalances(rotor: AnyRotor, sizes: Sequence[float]) -> AnyRotor:
         pairs = zip(rotor.loads, sizes[first:], strict=True)
         loads = tuple(load.altered(size=size) for load, size in pairs)
         return rotor.altered(loads=loads, **({"unbalance": sizes[0]} if first else {}))
+    if isinstance(rotor, Spindle):
+        return rotor
     (size,) = sizes
     return rotor.altered(unbalance=size)
 

@@ -12,7 +12,7 @@ from leblanc.results.motion.passages import Passage
 from leblanc.results.notes import runup as notes
 from leblanc.scene.programme.steps import Step
 from leblanc.scene.rotors import AnyRotor
-from leblanc.scene.scene import MagneticRotor, Programme, Runup, Scene, dry_rotor
+from leblanc.scene.scene import MagneticRotor, Programme, Runup, Scene, dry_rotor, require_whirl
 from leblanc.scene.unbalances import (
     polar_inertia_of,
     sheds_of,
@@ -34,11 +34,12 @@ def planned(scene: Scene) -> Runup | Programme:
 
     Raises
     ------
-    InputError : it has none, or a rotor in magnetic bearings, whose motion in time is another's
+    InputError : it has none, or is of a kind whose motion in time is another's
     """
     if isinstance(scene.rotor, MagneticRotor):
         allowed = "jeffcott, two_plane or tub for this; `leblanc run` follows its [rotor.trial] in time"
         raise InputError("rotor.kind", scene.rotor.kind, allowed)
+    require_whirl(scene)
     if scene.speed_plan is None:
         allowed = (
             "a table [runup] in the scene with start, stop, duration, and rate or motor, or [programme]; "

@@ -16,7 +16,7 @@ from leblanc.results.base import Note
 from leblanc.results.motion.cycles import DEEP, FAST_LAG, LargeWhirl
 from leblanc.results.notes import whirl_map as notes
 from leblanc.results.whirl_map import WhirlMap
-from leblanc.scene.scene import Scene
+from leblanc.scene.scene import Scene, require_whirl
 from leblanc.studies.models.choose import Prepared, prepare
 from leblanc.studies.models.validity import doubts
 from leblanc.units import small_whirl_friction
@@ -185,6 +185,7 @@ def _check(scene: Scene, volumes: int, speeds: int) -> None:
             raise InputError(field, count, f"a whole number from {FEWEST} to {MOST}")
     if scene.speeds.stop <= scene.speeds.start:
         raise InputError("speeds.stop", scene.speeds.stop, "above speeds.start for a map")
+    require_whirl(scene)
     if not scene.fills:
         raise InputError("chambers", "none", "at least one for a map over volume")
 

@@ -29,7 +29,7 @@ COMMANDS = (
         "optimise",
         "sweep",
     ),
-    *("trade", "view", "validate", "notebooks"),
+    *("trade", "view", "validate", "notebooks", "bearing"),
 )
 
 
@@ -94,7 +94,7 @@ def _long() -> Iterator[Case]:
     for group in (
         *("two_plane", "whirl", "layer", "runup", "fill_sweep", "exciter", "errata", "optimal_volume"),
         *("vector_model", "horizontal_rig", "vertical_rig", "tub", "baffles", "exact_wave", "claims"),
-        "blood_pump",
+        *("blood_pump", "spindle", "turning"),
     ):
         yield _case(f"validate-{group}", f"validate {group} --json")
 
@@ -105,6 +105,7 @@ def _runs() -> Iterator[Case]:
         yield _case(f"explain-{name}", f"explain {_scene(name)} --json")
     yield _case("explain-top_loader", f"explain {_scene('top_loader')} --json")
     yield _case("run-exact", "run small/horizontal_rig_exact.toml --workers 1 --json --out out")
+    yield _case("run-spindle", f"run {_scene('spindle')} --json --out out")
     yield _case("run-top_loader", f"run {_scene('top_loader')} --json --out out")
     yield _case("explain-spinning_top", "explain docs/examples/spinning_top.toml --json")
 
@@ -249,6 +250,8 @@ def _words() -> Iterator[Case]:
         out = "" if name == "explain" else " --out out"
         yield _case(f"words-{name}", f"{name} small/runup.toml{options}{out}")
     yield _case("words-exciter", "run examples/vibratory_table.toml")
+    yield _case("words-spindle", "run examples/spindle.toml")
+    yield _case("words-bearing", f"{_BEARING} --cage 12Hz")
     yield _case("words-exciter-explain", "explain examples/vibratory_table.toml")
     yield _case("words-magnetic-explain", "explain examples/blood_pump.toml")
     yield _case("words-compare", "compare small/runup.toml --models linear,statics --out out")
@@ -270,6 +273,7 @@ def _words() -> Iterator[Case]:
     yield _case("words-out", "run docs/examples/smallest_scene.toml")
 
 
+_BEARING = "bearing --speed 33Hz --balls 9 --ball-diameter 7.144mm --pitch-diameter 31mm"
 _VOLUME = "volume --radius 0.15 --height 0.05 --eccentricity 1e-3 --speed 100"
 
 
@@ -281,6 +285,9 @@ def _cheap() -> Iterator[Case]:
     yield _case("volume-full", f"{volume} --volume 3.5e-3")
     yield _case("volume-slow", f"{volume} --volume 2e-4 --speed 12")
     yield _case("volume-ring", f"{volume} --volume 2e-4 --inner-radius 100mm --gravity 0")
+    yield _case("bearing", f"{_BEARING} --contact-angle 15deg --cage 12Hz --json")
+    ratios = "--ftf 0.38475 --bpfo 3.4555 --bpfi 5.5369 --bsf 2.0497"
+    yield _case("bearing-fit", f"bearing --speed 33Hz {ratios} --json")
     yield _case("new-file", "new my_scene.toml")
     yield _case("help", "--help")
     for name in COMMANDS:
@@ -308,6 +315,14 @@ def _wrong() -> Iterator[Case]:
         "optimise-magnetic": f"optimise {pump}",
         "compare-magnetic": f"compare {pump} --models statics",
         "view-magnetic": f"view {pump}",
+        **{
+            f"{name}-spindle": f"{name} {_scene('spindle')}"
+            for name in ("explain", "map", "runup", "optimise", "view", "trade")
+        },
+        "compare-spindle": f"compare {_scene('spindle')} --models statics",
+        "bearing-nothing": "bearing --speed 33Hz",
+        "bearing-balls": "bearing --speed 33Hz --ftf 0.4",
+        "bearing-both": "bearing --speed 33Hz --ftf 0.4 --pitch-diameter 31mm",
         "runup-missing": f"runup {smallest}",
         "map-volumes": f"map {rig} --volumes 0",
         "map-friction": f"map {rig} --friction sticky",

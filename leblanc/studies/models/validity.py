@@ -106,7 +106,7 @@ def _rotor(scene: Scene) -> Iterator[Note]:
         yield from _free(scene)
     elif isinstance(rotor, MagneticRotor):
         yield from _eccentricity(scene, "rotor.eccentricity", rotor.unbalance, rotor.mass)
-    else:
+    elif isinstance(rotor, Exciter):
         yield from _eccentricity(scene, "rotor.unbalance", rotor.unbalance, rotor.platform_mass)
 
 

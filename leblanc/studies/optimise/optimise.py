@@ -25,7 +25,7 @@ from leblanc.results.optimum import (
     ParetoFront,
     WettingVolumes,
 )
-from leblanc.scene.scene import Scene, Speeds, require_clear
+from leblanc.scene.scene import Scene, Speeds, require_clear, require_whirl
 from leblanc.scene.tasks import Optimisation
 from leblanc.studies.models.choose import axial_gravity
 from leblanc.studies.models.liquid import SYNCHRONOUS_MODELS
@@ -105,6 +105,7 @@ def optimise_scene(
     task = task if objective is None else task.altered(objective=objective)
     if task.objective == "layout":
         raise InputError("--objective", "layout", "one of the liquid here; optimise_layout answers this one")
+    require_whirl(scene)
     if not scene.fills:
         raise InputError("chambers", "none", "at least one to choose the volume of")
     require_clear(scene, "a search over volumes, which rests on the equilibrium in a ring", baffles=True)

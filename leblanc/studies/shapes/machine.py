@@ -97,6 +97,8 @@ def require_rotor(scene: Scene) -> None:
     ------
     InputError : it is an exciter
     """
+    if scene.rotor.kind == "spindle":
+        raise InputError("rotor.kind", "spindle", "jeffcott, two_plane or tub for this")
     if scene.rotor.kind == "exciter":
         allowed = "jeffcott, two_plane or tub for this; of an exciter only --screenshot shows a picture"
         raise InputError("rotor.kind", "exciter", allowed)

@@ -48,6 +48,7 @@ def test_the_examples_of_each_kind() -> None:
         "vibratory_table",
         "runup",
         "weak_motor",
+        "spindle",
     }
 
 

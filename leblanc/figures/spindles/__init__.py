@@ -1,0 +1,1 @@
+"""Answers about a spindle unit as figures."""

@@ -1,0 +1,1 @@
+"""Answers about a spindle unit and its rolling bearings."""

@@ -1,0 +1,1 @@
+"""What a spindle unit and its rolling bearings answer."""

@@ -1,0 +1,211 @@
+"""Frequencies of a rolling bearing whose outer ring is at rest: cage, rings, balls; what they tell of it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from meshes.arrays import Array
+from meshes.errors import InputError, require_positive
+from solvers.rotor.system import cage_speed
+
+ORDERS = ("ftf", "bpfo", "bpfi", "bsf")
+FEWEST_BALLS, MOST_BALLS = 3, 60
+_LEAST_RATIO, _MOST_RATIO, _GRID = 1e-3, 0.95, 2000  # of d cos(theta)/D
+_LEAST_COSINE = math.cos(math.radians(80.0))  # of contact angles that are looked for
+
+
+@dataclass(frozen=True)
+class Bearing:
+    """What the frequencies of a bearing depend on.
+
+    Parameters
+    ----------
+    balls : N_b, how many roll in one row
+    diameter_ratio : d/D, of a ball over the circle of the balls' centres, between 0 and 1
+    contact_angle : theta, rad, from 0 to below pi/2
+
+    Raises
+    ------
+    InputError : a value out of its range
+
+    Examples
+    --------
+    >>> round(Bearing(9, 7.144 / 31.0).orders()["ftf"], 4)
+    0.3848
+    """
+
+    balls: int
+    diameter_ratio: float
+    contact_angle: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not (isinstance(self.balls, int) and 1 <= self.balls <= 1000):
+            raise InputError("balls", self.balls, "a whole number from 1 to 1000")
+        if not 0.0 < self.diameter_ratio < 1.0:
+            raise InputError("diameter_ratio", self.diameter_ratio, "between 0 and 1")
+        if not 0.0 <= self.contact_angle < 0.5 * math.pi:
+            raise InputError("contact_angle", self.contact_angle, "from 0 to below pi/2")
+
+    def orders(self) -> dict[str, float]:
+        """Each frequency over that of the shaft, by name [theory: spindle, eq. 17].
+
+        `ftf` of the cage; `bpfo` and `bpfi` of balls that pass a place of the outer and of the inner ring;
+        `bsf` of a ball about its own axis.
+        """
+        ratio, cosine = self.diameter_ratio, math.cos(self.contact_angle)
+        cage = float(cage_speed(1.0, 1.0, ratio, self.contact_angle))
+        spin = 0.5 * (1.0 - (ratio * cosine) ** 2) / ratio
+        return dict(zip(ORDERS, (cage, self.balls * cage, self.balls * (1.0 - cage), spin), strict=True))
+
+
+def cage_slip(measured: float, theoretical: float) -> float:
+    """Share by which a cage is behind rolling without slip [theory: spindle, eq. 19] [DR18, eq. 9].
+
+    Parameters
+    ----------
+    measured, theoretical : speeds of the cage, in one unit, the second above 0
+
+    Returns
+    -------
+    0 where all balls roll, 1 where the cage stands still, below 0 where it is ahead
+
+    Examples
+    --------
+    >>> cage_slip(300.0, 400.0)
+    0.25
+    """
+    require_positive("theoretical", theoretical)
+    if not (math.isfinite(measured) and measured >= 0.0):
+        raise InputError("measured", measured, "a finite number, 0 or above")
+    return 1.0 - measured / theoretical
+
+
+@dataclass(frozen=True)
+class BearingFit:
+    """A bearing whose frequencies are nearest to some that are given.
+
+    Parameters
+    ----------
+    bearing : the best
+    projected_ratio : d cos(theta)/D
+    projected_ratio_std : its standard error, nan where no more is given than is sought
+    cosine, cosine_std : of the contact angle; nan where that was given or is 0, the end of its range
+    residual_rms : root mean square of computed over given less 1
+    next_balls, next_rms : the second best number of balls and its residual; 0 and nan where it was given
+    """
+
+    bearing: Bearing
+    projected_ratio: float
+    projected_ratio_std: float
+    cosine: float
+    cosine_std: float
+    residual_rms: float
+    next_balls: int
+    next_rms: float
+
+
+def fit_bearing(
+    given: Mapping[str, float], balls: int | None = None, contact_angle: float | None = None
+) -> BearingFit:
+    """Bearing from its frequencies over that of the shaft, by least squares of the relative errors.
+
+    Every number of balls is tried; for each the ratio of diameters and the contact angle are fitted
+    [theory: spindle, eq. 18].
+
+    Parameters
+    ----------
+    given : by names of `ORDERS`, each above 0
+    balls, contact_angle : where they are known; rad
+
+    Raises
+    ------
+    InputError : an unknown name, a value that is not above 0, fewer values than are sought, or none that
+        tells what is sought: the balls need bpfo or bpfi, the contact angle bsf
+
+    Examples
+    --------
+    >>> found = fit_bearing({"ftf": 0.38475, "bpfi": 5.5369, "bsf": 2.0497})
+    >>> found.bearing.balls, round(found.projected_ratio, 3)
+    (9, 0.23)
+    """
+    for name, value in given.items():
+        if name not in ORDERS:
+            raise InputError("given", name, "one of: " + ", ".join(ORDERS))
+        require_positive(name, value)
+    if balls is None and not {"bpfo", "bpfi"} & given.keys():
+        raise InputError("balls", None, "given, or bpfo or bpfi, which tell how many there are")
+    if contact_angle is None and "bsf" not in given:
+        raise InputError("contact_angle", None, "given, or bsf, which alone tells it")
+    sought = 1 + (balls is None) + (contact_angle is None)
+    if len(given) < sought:
+        raise InputError("given", len(given), f"{sought} frequencies or more, as many as are sought")
+    counts = range(FEWEST_BALLS, MOST_BALLS + 1) if balls is None else (balls,)
+    likely = sorted(counts, key=lambda count: _least_error(given, count, contact_angle))[:2]
+    found = sorted((_fitted(given, count, contact_angle) for count in likely), key=lambda fit: fit[1])
+    (values, rms, spread), other = found[0], found[1] if len(found) > 1 else None
+    ratio, cosine, count = values
+    angle = math.acos(min(1.0, cosine)) if contact_angle is None else contact_angle
+    return BearingFit(
+        bearing=Bearing(int(count), ratio / cosine, angle),
+        projected_ratio=ratio,
+        projected_ratio_std=spread[0],
+        cosine=cosine,
+        cosine_std=spread[1],
+        residual_rms=rms,
+        next_balls=0 if other is None else int(other[0][2]),
+        next_rms=math.nan if other is None else other[1],
+    )
+
+
+def _orders(balls: int, ratio: Array, cosine: Array) -> dict[str, Array]:
+    """Frequencies over the shaft's by d cos(theta)/D and cos(theta) [theory: spindle, eq. 17]."""
+    cage = 0.5 * (1.0 - ratio)
+    spin = 0.5 * cosine / ratio * (1.0 - ratio * ratio)
+    return dict(zip(ORDERS, (cage, balls * cage, balls * (1.0 - cage), spin), strict=True))
+
+
+def _least_error(given: Mapping[str, float], balls: int, contact_angle: float | None) -> float:
+    """Least sum of squares over a grid of ratios, the cosine the best for each: tells balls from balls."""
+    ratio = np.linspace(_LEAST_RATIO, _MOST_RATIO, _GRID)
+    cosine = np.full(ratio.shape, math.cos(contact_angle or 0.0))
+    if contact_angle is None:
+        at_one = _orders(balls, ratio, np.ones_like(ratio))["bsf"]
+        cosine = np.clip(given["bsf"] / at_one, _LEAST_COSINE, 1.0)  # bsf is in proportion to it
+    computed = _orders(balls, ratio, cosine)
+    errors = np.stack([computed[name] / value - 1.0 for name, value in given.items()])
+    return float(np.square(errors).sum(axis=0).min())
+
+
+def _fitted(
+    given: Mapping[str, float], balls: int, contact_angle: float | None
+) -> tuple[tuple[float, float, int], float, tuple[float, float]]:
+    """Best ratio and cosine of one number of balls, the residual, standard errors."""
+    from scipy.optimize import least_squares
+
+    def errors(values: Array) -> Array:
+        cosine = values[-1] if contact_angle is None else np.cos(contact_angle)
+        computed = _orders(balls, values[0], cosine)
+        return np.array([computed[name] / value - 1.0 for name, value in given.items()])
+
+    least, most = [_LEAST_RATIO], [_MOST_RATIO]
+    if contact_angle is None:
+        least, most = [_LEAST_RATIO, _LEAST_COSINE], [_MOST_RATIO, 1.0]
+    start = [0.25, 0.95][: len(least)]
+    tight = dict.fromkeys(("xtol", "ftol", "gtol"), 1e-15)
+    found = least_squares(errors, start, bounds=(least, most), **tight)
+    free = np.asarray(found.active_mask == 0)
+    over = len(given) - int(free.sum())
+    spread = [math.nan, math.nan]
+    jacobian = found.jac[:, free]
+    if over > 0 and free.any() and np.linalg.matrix_rank(jacobian) == free.sum():
+        variance = 2.0 * found.cost / over * np.linalg.inv(jacobian.T @ jacobian)
+        for place, value in zip(np.flatnonzero(free), np.sqrt(np.diagonal(variance)), strict=True):
+            spread[place] = float(value)
+    # An interior-point step stops just short of a bound.
+    cosine = math.cos(contact_angle or 0.0) if free.size == 1 or not free[-1] else float(found.x[-1])
+    rms = math.sqrt(2.0 * found.cost / len(given))
+    return (float(found.x[0]), cosine, balls), rms, (spread[0], spread[1])

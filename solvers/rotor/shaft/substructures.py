@@ -1,0 +1,229 @@
+"""The way of the source: compliances of free beams by transfer matrices, reactions in the joints.
+
+Products of transfer matrices lose digits as waves grow along a beam, and free beams have rigid motions that
+grow without bounds towards rest. `structure` has neither fault; this way checks it, and it is told in the
+reactions what each joint carries.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from meshes.arrays import Array, Complex
+from meshes.errors import InputError
+from solvers.rotor.shaft.section import transfer_matrices
+from solvers.rotor.shaft.structure import Coordinate, Station, Structure
+
+
+@dataclass(frozen=True)
+class Connection:
+    """One spring of a joint between two beams, the reaction in which is unknown.
+
+    Parameters
+    ----------
+    first, second : coordinates on which the reaction acts, on the second with the other sign
+    flexibility : 1/(k + i omega c), shape (n,)
+    """
+
+    first: Coordinate
+    second: Coordinate
+    flexibility: Complex
+
+
+def connections(structure: Structure, frequency: Array) -> list[Connection]:
+    """Springs between beams in the order of the joints, the radial one of a joint before the angular one.
+
+    Parameters
+    ----------
+    structure : the machine
+    frequency : rad/s, shape (n,)
+    """
+    found = []
+    for joint in structure.joints:
+        if joint.second is None:
+            continue
+        for slope, stiffness in enumerate(joint.dynamic(frequency)):
+            if np.any(stiffness != 0.0):
+                ends = Coordinate(joint.first, bool(slope)), Coordinate(joint.second, bool(slope))
+                found.append(Connection(*ends, 1.0 / stiffness))
+    return found
+
+
+def point_matrices(structure: Structure, station: Station, frequency: Array, spin: float = 0.0) -> Complex:
+    """Across a station: its masses and its springs to the ground [theory: spindle, eq. 5].
+
+    Parameters
+    ----------
+    structure : the machine
+    station : of it
+    frequency : rad/s, shape (n,)
+    spin : of what spins, rad/s
+
+    Returns
+    -------
+    shape (n, 4, 4), for the states (w, theta, M, Q)
+    """
+    omega = np.asarray(frequency, dtype=float)
+    found = np.tile(np.eye(4, dtype=complex), (omega.size, 1, 1))
+    for mass in structure.masses:
+        if mass.station == station:
+            found[:, 3, 0] -= mass.mass * np.square(omega)
+            found[:, 2, 1] -= mass.inertia * np.square(omega) - mass.polar_inertia * spin * omega
+    for joint in structure.joints:
+        if joint.second is None and joint.first == station:
+            radial, angular = joint.dynamic(omega)
+            found[:, 3, 0] += radial
+            found[:, 2, 1] += angular
+    return found
+
+
+def station_matrices(structure: Structure, beam: int, frequency: Array, spin: float = 0.0) -> list[Complex]:
+    """From behind the station before to behind each station of a beam; the first is that of its own station.
+
+    Parameters
+    ----------
+    structure : the machine
+    beam : number of it
+    frequency : rad/s, shape (n,)
+    spin : of what spins, rad/s
+
+    Returns
+    -------
+    shape (n, 4, 4) each
+    """
+    sections = structure.beams[beam]
+    found = [point_matrices(structure, (beam, 0), frequency, spin)]
+    for k, section in enumerate(sections):
+        field = transfer_matrices(section, section.length, frequency, spin)
+        found.append(point_matrices(structure, (beam, k + 1), frequency, spin) @ field)
+    return found
+
+
+def transfer_of_beam(structure: Structure, beam: int, frequency: Array, spin: float = 0.0) -> Complex:
+    """Product of all matrices of a beam, first end to last [theory: spindle, eq. 6] [DP18, eq. 8-11].
+
+    Parameters
+    ----------
+    structure, beam, frequency, spin : as of `station_matrices`
+
+    Returns
+    -------
+    shape (n, 4, 4)
+    """
+    total, *others = station_matrices(structure, beam, frequency, spin)
+    for matrix in others:
+        total = matrix @ total
+    return total
+
+
+def free_compliances(structure: Structure, beam: int, frequency: Array, spin: float = 0.0) -> Complex:
+    """Compliances of a beam without its joints to other beams [theory: spindle, eq. 7].
+
+    Parameters
+    ----------
+    structure, beam, frequency, spin : as of `station_matrices`
+
+    Returns
+    -------
+    shape (n, 2 m, 2 m), of its m stations, the deflection and the force of each before slope and moment
+
+    Raises
+    ------
+    InputError : the frequency is one at which the beam alone moves without bounds, as a free one at rest
+    """
+    steps = station_matrices(structure, beam, frequency, spin)
+    size, count = len(steps), np.asarray(frequency).size
+    unit = np.zeros((count, 4, 2), dtype=complex)
+    unit[:, 3, 0] = unit[:, 2, 1] = -1.0  # a unit force takes from the shear, a unit moment from the moment
+    # States behind each station: from the motion of the first end, and from a unit load at each station.
+    from_end, from_load = [steps[0][..., :2]], [[unit if j == 0 else 0.0 * unit for j in range(size)]]
+    for k in range(1, size):
+        from_end.append(steps[k] @ from_end[-1])
+        before = [steps[k] @ state for state in from_load[-1]]
+        from_load.append([state + unit * (j == k) for j, state in enumerate(before)])
+    found = np.empty((count, 2 * size, 2 * size), dtype=complex)
+    for j in range(size):
+        try:
+            start = -np.linalg.solve(from_end[-1][:, 2:], from_load[-1][j][:, 2:])
+        except np.linalg.LinAlgError as error:
+            text = "one at which each beam alone has an answer"
+            raise InputError("frequency", np.asarray(frequency).tolist(), text) from error
+        for k in range(size):
+            state = from_end[k][:, :2] @ start + from_load[k][j][:, :2]
+            found[:, 2 * k : 2 * k + 2, 2 * j : 2 * j + 2] = state
+    return found
+
+
+@dataclass(frozen=True)
+class Substructures:
+    """The dynamic compliance matrix and what follows from it [theory: spindle, eq. 12-13].
+
+    Parameters
+    ----------
+    matrix : of the connections, shape (n, c, c)
+    load : free motion of the second end of each connection from the first under the unit force, (n, c)
+    reactions : in the connections, shape (n, c)
+    motions : of each beam, deflection and slope of its stations, shape (n, m, 2) each
+    """
+
+    matrix: Complex
+    load: Complex
+    reactions: Complex
+    motions: tuple[Complex, ...]
+
+
+def substructures(
+    structure: Structure, frequency: Array, driven: Coordinate, spin: float = 0.0
+) -> Substructures:
+    """Answer to a unit force by the compliances of free beams and the reactions between them.
+
+    Parameters
+    ----------
+    structure : the machine
+    frequency : rad/s, shape (n,)
+    driven : where the unit force or moment acts
+    spin : of what spins, rad/s
+
+    Raises
+    ------
+    InputError : no joint between two beams, a frequency at which a beam alone has no answer
+
+    Examples
+    --------
+    >>> from solvers.rotor.shaft.section import round_section
+    >>> beams = ((round_section(0.2, 0.02),), (round_section(0.3, 0.04),))
+    >>> machine = Structure(beams, joints=(Joint((0, 1), (1, 0), 1e7, angular_stiffness=1e4),))
+    >>> found = substructures(machine, np.array([100.0]), Coordinate((0, 0)))
+    >>> found.matrix.shape, found.reactions.shape
+    ((1, 2, 2), (1, 2))
+    """
+    omega = np.asarray(frequency, dtype=float).reshape(-1)
+    structure.require(driven.station)
+    springs = connections(structure, omega)
+    if not springs:
+        raise InputError("joints", len(structure.joints), "such that one of them joins two beams")
+    matrix = np.zeros((omega.size, len(springs), len(springs)), dtype=complex)
+    load = np.zeros((omega.size, len(springs)), dtype=complex)
+    parts = []
+    for beam in range(len(structure.beams)):
+        own = free_compliances(structure, beam, omega, spin)
+        acting, force = np.zeros((own.shape[-1], len(springs))), np.zeros(own.shape[-1])
+        for k, spring in enumerate(springs):
+            for end, sign in ((spring.first, 1.0), (spring.second, -1.0)):
+                if end.station[0] == beam:
+                    acting[2 * end.station[1] + end.slope, k] = sign
+        if driven.station[0] == beam:
+            force[2 * driven.station[1] + driven.slope] = 1.0
+        matrix += acting.T @ own @ acting
+        load -= own @ force @ acting
+        parts.append((own, acting, force))
+    for k, spring in enumerate(springs):
+        matrix[:, k, k] += spring.flexibility
+    reactions = np.asarray(np.linalg.solve(matrix, load[..., None])[..., 0], dtype=complex)
+    motions = [
+        (own @ (reactions @ acting.T + force)[..., None])[..., 0].reshape(omega.size, -1, 2)
+        for own, acting, force in parts
+    ]
+    return Substructures(matrix, load, reactions, tuple(motions))

@@ -1,0 +1,28 @@
+"""The groups `spindle` and `turning`: verdicts that follow from the numbers."""
+
+from __future__ import annotations
+
+import pytest
+
+from validation.cases import spindle, turning
+
+
+def test_table_of_the_bearing() -> None:
+    found = {case.name: case for case in spindle.cases()}
+    verdicts = {name.partition("/")[2]: case.verdict for name, case in found.items()}
+    assert (
+        verdicts["bpfo"] == "erratum" and verdicts["bpfi"] == verdicts["bsf"] == verdicts["balls"] == "agrees"
+    )
+    assert verdicts["bsf-15-degrees"] == verdicts["bsf-25-degrees"] == "differs"
+    assert verdicts["eq-14"] == "erratum" and verdicts["matrix"] == "agrees" and verdicts["flat"] == "trend"
+    computed = {name: found[f"spindle/{name}"].computed for name in ("bpfo", "bsf", "bsf-15-degrees")}
+    # By hand: 33/(9 33/85.77) = 9.530; d/D = 0.2305.
+    assert list(computed.values()) == pytest.approx([9.530, 16.07, 16.63], abs=5e-3)
+
+
+def test_speeds_of_turning() -> None:
+    assert turning.speed(300.0 / 60.0, 0.020) * 60.0 == pytest.approx(4775.0, abs=0.5)
+    found = {case.name.partition("/")[2]: case for case in turning.cases()}
+    assert found["300-m-min"].verdict == "agrees" and found["modulation"].verdict == "erratum"
+    rates = [found[f"resonance-{hertz}"].computed for hertz in (135, 152, 166)]
+    assert rates == [8100.0, 9120.0, 9960.0]
