@@ -36,12 +36,13 @@ def lacking(scene: Scene) -> str | None:
     return None
 
 
-def upright(scene: Scene) -> Upright | None:
+def upright(scene: Scene, speed: Array) -> Upright | None:
     """Margin over the scene's speeds, and where it is used up [theory: statics, eq. 20-21].
 
     Parameters
     ----------
     scene : the machine
+    speed : its speeds, rad/s, shape (n,)
 
     Returns
     -------
@@ -54,13 +55,12 @@ def upright(scene: Scene) -> Upright | None:
     stiffness = sum(support.stiffness * (support.position - pivot) ** 2 for support in rotor.supports)
     top = Top(rotor.mass, rotor.transverse_inertia, rotor.polar_inertia, -pivot, stiffness)
 
-    def left(speed: Array) -> Array:
-        return upright_margin(top, fills, 1.0, speed, scene.gravity).left
+    def left_at(spin: Array) -> Array:
+        return upright_margin(top, fills, 1.0, spin, scene.gravity).left
 
     def left_of_fill(share: Array) -> Array:
         return upright_margin(top, fills, share, scene.speeds.stop, scene.gravity).left
 
-    speed = scene.speed_array()
     margin = upright_margin(top, fills, 1.0, speed, scene.gravity)
     span = np.linspace(scene.speeds.start, scene.speeds.stop, _SPEEDS)
     # The least film has a free surface and a full chamber none: both ends are jumps, and left out.
@@ -71,6 +71,6 @@ def upright(scene: Scene) -> Upright | None:
         dry=upright_margin(top, (), 1.0, speed, scene.gravity).left,
         frozen=margin.frozen,
         surface=margin.surface,
-        limits=sign_changes(left, span),
+        limits=sign_changes(left_at, span),
         fill_limits=sign_changes(left_of_fill, shares) if fills else (),
     )

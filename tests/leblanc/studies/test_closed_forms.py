@@ -14,8 +14,11 @@ from hypothesis import strategies as st
 import leblanc as lb
 from fluid.fill import Fill
 from fluid.liquid import Liquid
+from leblanc.results.motion.closed_forms import ClosedForms
 from leblanc.scene.schema.load import SceneError
-from leblanc.studies.closed_forms.told import closed_forms, vector_model
+from leblanc.studies.closed_forms import told
+from leblanc.studies.closed_forms.told import vector_model
+from leblanc.studies.models.choose import prepare
 from leblanc.text.closed_forms import HEAD, closed_form_rows, vector_rows
 from meshes.chamber import Chamber
 from solvers.rotor.jeffcott import Jeffcott
@@ -26,6 +29,10 @@ from tests.mutants import kills
 ROOT = Path(__file__).parents[3]
 EPS = np.finfo(float).eps
 WATER = Liquid("water", 998.2, 1e-6)
+
+
+def closed_forms(scene: lb.Scene) -> ClosedForms:
+    return told.closed_forms(prepare(scene))
 
 
 def top() -> lb.Scene:
