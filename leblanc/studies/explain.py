@@ -121,7 +121,7 @@ def explain_scene(scene: Scene) -> Explanation:
         source=scene.source,
         assumed=scene.assumed,
         digest=scene.digest,
-        closed_forms=closed_forms(scene, machine.speed),
+        closed_forms=closed_forms(machine),
     )
 
 

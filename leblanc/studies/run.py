@@ -283,7 +283,7 @@ def run_scene(
         chambers=tuple(_chamber(fill, motion) for fill in scene.fills),
         capture_speed=choice.captured_from,
         carried_from=carried_from(scene),
-        closed_forms=closed_forms(scene, answer.speed, answer),
+        closed_forms=closed_forms(machine, answer),
         critical_speed_dry=dry,
         critical_speed_wet=wet,
         motion=motion,

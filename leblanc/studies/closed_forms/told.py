@@ -10,6 +10,7 @@ from fluid.printed import liquid_angle_as_printed
 from leblanc.results.motion.closed_forms import Cage, ClosedForms, VectorModel
 from leblanc.scene.scene import Scene, TubRotor, TwoPlaneRotor
 from leblanc.studies.closed_forms.upright import lacking, upright
+from leblanc.studies.models.choose import Prepared
 from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.rotor.jeffcott import Jeffcott
@@ -19,21 +20,20 @@ from solvers.rotor.vector_model import balance_angles, deflection_lag, unbalance
 from solvers.synchronous.response import Response
 
 
-def closed_forms(scene: Scene, speed: Array, answer: Response | None = None) -> ClosedForms:
+def closed_forms(machine: Prepared, answer: Response | None = None) -> ClosedForms:
     """Closed forms that a scene has the data for.
 
     Parameters
     ----------
-    scene : the machine; not an exciter
-    speed : the scene's speeds, rad/s, shape (n,)
-    answer : its response at them; None where it was not solved
+    machine : the scene, made ready
+    answer : its response, at the scene's speeds; None where it was not solved
     """
+    scene, speed = machine.scene, machine.speed
     balancing, why_not = _balancing(scene, speed)
     missing = [lacking(scene), why_not, _no_balls(scene)]
-    machine, liquid = scene.rotor.machine(), sum(fill.mass for fill in scene.fills)
     vector = None
-    if answer is not None and isinstance(machine, Jeffcott):
-        vector = vector_model(machine, answer, liquid)
+    if answer is not None and isinstance(machine.rotor, Jeffcott):
+        vector = vector_model(machine.rotor, answer, sum(fill.mass for fill in scene.fills))
     return ClosedForms(
         upright=upright(scene, speed),
         vector=vector,

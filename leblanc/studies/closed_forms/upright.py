@@ -42,7 +42,7 @@ def upright(scene: Scene, speed: Array) -> Upright | None:
     Parameters
     ----------
     scene : the machine
-    speed : the scene's speeds, rad/s, shape (n,)
+    speed : its speeds, rad/s, shape (n,)
 
     Returns
     -------
@@ -55,8 +55,8 @@ def upright(scene: Scene, speed: Array) -> Upright | None:
     stiffness = sum(support.stiffness * (support.position - pivot) ** 2 for support in rotor.supports)
     top = Top(rotor.mass, rotor.transverse_inertia, rotor.polar_inertia, -pivot, stiffness)
 
-    def left(speed: Array) -> Array:
-        return upright_margin(top, fills, 1.0, speed, scene.gravity).left
+    def left_at(spin: Array) -> Array:
+        return upright_margin(top, fills, 1.0, spin, scene.gravity).left
 
     def left_of_fill(share: Array) -> Array:
         return upright_margin(top, fills, share, scene.speeds.stop, scene.gravity).left
@@ -71,6 +71,6 @@ def upright(scene: Scene, speed: Array) -> Upright | None:
         dry=upright_margin(top, (), 1.0, speed, scene.gravity).left,
         frozen=margin.frozen,
         surface=margin.surface,
-        limits=sign_changes(left, span),
+        limits=sign_changes(left_at, span),
         fill_limits=sign_changes(left_of_fill, shares) if fills else (),
     )

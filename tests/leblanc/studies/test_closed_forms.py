@@ -18,6 +18,7 @@ from leblanc.results.motion.closed_forms import ClosedForms
 from leblanc.scene.schema.load import SceneError
 from leblanc.studies.closed_forms import told
 from leblanc.studies.closed_forms.told import vector_model
+from leblanc.studies.models.choose import prepare
 from leblanc.text.closed_forms import HEAD, closed_form_rows, vector_rows
 from meshes.chamber import Chamber
 from solvers.rotor.jeffcott import Jeffcott
@@ -31,8 +32,7 @@ WATER = Liquid("water", 998.2, 1e-6)
 
 
 def closed_forms(scene: lb.Scene) -> ClosedForms:
-    """At the scene's speeds, without an answer."""
-    return told.closed_forms(scene, scene.speed_array())
+    return told.closed_forms(prepare(scene))
 
 
 def top() -> lb.Scene:
