@@ -82,7 +82,7 @@ def notebooks(
 
 def texts() -> list[Path]:
     """Files of the notebooks, Python in which comments are the text, in their order."""
-    return sorted(FOLDER.glob("[0-9]*.py"))
+    return sorted(FOLDER.glob("[0-9]*.py"), key=lambda path: int(path.stem.partition("_")[0]))
 
 
 def _text(name: str) -> Path:

@@ -74,6 +74,15 @@ TABLE: tuple[tuple[str, str, Tolerance, str], ...] = (
     ),
     ("explain-*", "*error", Tolerance(1e-7, 1e-11), "the same"),
     ("trade-*", "*error", Tolerance(absolute=1e-11), "difference of the answers of two models: 1e-15"),
+    # Cases against sources
+    (
+        *("validate-two_plane", "*", Tolerance(1e-6, 1e-9)),
+        "edges halved down to 6e-8 rad/s of signs of eigenvalues",
+    ),
+    (
+        *("validate-exciter", "*", Tolerance(1e-6)),
+        "traces after 600 turns, by steps and by a method with its own step control",
+    ),
     # The machine at its speeds
     (
         *("run-two_plane_rig", "*backward*", Tolerance(absolute=1e-15)),
