@@ -37,8 +37,8 @@ from validation.notebook_page import case_table, drawn, verdicts
 # ## The region over speed and damping
 #
 # Hatched: all roots have negative real parts. Crosses and circles are motions in time, 2 % below and above
-# the edge. Weak supports let a whirl grow that the drag of the races feeds; strong ones hold the rotor so fast
-# that the balls hardly feel it.
+# the edge. Weak supports let a whirl grow that the drag of the races feeds; strong ones hold the rotor so
+# fast that the balls hardly feel it.
 
 # %%
 drawn(damping_figure)
