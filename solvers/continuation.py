@@ -62,7 +62,7 @@ def follow(
     most: int = 2000,
     renew: Callable[[Array], object] = lambda _: None,
 ) -> Curve:
-    """Follow a curve from a point on it by pseudo-arclength [KELL77].
+    """Follow a curve from a point on it by pseudo-arclength, through its turns.
 
     A step goes along the tangent and is corrected by Newton's method on the plane across it. It becomes
     shorter where Newton's method fails or the curve bends, and longer where both are easy.

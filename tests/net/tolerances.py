@@ -77,6 +77,15 @@ TABLE: tuple[tuple[str, str, Tolerance, str], ...] = (
     # The layout of mounts
     ("optimise-layout", "*evaluations", Tolerance(relative=0.5), "a population is together, or not yet"),
     ("optimise-layout", "*", Tolerance(1e-5, 1e-12), "the end of a way downhill: 4e-7"),
+    # Cases against sources
+    (
+        *("validate-two_plane", "*", Tolerance(1e-6, 1e-9)),
+        "edges halved down to 6e-8 rad/s of signs of eigenvalues",
+    ),
+    (
+        *("validate-exciter", "*", Tolerance(1e-6)),
+        "traces after 600 turns, by steps and by a method with its own step control",
+    ),
     # The machine at its speeds
     (
         *("explain-spinning_top", "*", Tolerance(1e-11, 1e-11)),

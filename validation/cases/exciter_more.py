@@ -123,14 +123,15 @@ def _traces() -> list[Case]:
         Case(
             name="exciter/trace-gap",
             source=source,
-            quantity="platform at n = 5, point by point: largest gap to the lowest order over the largest value",
+            quantity="platform at n = 5, point by point: largest gap to the lowest order, relative",
             printed="within 1.105 %",
             computed=worst,
             difference=", ".join(
                 f"{name} {100 * gap:.2f} %" for name, gap in zip(names, found.gap, strict=True)
             ),
             verdict="agrees" if worst <= _PRINTED_GAP * 1.1 else "differs",
-            note="the phase of the balls is fitted; the axis of the source's gap ends at 0.147, 1.105 % of its 13.3",
+            note="the phase of the balls is fitted; the axis of the source's gap ends at 0.147, "
+            "1.105 % of 13.3",
         )
     ]
     for name, printed, values in (

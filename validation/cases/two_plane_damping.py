@@ -204,7 +204,7 @@ def cases() -> list[Case]:
             Case(
                 name=f"two_plane/damping-{damping:g}",
                 source=_SOURCE,
-                quantity=f"speed from which balls balance the long rotor, supports of {damping:g} N s/m, rad/s",
+                quantity=f"speed from which balls balance a long rotor, supports of {damping:g} N s/m, rad/s",
                 printed=printed,
                 computed=speed,
                 difference=away,

@@ -1,4 +1,4 @@
-"""Traces of the exciter and its critical speed over each number: `python -m validation.figures.exciter_more`."""
+"""Traces of the exciter, critical speed over its numbers: `python -m validation.figures.exciter_more`."""
 
 from __future__ import annotations
 
@@ -80,7 +80,8 @@ def trend_figure(directory: Path) -> Path:
                 axes.annotate(
                     f"{apart} = {other:g}",
                     (panel["values"][-1], curve[-1]),
-                    xytext=(3, 0),
+                    # On panel 5b two curves end close together.
+                    xytext=(3, {"C0": 3, "C1": -2}.get(color, 0) if name == "5b" else 0),
                     textcoords="offset points",
                     va="center",
                     fontsize=7,

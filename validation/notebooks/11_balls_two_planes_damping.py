@@ -13,9 +13,9 @@
 # %% [markdown]
 # # 11. Balls, two planes and damping
 #
-# Whether damping in the supports has a part in the balancing of a long rotor by balls in two planes. [FF20] says no. The
-# roots of rotor and balls about the balanced state say yes, and so does the motion in time. Derivations:
-# `docs/theory/balls.md`, sections 4 and 5.
+# Whether damping in the supports has a part in the balancing of a long rotor by balls in two planes. [FF20]
+# says no. The roots of rotor and balls about the balanced state say yes, and so does the motion in time.
+# Derivations: `docs/theory/balls.md`, sections 4 and 5.
 
 # %% [markdown]
 # ## Who measured or printed what
@@ -36,9 +36,9 @@ from validation.notebook_page import case_table, drawn, verdicts
 # %% [markdown]
 # ## The region over speed and damping
 #
-# Hatched: all roots have negative real parts. Crosses and circles are motions in time, 2 % below and above the
-# edge. Weak supports let a whirl grow that the drag of the races feeds; strong ones hold the rotor so fast that the balls hardly
-# feel it.
+# Hatched: all roots have negative real parts. Crosses and circles are motions in time, 2 % below and above
+# the edge. Weak supports let a whirl grow that the drag of the races feeds; strong ones hold the rotor so
+# fast that the balls hardly feel it.
 
 # %%
 drawn(damping_figure)
@@ -53,7 +53,8 @@ case_table(damped)
 # %% [markdown]
 # ## What does not agree
 #
-# * The second conclusion of [FF20] at weak damping: with 0.5 N s/m balls balance from 79.2 rad/s on, not from 49.5.
+# * The second conclusion of [FF20] at weak damping: with 0.5 N s/m balls balance from 79.2 rad/s on, not from
+#   49.5.
 # * With 8000 N s/m the state is stable, and balls that begin far from it creep round for more than 6000 s.
 #
 # ## Asserted

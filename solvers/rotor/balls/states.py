@@ -230,7 +230,8 @@ def steady_places(
 ) -> Array | None:
     """Places next to given ones at which the balls rest in the rotor [theory: balls, eq. 31].
 
-    Balanced or not, by Newton's method on the pulls. Balls may sit in one another: nothing in the equations keeps them apart.
+    Balanced or not, by Newton's method on the pulls. Balls may sit in one another: nothing in the equations
+    keeps them apart.
 
     Parameters
     ----------
