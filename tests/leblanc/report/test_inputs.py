@@ -38,6 +38,10 @@ REST = {
         "capture": "drum",
     },
     "optimise": {
+        "layout": {
+            "measure": "separation", "reach": [0.01, 0.02, 0.03], "turn": "14 deg",
+            "band": ["310 rpm", "420 rpm"], "sag": "71 mm",
+        },
         "objective": "robust", "working_speed": "600 rpm", "steady": True,
         "duty": [{"speed": "300 rpm", "weight": 2}], "vibration_limit": "1.5 mm", "limit_at": "operating",
         "deflection": "0.7 mm", "unbalance": ["1 kg*mm", "2 kg*mm"], "temperature": ["5 degC", "35 degC"],
@@ -81,7 +85,7 @@ ROTORS: dict[str, dict[str, Any]] = {
         "kind": "two_plane", "mass": "20 kg", "transverse_inertia": 0.7, "polar_inertia": 0.2,
         "supports": [{"position": "-30 cm", "stiffness": 4e4, "damping": 80}],
         "unbalances": [{"position": "10 cm", "size": "1.5 kg*mm", "angle": "120 deg", "sheds": SHEDS}],
-        "axis": "horizontal",
+        "axis": "vertical", "pivot": "-45 mm",
     },
     "tub": {
         "kind": "tub", "tub_mass": 48, "drum_mass": 12.5, "tub_inertia": [1.3, 1.5, 1.4],
@@ -93,7 +97,13 @@ ROTORS: dict[str, dict[str, Any]] = {
             {"position": [0, 0.1, 0], "stiffness": [1200, 1300, 1400]},
         ],
         "dampers": [{"position": [0.1, 0, -0.2], "direction": [0.3, 0, -0.9], "damping": 155}],
-        "bearings": [{"position": "-60 mm"}, {"position": -0.15}],
+        "bearings": [
+            {"position": "-60 mm"},
+            {
+                "position": -0.15, "ball_diameter": "7 mm", "pitch_diameter": "31 mm",
+                "contact_angle": "12 deg",
+            },
+        ],
         "axis": "horizontal",
     },
     "exciter": {
