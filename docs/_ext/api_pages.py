@@ -25,7 +25,16 @@ SECTIONS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
         "A scene is a machine with its liquid; what it may say stands on the :doc:`page of keys </scene>`.",
         (
             *("load_scene", "example", "Scene"),
-            *("JeffcottRotor", "TwoPlaneRotor", "TubRotor", "Exciter", "Chamber", "Fill", "Liquid"),
+            *(
+                "JeffcottRotor",
+                "TwoPlaneRotor",
+                "TubRotor",
+                "Exciter",
+                "Spindle",
+                "Chamber",
+                "Fill",
+                "Liquid",
+            ),
         ),
     ),
     (
@@ -33,7 +42,7 @@ SECTIONS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
         "Each does what the command of its name does, and returns a result.",
         (
             *("run", "run_up", "map_whirl", "optimise", "sweep", "compare", "fit", "explain"),
-            *("layer", "modes", "volume"),
+            *("layer", "modes", "volume", "bearing"),
         ),
     ),
     ("Errors", "What is wrong with the input, in full.", ("InputError", "SceneError")),

@@ -100,6 +100,11 @@ TABLE: tuple[tuple[str, str, Tolerance, str], ...] = (
         *("run-vertical_rig", "*", Tolerance(relative=1e-11)),
         "a damping ratio of 0.01 multiplies rounding by 50 at the resonance: 2e-13",
     ),
+    ("run-spindle", "*.checks.*", Tolerance(absolute=1e-9), "rounding itself: 4e-12"),
+    (
+        *("run-spindle", "*", Tolerance(relative=1e-8)),
+        "weak damping at a natural frequency: real parts 3e-10, shapes 4e-11 shaken",
+    ),
     ("run-vibratory_table", "*.checks[]*", Tolerance(relative=1e-9), "integrated in time: 2e-12"),
     ("map-closed_baffles", "*", Tolerance(relative=1e-6), "the matrices of baffled liquid: 9e-9; see below"),
     # Searches
