@@ -31,6 +31,7 @@ SECTIONS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
                 "TubRotor",
                 "Exciter",
                 "MagneticRotor",
+                "Spindle",
                 "Chamber",
                 "Fill",
                 "Liquid",
@@ -42,7 +43,7 @@ SECTIONS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
         "Each does what the command of its name does, and returns a result.",
         (
             *("run", "run_up", "map_whirl", "optimise", "sweep", "compare", "fit", "explain"),
-            *("layer", "modes", "volume"),
+            *("layer", "modes", "volume", "bearing"),
         ),
     ),
     ("Errors", "What is wrong with the input, in full.", ("InputError", "SceneError")),

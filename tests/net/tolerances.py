@@ -127,6 +127,11 @@ TABLE: tuple[tuple[str, str, Tolerance, str], ...] = (
         *("run-blood_pump", "*", Tolerance(relative=1e-8)),
         "eigenvalues 1e5 times apart, margins by roots of them",
     ),
+    ("run-spindle", "*.checks.*", Tolerance(absolute=1e-9), "rounding itself: 4e-12"),
+    (
+        *("run-spindle", "*", Tolerance(relative=1e-8)),
+        "weak damping at a natural frequency: real parts 3e-10, shapes 4e-11 shaken",
+    ),
     ("run-vibratory_table", "*.checks[]*", Tolerance(relative=1e-9), "integrated in time: 2e-12"),
     ("map-closed_baffles", "*", Tolerance(relative=1e-6), "the matrices of baffled liquid: 9e-9; see below"),
     # Searches

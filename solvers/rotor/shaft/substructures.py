@@ -193,6 +193,7 @@ def substructures(
     Examples
     --------
     >>> from solvers.rotor.shaft.section import round_section
+    >>> from solvers.rotor.shaft.structure import Coordinate, Joint, Structure
     >>> beams = ((round_section(0.2, 0.02),), (round_section(0.3, 0.04),))
     >>> machine = Structure(beams, joints=(Joint((0, 1), (1, 0), 1e7, angular_stiffness=1e4),))
     >>> found = substructures(machine, np.array([100.0]), Coordinate((0, 0)))
