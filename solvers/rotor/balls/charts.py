@@ -230,7 +230,11 @@ class _Bordered:
         self.left, self.right = np.zeros(0, dtype=complex), np.zeros(0, dtype=complex)
 
     def _shifted(self, point: Array) -> Complex | None:
-        machine = self.family(float(point[0]), float(point[1]))
+        try:
+            machine = self.family(float(point[0]), float(point[1]))
+        except InputError:
+            # A step may lead out of the chart, where values need not make a machine.
+            return None
         matrix = self.state.matrix(machine)
         if matrix is None:
             return None
