@@ -164,6 +164,9 @@ PACE = floats("last", "before", "fastest", "share", "kept")
 CREST = floats("amplitude", "speed", "time")
 # A pool as a pendulum about its chamber's axis: mass, distance of its centre of mass, length, inertia.
 POOL = floats("mass", "arm", "length", "inertia")
+# A ball in a race: mass, radius of its path, inertia on it, torque of the drag over the speed in the drum,
+# torque by a change of the spin on the ball and on the drum, and what it resists to rolling over its pressure.
+BALL = floats("mass", "radius", "inertia", "drag", "carried", "driven", "resistance")
 # What is summed up over time [theory: coupling, eq. 9-10]: work of the unbalance, of the drive on the liquid,
 # of gravity; heat in the supports and by wall friction, loss in bores and by the scheme, loss at the baffles,
 # what the assumed profile of the flow misses while the spin changes; work of the motor; steps, layer steps,
@@ -193,6 +196,8 @@ class Machine(NamedTuple):
     watched : displacement of the axis whose amplitude counts, for unit coordinates, shape (2, n)
     plates : baffles of each layer, as by `solvers.layer.baffles.tables_of`, shape (l, k, COLUMNS)
     gaps : area of the full gap of each layer over R^2, 1 without an inner wall, shape (l,)
+    balls : records BALL, shape (N,)
+    races : displacement of the axis in the plane of each ball for unit coordinates, shape (N, 2, n)
     """
 
     matrices: Array
@@ -208,6 +213,8 @@ class Machine(NamedTuple):
     watched: Array
     plates: Array
     gaps: Array
+    balls: Record
+    races: Array
 
 
 class State(NamedTuple):
@@ -226,6 +233,7 @@ class State(NamedTuple):
     crest : record CREST, shape (1,)
     trace : time, angle, coordinates, and the first moment of each layer over R^3 in the drum frame, of every
         step, shape (k, 2 + n + 2 l); k = 0 where nobody wants them
+    roll, roll_rate : angle of each ball in the standing frame, and its rate, shape (N,)
     """
 
     place: Array
@@ -241,6 +249,8 @@ class State(NamedTuple):
     sums: Record
     crest: Record
     trace: Array
+    roll: Array
+    roll_rate: Array
 
 
 class Room(NamedTuple):
@@ -256,7 +266,9 @@ class Room(NamedTuple):
     before, after : their momenta relative to their axes at both ends, shape (l + p, 2)
     guess, found : mean accelerations of the axes put in and come out, shape (l + p, 2)
     change, swing : of the velocities over the step; of the unbalance's momentum, shape (n,)
-    left : matrix of the rotor's equations, shape (n, n)
+    left, right : matrix and loads of the equations of rotor and balls, shapes (n + N, n + N) and (n + N,)
+    roll : change of the balls' rates over the step, shape (N,)
+    held : rolling resistance of each ball over its speed in the drum, N m s, shape (N,)
     spins : at both ends, shape (2,)
     turn : cosine and sine of the angle turned at both ends, shape (4,)
     force : body force over R in the drum frame at both ends, two parts each, shape (4,)
@@ -280,6 +292,9 @@ class Room(NamedTuple):
     change: Array
     swing: Array
     left: Array
+    right: Array
+    roll: Array
+    held: Array
     spins: Array
     turn: Array
     force: Array
