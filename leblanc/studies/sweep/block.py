@@ -177,7 +177,7 @@ def scene_maker(table: Mapping[str, Any], paths: Sequence[Keys]) -> Maker:
         try:
             parts = list(scene.chambers)
             for k in chambers:
-                parts[k] = Chamber.model_validate(changed["chambers"][k])
+                parts[k] = type(parts[k]).model_validate(changed["chambers"][k])
             rotor = scene.rotor
             if ("rotor",) in touched:
                 rotor = rotor_class.model_validate(changed["rotor"])
