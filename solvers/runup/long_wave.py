@@ -397,6 +397,7 @@ def couple(
     enstrophy: bool = False,
     handover: Handover = Handover.RIDING,
     balls: Balls = NO_BALLS,
+    position: float = 0.0,
 ) -> Coupled:
     """Rotor without deflection, liquid at rest in the drum, balls where they start.
 
@@ -408,12 +409,13 @@ def couple(
     enstrophy : their bores carry fluctuations behind them [theory: long_wave, eq. 15-17]
     handover : how liquid at the bottom becomes a layer
     balls : in races round the axis
+    position : of the plane whose amplitude counts where there is no chamber, m
 
     Raises
     ------
     InputError : a negative gravity
     """
-    rest = at_rest(system, fills, spin, gravity)
+    rest = at_rest(system, fills, spin, gravity, position)
     n, count = len(system.coordinates), len(fills)
     layers = records(LAYER, count)
     for j, fill in enumerate(fills):
@@ -473,6 +475,7 @@ def couple(
         ),
         room=_room(n, (0, 0, len(balls.places)), cells, 0),
     )
+    found.position = position
     found.active = found.begins_as_layer(spin)
     found._assemble()
     return found

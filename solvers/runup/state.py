@@ -309,7 +309,7 @@ class Rest(NamedTuple):
     capture : own rotation above which each liquid stays a layer, rad/s, inf for a solid mass, shape (l,)
     pools : of the chambers across gravity; None for a solid mass, no liquid, and without gravity
     planes : displacement of each chamber's axis for unit coordinates, shape (l, 2, n)
-    watched : that of the first chamber, or of the axis at position 0 without one, shape (2, n)
+    watched : that of the first chamber, or of the axis at a position without one, shape (2, n)
     shaft : record SHAFT at the spin, shape (1,)
     gravity : acceleration across the axis, shape (2,)
     """
@@ -322,13 +322,16 @@ class Rest(NamedTuple):
     gravity: Array
 
 
-def at_rest(system: RotorSystem, fills: Sequence[Fill], spin: float, gravity: float) -> Rest:
+def at_rest(
+    system: RotorSystem, fills: Sequence[Fill], spin: float, gravity: float, position: float = 0.0
+) -> Rest:
     """How every run-up begins.
 
     Parameters
     ----------
     system, fills, gravity : as for `solvers.runup.runup.run_up`
     spin : at the beginning, rad/s
+    position : of the plane whose amplitude counts where there is no chamber, m
 
     Raises
     ------
@@ -342,7 +345,7 @@ def at_rest(system: RotorSystem, fills: Sequence[Fill], spin: float, gravity: fl
         capture=np.array([layer_capture(fill, gravity) for fill in fills]),
         pools=tuple(pool_of(fill) if gravity > 0.0 else None for fill in fills),
         planes=planes,
-        watched=np.array(planes[0] if fills else system.centre, dtype=float),
+        watched=np.array(planes[0] if fills else system.at(position), dtype=float),
         shaft=shaft,
         gravity=np.array([-gravity, 0.0]),
     )
@@ -367,6 +370,7 @@ class CoupledRotor(ABC):
     lean, lean_rate : angle of each pool from the bottom, positive with the spin, rad, and its rate, (l,)
     transfers : liquid that has become a layer or fallen so far
     lost_mass, lost_inertia : mass matrix of what has left the drum, and its moment of inertia about the axis
+    position : of the plane that is read where there is no chamber, m
     """
 
     system: RotorSystem
@@ -380,6 +384,7 @@ class CoupledRotor(ABC):
     transfers: list[Transfer] = field(default_factory=list, init=False)
     lost_mass: Array | None = field(default=None, init=False)
     lost_inertia: float = field(default=0.0, init=False)
+    position: float = field(default=0.0, init=False)
 
     @cached_property
     def swings(self) -> Flags:
@@ -441,7 +446,7 @@ class CoupledRotor(ABC):
     def seen(self) -> Array:
         """Displacement of the axes that are read, for unit coordinates: the chambers', or the one watched."""
         planes = planes_of(self.system, self.fills)
-        return planes if len(planes) else np.array([self.system.centre], dtype=float)
+        return planes if len(planes) else np.array([self.system.at(self.position)], dtype=float)
 
     @cached_property
     def lowest(self) -> Array:
