@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from fluid.friction.laws import Friction
     from fluid.liquid import Liquid
     from leblanc.questions import Quantity
+    from leblanc.results.balls import BallsResult
     from leblanc.results.exciter import ExciterResult
     from leblanc.results.explanation import ExciterExplanation, Explanation
     from leblanc.results.fit import FitResult
@@ -40,7 +41,7 @@ _OPTION = re.compile(r"--([a-z][a-z-]*)")
 
 def run(
     scene: SceneOrPath, *, workers: int = 1, solver: str | None = None, cycles: bool = False
-) -> RunResult | ExciterResult:
+) -> RunResult | ExciterResult | BallsResult:
     """Response and the liquid's centre of mass at each speed of a scene.
 
     Parameters
@@ -55,7 +56,8 @@ def run(
 
     Returns
     -------
-    The response at each speed; of an exciter its stuck speeds and vibration
+    The response at each speed; of an exciter its stuck speeds and vibration; with balls in races the states
+    in which they rest
 
     Raises
     ------
@@ -76,6 +78,10 @@ def run(
         from leblanc.studies.exciter import run_exciter
 
         return run_exciter(machine)
+    if machine.balls:
+        from leblanc.studies.balls import run_balls
+
+        return run_balls(machine)
     from leblanc.studies.held.holding import Holding
     from leblanc.studies.run import run_scene
     from solvers.held.state import COUPLED

@@ -313,6 +313,9 @@ def _different(
             kind = BallKind.BALANCED
             if any(other[0] is BallKind.BALANCED for other in found):
                 continue
+            size = np.abs(compliance[p] @ machine.system.unbalance).max()
+            # What is left is rounding.
+            coordinates[p] *= np.abs(coordinates[p]).max() > _STILL * size
         elif np.allclose(np.abs(means[p, : len(counts)]), 1.0, rtol=0.0, atol=1e-8):
             kind = BallKind.TOGETHER
         if any(np.abs(means[p] - other).max() <= _ALIKE for other in seen):
