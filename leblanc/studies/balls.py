@@ -117,6 +117,9 @@ def run_balls(scene: Scene) -> BallsResult:
 def _run_notes(scene: Scene, answer: BallsResult, alike: bool) -> tuple[Note, ...]:
     """What was assumed, and what is not told."""
     found = [notes.capacity(answer.can_balance, sum(answer.capacity)), notes.points()]
+    if answer.unstable.any():
+        first, last = answer.speed[answer.unstable][[0, -1]].tolist()
+        found.append(notes.runs_on(first, last))
     if any(answer.sticking):
         found.append(notes.sticks(max(answer.sticking)))
     if scene.rotor.axis == "horizontal":

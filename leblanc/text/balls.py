@@ -20,7 +20,7 @@ def answer(result: BallsResult) -> str:
     ----------
     result : the answer
     """
-    most = int(np.nanargmax(np.where(result.converged, result.amplitude, -1.0)))
+    most = int(np.argmax(np.where(result.stable, result.amplitude, -1.0)))
     peak = f"{with_unit(float(result.amplitude[most]), LENGTH)} at {in_rpm(float(result.speed[most]))}"
     bare = int(np.argmax(np.where(np.isfinite(result.amplitude_without), result.amplitude_without, -1.0)))
     without = (

@@ -74,17 +74,20 @@ def wet_states(
     compliance = machine.compliance(spin, _added(system, wet, small))
     each, many = np.repeat(compliance, len(starts), axis=0), np.repeat(spin, len(starts))
     places, rests = machine.settle(each, np.tile(starts, (spin.size, 1)))
-    mass, agrees = np.repeat(small, len(starts), axis=0), np.zeros(many.size, dtype=bool)
+    mass, going = np.repeat(small, len(starts), axis=0), np.arange(many.size)
     for _ in range(_ROUNDS):
-        seen = _seen(system, wet, machine.coordinates(each, places))
-        found = _masses(wet, many, np.abs(seen), gravity)
-        agrees = np.abs(found - mass).max(axis=1) <= _AGREES * small.max()
-        if agrees.all():
+        seen = _seen(system, wet, machine.coordinates(each[going], places[going]))
+        found = _masses(wet, many[going], np.abs(seen), gravity)
+        far = np.abs(found - mass[going]).max(axis=1) > _AGREES * small.max()
+        going, found = going[far], found[far]
+        if not going.size:
             break
         # The mean of two rounds in a row: a wall that dries makes them overshoot.
-        mass = np.where(agrees[:, None], mass, 0.5 * (mass + found))
-        each = machine.compliance(many, _added(system, wet, mass))
-        places, rests = machine.settle(each, places)
+        mass[going] = 0.5 * (mass[going] + found)
+        each[going] = machine.compliance(many[going], _added(system, wet, mass[going]))
+        places[going], rests[going] = machine.settle(each[going], places[going])
+    agrees = np.ones(many.size, dtype=bool)
+    agrees[going] = False
     shape = spin.size, len(starts)
     own = each.reshape(*shape, *each.shape[1:])
     kept = (rests & agrees).reshape(shape)

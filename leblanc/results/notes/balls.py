@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from leblanc.results.base import Note, NoteCode
-from leblanc.units import LENGTH, UNBALANCE, with_unit
+from leblanc.units import LENGTH, UNBALANCE, in_rpm, with_unit
 
 
 class BallCode(NoteCode):
@@ -16,6 +16,7 @@ class BallCode(NoteCode):
     UNEVEN = "uneven_supports"
     LIQUID_IN_STEP = "liquid_in_step"
     COVERED = "covered"
+    RUNS_ON = "runs_on"
 
 
 def capacity(enough: bool, most: float) -> Note:
@@ -77,6 +78,21 @@ def liquid_in_step() -> Note:
         "step with the axis: whirls that the liquid itself excites are told by the scene without balls."
     )
     return Note(BallCode.LIQUID_IN_STEP, {}, text)
+
+
+def runs_on(first: float, last: float) -> Note:
+    """Speeds at which balls find no rest.
+
+    Parameters
+    ----------
+    first, last : of them, rad/s
+    """
+    text = (
+        f"At speeds from {in_rpm(first)} to {in_rpm(last)} no state in which all balls rest is stable: they run "
+        "in their races. What is told there is the state that small motions leave most slowly; a run-up shows "
+        "the motion itself."
+    )
+    return Note(BallCode.RUNS_ON, {"first": first, "last": last}, text)
 
 
 def covered() -> Note:

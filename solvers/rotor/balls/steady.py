@@ -169,9 +169,11 @@ class RotorWithBalls:
         counts = [len(race.masses) for race in self.races]
         first = np.cumsum([0, *counts[:-1]])
         most = np.add.reduceat(self.moment, first)
-        columns = (self.push[first] * (most / self.moment[first])[:, None]).T
-        share, *_ = np.linalg.lstsq(columns, -self.system.unbalance.astype(complex), rcond=None)
-        left = np.abs(columns @ share + self.system.unbalance).max()
+        # Of all shares that do it those whose squares, weighted by what the races hold, have the least sum.
+        columns = (self.push[first] * (np.sqrt(most) / self.moment[first])[:, None]).T
+        found, *_ = np.linalg.lstsq(columns, -self.system.unbalance.astype(complex), rcond=None)
+        left = np.abs(columns @ found + self.system.unbalance).max()
+        share = found / np.sqrt(most)
         alike = all(len(set(race.masses)) == 1 for race in self.races)
         if not alike or left > 1e-9 * np.abs(self.system.unbalance).max() or np.abs(share).max() > 1.0:
             return None
