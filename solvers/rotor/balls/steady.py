@@ -297,7 +297,7 @@ def collected(
 def _different(
     machine: RotorWithBalls, compliance: Complex, places: Array
 ) -> list[tuple[BallKind, Array, Complex]]:
-    """Each state once; of those that are balanced the first, as their balls may stand in many ways."""
+    """Each state once; of those that leave the races at rest the first: their balls may stand in many ways."""
     coordinates = machine.coordinates(compliance, places)
     deflection = machine.forward(coordinates)
     bare = machine.forward(np.einsum("pij,j->pi", compliance, machine.system.unbalance))
@@ -309,15 +309,17 @@ def _different(
     means = np.hstack([np.add.reduceat(turn**k, first, axis=1) / counts for k in (1, 2)])
     found: list[tuple[BallKind, Array, Complex]] = []
     seen: list[Complex] = []
+    rests = False
     for p in np.argsort(np.abs(deflection).max(axis=1), kind="stable").tolist():
         kind = BallKind.APART
         if np.abs(deflection[p]).max() <= _STILL * scale[p]:
-            kind = BallKind.BALANCED
-            if any(other[0] is BallKind.BALANCED for other in found):
+            if rests:
                 continue
+            rests = True
             size = np.abs(compliance[p] @ machine.system.unbalance).max()
-            # What is left is rounding.
-            coordinates[p] *= np.abs(coordinates[p]).max() > _STILL * size
+            if np.abs(coordinates[p]).max() <= _STILL * size:
+                kind = BallKind.BALANCED
+                coordinates[p] = 0.0  # what is left is rounding
         elif np.allclose(np.abs(means[p, : len(counts)]), 1.0, rtol=0.0, atol=1e-8):
             kind = BallKind.TOGETHER
         if any(np.abs(means[p] - other).max() <= _ALIKE for other in seen):
