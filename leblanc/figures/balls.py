@@ -112,6 +112,6 @@ def _caption(result: BallsResult) -> Caption:
     count = sum(race.count for race in result.races)
     return Caption(
         f"{answer(result)} Zero mark: {zero}.",
-        f"Scene: {one_line(result.name)}, {result.axis} axis, {count} ball{'' if count == 1 else 's'}, points. "
+        f"Scene: {one_line(result.name)}, {result.axis} axis, {count} ball{'' if count == 1 else 's'}. "
         f"Assumed: {assumed}.",
     )

@@ -295,8 +295,8 @@ def time_figure(result: RunupResult) -> Figure:
         lay_out(figure, rows, [height for height, _ in panels], TIME_FRAME, caption(result, text), LINES)
         rolling = ", the balls' angles" if result.races else ""
         figure.alt = (
-            f"Curves over time of speed, amplitude{rolling}, the place of the liquid and the depth of its layers; "
-            f"largest amplitude {largest(result)}."
+            f"Curves over time of speed, amplitude{rolling}, the place of the liquid and the depth of its "
+            f"layers; largest amplitude {largest(result)}."
         )
         for (axes,) in rows:
             box = axes.get_position()
@@ -393,7 +393,9 @@ def _draw_balls(axes: Axes, result: RunupResult) -> None:
         broken = (np.abs(np.diff(angle)) > 180.0) | (np.abs(np.diff(way)) > np.pi)
         name = "balls" if len(result.races) == 1 else f"balls of race {race[j] + 1}"
         label, _ = "_" if race[j] in shown else name, shown.add(race[j])
-        axes.plot(*gapped(result.time, angle, broken), color=color, linestyle=dashes, linewidth=0.9, label=label)
+        axes.plot(
+            *gapped(result.time, angle, broken), color=color, linestyle=dashes, linewidth=0.9, label=label
+        )
     axes.set_ylim(-190.0, 190.0)
     axes.set_yticks([-180.0, -90.0, 0.0, 90.0, 180.0])
     axes.set_ylabel("Angle of balls\n(deg)")

@@ -224,7 +224,9 @@ def ball_states(result: BallsResult) -> Table:
             stable, growth = bool(result.states.stable[k, j]), float(result.states.growth[k, j])
             name = STATE_NAMES[int(result.states.kind[k, j])]
             size = unit.number(float(result.sizes[k, j]))
-            rows.append((number(result.speed[k] * RPM), name, size, "yes" if stable else "no", number(growth)))
+            rows.append(
+                (number(result.speed[k] * RPM), name, size, "yes" if stable else "no", number(growth))
+            )
     head = ("Speed (rpm)", "balls", f"amplitude ({unit.name})", "stable", "growth (1/s)")
     return table("States", head, rows)
 
@@ -254,7 +256,8 @@ def write_balls_report(result: BallsResult, what: About, figure: FigureFiles, pa
     parts = {
         "title": "Balls at rest in the drum",
         "machine": f"A rotor with {count} ball{'' if count == 1 else 's'} in {len(result.races)} "
-        f"race{'' if len(result.races) == 1 else 's'}, from {low} to {high} rpm in {result.speed.size} speeds.",
+        f"race{'' if len(result.races) == 1 else 's'}, from {low} to {high} rpm in {result.speed.size} "
+        "speeds.",
         "answer": balls_answer(result),
         "doubt": doubt(balls_checks(result)),
         "facts": table("", (), balls_facts(result)),

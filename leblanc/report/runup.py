@@ -233,8 +233,8 @@ def write_runup_report(result: RunupResult, what: About, figures: Sequence[Figur
     if result.passages:
         back = f" and to {number(float(result.speed[-1]) * RPM)} rpm in {len(result.passages)} steps"
     machine = (
-        f"A rotor with a {result.axis} axis and {count} chamber{'' if count == 1 else 's'}{rolling} goes from "
-        f"{number(low)} to {number(high)} rpm{back}, {number(float(result.time[-1]))} s in all."
+        f"A rotor with a {result.axis} axis and {count} chamber{'' if count == 1 else 's'}{rolling} goes "
+        f"from {number(low)} to {number(high)} rpm{back}, {number(float(result.time[-1]))} s in all."
     )
     parts = {
         "title": "Run-up in time",

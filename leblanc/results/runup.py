@@ -217,7 +217,9 @@ class RunupResult(Loaded, Result):
     def without(self) -> str:
         """What the run that it is compared with lacks, in words."""
         liquid = bool(self.layer_mass.sum() > 0.0)
-        return "without " + ("liquid and balls" if liquid and self.races else "balls" if self.races else "liquid")
+        return "without " + (
+            "liquid and balls" if liquid and self.races else "balls" if self.races else "liquid"
+        )
 
     @property
     def ball_angle(self) -> Array:

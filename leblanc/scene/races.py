@@ -129,7 +129,7 @@ class BallRace(Part):
         )
 
     def race(self) -> Race:
-        """The race with its balls, as the solvers take it [theory: balls, eq. 29 and 32]."""
+        """The race with its balls, as the solvers take it [theory: races, eq. 1 and 4]."""
         return self._race
 
 

@@ -208,9 +208,9 @@ class Scene(Part):
         9.81, description="acceleration of gravity"
     )
     rotor: AnyRotor = Field(discriminator="kind", description="the machine without its liquid")
-    chambers: Annotated[
-        tuple[AnyChamber, ...], entries(0, MAX_CHAMBERS, "tables headed [[chambers]]")
-    ] = Field((), description="each with its liquid or its balls; at least one with a jeffcott")
+    chambers: Annotated[tuple[AnyChamber, ...], entries(0, MAX_CHAMBERS, "tables headed [[chambers]]")] = (
+        Field((), description="each with its liquid or its balls; at least one with a jeffcott")
+    )
     cabinet: Cabinet | None = Field(
         None, description="that stands on the floor around the rotor; forces under its feet are told if given"
     )

@@ -63,7 +63,7 @@ def _places(race: BallRace) -> list[float]:
 
 
 def run_balls(scene: Scene) -> BallsResult:
-    """States in which the balls of a scene rest in the drum, at each of its speeds [theory: balls, eq. 33-36].
+    """States in which the balls of a scene rest in the drum, at each of its speeds [theory: races, eq. 5-8].
 
     Parameters
     ----------

@@ -77,6 +77,6 @@ def limits(result: BallsResult) -> list[Limit]:
 def alt(result: BallsResult) -> str:
     """What the figure shows."""
     return (
-        "Curves of the amplitude over speed with balls and without, and the angles at which the balls rest in "
-        f"the drum. {answer(result)}"
+        "Curves of the amplitude over speed with balls and without, and the angles at which the balls rest "
+        f"in the drum. {answer(result)}"
     )

@@ -96,7 +96,7 @@ def _along(races: Array, state: State) -> Array:
 
 
 def balls_energy(balls: Record, races: Array, state: State, spin: float) -> float:
-    """Kinetic energy of the balls, J [theory: balls, eq. 29].
+    """Kinetic energy of the balls, J [theory: races, eq. 1].
 
     Parameters
     ----------

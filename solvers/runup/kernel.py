@@ -413,11 +413,17 @@ def _measure_layers(machine, state, room):
 
 @_unwrapped
 def _add_balls(machine, state, room, dt):
-    """Rows and columns of the balls, on a straight line about their way so far [theory: balls, eq. 30-31]."""
+    """Rows and columns of the balls, on a straight line about their way so far [theory: races, eq. 2-3]."""
     n, spin, gained = room.change.size, 0.5 * (room.spins[0] + room.spins[1]), room.spins[1] - room.spins[0]
     left, right = room.left, room.right
     for j in range(machine.balls.shape[0]):
-        ball, b, row, angle, rate = machine.balls[j], machine.races[j], n + j, state.roll[j], state.roll_rate[j]
+        ball, b, row, angle, rate = (
+            machine.balls[j],
+            machine.races[j],
+            n + j,
+            state.roll[j],
+            state.roll_rate[j],
+        )
         moving, middle, last = ball.mass * ball.radius, angle + 0.5 * dt * rate, angle + dt * rate
         x, y, x_end, y_end = np.cos(middle), np.sin(middle), np.cos(last), np.sin(last)
         past = spin - rate
@@ -452,7 +458,7 @@ def _dragged(machine, state, room, dt, j):
 def _move_rotor(machine, state, room, dt):
     """Change of the velocities of rotor and balls over the step, given the layers' momenta.
 
-    Theory: coupling, eq. 5; balls, eq. 31.
+    Theory: coupling, eq. 5; races, eq. 3.
     """
     change, swing, left, right, turn = room.change, room.swing, room.left, room.right, room.turn
     n, spin = change.size, 0.5 * (room.spins[0] + room.spins[1])
@@ -509,7 +515,7 @@ def _disagreement(machine, room, dt):
 
 @_unwrapped
 def _turned(machine, state, room, dt, j):
-    """Impulse of the torque that a ball takes from the drum [theory: balls, eq. 29]."""
+    """Impulse of the torque that a ball takes from the drum [theory: races, eq. 1]."""
     ball, gained = machine.balls[j], room.spins[1] - room.spins[0]
     return _dragged(machine, state, room, dt, j) + ball.driven * gained - ball.carried * room.roll[j]
 

@@ -165,7 +165,7 @@ CREST = floats("amplitude", "speed", "time")
 # A pool as a pendulum about its chamber's axis: mass, distance of its centre of mass, length, inertia.
 POOL = floats("mass", "arm", "length", "inertia")
 # A ball in a race: mass, radius of its path, inertia on it, torque of the drag over the speed in the drum,
-# torque by a change of the spin on the ball and on the drum, and what it resists to rolling over its pressure.
+# torque by a change of the spin on the ball and on the drum, and its resistance to rolling over its pressure.
 BALL = floats("mass", "radius", "inertia", "drag", "carried", "driven", "resistance")
 # What is summed up over time [theory: coupling, eq. 9-10]: work of the unbalance, of the drive on the liquid,
 # of gravity; heat in the supports and by wall friction, loss in bores and by the scheme, loss at the baffles,

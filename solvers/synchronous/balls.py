@@ -40,9 +40,13 @@ class WetStates:
 
 
 def wet_states(
-    system: RotorSystem, fills: Sequence[Fill], races: Sequence[BallRace], speed: ArrayLike, gravity: float = 0.0
+    system: RotorSystem,
+    fills: Sequence[Fill],
+    races: Sequence[BallRace],
+    speed: ArrayLike,
+    gravity: float = 0.0,
 ) -> WetStates:
-    """Steady states of balls and liquid in one drum [theory: balls, eq. 36].
+    """Steady states of balls and liquid in one drum [theory: races, eq. 8].
 
     The liquid is in its exact equilibrium: at each round it counts as the mass that its unbalance is over the
     deflection, and the balls settle anew. States that do not come to an end so are left out.

@@ -28,7 +28,9 @@ def capacity(enough: bool, most: float) -> Note:
     most : that they hold all together, kg m
     """
     held = f"All balls on one side make an unbalance of {with_unit(most, UNBALANCE)}"
-    text = f"{held}: {'enough' if enough else 'not enough, or not in the right planes,'} to balance the rotor."
+    text = (
+        f"{held}: {'enough' if enough else 'not enough, or not in the right planes,'} to balance the rotor."
+    )
     return Note(BallCode.CAPACITY, {"enough": enough, "most": most}, text)
 
 
@@ -74,8 +76,8 @@ def uneven_supports() -> Note:
 def liquid_in_step() -> Note:
     """How the liquid enters the growth."""
     text = (
-        "In the states the liquid is in its exact equilibrium. In the growth of small motions it is a mass in "
-        "step with the axis: whirls that the liquid itself excites are told by the scene without balls."
+        "In the states the liquid is in its exact equilibrium. In the growth of small motions it is a mass "
+        "in step with the axis: whirls that the liquid itself excites are told by the scene without balls."
     )
     return Note(BallCode.LIQUID_IN_STEP, {}, text)
 
@@ -88,9 +90,9 @@ def runs_on(first: float, last: float) -> Note:
     first, last : of them, rad/s
     """
     text = (
-        f"At speeds from {in_rpm(first)} to {in_rpm(last)} no state in which all balls rest is stable: they run "
-        "in their races. What is told there is the state that small motions leave most slowly; a run-up shows "
-        "the motion itself."
+        f"At speeds from {in_rpm(first)} to {in_rpm(last)} no state in which all balls rest is stable: they "
+        "run in their races. What is told there is the state that small motions leave most slowly; a run-up "
+        "shows the motion itself."
     )
     return Note(BallCode.RUNS_ON, {"first": first, "last": last}, text)
 

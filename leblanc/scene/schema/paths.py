@@ -36,7 +36,8 @@ def tables_of(root: type[Part], kind: str) -> dict[tuple[str, ...], type[Part]]:
         if is_list_of_parts(field):
             inside = {(name, "*" if part.USUAL_KIND else f"*{key}"): part for key, part in parts.items()}
         else:
-            inside = {(name,): part for key, part in parts.items() if key in (kind, "")}
+            part = parts.get(kind) or parts.get("")
+            inside = {} if part is None else {(name,): part}
         for place, part in inside.items():
             found |= {(*place, *below): table for below, table in tables_of(part, kind).items()}
     return found

@@ -26,7 +26,7 @@ from leblanc.results.optimum import (
     ParetoFront,
     WettingVolumes,
 )
-from leblanc.scene.scene import Scene, Speeds, require_clear
+from leblanc.scene.scene import Scene, Speeds, require_clear, require_no_balls
 from leblanc.scene.tasks import Optimisation
 from leblanc.studies.models.choose import axial_gravity
 from leblanc.studies.models.liquid import SYNCHRONOUS_MODELS
@@ -104,6 +104,7 @@ def optimise_scene(
     """
     task = task or scene.optimise or Optimisation()
     task = task if objective is None else task.altered(objective=objective)
+    require_no_balls(scene, "this; `leblanc run` and `leblanc runup` answer with balls")
     if not scene.fills:
         raise InputError("chambers", "none", "at least one to choose the volume of")
     require_clear(scene, "a search over volumes, which rests on the equilibrium in a ring", baffles=True)

@@ -17,7 +17,6 @@ from numpy.typing import NDArray
 from pydantic import ValidationError
 
 from leblanc.results.base import versions
-from leblanc.scene.chambers import Chamber
 from leblanc.scene.scene import Scene, scene_from_table
 from leblanc.scene.schema.load import SceneError, escaped
 from leblanc.scene.schema.part import Part, rule_of

@@ -31,7 +31,7 @@ class BallRace:
     resistance : f, what a ball resists to rolling over the force with which it presses on the race; a ball
         that is at rest in the rotor stays until it is pulled harder. Only run-ups know it
     carried, driven : s and d, torque on a ball and on the rotor by a change of the spin over m R^2 times that
-        change, 0 for a ball that slides [theory: balls, eq. 29]; a constant spin does not feel them
+        change, 0 for a ball that slides [theory: races, eq. 1]; a constant spin does not feel them
 
     Raises
     ------

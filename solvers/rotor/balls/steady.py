@@ -36,7 +36,7 @@ class BallKind(IntEnum):
 
 @dataclass(frozen=True)
 class BallStates:
-    """States in which the balls rest in the drum: s speeds, at most b of them at each, N balls, n coordinates.
+    """States in which the balls rest in the drum: s speeds, at most b states at each, N balls, n coordinates.
 
     Parameters
     ----------
@@ -122,7 +122,7 @@ class RotorWithBalls:
         return np.asarray(np.einsum("pij,pj->pi", compliance, load))
 
     def settle(self, compliance: Complex, places: Array, rounds: int = _ROUNDS) -> tuple[Array, Flags]:
-        """Let the balls go where they are pulled, as in a stiff oil, until they rest [theory: balls, eq. 33].
+        """Let the balls go where they are pulled, as in a stiff oil, until they rest [theory: races, eq. 5].
 
         Implicit steps that grow as the pull fades; in the end they are Newton's.
 
@@ -185,7 +185,7 @@ class RotorWithBalls:
 
 
 def _fan(count: int, share: float) -> Array | None:
-    """Balls spread evenly about angle 0 whose unbalance is a share of all of it; None for one that is more."""
+    """Balls spread evenly about angle 0 whose unbalance is a share of all of it; None for a single one."""
     if count == 1:
         return np.zeros(1) if abs(share - 1.0) <= 1e-12 else None
     about = np.linspace(-1.0, 1.0, count)
@@ -215,7 +215,7 @@ def starts_of(counts: Sequence[int]) -> Array:
 
 
 def steady_states(system: RotorSystem, races: Sequence[BallRace], speed: ArrayLike) -> BallStates:
-    """States in which all balls rest in the drum, with the growth of small motions [theory: balls, eq. 33-35].
+    """States in which all balls rest in the drum, with the growth of small motions [theory: races, eq. 5-7].
 
     All that are reached from starts of many kinds, and the balanced one where the balls can hold the
     unbalance. Gravity across the axis has no part in it: it turns in the drum.
@@ -297,7 +297,7 @@ def collected(
 def _different(
     machine: RotorWithBalls, compliance: Complex, places: Array
 ) -> list[tuple[BallKind, Array, Complex]]:
-    """Each state once; of those that leave the races at rest the first: their balls may stand in many ways."""
+    """Each state once; of those that leave the races at rest the first: their balls may stand anyhow."""
     coordinates = machine.coordinates(compliance, places)
     deflection = machine.forward(coordinates)
     bare = machine.forward(np.einsum("pij,j->pi", compliance, machine.system.unbalance))
@@ -332,7 +332,7 @@ def _different(
 def growth(
     machine: RotorWithBalls, speed: float, places: Array, coordinates: Complex, added: Complex | None = None
 ) -> float:
-    """Largest real part of the roots of small motions about a state, 1/s [theory: balls, eq. 34-35].
+    """Largest real part of the roots of small motions about a state, 1/s [theory: races, eq. 6-7].
 
     Of a balanced state the places that nothing prefers are left out.
 
@@ -370,7 +370,7 @@ def turning(system: RotorSystem) -> Array | None:
 def _turning_roots(
     machine: RotorWithBalls, speed: float, places: Array, coordinates: Complex, added: Complex | None
 ) -> Complex:
-    """Roots in the frame that turns with the rotor, where nothing depends on time [theory: balls, eq. 34]."""
+    """Roots in the frame that turns with the rotor, where nothing depends on time [theory: races, eq. 6]."""
     system, quarter = machine.system, turning(machine.system)
     assert quarter is not None
     mass = machine.mass if added is None else machine.mass + added.real
@@ -410,7 +410,7 @@ def _roots(inertia: Array, damping: Array, stiffness: Array) -> Complex:
 def _floquet_roots(
     machine: RotorWithBalls, speed: float, places: Array, coordinates: Complex, added: Complex | None
 ) -> Complex:
-    """The same where the supports differ: growth over one turn of the rotor [theory: balls, eq. 35].
+    """The same where the supports differ: growth over one turn of the rotor [theory: races, eq. 7].
 
     The balls' own ripple with twice the spin is left out of the state. Steps by the trapezium's rule at the
     middles keep any decay a decay.

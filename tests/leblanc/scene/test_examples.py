@@ -47,6 +47,8 @@ def test_the_examples_of_each_kind() -> None:
         "vibratory_table",
         "runup",
         "weak_motor",
+        "balls",
+        "balls_and_liquid",
     }
 
 

@@ -53,7 +53,7 @@ def test_two_balls_balance_above_the_resonance(
 @settings(max_examples=40, deadline=None)
 @given(ratio=st.floats(0.2, 0.7), damping=st.floats(0.02, 0.2), count=st.integers(1, 5))
 def test_balls_gather_below_the_resonance(ratio: float, damping: float, count: int) -> None:
-    """All along the deflection a: |D a - N m R| = U, a quadratic, with D = (K - M Omega^2 + i C Omega)/Omega^2."""
+    """All along the deflection a: |D a - N m R| = U, a quadratic; D is the stiffness over Omega^2."""
     rotor = Jeffcott(4.0, 4.4e4, 2.0 * damping * math.sqrt(4.4e4 * 4.0), 6e-4)
     race, spin = BallRace(0.0, 0.065, (2e-3,) * count, 0.5), ratio * rotor.natural_frequency
     found = steady_states(rotor.system(), [race], [spin])
@@ -123,7 +123,7 @@ def test_a_run_in_time_ends_in_the_stable_state(spin: float) -> None:
 def test_small_motions_grow_in_time_as_the_root_says() -> None:
     """About the balanced state below the resonance, where a pair of roots s +- i w grows.
 
-    The other motions fade with 10 1/s. Half a period pi/w later the same motion is there, larger by e^(s pi/w).
+    The other motions fade with 10 1/s. Half a period pi/w later the motion is the same, e^(s pi/w) larger.
     """
     spin = 80.0
     found = steady_states(ROTOR.system(), [RACE], [spin])
@@ -133,7 +133,9 @@ def test_small_motions_grow_in_time_as_the_root_says() -> None:
     roots = steady._turning_roots(machine, spin, places, np.zeros(2, dtype=complex), None)
     assert rate == pytest.approx(roots.real.max())
     half = math.pi / abs(roots[np.argmax(roots.real)].imag)
-    run = simulate(ROTOR.system(), [RACE], spin, 2.0 + half, places=places + [1e-8, -1e-8], samples=401)
+    run = simulate(
+        ROTOR.system(), [RACE], spin, 2.0 + half, places=places + np.array([1e-8, -1e-8]), samples=401
+    )
     size = np.abs(run.deflection(ROTOR.system(), 0.0))
     first = float(np.interp(2.0, run.time, size))
     # The motion ends at 2e-4 rad, whose square the roots leave out; lines between the samples.

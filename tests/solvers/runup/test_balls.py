@@ -36,7 +36,12 @@ MANY = 10**7
 
 
 def machine(
-    system: RotorSystem, balls: Balls, spin: float, cells: int, gravity: float = 0.0, fills: tuple[Fill, ...] = ()
+    system: RotorSystem,
+    balls: Balls,
+    spin: float,
+    cells: int,
+    gravity: float = 0.0,
+    fills: tuple[Fill, ...] = (),
 ) -> Coupled:
     return couple(system, fills, spin, FRICTION, gravity, cells, False, balls=balls)
 
@@ -103,7 +108,9 @@ def test_momentum_of_a_free_rotor_with_balls() -> None:
     assert gaps[0] / gaps[1] > 3.5
 
 
-@pytest.mark.parametrize("drive", [Ramp(20.0, 150.0, 40.0, 5.0), Motor(20.0, 0.05, (0.0, 160.0), (2.0, 0.0), 3.0)])
+@pytest.mark.parametrize(
+    "drive", [Ramp(20.0, 150.0, 40.0, 5.0), Motor(20.0, 0.05, (0.0, 160.0), (2.0, 0.0), 3.0)]
+)
 def test_energy_is_accounted_for_to_second_order(drive: Ramp | Motor) -> None:
     """Rolling balls take part of a change of the spin; the sums beside the steps know it."""
     race = BallRace(0.0, 0.065, (0.02, 0.02), 0.5, carried=0.43, driven=0.46)
@@ -119,7 +126,9 @@ def test_a_great_drag_fixes_the_balls() -> None:
     balls = history(Balls((race,), (0.5, 2.0), (1.0, 1.0)), drive, 256)
     turning = 6e-4 + 0.065 * (0.01 * np.exp(0.5j) + 0.02 * np.exp(2.0j))
     fixed = Jeffcott(4.03, 4.4e4, 84.0, abs(turning))
-    alone = run_up(fixed.system(), [], drive, FRICTION, 0.0, RunupNumerics(cells=256, samples=60, companion=False))
+    alone = run_up(
+        fixed.system(), [], drive, FRICTION, 0.0, RunupNumerics(cells=256, samples=60, companion=False)
+    )
     # The unbalance of the balls is taken over a step as its chord, the rotor's exactly: (2 pi 0.8/256)^2/24.
     np.testing.assert_allclose(balls.amplitude, alone.amplitude, rtol=0.0, atol=1e-3 * alone.amplitude.max())
 
@@ -136,7 +145,9 @@ def test_a_rolling_ball_is_carried_by_a_change_of_the_spin() -> None:
     stiff = Jeffcott(4.0, 1e12, 1e3, 0.0).system()
     race = BallRace(0.0, 0.1, (0.01,), 0.0, 1.4, carried=0.44, driven=0.484)
     made = held(machine(stiff, spread_balls([race]), 20.0, 64), 2.0, rate=15.0)
-    assert float(made.read().ball_speed[0]) == pytest.approx(20.0 + 0.44 / 1.4 * 30.0, rel=1e-7)  # it gives by 1e-8
+    assert float(made.read().ball_speed[0]) == pytest.approx(
+        20.0 + 0.44 / 1.4 * 30.0, rel=1e-7
+    )  # it gives by 1e-8
 
 
 def test_a_ball_at_the_bottom_is_a_pendulum() -> None:
