@@ -385,14 +385,14 @@ def _draw_angle(axes: Axes, result: RunupResult) -> None:
 
 def _draw_balls(axes: Axes, result: RunupResult) -> None:
     """Angle of each ball in the drum from -180 to 180 deg, a look for each race; gaps where it goes round."""
-    race, shown = in_race(result.races), set()
+    race = in_race(result.races)
     for j, way in enumerate(result.ball_angle.T):
         color, dashes = LAYERS[race[j] % len(LAYERS)]
         angle = np.degrees(np.angle(np.exp(1j * way)))
         # A ball that passes more than half a turn between two samples is no line.
         broken = (np.abs(np.diff(angle)) > 180.0) | (np.abs(np.diff(way)) > np.pi)
         name = "balls" if len(result.races) == 1 else f"balls of race {race[j] + 1}"
-        label, _ = "_" if race[j] in shown else name, shown.add(race[j])
+        label = "_" if race[j] in race[:j] else name
         axes.plot(
             *gapped(result.time, angle, broken), color=color, linestyle=dashes, linewidth=0.9, label=label
         )

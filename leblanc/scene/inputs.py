@@ -157,7 +157,7 @@ def _races(scene: Scene) -> Iterator[RowTable]:
     for number_of, race in enumerate(scene.balls):
         at = f"chambers.{len(scene.liquids) + number_of}"
         own = f"{at}.{'mass' if race.density is None else 'density'}"
-        how = race.motion
+        how: str = race.motion
         if race.rolling_resistance:
             how = f"{how}, resistance {number(race.rolling_resistance)}"
         if race.liquid is not None:

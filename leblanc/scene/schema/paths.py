@@ -33,6 +33,7 @@ def tables_of(root: type[Part], kind: str) -> dict[tuple[str, ...], type[Part]]:
     found: dict[tuple[str, ...], type[Part]] = {(): root}
     for name, field in root.model_fields.items():
         parts = parts_of(field)
+        inside: dict[tuple[str, ...], type[Part]]
         if is_list_of_parts(field):
             inside = {(name, "*" if part.USUAL_KIND else f"*{key}"): part for key, part in parts.items()}
         else:

@@ -419,7 +419,7 @@ def _floquet_roots(
     n, count = len(system.coordinates), moment.size
     size, step = n + count, 2.0 * np.pi / (_PARTS * speed)
     mass = machine.mass if added is None else machine.mass + added.real
-    whole = np.eye(2 * size)
+    whole: Array = np.eye(2 * size)
     for part in range(_PARTS):
         angle = (part + 0.5) * speed * step
         out, along = _directions(machine, places + angle)
@@ -437,6 +437,6 @@ def _floquet_roots(
         rate[:size, size:] = np.eye(size)
         rate[size:] = -np.linalg.solve(inertia, np.hstack((stiffness, damping)))
         half = 0.5 * step * rate
-        whole = np.linalg.solve(np.eye(2 * size) - half, (np.eye(2 * size) + half) @ whole)
+        whole = np.asarray(np.linalg.solve(np.eye(2 * size) - half, (np.eye(2 * size) + half) @ whole))
     factors = np.linalg.eigvals(whole).astype(complex)
     return np.asarray(np.log(np.maximum(np.abs(factors), 1e-300)) / (_PARTS * step) + 0j)
