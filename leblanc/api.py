@@ -21,13 +21,13 @@ if TYPE_CHECKING:
     from fluid.friction.laws import Friction
     from fluid.liquid import Liquid
     from leblanc.questions import Quantity
-    from leblanc.results.balls import BallsResult
     from leblanc.results.exciter import ExciterResult
     from leblanc.results.explanation import ExciterExplanation, Explanation
     from leblanc.results.fit import FitResult
     from leblanc.results.layer import FreeWaveResult, LayerPeriodsResult, LayerResult
     from leblanc.results.liquid import ModesResult, VolumeResult
     from leblanc.results.models.comparison import Comparison
+    from leblanc.results.motion.ball_states import BallsResult
     from leblanc.results.optimum import OptimumResult
     from leblanc.results.response import RunResult
     from leblanc.results.runup import RunupResult
@@ -79,7 +79,7 @@ def run(
 
         return run_exciter(machine)
     if machine.balls:
-        from leblanc.studies.balls import run_balls
+        from leblanc.studies.races.balls import run_balls
 
         return run_balls(machine)
     from leblanc.studies.held.holding import Holding

@@ -101,11 +101,11 @@ def run(
 
 def _run_balls(machine: Scene, scene: Path, folder: Path, json: bool) -> None:
     """Where the balls of a rotor rest in the drum."""
-    from leblanc.figures.balls import write_balls_figure
+    from leblanc.figures.races.balls import write_balls_figure
     from leblanc.report.page import about, command_line
     from leblanc.report.run import write_balls_report
     from leblanc.results.netcdf import write_netcdf
-    from leblanc.studies.balls import run_balls
+    from leblanc.studies.races.balls import run_balls
     from leblanc.text.balls import answer, facts, limits
 
     with working("states of the balls"):

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from leblanc.report.page import About, models, notes, why, write_page
 from leblanc.report.parts import Cell, Table, doubt, load_part, picture, table
-from leblanc.results.balls import STATE_NAMES, BallsResult
 from leblanc.results.exciter import ExciterResult
+from leblanc.results.motion.ball_states import STATE_NAMES, BallsResult
 from leblanc.results.notes.response import OF_MODELS, RunCode
 from leblanc.results.response import RunResult
 from leblanc.results.whirl_map import WhirlMap

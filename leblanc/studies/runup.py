@@ -22,7 +22,6 @@ from leblanc.results.notes.runup import RunupCode
 from leblanc.results.runup import Bands, RunupFrames, RunupResult
 from leblanc.scene.inputs import runup_rows
 from leblanc.scene.scene import JeffcottRotor, Runup, Scene, dry_rotor, jeffcott, require_clear
-from leblanc.studies.balls import races_shown, started_balls
 from leblanc.studies.drives import drive_of as drive_of  # asked for with a run-up
 from leblanc.studies.drives import numerics_of as numerics_of
 from leblanc.studies.drives import planned as planned
@@ -33,6 +32,7 @@ from leblanc.studies.models.choose import axial_gravity, is_cut, prepare
 from leblanc.studies.models.liquid import RUNUP_MODELS, runup_model
 from leblanc.studies.models.validity import doubts
 from leblanc.studies.peaks import responses_between
+from leblanc.studies.races.balls import races_shown, started_balls
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
 from solvers.layer.records import Outcome

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from leblanc.results.balls import BallsResult
+from leblanc.results.motion.ball_states import BallsResult
 from leblanc.results.notes.response import plane_words
 from leblanc.text.numbers import ranges
 from leblanc.text.run import Limit

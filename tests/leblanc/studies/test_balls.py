@@ -10,7 +10,7 @@ import pytest
 
 import leblanc as lb
 from leblanc.cli import main
-from leblanc.results.balls import BallsResult
+from leblanc.results.motion.ball_states import BallsResult
 from meshes.errors import InputError
 
 ROOT = Path(__file__).resolve().parents[3]

@@ -20,8 +20,8 @@ from leblanc.figures.drawing.page import (
     style,
 )
 from leblanc.figures.response import DRY, WET
-from leblanc.results.balls import BallsResult
 from leblanc.results.base import one_line
+from leblanc.results.motion.ball_states import BallsResult
 from leblanc.results.motion.balls import in_race
 from leblanc.text.balls import alt, answer
 from leblanc.units import MM, RPM

@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from leblanc.results.balls import BallsResult
 from leblanc.results.base import Note
+from leblanc.results.motion.ball_states import BallsResult
 from leblanc.results.motion.balls import RaceOfBalls
 from leblanc.results.notes import balls as notes
 from leblanc.scene.inputs import input_rows

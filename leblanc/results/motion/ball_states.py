@@ -52,7 +52,7 @@ class BallsResult(Result):
     ('together', 'balanced')
     """
 
-    figure: ClassVar[str] = "leblanc.figures.balls:balls_figure"
+    figure: ClassVar[str] = "leblanc.figures.races.balls:balls_figure"
     summary: ClassVar[str] = "leblanc.text.balls:facts"
 
     name: str
