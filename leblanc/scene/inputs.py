@@ -162,6 +162,8 @@ def _races(scene: Scene) -> Iterator[RowTable]:
             how = f"{how}, resistance {number(race.rolling_resistance)}"
         if race.liquid is not None:
             how = f"{how}, in {race.liquid.name}"
+        if race.start == "bottom":
+            how = f"{how}, from the bottom"
         size = "" if race.diameter is None else f" of {number(race.diameter * MM)} mm"
         rows.append(
             (
@@ -171,7 +173,7 @@ def _races(scene: Scene) -> Iterator[RowTable]:
                 Value(number(race.plane * MM), (f"{at}.plane",)),
                 Value(number(race.each * 1e3), (own,)),
                 Value(number(race.drag), (f"{at}.drag",)),
-                Value(how, (f"{at}.motion", f"{at}.rolling_resistance", f"{at}.liquid")),
+                Value(how, (f"{at}.motion", f"{at}.rolling_resistance", f"{at}.liquid", f"{at}.start")),
             )
         )
     if rows:

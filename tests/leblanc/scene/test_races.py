@@ -9,6 +9,7 @@ import pytest
 
 import leblanc as lb
 from leblanc.scene.chambers import Chamber
+from leblanc.scene.inputs import inputs_of
 from leblanc.scene.races import BallRace
 from leblanc.scene.scene import Scene, scene_from_table
 from leblanc.scene.schema.load import SceneError
@@ -77,3 +78,15 @@ def test_races_stand_behind_the_liquid() -> None:
     table = lb.example("runup").table()
     with pytest.raises(SceneError, match="behind the chambers with liquid"):
         scene_from_table(table | {"chambers": [RACE, *table["chambers"]]})
+
+
+def test_every_key_of_a_race_stands_in_the_inputs() -> None:
+    scene = scene_with({**RACE, "diameter": "12 mm"})
+    shown = {
+        path
+        for table in inputs_of(scene).tables
+        for line in table.rows
+        for value in line
+        for path in value.paths
+    }
+    assert {f"chambers.1.{key}" for key in BallRace.model_fields if key not in ("kind", "density")} <= shown
