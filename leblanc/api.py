@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from leblanc.results.magnetic.control import MagneticResult
     from leblanc.results.magnetic.explanation import MagneticExplanation
     from leblanc.results.models.comparison import Comparison
+    from leblanc.results.motion.ball_states import BallsResult
     from leblanc.results.optimum import OptimumResult
     from leblanc.results.response import RunResult
     from leblanc.results.runup import RunupResult
@@ -45,7 +46,7 @@ _OPTION = re.compile(r"--([a-z][a-z-]*)")
 
 def run(
     scene: SceneOrPath, *, workers: int = 1, solver: str | None = None, cycles: bool = False
-) -> RunResult | ExciterResult | MagneticResult | SpindleResult:
+) -> RunResult | ExciterResult | MagneticResult | SpindleResult | BallsResult:
     """Response and the liquid's centre of mass at each speed of a scene.
 
     Parameters
@@ -61,7 +62,8 @@ def run(
     Returns
     -------
     The response at each speed; of an exciter its stuck speeds and vibration, of a rotor in magnetic bearings
-    its poles, margins and motion, of a spindle its compliances and natural frequencies
+    its poles, margins and motion, of a spindle its compliances and natural frequencies;
+    with balls in races the states in which they rest
 
     Raises
     ------
@@ -90,6 +92,10 @@ def run(
         from leblanc.studies.spindles.unit import run_spindle
 
         return run_spindle(machine)
+    if machine.balls:
+        from leblanc.studies.races.balls import run_balls
+
+        return run_balls(machine)
     from leblanc.studies.held.holding import Holding
     from leblanc.studies.run import run_scene
     from solvers.held.state import COUPLED

@@ -44,8 +44,10 @@ def page() -> str:
             for place, part in tables_of(Scene, kind).items()
             if place[:1] == ("rotor",) and len(place) > 1
         ]
+    shown = set()
     for place, part in tables.items():
-        if place and place[0] != "rotor":
+        if place and place[0] != "rotor" and part not in shown:  # a liquid has the same keys everywhere
+            shown.add(part)
             parts.append(_section(f"## {_heading(place)}", _said(part), part))
     parts.append(_section("## Study", _said(Study), Study))
     rows = [(f"`{form}`", meaning) for form, meaning in FORMS.values()]
@@ -80,9 +82,10 @@ def _said(part: type[Part]) -> str:
 
 def _heading(place: tuple[str, ...]) -> str:
     """A table as a file heads it, or as the value of a key."""
-    name = ".".join(key for key in place if key != "*")
-    if place[-1] == "*" and place[0] != "optimise":
-        return f"[[{name}]]"
+    name = ".".join(key for key in place if not key.startswith("*"))
+    if place[-1].startswith("*") and place[0] != "optimise":
+        kind = place[-1].removeprefix("*")
+        return f"[[{name}]] of kind {kind}" if kind else f"[[{name}]]"
     return f"[{name}]" if len(place) == 1 else f"{place[-1] if place[-1] != '*' else place[-2]} = {{ ... }}"
 
 

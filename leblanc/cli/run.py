@@ -43,6 +43,9 @@ def run(
     if kind in _OTHERS:
         _OTHERS[kind](machine, scene, folder, json)
         return
+    if machine.balls:
+        _run_balls(machine, scene, folder, json)
+        return
 
     with working("preparing") as update:
         from leblanc.studies.held.holding import Holding
@@ -97,6 +100,38 @@ def run(
                 f"last turns. The states are kept in {folder / 'held'}: another run takes them from there."
             )
         raise NotConverged(failed)
+    say(f"{result.name}: {result.speed.size} speeds done")
+
+
+def _run_balls(machine: Scene, scene: Path, folder: Path, json: bool) -> None:
+    """Where the balls of a rotor rest in the drum."""
+    from leblanc.figures.races.balls import write_balls_figure
+    from leblanc.report.page import about, command_line
+    from leblanc.report.run import write_balls_report
+    from leblanc.results.netcdf import write_netcdf
+    from leblanc.studies.races.balls import run_balls
+    from leblanc.text.balls import answer, facts, limits
+
+    with working("states of the balls"):
+        result = run_balls(machine)
+    write_netcdf(result.named_arrays(), folder / "response.nc")
+    figure = write_balls_figure(result, folder)
+    what = about(machine, command_line("run", scene), "response.nc", unused=("runup", "optimise"))
+    write_balls_report(result, what, figure, folder / "summary.html")
+    if json:
+        print_json(result.to_json())
+    else:
+        print(answer(result))
+        print_table(facts(result))
+        print("\nLimits of the answer")
+        print_table([(limit.label, limit.where) for limit in limits(result)], indent=2)
+        for note in result.notes:
+            print(f"note: {note.text}")
+        print(f"Read {folder / 'summary.html'}; the data are in {folder / 'response.nc'}")
+    if not result.converged.all():
+        from leblanc.scene.schema.load import NotConverged
+
+        raise NotConverged([f"{scene}: no state of the balls was found at some speeds; they are empty"])
     say(f"{result.name}: {result.speed.size} speeds done")
 
 

@@ -98,9 +98,9 @@ def _film(result: RunupResult, path: Path) -> None:
 def _tell(result: RunupResult, folder: Path) -> None:
     """The run as text."""
     from leblanc.text.machine import load_table
-    from leblanc.text.runup import answer_rows, passage_rows
+    from leblanc.text.runup import answer_rows, ball_rows, passage_rows
 
-    print_table([*answer_rows(result), *passage_rows(result)])
+    print_table([*answer_rows(result), *ball_rows(result), *passage_rows(result)])
     if result.plane:
         print(f"Amplitudes are those {result.plane}.")
     if result.loads is not None:

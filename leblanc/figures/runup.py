@@ -26,6 +26,7 @@ from leblanc.figures.drawing.page import (
 from leblanc.figures.machine import machine_figure
 from leblanc.figures.response import DRY, SHADE, UNSTABLE, WET
 from leblanc.results.base import one_line, percent
+from leblanc.results.motion.balls import in_race
 from leblanc.results.notes.response import plane_label
 from leblanc.results.runup import RunupResult
 from leblanc.text.runup import describe_model, largest, largest_dry
@@ -130,8 +131,8 @@ _LOOKS: tuple[dict[str, Any], ...] = (
 def _ways(result: RunupResult) -> list[tuple[str, Array, Array]]:
     """Name, speed in rpm and amplitude in mm on the way up and back, then both without liquid."""
     up = "run-up" if result.turns_back else "run-up and hold"
-    bare = ", without liquid"
-    runs = [(False, ""), (True, bare)] if result.layer_mass.sum() > 0.0 else [(False, bare)]
+    bare = f", {result.without}"
+    runs = [(False, bare)] if result.bare else [(False, ""), (True, bare)]
     found = []
     for dry, what in runs:
         for name, back in ((up, False), ("run-down", True)):
@@ -268,6 +269,8 @@ def _arrows(axes: Axes, x: Array, y: Array, scale: tuple[float, float], color: s
 def time_figure(result: RunupResult) -> Figure:
     """Speed, amplitude, place of the liquid and depths over time; capture and release marked."""
     panels = [(0.8, _draw_speed), (1.1, _draw_amplitude)]
+    if result.races:
+        panels.append((1.1, _draw_balls))
     if result.layer_mass.sum() > 0.0:
         panels += [(0.95, _draw_offset), (0.95, _draw_angle), (1.1, _draw_depths)]
     time = result.time
@@ -290,9 +293,10 @@ def time_figure(result: RunupResult) -> Figure:
         if result.gravity > 0.0:
             text += " Place of the liquid: means over whole turns, in which gravity's share drops out."
         lay_out(figure, rows, [height for height, _ in panels], TIME_FRAME, caption(result, text), LINES)
+        rolling = ", the balls' angles" if result.races else ""
         figure.alt = (
-            "Curves over time of speed, amplitude, the place of the liquid and the depth of its layers; "
-            f"largest amplitude {largest(result)}."
+            f"Curves over time of speed, amplitude{rolling}, the place of the liquid and the depth of its "
+            f"layers; largest amplitude {largest(result)}."
         )
         for (axes,) in rows:
             box = axes.get_position()
@@ -318,7 +322,7 @@ def _mark_time(axes: Axes, result: RunupResult) -> None:
 def _draw_speed(axes: Axes, result: RunupResult) -> None:
     axes.plot(result.time, result.speed * RPM, color="0.15", linewidth=1.2)
     if np.nanmax(np.abs(result.speed_dry - result.speed), initial=0.0) > 1e-3 * float(result.speed.max()):
-        axes.plot(result.time, result.speed_dry * RPM, **_BARE)
+        axes.plot(result.time, result.speed_dry * RPM, **_bare(result))
     axes.set_ylim(0.0, 1.1 * float(np.nanmax([result.speed, result.speed_dry])) * RPM)
     axes.set_ylabel("Speed (rpm)")
     beside = axes.secondary_yaxis("right", functions=_RATES)
@@ -326,10 +330,10 @@ def _draw_speed(axes: Axes, result: RunupResult) -> None:
 
 
 def _draw_amplitude(axes: Axes, result: RunupResult) -> None:
-    dry = result.layer_mass.sum() == 0.0
+    dry = result.bare
     axes.plot(*_over_time(result, False), color=DRY if dry else UP, linewidth=1.2)
     if not dry and result.history_dry is not None:
-        axes.plot(*_over_time(result, True), **_BARE)
+        axes.plot(*_over_time(result, True), **_bare(result))
     _draw_ranges(axes, result, over_time=True)
     axes.set_ylim(0.0, 1.12 * largest_drawn(result) * MM or 1.0)
     axes.set_ylabel(_label(result).replace(" at ", "\nat ", 1))
@@ -341,10 +345,12 @@ def _over_time(result: RunupResult, dry: bool) -> Line:
     return time, amplitude * MM
 
 
-_BARE: dict[str, Any] = {
-    **{"color": DRY, "linewidth": 0.9, "zorder": 1.9, "label": "without liquid"},
-    **{"marker": "o", "markersize": 3.0, "markerfacecolor": "white", "markevery": 0.11},
-}
+def _bare(result: RunupResult) -> dict[str, Any]:
+    """Look of the run that it is compared with."""
+    return {
+        **{"color": DRY, "linewidth": 0.9, "zorder": 1.9, "label": result.without},
+        **{"marker": "o", "markersize": 3.0, "markerfacecolor": "white", "markevery": 0.11},
+    }
 
 
 def _label(result: RunupResult) -> str:
@@ -377,6 +383,24 @@ def _draw_angle(axes: Axes, result: RunupResult) -> None:
     axes.set_ylabel("Liquid angle\n(deg)")
 
 
+def _draw_balls(axes: Axes, result: RunupResult) -> None:
+    """Angle of each ball in the drum from -180 to 180 deg, a look for each race; gaps where it goes round."""
+    race = in_race(result.races)
+    for j, way in enumerate(result.ball_angle.T):
+        color, dashes = LAYERS[race[j] % len(LAYERS)]
+        angle = np.degrees(np.angle(np.exp(1j * way)))
+        # A ball that passes more than half a turn between two samples is no line.
+        broken = (np.abs(np.diff(angle)) > 180.0) | (np.abs(np.diff(way)) > np.pi)
+        name = "balls" if len(result.races) == 1 else f"balls of race {race[j] + 1}"
+        label = "_" if race[j] in race[:j] else name
+        axes.plot(
+            *gapped(result.time, angle, broken), color=color, linestyle=dashes, linewidth=0.9, label=label
+        )
+    axes.set_ylim(-190.0, 190.0)
+    axes.set_yticks([-180.0, -90.0, 0.0, 90.0, 180.0])
+    axes.set_ylabel("Angle of balls\n(deg)")
+
+
 def _draw_depths(axes: Axes, result: RunupResult) -> None:
     """Largest and least depth of the first layers; filled between."""
     top = 0.0
@@ -396,11 +420,11 @@ def energy_figure(result: RunupResult) -> Figure:
     audit = result.energy
     terms = [
         ("work of the unbalance", audit.unbalance, True),
-        ("work of the drive on the liquid", audit.drive, True),
+        (f"work of the drive on the {'balls' if result.races else 'liquid'}", audit.drive, True),
         ("work of gravity", audit.gravity, True),
         ("brought in by capture", audit.captured, True),
         ("heat in the supports", audit.support, False),
-        ("heat by wall friction", audit.friction, False),
+        (f"heat by {'the drag of balls' if result.races else 'wall friction'}", audit.friction, False),
         ("loss in bores", audit.bores, False),
         *([("loss at baffles", audit.baffles, False)] if audit.baffles else []),
         ("missed by the flow's profile", audit.profile, False),

@@ -14,10 +14,14 @@ from leblanc.report.page import About, models, notes, why, write_page
 from leblanc.report.parts import Cell, Table, doubt, load_part, picture, table
 from leblanc.results.exciter import ExciterResult
 from leblanc.results.magnetic.control import MagneticResult
+from leblanc.results.motion.ball_states import STATE_NAMES, BallsResult
 from leblanc.results.notes.response import OF_MODELS, RunCode
 from leblanc.results.response import RunResult
 from leblanc.results.whirl_map import WhirlMap
 from leblanc.text import magnetic
+from leblanc.text.balls import answer as balls_answer
+from leblanc.text.balls import facts as balls_facts
+from leblanc.text.balls import limits as balls_limits
 from leblanc.text.closed_forms import HEAD as VECTOR
 from leblanc.text.closed_forms import closed_form_rows, vector_rows
 from leblanc.text.exciter import NUMBERS
@@ -265,6 +269,62 @@ def write_magnetic_report(result: MagneticResult, what: About, figure: FigureFil
         "remarks": list(magnetic.load_words(result)),
     }
     write_page("magnetic", what, parts, path)
+
+
+def ball_states(result: BallsResult) -> Table:
+    """All states found at a few speeds spread over those of the scene."""
+    wanted = np.unique(np.linspace(0, result.speed.size - 1, 6).astype(int)).tolist()
+    unit = unit_for(LENGTH, *(size for k in wanted for size in result.sizes[k] if np.isfinite(size)))
+    rows = []
+    for k in wanted:
+        for j in np.flatnonzero(result.states.kind[k]).tolist():
+            stable, growth = bool(result.states.stable[k, j]), float(result.states.growth[k, j])
+            name = STATE_NAMES[int(result.states.kind[k, j])]
+            size = unit.number(float(result.sizes[k, j]))
+            rows.append(
+                (number(result.speed[k] * RPM), name, size, "yes" if stable else "no", number(growth))
+            )
+    head = ("Speed (rpm)", "balls", f"amplitude ({unit.name})", "stable", "growth (1/s)")
+    return table("States", head, rows)
+
+
+def balls_checks(result: BallsResult) -> Table:
+    """Where the answer is not what it seems."""
+    rows = [(limit.label, Cell(limit.where, warning=limit.failed)) for limit in balls_limits(result)]
+    return table("", ("Limits of the answer", "at"), rows)
+
+
+def write_balls_report(result: BallsResult, what: About, figure: FigureFiles, path: Path) -> None:
+    """Write the report.
+
+    Parameters
+    ----------
+    result : the answer
+    what : it is about
+    figure : of it
+    path : the file to write or replace
+    """
+    low, high = number(float(result.speed[0]) * RPM), number(float(result.speed[-1]) * RPM)
+    count = sum(race.count for race in result.races)
+    model = (
+        "Balls that roll or slide in races on a rotor with all its coordinates: states in which they rest in "
+        "the drum, found from starts of many kinds, and the roots of small motions about each."
+    )
+    parts = {
+        "title": "Balls at rest in the drum",
+        "machine": f"A rotor with {count} ball{'' if count == 1 else 's'} in {len(result.races)} "
+        f"race{'' if len(result.races) == 1 else 's'}, from {low} to {high} rpm in {result.speed.size} "
+        "speeds.",
+        "answer": balls_answer(result),
+        "doubt": doubt(balls_checks(result)),
+        "facts": table("", (), balls_facts(result)),
+        "states": ball_states(result),
+        "checks": balls_checks(result),
+        "pictures": [picture(figure)],
+        "models": [("balls", model)],
+        "remarks": [note.text for note in result.notes],
+    }
+    write_page("balls", what, parts, path)
 
 
 def bands(result: WhirlMap) -> Table:

@@ -18,7 +18,7 @@ from leblanc.results.notes.runup import CLOSURE, ERROR, IN_TABLES
 from leblanc.results.response import peak
 from leblanc.results.runup import RunupResult
 from leblanc.text.numbers import MOST_RANGES, number
-from leblanc.text.runup import answer, describe_model, largest_dry, rounding
+from leblanc.text.runup import answer, ball_rows, describe_model, largest_dry, rounding
 from leblanc.text.runup import moments as main_moments
 from leblanc.units import LENGTH, MASS, MINUS, RPM, rpm_bands, rpm_range, unit_for, with_unit
 
@@ -72,7 +72,7 @@ def moments(result: RunupResult) -> Table:
     ]
     bare = result.peak_dry
     if largest_dry(result):
-        found.insert(1, ("Without liquid", bare["amplitude"], bare["speed"], number(bare["time"])))
+        found.insert(1, (result.without.capitalize(), bare["amplitude"], bare["speed"], number(bare["time"])))
     highest = None if result.steady is None else peak(result.steady.deflection)
     if result.steady is not None and highest is not None:
         size = float(abs(result.steady.deflection[highest]))
@@ -85,7 +85,7 @@ def moments(result: RunupResult) -> Table:
 def passages(result: RunupResult) -> Table:
     """The steps of a programme with the largest amplitude of each; no rows for a run-up."""
     unit = unit_for(LENGTH, *(passage.amplitude for passage in result.passages))
-    head = ("Step", "", "ends after (s)", f"largest amplitude ({unit.name})", "at (rpm)", "without liquid")
+    head = ("Step", "", "ends after (s)", f"largest amplitude ({unit.name})", "at (rpm)", result.without)
     rows = [
         (
             f"{passage.step}",
@@ -114,6 +114,7 @@ def facts(result: RunupResult) -> list[tuple[str, str]]:
         angle = number(math.degrees(math.atan2(place.imag, place.real)))
         where = f"{with_unit(abs(place), LENGTH)} off the axis at {angle} deg"
     return [
+        *ball_rows(result),
         ("Mass of the liquid", with_unit(mass, MASS)),
         ("Its centre of mass at the end", where),
         ("Phase of the deflection at the end", f"{number(math.degrees(float(result.phase[-1])))} deg"),
@@ -224,13 +225,16 @@ def write_runup_report(result: RunupResult, what: About, figures: Sequence[Figur
     figures : of it
     path : the file to write or replace
     """
+    balls = sum(race.count for race in result.races)
+    rolling = f", {balls} ball{'' if balls == 1 else 's'} in {len(result.races)} race"
+    rolling = f"{rolling}{'' if len(result.races) == 1 else 's'}" if balls else ""
     count, low, high = len(result.chambers), float(result.speed[0]) * RPM, float(result.speed.max()) * RPM
     back = " and back" if result.turns_back else ""
     if result.passages:
         back = f" and to {number(float(result.speed[-1]) * RPM)} rpm in {len(result.passages)} steps"
     machine = (
-        f"A rotor with a {result.axis} axis and {count} chamber{'' if count == 1 else 's'} goes from "
-        f"{number(low)} to {number(high)} rpm{back}, {number(float(result.time[-1]))} s in all."
+        f"A rotor with a {result.axis} axis and {count} chamber{'' if count == 1 else 's'}{rolling} goes "
+        f"from {number(low)} to {number(high)} rpm{back}, {number(float(result.time[-1]))} s in all."
     )
     parts = {
         "title": "Run-up in time",

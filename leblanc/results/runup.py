@@ -14,6 +14,7 @@ from fluid.friction.laws import Friction
 from leblanc.results.base import FilledChamber, Note, Result, attributes, one_line, texts
 from leblanc.results.machine.keys import Loaded
 from leblanc.results.machine.loads import MachineLoads
+from leblanc.results.motion.balls import RaceOfBalls, ball_moment, in_race
 from leblanc.results.motion.passages import Passage, falling, pieces
 from leblanc.results.netcdf import NamedArrays, flags, variable
 from leblanc.results.notes.response import plane_words
@@ -117,6 +118,7 @@ class RunupResult(Loaded, Result):
     passages : the steps of a programme that were reached; none of a run-up
     unbalance_left : sizes of all unbalances over what they were at first, shape (k,); None where none leaves
     loads : forces and clearances of each interval; None where the scene asks for none
+    races : with the balls that run in them; N balls in all
 
     Examples
     --------
@@ -156,6 +158,7 @@ class RunupResult(Loaded, Result):
     bore: str = "none"
     passages: tuple[Passage, ...] = ()
     unbalance_left: Array | None = None
+    races: tuple[RaceOfBalls, ...] = ()
 
     figure = "leblanc.figures.runup:speed_figure"
     summary = "leblanc.text.runup:summary"
@@ -204,6 +207,39 @@ class RunupResult(Loaded, Result):
     def plane(self) -> str:
         """Plane of the amplitude, in words; empty for a rotor that moves in one plane."""
         return "" if self.kind == "jeffcott" else plane_words(self.planes[0], chambers=True)
+
+    @property
+    def bare(self) -> bool:
+        """Neither liquid nor balls are on the rotor: it is the one that it is compared with."""
+        return not self.races and bool(self.layer_mass.sum() == 0.0)
+
+    @property
+    def without(self) -> str:
+        """What the run that it is compared with lacks, in words."""
+        liquid = bool(self.layer_mass.sum() > 0.0)
+        return "without " + (
+            "liquid and balls" if liquid and self.races else "balls" if self.races else "liquid"
+        )
+
+    @property
+    def ball_angle(self) -> Array:
+        """Angle of each ball in the drum, from its zero mark, whole turns counted, rad, shape (k, N)."""
+        return self.history.ball_angle
+
+    @property
+    def ball_speed(self) -> Array:
+        """Speed of each ball in space, rad/s, shape (k, N)."""
+        return self.history.ball_speed
+
+    @property
+    def ball_unbalance(self) -> Array:
+        """Size of the unbalance of all balls together, kg m, shape (k,)."""
+        return np.asarray(np.abs(ball_moment(self.races, self.ball_angle)))
+
+    @property
+    def ball_unbalance_angle(self) -> Array:
+        """Its angle from the drum's zero mark, rad, shape (k,)."""
+        return np.asarray(np.angle(ball_moment(self.races, self.ball_angle)))
 
     @property
     def deflection(self) -> Complex:
@@ -456,6 +492,7 @@ class RunupResult(Loaded, Result):
             "transfers": [asdict(transfer) | {"lost": transfer.lost} for transfer in self.transfers],
             "notes": texts(self.notes),
             **({} if self.loads is None else self.loads.to_json()),
+            **({name: getattr(self, name) for name in _BALLS} if self.races else {}),
         }
 
     def _dry(self, name: str) -> Array:
@@ -515,6 +552,9 @@ class RunupResult(Loaded, Result):
         return attributes(self, "runup", own, self.notes)
 
 
+_BALLS = ("ball_angle", "ball_speed", "ball_unbalance", "ball_unbalance_angle")  # keys, where there are any
+
+
 def _crest(history: RunupHistory, part: Flags) -> Moment:
     """Largest amplitude of the steps that lead to some of the samples."""
     amplitude, speed, time = history.largest[part], history.largest_speed[part], history.largest_time[part]
@@ -567,6 +607,8 @@ def _columns(result: RunupResult) -> dict[str, Any]:
         for part in ("min", "max", "median"):
             name, words = f"amplitude_{part}", f"amplitude, {part} over runs that rounding tells apart"
             columns[name] = variable(over, getattr(result.spread, name), "m", words)
+    if result.races:
+        columns |= _ball_columns(result, drum)
     for name, values, text in (
         ("deflection", h.deflection, "of the chamber's axis, standing frame"),
         ("offset", h.offset, "of the liquid's centre of mass from its chamber's axis, standing frame"),
@@ -574,6 +616,20 @@ def _columns(result: RunupResult) -> dict[str, Any]:
         columns[f"{name}_real"] = each(values.real, "m", f"{name} {text}, first direction")
         columns[f"{name}_imag"] = each(values.imag, "m", f"{name} {text}, second direction")
     return columns
+
+
+def _ball_columns(result: RunupResult, drum: str) -> dict[str, Any]:
+    """Variables of the balls by name."""
+    each, over = ("time", "ball"), ("time",)
+    size, angle = result.ball_unbalance, result.ball_unbalance_angle
+    race = (in_race(result.races) + 1).astype(np.int32)
+    return {
+        "race": variable(("ball",), race, "1", "number of the ball's race"),
+        "ball_angle": variable(each, result.ball_angle, "rad", f"angle of the ball {drum}"),
+        "ball_speed": variable(each, result.ball_speed, "rad s-1", "speed of the ball in space"),
+        "ball_unbalance": variable(over, size, "kg m", "unbalance of all balls together"),
+        "ball_unbalance_angle": variable(over, angle, "rad", f"angle of that unbalance {drum}"),
+    }
 
 
 def turn_mean(values: Complex, angle: Array) -> Complex:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict, dataclass
 from functools import cached_property, lru_cache
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field, PlainValidator
@@ -431,6 +431,9 @@ def section_from_file(path: str, unit: float | None, size: float | None = None) 
 class Chamber(Part):
     """A chamber about the rotor's axis, circular or with a section of its own, and the liquid in it."""
 
+    USUAL_KIND: ClassVar[bool] = True
+
+    kind: Literal["liquid"] = Field("liquid", description="the kind of chamber")
     radius: Annotated[float | None, LENGTH] = Field(None, description="of the outer wall, R; or section")
     inner_radius: Annotated[float, quantity(units.LENGTH, 0.0, 1e3)] = Field(
         0.0, description="of the inner wall, R_i; 0 if there is none"

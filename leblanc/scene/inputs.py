@@ -77,7 +77,7 @@ def inputs_of(scene: Scene, optimise: Optimisation | None = None) -> SceneInputs
         marked += _optimise(wanted, scene)
     tables = [
         RowTable(table.head, tuple(tuple(v.marked(scene.assumed) for v in line) for line in table.rows))
-        for table in (*scene.rotor.tables(), *_around(scene), *_chambers(scene))
+        for table in (*scene.rotor.tables(), *_around(scene), *_chambers(scene), *_races(scene))
     ]
     return SceneInputs(tuple(marked), tuple(tables))
 
@@ -148,6 +148,36 @@ def _chambers(scene: Scene) -> Iterator[RowTable]:
     ):
         if lines:
             yield RowTable(titles, tuple(lines))
+
+
+def _races(scene: Scene) -> Iterator[RowTable]:
+    """The races with their balls."""
+    head = ("Race", "balls", "path's radius (mm)", "plane (mm)", "mass of each (g)", "drag (N s/m)", "motion")
+    rows = []
+    for number_of, race in enumerate(scene.balls):
+        at = f"chambers.{len(scene.liquids) + number_of}"
+        own = f"{at}.{'mass' if race.density is None else 'density'}"
+        how: str = race.motion
+        if race.rolling_resistance:
+            how = f"{how}, resistance {number(race.rolling_resistance)}"
+        if race.liquid is not None:
+            how = f"{how}, in {race.liquid.name}"
+        if race.start == "bottom":
+            how = f"{how}, from the bottom"
+        size = "" if race.diameter is None else f" of {number(race.diameter * MM)} mm"
+        rows.append(
+            (
+                Value(f"{number_of + 1}"),
+                Value(f"{race.count}{size}", (f"{at}.count", f"{at}.diameter")),
+                Value(number(race.radius * MM), (f"{at}.radius",)),
+                Value(number(race.plane * MM), (f"{at}.plane",)),
+                Value(number(race.each * 1e3), (own,)),
+                Value(number(race.drag), (f"{at}.drag",)),
+                Value(how, (f"{at}.motion", f"{at}.rolling_resistance", f"{at}.liquid", f"{at}.start")),
+            )
+        )
+    if rows:
+        yield RowTable(head, tuple(rows))
 
 
 def _chamber(fill: Fill, k: int, length: Unit, volume: Unit) -> tuple[Value, ...]:

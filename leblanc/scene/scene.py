@@ -10,7 +10,7 @@ from functools import cached_property
 from os import PathLike
 from typing import TYPE_CHECKING, Annotated, Any
 
-from pydantic import Field, PlainValidator, ValidationError
+from pydantic import Discriminator, Field, PlainValidator, Tag, ValidationError
 
 from fluid.fill import Fill
 from fluid.friction.laws import Friction, FrictionLaw
@@ -19,6 +19,7 @@ from leblanc.scene.cabinet import MAX_POINTS, Cabinet, Point, cabinet_conflicts
 from leblanc.scene.chambers import Chamber
 from leblanc.scene.magnetic import MagneticRotor as MagneticRotor
 from leblanc.scene.programme.table import Programme as Programme
+from leblanc.scene.races import BallRace as BallRace  # what a scene's chamber may be
 from leblanc.scene.rotors import WITHOUT_CHAMBERS as WITHOUT_CHAMBERS
 from leblanc.scene.rotors import AnyRotor
 from leblanc.scene.rotors import Exciter as Exciter  # what a scene's rotor may be
@@ -57,6 +58,17 @@ _LAWS = ("none", "stokes", "wall")
 _SOME_CHAMBERS = Entries(1, MAX_CHAMBERS, "tables headed [[chambers]]")
 
 _Path = Annotated[str, PlainValidator(Text(200))]
+
+
+def _chamber_kind(given: Any) -> str:
+    """Kind of a chamber as a file says it: liquid where it says nothing."""
+    kind = given.get("kind", "liquid") if isinstance(given, Mapping) else getattr(given, "kind", "liquid")
+    return str(kind)
+
+
+AnyChamber = Annotated[
+    Annotated[Chamber, Tag("liquid")] | Annotated[BallRace, Tag("balls")], Discriminator(_chamber_kind)
+]
 
 
 class Speeds(Part):
@@ -200,8 +212,8 @@ class Scene(Part):
         9.81, description="acceleration of gravity"
     )
     rotor: AnyRotor = Field(discriminator="kind", description="the machine without its liquid")
-    chambers: Annotated[tuple[Chamber, ...], entries(0, MAX_CHAMBERS, "tables headed [[chambers]]")] = Field(
-        (), description="each with its liquid; at least one with a jeffcott"
+    chambers: Annotated[tuple[AnyChamber, ...], entries(0, MAX_CHAMBERS, "tables headed [[chambers]]")] = (
+        Field((), description="each with its liquid or its balls; at least one with a jeffcott")
     )
     cabinet: Cabinet | None = Field(
         None, description="that stands on the floor around the rotor; forces under its feet are told if given"
@@ -225,6 +237,7 @@ class Scene(Part):
         if values.get("chambers") == () and _kind(given.get("rotor")) in (None, "jeffcott"):
             missing = "chambers" not in given
             yield Conflict(("chambers",), f"{'given: ' if missing else ''}{_SOME_CHAMBERS.allowed}")
+        yield from _ball_conflicts(values)
         yield from cabinet_conflicts(values, _kind(given.get("rotor")))
         if _kind(given.get("rotor")) == "spindle":
             yield from without_liquid(values, given)
@@ -244,7 +257,21 @@ class Scene(Part):
     @cached_property
     def fills(self) -> tuple[Fill, ...]:
         """The chambers with their liquids, as the solvers take them."""
-        return tuple(chamber.fill() for chamber in self.chambers)
+        return tuple(chamber.fill() for chamber in self.liquids)
+
+    @property
+    def liquids(self) -> tuple[Chamber, ...]:
+        """The chambers that hold liquid."""
+        return tuple(chamber for chamber in self.chambers if isinstance(chamber, Chamber))
+
+    @property
+    def balls(self) -> tuple[BallRace, ...]:
+        """The races with balls, which stand behind the chambers with liquid."""
+        return tuple(chamber for chamber in self.chambers if isinstance(chamber, BallRace))
+
+    def without_balls(self) -> Scene:
+        """The same machine without its balls."""
+        return self.altered(chambers=self.liquids) if self.balls else self
 
     @property
     def speed_plan(self) -> Runup | Programme | None:
@@ -313,6 +340,26 @@ class Scene(Part):
         if self.optimise is not None:
             content["optimise"] = optimise_content(self.optimise)
         return fingerprint(content)
+
+
+def _ball_conflicts(values: Mapping[str, Any]) -> Iterator[Conflict]:
+    """Races stand behind the liquid, and on a rotor whose motion with balls is known."""
+    chambers, rotor = values.get("chambers", ()), values.get("rotor")
+    races = [k for k, chamber in enumerate(chambers) if isinstance(chamber, BallRace)]
+    for k in races:
+        if any(isinstance(chamber, Chamber) for chamber in chambers[k + 1 :]):
+            yield Conflict(("chambers", k), "behind the chambers with liquid in the file")
+        if isinstance(rotor, Exciter):
+            yield Conflict(("chambers", k), "left out for an exciter, which has balls of its own")
+        elif chambers[k].start == "bottom" and rotor is not None and rotor.axis == "vertical":
+            yield Conflict(("chambers", k, "start"), "spread where the axis stands and has no bottom")
+    if races:
+        for key in ("cabinet", "points"):
+            if values.get(key):
+                yield Conflict((key,), "left out with balls, whose forces it does not know")
+        if getattr(rotor, "bearings", ()):
+            text = "left out with balls, whose forces they do not know"
+            yield Conflict(("rotor", "bearings"), text)
 
 
 def _friction_content(friction: Friction) -> dict[str, object]:
@@ -452,6 +499,22 @@ def require_whirl(scene: Scene) -> None:
         raise InputError("rotor.kind", scene.rotor.kind, "jeffcott, two_plane or tub for this")
 
 
+def require_no_balls(scene: Scene, what: str) -> None:
+    """Refuse balls where nothing knows them.
+
+    Parameters
+    ----------
+    scene : the machine
+    what : what is asked for, in words that follow "left out for"
+
+    Raises
+    ------
+    InputError : a race with balls
+    """
+    if scene.balls:
+        raise InputError(f"chambers.{len(scene.liquids)}.kind", "balls", f"left out for {what}")
+
+
 def dry_rotor(scene: Scene) -> Jeffcott | TwoPlane | Tub:
     """The scene's rotor without liquid, whose `system()` gives its equations of motion.
 
@@ -551,7 +614,7 @@ def runup_content(plan: Runup) -> dict[str, Any]:
 
 
 def machine_content(scene: Scene) -> dict[str, Any]:
-    """Cabinet, points and bearings, as far as there are any.
+    """Cabinet, points, bearings and balls, as far as there are any.
 
     Parameters
     ----------
@@ -562,8 +625,20 @@ def machine_content(scene: Scene) -> dict[str, Any]:
         "cabinet": scene.cabinet and scene.cabinet.model_dump(),
         "points": [point.model_dump() for point in scene.points],
         "bearings": [bearing.position for bearing in bearings],
+        "balls": [race_content(race) for race in scene.balls],
     }
     return {name: part for name, part in parts.items() if part}
+
+
+def race_content(race: BallRace) -> dict[str, Any]:
+    """What a race is, whichever of two alternatives says so.
+
+    Parameters
+    ----------
+    race : of a scene
+    """
+    liquid = None if race.liquid is None else asdict(race.liquid)
+    return asdict(race.race()) | {"start": race.start, "liquid": liquid, "diameter": race.diameter}
 
 
 def optimise_content(wanted: Optimisation) -> dict[str, Any]:

@@ -419,7 +419,7 @@ def _answer(scene: Scene, over: str, at: Array, names: Sequence[str]) -> list[Ar
 
 def _with_more(scene: Scene, volume: float) -> Scene:
     """The scene with more liquid in its first chamber, m^3."""
-    return scene.replace({"chambers.0.volume": scene.chambers[0].volume + volume})
+    return scene.replace({"chambers.0.volume": scene.liquids[0].volume + volume})
 
 
 def _of_fill(scene: Scene, name: str) -> float:

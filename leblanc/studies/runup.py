@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -31,13 +32,15 @@ from leblanc.studies.models.choose import axial_gravity, is_cut, prepare
 from leblanc.studies.models.liquid import RUNUP_MODELS, runup_model
 from leblanc.studies.models.validity import doubts
 from leblanc.studies.peaks import responses_between
+from leblanc.studies.races.balls import races_shown, started_balls
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
 from solvers.layer.records import Outcome
 from solvers.liquid_model import LONG
 from solvers.runup.ensemble import EnsembleTask, Member, Spread, member_of, run_member, spread_over
 from solvers.runup.ensemble import ensemble as made_ensemble
-from solvers.runup.machine import Drive, Handover
+from solvers.runup.long_wave import couple
+from solvers.runup.machine import Drive, Handover, RunupModel
 from solvers.runup.runup import (
     MOST_LAG,
     MOST_WAVE,
@@ -51,6 +54,7 @@ from solvers.runup.runup import (
 from solvers.synchronous.models import LINEAR
 from solvers.synchronous.response import Response, by_speed, response
 
+BALLS_REST = 1e-3  # of the spin: balls that pass the drum by less are at rest in it
 FRAMES = 180  # of a film
 MOST_FRAMES = 2000
 
@@ -67,12 +71,14 @@ def require_layers(scene: Scene) -> None:
 
 
 def require_room(scene: Scene) -> None:
-    """Compartments are for long waves.
+    """Compartments and balls are for long waves.
 
     Raises
     ------
-    InputError : linear layers where baffles cut the liquid into compartments
+    InputError : linear layers where baffles cut the liquid into compartments, or beside balls
     """
+    if scene.model.liquid == "linear" and scene.balls:
+        raise InputError("model.liquid", "linear", "auto or long_wave where balls run beside the liquid")
     if scene.model.liquid == "linear" and any(fill.compartments > 1 for fill in scene.fills):
         text = "auto or long_wave where baffles cut the liquid into compartments"
         raise InputError("model.liquid", "linear", text)
@@ -239,7 +245,7 @@ def chosen_run(
     system, friction = rotor_in_time(scene), scene.model.friction
 
     def run(name: str, resolved: RunupNumerics, report: Progress) -> RunupHistory:
-        model = runup_model(name)
+        model = model_with_balls(scene) if scene.balls else runup_model(name)
         given = system, scene.fills, drive, friction, gravity, resolved, report, model, snapshots, follow
         return run_up(*given)
 
@@ -291,6 +297,8 @@ less than {percent(wave)} of the depth and the liquid hardly lags, otherwise lon
 
 def _ruled_out(scene: Scene) -> str:
     """Why linear layers are not tried, or nothing."""
+    if scene.balls:
+        return "linear layers do not run beside balls"
     if any(fill.uneven for fill in scene.fills):
         return "baffles stand in the liquid, whose waves linear layers do not hold back"
     if scene.runup is not None and scene.runup.motor is not None:
@@ -395,12 +403,13 @@ def runup_scene(
         steady=steady,
         bands=bands,
         chambers=tuple(_chamber(fill) for fill in scene.fills),
-        planes=tuple(fill.chamber.plane for fill in scene.fills),
+        planes=tuple(fill.chamber.plane for fill in scene.fills) or (_position(scene),),
         notes=(
             *_notes(scene, taken, steady, bands, spread),
             *programme_notes(scene, history, drive, passages),
             *([] if left is None else [notes.unbalance_left(float(left[-1]))]),
             *limits,
+            *_ball_notes(scene, history),
             *smeared_baffles(scene.fills, None if taken.model == "linear" else numerics.cells),
             *stands,
             *doubts(scene),
@@ -412,7 +421,35 @@ def runup_scene(
         passages=passages,
         unbalance_left=left,
         loads=None if machine is None else loads_over_time(scene, machine, history),
+        races=races_shown(scene),
     )
+
+
+def model_with_balls(scene: Scene) -> RunupModel:
+    """Long waves with the balls of a scene beside them.
+
+    Parameters
+    ----------
+    scene : with races
+    """
+    return partial(couple, balls=started_balls(scene), position=_position(scene))
+
+
+def _position(scene: Scene) -> float:
+    """Plane of the first race, m; 0 without one."""
+    return scene.balls[0].plane if scene.balls else 0.0
+
+
+def _ball_notes(scene: Scene, history: RunupHistory) -> Iterator[Note]:
+    """What was assumed of the balls, and whether they can balance and have come to rest."""
+    if not scene.balls:
+        return
+    yield notes.balls_as_points()
+    if scene.fills:
+        yield notes.whirl_beside_balls()
+    behind = np.abs(history.ball_speed[-1] - history.speed[-1])
+    if behind.max() > BALLS_REST * history.speed[-1]:
+        yield notes.balls_run(float(behind.max()), float(history.speed[-1]))
 
 
 def ensemble_tasks(
@@ -432,7 +469,8 @@ def ensemble_tasks(
     """
     if count == 0:
         return []
-    system, friction, model = rotor_in_time(scene), scene.model.friction, runup_model("long_wave")
+    system, friction = rotor_in_time(scene), scene.model.friction
+    model = model_with_balls(scene) if scene.balls else runup_model("long_wave")
     return made_ensemble(system, scene.fills, drive, friction, gravity, numerics, model, count, seed)
 
 
@@ -451,9 +489,11 @@ def rounding_spread(
     """
     if not tasks or not taken.history.converged:
         return None
-    model, members = runup_model(taken.model), [member_of(taken.history)]
+    members = [member_of(taken.history)]
+    if taken.model == "linear":
+        tasks = [replace(task, model=runup_model("linear")) for task in tasks]
     try:
-        for member in _each([replace(task, model=model) for task in tasks], workers):
+        for member in _each(tasks, workers):
             members.append(member)
             if progress is not None:
                 progress((len(members) - 1) / len(tasks))
@@ -477,7 +517,7 @@ def _each(tasks: list[EnsembleTask], workers: int) -> Iterator[Member]:
 def dry_run(
     scene: Scene, history: RunupHistory, drive: Drive, gravity: float, numerics: RunupNumerics
 ) -> RunupHistory | None:
-    """The rotor of a scene on the same way without liquid, to be compared with.
+    """The rotor of a scene on the same way without liquid and balls, to be compared with.
 
     Parameters
     ----------
@@ -491,11 +531,13 @@ def dry_run(
     """
     if history.outcome is Outcome.INTERRUPTED:
         return None
-    if history.layer_mass.sum() == 0.0:
+    if history.layer_mass.sum() == 0.0 and not scene.balls:
         return history
     # Without liquid both models step the rotor alike; this one is the quicker.
     empty, model = [replace(fill, volume=0.0) for fill in scene.fills], runup_model("linear")
     alone = replace(numerics, companion=False)
+    if scene.balls:
+        model = partial(couple, position=_position(scene))
     return run_up(rotor_in_time(scene), empty, drive, scene.model.friction, gravity, alone, None, model)
 
 
@@ -534,10 +576,10 @@ def _never_caught(scene: Scene, history: RunupHistory) -> Iterator[Note]:
 def steady_response(scene: Scene, speed: Array) -> Response | None:
     """Synchronous response over the speeds that were passed, refined where it is largest.
 
-    None unless the rotor is a Jeffcott rotor.
+    None unless the rotor is a Jeffcott rotor without balls.
     """
     passed = _passed(speed, STEADY_SPEEDS)
-    if not isinstance(scene.rotor, JeffcottRotor) or passed.size == 0 or is_cut(scene):
+    if not isinstance(scene.rotor, JeffcottRotor) or passed.size == 0 or is_cut(scene) or scene.balls:
         return None
     answer = response(jeffcott(scene), scene.fills, passed, axial_gravity(scene))
     exact = scene.altered(model=scene.model.altered(liquid="statics"))
@@ -547,11 +589,11 @@ def steady_response(scene: Scene, speed: Array) -> Response | None:
 
 
 def whirl_bands(scene: Scene, speed: Array) -> Bands:
-    """Bands of the speeds that were passed in which some whirl grows by itself, rad/s; none with baffles."""
+    """Bands of the speeds passed in which some whirl grows by itself, rad/s; none with baffles or balls."""
     from solvers.whirl.edges import unstable_bands
 
     passed = _passed(speed, BAND_SPEEDS)
-    if not scene.fills or passed.size == 0 or any(fill.uneven for fill in scene.fills):
+    if not scene.fills or scene.balls or passed.size == 0 or any(fill.uneven for fill in scene.fills):
         return ()
     return unstable_bands(dry_rotor(scene), [scene.fills], passed, scene.model.friction)[0]
 

@@ -258,7 +258,7 @@ def _notes(
 ) -> tuple[Note, ...]:
     """Limits of validity and findings."""
     scene = machine.scene
-    found = [notes.own_volume(sum(fill.volume for fill in scene.chambers), own)]
+    found = [notes.own_volume(sum(fill.volume for fill in scene.liquids), own)]
     if lost:
         found.append(notes.growth_not_known(lost, thin.size))
     if law.law == "quadratic":

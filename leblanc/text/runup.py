@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from leblanc.results.base import percent
 from leblanc.results.notes.runup import SETTLED
 from leblanc.results.response import peak
 from leblanc.results.runup import Moment, RunupResult
-from leblanc.units import LENGTH, TIME, in_rpm, with_unit
+from leblanc.units import LENGTH, TIME, UNBALANCE, in_rpm, number, with_unit
 
 
 def describe_model(model: str, cells: int, dispersion: bool, bore: str = "none") -> str:
@@ -123,7 +125,7 @@ def answer_rows(result: RunupResult) -> list[tuple[str, str]]:
     if largest_dry(result):
         peak = result.peak_dry
         size, when = with_unit(peak["amplitude"], LENGTH), with_unit(peak["time"], TIME)
-        rows.insert(1, ("Without liquid", f"{size} at {in_rpm(peak['speed'])}, after {when}"))
+        rows.insert(1, (result.without.capitalize(), f"{size} at {in_rpm(peak['speed'])}, after {when}"))
     return rows
 
 
@@ -138,10 +140,28 @@ def passage_rows(result: RunupResult) -> list[tuple[str, str]]:
     for passage in result.passages:
         moment = Moment(passage.amplitude, passage.speed, passage.time)
         bare = ""
-        if not math.isnan(passage.amplitude_dry) and result.layer_mass.sum() > 0.0:
-            bare = f", without liquid {with_unit(passage.amplitude_dry, LENGTH)}"
+        if not math.isnan(passage.amplitude_dry) and not result.bare:
+            bare = f", {result.without} {with_unit(passage.amplitude_dry, LENGTH)}"
         text = f"{_amplitude(result, moment)}{bare}; ends after {with_unit(passage.end, TIME)}"
         rows.append((f"Step {passage.step}, {passage.text}", text))
+    return rows
+
+
+def ball_rows(result: RunupResult) -> list[tuple[str, str]]:
+    """What the balls do at the end: label and value; nothing without balls.
+
+    Parameters
+    ----------
+    result : the run-up
+    """
+    if not result.races:
+        return []
+    behind = result.speed[-1] - result.ball_speed[-1]
+    size, angle = with_unit(float(result.ball_unbalance[-1]), UNBALANCE), result.ball_unbalance_angle[-1]
+    most = with_unit(sum(race.count * race.moment for race in result.races), UNBALANCE)
+    rows = [("Unbalance of the balls at the end", f"{size} at {number(math.degrees(angle))} deg, of {most}")]
+    worst = float(behind[np.argmax(np.abs(behind))])
+    rows.append(("Slowest ball behind the drum at the end", in_rpm(worst)))
     return rows
 
 
@@ -175,9 +195,9 @@ def largest_dry(result: RunupResult) -> str:
     result : the run-up
     """
     peak = result.peak_dry
-    if math.isnan(peak["amplitude"]) or result.layer_mass.sum() == 0.0:
+    if math.isnan(peak["amplitude"]) or result.bare:
         return ""
-    return f", without liquid {with_unit(peak['amplitude'], LENGTH)} at {in_rpm(peak['speed'])}"
+    return f", {result.without} {with_unit(peak['amplitude'], LENGTH)} at {in_rpm(peak['speed'])}"
 
 
 def summary(result: RunupResult) -> list[tuple[str, str]]:
@@ -187,6 +207,7 @@ def summary(result: RunupResult) -> list[tuple[str, str]]:
     return [
         *plane,
         *answer_rows(result),
+        *ball_rows(result),
         *passage_rows(result),
         ("Liquid model", describe_model(result.model, result.cells, result.dispersion, result.bore)),
         ("End", result.reason or "it came to its end"),

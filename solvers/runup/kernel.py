@@ -317,6 +317,8 @@ def layer_step(
 _AGREED, _PASSABLE, _STRAIGHT, _ROUNDS, _SHORT = 1e-6, 1e-2, 5, 12, 1.0 / 32.0
 # Steps this short that do not agree end the run: a layer on its way through the axis.
 _SHORTEST = 1.0 / 1024.0
+# Share of the spin by which a ball that sticks may creep.
+_CREEP = 1e-5
 # Steps shortened by more than this no longer follow what the layers do.
 _LEAST = 1e-6
 
@@ -410,21 +412,71 @@ def _measure_layers(machine, state, room):
 
 
 @_unwrapped
+def _add_balls(machine, state, room, dt):
+    """Rows and columns of the balls, on a straight line about their way so far [theory: races, eq. 2-3]."""
+    n, spin, gained = room.change.size, 0.5 * (room.spins[0] + room.spins[1]), room.spins[1] - room.spins[0]
+    left, right = room.left, room.right
+    for j in range(machine.balls.shape[0]):
+        ball, b, row, angle, rate = (
+            machine.balls[j],
+            machine.races[j],
+            n + j,
+            state.roll[j],
+            state.roll_rate[j],
+        )
+        moving, middle, last = ball.mass * ball.radius, angle + 0.5 * dt * rate, angle + dt * rate
+        x, y, x_end, y_end = np.cos(middle), np.sin(middle), np.cos(last), np.sin(last)
+        past = spin - rate
+        # It sticks by a drag that is large beside all others while the drum hardly passes it.
+        press = ball.resistance * ball.mass * (ball.radius * rate) ** 2
+        room.held[j] = press / max(abs(past), _CREEP * spin)
+        pull = moving * (machine.gravity[1] * x - machine.gravity[0] * y)
+        left[row, row] = ball.inertia + dt * (0.5 * ball.drag + room.held[j])
+        right[row] = dt * (ball.drag * past + room.held[j] * (room.spins[1] - rate) + pull)
+        right[row] += ball.carried * gained
+        # Its momentum at the end, had it kept its rate, and how that changes with the rate.
+        given_x, given_y = -moving * rate * (y_end - np.sin(angle)), moving * rate * (x_end - np.cos(angle))
+        slope_x = -moving * (y_end + 0.5 * dt * rate * x_end)
+        slope_y = moving * (x_end - 0.5 * dt * rate * y_end)
+        for i in range(n):
+            left[row, i] = moving * (b[1, i] * x - b[0, i] * y)
+            left[i, row] = b[0, i] * slope_x + b[1, i] * slope_y
+            right[i] -= b[0, i] * given_x + b[1, i] * given_y
+            for k in range(n):
+                left[i, k] += ball.mass * (b[0, i] * b[0, k] + b[1, i] * b[1, k])
+
+
+@_unwrapped
+def _dragged(machine, state, room, dt, j):
+    """Impulse of the torque of the drum on a ball, by drag and by what it resists to rolling."""
+    rate, change = state.roll_rate[j], room.roll[j]
+    slow = 0.5 * (room.spins[0] + room.spins[1]) - rate - 0.5 * change
+    return dt * (machine.balls[j].drag * slow + room.held[j] * (room.spins[1] - rate - change))
+
+
+@_unwrapped
 def _move_rotor(machine, state, room, dt):
-    """Change of the rotor's velocities over the step, given the layers' momenta [theory: coupling, eq. 5]."""
-    change, swing, left, turn = room.change, room.swing, room.left, room.turn
+    """Change of the velocities of rotor and balls over the step, given the layers' momenta.
+
+    Theory: coupling, eq. 5; races, eq. 3.
+    """
+    change, swing, left, right, turn = room.change, room.swing, room.left, room.right, room.turn
     n, spin = change.size, 0.5 * (room.spins[0] + room.spins[1])
+    for i in range(right.size):
+        right[i] = 0.0
+        for k in range(right.size):
+            left[i, k] = 0.0
     for i in range(n):
         first = machine.unbalance[i] * complex(turn[0], turn[1])
         last = machine.unbalance[i] * complex(turn[2], turn[3])
         swing[i] = room.spins[0] * first.imag - room.spins[1] * last.imag
-        change[i] = -swing[i]
+        right[i] = -swing[i]
         for k in range(n):
             damping = machine.matrices[1, i, k] + spin * machine.matrices[2, i, k]
             stiffness = machine.matrices[3, i, k]
             left[i, k] = machine.matrices[0, i, k] + 0.5 * dt * damping + 0.25 * dt * dt * stiffness
             x, v = state.place[k], state.rate[k]
-            change[i] -= dt * (damping * v + stiffness * (x + 0.5 * dt * v))
+            right[i] -= dt * (damping * v + stiffness * (x + 0.5 * dt * v))
     first = machine.layers.shape[0]
     for j in range(machine.planes.shape[0]):
         mass = machine.layers[j].mass if j < first else machine.pools[j - first].mass
@@ -433,11 +485,16 @@ def _move_rotor(machine, state, room, dt):
         given_x = room.after[j, 0] - room.before[j, 0] + dt * (xx * guess[0] + xy * guess[1])
         given_y = room.after[j, 1] - room.before[j, 1] + dt * (xy * guess[0] + yy * guess[1])
         for i in range(n):
-            change[i] -= b[0, i] * given_x + b[1, i] * given_y
+            right[i] -= b[0, i] * given_x + b[1, i] * given_y
             for k in range(n):
                 left[i, k] += (mass - xx) * b[0, i] * b[0, k] + (mass - yy) * b[1, i] * b[1, k]
                 left[i, k] -= xy * (b[0, i] * b[1, k] + b[1, i] * b[0, k])
-    solve(left, change)
+    _add_balls(machine, state, room, dt)
+    solve(left, right)
+    for i in range(n):
+        change[i] = right[i]
+    for j in range(room.roll.size):
+        room.roll[j] = right[n + j]
 
 
 @_unwrapped
@@ -454,6 +511,13 @@ def _disagreement(machine, room, dt):
             gap = max(gap, abs(room.found[j, i] - room.guess[j, i]))
             size = max(size, abs(room.found[j, i]), 1e-6 * spin * spin * reach)
     return gap, size
+
+
+@_unwrapped
+def _turned(machine, state, room, dt, j):
+    """Impulse of the torque that a ball takes from the drum [theory: races, eq. 1]."""
+    ball, gained = machine.balls[j], room.spins[1] - room.spins[0]
+    return _dragged(machine, state, room, dt, j) + ball.driven * gained - ball.carried * room.roll[j]
 
 
 @_unwrapped
@@ -474,6 +538,8 @@ def _spin_after(machine, state, room, dt):
         load += layer.weight * layer.radius**4 * room.gains[j].torque
     for j in range(machine.pools.shape[0]):
         load += room.drag[j]
+    for j in range(machine.balls.shape[0]):
+        load += _turned(machine, state, room, dt, j)
     after = spin
     for _ in range(4):
         after = spin + (dt * motor_torque(machine.curve, 0.5 * (spin + after)) - load) / shaft.inertia
@@ -509,6 +575,13 @@ def _tally(machine, state, room, dt):
             sums.gravity += (
                 0.5 * dt * machine.gravity[i] * (room.before[first + j, i] + room.after[first + j, i])
             )
+    for j in range(machine.balls.shape[0]):
+        ball, angle, rate = machine.balls[j], state.roll[j], state.roll_rate[j]
+        mean, middle = rate + 0.5 * room.roll[j], angle + 0.5 * dt * rate
+        sums.drive += spin * _turned(machine, state, room, dt, j)
+        sums.friction += (spin - mean) * _dragged(machine, state, room, dt, j)
+        pull = machine.gravity[1] * np.cos(middle) - machine.gravity[0] * np.sin(middle)
+        sums.gravity += dt * ball.mass * ball.radius * mean * pull
     if machine.curve.shape[1] > 0:
         sums.motor += dt * spin * motor_torque(machine.curve, spin)
 
@@ -570,6 +643,9 @@ def _accept(state, room, dt, fastest):
     for i in range(room.change.size):
         state.place[i] += dt * (state.rate[i] + 0.5 * room.change[i])
         state.rate[i] += room.change[i]
+    for j in range(room.roll.size):
+        state.roll[j] += dt * (state.roll_rate[j] + 0.5 * room.roll[j])
+        state.roll_rate[j] += room.roll[j]
     shaft.angle += 0.5 * (room.spins[0] + room.spins[1]) * dt
     shaft.spin = room.spins[1]
     for j in range(room.guess.shape[0]):

@@ -218,6 +218,8 @@ class LinearCoupled(CoupledRotor):
             depth_min=np.where(active, depth - rise, nothing),
             depth_max=np.where(active, depth + rise, nothing),
             mean_rotation=np.where(active, m.carried - self.spin, swing),
+            ball_angle=np.zeros(0),
+            ball_speed=np.zeros(0),
         )
 
     def depth(self) -> Array:

@@ -16,6 +16,7 @@ from solvers.layer.inside import SLOT_SPEED, full_area
 from solvers.layer.records import Outcome, Record, records
 from solvers.layer.state import ring
 from solvers.rotor.system import RotorSystem
+from solvers.runup.balls import NO_BALLS, Balls, ball_records, balls_energy, balls_inertia, race_planes
 from solvers.runup.machine import Handover, Reading, Transfer
 from solvers.runup.state import (
     CREST,
@@ -54,6 +55,7 @@ class Coupled(CoupledRotor):
     rolling : A e of the fluctuations behind bores of all layers, shape (l, c), or (l, 0) without them
     active : which of them are layers now, shape (l,)
     drags : of each pool, as in `Machine`, shape (l, 2, k)
+    balls : records BALL, shape (N,)
     machine, state, room : of those
     kept : steps written down since `followed` was asked last, rows of the state's trace
     """
@@ -65,6 +67,7 @@ class Coupled(CoupledRotor):
     rolling: Array
     active: Flags
     drags: Array
+    balls: Record
     machine: Machine
     state: State
     room: Room
@@ -174,7 +177,7 @@ class Coupled(CoupledRotor):
             rate = plane @ v
             total += 0.5 * self.masses[j] * rate @ rate + momentum @ rate
             total += 0.5 * self.pool_inertia[j] * self.lean_rate[j] ** 2
-        return float(total)
+        return float(total + balls_energy(self.balls, self.machine.races, self.state, self.spin))
 
     def _pressed(self) -> float:
         """Energy of what full gaps hold beyond their room, J [theory: long_wave, eq. 19]."""
@@ -275,7 +278,10 @@ class Coupled(CoupledRotor):
         weights = np.concatenate((self.masses[self.active], self.masses[self.pooled]))
         for mass, plane in zip(weights, self.machine.planes, strict=True):
             whole += mass * plane.T @ plane
-        self.state.rate[:] += np.linalg.solve(whole, lost)
+        inertia, along = balls_inertia(self.balls, self.machine.races, self.state)
+        jump = np.linalg.solve(whole + inertia, lost)
+        self.state.rate[:] += jump
+        self.state.roll_rate[:] -= along @ jump
         after, now, low = self.energy(), self._own_rotation(), abs(float(self.gravity[0]))
         rise = (self._offsets() - offset).real * low * self.masses
         for j in np.flatnonzero(anew).tolist():
@@ -333,7 +339,8 @@ class Coupled(CoupledRotor):
             pace=_fresh_pace(),
         )
         self.follow(old.trace.shape[0])
-        self.room = _room(old.place.size, (count, pools.size), cells, self.rolling.shape[1])
+        sizes = count, pools.size, self.balls.size
+        self.room = _room(old.place.size, sizes, cells, self.rolling.shape[1])
 
     def _offsets(self) -> Complex:
         """Centre of mass of each liquid from its chamber's axis, standing frame, complex, m, shape (l,)."""
@@ -369,6 +376,8 @@ class Coupled(CoupledRotor):
             mean_rotation=np.where(
                 self.active, flow.sum(axis=1) / whole, self.pooled * (self.lean_rate - self.spin)
             ),
+            ball_angle=self.state.roll - angle,
+            ball_speed=self.state.roll_rate.copy(),
         )
 
     def depth(self) -> Array:
@@ -387,8 +396,10 @@ def couple(
     dispersion: bool,
     enstrophy: bool = False,
     handover: Handover = Handover.RIDING,
+    balls: Balls = NO_BALLS,
+    position: float = 0.0,
 ) -> Coupled:
-    """Rotor without deflection, liquid at rest in the drum.
+    """Rotor without deflection, liquid at rest in the drum, balls where they start.
 
     Parameters
     ----------
@@ -397,12 +408,14 @@ def couple(
     cells, dispersion : of the layers
     enstrophy : their bores carry fluctuations behind them [theory: long_wave, eq. 15-17]
     handover : how liquid at the bottom becomes a layer
+    balls : in races round the axis
+    position : of the plane whose amplitude counts where there is no chamber, m
 
     Raises
     ------
     InputError : a negative gravity
     """
-    rest = at_rest(system, fills, spin, gravity)
+    rest = at_rest(system, fills, spin, gravity, position)
     n, count = len(system.coordinates), len(fills)
     layers = records(LAYER, count)
     for j, fill in enumerate(fills):
@@ -425,6 +438,7 @@ def couple(
         rolling=np.zeros((count, cells if enstrophy else 0)),
         active=np.zeros(count, dtype=bool),
         drags=drag_curves(fills, rest.pools, friction, gravity),
+        balls=ball_records(balls),
         machine=Machine(
             matrices=np.zeros((4, n, n)),
             unbalance=system.unbalance.astype(complex),
@@ -439,6 +453,8 @@ def couple(
             watched=rest.watched,
             plates=tables_of([], cells),
             gaps=np.zeros(0),
+            balls=ball_records(balls),
+            races=race_planes(system, balls),
         ),
         state=State(
             place=np.zeros(n),
@@ -454,9 +470,12 @@ def couple(
             sums=records(SUMS),
             crest=records(CREST),
             trace=np.zeros((0, 2 + n)),
+            roll=np.array(balls.places, dtype=float),
+            roll_rate=spin * np.array(balls.shares, dtype=float),
         ),
-        room=_room(n, (0, 0), cells, 0),
+        room=_room(n, (0, 0, len(balls.places)), cells, 0),
     )
+    found.position = position
     found.active = found.begins_as_layer(spin)
     found._assemble()
     return found
@@ -469,11 +488,11 @@ def _fresh_pace() -> Record:
     return pace
 
 
-def _room(coordinates: int, liquids: tuple[int, int], cells: int, rolling: int) -> Room:
-    """Scratch for a machine of that size; `liquids`: layers and pools; `rolling`: cells with fluctuations."""
+def _room(coordinates: int, sizes: tuple[int, int, int], cells: int, rolling: int) -> Room:
+    """Scratch for a machine of `sizes` layers, pools and balls; `rolling`: cells with fluctuations."""
     from solvers.runup.kernel import layer_scratch
 
-    n, (count, pools) = coordinates, liquids
+    n, (count, pools, balls) = coordinates, sizes
     both = count + pools
     return Room(
         area=np.zeros((count, cells)),
@@ -492,7 +511,10 @@ def _room(coordinates: int, liquids: tuple[int, int], cells: int, rolling: int) 
         found=np.zeros((both, 2)),
         change=np.zeros(n),
         swing=np.zeros(n),
-        left=np.zeros((n, n)),
+        left=np.zeros((n + balls, n + balls)),
+        right=np.zeros(n + balls),
+        roll=np.zeros(balls),
+        held=np.zeros(balls),
         spins=np.zeros(2),
         turn=np.zeros(4),
         force=np.zeros(4),

@@ -9,7 +9,7 @@ through time.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Any, Protocol
 
@@ -154,6 +154,8 @@ class Reading:
     captured : the layer rides with the drum, shape (l,)
     depth_min, depth_max : of each layer, m, shape (l,); nan while it is not captured
     mean_rotation : of each layer or pool relative to its drum, rad/s, shape (l,)
+    ball_angle : of each ball in the drum, from its zero mark, whole turns counted, rad, shape (N,)
+    ball_speed : of each ball in space, rad/s, shape (N,)
     """
 
     time: float
@@ -169,6 +171,8 @@ class Reading:
     depth_min: Array
     depth_max: Array
     mean_rotation: Array
+    ball_angle: Array = field(default_factory=lambda: np.zeros(0))
+    ball_speed: Array = field(default_factory=lambda: np.zeros(0))
 
 
 @dataclass(frozen=True)

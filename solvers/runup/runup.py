@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
 import numpy as np
@@ -161,6 +161,8 @@ class RunupHistory:
     limited : the motor gave less than its programme asked on the way to each time, shape (k,)
     left : share that is left of each part of the unbalance that leaves, shape (k, s)
     path : of the rotor all along; None where nobody asked for it
+    ball_angle : of each ball in the drum, from its zero mark, whole turns counted, rad, shape (k, N)
+    ball_speed : of each ball in space, rad/s, shape (k, N)
     """
 
     time: Array
@@ -195,6 +197,8 @@ class RunupHistory:
     limited: Flags | None = None
     left: Array | None = None
     path: RotorPath | None = None
+    ball_angle: Array = field(default_factory=lambda: np.zeros((0, 0)))
+    ball_speed: Array = field(default_factory=lambda: np.zeros((0, 0)))
 
     @property
     def converged(self) -> bool:

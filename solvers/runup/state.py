@@ -164,6 +164,9 @@ PACE = floats("last", "before", "fastest", "share", "kept")
 CREST = floats("amplitude", "speed", "time")
 # A pool as a pendulum about its chamber's axis: mass, distance of its centre of mass, length, inertia.
 POOL = floats("mass", "arm", "length", "inertia")
+# A ball in a race: mass, radius of its path, inertia on it, torque of the drag over the speed in the drum,
+# torque by a change of the spin on the ball and on the drum, and its resistance to rolling over its pressure.
+BALL = floats("mass", "radius", "inertia", "drag", "carried", "driven", "resistance")
 # What is summed up over time [theory: coupling, eq. 9-10]: work of the unbalance, of the drive on the liquid,
 # of gravity; heat in the supports and by wall friction, loss in bores and by the scheme, loss at the baffles,
 # what the assumed profile of the flow misses while the spin changes; work of the motor; steps, layer steps,
@@ -193,6 +196,8 @@ class Machine(NamedTuple):
     watched : displacement of the axis whose amplitude counts, for unit coordinates, shape (2, n)
     plates : baffles of each layer, as by `solvers.layer.baffles.tables_of`, shape (l, k, COLUMNS)
     gaps : area of the full gap of each layer over R^2, 1 without an inner wall, shape (l,)
+    balls : records BALL, shape (N,)
+    races : displacement of the axis in the plane of each ball for unit coordinates, shape (N, 2, n)
     """
 
     matrices: Array
@@ -208,6 +213,8 @@ class Machine(NamedTuple):
     watched: Array
     plates: Array
     gaps: Array
+    balls: Record
+    races: Array
 
 
 class State(NamedTuple):
@@ -226,6 +233,7 @@ class State(NamedTuple):
     crest : record CREST, shape (1,)
     trace : time, angle, coordinates, and the first moment of each layer over R^3 in the drum frame, of every
         step, shape (k, 2 + n + 2 l); k = 0 where nobody wants them
+    roll, roll_rate : angle of each ball in the standing frame, and its rate, shape (N,)
     """
 
     place: Array
@@ -241,6 +249,8 @@ class State(NamedTuple):
     sums: Record
     crest: Record
     trace: Array
+    roll: Array
+    roll_rate: Array
 
 
 class Room(NamedTuple):
@@ -256,7 +266,9 @@ class Room(NamedTuple):
     before, after : their momenta relative to their axes at both ends, shape (l + p, 2)
     guess, found : mean accelerations of the axes put in and come out, shape (l + p, 2)
     change, swing : of the velocities over the step; of the unbalance's momentum, shape (n,)
-    left : matrix of the rotor's equations, shape (n, n)
+    left, right : matrix and loads of the equations of rotor and balls, shapes (n + N, n + N) and (n + N,)
+    roll : change of the balls' rates over the step, shape (N,)
+    held : rolling resistance of each ball over its speed in the drum, N m s, shape (N,)
     spins : at both ends, shape (2,)
     turn : cosine and sine of the angle turned at both ends, shape (4,)
     force : body force over R in the drum frame at both ends, two parts each, shape (4,)
@@ -280,6 +292,9 @@ class Room(NamedTuple):
     change: Array
     swing: Array
     left: Array
+    right: Array
+    roll: Array
+    held: Array
     spins: Array
     turn: Array
     force: Array
@@ -294,7 +309,7 @@ class Rest(NamedTuple):
     capture : own rotation above which each liquid stays a layer, rad/s, inf for a solid mass, shape (l,)
     pools : of the chambers across gravity; None for a solid mass, no liquid, and without gravity
     planes : displacement of each chamber's axis for unit coordinates, shape (l, 2, n)
-    watched : that of the first chamber, or of the axis at position 0 without one, shape (2, n)
+    watched : that of the first chamber, or of the axis at a position without one, shape (2, n)
     shaft : record SHAFT at the spin, shape (1,)
     gravity : acceleration across the axis, shape (2,)
     """
@@ -307,13 +322,16 @@ class Rest(NamedTuple):
     gravity: Array
 
 
-def at_rest(system: RotorSystem, fills: Sequence[Fill], spin: float, gravity: float) -> Rest:
+def at_rest(
+    system: RotorSystem, fills: Sequence[Fill], spin: float, gravity: float, position: float = 0.0
+) -> Rest:
     """How every run-up begins.
 
     Parameters
     ----------
     system, fills, gravity : as for `solvers.runup.runup.run_up`
     spin : at the beginning, rad/s
+    position : of the plane whose amplitude counts where there is no chamber, m
 
     Raises
     ------
@@ -327,7 +345,7 @@ def at_rest(system: RotorSystem, fills: Sequence[Fill], spin: float, gravity: fl
         capture=np.array([layer_capture(fill, gravity) for fill in fills]),
         pools=tuple(pool_of(fill) if gravity > 0.0 else None for fill in fills),
         planes=planes,
-        watched=np.array(planes[0] if fills else system.centre, dtype=float),
+        watched=np.array(planes[0] if fills else system.at(position), dtype=float),
         shaft=shaft,
         gravity=np.array([-gravity, 0.0]),
     )
@@ -352,6 +370,7 @@ class CoupledRotor(ABC):
     lean, lean_rate : angle of each pool from the bottom, positive with the spin, rad, and its rate, (l,)
     transfers : liquid that has become a layer or fallen so far
     lost_mass, lost_inertia : mass matrix of what has left the drum, and its moment of inertia about the axis
+    position : of the plane that is read where there is no chamber, m
     """
 
     system: RotorSystem
@@ -365,6 +384,7 @@ class CoupledRotor(ABC):
     transfers: list[Transfer] = field(default_factory=list, init=False)
     lost_mass: Array | None = field(default=None, init=False)
     lost_inertia: float = field(default=0.0, init=False)
+    position: float = field(default=0.0, init=False)
 
     @cached_property
     def swings(self) -> Flags:
@@ -426,7 +446,7 @@ class CoupledRotor(ABC):
     def seen(self) -> Array:
         """Displacement of the axes that are read, for unit coordinates: the chambers', or the one watched."""
         planes = planes_of(self.system, self.fills)
-        return planes if len(planes) else np.array([self.system.centre], dtype=float)
+        return planes if len(planes) else np.array([self.system.at(self.position)], dtype=float)
 
     @cached_property
     def lowest(self) -> Array:

@@ -13,6 +13,8 @@ ROTORS = (
     *("centrifuge", "runup"),
 )
 WHOLE = ("two_plane_rig", "vertical_rig", "centrifuge", "runup")  # run-ups held to their end
+BALLS = ("balls", "balls_and_liquid")
+_NOT_BALLS = ("explain", "map", "optimise", "view", "trade")
 DOCS = ("closed_baffles", "lobes", "smallest_scene")
 COMMANDS = (
     *(
@@ -104,6 +106,8 @@ def _runs() -> Iterator[Case]:
         yield _case(f"run-{name}", f"run {_scene(name)} --json --out out")
         yield _case(f"explain-{name}", f"explain {_scene(name)} --json")
     yield _case("explain-top_loader", f"explain {_scene('top_loader')} --json")
+    for name in BALLS:
+        yield _case(f"run-{name}", f"run {_scene(name)} --json --out out")
     yield _case("run-exact", "run small/horizontal_rig_exact.toml --workers 1 --json --out out")
     yield _case("run-spindle", f"run {_scene('spindle')} --json --out out")
     yield _case("run-top_loader", f"run {_scene('top_loader')} --json --out out")
@@ -125,6 +129,10 @@ def _runups() -> Iterator[Case]:
     yield _case("runup-programme", typed)
     typed = f"runup {_scene('top_loader')} --cells 32 --samples 401 --no-check --json --out out"
     yield _case("runup-top_loader", typed)
+    for name in BALLS:
+        yield _case(
+            f"runup-{name}", f"runup {_scene(name)} --cells 32 --samples 201 --no-check --json --out out"
+        )
     yield _case("runup-check", "runup small/runup.toml --samples 51 --json --out out")
 
 
@@ -254,6 +262,7 @@ def _words() -> Iterator[Case]:
     yield _case("words-bearing", f"{_BEARING} --cage 12Hz")
     yield _case("words-exciter-explain", "explain examples/vibratory_table.toml")
     yield _case("words-magnetic-explain", "explain examples/blood_pump.toml")
+    yield _case("words-balls", f"run {_scene('balls')} --out out")
     yield _case("words-compare", "compare small/runup.toml --models linear,statics --out out")
     fitted = f"fit {_scene('horizontal_rig')} docs/examples/measured.csv --unknown rotor.mass --starts 2"
     yield _case("words-fit", f"{fitted} --out out")
@@ -323,6 +332,8 @@ def _wrong() -> Iterator[Case]:
         "bearing-nothing": "bearing --speed 33Hz",
         "bearing-balls": "bearing --speed 33Hz --ftf 0.4",
         "bearing-both": "bearing --speed 33Hz --ftf 0.4 --pitch-diameter 31mm",
+        **{f"{command}-balls": f"{command} {_scene('balls_and_liquid')}" for command in _NOT_BALLS},
+        "compare-balls": f"compare {_scene('balls')} --models statics",
         "runup-missing": f"runup {smallest}",
         "map-volumes": f"map {rig} --volumes 0",
         "map-friction": f"map {rig} --friction sticky",

@@ -24,7 +24,7 @@ def with_and_without(scene: Scene, check: bool = False) -> tuple[RunupHistory, R
     scene : the machine
     check : estimate the error, with half the cells
     """
-    empty = scene.altered(chambers=tuple(chamber.holding(0.0) for chamber in scene.chambers))
+    empty = scene.altered(chambers=tuple(chamber.holding(0.0) for chamber in scene.liquids))
     wet, dry = (runup_scene(machine, check=check).history for machine in (scene, empty))
     return wet, dry
 

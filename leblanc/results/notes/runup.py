@@ -64,6 +64,9 @@ class RunupCode(NoteCode):
     MOTOR_LIMITED = "motor_limited"
     UNBALANCE_LEFT = "unbalance_left"
     LOADS = "loads"
+    BALLS_AS_POINTS = "balls_as_points"
+    WHIRL_BESIDE_BALLS = "whirl_beside_balls"
+    BALLS_RUN = "balls_run"
 
 
 # What the tables of a report say as well.
@@ -235,6 +238,33 @@ def largest_amplitude(history: RunupHistory, steady: Response | None) -> Note:
     most, at = float(abs(steady.deflection[highest])), float(steady.speed[highest])
     text = f"{text}; in the steady response it is {with_unit(most, LENGTH)} at {in_rpm(at)}."
     return Note(RunupCode.PEAK_STEADY, data | {"steady_amplitude": most, "steady_speed": at}, text)
+
+
+def balls_as_points() -> Note:
+    """What every motion of balls assumes."""
+    text = (
+        "The balls are points: they pass through one another, and are always pressed to their race. Their "
+        "drag is that of the scene at any speed."
+    )
+    return Note(RunupCode.BALLS_AS_POINTS, {}, text)
+
+
+def whirl_beside_balls() -> Note:
+    """Whirls that the liquid excites are only in the run itself."""
+    text = "Bands of self-excited whirl are not looked for beside balls; the run itself has such whirls."
+    return Note(RunupCode.WHIRL_BESIDE_BALLS, {}, text)
+
+
+def balls_run(behind: float, speed: float) -> Note:
+    """Balls that have not come to rest in the drum.
+
+    Parameters
+    ----------
+    behind : how fast the drum and the ball pass one another, rad/s
+    speed : of the spin, rad/s
+    """
+    text = f"At the end a ball still runs in its race, by {in_rpm(behind)} at {in_rpm(speed)} of the drum."
+    return Note(RunupCode.BALLS_RUN, {"behind": behind, "speed": speed}, text)
 
 
 FEW = 4  # times that liquid is caught or falls and is told of one by one

@@ -54,6 +54,8 @@ class Part(BaseModel):
 
     # Pairs of keys of which exactly one must be given.
     ALTERNATIVES: ClassVar[tuple[tuple[str, str], ...]] = ()
+    # The kind is what a table without one has: a file does not say it.
+    USUAL_KIND: ClassVar[bool] = False
 
     def __init__(self, /, **values: Any) -> None:
         try:
@@ -86,7 +88,8 @@ class Part(BaseModel):
         found = {}
         for name, field in type(self).model_fields.items():
             value = getattr(self, name)
-            if value is None or (name not in self.model_fields_set and name != "kind"):
+            said = name in self.model_fields_set or (name == "kind" and not self.USUAL_KIND)
+            if value is None or not said:
                 continue
             written = getattr(rule_of(field), "written", _written)
             found[name] = written(value)
@@ -209,7 +212,7 @@ def parts_of(field: FieldInfo) -> dict[str, type[Part]]:
     """
     table = getattr(rule_of(field), "table", None)
     found = [table] if table is not None else list(_parts_in(field.annotation))
-    if field.discriminator is None:
+    if len(found) < 2:
         return dict(zip([""], found, strict=False))
     return {part.model_fields["kind"].default: part for part in found}
 

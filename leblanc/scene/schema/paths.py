@@ -23,6 +23,8 @@ _FIXED = (("rotor", "kind"), ("speeds", "count"))
 def tables_of(root: type[Part], kind: str) -> dict[tuple[str, ...], type[Part]]:
     """Each table of a file by its place; "*" stands for the number of an entry.
 
+    Of entries of several kinds "*" is the usual one, and "*balls" that of the kind `balls`.
+
     Parameters
     ----------
     root : the whole file
@@ -31,11 +33,35 @@ def tables_of(root: type[Part], kind: str) -> dict[tuple[str, ...], type[Part]]:
     found: dict[tuple[str, ...], type[Part]] = {(): root}
     for name, field in root.model_fields.items():
         parts = parts_of(field)
-        part = parts.get(kind) or parts.get("")
-        if part is not None:
-            place = (name, "*") if is_list_of_parts(field) else (name,)
+        inside: dict[tuple[str, ...], type[Part]]
+        if is_list_of_parts(field):
+            inside = {(name, "*" if part.USUAL_KIND else f"*{key}"): part for key, part in parts.items()}
+        else:
+            part = parts.get(kind) or parts.get("")
+            inside = {} if part is None else {(name,): part}
+        for place, part in inside.items():
             found |= {(*place, *below): table for below, table in tables_of(part, kind).items()}
     return found
+
+
+def place_of(table: Mapping[str, Any], keys: Keys, tables: Mapping[tuple[str, ...], Any]) -> tuple[str, ...]:
+    """Keys of a path as `tables_of` has them.
+
+    Parameters
+    ----------
+    table : content of a scene file
+    keys : along the path
+    tables : of the file
+    """
+    place: tuple[str, ...] = ()
+    found: Any = table
+    for key in keys:
+        stands = isinstance(found, list) and isinstance(key, int) and key < len(found)
+        found = found[key] if stands else found.get(key) if isinstance(found, Mapping) else None
+        other = f"*{found.get('kind', '')}" if isinstance(key, int) and isinstance(found, Mapping) else ""
+        named = other if (*place, other) in tables else "*"
+        place = (*place, named if isinstance(key, int) else key)
+    return place
 
 
 def keys_of(path: str) -> Keys:
@@ -91,7 +117,7 @@ def require_field(root: type[Part], table: Mapping[str, Any], path: str) -> tupl
     """
     keys = keys_of(path)
     tables = tables_of(root, table["rotor"]["kind"])
-    pattern = tuple("*" if isinstance(key, int) else key for key in keys)
+    pattern = place_of(table, keys, tables)
     depth = max(n for n in range(len(keys)) if pattern[:n] in tables)
     fields = tables[pattern[:depth]].model_fields
     if pattern[depth] not in fields:
@@ -117,8 +143,7 @@ def _must_stand(table: Mapping[str, Any], keys: Keys, tables: Mapping[tuple[str,
         if not stands:
             raise Refused(f"the path of a field; the scene has no {place}")
         found = found[key]
-        pattern = tuple("*" if isinstance(key, int) else key for key in keys[: n + 1])
-        if pattern in tables and not isinstance(found, Mapping):
+        if place_of(table, keys[: n + 1], tables) in tables and not isinstance(found, Mapping):
             raise Refused(f"the path of a field; {place} is no table in the scene")
 
 

@@ -17,7 +17,7 @@ from fluid.waves import capture_speed
 from fluid.whirl import covering_speed
 from leblanc.results.choice import Choice, HeldCost
 from leblanc.results.motion.held import HELD_MODELS
-from leblanc.scene.scene import Scene, dry_rotor
+from leblanc.scene.scene import Scene, dry_rotor, require_no_balls
 from leblanc.studies.models.liquid import synchronous_model
 from meshes.arrays import Array, Flags
 from meshes.chamber_section import rest_offset, surface_is_whole
@@ -76,8 +76,9 @@ def prepare(scene: Scene) -> Prepared:
 
     Raises
     ------
-    InputError : the scene is that of an exciter
+    InputError : the scene is that of an exciter, or has balls
     """
+    require_no_balls(scene, "this; `leblanc run` and `leblanc runup` answer with balls")
     rotor = dry_rotor(scene)
     return Prepared(
         scene=scene,

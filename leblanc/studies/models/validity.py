@@ -157,7 +157,7 @@ def _free(scene: Scene) -> Iterator[Note]:
 
 
 def _chambers(scene: Scene) -> Iterator[Note]:
-    for k, (chamber, fill) in enumerate(zip(scene.chambers, scene.fills, strict=True)):
+    for k, (chamber, fill) in enumerate(zip(scene.liquids, scene.fills, strict=True)):
         at = f"chambers.{k}"
         sizes = (("radius", chamber.radius), ("height", chamber.height))
         odd = [note for name, size in sizes if size for note in _size(f"{at}.{name}", name, size)]

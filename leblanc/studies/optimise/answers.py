@@ -237,7 +237,7 @@ def with_volumes(scene: Scene, volumes: Array) -> Scene:
     ------
     InputError : a volume that its chamber does not hold
     """
-    pairs = zip(scene.chambers, volumes.tolist(), strict=True)
+    pairs = zip(scene.liquids, volumes.tolist(), strict=True)
     return scene.altered(chambers=tuple(chamber.holding(volume) for chamber, volume in pairs))
 
 

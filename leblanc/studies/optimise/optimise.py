@@ -25,7 +25,7 @@ from leblanc.results.optimum import (
     ParetoFront,
     WettingVolumes,
 )
-from leblanc.scene.scene import Scene, Speeds, require_clear, require_whirl
+from leblanc.scene.scene import Scene, Speeds, require_clear, require_no_balls, require_whirl
 from leblanc.scene.tasks import Optimisation
 from leblanc.studies.models.choose import axial_gravity
 from leblanc.studies.models.liquid import SYNCHRONOUS_MODELS
@@ -106,6 +106,7 @@ def optimise_scene(
     if task.objective == "layout":
         raise InputError("--objective", "layout", "one of the liquid here; optimise_layout answers this one")
     require_whirl(scene)
+    require_no_balls(scene, "this; `leblanc run` and `leblanc runup` answer with balls")
     if not scene.fills:
         raise InputError("chambers", "none", "at least one to choose the volume of")
     require_clear(scene, "a search over volumes, which rests on the equilibrium in a ring", baffles=True)

@@ -200,10 +200,10 @@ def in_condition(scene: Scene, condition: OperatingCondition) -> tuple[Scene, li
     rotor = with_unbalances(scene.rotor, condition.unbalance)
     if condition.temperature is None:
         return scene.altered(rotor=rotor), [1.0] * len(scene.fills)
-    growth = [expansion(chamber.liquid, condition.temperature) for chamber in scene.chambers]
+    growth = [expansion(chamber.liquid, condition.temperature) for chamber in scene.liquids]
     warm = [
         chamber.altered(liquid=liquid_at(chamber.liquid, condition.temperature), volume=0.0)
-        for chamber in scene.chambers
+        for chamber in scene.liquids
     ]
     return scene.altered(rotor=rotor, chambers=tuple(warm)), growth
 

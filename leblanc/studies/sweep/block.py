@@ -17,7 +17,6 @@ from numpy.typing import NDArray
 from pydantic import ValidationError
 
 from leblanc.results.base import versions
-from leblanc.scene.chambers import Chamber
 from leblanc.scene.scene import Scene, scene_from_table
 from leblanc.scene.schema.load import SceneError, escaped
 from leblanc.scene.schema.part import Part, rule_of
@@ -177,7 +176,7 @@ def scene_maker(table: Mapping[str, Any], paths: Sequence[Keys]) -> Maker:
         try:
             parts = list(scene.chambers)
             for k in chambers:
-                parts[k] = Chamber.model_validate(changed["chambers"][k])
+                parts[k] = type(parts[k]).model_validate(changed["chambers"][k])
             rotor = scene.rotor
             if ("rotor",) in touched:
                 rotor = rotor_class.model_validate(changed["rotor"])

@@ -28,10 +28,15 @@ class BallRace:
     masses : m of each ball, kg
     drag : of the race on one ball over its speed in it, N s/m
     rolling : kappa, inertia of a ball on its way over that of its sliding mass, 7/5 for a ball that rolls
+    resistance : f, what a ball resists to rolling over the force with which it presses on the race; a ball
+        that is at rest in the rotor stays until it is pulled harder. Only run-ups know it
+    carried, driven : s and d, torque on a ball and on the rotor by a change of the spin over m R^2 times that
+        change, 0 for a ball that slides [theory: races, eq. 1]; a constant spin does not feel them
 
     Raises
     ------
-    InputError : a radius or mass that is not positive, no ball, a negative drag, kappa below 1
+    InputError : a radius or mass that is not positive, no ball, a negative drag, resistance or share, kappa
+        below 1
     """
 
     position: float
@@ -39,8 +44,13 @@ class BallRace:
     masses: tuple[float, ...]
     drag: float
     rolling: float = 7.0 / 5.0
+    resistance: float = 0.0
+    carried: float = 0.0
+    driven: float = 0.0
 
     def __post_init__(self) -> None:
+        for name in ("resistance", "carried", "driven"):
+            require_not_negative(name, getattr(self, name))
         if not math.isfinite(self.position):
             raise InputError("position", self.position, "a finite number")
         require_positive("radius", self.radius)
@@ -117,7 +127,7 @@ def simulate(
     Raises
     ------
     InputError : a value out of its range, or so long a time of so stiff a rotor that it would take too many
-        steps
+        steps; balls that resist to rolling, which only run-ups know
     """
     from solvers.rotor.balls.steps import advance
 
@@ -126,6 +136,8 @@ def simulate(
     require_not_negative("gravity", gravity)
     if not races or samples < 2 or steps < 8:
         raise InputError("races, samples, steps", (len(races), samples, steps), "at least 1, 2 and 8")
+    if any(race.resistance > 0.0 for race in races):
+        raise InputError("resistance", [race.resistance for race in races], "0 here; a run-up knows it")
     axes, balls = race_arrays(system, races)
     n, count = len(system.coordinates), balls.shape[0]
     state = _initial(n, races, speed, places, count)

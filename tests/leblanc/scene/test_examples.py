@@ -49,6 +49,8 @@ def test_the_examples_of_each_kind() -> None:
         "runup",
         "weak_motor",
         "spindle",
+        "balls",
+        "balls_and_liquid",
     }
 
 
@@ -124,7 +126,7 @@ def test_new_lists_the_examples(capsys: pytest.CaptureFixture[str]) -> None:
     lines = capsys.readouterr().out.splitlines()
     assert [line.split()[0] for line in lines] == list(example_names())
     assert main(["new", "--example", "tbu"]) == 2
-    assert "must be one of: blood_pump" in capsys.readouterr().err
+    assert "must be one of: balls" in capsys.readouterr().err
 
 
 def test_the_wheel_carries_the_examples() -> None:

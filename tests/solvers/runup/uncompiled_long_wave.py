@@ -188,7 +188,7 @@ def momentum(found: Coupled) -> np.ndarray:
     "left[i, k] += (mass - xx) * b[0, i] * b[0, k]",
     "left[i, k] += (mass + xx) * b[0, i] * b[0, k]",
 )
-@kills("solvers.runup.kernel:_move_rotor", "change[i] -= b[0, i] * given_x", "change[i] += b[0, i] * given_x")
+@kills("solvers.runup.kernel:_move_rotor", "right[i] -= b[0, i] * given_x", "right[i] += b[0, i] * given_x")
 @kills(
     "solvers.runup.kernel:_accept",
     "shaft.angle += 0.5 * (room.spins[0] + room.spins[1]) * dt",

@@ -136,7 +136,7 @@ def _largest(scene: Scene) -> float:
 def _largest_dry() -> float:
     """The same without liquid, m."""
     scene = machine(1, "concentric")
-    return _largest(scene.altered(chambers=tuple(ring.holding(0.0) for ring in scene.chambers)))
+    return _largest(scene.altered(chambers=tuple(ring.holding(0.0) for ring in scene.liquids)))
 
 
 def cases() -> list[Case]:

@@ -89,7 +89,7 @@ def machine(values: Values, added: float) -> Scene:
     values : that were drawn
     added : water that was added to the ring, ml
     """
-    ring = base().chambers[0]
+    ring = base().liquids[0]
     outer = float(ring.radius or 0.0)
     inner = math.sqrt(outer**2 - values.ring / (math.pi * ring.height))
     changes: dict[str, object] = {
@@ -169,8 +169,8 @@ def cruise(scene: Scene) -> float:
     ----------
     scene : the machine
     """
-    clear = scene.altered(chambers=tuple(c.altered(baffles=None) for c in scene.chambers))
-    fills = np.array([[scene.chambers[0].volume]])
+    clear = scene.altered(chambers=tuple(c.altered(baffles=None) for c in scene.liquids))
+    fills = np.array([[scene.liquids[0].volume]])
     return float(FilledMachine(clear).at(fills, np.array([CRUISE])).amplitude[0])
 
 

@@ -1,0 +1,1 @@
+"""Figures of rotors with balls in races."""

@@ -1,0 +1,117 @@
+"""The figure of a rotor with balls: amplitude of the states, and where the balls rest, over speed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from leblanc.figures.drawing.curves import gapped
+from leblanc.figures.drawing.page import (
+    Caption,
+    Figure,
+    FigureFiles,
+    Frame,
+    add_rate_axis,
+    lay_out,
+    number,
+    save,
+    style,
+)
+from leblanc.figures.response import DRY, WET
+from leblanc.results.base import one_line
+from leblanc.results.motion.ball_states import BallsResult
+from leblanc.results.motion.balls import in_race
+from leblanc.text.balls import alt, answer
+from leblanc.units import MM, RPM
+
+FRAME = Frame(left=0.72, top=0.46, between=0.14, below=0.42)
+TITLE = "Amplitude with balls and where they rest"
+_RACES = ((WET, "o"), ("#CC79A7", "s"), ("#009E73", "^"))  # colour and mark of a race
+_FAR = 1.6  # times the largest of stable states and of the bare rotor: unstable ones above are cut
+
+
+def balls_figure(result: BallsResult) -> Figure:
+    """Amplitudes above, angles of the balls in the drum below.
+
+    Parameters
+    ----------
+    result : the answer
+    """
+    with style():
+        figure = Figure()
+        figure.alt = alt(result)
+        above: Any = figure.add_axes((0, 0, 1, 1), label="amplitude")
+        below: Any = figure.add_axes((0, 0, 1, 1), label="angles")
+        _draw_amplitudes(above, result)
+        _draw_angles(below, result)
+        low, high = float(result.speed.min()) * RPM, float(result.speed.max()) * RPM
+        margin = 0.01 * (high - low) if high > low else 1.0
+        for axes in (above, below):
+            axes.set_xlim(low - margin, high + margin)
+            axes.xaxis.set_major_formatter(number)
+            axes.yaxis.set_major_formatter(number)
+        above.tick_params(labelbottom=False)
+        below.set_xlabel("Speed (rpm)")
+        add_rate_axis(above, "Speed (rad/s)")
+        lay_out(figure, [[above], [below]], [2.3, 1.6], FRAME, _caption(result), most_lines=6)
+    return figure
+
+
+def write_balls_figure(result: BallsResult, directory: Path) -> FigureFiles:
+    """Draw the figure and write it as PNG and SVG.
+
+    Parameters
+    ----------
+    result : the answer
+    directory : where the files go; made if it is missing
+    """
+    return save(balls_figure(result), directory, "balls", TITLE)
+
+
+def _draw_amplitudes(axes: Any, result: BallsResult) -> None:
+    """Stable state, unstable ones as small marks, and the rotor without balls."""
+    rpm, shown = result.speed * RPM, np.where(result.stable, result.amplitude, np.nan)
+    bare = np.where(np.isfinite(result.amplitude_without), result.amplitude_without, np.nan)
+    label = "without balls" if result.liquid_mass == 0.0 else "without balls, with liquid"
+    axes.plot(rpm, bare * MM, color=DRY, linestyle=(0, (4, 2)), linewidth=1.1, label=label)
+    loose = (result.states.kind > 0) & ~result.states.stable
+    row, column = np.nonzero(loose)
+    if row.size:
+        look = {"linestyle": "none", "marker": ".", "markersize": 2.2, "color": "0.55"}
+        axes.plot(rpm[row], result.sizes[row, column] * MM, label="unstable states", zorder=1.5, **look)
+    jump = np.flatnonzero(result.state[1:] != result.state[:-1])
+    breaks = np.zeros(max(rpm.size - 1, 0), dtype=bool)
+    breaks[jump] = True
+    axes.plot(*gapped(rpm, shown * MM, breaks), color=WET, linewidth=1.6, label="stable state", zorder=3.0)
+    top = float(np.nanmax(np.concatenate((bare, shown, [0.0]))))
+    axes.set_ylim(-0.02 * _FAR * top * MM, _FAR * top * MM or 1.0)
+    axes.set_ylabel("Amplitude (mm)")
+
+
+def _draw_angles(axes: Any, result: BallsResult) -> None:
+    """Each ball of the stable state, a mark for each race."""
+    rpm, race = result.speed * RPM, in_race(result.races)
+    angle = np.degrees(np.where(result.stable[:, None], result.ball_angle, np.nan))
+    seen: set[int] = set()
+    for j, own in enumerate(race.tolist()):
+        color, mark = _RACES[own % len(_RACES)]
+        name = "balls, stable state" if len(result.races) == 1 else f"balls of race {own + 1}"
+        look = {"linestyle": "none", "marker": mark, "markersize": 2.6, "color": color}
+        axes.plot(rpm, angle[:, j], label="_" if own in seen else name, **look)
+        seen.add(own)
+    axes.set_ylim(-190.0, 190.0)
+    axes.set_yticks([-180.0, -90.0, 0.0, 90.0, 180.0])
+    axes.set_ylabel("Angle from the\nzero mark (deg)")
+
+
+def _caption(result: BallsResult) -> Caption:
+    assumed = ", ".join(map(one_line, result.assumed)) or "nothing"
+    zero = "the unbalance" if result.kind == "jeffcott" else "angle 0 of the unbalances"
+    count = sum(race.count for race in result.races)
+    return Caption(
+        f"{answer(result)} Zero mark: {zero}.",
+        f"Scene: {one_line(result.name)}, {result.axis} axis, {count} ball{'' if count == 1 else 's'}. "
+        f"Assumed: {assumed}.",
+    )

@@ -1,0 +1,253 @@
+"""What `run` answers of a rotor with balls: where they rest in the drum at each speed, and what is left."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from leblanc.results.base import Note, Result, attributes, one_line, texts
+from leblanc.results.exciter import number_or_none
+from leblanc.results.motion.balls import RaceOfBalls, ball_moment
+from leblanc.results.netcdf import NamedArrays, flags
+from leblanc.results.netcdf import variable as var
+from meshes.arrays import Array, Complex, Flags, Index
+from solvers.rotor.balls.steady import BallKind, BallStates
+
+STATE_NAMES: Mapping[int, str] = {kind: kind.name.lower() for kind in BallKind}
+
+
+@dataclass(frozen=True)
+class BallsResult(Result):
+    """States of rotor, balls and liquid; s speeds, at most b states at each, N balls.
+
+    Parameters
+    ----------
+    name, source, assumed, digest : of the scene
+    inputs : label, value with its unit, field path
+    kind, axis : of the rotor; "horizontal" or "vertical"
+    races : that hold the balls
+    position : along the axis of the plane whose motion is reported, m
+    states : all that were found at each speed
+    forward, backward : parts of the orbit there, m, shape (s, b), nan where there are fewer states
+    deflection_without : forward part of the rotor without balls, with its liquid, m, shape (s,)
+    amplitude_without : its amplitude, m, shape (s,)
+    amplitude_dry : amplitude without balls and without liquid, m, shape (s,)
+    liquid : first moment of all liquid about the rotation axis, kg m, in the drum, shape (s, b)
+    liquid_mass : kg
+    dry : a wall is dry over its whole height somewhere, shape (s, b)
+    capacity : largest unbalance that the balls of each race hold, kg m
+    can_balance : the balls can take all unbalance away
+    sticking : deflection in the plane of each race below which its balls stay where they are, m
+    notes : limits of validity and findings
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> result = lb.run(lb.example("balls"))
+    >>> result.state[0], result.state[-1]
+    ('together', 'balanced')
+    """
+
+    figure: ClassVar[str] = "leblanc.figures.races.balls:balls_figure"
+    summary: ClassVar[str] = "leblanc.text.balls:facts"
+
+    name: str
+    source: str
+    assumed: tuple[str, ...]
+    digest: str
+    inputs: tuple[tuple[str, str, str], ...]
+    kind: str
+    axis: str
+    races: tuple[RaceOfBalls, ...]
+    position: float
+    states: BallStates
+    forward: Complex
+    backward: Complex
+    deflection_without: Complex
+    amplitude_without: Array
+    amplitude_dry: Array
+    liquid: Complex
+    liquid_mass: float
+    dry: Flags
+    capacity: tuple[float, ...]
+    can_balance: bool
+    sticking: tuple[float, ...]
+    notes: tuple[Note, ...]
+
+    @property
+    def speed(self) -> Array:
+        """Spin speed, rad/s, shape (s,)."""
+        return self.states.speed
+
+    @property
+    def sizes(self) -> Array:
+        """Amplitude of each state, m, nan where there is none, shape (s, b)."""
+        return np.asarray(np.abs(self.forward) + np.abs(self.backward))
+
+    @property
+    def chosen(self) -> Index:
+        """Which state is reported at each speed: of the stable ones the one with the largest amplitude.
+
+        Where none is stable it is the one whose small motions grow least; -1 where none was found.
+        """
+        stable = self.states.stable
+        largest = np.argmax(np.where(stable, self.sizes, -1.0), axis=1)
+        growth = np.where(self.states.kind > 0, np.nan_to_num(self.states.growth, nan=np.inf), np.inf)
+        least = np.argmin(growth, axis=1)
+        found = np.where(stable.any(axis=1), largest, least)
+        return np.where((self.states.kind > 0).any(axis=1), found, -1)
+
+    def _of_chosen(self, values: NDArray[Any], missing: Any) -> NDArray[Any]:
+        """Values of the states that are reported."""
+        rows, chosen = np.arange(self.speed.size), self.chosen
+        known = (chosen >= 0).reshape(-1, *[1] * (values.ndim - 2))
+        return np.where(known, values[rows, chosen], missing)
+
+    @property
+    def converged(self) -> Flags:
+        """A state was found, shape (s,)."""
+        return np.asarray(self.chosen >= 0)
+
+    @property
+    def stable(self) -> Flags:
+        """Small motions about the state reported do not grow, shape (s,)."""
+        return self._of_chosen(self.states.stable, False)
+
+    @property
+    def amplitude(self) -> Array:
+        """Largest distance of the axis from where it rests, m, shape (s,)."""
+        return self._of_chosen(self.sizes, np.nan)
+
+    @property
+    def deflection(self) -> Complex:
+        """Forward part of the axis' motion in the drum, m, shape (s,)."""
+        return self._of_chosen(self.forward, complex(np.nan, np.nan))
+
+    @property
+    def phase(self) -> Array:
+        """Angle from the drum's zero mark to the deflection, rad, shape (s,)."""
+        return np.asarray(np.angle(self.deflection))
+
+    @property
+    def state(self) -> NDArray[np.str_]:
+        """How the balls rest: balanced, together or apart; none where nothing was found, shape (s,)."""
+        kinds = self._of_chosen(self.states.kind, 0)
+        return np.array([STATE_NAMES[kind] for kind in kinds.tolist()])
+
+    @property
+    def growth(self) -> Array:
+        """Largest growth of small motions about the state reported, 1/s, below 0 where they fade."""
+        return self._of_chosen(self.states.growth, np.nan)
+
+    @property
+    def ball_angle(self) -> Array:
+        """Angle of each ball from the drum's zero mark, rad, shape (s, N)."""
+        return self._of_chosen(self.states.places, np.nan)
+
+    @property
+    def ball_unbalance(self) -> Array:
+        """Size of the unbalance of all balls together, kg m, shape (s,)."""
+        return np.asarray(np.abs(ball_moment(self.races, self.ball_angle)))
+
+    @property
+    def liquid_position(self) -> Complex:
+        """Liquid's centre of mass from the rotation axis in the drum, m, shape (s,); nan without liquid."""
+        if self.liquid_mass == 0.0:
+            return np.full(self.speed.shape, complex(np.nan, np.nan))
+        return np.asarray(self._of_chosen(self.liquid, complex(np.nan, np.nan)) / self.liquid_mass)
+
+    @property
+    def liquid_offset(self) -> Array:
+        """Its distance from the rotation axis, m, shape (s,)."""
+        return np.asarray(np.abs(self.liquid_position))
+
+    @property
+    def liquid_angle(self) -> Array:
+        """Its angle from the drum's zero mark, rad, shape (s,)."""
+        return np.asarray(np.angle(self.liquid_position))
+
+    @property
+    def dry_patch(self) -> Flags:
+        """A wall is dry over its whole height somewhere, shape (s,)."""
+        return self._of_chosen(self.dry, False)
+
+    @property
+    def model(self) -> NDArray[np.str_]:
+        """What answers at each speed, shape (s,)."""
+        return np.full(self.speed.shape, "balls and statics" if self.liquid_mass > 0.0 else "balls")
+
+    @property
+    def balanced(self) -> Flags:
+        """The balanced state is stable, shape (s,)."""
+        wanted = self.states.kind == BallKind.BALANCED
+        return np.asarray((wanted & self.states.stable).any(axis=1))
+
+    @property
+    def balanced_from(self) -> float:
+        """Lowest speed of the scene from which on the balanced state is stable, rad/s; nan if at none."""
+        failing = np.flatnonzero(~self.balanced)
+        first = 0 if not failing.size else int(failing[-1]) + 1
+        return float(self.speed[first]) if first < self.speed.size else float("nan")
+
+    @property
+    def unstable(self) -> Flags:
+        """No state found is stable, shape (s,)."""
+        return np.asarray(~self.states.stable.any(axis=1))
+
+    def to_json(self) -> dict[str, Any]:
+        """What `run` prints for scripts: SI units, radians, null for what is not there."""
+        over = ["speed", "amplitude", "amplitude_dry", "amplitude_without", "phase", "liquid_offset"]
+        over += ["liquid_angle", "dry_patch", "stable", "model", "state", "growth", "ball_angle"]
+        over += ["ball_unbalance", "converged", "capacity", "can_balance", "sticking", "position", "name"]
+        return {name: getattr(self, name) for name in (*over, "digest", "assumed")} | {
+            "balanced_from": number_or_none(self.balanced_from),
+            "states": [self._states_at(k) for k in range(self.speed.size)],
+            "notes": texts(self.notes),
+        }
+
+    def _states_at(self, k: int) -> list[dict[str, Any]]:
+        """All states at one speed."""
+        found = self.states
+        return [
+            {
+                "state": STATE_NAMES[int(found.kind[k, j])],
+                "amplitude": float(self.sizes[k, j]),
+                "stable": bool(found.stable[k, j]),
+                "growth": float(found.growth[k, j]),
+                "ball_angle": found.places[k, j].tolist(),
+            }
+            for j in np.flatnonzero(found.kind[k]).tolist()
+        ]
+
+    def named_arrays(self) -> NamedArrays:
+        """Arrays over the dimensions `speed`, `state` (those found) and `ball`."""
+        over, every = ("speed",), ("speed", "state")
+        kinds = " ".join(STATE_NAMES.values())
+        here = "of the axis from where it rests, state reported"
+        return NamedArrays(
+            {
+                "amplitude": var(over, self.amplitude, "m", "amplitude", here),
+                "amplitude_without": var(over, self.amplitude_without, "m", "amplitude without balls"),
+                "amplitude_dry": var(over, self.amplitude_dry, "m", "amplitude without balls and liquid"),
+                "phase": var(over, self.phase, "rad", "angle of the deflection in the drum"),
+                "stable": flags(over, self.stable, "no yes", "small motions do not grow"),
+                "growth": var(over, self.growth, "s-1", "growth of small motions"),
+                "ball_angle": var(("speed", "ball"), self.ball_angle, "rad", "angle of the ball in the drum"),
+                "ball_unbalance": var(over, self.ball_unbalance, "kg m", "unbalance of all balls together"),
+                "liquid_offset": var(over, self.liquid_offset, "m", "liquid's centre of mass from the axis"),
+                "state_kind": var(every, self.states.kind.astype(np.int32), "1", f"0 to 3: {kinds}"),
+                "state_amplitude": var(every, self.sizes, "m", "amplitude of each state found"),
+                "state_growth": var(every, self.states.growth, "s-1", "its growth of small motions"),
+            },
+            coords={"speed": var(over, self.speed, "rad s-1", "spin speed")},
+            attrs=attributes(
+                self,
+                "run",
+                {"inputs": "\n".join(one_line("{}: {} [{}]".format(*entry)) for entry in self.inputs)},
+                self.notes,
+            ),
+        )

@@ -1,0 +1,82 @@
+"""The answer of a rotor with balls as text."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from leblanc.results.motion.ball_states import BallsResult
+from leblanc.results.notes.response import plane_words
+from leblanc.text.numbers import ranges
+from leblanc.text.run import Limit
+from leblanc.units import LENGTH, UNBALANCE, in_rpm, number, with_unit
+
+
+def answer(result: BallsResult) -> str:
+    """From where on the balls balance the rotor, and what they do at the largest amplitude.
+
+    Parameters
+    ----------
+    result : the answer
+    """
+    most = int(np.argmax(np.where(result.stable, result.amplitude, -1.0)))
+    peak = f"{with_unit(float(result.amplitude[most]), LENGTH)} at {in_rpm(float(result.speed[most]))}"
+    bare = int(np.argmax(np.where(np.isfinite(result.amplitude_without), result.amplitude_without, -1.0)))
+    without = (
+        f"{with_unit(float(result.amplitude_without[bare]), LENGTH)} at {in_rpm(float(result.speed[bare]))}"
+    )
+    first = "The balls balance the rotor at none of these speeds"
+    if math.isfinite(result.balanced_from):
+        first = f"From {in_rpm(result.balanced_from)} on the balls balance the rotor"
+    return f"{first}; the largest amplitude of a stable state is {peak}, without balls {without}."
+
+
+def facts(result: BallsResult) -> list[tuple[str, str]]:
+    """What the balls can hold, where they balance, and the state at the last speed: label and value.
+
+    Parameters
+    ----------
+    result : the answer
+    """
+    last = in_rpm(float(result.speed[-1]))
+    held = ", ".join(with_unit(size, UNBALANCE) for size in result.capacity)
+    places = ", ".join(number(math.degrees(angle)) for angle in result.ball_angle[-1])
+    rows = [
+        ("Unbalance that the balls of each race hold", held),
+        ("Balanced state stable at", ranges(result.speed, result.balanced)),
+        (f"Balls at {last}", f"{result.state[-1]}, at {places} deg"),
+        (f"Amplitude at {last}", with_unit(float(result.amplitude[-1]), LENGTH)),
+        (f"Without balls at {last}", with_unit(float(result.amplitude_without[-1]), LENGTH)),
+        (f"Growth of small motions at {last}", f"{number(float(result.growth[-1]))} 1/s"),
+    ]
+    if result.kind != "jeffcott":
+        rows.append(("Amplitudes", plane_words(result.position, chambers=True)))
+    if any(result.sticking):
+        rows.append(("Balls stay below a deflection of", with_unit(max(result.sticking), LENGTH)))
+    return rows
+
+
+def limits(result: BallsResult) -> list[Limit]:
+    """Where the answer is not what it seems: each check with what fails it.
+
+    Parameters
+    ----------
+    result : the answer
+    """
+    several = result.states.stable.sum(axis=1) > 1
+    checks = [
+        ("No state found", ~result.converged),
+        ("No state is stable", result.unstable & result.converged),
+        ("Several states are stable, the largest is told", several),
+        ("More amplitude than without balls", result.amplitude > result.amplitude_without),
+    ]
+    return [Limit(label, ranges(result.speed, mask), bool(mask.any())) for label, mask in checks]
+
+
+def alt(result: BallsResult) -> str:
+    """What the figure shows."""
+    return (
+        "Curves of the amplitude over speed with balls and without, and the angles at which the balls rest "
+        f"in the drum. {answer(result)}"
+    )

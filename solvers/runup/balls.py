@@ -1,0 +1,129 @@
+"""Balls in races on a rotor that runs up: how they start, and what the steps know of them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from meshes.arrays import Array
+from meshes.errors import InputError
+from solvers.layer.records import Record, records
+from solvers.rotor.balls.balancers import BallRace, race_arrays
+from solvers.rotor.system import RotorSystem
+from solvers.runup.state import BALL, State
+
+
+@dataclass(frozen=True)
+class Balls:
+    """The balls of some races at the start of a run-up; N balls in all, race by race.
+
+    Parameters
+    ----------
+    races : that hold them
+    places : angle of each in the standing frame, rad, N of them
+    shares : speed of each over the spin: 1 at rest in the drum, 0 at rest in space, N of them
+
+    Raises
+    ------
+    InputError : another number of places or shares than balls, one that is not finite
+    """
+
+    races: tuple[BallRace, ...] = ()
+    places: tuple[float, ...] = ()
+    shares: tuple[float, ...] = ()
+
+    def __post_init__(self) -> None:
+        count = sum(len(race.masses) for race in self.races)
+        for name in ("places", "shares"):
+            values = getattr(self, name)
+            if len(values) != count or not np.isfinite(values).all():
+                raise InputError(name, values, f"finite numbers of {count} balls")
+
+
+NO_BALLS = Balls()
+
+
+def spread_balls(races: Sequence[BallRace]) -> Balls:
+    """Balls evenly round each race, at rest in the drum.
+
+    Parameters
+    ----------
+    races : on the rotor
+    """
+    places = [2.0 * np.pi * k / len(race.masses) for race in races for k in range(len(race.masses))]
+    return Balls(tuple(races), tuple(places), (1.0,) * len(places))
+
+
+def ball_records(balls: Balls) -> Record:
+    """What the steps know of each ball, records BALL, shape (N,).
+
+    Parameters
+    ----------
+    balls : on the rotor
+    """
+    rows = [
+        (
+            *(mass, race.radius, race.rolling * mass * race.radius**2, race.drag * race.radius**2),
+            *(race.carried * mass * race.radius**2, race.driven * mass * race.radius**2, race.resistance),
+        )
+        for race in balls.races
+        for mass in race.masses
+    ]
+    found = records(BALL, len(rows))
+    for j, row in enumerate(rows):
+        found[j] = row
+    return found
+
+
+def race_planes(system: RotorSystem, balls: Balls) -> Array:
+    """Displacement of the axis in the plane of each ball for unit coordinates, shape (N, 2, n).
+
+    Parameters
+    ----------
+    system : the rotor
+    balls : on it
+    """
+    planes, _ = race_arrays(system, balls.races)
+    return np.asarray(planes, dtype=float).reshape(len(balls.places), 2, len(system.coordinates))
+
+
+def _along(races: Array, state: State) -> Array:
+    """Part of the motion of each race's centre along the race at its ball, for unit rates, shape (N, n)."""
+    across = np.stack((-np.sin(state.roll), np.cos(state.roll)), axis=1)
+    return np.asarray(np.einsum("ji,jin->jn", across, races))
+
+
+def balls_energy(balls: Record, races: Array, state: State, spin: float) -> float:
+    """Kinetic energy of the balls, J [theory: races, eq. 1].
+
+    Parameters
+    ----------
+    balls, races : as in `solvers.runup.state.Machine`
+    state : of the moment
+    spin : rad/s
+    """
+    carried = races @ state.rate
+    axis = 0.5 * balls.mass * np.square(carried).sum(axis=1)
+    meeting = balls.mass * balls.radius * state.roll_rate * (_along(races, state) @ state.rate)
+    own = 0.5 * balls.inertia * np.square(state.roll_rate) - balls.carried * spin * state.roll_rate
+    return float(np.sum(axis + meeting + own + 0.5 * balls.driven * spin**2))
+
+
+def balls_inertia(balls: Record, races: Array, state: State) -> tuple[Array, Array]:
+    """What the balls add to the rotor's inertia against a blow, and how their rates answer one.
+
+    Parameters
+    ----------
+    balls, races : as in `solvers.runup.state.Machine`
+    state : of the moment
+
+    Returns
+    -------
+    kg and kg m^2, shape (n, n); fall of the balls' rates for unit jumps of the rotor's rates, shape (N, n)
+    """
+    along, moving = _along(races, state), balls.mass * balls.radius
+    whole = np.einsum("j,jin,jim->nm", balls.mass, races, races)
+    answer = (moving / balls.inertia)[:, None] * along
+    return whole - np.einsum("j,jn,jm->nm", moving, along, answer), answer

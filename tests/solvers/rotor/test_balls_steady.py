@@ -1,0 +1,178 @@
+"""Steady states of balls against closed forms, the bare rotor, the balanced state's roots and time runs."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import leblanc as lb
+from meshes.errors import InputError
+from solvers.rotor.balls import steady
+from solvers.rotor.balls.balancers import BallRace, simulate
+from solvers.rotor.balls.stability import balanced_roots
+from solvers.rotor.balls.steady import BallKind, RotorWithBalls, steady_states
+from solvers.rotor.jeffcott import Jeffcott
+from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
+from solvers.rotor.vibration import unbalance_response
+
+ROTOR = Jeffcott(4.0, 4.4e4, 84.0, 6e-4)
+RACE = BallRace(0.0, 0.065, (7.1e-3, 7.1e-3), 0.1)
+
+
+def kinds(states: steady.BallStates, k: int = 0) -> list[BallKind]:
+    return [BallKind(kind) for kind in states.kind[k] if kind]
+
+
+@settings(max_examples=40, deadline=None)
+@given(
+    share=st.floats(0.05, 0.95),
+    ratio=st.floats(1.5, 6.0),
+    damping=st.floats(0.02, 0.3),
+    mass=st.floats(1e-3, 0.02),
+)
+def test_two_balls_balance_above_the_resonance(
+    share: float, ratio: float, damping: float, mass: float
+) -> None:
+    """cos(phi) = -U/(2 m R), and nothing is left but rounding."""
+    moment = mass * 0.065
+    rotor = Jeffcott(4.0, 4.4e4, 2.0 * damping * math.sqrt(4.4e4 * 4.0), 2.0 * share * moment)
+    found = steady_states(
+        rotor.system(), [BallRace(0.0, 0.065, (mass, mass), 0.1)], [ratio * rotor.natural_frequency]
+    )
+    assert kinds(found)[0] is BallKind.BALANCED
+    angles = np.sort(np.abs(found.places[0, 0]))
+    np.testing.assert_allclose(np.cos(angles), -share, rtol=0.0, atol=1e-9)
+    bare = np.abs(unbalance_response(rotor.system(), [ratio * rotor.natural_frequency])).max()
+    assert np.abs(found.coordinates[0, 0]).max() <= 1e-9 * bare
+
+
+@settings(max_examples=40, deadline=None)
+@given(ratio=st.floats(0.2, 0.7), damping=st.floats(0.02, 0.2), count=st.integers(1, 5))
+def test_balls_gather_below_the_resonance(ratio: float, damping: float, count: int) -> None:
+    """All along the deflection a: |D a - N m R| = U, a quadratic; D is the stiffness over Omega^2."""
+    rotor = Jeffcott(4.0, 4.4e4, 2.0 * damping * math.sqrt(4.4e4 * 4.0), 6e-4)
+    race, spin = BallRace(0.0, 0.065, (2e-3,) * count, 0.5), ratio * rotor.natural_frequency
+    found = steady_states(rotor.system(), [race], [spin])
+    stable = [k for k in range(found.kind.shape[1]) if found.stable[0, k]]
+    assert [BallKind(found.kind[0, k]) for k in stable] == [BallKind.TOGETHER]
+    d = (rotor.stiffness - (4.0 + count * 2e-3) * spin**2 + 1j * rotor.damping * spin) / spin**2
+    held = count * 2e-3 * 0.065
+    roots = np.roots([abs(d) ** 2, -2.0 * held * d.real, held**2 - 6e-4**2])
+    wanted = float(roots[(np.abs(roots.imag) < 1e-12) & (roots.real > 0.0)].real.max())
+    # Newton's last step leaves the pull at 1e-11 of itself, so the place at about its root of rounding.
+    assert abs(found.coordinates[0, stable[0], 0]) == pytest.approx(wanted, rel=1e-8)
+
+
+def test_balls_that_cannot_hold_the_unbalance_end_opposite_to_it() -> None:
+    """Far above the resonance they leave U - N m R."""
+    heavy = Jeffcott(4.0, 4.4e4, 84.0, 2e-3)
+    found, spin = steady_states(heavy.system(), [RACE], [400.0]), 400.0
+    stable = np.flatnonzero(found.stable[0])
+    assert [BallKind(found.kind[0, k]) for k in stable] == [BallKind.TOGETHER]
+    left = 2e-3 - 2.0 * 7.1e-3 * 0.065
+    d = (heavy.stiffness - (4.0 + 2 * 7.1e-3) * spin**2 + 1j * heavy.damping * spin) / spin**2
+    # The small damping turns them by little: to its square.
+    assert abs(d) * abs(found.coordinates[0, stable[0], 0]) == pytest.approx(left, rel=1e-3)
+    assert BallKind.BALANCED not in kinds(found)
+
+
+def test_balls_without_mass_leave_the_bare_rotor() -> None:
+    speed = np.linspace(20.0, 300.0, 15)
+    found = steady_states(ROTOR.system(), [BallRace(0.0, 0.065, (1e-14,) * 3, 0.1)], speed)
+    bare = unbalance_response(ROTOR.system(), speed)
+    np.testing.assert_allclose(np.abs(found.coordinates[:, 0]), np.abs(bare), rtol=1e-10)
+
+
+def test_roots_are_those_of_the_balanced_rotor_without_unbalance() -> None:
+    """Another derivation: differences of the equations of motion."""
+    even, still = np.array([0.0, math.pi]), Jeffcott(4.0, 4.4e4, 84.0, 0.0).system()
+    machine = RotorWithBalls(still, (RACE,))
+    own = steady._turning_roots(machine, 200.0, even, np.zeros(2, dtype=complex), None)
+    known = balanced_roots(still, [RACE], 200.0)
+    own = own[np.abs(own) > 1e-6]
+    np.testing.assert_allclose(np.sort(own.real), np.sort(known.real), rtol=1e-5)
+
+
+@pytest.mark.parametrize("spin", [70.0, 130.0, 260.0])
+def test_roots_in_the_turning_frame_are_those_over_a_turn(spin: float) -> None:
+    """At states with a deflection; the trapezium in 256 steps a turn leaves some (2 pi/256)^2 of the spin."""
+    machine, places = RotorWithBalls(ROTOR.system(), (RACE,)), np.array([[0.3, 0.3], [0.2, 2.0]])
+    for angles in places:
+        q = machine.coordinates(machine.compliance(np.array([spin])), angles[None])[0]
+        first = steady._turning_roots(machine, spin, angles, q, None).real
+        over = steady._floquet_roots(machine, spin, angles, q, None).real
+        np.testing.assert_allclose(np.sort(first), np.sort(over), rtol=0.0, atol=6e-4 * spin)
+
+
+@pytest.mark.parametrize("spin", [60.0, 200.0])
+def test_a_run_in_time_ends_in_the_stable_state(spin: float) -> None:
+    """The solver of motions in time is another code; all motions fade with more than 0.2 1/s."""
+    found = steady_states(ROTOR.system(), [RACE], [spin])
+    (k,) = np.flatnonzero(found.stable[0]).tolist()
+    run = simulate(ROTOR.system(), [RACE], spin, 60.0, places=[1.0, 2.5], samples=100)
+    size = np.abs(run.deflection(ROTOR.system(), 0.0)[-1])
+    assert size == pytest.approx(abs(found.coordinates[0, k, 0]), rel=1e-4, abs=1e-9)
+    ends = np.angle(np.exp(1j * (run.ball_angle[-1] - spin * run.time[-1])))
+    np.testing.assert_allclose(np.sort(ends), np.sort(found.places[0, k]), rtol=0.0, atol=2e-3)
+
+
+def test_small_motions_grow_in_time_as_the_root_says() -> None:
+    """About the balanced state below the resonance, where a pair of roots s +- i w grows.
+
+    The other motions fade with 10 1/s. Half a period pi/w later the motion is the same, e^(s pi/w) larger.
+    """
+    spin = 80.0
+    found = steady_states(ROTOR.system(), [RACE], [spin])
+    assert kinds(found)[0] is BallKind.BALANCED
+    rate, places = float(found.growth[0, 0]), found.places[0, 0]
+    machine = RotorWithBalls(ROTOR.system(), (RACE,))
+    roots = steady._turning_roots(machine, spin, places, np.zeros(2, dtype=complex), None)
+    assert rate == pytest.approx(roots.real.max())
+    half = math.pi / abs(roots[np.argmax(roots.real)].imag)
+    run = simulate(
+        ROTOR.system(), [RACE], spin, 2.0 + half, places=places + np.array([1e-8, -1e-8]), samples=401
+    )
+    size = np.abs(run.deflection(ROTOR.system(), 0.0))
+    first = float(np.interp(2.0, run.time, size))
+    # The motion ends at 2e-4 rad, whose square the roots leave out; lines between the samples.
+    assert math.log(size[-1] / first) / half == pytest.approx(rate, rel=2e-3)
+
+
+def test_two_races_balance_two_planes() -> None:
+    rotor = TwoPlane(
+        10.0, 0.5, 0.1,
+        (Support(0.3, 2e4, 40.0), Support(-0.3, 2e4, 40.0)),
+        (PlaneUnbalance(0.2, 3e-4, 0.4), PlaneUnbalance(-0.2, 2e-4, 2.5)),
+    )  # fmt: skip
+    races = [BallRace(z, 0.1, (3e-3, 3e-3), 0.3) for z in (0.25, -0.25)]
+    found = steady_states(rotor.system(), races, [250.0])
+    assert kinds(found)[0] is BallKind.BALANCED
+    assert found.stable[0, 0]
+    assert not found.coordinates[0, 0].any()
+    # One race alone holds the sum of the unbalances but not their moment.
+    alone = steady_states(rotor.system(), races[:1], [250.0])
+    assert BallKind.BALANCED not in kinds(alone)
+
+
+def test_a_race_in_the_plane_of_the_laundry_balances_a_tub() -> None:
+    """Six coordinates and supports that differ."""
+    rotor = lb.example("tub").rotor
+    plane = rotor.drum_position[1] if rotor.unbalance_position is None else rotor.unbalance_position
+    mass = 0.4 * rotor.unbalance / 0.2
+    found = steady_states(rotor.machine().system(), [BallRace(plane, 0.2, (mass,) * 4, 4.0)], [8.0, 100.0])
+    assert [kinds(found, k)[0] for k in (0, 1)] == [BallKind.BALANCED] * 2
+    assert not found.coordinates[:, 0].any()
+    assert found.stable[1, 0]
+
+
+def test_wrong_input() -> None:
+    with pytest.raises(InputError, match="races"):
+        steady_states(ROTOR.system(), [], [100.0])
+    with pytest.raises(InputError, match="speed"):
+        steady_states(ROTOR.system(), [RACE], [-1.0])
+    with pytest.raises(InputError, match="resistance"):
+        simulate(ROTOR.system(), [BallRace(0.0, 0.1, (1e-3,), 0.1, resistance=0.01)], 50.0, 0.1)
