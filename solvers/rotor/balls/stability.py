@@ -11,7 +11,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.linalg import expm, null_space
 
 from meshes.arrays import Array, Complex
 from meshes.errors import InputError, require_positive
@@ -55,7 +54,7 @@ class Linearised:
         A shift along a neutral direction has no force, so it drives nothing and is left out; its rate stays.
         """
         size, count = self.mass.shape[0], self.neutral.shape[0]
-        held = null_space(self.neutral.T) if self.neutral.size else np.eye(count)
+        held = _across(self.neutral)
         kept = np.eye(size)[:, : size - count]
         kept = np.hstack((kept, np.vstack((np.zeros((size - count, held.shape[1])), held))))
         free = kept.shape[1]
@@ -114,7 +113,18 @@ def neutral_directions(system: RotorSystem, races: Sequence[BallRace], places: A
     rows = np.vstack((moved.real, moved.imag))
     sizes = np.abs(rows).sum(axis=1)
     rows = rows[sizes > _RANK * sizes.max()]
-    return np.asarray(null_space(rows / np.abs(rows).sum(axis=1)[:, None], rcond=_RANK))
+    return _null_space(rows / np.abs(rows).sum(axis=1)[:, None])
+
+
+def _across(neutral: Array) -> Array:
+    """Orthonormal columns that span what is left beside the neutral directions."""
+    return _null_space(neutral.T) if neutral.size else np.eye(neutral.shape[0])
+
+
+def _null_space(rows: Array) -> Array:
+    from scipy.linalg import null_space
+
+    return np.asarray(null_space(rows, rcond=_RANK))
 
 
 def linearised(
@@ -345,6 +355,8 @@ def _half_turn(
     steps: int,
 ) -> Array:
     """Map of (q, psi, q', psi') over half a turn, the rotor's part reversed, without neutral directions."""
+    from scipy.linalg import expm
+
     step = np.pi / (speed * steps)
     apart = np.sqrt(3.0) / 6.0
     begin = np.arange(steps)[:, None] + np.array([0.5 - apart, 0.5 + apart])
@@ -360,8 +372,7 @@ def _half_turn(
     for piece in pieces:
         whole = piece @ whole
     whole = reverse[:, None] * whole
-    count = size - n
-    held = null_space(neutral.T) if neutral.size else np.eye(count)
+    held = _across(neutral)
     kept = np.zeros((2 * size, 2 * size - neutral.shape[1]))
     kept[:n, :n] = np.eye(n)
     kept[n:size, n : n + held.shape[1]] = held

@@ -9,7 +9,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.integrate import solve_ivp
 
 from meshes.arrays import Array
 from meshes.errors import InputError, require_not_negative, require_positive
@@ -247,6 +246,8 @@ def trace(
     ------
     InputError : a value out of its range
     """
+    from scipy.integrate import solve_ivp
+
     from solvers.rotor.exciter.steps import advance
 
     require_positive("speed", speed)
