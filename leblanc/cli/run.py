@@ -110,7 +110,7 @@ def _run_balls(machine: Scene, scene: Path, folder: Path, json: bool) -> None:
     from leblanc.report.run import write_balls_report
     from leblanc.results.netcdf import write_netcdf
     from leblanc.studies.races.balls import run_balls
-    from leblanc.text.balls import answer, facts, limits
+    from leblanc.text.races.balls import answer, facts, limits
 
     with working("states of the balls"):
         result = run_balls(machine)

@@ -19,9 +19,6 @@ from leblanc.results.notes.response import OF_MODELS, RunCode
 from leblanc.results.response import RunResult
 from leblanc.results.whirl_map import WhirlMap
 from leblanc.text import magnetic
-from leblanc.text.balls import answer as balls_answer
-from leblanc.text.balls import facts as balls_facts
-from leblanc.text.balls import limits as balls_limits
 from leblanc.text.closed_forms import HEAD as VECTOR
 from leblanc.text.closed_forms import closed_form_rows, vector_rows
 from leblanc.text.exciter import NUMBERS
@@ -29,6 +26,9 @@ from leblanc.text.exciter import answer as exciter_answer
 from leblanc.text.exciter import facts as exciter_facts
 from leblanc.text.exciter import limits as exciter_limits
 from leblanc.text.numbers import NOT_FOUND, number, ranges
+from leblanc.text.races.balls import answer as balls_answer
+from leblanc.text.races.balls import facts as balls_facts
+from leblanc.text.races.balls import limits as balls_limits
 from leblanc.text.run import BALLS, WHIRL, answer, comparisons, facts, largest_error, limits, machine, remarks
 from leblanc.text.whirl_map import answer as whirl_map_answer
 from leblanc.text.whirl_map import band_words

@@ -23,7 +23,7 @@ from leblanc.figures.response import DRY, WET
 from leblanc.results.base import one_line
 from leblanc.results.motion.ball_states import BallsResult
 from leblanc.results.motion.balls import in_race
-from leblanc.text.balls import alt, answer
+from leblanc.text.races.balls import alt, answer
 from leblanc.units import MM, RPM
 
 FRAME = Frame(left=0.72, top=0.46, between=0.14, below=0.42)

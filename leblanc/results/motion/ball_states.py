@@ -53,7 +53,7 @@ class BallsResult(Result):
     """
 
     figure: ClassVar[str] = "leblanc.figures.races.balls:balls_figure"
-    summary: ClassVar[str] = "leblanc.text.balls:facts"
+    summary: ClassVar[str] = "leblanc.text.races.balls:facts"
 
     name: str
     source: str
