@@ -96,7 +96,7 @@ def closed_form_tables(result: RunResult) -> list[Table]:
     forms = result.closed_forms
     if forms is None or not (rows := closed_form_rows(forms)):
         return []
-    found = [table("", ("Closed form", ""), [(label.strip(), text) for label, text in rows])]
+    found = [table("", (), [(label.strip(), text) for label, text in rows])]
     if forms.vector is not None:
         found.append(table("", VECTOR, vector_rows(result.speed, forms.vector)))
     return found
