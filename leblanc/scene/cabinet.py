@@ -154,7 +154,7 @@ def cabinet_conflicts(values: Mapping[str, Any], kind: object) -> Iterator[Confl
     for k, name in enumerate(names):
         if name in names[:k]:
             yield Conflict(("points", k, "name"), "another name than those of the points before")
-    if kind in _ALONE:
+    if isinstance(kind, str) and kind in _ALONE:
         for key in ("cabinet", "points"):
             if values.get(key):
                 yield Conflict((key,), f"left out for {_ALONE[kind]}")

@@ -106,5 +106,7 @@ assert verdicts(wrong) == {
         *("dr-eq-4-y-beta", "dr-eq-4-beta-gamma", "dr-eq-4-alpha-gamma", "dr-eq-13", "dr-fig-20"),
         *("dr-table-bpfo", "dr-table-bsf", "dr-eq-14-x5", "dr-eq-16-x5"),
         *("dr-pump-drag-table", "dr-pump-drag-eq-41", "ff-conclusion-2"),
+        *("dr-eq-4-unbalance", "dr-eq-4-gyroscopic", "dr-third-group", "dr-alpha-range"),
+        *("dr-any-speed", "dr-beta", "dg-forces", "ff-eq-37"),
     }
 }

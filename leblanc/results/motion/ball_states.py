@@ -48,8 +48,8 @@ class BallsResult(Result):
     --------
     >>> import leblanc as lb
     >>> result = lb.run(lb.example("balls"))
-    >>> result.state[0], result.state[-1]
-    ('together', 'balanced')
+    >>> print(result.state[0], result.state[-1])
+    together balanced
     """
 
     figure: ClassVar[str] = "leblanc.figures.races.balls:balls_figure"

@@ -30,7 +30,7 @@ from tests.leblanc.studies.test_explain import scene as small_scene
 from tests.leblanc.studies.test_runup import scene as upright_scene
 from tests.mutants import kills
 
-WITHOUT_LIQUID = ('kind = "exciter"', 'kind = "magnetic"', 'kind = "spindle"')
+WITHOUT_LIQUID = ('kind = "exciter"', 'kind = "magnetic"', 'kind = "spindle"', 'kind = "balls"')
 EXAMPLES = sorted(
     path.stem
     for path in Path("examples").glob("*.toml")
