@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -29,7 +29,18 @@ from leblanc.text.numbers import NOT_FOUND, number, ranges
 from leblanc.text.races.balls import answer as balls_answer
 from leblanc.text.races.balls import facts as balls_facts
 from leblanc.text.races.balls import limits as balls_limits
-from leblanc.text.run import BALLS, WHIRL, answer, comparisons, facts, largest_error, limits, machine, remarks
+from leblanc.text.run import (
+    BALLS,
+    WHIRL,
+    Limit,
+    answer,
+    comparisons,
+    facts,
+    largest_error,
+    limits,
+    machine,
+    remarks,
+)
 from leblanc.text.whirl_map import answer as whirl_map_answer
 from leblanc.text.whirl_map import band_words
 from leblanc.text.whirl_map import facts as whirl_map_facts
@@ -96,7 +107,7 @@ def closed_form_tables(result: RunResult) -> list[Table]:
     forms = result.closed_forms
     if forms is None or not (rows := closed_form_rows(forms)):
         return []
-    found = [table("", (), [(label.strip(), text) for label, text in rows])]
+    found = [table("", (), [(label.strip().capitalize(), text) for label, text in rows])]
     if forms.vector is not None:
         found.append(table("", VECTOR, vector_rows(result.speed, forms.vector)))
     return found
@@ -189,9 +200,9 @@ def integrations(result: ExciterResult) -> Table:
     return table("Integrated in time", head, rows)
 
 
-def exciter_checks(result: ExciterResult) -> Table:
-    """Where the answer is not what it seems."""
-    rows = [(limit.label, Cell(limit.where, warning=limit.failed)) for limit in exciter_limits(result)]
+def limit_checks(found: Iterable[Limit]) -> Table:
+    """Where an answer of a rotor without layers is not what it seems."""
+    rows = [(limit.label, Cell(limit.where, warning=limit.failed)) for limit in found]
     return table("", ("Limits of the answer", "at"), rows)
 
 
@@ -218,22 +229,16 @@ def write_exciter_report(result: ExciterResult, what: About, figure: FigureFiles
         "title": "Stuck speeds of the balls and vibration of the platform",
         "machine": machine,
         "answer": exciter_answer(result),
-        "doubt": doubt(exciter_checks(result)),
+        "doubt": doubt(limit_checks(exciter_limits(result))),
         "facts": table("", (), exciter_facts(result)),
         "numbers": exciter_numbers(result),
         "integrations": integrations(result),
-        "checks": exciter_checks(result),
+        "checks": limit_checks(exciter_limits(result)),
         "pictures": [picture(figure)],
         "models": [("balls", " ".join(BALLS))],
         "remarks": [began, "The numbers over speed are printed by the same command with --json."],
     }
     write_page("exciter", what, parts, path)
-
-
-def magnetic_checks(result: MagneticResult) -> Table:
-    """Where the answer is not what it seems."""
-    rows = [(limit.label, Cell(limit.where, warning=limit.failed)) for limit in magnetic.limits(result)]
-    return table("", ("Limits of the answer", "at"), rows)
 
 
 def write_magnetic_report(result: MagneticResult, what: About, figure: FigureFiles, path: Path) -> None:
@@ -260,10 +265,10 @@ def write_magnetic_report(result: MagneticResult, what: About, figure: FigureFil
         "title": "Magnetic bearings and their control",
         "machine": machine,
         "answer": magnetic.answer(result),
-        "doubt": doubt(magnetic_checks(result)),
+        "doubt": doubt(limit_checks(magnetic.limits(result))),
         "controllers": table("", magnetic.heads(result), magnetic.rows(result)),
         "numbers": table("", ("Dimensionless numbers", ""), numbers),
-        "checks": magnetic_checks(result),
+        "checks": limit_checks(magnetic.limits(result)),
         "pictures": [picture(figure)],
         "models": [("control", magnetic.CONTROL)],
         "remarks": list(magnetic.load_words(result)),
@@ -288,12 +293,6 @@ def ball_states(result: BallsResult) -> Table:
     return table("States", head, rows)
 
 
-def balls_checks(result: BallsResult) -> Table:
-    """Where the answer is not what it seems."""
-    rows = [(limit.label, Cell(limit.where, warning=limit.failed)) for limit in balls_limits(result)]
-    return table("", ("Limits of the answer", "at"), rows)
-
-
 def write_balls_report(result: BallsResult, what: About, figure: FigureFiles, path: Path) -> None:
     """Write the report.
 
@@ -316,10 +315,10 @@ def write_balls_report(result: BallsResult, what: About, figure: FigureFiles, pa
         f"race{'' if len(result.races) == 1 else 's'}, from {low} to {high} rpm in {result.speed.size} "
         "speeds.",
         "answer": balls_answer(result),
-        "doubt": doubt(balls_checks(result)),
+        "doubt": doubt(limit_checks(balls_limits(result))),
         "facts": table("", (), balls_facts(result)),
         "states": ball_states(result),
-        "checks": balls_checks(result),
+        "checks": limit_checks(balls_limits(result)),
         "pictures": [picture(figure)],
         "models": [("balls", model)],
         "remarks": [note.text for note in result.notes],

@@ -540,7 +540,9 @@ def test_exciter_numbers() -> None:
 def test_exciter_warnings() -> None:
     record = exciter()
     calm = replace(record, dual_frequency=np.ones_like(record.dual_frequency))
-    assert not any(cell.warning for row in report_exciter.exciter_checks(calm).rows for cell in row)
+    assert not any(
+        cell.warning for row in report_exciter.limit_checks(text_exciter.limits(calm)).rows for cell in row
+    )
     lost = tuple(replace(one, converged=k != 1) for k, one in enumerate(record.checks))
     at = f"{printed(record.checks[1].speed * RPM)} rpm"
     beyond = f"{printed(record.speed[-1] * RPM)} rpm"
@@ -550,7 +552,7 @@ def test_exciter_warnings() -> None:
         ("Balls do not stick", beyond, replace(calm, dual_frequency=few)),
         ("Regression of the source", "outside its ranges", replace(calm, printed_critical=math.nan)),
     ):
-        rows = report_exciter.exciter_checks(troubled).rows
+        rows = report_exciter.limit_checks(text_exciter.limits(troubled)).rows
         assert [(row[0].text, row[1].text) for row in rows if row[1].warning] == [(heading, text)]
 
 

@@ -18,7 +18,9 @@ from solvers.rotor.balls.steady import BallKind, RotorWithBalls, steady_states
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
 from solvers.rotor.vibration import unbalance_response
+from tests.mutants import kills
 
+_ROOTS = "solvers.rotor.balls.steady:_turning_roots"
 ROTOR = Jeffcott(4.0, 4.4e4, 84.0, 6e-4)
 RACE = BallRace(0.0, 0.065, (7.1e-3, 7.1e-3), 0.1)
 
@@ -87,6 +89,18 @@ def test_balls_without_mass_leave_the_bare_rotor() -> None:
     np.testing.assert_allclose(np.abs(found.coordinates[:, 0]), np.abs(bare), rtol=1e-10)
 
 
+@kills(
+    _ROOTS,
+    "2.0 * speed * mass @ quarter + whole",
+    "speed * mass @ quarter + whole",
+)
+@kills(_ROOTS, "-swing, swing.T", "swing, swing.T")
+@kills(
+    _ROOTS,
+    "balls[:, 2] * balls[:, 1] ** 2",
+    "0.5 * balls[:, 2] * balls[:, 1] ** 2",
+)
+@kills(_ROOTS, "- speed**2 * mass", "+ speed**2 * mass")
 def test_roots_are_those_of_the_balanced_rotor_without_unbalance() -> None:
     """Another derivation: differences of the equations of motion."""
     even, still = np.array([0.0, math.pi]), Jeffcott(4.0, 4.4e4, 84.0, 0.0).system()
@@ -97,6 +111,7 @@ def test_roots_are_those_of_the_balanced_rotor_without_unbalance() -> None:
     np.testing.assert_allclose(np.sort(own.real), np.sort(known.real), rtol=1e-5)
 
 
+@kills(_ROOTS, "pull = moment", "pull = -moment")
 @pytest.mark.parametrize("spin", [70.0, 130.0, 260.0])
 def test_roots_in_the_turning_frame_are_those_over_a_turn(spin: float) -> None:
     """At states with a deflection; the trapezium in 256 steps a turn leaves some (2 pi/256)^2 of the spin."""
