@@ -13,7 +13,8 @@ from meshes.arrays import Array, Complex, Flags
 from meshes.errors import InputError
 from solvers.liquid_model import Whirls
 from solvers.rotor.balls.balancers import BallRace
-from solvers.rotor.balls.steady import BallStates, RotorWithBalls, collected, starts_of, steady_states
+from solvers.rotor.balls.states import RotorWithBalls
+from solvers.rotor.balls.steady import BallStates, collected, starts_of, steady_states
 from solvers.rotor.system import RotorSystem
 from solvers.synchronous.balance import backward_mass, directions
 from solvers.synchronous.models import STATICS
