@@ -1,8 +1,8 @@
 """Charts of stability over two parameters: where balls keep a rotor balanced, and the curves where that ends.
 
 On such a curve a root stands on the imaginary axis: a pair of them, where the balls begin to swing or the
-rotor to whirl (Hopf), or one at 0, where steady states meet or part (a fold or a branching). Where the supports
-differ it is a multiplier of half a turn that stands on the unit circle.
+rotor to whirl (Hopf), or one at 0, where steady states meet or part (a fold or a branching). Where the
+supports differ it is a multiplier of half a turn that stands on the unit circle.
 """
 
 from __future__ import annotations
@@ -22,11 +22,9 @@ from solvers.rotor.balls.stability import HalfTurn, Linearised, small_motions
 from solvers.rotor.balls.states import RotorWithBalls
 from solvers.rotor.system import RotorSystem
 
-NONE = (
-    -1
-)  # in counts of growing roots: the state is not there, or what half a turn makes of it did not settle
+NONE = -1  # in counts of growing roots: the state is not there, or its half turn did not settle
 _HALVINGS = 40
-_MEETS = 1e-3  # of the spin: a root below this next to the end of a state tells that two states meet there
+_MEETS = 1e-5  # of the spin: a root below this next to the end of a state tells that two states meet there
 _NEAR = 0.03  # of a cell of the chart: a crossing this close to a known curve lies on it
 _STILL = 1e-6  # of the spin: a root slower than that is real
 
@@ -125,7 +123,7 @@ class Rest:
 
 
 class State:
-    """The state whose stability is charted: balanced, or one with a deflection next to given places of the balls.
+    """The state whose stability is charted: balanced, or one with a deflection next to given places.
 
     Where the supports differ the balls follow the forward part of the rotor's motion [theory: races, eq. 5].
 
@@ -198,7 +196,8 @@ def stability_chart(family: Family, first: ArrayLike, second: ArrayLike, state: 
             continue
         ends = chosen.at(family(*outside.tolist())) is None
         edge = follow_edge(family, where, root, low, high, chosen, fold=ends)
-        if edge is not None:
+        # From a point that lies on none Newton's method may end on another curve.
+        if edge is not None and _on(edge, where, cell):
             edges.append(edge)
     return Chart(x, y, growing, growth, tuple(edges))
 
@@ -269,8 +268,8 @@ def _joined(ways: Sequence[Curve], kind: Crossing) -> Edge:
 class _Bordered:
     """A motion neither grows nor fades: det(A - i w) = 0 made smooth by a border [theory: balls, eq. 39].
 
-    The same with the map of half a turn less e^{i pi w/Omega} where the supports differ. Its growth alone would
-    do as a test too, but has kinks where two motions take turns, and does not tell the frequency.
+    The same with the map of half a turn less e^{i pi w/Omega} where the supports differ. The largest growth
+    would do as a test too, but has kinks where two motions take turns, and does not tell the frequency.
 
     Parameters
     ----------
@@ -310,7 +309,7 @@ class _Bordered:
             return
         rest, self.near = found[0], found[0].places
         motions = rest.motions()
-        self.steps = 2 * motions.steps if isinstance(motions, HalfTurn) else None
+        self.steps = motions.steps if isinstance(motions, HalfTurn) else None
         before, _, after = np.linalg.svd(self._matrix(rest, point))
         self.left, self.right = before[:, -1], after[-1].conj()
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -12,22 +13,18 @@ from hypothesis import strategies as st
 from meshes.errors import InputError
 from solvers.rotor.balls.balancers import BallRace, race_arrays, simulate
 from solvers.rotor.balls.motion import rates
+from solvers.rotor.balls import stability
 from solvers.rotor.balls.stability import (
-    balanced_exponents,
+    STEPS,
+    HalfTurn,
     balanced_roots,
     balanced_stability,
     light_ball_roots,
     linearised,
     neutral_directions,
+    small_motions,
 )
-from solvers.rotor.balls.states import (
-    balanced_places,
-    ball_moments,
-    pulls,
-    quarter_turn,
-    steady_places,
-    turning_deflection,
-)
+from solvers.rotor.balls.states import RotorWithBalls, balanced_places, quarter_turn
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import RotorSystem
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
@@ -39,7 +36,17 @@ LONG = TwoPlane(10.0, 0.5, 0.1, SUPPORTS, ())
 LOADED = replace(LONG, unbalances=UNBALANCES)
 RACES = (BallRace(0.15, 0.08, (0.015, 0.015), 0.3), BallRace(-0.15, 0.08, (0.015, 0.015), 0.3))
 THREE = (replace(RACES[0], masses=(0.015,) * 3), replace(RACES[1], masses=(0.015,) * 4))
+UNLIKE = replace(LOADED.system(), stiffness=LOADED.system().stiffness * np.diag([1.0, 1.6, 1.6, 1.0]))
+_TURNING = "solvers.rotor.balls.stability:_turning_motions"
 PLANAR = Jeffcott(10.0, 2e4, 60.0, 1.2e-3).system()
+
+
+def rest_near(machine: RotorWithBalls, speed: float, places: Sequence[float]) -> tuple[np.ndarray, np.ndarray]:
+    """Places next to given ones at which the balls rest, and the rotor's complex amplitudes there."""
+    compliance = machine.compliance(np.array([speed]))
+    found = machine.nearest(compliance[0], places)
+    assert found is not None
+    return found, machine.coordinates(compliance, found[None])[0]
 
 
 def motion_derivative(
@@ -66,15 +73,14 @@ def motion_derivative(
     return np.array(columns).T
 
 
-@kills("solvers.rotor.balls.stability:linearised", "damping + 2.0 * speed", "damping + speed")
-@kills("solvers.rotor.balls.stability:linearised", "-2.0 * speed * moment", "2.0 * speed * moment")
-@kills("solvers.rotor.balls.stability:linearised", "-(speed**2) * moment", "speed**2 * moment")
-@kills("solvers.rotor.balls.stability:linearised", "+ speed * damping @ turn", "- speed * damping @ turn")
-@kills(
-    "solvers.rotor.balls.stability:linearised", "np.diag(speed**2 * moment", "np.diag(-(speed**2) * moment"
-)
-@kills("solvers.rotor.balls.stability:linearised", "np.diag(balls[:, 2] *", "np.diag(0.5 * balls[:, 2] *")
-@kills("solvers.rotor.balls.states:turning_stiffness", "+ speed * turned", "- speed * turned")
+@kills(_TURNING, "damping + 2.0 * speed", "damping + speed")
+@kills(_TURNING, "-2.0 * speed * moment", "2.0 * speed * moment")
+@kills(_TURNING, "-(speed**2) * moment", "speed**2 * moment")
+@kills(_TURNING, "+ speed * damping @ turn", "- speed * damping @ turn")
+@kills(_TURNING, "np.diag(speed**2 * moment", "np.diag(-(speed**2) * moment")
+@kills(_TURNING, "np.diag(balls[:, 2] *", "np.diag(0.5 * balls[:, 2] *")
+@kills("solvers.rotor.balls.states:RotorWithBalls.compliance", "+ 1j * s * damping", "- 1j * s * damping")
+@kills("solvers.rotor.balls.states:_pulls", "slope - seen.real", "slope + seen.real")
 @pytest.mark.parametrize(
     ("system", "races"),
     [
@@ -90,9 +96,8 @@ def test_linear_equations_are_the_derivative_of_the_motion(
     """About a steady state with deflection, found by Newton's method from places that are none."""
     speed, count = 70.0, sum(len(race.masses) for race in races)
     begin = np.random.default_rng(0).uniform(0.0, 2.0 * np.pi, count)
-    places = steady_places(system, races, speed, begin)
-    assert places is not None
-    deflection = turning_deflection(system, races, speed, places)
+    places, coordinates = rest_near(RotorWithBalls(system, races), speed, begin)
+    deflection = coordinates.real
     small = linearised(system, races, speed, places, deflection)
     size = small.mass.shape[0]
     found = np.zeros((2 * size, 2 * size))
@@ -105,11 +110,12 @@ def test_linear_equations_are_the_derivative_of_the_motion(
 
 def test_steady_balls_are_not_pulled_and_the_rotor_stays() -> None:
     system, speed = LOADED.system(), 70.0
-    places = steady_places(system, RACES, speed, [0.3, 0.4, 2.0, 2.1])
-    assert places is not None
-    deflection = turning_deflection(system, RACES, speed, places)
-    assert np.abs(deflection).max() > 1e-6
-    assert np.abs(pulls(system, RACES, speed, places)).max() < 1e-12 * np.abs(deflection).max()
+    machine = RotorWithBalls(system, RACES)
+    places, coordinates = rest_near(machine, speed, [0.3, 0.4, 2.0, 2.1])
+    assert np.abs(coordinates).max() > 1e-6
+    # Seen from the ball the axis moves outward or inward, not along the race: rounding of Newton's method.
+    seen = (machine.axes @ coordinates.real) @ np.array([1.0, 1.0j]) * np.exp(-1j * places)
+    assert np.abs(seen.imag).max() < 1e-11 * np.abs(seen).max()
     balanced = balanced_places(system, RACES)
     run = simulate(system, RACES, speed, 0.5, places=balanced, samples=5)
     # From the balanced state, at rest, nothing moves: rounding of the unbalance's force alone.
@@ -159,16 +165,41 @@ def test_motion_in_time_grows_and_decays_as_the_roots_say(
 
 
 @kills("solvers.rotor.balls.stability:_standing_rates", "-2.0 * speed * np", "2.0 * speed * np")
+@kills("solvers.rotor.balls.stability:_standing_rates", "= speed**2 * moment[:, 0]", "= -(speed**2) * moment[:, 0]")
+@kills("solvers.rotor.balls.stability:_standing_rates", "1j * speed * times", "-1j * speed * times")
 @kills("solvers.rotor.balls.stability:_half_turn", "second @ first - first @ second", "first @ second")
-def test_multipliers_of_alike_supports_are_the_roots() -> None:
+@pytest.mark.parametrize("near", [None, (0.3, 0.4, 2.0, 2.1)], ids=["balanced", "with a deflection"])
+def test_multipliers_of_alike_supports_are_the_roots(near: tuple[float, ...] | None) -> None:
     """The half turn of a rotor alike in every direction: real parts of its roots, frequencies up to turns."""
     for system, races in ((LOADED.system(), RACES), (PLANAR, (replace(RACES[0], position=0.0),))):
-        places = balanced_places(system, races)
-        roots = np.sort(linearised(system, races, 70.0, places).roots().real)
-        found = np.sort(balanced_exponents(system, races, 70.0, places).real)
+        machine = RotorWithBalls(system, races)
+        places, q = balanced_places(system, races), None
+        if near is not None:
+            places, q = rest_near(machine, 70.0, near[: len(machine.balls)])
+        small = small_motions(machine, 70.0, places, q)
+        whole = np.zeros(len(system.coordinates), dtype=complex) if q is None else q
+        over = stability._settled_half_turn(machine, 70.0, places, whole, small.neutral)
+        assert over.settled
+        roots, found = np.sort(small.roots().real), np.sort(over.roots().real)
         # Settled to 1e-6 in half a turn for the leading one; the others are of the same fourth order.
         assert found == pytest.approx(roots, abs=1e-4 * 70.0 / np.pi)
         assert found[-1] == pytest.approx(roots[-1], abs=4e-6 * 70.0 / np.pi)
+
+
+def test_half_turn_is_of_fourth_order_and_says_where_it_has_not_settled(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Of an unlike rotor with a deflection; 16 for each halving of the step."""
+    machine = RotorWithBalls(UNLIKE, RACES)
+    places, q = rest_near(machine, 70.0, [0.3, 0.4, 2.0, 2.1])
+    maps = [small_motions(machine, 70.0, places, q, steps=steps) for steps in (32, 64, 128)]
+    assert all(isinstance(each, HalfTurn) for each in maps)
+    off = [np.abs(each.map - maps[-1].map).max() for each in maps[:2]]  # type: ignore[union-attr]
+    # Against the finest in place of the exact: (1 - 1/256)/(1/16 - 1/256) = 17.
+    assert off[0] / off[1] == pytest.approx(17.0, rel=0.1)
+    monkeypatch.setattr(stability, "_MOST", STEPS)
+    assert not balanced_stability(UNLIKE, RACES, 70.0).settled
+    assert not balanced_stability(UNLIKE, RACES, 70.0).stable
 
 
 @pytest.mark.parametrize(("speed", "grows"), [(40.0, True), (100.0, False)])
@@ -191,12 +222,14 @@ def test_more_balls_than_the_balance_needs_are_told_and_are_no_growth() -> None:
     system = LOADED.system()
     found = balanced_stability(system, THREE, 120.0)
     assert found.neutral.shape == (7, 3) and found.stable
-    moved = ball_moments(system, THREE, found.places + 1e-6 * found.neutral[:, 0])
+    machine = RotorWithBalls(system, THREE)
+    moved = machine.moments(found.places + 1e-6 * found.neutral[:, 0])
     left = np.abs(system.unbalance + moved.sum(axis=1)).max()
     # Left in second order alone.
     assert left < 1e-10 * np.abs(moved).sum()
     assert balanced_stability(system, RACES, 120.0).neutral.shape == (4, 0)
-    assert neutral_directions(LONG.system(), RACES, [0.0, np.pi, 0.3, 0.3 + np.pi]).shape == (4, 2)
+    opposite = neutral_directions(RotorWithBalls(LONG.system(), RACES), [0.0, np.pi, 0.3, 0.3 + np.pi])
+    assert opposite.shape == (4, 2)
     # The whole matrix has a root at 0 for each of them, and the same others.
     small = linearised(system, THREE, 120.0, found.places)
     size = small.mass.shape[0]
@@ -222,7 +255,7 @@ def test_balanced_places_balance(share: float, angle: float, first: int, second:
     unbalances = (PlaneUnbalance(0.15, share * most[0], angle), PlaneUnbalance(-0.15, share * most[1], 1.0))
     system = replace(LONG, unbalances=unbalances).system()
     places = balanced_places(system, races)
-    left = system.unbalance + ball_moments(system, races, places).sum(axis=1)
+    left = system.unbalance + RotorWithBalls(system, races).moments(places).sum(axis=1)
     # The gap is found to rounding; the sum of up to six vectors of size one.
     assert np.abs(left).max() < 1e-10 * sum(most)
 
