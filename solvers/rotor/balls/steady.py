@@ -122,7 +122,7 @@ def collected(
     compliance: Complex,
     places: Array,
     rests: Flags,
-    added: Complex | None = None,
+    added: Array | None = None,
 ) -> BallStates:
     """Different states among those found, the balanced one first, then by rising deflection.
 
@@ -132,7 +132,7 @@ def collected(
     speed : rad/s, shape (s,)
     compliance : shape (s, n, n), or (s, k, n, n) where each state has its own
     places, rests : found from k starts, shapes (s, k, N) and (s, k)
-    added : the liquid's share in the mass matrix, shape (s, n, n)
+    added : to the mass matrix in small motions, of liquid, shape (s, n, n)
     """
     wanted, rows = machine.balanced(), []
     for i in range(speed.size):
@@ -142,7 +142,7 @@ def collected(
             candidates = np.vstack((wanted, candidates))
             matrices = np.concatenate((own[:1], matrices))
         found = _different(machine, matrices, candidates)
-        whole = machine if added is None else machine.carrying(added[i].real)
+        whole = machine if added is None else machine.carrying(added[i])
         rows.append([(*state[:3], growth(whole, float(speed[i]), *state[1:])) for state in found])
     most = max((len(row) for row in rows), default=0)
     n, count = len(machine.system.coordinates), machine.moment.size

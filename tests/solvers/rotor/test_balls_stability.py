@@ -11,9 +11,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from meshes.errors import InputError
+from solvers.rotor.balls import stability
 from solvers.rotor.balls.balancers import BallRace, race_arrays, simulate
 from solvers.rotor.balls.motion import rates
-from solvers.rotor.balls import stability
 from solvers.rotor.balls.stability import (
     STEPS,
     HalfTurn,
@@ -41,7 +41,9 @@ _TURNING = "solvers.rotor.balls.stability:_turning_motions"
 PLANAR = Jeffcott(10.0, 2e4, 60.0, 1.2e-3).system()
 
 
-def rest_near(machine: RotorWithBalls, speed: float, places: Sequence[float]) -> tuple[np.ndarray, np.ndarray]:
+def rest_near(
+    machine: RotorWithBalls, speed: float, places: Sequence[float]
+) -> tuple[np.ndarray, np.ndarray]:
     """Places next to given ones at which the balls rest, and the rotor's complex amplitudes there."""
     compliance = machine.compliance(np.array([speed]))
     found = machine.nearest(compliance[0], places)
@@ -80,7 +82,6 @@ def motion_derivative(
 @kills(_TURNING, "np.diag(speed**2 * moment", "np.diag(-(speed**2) * moment")
 @kills(_TURNING, "np.diag(balls[:, 2] *", "np.diag(0.5 * balls[:, 2] *")
 @kills("solvers.rotor.balls.states:RotorWithBalls.compliance", "+ 1j * s * damping", "- 1j * s * damping")
-@kills("solvers.rotor.balls.states:_pulls", "slope - seen.real", "slope + seen.real")
 @pytest.mark.parametrize(
     ("system", "races"),
     [
@@ -120,6 +121,55 @@ def test_steady_balls_are_not_pulled_and_the_rotor_stays() -> None:
     run = simulate(system, RACES, speed, 0.5, places=balanced, samples=5)
     # From the balanced state, at rest, nothing moves: rounding of the unbalance's force alone.
     assert np.abs(run.coordinates).max() < 1e-12
+
+
+@kills("solvers.rotor.balls.states:_pulls", "slope - seen.real", "slope + seen.real")
+@kills("solvers.rotor.balls.states:_pulls", "turn.conj()[:, :, None] * each", "turn[:, :, None] * each")
+@pytest.mark.parametrize("system", [LOADED.system(), UNLIKE], ids=["alike", "unlike"])
+def test_slopes_of_the_pulls_are_their_derivatives(system: RotorSystem) -> None:
+    machine, places = RotorWithBalls(system, THREE), np.random.default_rng(1).uniform(0.0, 6.0, 7)
+    compliance = machine.compliance(np.array([70.0]))
+    slope, step = machine.pulls(compliance, places[None])[1][0], 1e-5
+    for k in range(7):
+        aside = np.zeros(7)
+        aside[k] = step
+        ahead, behind = (machine.pulls(compliance, (places + way * aside)[None])[0][0] for way in (1, -1))
+        # Of order one: a third derivative times the square of the step, and rounding over it.
+        assert slope[:, k] == pytest.approx((ahead - behind) / (2.0 * step), abs=1e-9)
+
+
+def test_races_in_one_plane_share_the_unbalance_by_what_they_hold() -> None:
+    """The small race 1e-4 kg m, the large 9e-4: together they hold all but a thousandth."""
+    system = Jeffcott(10.0, 2e4, 60.0, 0.999e-3).system()
+    small = BallRace(0.0, 0.05, (1e-3, 1e-3), 0.3)
+    races = (small, replace(small, radius=0.09, masses=(5e-3, 5e-3)))
+    places = balanced_places(system, races)
+    # cos of half the gap is the share of what it holds, the same in both.
+    assert np.cos(0.5 * (places[1] - places[0])) == pytest.approx(0.999, abs=1e-12)
+    assert np.cos(0.5 * (places[3] - places[2])) == pytest.approx(0.999, abs=1e-12)
+
+
+@kills("solvers.rotor.balls.stability:neutral_directions", "rows[:, mine]", "rows[:, : mine.size]")
+def test_balls_in_a_plane_at_rest_move_freely_beside_others_that_hold_a_deflection() -> None:
+    """Three balls of nothing to balance in the middle, two off it that leave a couple: the middle stays."""
+    supports = (Support(0.2, 1e4, 40.0), Support(-0.2, 1e4, 40.0))
+    couple = (PlaneUnbalance(0.15, 8e-4, 0.0), PlaneUnbalance(-0.15, 8e-4, np.pi))
+    system = replace(LONG, supports=supports, unbalances=couple).system()
+    light = replace(RACES[0], masses=(1e-3,))
+    races = (light, replace(light, position=-0.15), replace(RACES[0], position=0.0, masses=(0.01,) * 3))
+    machine = RotorWithBalls(system, races)
+    even = 2.0 * np.pi * np.arange(3) / 3.0
+    places, q = rest_near(machine, 70.0, [0.1, np.pi + 0.1, *even])
+    compliance = machine.compliance(np.array([70.0]))
+    free = machine.at_rest(compliance, places[None])[0]
+    assert free.tolist() == [False, False, True, True, True]
+    small = small_motions(machine, 70.0, places, q, free)
+    assert small.neutral.shape == (5, 1)
+    assert np.abs(small.neutral[:, 0]) == pytest.approx([0.0, 0.0, *[3.0**-0.5] * 3], abs=1e-6)
+    # Without the direction the roots are those of the whole matrix but the one at 0.
+    whole = small_motions(machine, 70.0, places, q).roots()
+    whole = np.delete(whole, np.argmin(np.abs(whole)))
+    assert np.sort(whole.real) == pytest.approx(np.sort(small.roots().real), abs=1e-6)
 
 
 def test_light_balls_leave_the_rotor_alone() -> None:
@@ -164,26 +214,43 @@ def test_motion_in_time_grows_and_decays_as_the_roots_say(
     assert rate == pytest.approx(root.real, rel=0.1)
 
 
+def settled_map(machine: RotorWithBalls, places: np.ndarray, q: np.ndarray | None) -> None:
+    """The half turn has the real parts of the roots in the turning frame."""
+    small = small_motions(machine, 70.0, places, q)
+    whole = np.zeros(len(machine.system.coordinates), dtype=complex) if q is None else q
+    over = stability._settled_half_turn(machine, 70.0, places, whole, small.neutral)
+    assert over.settled
+    roots, found = np.sort(small.roots().real), np.sort(over.roots().real)
+    # Settled to 1e-6 in half a turn for the leading one; the others are of the same fourth order.
+    assert found == pytest.approx(roots, abs=1e-4 * 70.0 / np.pi)
+    assert found[-1] == pytest.approx(roots[-1], abs=4e-6 * 70.0 / np.pi)
+
+
 @kills("solvers.rotor.balls.stability:_standing_rates", "-2.0 * speed * np", "2.0 * speed * np")
-@kills("solvers.rotor.balls.stability:_standing_rates", "= speed**2 * moment[:, 0]", "= -(speed**2) * moment[:, 0]")
-@kills("solvers.rotor.balls.stability:_standing_rates", "1j * speed * times", "-1j * speed * times")
 @kills("solvers.rotor.balls.stability:_half_turn", "second @ first - first @ second", "first @ second")
-@pytest.mark.parametrize("near", [None, (0.3, 0.4, 2.0, 2.1)], ids=["balanced", "with a deflection"])
-def test_multipliers_of_alike_supports_are_the_roots(near: tuple[float, ...] | None) -> None:
-    """The half turn of a rotor alike in every direction: real parts of its roots, frequencies up to turns."""
-    for system, races in ((LOADED.system(), RACES), (PLANAR, (replace(RACES[0], position=0.0),))):
-        machine = RotorWithBalls(system, races)
-        places, q = balanced_places(system, races), None
-        if near is not None:
-            places, q = rest_near(machine, 70.0, near[: len(machine.balls)])
-        small = small_motions(machine, 70.0, places, q)
-        whole = np.zeros(len(system.coordinates), dtype=complex) if q is None else q
-        over = stability._settled_half_turn(machine, 70.0, places, whole, small.neutral)
-        assert over.settled
-        roots, found = np.sort(small.roots().real), np.sort(over.roots().real)
-        # Settled to 1e-6 in half a turn for the leading one; the others are of the same fourth order.
-        assert found == pytest.approx(roots, abs=1e-4 * 70.0 / np.pi)
-        assert found[-1] == pytest.approx(roots[-1], abs=4e-6 * 70.0 / np.pi)
+@pytest.mark.parametrize(
+    "machine",
+    [
+        RotorWithBalls(LOADED.system(), RACES),
+        RotorWithBalls(PLANAR, (replace(RACES[0], position=0.0),)),
+        RotorWithBalls(LOADED.system(), THREE),
+    ],
+    ids=["two planes", "one plane", "more balls"],
+)
+def test_multipliers_of_alike_supports_are_the_roots(machine: RotorWithBalls) -> None:
+    """About the balanced state: real parts of its roots, frequencies up to turns."""
+    settled_map(machine, balanced_places(machine.system, machine.races), None)
+
+
+@kills(
+    "solvers.rotor.balls.stability:_standing_rates",
+    "= speed**2 * moment[:, 0]",
+    "= -(speed**2) * moment[:, 0]",
+)
+@kills("solvers.rotor.balls.stability:_standing_rates", "1j * speed * times", "-1j * speed * times")
+def test_multipliers_are_the_roots_about_a_deflection_as_well() -> None:
+    machine = RotorWithBalls(LOADED.system(), RACES)
+    settled_map(machine, *rest_near(machine, 70.0, [0.3, 0.4, 2.0, 2.1]))
 
 
 def test_half_turn_is_of_fourth_order_and_says_where_it_has_not_settled(
@@ -191,7 +258,8 @@ def test_half_turn_is_of_fourth_order_and_says_where_it_has_not_settled(
 ) -> None:
     """Of an unlike rotor with a deflection; 16 for each halving of the step."""
     machine = RotorWithBalls(UNLIKE, RACES)
-    places, q = rest_near(machine, 70.0, [0.3, 0.4, 2.0, 2.1])
+    places, q = rest_near(machine, 70.0, [1.9, 1.9, -1.8, -1.8])
+    assert np.abs(q).max() > 1e-6
     maps = [small_motions(machine, 70.0, places, q, steps=steps) for steps in (32, 64, 128)]
     assert all(isinstance(each, HalfTurn) for each in maps)
     off = [np.abs(each.map - maps[-1].map).max() for each in maps[:2]]  # type: ignore[union-attr]
