@@ -22,10 +22,10 @@ from meshes.arrays import Array
 from solvers.rotor.balls.balancers import BallRace
 from solvers.rotor.balls.charts import Chart, Crossing, Machine, State, stability_chart
 from solvers.rotor.balls.stability import balanced_stability
+from solvers.rotor.balls.two_plane_balance import dynamic_balancing, of_two_planes
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import RotorSystem
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
-from solvers.rotor.two_plane_balance import dynamic_balancing, of_two_planes
 from validation.cases.two_plane_damping import DAMPINGS, SIDES, damped, edge
 from validation.cases.two_plane_machine import BALLS, LONG, RACES
 
