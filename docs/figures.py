@@ -120,7 +120,11 @@ RECIPES = (
     ),
     Recipe(("docs/house.py", "--picture", "rooms.png"), ("rooms",)),
     Recipe(("validation.figures.two_plane",), ("two_plane_balls",)),
-    Recipe(("validation.figures.ball_charts",), ("balls_damping", "balls_reference"), minutes=True),
+    Recipe(
+        ("validation.figures.ball_charts",),
+        ("balls_damping", "balls_reference", "balls_charts"),
+        minutes=True,
+    ),
     Recipe(("validation.figures.exciter_more",), ("exciter_traces", "exciter_trends")),
     Recipe(("validation.cases.weak_motor",), ("runup_weak_motor",)),
     Recipe(("validation.figures.runup_lag",), ("runup_lag",)),

@@ -13,7 +13,8 @@ from meshes.arrays import Array, Complex, Flags
 from meshes.errors import InputError
 from solvers.liquid_model import Whirls
 from solvers.rotor.balls.balancers import BallRace
-from solvers.rotor.balls.steady import BallStates, RotorWithBalls, collected, starts_of, steady_states
+from solvers.rotor.balls.states import RotorWithBalls
+from solvers.rotor.balls.steady import BallStates, collected, starts_of, steady_states
 from solvers.rotor.system import RotorSystem
 from solvers.synchronous.balance import backward_mass, directions
 from solvers.synchronous.models import STATICS
@@ -95,8 +96,7 @@ def wet_states(
     shape = spin.size, len(starts)
     own = each.reshape(*shape, *each.shape[1:])
     kept = (rests & agrees).reshape(shape)
-    share = _added(system, wet, small)
-    states = collected(machine, spin, own, places.reshape(*shape, -1), kept, share)
+    states = collected(machine, spin, own, places.reshape(*shape, -1), kept, _in_step(system, wet, small))
     return _with_liquid(system, fills, wet, states, gravity)
 
 
@@ -118,6 +118,16 @@ def _added(system: RotorSystem, wet: Sequence[Fill], mass: Array) -> Complex:
         total += 0.5 * mass[:, j, None, None] * np.outer(p, np.conj(p))
         total += 0.5 * backward_mass(fill) * np.outer(np.conj(p), p)
     return total
+
+
+def _in_step(system: RotorSystem, wet: Sequence[Fill], mass: Array) -> Array:
+    """The liquid's share in the mass matrix in slow motion as seen from the rotor, shape (p, n, n).
+
+    It then answers as at rest in the rotor, in both directions; the backward whirl of synchronous motion on
+    unlike supports is none of these.
+    """
+    planes = np.array([system.at(fill.chamber.plane) for fill in wet])
+    return np.asarray(np.einsum("pj,jai,jak->pik", mass, planes, planes))
 
 
 def _seen(system: RotorSystem, fills: Sequence[Fill], coordinates: Complex) -> Complex:

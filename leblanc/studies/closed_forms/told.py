@@ -13,9 +13,9 @@ from leblanc.studies.closed_forms.upright import lacking, upright
 from leblanc.studies.models.choose import Prepared
 from meshes.arrays import Array
 from meshes.errors import InputError
+from solvers.rotor.balls.two_plane_balance import Balancing, dynamic_balancing, of_two_planes
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import cage_speed
-from solvers.rotor.two_plane_balance import Balancing, dynamic_balancing, of_two_planes
 from solvers.rotor.vector_model import balance_angles, deflection_lag, unbalance_left
 from solvers.synchronous.response import Response
 

@@ -17,7 +17,8 @@ from leblanc.scene.scene import Scene, dry_rotor, require_clear
 from leblanc.studies.models.choose import axial_gravity
 from leblanc.studies.models.validity import doubts
 from meshes.errors import InputError
-from solvers.rotor.balls.steady import BallKind, RotorWithBalls, turning
+from solvers.rotor.balls.states import RotorWithBalls, turning
+from solvers.rotor.balls.steady import BallKind
 from solvers.rotor.vibration import orbit
 from solvers.runup.balls import Balls
 from solvers.synchronous.balls import wet_states
