@@ -14,7 +14,7 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from leblanc.scene.scene import Scene, load_scene
+from leblanc.scene.scene import Scene, dry_rotor, load_scene
 from meshes.errors import InputError
 
 if TYPE_CHECKING:
@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from leblanc.results.magnetic.explanation import MagneticExplanation
     from leblanc.results.models.comparison import Comparison
     from leblanc.results.motion.ball_design import BallDesignResult
+    from leblanc.results.motion.ball_numbers import BallExplanation
     from leblanc.results.motion.ball_states import BallsResult
     from leblanc.results.optimum import OptimumResult
     from leblanc.results.response import RunResult
@@ -104,8 +105,12 @@ def run(
     return run_scene(machine, holding=Holding(workers, solver=solver or COUPLED), cycles=cycles)
 
 
-def explain(scene: SceneOrPath) -> Explanation | ExciterExplanation | MagneticExplanation:
+def explain(
+    scene: SceneOrPath,
+) -> Explanation | ExciterExplanation | MagneticExplanation | BallExplanation:
     """A scene's dimensionless numbers, the liquid model that answers at each speed, and why.
+
+    Of balls in races: what they hold and from which speed on they balance.
 
     Parameters
     ----------
@@ -126,6 +131,10 @@ def explain(scene: SceneOrPath) -> Explanation | ExciterExplanation | MagneticEx
         from leblanc.studies.magnetic.explain import explain_magnetic
 
         return explain_magnetic(machine)
+    if machine.balls:
+        from leblanc.studies.races.explain import explain_balls
+
+        return explain_balls(machine)
     from leblanc.studies.explain import explain_exciter, explain_scene
 
     return explain_exciter(machine) if machine.rotor.kind == "exciter" else explain_scene(machine)
@@ -347,11 +356,10 @@ def fit(
     """
     machine = _scene(scene)
     from leblanc.studies.fit import fit_scene, read_measured, require_scale
-    from leblanc.studies.models.choose import prepare
 
     with _keywords():
         free = require_scale(scale) != "given"
-        table = read_measured(measured, prepare(machine).system.coordinates, free)
+        table = read_measured(measured, dry_rotor(machine).system().coordinates, free)
         return fit_scene(machine, table, tuple(unknown), starts, seed, scale)
 
 

@@ -26,7 +26,8 @@ class ReportedStates:
     amplitude : of the axis at the first chamber, m, nan where no state was found, shape (s,)
     stable : small motions do not grow, shape (s,)
     growth : of small motions, 1/s, infinite where no state was found, shape (s,)
-    balanced : it is the balanced state, shape (s,)
+    balanced : the balanced state is stable, whichever is reported, shape (s,)
+    balanced_growth : of small motions about the balanced state, 1/s, nan where there is none, shape (s,)
     coordinates : complex amplitudes of the rotor, shape (s, n)
     """
 
@@ -35,6 +36,7 @@ class ReportedStates:
     stable: Flags
     growth: Array
     balanced: Flags
+    balanced_growth: Array
     coordinates: Complex
 
 
@@ -67,12 +69,16 @@ def reported_states(scene: Scene, speed: ArrayLike) -> ReportedStates:
         n = len(system.coordinates)
         nothing, none = np.full(spin.size, np.nan), np.zeros(spin.size, dtype=bool)
         lost = np.full((spin.size, n), complex(np.nan, np.nan))
-        return ReportedStates(spin, nothing, none, np.full(spin.size, np.inf), none, lost)
+        return ReportedStates(spin, nothing, none, np.full(spin.size, np.inf), none, nothing, lost)
+    rests = states.kind == BallKind.BALANCED
     return ReportedStates(
         speed=spin,
         amplitude=np.where(found, sizes[rows, chosen], np.nan),
         stable=found & states.stable[rows, chosen],
         growth=np.where(found, states.growth[rows, chosen], np.inf),
-        balanced=found & (states.kind[rows, chosen] == BallKind.BALANCED),
+        balanced=np.asarray((rests & states.stable).any(axis=1)),
+        balanced_growth=np.where(
+            rests.any(axis=1), np.where(rests, states.growth, np.inf).min(axis=1), np.nan
+        ),
         coordinates=states.coordinates[rows, chosen],
     )
