@@ -14,7 +14,7 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from leblanc.scene.scene import Scene, load_scene
+from leblanc.scene.scene import Scene, dry_rotor, load_scene
 from meshes.errors import InputError
 
 if TYPE_CHECKING:
@@ -30,6 +30,8 @@ if TYPE_CHECKING:
     from leblanc.results.magnetic.control import MagneticResult
     from leblanc.results.magnetic.explanation import MagneticExplanation
     from leblanc.results.models.comparison import Comparison
+    from leblanc.results.motion.ball_design import BallDesignResult
+    from leblanc.results.motion.ball_numbers import BallExplanation
     from leblanc.results.motion.ball_states import BallsResult
     from leblanc.results.optimum import OptimumResult
     from leblanc.results.response import RunResult
@@ -103,8 +105,12 @@ def run(
     return run_scene(machine, holding=Holding(workers, solver=solver or COUPLED), cycles=cycles)
 
 
-def explain(scene: SceneOrPath) -> Explanation | ExciterExplanation | MagneticExplanation:
+def explain(
+    scene: SceneOrPath,
+) -> Explanation | ExciterExplanation | MagneticExplanation | BallExplanation:
     """A scene's dimensionless numbers, the liquid model that answers at each speed, and why.
+
+    Of balls in races: what they hold and from which speed on they balance.
 
     Parameters
     ----------
@@ -125,6 +131,10 @@ def explain(scene: SceneOrPath) -> Explanation | ExciterExplanation | MagneticEx
         from leblanc.studies.magnetic.explain import explain_magnetic
 
         return explain_magnetic(machine)
+    if machine.balls:
+        from leblanc.studies.races.explain import explain_balls
+
+        return explain_balls(machine)
     from leblanc.studies.explain import explain_exciter, explain_scene
 
     return explain_exciter(machine) if machine.rotor.kind == "exciter" else explain_scene(machine)
@@ -228,8 +238,11 @@ def optimise(
     emulator: str | PathLike[str] | None = None,
     front: bool = True,
     progress: Callable[[int], None] | None = None,
-) -> OptimumResult | LayoutResult:
-    """Best volume of liquid for each chamber, or the best layout of a tub's springs and dampers.
+    workers: int = 1,
+) -> OptimumResult | LayoutResult | BallDesignResult:
+    """Best volume of liquid for each chamber, best balls, or best layout of a tub's springs and dampers.
+
+    Where the scene has balls these are chosen, and its liquid stays as it is filled.
 
     Parameters
     ----------
@@ -241,7 +254,8 @@ def optimise(
     seed : of the random sample of robust
     emulator : store of a sweep over the volumes, from which the search gets an emulator
     front : find out as well what must be given up for what
-    progress : called with the number of sets of volumes judged
+    progress : called with the number of sets of volumes, or designs of balls, judged
+    workers : processes that judge designs of balls where one takes its time; the answer is the same with any
 
     Raises
     ------
@@ -255,7 +269,8 @@ def optimise(
     True
     """
     machine = _scene(scene)
-    from leblanc.questions import optimisation_of
+    from leblanc.questions import optimisation_of, require_no_emulator
+    from leblanc.studies.optimise.balls.search import optimise_balls
     from leblanc.studies.optimise.emulated import emulated_vibration
     from leblanc.studies.optimise.layout import optimise_layout
     from leblanc.studies.optimise.optimise import optimise_scene
@@ -266,8 +281,11 @@ def optimise(
             return optimise_layout(
                 machine, task, None if progress is None else lambda count, _: progress(count)
             )
-        surrogate = None if emulator is None else emulated_vibration(Path(emulator), machine, task)
         told = None if progress is None else lambda count, _: progress(count)
+        if machine.balls:
+            require_no_emulator(emulator)
+            return optimise_balls(machine, task, told, workers)
+        surrogate = None if emulator is None else emulated_vibration(Path(emulator), machine, task)
         return optimise_scene(machine, task=task, front=front, progress=told, emulator=surrogate)
 
 
@@ -338,11 +356,10 @@ def fit(
     """
     machine = _scene(scene)
     from leblanc.studies.fit import fit_scene, read_measured, require_scale
-    from leblanc.studies.models.choose import prepare
 
     with _keywords():
         free = require_scale(scale) != "given"
-        table = read_measured(measured, prepare(machine).system.coordinates, free)
+        table = read_measured(measured, dry_rotor(machine).system().coordinates, free)
         return fit_scene(machine, table, tuple(unknown), starts, seed, scale)
 
 

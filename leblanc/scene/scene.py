@@ -649,7 +649,7 @@ def optimise_content(wanted: Optimisation) -> dict[str, Any]:
     wanted : of a scene
     """
     duty = [(stage.speed, stage.weight) for stage in wanted.duty]
-    later = {"balance_quality", "floor_force", "walking_margin", "point_clearance"}
+    later = {"balance_quality", "floor_force", "walking_margin", "point_clearance", "balls"}
     later = {name for name in later if getattr(wanted, name) is None}
     return wanted.model_dump(exclude={"duty", *later}) | {"duty": duty}
 

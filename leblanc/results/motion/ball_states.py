@@ -20,6 +20,25 @@ from solvers.rotor.balls.steady import BallKind, BallStates
 STATE_NAMES: Mapping[int, str] = {kind: kind.name.lower() for kind in BallKind}
 
 
+def reported_state(states: BallStates, sizes: Array) -> Index:
+    """Which state is reported at each speed, shape (s,): of the stable ones that with the largest amplitude.
+
+    Where none is stable it is the one whose small motions grow least; -1 where none was found.
+
+    Parameters
+    ----------
+    states : all that were found
+    sizes : amplitude of each, m, shape (s, b)
+    """
+    if states.kind.shape[1] == 0:
+        return np.full(states.speed.shape, -1)
+    largest = np.argmax(np.where(states.stable, sizes, -1.0), axis=1)
+    growth = np.where(states.kind > 0, np.nan_to_num(states.growth, nan=np.inf), np.inf)
+    least = np.argmin(growth, axis=1)
+    found = np.where(states.stable.any(axis=1), largest, least)
+    return np.where((states.kind > 0).any(axis=1), found, -1)
+
+
 @dataclass(frozen=True)
 class BallsResult(Result):
     """States of rotor, balls and liquid; s speeds, at most b states at each, N balls.
@@ -94,12 +113,7 @@ class BallsResult(Result):
 
         Where none is stable it is the one whose small motions grow least; -1 where none was found.
         """
-        stable = self.states.stable
-        largest = np.argmax(np.where(stable, self.sizes, -1.0), axis=1)
-        growth = np.where(self.states.kind > 0, np.nan_to_num(self.states.growth, nan=np.inf), np.inf)
-        least = np.argmin(growth, axis=1)
-        found = np.where(stable.any(axis=1), largest, least)
-        return np.where((self.states.kind > 0).any(axis=1), found, -1)
+        return reported_state(self.states, self.sizes)
 
     def _of_chosen(self, values: NDArray[Any], missing: Any) -> NDArray[Any]:
         """Values of the states that are reported."""
