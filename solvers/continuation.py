@@ -100,14 +100,18 @@ def follow(
     if not np.all(np.isfinite(size) & (size > 0.0)) or way not in (1, -1):
         raise InputError("unit, way", (size.tolist(), way), "positive sizes, and 1 or -1")
     slope = _slope(equations, begin, size)
+    if not np.isfinite(slope).all():
+        return Curve(begin[None], End.LOST)
     tangent = way * _tangent(slope)
     found = _corrected(equations, begin, tangent, size, tolerance)
     if found is None:
         return Curve(begin[None], End.LOST)
     points, length, travelled = [found[0]], step, 0.0
     renew(points[0])
-    tangent = _onward(equations, points[0], size, tangent)
-    first = tangent
+    ahead = _onward(equations, points[0], size, tangent)
+    if ahead is None:
+        return Curve(np.array(points), End.LOST)
+    tangent = first = ahead
     while len(points) < most:
         guess = points[-1] + length * size * tangent
         answer = _corrected(equations, guess, tangent, size, tolerance)
@@ -149,9 +153,12 @@ def _tangent(slope: Array) -> Array:
     return np.asarray(tangent * np.sign(tangent[heavy]))
 
 
-def _onward(equations: Equations, point: Array, size: Array, tangent: Array) -> Array:
-    """Direction of the curve at a point, on the side of the last one."""
-    ahead = np.linalg.svd(_slope(equations, point, size))[2][-1]
+def _onward(equations: Equations, point: Array, size: Array, tangent: Array) -> Array | None:
+    """Direction of the curve at a point, on the side of the last one; None where the equations end."""
+    slope = _slope(equations, point, size)
+    if not np.isfinite(slope).all():
+        return None
+    ahead = np.linalg.svd(slope)[2][-1]
     return np.asarray(ahead if ahead @ tangent >= 0.0 else -ahead)
 
 

@@ -97,7 +97,8 @@ def balanced_places(system: RotorSystem, races: Sequence[BallRace]) -> Array:
     """Places at which the balls take away the whole unbalance [theory: balls, eq. 21].
 
     Of all such places those that are evenly spread over an arc of each race; of all shares of the races in
-    the unbalance those with the least sum of squares. Three balls and more have a family of further ones.
+    the unbalance those with the least sum of squares over what each race can hold. Three balls and more have
+    a family of further ones.
 
     Parameters
     ----------
@@ -124,7 +125,9 @@ def balanced_places(system: RotorSystem, races: Sequence[BallRace]) -> Array:
             raise InputError("races", race.masses, "balls of one race alike; else give their places")
     rows = [system.at(race.position) for race in races]
     across = np.array([row[0] - 1j * row[1] for row in rows]).T
-    shares = np.linalg.lstsq(across, -system.unbalance, rcond=None)[0]
+    # Weighted so that the least sum has each race hold the same part of what it can.
+    weight = np.sqrt([sum(race.masses) * race.radius for race in races])
+    shares = weight * np.linalg.lstsq(across * weight, -system.unbalance, rcond=None)[0]
     places: list[float] = []
     for race, share in zip(races, shares.tolist(), strict=True):
         # A share at rounding has no direction.
