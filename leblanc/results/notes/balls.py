@@ -152,5 +152,6 @@ def in_ratio(paths: Sequence[str]) -> Note:
     ----------
     paths : of them
     """
-    text = f"{', '.join(paths[1:])} keep their ratio to {paths[0]}."
+    verb = "keeps its" if len(paths) == 2 else "keep their"
+    text = f"{', '.join(paths[1:])} {verb} ratio to {paths[0]}."
     return Note(BallCode.IN_RATIO, {"paths": tuple(paths)}, text)
