@@ -153,8 +153,8 @@ def regions(result: BallChart) -> tuple[Array, Array, Indices]:
             found[inside] = known[tuple(nearest)][inside]
     nearest = distance_transform_edt(found == -2, return_distances=False, return_indices=True)
     speed = np.linspace(result.speed[0], result.speed[-1], shape[1])
-    ends = result.value[[0, -1]]
-    value = np.geomspace(*ends, shape[0]) if result.log else np.linspace(*ends, shape[0])
+    low, high = float(result.value[0]), float(result.value[-1])
+    value = np.geomspace(low, high, shape[0]) if result.log else np.linspace(low, high, shape[0])
     return speed, value, found[tuple(nearest)]
 
 
