@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from leblanc.results.magnetic.control import MagneticResult
     from leblanc.results.magnetic.explanation import MagneticExplanation
     from leblanc.results.models.comparison import Comparison
+    from leblanc.results.motion.ball_chart import BallChart
     from leblanc.results.motion.ball_design import BallDesignResult
     from leblanc.results.motion.ball_numbers import BallExplanation
     from leblanc.results.motion.ball_states import BallsResult
@@ -225,6 +226,59 @@ def map_whirl(
         most = None if max_volume is None else parse_option(max_volume, VOLUME, "--max-volume")
         law = None if friction is None else friction_of(friction)
         return map_scene(machine, volumes, speeds, most, law, progress, cycles)
+
+
+def map_balls(
+    scene: SceneOrPath,
+    over: str | Sequence[str] = (),
+    *,
+    start: Quantity | None = None,
+    stop: Quantity | None = None,
+    values: int = 31,
+    speeds: int = 61,
+    log: bool | None = None,
+    state: str = "balanced",
+    progress: Callable[[int, int], None] | None = None,
+) -> BallChart:
+    """Where the balls of a scene keep the rotor balanced, over its speeds and another of its numbers.
+
+    Parameters
+    ----------
+    scene : the machine with its races, or the path of its file
+    over : path of the number, as "chambers.0.drag"; several keep their ratios; the drag in all races if empty
+    start, stop : first and last value of it (`--from` and `--to`); chosen about what the scene has if None
+    values, speeds : how many of each
+    log : space the values by their logarithm; where they span a decade if None
+    state : balanced; heavy or light, with the balls of each race together on that side of its plane
+    progress : called with the number of points done and of all
+
+    Raises
+    ------
+    SceneError, InputError : as for `run`; no race, a path that leads to no number
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> chart = lb.map_balls(lb.example("balls"), "rotor.unbalance", values=5, speeds=9)
+    >>> chart.growing[-1].tolist()  # beyond what two balls hold
+    [-1, -1, -1, -1, -1, -1, -1, -1, -1]
+    """
+    machine = _scene(scene)
+    from leblanc.studies.races.chart import chart_scene
+
+    paths = (over,) if isinstance(over, str) else tuple(over)
+    with _keywords():
+        return chart_scene(
+            machine,
+            paths,
+            start,
+            stop,
+            values=values,
+            speeds=speeds,
+            log=log,
+            state=state,
+            progress=progress,
+        )
 
 
 def optimise(

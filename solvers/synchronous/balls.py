@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -98,6 +98,25 @@ def wet_states(
     kept = (rests & agrees).reshape(shape)
     states = collected(machine, spin, own, places.reshape(*shape, -1), kept, _in_step(system, wet, small))
     return _with_liquid(system, fills, wet, states, gravity)
+
+
+def in_step(system: RotorSystem, fills: Sequence[Fill], speed: float, gravity: float = 0.0) -> RotorSystem:
+    """The rotor with its liquid as a mass in step with the axis, for small motions about a balanced state.
+
+    [theory: races, eq. 8]
+
+    Parameters
+    ----------
+    system : the dry rotor
+    fills : chambers with their liquid, any number
+    speed : Omega, rad/s
+    gravity : along the axis, m/s^2
+    """
+    wet = [fill for fill in fills if fill.volume > 0.0]
+    if not wet:
+        return system
+    masses = _masses(wet, np.array([speed]), np.zeros((1, len(wet))), gravity)
+    return replace(system, mass=system.mass + _in_step(system, wet, masses)[0])
 
 
 def _masses(wet: Sequence[Fill], spin: Array, deflection: Array, gravity: float) -> Array:

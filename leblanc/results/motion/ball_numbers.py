@@ -15,7 +15,7 @@ from leblanc.results.motion.encoding import finite
 from leblanc.results.netcdf import NamedArrays, flags
 from leblanc.results.netcdf import variable as var
 from meshes.arrays import Array, Flags
-from solvers.rotor.two_plane_balance import Balancing
+from solvers.rotor.balls.two_plane_balance import Balancing
 
 
 @dataclass(frozen=True)

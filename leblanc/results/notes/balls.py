@@ -1,9 +1,11 @@
-"""Notes of a rotor with balls at rest in the drum."""
+"""Notes of a rotor with balls at rest in the drum, and of charts of their stability."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from leblanc.results.base import Note, NoteCode
-from leblanc.units import LENGTH, UNBALANCE, in_rpm, with_unit
+from leblanc.units import LENGTH, UNBALANCE, in_rpm, number, with_unit
 
 
 class BallCode(NoteCode):
@@ -17,6 +19,10 @@ class BallCode(NoteCode):
     LIQUID_IN_STEP = "liquid_in_step"
     COVERED = "covered"
     RUNS_ON = "runs_on"
+    FREE = "free_balls"
+    NOT_THERE = "not_there"
+    BETWEEN_LINES = "between_lines"
+    IN_RATIO = "in_ratio"
 
 
 def capacity(enough: bool, most: float) -> Note:
@@ -104,3 +110,48 @@ def covered() -> Note:
         "turns with the drum."
     )
     return Note(BallCode.COVERED, {}, text)
+
+
+def free_balls() -> Note:
+    """Which motions of the balls do not count."""
+    text = (
+        "Balls that the balance does not need may move freely without unbalancing the rotor: no instability."
+    )
+    return Note(BallCode.FREE, {}, text)
+
+
+def not_there(share: float, state: str) -> Note:
+    """Where a chart has nothing to judge.
+
+    Parameters
+    ----------
+    share : of the points
+    state : balanced, heavy or light
+    """
+    where = f"At {number(100.0 * share)} % of the points there is no such state: "
+    why = (
+        "the balls are too light for the unbalance." if state == "balanced" else "the balls stand elsewhere."
+    )
+    return Note(BallCode.NOT_THERE, {"share": share}, where + why)
+
+
+def between_lines() -> Note:
+    """What a grid can miss."""
+    text = (
+        "A curve is sought wherever two neighbours of the grid differ and followed from there: one that "
+        "passes between the lines of the grid is not seen, and one on which several roots pass at once is "
+        "not drawn."
+    )
+    return Note(BallCode.BETWEEN_LINES, {}, text)
+
+
+def in_ratio(paths: Sequence[str]) -> Note:
+    """Several numbers vary together.
+
+    Parameters
+    ----------
+    paths : of them
+    """
+    verb = "keeps its" if len(paths) == 2 else "keep their"
+    text = f"{', '.join(paths[1:])} {verb} ratio to {paths[0]}."
+    return Note(BallCode.IN_RATIO, {"paths": tuple(paths)}, text)

@@ -17,8 +17,8 @@ from leblanc.studies.races.states import reported_states
 from leblanc.studies.runup import runup_outlook
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
-from solvers.rotor.balls.steady import RotorWithBalls, turning
-from solvers.rotor.two_plane_balance import (
+from solvers.rotor.balls.states import RotorWithBalls, turning
+from solvers.rotor.balls.two_plane_balance import (
     Balancing,
     dynamic_balancing,
     of_two_planes,

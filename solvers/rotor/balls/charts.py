@@ -17,7 +17,8 @@ from numpy.typing import ArrayLike
 from meshes.arrays import Array, Complex, Indices
 from meshes.errors import InputError
 from solvers.continuation import Curve, End, follow
-from solvers.rotor.balls.balancers import BallRace
+from solvers.roots import bracketed_root
+from solvers.rotor.balls.balancers import BallRace, race_arrays
 from solvers.rotor.balls.stability import HalfTurn, Linearised, small_motions
 from solvers.rotor.balls.states import RotorWithBalls
 from solvers.rotor.system import RotorSystem
@@ -161,6 +162,23 @@ def _held(rotor: RotorWithBalls, speed: float, places: Array) -> tuple[Rest, Arr
     return Rest(rotor, speed, places, rotor.coordinates(compliance, places[None])[0]), pulls
 
 
+def gathered(system: RotorSystem, races: Sequence[BallRace], light: bool = False) -> State:
+    """The state with the balls of each race together, next to the heavy side of its plane or opposite to it.
+
+    The heavy side is where the unbalance bends the slowly turning rotor to. The state itself is sought anew
+    at each point of a chart.
+
+    Parameters
+    ----------
+    system, races : rotor and balls
+    light : opposite
+    """
+    axes, _ = race_arrays(system, races)
+    bent = np.linalg.solve(system.stiffness, system.unbalance)
+    forward = (axes[:, 0] + 1j * axes[:, 1]) @ bent
+    return State(np.angle(forward) + (np.pi if light else 0.0))
+
+
 def stability_chart(family: Family, first: ArrayLike, second: ArrayLike, state: State | None = None) -> Chart:
     """Count growing roots on a grid, and follow every curve on which the count changes.
 
@@ -200,6 +218,69 @@ def stability_chart(family: Family, first: ArrayLike, second: ArrayLike, state: 
         if edge is not None and _on(edge, where, cell):
             edges.append(edge)
     return Chart(x, y, growing, growth, tuple(edges))
+
+
+def stable_bands(
+    family: Family, first: ArrayLike, second: float, state: State | None = None
+) -> tuple[Array, list[tuple[float, float]]]:
+    """Growth over the first parameter at one value of the second, and the bands of it without growth.
+
+    Parameters
+    ----------
+    family : machine for each pair of values
+    first : values that rise, shape (a,)
+    second : the other parameter
+    state : whose stability; None: the balanced one
+
+    Returns
+    -------
+    growth : largest real part, 1/s; nan where the state does not exist, shape (a,)
+    bands : ends of each; between two values they are where the growth changes its sign, to rounding
+    """
+    x, chosen = np.asarray(first, dtype=float), state or State()
+
+    def largest(at: Array, _: Indices) -> Array:
+        return np.array([_counted(chosen, family(float(value), second))[1] for value in at])
+
+    growth = largest(x, np.zeros(0, dtype=np.int64))
+    stable = growth <= 0.0
+    changes = np.flatnonzero(stable[1:] != stable[:-1])
+    # Where the state ends there is no sign to change: the last value that has it stands.
+    known = changes[np.isfinite(growth[changes]) & np.isfinite(growth[changes + 1])]
+    ends = {k: float(x[k] if stable[k] else x[k + 1]) for k in changes.tolist()}
+    if known.size:
+        found = bracketed_root(largest, x[known], x[known + 1])[0]
+        ends |= dict(zip(known.tolist(), found.tolist(), strict=True))
+    edges = [ends[k] for k in changes.tolist()]
+    edges = ([float(x[0])] if stable[0] else []) + edges + ([float(x[-1])] if stable[-1] else [])
+    return growth, list(zip(edges[::2], edges[1::2], strict=True))
+
+
+def existence_bounds(
+    family: Family, first: float, second: ArrayLike, state: State | None = None
+) -> list[float]:
+    """Values of the second parameter between which the state begins or ends to exist, by halving.
+
+    Parameters
+    ----------
+    family : machine for each pair of values
+    first : one value of the first parameter; the balanced state exists at all speeds or at none
+    second : values that rise, shape (b,)
+    state : None: the balanced one
+    """
+    y, chosen = np.asarray(second, dtype=float), state or State()
+
+    def exists(at: float) -> bool:
+        return chosen.at(family(first, at)) is not None
+
+    there, found = [exists(at) for at in y.tolist()], []
+    for k in [k for k in range(y.size - 1) if there[k] != there[k + 1]]:
+        low, high = float(y[k]), float(y[k + 1])
+        for _ in range(_HALVINGS):
+            middle = 0.5 * (low + high)
+            low, high = (middle, high) if exists(middle) == there[k] else (low, middle)
+        found.append(0.5 * (low + high))
+    return found
 
 
 def follow_edge(

@@ -371,6 +371,8 @@ def _arc(race: BallRace, share: complex) -> list[float]:
         raise InputError("races", race.masses, f"balls of {abs(share):.6g} kg m or more together")
     if count == 1 or wanted >= count:
         gap = 0.0
+    elif count == 2:
+        gap = 2.0 * math.acos(0.5 * wanted)
     else:
         # The sum of unit vectors a gap apart falls from their number at 0 to 0 when they stand all round.
         def left(at: Array, _: object) -> Array:

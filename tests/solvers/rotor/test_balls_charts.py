@@ -10,7 +10,16 @@ import pytest
 from meshes.errors import InputError
 from solvers.continuation import End, follow
 from solvers.rotor.balls.balancers import BallRace, race_arrays
-from solvers.rotor.balls.charts import NONE, Crossing, Machine, State, follow_edge, stability_chart
+from solvers.rotor.balls.charts import (
+    NONE,
+    Crossing,
+    Machine,
+    State,
+    existence_bounds,
+    follow_edge,
+    stability_chart,
+    stable_bands,
+)
 from solvers.rotor.balls.stability import HalfTurn, balanced_stability, small_motions
 from solvers.rotor.balls.states import RotorWithBalls
 from solvers.rotor.balls.steps import advance
@@ -259,3 +268,21 @@ def test_a_curve_ends_where_the_balanced_state_does() -> None:
     assert longer is not None and End.NOWHERE in longer.ends
     # A shortest step is 1/256 of 0.02 of the width of 2e-3.
     assert longer.second.max() == pytest.approx(2.4e-3, abs=1e-6) and longer.second.max() <= 2.4e-3
+
+
+def test_bands_of_one_value_end_where_the_growth_is_nothing() -> None:
+    growth, bands = stable_bands(family, np.linspace(30.0, 90.0, 9), 1.0)
+    assert growth.shape == (9,) and len(bands) == 1 and bands[0][1] == 90.0
+    machine = family(bands[0][0], 1.0)
+    found = balanced_stability(machine.system, machine.races, machine.speed).growth
+    assert abs(found) < 1e-9 * machine.speed
+    assert stable_bands(family, [30.0, 40.0], 1.0)[1] == []
+
+
+def test_a_start_where_the_state_is_not_there_gives_no_curve() -> None:
+    def ends(speed: float, unbalance: float) -> Machine:
+        return Machine(Jeffcott(10.0, 2e4, 60.0, unbalance).system(), (RACE,), speed)
+
+    assert existence_bounds(ends, 50.0, [1e-3, 2e-3, 3e-3]) == pytest.approx([2.4e-3], rel=1e-9)
+    corner = [30.0, 1e-3], [90.0, 3e-3]
+    assert follow_edge(ends, [60.0, 2.9e-3], 10j, *corner) is None
