@@ -320,9 +320,9 @@ def follow_edge(
         start, unit = np.append(at, abs(root.imag)), np.append(span, speed)
         box = np.append(corner, 0.0), np.append(far, np.inf)
     elif fold:
-        free = np.full(rest.places.size, np.inf)
-        start, unit = np.append(at, rest.places), np.append(span, np.ones(free.size))
-        box = np.append(corner, -free), np.append(far, free)
+        endless = np.full(rest.places.size, np.inf)
+        start, unit = np.append(at, rest.places), np.append(span, np.ones(endless.size))
+        box = np.append(corner, -endless), np.append(far, endless)
     ways = []
     for way in (1, -1):
         test = _Bordered(family, chosen, swings, fold, rest.places)
@@ -441,6 +441,8 @@ def _crossing(state: State, family: Family, inside: Array, outside: Array) -> tu
     None where the state ends there without meeting another.
     """
     wanted, other = (_counted(state, family(*point.tolist()))[0] for point in (inside, outside))
+    if other == NONE and state.places is None:
+        return inside, None
     low, high = inside, outside
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
@@ -457,8 +459,7 @@ def _crossing(state: State, family: Family, inside: Array, outside: Array) -> tu
     if other != NONE:
         return where, complex(roots[np.argmin(np.abs(roots.real))])
     least = complex(roots[np.argmin(np.abs(roots))])
-    met = state.places is not None and abs(least) <= _MEETS * machine.speed
-    return where, least if met else None
+    return where, least if abs(least) <= _MEETS * machine.speed else None
 
 
 def _on(edge: Edge, where: Array, cell: Array) -> bool:

@@ -16,6 +16,7 @@ from meshes.chamber import Chamber
 from meshes.errors import InputError
 from solvers.layer.records import Outcome
 from solvers.rotor.balls.balancers import BallRace, simulate
+from solvers.rotor.balls.steady import BallKind
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import RotorSystem
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
@@ -23,6 +24,7 @@ from solvers.runup.balls import Balls, spread_balls
 from solvers.runup.long_wave import Coupled, couple
 from solvers.runup.machine import Motor, Ramp
 from solvers.runup.runup import RunupHistory, RunupNumerics, run_up
+from solvers.synchronous.balls import wet_states
 
 FRICTION = Friction()
 ROTOR = Jeffcott(4.0, 4.4e4, 84.0, 6e-4)
@@ -189,6 +191,32 @@ def test_balls_and_liquid_take_the_unbalance_together() -> None:
     assert run.amplitude[-1] < 1e-2 * run.amplitude.max()
     assert run.mass_error < 1e-12
     assert run.depth_max[-1, 0] - run.depth_min[-1, 0] < 0.02 * fill.depth
+
+
+def test_liquid_counts_as_its_mass_in_step_in_the_slow_motions_of_balls() -> None:
+    """Below the resonance the balanced state grows, swinging with 0.38 rad/s as seen from the rotor.
+
+    Two samples apart foretell the third: w'' = a w' + b w for a pair of roots.
+    """
+    fill, spin = Fill(Chamber(0.065, 0.02), KNOWN_LIQUIDS["water"], 3e-5), 80.0
+    race = BallRace(0.0, 0.065, (7.1e-3,) * 2, 0.1)
+    known = wet_states(ROTOR.system(), [fill], [race], [spin]).states
+    assert known.kind[0, 0] == BallKind.BALANCED
+    places = known.places[0, 0] + np.array([1e-4, -1e-4])
+    balls = Balls((race,), tuple(places.tolist()), (1.0, 1.0))
+    made = couple(ROTOR.system(), (fill,), spin, Friction("linear", 10.0), 0.0, 64, False, balls=balls)
+    seen = []
+    for k in range(1, 14):
+        x, y = held(made, 0.5 * k).read().coordinates
+        seen.append((x + 1j * y) * np.exp(-0.5j * k * spin))
+    w = np.array(seen[2:]) / np.abs(seen[4:]).max()
+    size = np.abs(w[2:])
+    rows = np.column_stack((w[1:-1], w[:-2])) / size[:, None]
+    left, right = (np.concatenate((part.real, part.imag)) for part in (rows, w[2:] / size))
+    first, second = np.linalg.lstsq(left, right, rcond=None)[0]
+    grown = np.roots([1.0, -first, -second]).astype(complex)
+    # The layer lags by its waves' damping: some per cent of a share of 7 % of the mass; cells of 1/64 turn.
+    assert (np.log(grown[0]) / 0.5).real == pytest.approx(known.growth[0, 0], rel=0.02)
 
 
 def test_liquid_caught_beside_balls_keeps_the_momentum() -> None:
