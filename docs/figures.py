@@ -157,6 +157,11 @@ RECIPES = (
             *("vibratory_table", "washing_machine"),
         )
     ),
+    *(
+        _example("view", scene, **{f"view_{scene}": "view"})
+        for scene in ("balls", "balls_and_liquid", "long_rotor")
+    ),
+    _example("view", "balls", "--speed", "600 rpm", view_balls_slow="view"),
     _example("view", "runup", "--speed", "24 rad/s", view_runup_resonance="view"),
     _example("view", "vertical_rig", "--speed", "8 rad/s", view_vertical_rig_slow="view"),
     _example("view", "centrifuge", "--mode", "3", view_mode="view"),

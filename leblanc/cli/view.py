@@ -154,6 +154,12 @@ def _still(machine: Scene, speed: float | None, factor: float | None) -> tuple[P
 
         table = table_view(machine, speed)
         return table_picture(table), table.to_json()
+    if machine.balls:
+        from leblanc.studies.shapes.balls import ball_view
+        from leblanc.view.balls import ball_still
+
+        seen = ball_view(machine, speed, factor)
+        return ball_still(seen, -1), seen.to_json()
     from leblanc.studies.shapes.machine import machine_view
     from leblanc.view.scene import still
 
@@ -211,6 +217,11 @@ def _film_of(machine: Scene, frames: int, factor: float | None, progress: Callab
         from leblanc.studies.shapes.machine import runup_view
 
         return runup_film(runup_view(machine, frames, factor, progress))
+    if machine.balls:
+        from leblanc.studies.shapes.balls import ball_view
+        from leblanc.view.film import ball_film
+
+        return ball_film(ball_view(machine, factor=factor, every=True), frames)
     from leblanc.studies.shapes.machine import drawn_liquid, machine_motion
     from leblanc.studies.shapes.scale import scale_of
 

@@ -14,7 +14,7 @@ ROTORS = (
 )
 WHOLE = ("two_plane_rig", "vertical_rig", "centrifuge", "runup")  # run-ups held to their end
 BALLS = ("balls", "balls_and_liquid")
-_NOT_BALLS = ("explain", "optimise", "view", "trade")
+_NOT_BALLS = ("explain", "optimise", "trade")
 DOCS = ("closed_baffles", "lobes", "smallest_scene")
 COMMANDS = (
     *(
@@ -244,7 +244,7 @@ def _modes() -> Iterator[Case]:
 
 
 def _views() -> Iterator[Case]:
-    for name in ("vibratory_table", *ROTORS, *DOCS):
+    for name in ("vibratory_table", *BALLS, "long_rotor", *ROTORS, *DOCS):
         yield _case(f"view-{name}", f"view {_scene(name)} --json --out out", needs="screen")
     yield _case(
         "view-mode",
