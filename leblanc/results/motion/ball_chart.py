@@ -25,8 +25,8 @@ class Curve:
     kind : "hopf", a pair of roots, or "zero", one root at 0
     speed, value : of its points, rad/s and SI, shape (k,); the last one of a curve that leaves lies outside
     frequency : of the pair as seen from the rotor, rad/s, shape (k,)
-    ends : of its first and its last point: "left" the chart, "closed", "lost", as where the state ends, or
-        "long", with too many points
+    ends : of its first and its last point: "left" the chart, "closed", "nowhere", as the state ends there,
+        "lost", as no further point is found, or "long", with too many points
     """
 
     kind: str

@@ -23,7 +23,8 @@ CURVES = {
 _ENDS = {
     "left": "leaves the chart",
     "closed": "closes",
-    "lost": "is lost, as where the state ends",
+    "nowhere": "comes to where the state ends",
+    "lost": "is lost, as no further point is found",
     "long": "is cut, as it has too many points",
 }
 HEAD = ("Curve", "speed (rpm)", "value", "frequency in the drum (rpm)", "it ends where it")
