@@ -345,21 +345,13 @@ class Scene(Part):
 def _ball_conflicts(values: Mapping[str, Any]) -> Iterator[Conflict]:
     """Races stand behind the liquid, and on a rotor whose motion with balls is known."""
     chambers, rotor = values.get("chambers", ()), values.get("rotor")
-    races = [k for k, chamber in enumerate(chambers) if isinstance(chamber, BallRace)]
-    for k in races:
+    for k in [k for k, chamber in enumerate(chambers) if isinstance(chamber, BallRace)]:
         if any(isinstance(chamber, Chamber) for chamber in chambers[k + 1 :]):
             yield Conflict(("chambers", k), "behind the chambers with liquid in the file")
         if isinstance(rotor, Exciter):
             yield Conflict(("chambers", k), "left out for an exciter, which has balls of its own")
         elif chambers[k].start == "bottom" and rotor is not None and rotor.axis == "vertical":
             yield Conflict(("chambers", k, "start"), "spread where the axis stands and has no bottom")
-    if races:
-        for key in ("cabinet", "points"):
-            if values.get(key):
-                yield Conflict((key,), "left out with balls, whose forces it does not know")
-        if getattr(rotor, "bearings", ()):
-            text = "left out with balls, whose forces they do not know"
-            yield Conflict(("rotor", "bearings"), text)
 
 
 def _friction_content(friction: Friction) -> dict[str, object]:

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.results.base import Note, Result, attributes, one_line, texts
+from leblanc.results.base import Note, Result, attributes, carried, one_line, texts
 from leblanc.results.exciter import number_or_none
+from leblanc.results.machine.loads import MachineLoads
 from leblanc.results.motion.balls import RaceOfBalls, ball_moment
+from leblanc.results.motion.closed_forms import ClosedForms
 from leblanc.results.netcdf import NamedArrays, flags
 from leblanc.results.netcdf import variable as var
 from meshes.arrays import Array, Complex, Flags, Index
@@ -43,6 +45,8 @@ class BallsResult(Result):
     can_balance : the balls can take all unbalance away
     sticking : deflection in the plane of each race below which its balls stay where they are, m
     notes : limits of validity and findings
+    loads : forces and clearances of the state reported where it is stable; None where the scene asks for none
+    closed_forms : what the sources' closed forms say of the rotor
 
     Examples
     --------
@@ -77,6 +81,11 @@ class BallsResult(Result):
     can_balance: bool
     sticking: tuple[float, ...]
     notes: tuple[Note, ...]
+    loads: MachineLoads | None = None
+    closed_forms: ClosedForms = field(default_factory=ClosedForms)
+
+    balancing = carried("closed_forms.balancing")
+    cage_speed = carried("closed_forms.cage_speed")
 
     @property
     def speed(self) -> Array:
@@ -207,6 +216,8 @@ class BallsResult(Result):
             "balanced_from": number_or_none(self.balanced_from),
             "states": [self._states_at(k) for k in range(self.speed.size)],
             "notes": texts(self.notes),
+            **({} if self.loads is None else self.loads.to_json()),
+            **self.closed_forms.to_json(),
         }
 
     def _states_at(self, k: int) -> list[dict[str, Any]]:
@@ -242,6 +253,8 @@ class BallsResult(Result):
                 "state_kind": var(every, self.states.kind.astype(np.int32), "1", f"0 to 3: {kinds}"),
                 "state_amplitude": var(every, self.sizes, "m", "amplitude of each state found"),
                 "state_growth": var(every, self.states.growth, "s-1", "its growth of small motions"),
+                **({} if self.loads is None else self.loads.variables()),
+                **self.closed_forms.variables(),
             },
             coords={"speed": var(over, self.speed, "rad s-1", "spin speed")},
             attrs=attributes(

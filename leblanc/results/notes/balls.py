@@ -17,6 +17,7 @@ class BallCode(NoteCode):
     LIQUID_IN_STEP = "liquid_in_step"
     COVERED = "covered"
     RUNS_ON = "runs_on"
+    LOADS_OF_STATES = "loads_of_states"
 
 
 def capacity(enough: bool, most: float) -> Note:
@@ -104,3 +105,12 @@ def covered() -> Note:
         "turns with the drum."
     )
     return Note(BallCode.COVERED, {}, text)
+
+
+def loads_of_states() -> Note:
+    """Of which motion forces and clearances are."""
+    text = (
+        "Forces and clearances are those of the stable state that is told, at the speeds of the scene; where "
+        "the balls run they are not known, and a run-up shows them."
+    )
+    return Note(BallCode.LOADS_OF_STATES, {}, text)

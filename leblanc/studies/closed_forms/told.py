@@ -101,11 +101,14 @@ def _balancing(scene: Scene, speed: Array) -> tuple[Balancing | None, str | None
     if not isinstance(scene.rotor, TwoPlaneRotor):
         return None, None
     refused = "Conditions of balancing in two planes"
-    if len({fill.chamber.plane for fill in scene.fills if fill.volume > 0.0}) < 2:
-        return None, f"{refused}: liquid is in fewer than two planes."
-    liquid = sum(fill.mass for fill in scene.fills)
+    planes = [fill.chamber.plane for fill in scene.fills if fill.volume > 0.0]
+    planes += [race.plane for race in scene.balls]
+    if len(set(planes)) < 2:
+        what = "liquid and balls are" if scene.balls else "liquid is"
+        return None, f"{refused}: {what} in fewer than two planes."
+    added = sum(fill.mass for fill in scene.fills) + sum(sum(race.race().masses) for race in scene.balls)
     try:
-        rotor = of_two_planes(scene.rotor.machine(), liquid)
+        rotor = of_two_planes(scene.rotor.machine(), added)
     except InputError as error:
         return None, f"{refused}: {error}."
     return dynamic_balancing(rotor, speed), None

@@ -8,13 +8,17 @@ from dataclasses import replace
 import numpy as np
 
 from leblanc.results.base import Note
+from leblanc.results.machine.loads import MachineLoads
 from leblanc.results.motion.ball_states import BallsResult
 from leblanc.results.motion.balls import RaceOfBalls
 from leblanc.results.notes import balls as notes
+from leblanc.results.notes import response as response_notes
 from leblanc.scene.inputs import input_rows
 from leblanc.scene.races import BallRace
-from leblanc.scene.scene import Scene, dry_rotor, require_clear
-from leblanc.studies.models.choose import axial_gravity
+from leblanc.scene.scene import Scene, require_clear
+from leblanc.studies.closed_forms.told import closed_forms
+from leblanc.studies.machine import loaded_machine, loads_over_speed
+from leblanc.studies.models.choose import prepare
 from leblanc.studies.models.validity import doubts
 from meshes.errors import InputError
 from solvers.rotor.balls.steady import BallKind, RotorWithBalls, turning
@@ -79,8 +83,8 @@ def run_balls(scene: Scene) -> BallsResult:
     require_clear(scene, "balls beside liquid")
     if scene.model.liquid not in ("auto", "statics"):
         raise InputError("model.liquid", scene.model.liquid, "auto or statics beside balls")
-    rotor = dry_rotor(scene)
-    system, speed, gravity = rotor.system(), scene.speed_array(), axial_gravity(scene)
+    machine = replace(prepare(scene.without_balls()), scene=scene)
+    rotor, system, speed, gravity = machine.rotor, machine.system, machine.speed, machine.axial_gravity
     races = [race.race() for race in scene.balls]
     place = scene.fills[0].chamber.plane if scene.fills else scene.balls[0].plane
     found = wet_states(system, scene.fills, races, speed, gravity)
@@ -110,8 +114,21 @@ def run_balls(scene: Scene) -> BallsResult:
         can_balance=RotorWithBalls(system, tuple(races)).balanced() is not None,
         sticking=tuple(race.rolling_resistance * race.radius for race in scene.balls),
         notes=(),
+        closed_forms=closed_forms(machine),
     )
+    answer = replace(answer, loads=_loads(scene, answer))
     return replace(answer, notes=_run_notes(scene, answer, turning(system) is not None))
+
+
+def _loads(scene: Scene, answer: BallsResult) -> MachineLoads | None:
+    """Forces and clearances of the stable states; None where the scene asks for none."""
+    machine = loaded_machine(scene)
+    if machine is None:
+        return None
+    coordinates = answer.states.coordinates[np.arange(answer.speed.size), answer.chosen]
+    coordinates = np.where(answer.stable[:, None], coordinates, complex(np.nan, np.nan))
+    asked = np.arange(answer.speed.size)
+    return loads_over_speed(machine, scene.model.friction, answer.speed, coordinates, asked)
 
 
 def _run_notes(scene: Scene, answer: BallsResult, alike: bool) -> tuple[Note, ...]:
@@ -130,4 +147,6 @@ def _run_notes(scene: Scene, answer: BallsResult, alike: bool) -> tuple[Note, ..
         found.append(notes.liquid_in_step())
     if any(race.liquid is not None for race in scene.balls):
         found.append(notes.covered())
+    if answer.loads is not None:
+        found += [response_notes.loads(), notes.loads_of_states()]
     return (*found, *doubts(scene))
