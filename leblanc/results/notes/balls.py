@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from leblanc.results.base import Note, NoteCode
-from leblanc.units import LENGTH, UNBALANCE, in_rpm, with_unit
+import math
+from collections.abc import Sequence
+
+from leblanc.results.base import Note, NoteCode, percent
+from leblanc.units import LENGTH, UNBALANCE, in_rpm, number, with_unit
 
 
 class BallCode(NoteCode):
@@ -18,6 +21,7 @@ class BallCode(NoteCode):
     COVERED = "covered"
     RUNS_ON = "runs_on"
     LOADS_OF_STATES = "loads_of_states"
+    LIQUID_WAVES = "liquid_waves"
 
 
 def capacity(enough: bool, most: float) -> Note:
@@ -59,10 +63,25 @@ def sticks(deflection: float) -> Note:
     return Note(BallCode.STICKS, {"deflection": deflection}, text)
 
 
-def lies() -> Note:
-    """Gravity across the axis turns in the drum."""
-    text = "Gravity across the axis is left out: it turns in the drum and swings the balls. A run-up has it."
-    return Note(BallCode.LIES, {}, text)
+def lies(rows: Sequence[tuple[float, float, float, float]]) -> Note:
+    """Gravity across the axis turns in the drum.
+
+    Parameters
+    ----------
+    rows : at some speeds the speed, rad/s, gravity over the balls' centrifugal acceleration, the largest
+        swing of a ball, rad, nan where it is not known, and what that shakes the axis by, m
+    """
+    told = []
+    for speed, share, swing, moved in dict.fromkeys(rows):
+        text = f"at {in_rpm(speed)} it is {percent(share)} of what presses a ball to its race"
+        if math.isfinite(swing):
+            text += (
+                f", balls swing by up to {number(math.degrees(swing))} deg once a turn and shake the axis by "
+                f"{with_unit(moved, LENGTH)} with twice the spin"
+            )
+        told.append(text)
+    text = f"Gravity across the axis is left out of the states: {'; '.join(told)}. A run-up has all of it."
+    return Note(BallCode.LIES, {"rows": tuple(rows)}, text)
 
 
 def uneven_supports() -> Note:
@@ -74,13 +93,19 @@ def uneven_supports() -> Note:
     return Note(BallCode.UNEVEN, {}, text)
 
 
-def liquid_in_step() -> Note:
-    """How the liquid enters the growth."""
+def liquid_in_step(model: str) -> Note:
+    """How the liquid enters the growth.
+
+    Parameters
+    ----------
+    model : of the liquid in the states
+    """
+    how = "linear theory, a full chamber's mass" if model == "linear" else "its exact equilibrium"
     text = (
-        "In the states the liquid is in its exact equilibrium. In the growth of small motions it is a mass "
+        f"In the states the liquid is in {how}. In the growth of small motions it is a mass "
         "in step with the axis: whirls that the liquid itself excites are told by the scene without balls."
     )
-    return Note(BallCode.LIQUID_IN_STEP, {}, text)
+    return Note(BallCode.LIQUID_IN_STEP, {"model": model}, text)
 
 
 def runs_on(first: float, last: float) -> Note:
@@ -114,3 +139,27 @@ def loads_of_states() -> Note:
         "the balls run they are not known, and a run-up shows them."
     )
     return Note(BallCode.LOADS_OF_STATES, {}, text)
+
+
+def liquid_waves(speed: float, amplitude: float, ripple: float, liquid: float, worst: float) -> Note:
+    """What gravity across the axis does by waves in the liquid, the balls held where they rest.
+
+    Parameters
+    ----------
+    speed : the last, rad/s
+    amplitude, ripple : change of the amplitude's mean there, and by how much it goes up and down, relative;
+        nan where it is not known
+    liquid : by which the liquid's centre of mass goes round its mean in the drum there, m
+    worst : largest change of the mean at any speed of a stable state, relative
+    """
+    data = {"amplitude": amplitude, "ripple": ripple, "liquid": liquid, "worst": worst}
+    if not math.isfinite(amplitude):
+        text = f"What gravity's waves in the liquid do to the state at {in_rpm(speed)} is not known."
+        return Note(BallCode.LIQUID_WAVES, data, text)
+    text = (
+        f"At {in_rpm(speed)} gravity's waves in the liquid change the mean amplitude by {percent(amplitude)} "
+        f"and move it up and down by {percent(ripple)}, and the liquid's centre of mass goes round its mean "
+        f"in the drum by {with_unit(liquid, LENGTH)}; at the other speeds the mean changes by up to "
+        f"{percent(worst)}. These are estimates, with the balls held where they rest."
+    )
+    return Note(BallCode.LIQUID_WAVES, data, text)
