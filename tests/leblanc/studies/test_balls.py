@@ -78,10 +78,28 @@ def test_other_commands_refuse_balls_in_one_line(command: str, capsys: pytest.Ca
     assert len(said.splitlines()) == 1
 
 
-def test_a_linear_layer_does_not_run_beside_balls() -> None:
-    scene = lb.example("balls_and_liquid").replace({"model": {"liquid": "linear"}})
-    with pytest.raises(InputError, match="where balls run beside"):
-        lb.run_up(scene)
+def test_linear_layers_run_beside_balls() -> None:
+    """At a small amplitude, with a layer that hardly lags, as long waves do; an ensemble takes the model."""
+    changes = {"model": {"liquid": "linear", "friction": {"linear": 8.0}}, "rotor.unbalance": "0.05 kg*mm"}
+    changes |= {f"chambers.{k}.{key}": f"{value} mg" for k, key, value in ((1, "mass", 170), (2, "mass", 80))}
+    scene = lb.example("balls_and_liquid").replace({"runup.duration": "8 s", "runup.start": "30 rad/s"})
+    table = scene.table() | {"assumed": []}
+    for race in table["chambers"][1:]:
+        race.pop("density")
+        race.pop("liquid", None)
+        race |= {"drag": 2e-3, "mass": 1e-4}
+    scene = lb.Scene(**table).replace(changes)
+    runs = [
+        lb.run_up(
+            scene.replace({"model.liquid": name}), samples=80, check=False, ensemble=2 * (name == "linear")
+        )
+        for name in ("linear", "long_wave")
+    ]
+    assert [each.model for each in runs] == ["linear", "long_wave"]
+    size = runs[1].amplitude.max()
+    np.testing.assert_allclose(runs[0].amplitude, runs[1].amplitude, rtol=0.0, atol=0.02 * size)
+    assert runs[0].spread is not None
+    assert runs[0].energy.closure < 2e-3
 
 
 def lying(**changes: Any) -> lb.Scene:
@@ -139,7 +157,7 @@ def test_models_of_the_liquid_agree_where_the_surface_clears_the_wall() -> None:
 
 
 def test_gravity_is_told_with_its_size() -> None:
-    """On a lying drum: share, swings as of a ball alone where the rotor hardly moves, what leaves the walls."""
+    """On a lying drum: its share, swings as of a ball alone on a stiff rotor, what leaves the walls."""
     scene = lying()
     result = lb.run(scene)
     assert isinstance(result, BallsResult)
