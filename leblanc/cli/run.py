@@ -212,7 +212,7 @@ def _run_spindle(machine: Scene, scene: Path, folder: Path, json: bool) -> None:
     from leblanc.report.spindle import write_spindle_report
     from leblanc.results.netcdf import write_netcdf
     from leblanc.studies.spindles.unit import run_spindle
-    from leblanc.text.spindles.unit import HEAD, answer, compliance_rows, limits
+    from leblanc.text.spindles.unit import HEAD, answer, cage_rows, compliance_rows, limits
 
     with working("compliances"):
         result = run_spindle(machine)
@@ -226,6 +226,9 @@ def _run_spindle(machine: Scene, scene: Path, folder: Path, json: bool) -> None:
         print(answer(result))
         print()
         print_table(compliance_rows(result), HEAD, right=True)
+        if cages := cage_rows(result):
+            print()
+            print_table(cages)
         print("\nLimits of the answer")
         print_table([(limit.label, limit.where) for limit in limits(result)], indent=2)
         print(f"Read {folder / 'summary.html'}; the data are in {folder / 'response.nc'}")

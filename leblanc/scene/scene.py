@@ -545,7 +545,9 @@ def rotor_content(rotor: AnyRotor) -> dict[str, Any]:
         balls = rotor.balls.model_dump()
         balls |= {"kind": rotor.balls.name, "pendulum_inertia": rotor.balls.pendulum_inertia or 0.0}
         return rotor.model_dump(exclude={"balls"}) | {"balls": balls}
-    if isinstance(rotor, MagneticRotor | Spindle):
+    if isinstance(rotor, Spindle):
+        return rotor.content()
+    if isinstance(rotor, MagneticRotor):
         return rotor.model_dump()
     machine = asdict(rotor.machine())
     if not machine.get("loads", True):
@@ -613,11 +615,14 @@ def machine_content(scene: Scene) -> dict[str, Any]:
     scene : the machine
     """
     bearings = getattr(scene.rotor, "bearings", ())
+    caged = scene.rotor.caged() if isinstance(scene.rotor, TwoPlaneRotor) else ()
     parts = {
         "cabinet": scene.cabinet and scene.cabinet.model_dump(),
         "points": [point.model_dump() for point in scene.points],
         "bearings": [bearing.position for bearing in bearings],
         "balls": [race_content(race) for race in scene.balls],
+        # Balls of a tub's bearings came before there was a place for them here.
+        "rolling": [asdict(part) for part in caged],
     }
     return {name: part for name, part in parts.items() if part}
 
