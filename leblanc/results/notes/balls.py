@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 
 from leblanc.results.base import Note, NoteCode, percent
-from leblanc.units import LENGTH, UNBALANCE, in_rpm, number, with_unit
+from leblanc.units import LENGTH, UNBALANCE, in_rpm, number, over_rpm, with_unit
 
 
 class BallCode(NoteCode):
@@ -116,7 +116,7 @@ def runs_on(first: float, last: float) -> Note:
     first, last : of them, rad/s
     """
     text = (
-        f"At speeds from {in_rpm(first)} to {in_rpm(last)} no state in which all balls rest is stable: they "
+        f"{over_rpm(first, last).capitalize()} no state in which all balls rest is stable: they "
         "run in their races. What is told there is the state that small motions leave most slowly; a run-up "
         "shows the motion itself."
     )
