@@ -63,7 +63,8 @@ def optimise(
     machine = load(scene)
     task = optimisation_of(machine, objective, deflection, limit, steady, seed)
     if task.objective == "layout":
-        _layout(machine, task, results_dir(machine.name, out, scene, machine.digest, "layout.nc"), json)
+        folder = results_dir(machine.name, out, scene, machine.digest, "layout.nc", "layout.html")
+        _layout(machine, scene, task, folder, json)
         return
     folder = results_dir(machine.name, out, scene, machine.digest, "optimum.nc", "optimise.html")
     if machine.balls:
@@ -103,12 +104,14 @@ def optimise(
     _finish(result, scene)
 
 
-def _layout(machine: Scene, task: Optimisation, folder: Path, json: bool) -> None:
+def _layout(machine: Scene, scene: Path, task: Optimisation, folder: Path, json: bool) -> None:
     """Where the mounts of a tub sit best."""
     from leblanc.cli.terminal.output import print_table
     from leblanc.cli.terminal.progress import working
     from leblanc.figures.drawing.page import save
-    from leblanc.figures.machine import layout_figure
+    from leblanc.figures.machine import layout_figure, places_figure
+    from leblanc.report.layout import write_layout_report
+    from leblanc.report.page import about, command_line
     from leblanc.results.netcdf import write_netcdf
     from leblanc.studies.optimise.layout import optimise_layout
     from leblanc.text.layout import MOUNTS, PAIR_HEAD, answer, coupling_rows, facts, mount_rows
@@ -116,7 +119,13 @@ def _layout(machine: Scene, task: Optimisation, folder: Path, json: bool) -> Non
     with working("layouts") as update:
         result = optimise_layout(machine, task, lambda count, _: update(what=f"{count} layouts judged"))
     write_netcdf(result.named_arrays(), folder / "layout.nc")
-    files = save(layout_figure(result), folder, "layout", "Layout of springs and dampers")
+    figures = (
+        save(places_figure(result), folder, "places", "Places of springs and dampers"),
+        save(layout_figure(result), folder, "layout", "Couplings and natural frequencies"),
+    )
+    command = command_line("optimise", scene, ("--objective", "layout", None))
+    what = about(machine, command, "layout.nc", task, ("runup", "model"))
+    write_layout_report(result, what, figures, folder / "layout.html")
     if json:
         print_json(result.to_json())
     else:
@@ -126,7 +135,7 @@ def _layout(machine: Scene, task: Optimisation, folder: Path, json: bool) -> Non
         print_table(mount_rows(result), MOUNTS)
         print()
         print_table(coupling_rows(result), PAIR_HEAD)
-        print(f"See {files.png}; the data are in {folder / 'layout.nc'}")
+        print(f"Read {folder / 'layout.html'}; the data are in {folder / 'layout.nc'}")
     if not result.feasible:
         from leblanc.scene.schema.load import NotConverged
 

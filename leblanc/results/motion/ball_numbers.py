@@ -11,8 +11,7 @@ import numpy as np
 from leblanc.results.base import Result, attributes
 from leblanc.results.exciter import number_or_none
 from leblanc.results.explanation import Explanation
-from leblanc.results.motion.encoding import finite
-from leblanc.results.netcdf import NamedArrays, flags
+from leblanc.results.netcdf import NamedArrays, finite, flags
 from leblanc.results.netcdf import variable as var
 from meshes.arrays import Array, Flags
 from solvers.rotor.balls.two_plane_balance import Balancing

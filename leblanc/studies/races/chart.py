@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,15 +14,17 @@ from fluid.fill import Fill
 from leblanc.results.base import Note
 from leblanc.results.motion.ball_chart import BallChart, Curve
 from leblanc.results.notes import balls as notes
-from leblanc.scene.scene import Scene, dry_rotor, require_clear
+from leblanc.scene.scene import Scene, dry_rotor
 from leblanc.scene.schema.load import SceneError
 from leblanc.scene.schema.paths import keys_of, rule_at
 from leblanc.scene.schema.rules import Quantity, Refused
 from leblanc.studies.models.choose import axial_gravity
 from leblanc.studies.models.validity import doubts
+from leblanc.studies.races.states import liquid_beside
 from leblanc.units import parse_option
 from meshes.arrays import Array
 from meshes.errors import InputError, require_positive
+from solvers.liquid_model import LiquidModel
 from solvers.rotor.balls.balancers import BallRace
 from solvers.rotor.balls.charts import (
     Edge,
@@ -109,7 +112,8 @@ def chart_scene(
     chosen = State() if state == "balanced" else gathered(rotor, races, state == "light")
     chart = stability_chart(_told(family, speeds * values, progress), speed, second, chosen)
     bounds = existence_bounds(family, float(speed[0]), second) if state == "balanced" else []
-    growth, bands = stable_bands(lambda at, _: _machine(*_parts(scene), at), speed, 0.0, chosen)
+    own = _parts(scene)
+    growth, bands = stable_bands(lambda at, _: _machine(own, at), speed, 0.0, chosen)
     answer = BallChart(
         name=scene.name,
         source=scene.source,
@@ -145,7 +149,7 @@ def _check(scene: Scene, values: int, speeds: int, state: str) -> None:
         raise InputError("--state", state, f"one of {', '.join(STATES)}")
     if scene.speeds.stop <= scene.speeds.start:
         raise InputError("speeds.stop", scene.speeds.stop, "above speeds.start for a map")
-    require_clear(scene, "balls beside liquid")
+    liquid_beside(scene)
 
 
 def _varied(scene: Scene, over: tuple[str, ...]) -> _Varied:
@@ -217,21 +221,27 @@ def _curve(edge: Edge, log: bool) -> Curve:
     return Curve(edge.kind.name.lower(), edge.first, value, edge.frequency, ends)
 
 
-_Parts = tuple[RotorSystem, tuple[BallRace, ...], tuple[Fill, ...], float]
+class _Parts(NamedTuple):
+    """Dry rotor, races, liquid, gravity along the axis and the model of the liquid."""
+
+    system: RotorSystem
+    races: tuple[BallRace, ...]
+    fills: tuple[Fill, ...]
+    gravity: float
+    model: LiquidModel
 
 
 def _parts(scene: Scene) -> _Parts:
-    """Dry rotor, races, liquid and gravity along the axis."""
     races = tuple(race.race() for race in scene.balls)
-    return dry_rotor(scene).system(), races, scene.fills, axial_gravity(scene)
+    return _Parts(
+        dry_rotor(scene).system(), races, scene.fills, axial_gravity(scene), liquid_beside(scene)[1]
+    )
 
 
-def _machine(
-    system: RotorSystem, races: tuple[BallRace, ...], fills: tuple[Fill, ...], gravity: float, speed: float
-) -> Machine:
+def _machine(parts: _Parts, speed: float) -> Machine:
     """At a speed, with the liquid in step [theory: races, eq. 8]."""
     require_positive("speed", speed)  # a curve that is followed may lead out of the chart
-    return Machine(in_step(system, fills, speed, gravity), races, speed)
+    return Machine(in_step(parts.system, parts.fills, speed, parts.gravity, parts.model), parts.races, speed)
 
 
 def _family(scene: Scene, varied: _Varied, log: bool) -> Family:
@@ -249,7 +259,7 @@ def _family(scene: Scene, varied: _Varied, log: bool) -> Family:
             allowed = f"such that {fault.field} is {fault.allowed}"
             raise InputError("--over", where, allowed) from None
 
-    return lambda speed, at: _machine(*parts(at), speed)
+    return lambda speed, at: _machine(parts(at), speed)
 
 
 def _told(family: Family, total: int, progress: Callable[[int, int], None] | None) -> Family:
@@ -280,11 +290,11 @@ def _notes(scene: Scene, answer: BallChart, alike: bool) -> tuple[Note, ...]:
         found.append(notes.in_ratio(answer.paths))
     found.append(notes.points())
     if scene.rotor.axis == "horizontal":
-        found.append(notes.lies())
+        found.append(notes.lies([]))
     if not alike:
         found.append(notes.uneven_supports())
     if scene.fills:
-        found.append(notes.liquid_in_step())
+        found.append(notes.liquid_in_step(liquid_beside(scene)[0]))
     if any(race.liquid is not None for race in scene.balls):
         found.append(notes.covered())
     return (*found, *doubts(scene))

@@ -8,12 +8,18 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from leblanc.results.motion.ball_states import reported_state
-from leblanc.scene.scene import Scene, dry_rotor
+from leblanc.scene.scene import Scene, dry_rotor, require_clear
 from leblanc.studies.models.choose import axial_gravity
+from leblanc.studies.models.liquid import synchronous_model
 from meshes.arrays import Array, Complex, Flags
+from meshes.errors import InputError
+from solvers.liquid_model import LiquidModel
 from solvers.rotor.balls.steady import BallKind
 from solvers.rotor.vibration import orbit
 from solvers.synchronous.balls import wet_states
+from solvers.synchronous.models import STATICS
+
+MODELS = ("statics", "linear")  # of liquid at rest in the drum, with which states of balls are found
 
 
 @dataclass(frozen=True)
@@ -50,6 +56,28 @@ def plane_of(scene: Scene) -> float:
     return scene.fills[0].chamber.plane if scene.fills else scene.balls[0].plane
 
 
+def liquid_beside(scene: Scene) -> tuple[str, LiquidModel]:
+    """Model of the liquid that rests in the drum beside balls, and its name; auto is the exact equilibrium.
+
+    Parameters
+    ----------
+    scene : with races, and chambers with liquid or none
+
+    Raises
+    ------
+    InputError : a section or baffles that the equilibrium of the liquid does not know, a model of liquid that
+        is not at rest in the drum
+    """
+    require_clear(scene, "balls beside liquid")
+    name = "statics" if scene.model.liquid == "auto" else scene.model.liquid
+    if not scene.fills:
+        return name, STATICS
+    if name not in MODELS:
+        allowed = f"auto, {' or '.join(MODELS)} beside balls; `leblanc runup` takes long waves through time"
+        raise InputError("model.liquid", name, allowed)
+    return name, synchronous_model(name)
+
+
 def reported_states(scene: Scene, speed: ArrayLike) -> ReportedStates:
     """State of rotor, balls and liquid that is reported at some speeds [theory: races, eq. 5-8].
 
@@ -57,10 +85,15 @@ def reported_states(scene: Scene, speed: ArrayLike) -> ReportedStates:
     ----------
     scene : with races, and chambers with liquid or none
     speed : rad/s, above 0, shape (s,)
+
+    Raises
+    ------
+    InputError : as `liquid_beside`
     """
     system, spin = dry_rotor(scene).system(), np.asarray(speed, dtype=float)
     races = [race.race() for race in scene.balls]
-    states = wet_states(system, scene.fills, races, spin, axial_gravity(scene)).states
+    model = liquid_beside(scene)[1]
+    states = wet_states(system, scene.fills, races, spin, axial_gravity(scene), model).states
     way = orbit(system, states.coordinates, plane_of(scene))
     sizes = np.asarray(np.abs(way.forward) + np.abs(way.backward))
     chosen = reported_state(states, sizes)

@@ -8,7 +8,7 @@ import math
 from leblanc.results.spindles.unit import RECIPROCITY, WAYS, SpindleResult
 from leblanc.text.numbers import number
 from leblanc.text.run import Limit
-from leblanc.units import LENGTH, with_unit
+from leblanc.units import LENGTH, in_rpm, with_unit
 
 PER_NEWTON = 1e9  # nm/N in one m/N
 THEORIES = {
@@ -71,7 +71,17 @@ def facts(result: SpindleResult) -> list[tuple[str, str]]:
         )
         for k, mode in enumerate(result.modes[:6])
     ]
-    return [*found, ("Natural frequencies in the band", str(len(result.modes)))]
+    return [*found, ("Natural frequencies in the band", str(len(result.modes))), *cage_rows(result)]
+
+
+def cage_rows(result: SpindleResult) -> list[tuple[str, str]]:
+    """Speed of each cage: label and value; nothing where no balls are given.
+
+    Parameters
+    ----------
+    result : the answer
+    """
+    return [(f"Cage of {cage.name}", f"{in_rpm(float(cage.speed[0]))} without slip") for cage in result.cages]
 
 
 def compliance_rows(result: SpindleResult) -> list[tuple[str, ...]]:

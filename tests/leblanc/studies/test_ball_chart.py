@@ -57,7 +57,6 @@ def test_growth_with_the_scene_as_it_stands_is_that_of_run(name: str) -> None:
 
 
 @kills("solvers.synchronous.balls:in_step", "system.mass + _in_step", "system.mass + 0.0 * _in_step")
-@kills("solvers.rotor.balls.states:balanced_places", "shares = weights * np", "shares = np")
 def test_growth_beside_liquid_is_that_of_run() -> None:
     """The liquid as a mass in step; two races of one plane share the unbalance by what they hold."""
     as_in_run("balls_and_liquid")
