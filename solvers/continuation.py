@@ -18,8 +18,9 @@ from meshes.errors import InputError, require_positive
 
 _ROUNDS = 12
 _DIFFERENCE = 1e-6  # of the unit of an unknown
-_SHORTEST = 1.0 / 256.0  # of the first step
+_SHORTEST = 1.0 / 4096.0  # of the first step
 _STRAIGHT = 0.9  # least cosine between the directions of two points
+_BESIDE = 0.5  # of a step: a point further from the guess than that is on another curve
 _EASY = 4  # rounds up to which the next step may be longer
 
 
@@ -115,7 +116,7 @@ def follow(
     tangent = first
     while len(points) < most:
         guess = points[-1] + length * size * tangent
-        answer = _corrected(equations, guess, tangent, size, tolerance)
+        answer = _corrected(equations, guess, tangent, size, tolerance, _BESIDE * length)
         ahead = None if isinstance(answer, End) else _onward(equations, answer[0], size, tangent)
         if isinstance(answer, End) or ahead is None or ahead @ tangent < _STRAIGHT:
             length *= 0.5
@@ -165,9 +166,17 @@ def _onward(equations: Equations, point: Array, size: Array, tangent: Array) -> 
 
 
 def _corrected(
-    equations: Equations, guess: Array, tangent: Array, size: Array, tolerance: float
+    equations: Equations,
+    guess: Array,
+    tangent: Array,
+    size: Array,
+    tolerance: float,
+    reach: float = np.inf,
 ) -> tuple[Array, int] | End:
-    """Point of the curve on the plane across the tangent, and the rounds taken; why where none is found."""
+    """Point of the curve on the plane across the tangent, and the rounds taken; why where none is found.
+
+    Within `reach` of the guess, in the units: beyond there it is a point of another curve.
+    """
     point = guess.copy()
     for count in range(1, _ROUNDS + 1):
         left = equations(point)
@@ -180,5 +189,5 @@ def _corrected(
         change = np.linalg.lstsq(matrix, -away, rcond=None)[0]
         point = point + size * change
         if np.abs(change).max() <= tolerance:
-            return point, count
+            return (point, count) if np.linalg.norm((point - guess) / size) <= reach else End.LOST
     return End.LOST

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 import pytest
 
@@ -57,13 +59,27 @@ def test_where_the_equations_end_is_no_failure_to_find_a_point() -> None:
 
     for power in (1.0, 0.5):
         begin = [0.5, 0.5**power]
-        found = follow(lambda x, power=power: ends(x, power), begin, [1, 1], [-1, -1], [1, 1], way=-1)  # type: ignore[misc]
+        made = partial(ends, power=power)
+        found = follow(made, begin, [1, 1], [-1, -1], [1, 1], step=0.3, way=-1)
         assert found.end is End.NOWHERE
-        # Down to a shortest step from it, 0.02/256, or a difference of 1e-6 in x.
+        # Down to a shortest step from it, 0.3/4096, or a difference of 1e-6 in x.
         assert 0.0 < found.points[-1, 1] < (2e-4 if power == 1.0 else 2e-3)
     assert follow(lambda x: ends(x, 1.0), [-0.5, 0.5], [1, 1], [-1, -1], [1, 1]).end is End.NOWHERE
     kinked = follow(lambda x: np.array([abs(x[0]) - x[1]]), [-0.5, 0.5], [1, 1], [-1, -1], [1, 1])
     assert kinked.end is End.LOST and np.abs(kinked.points[-1]).max() < 1e-2
+
+
+@kills("solvers.continuation:_corrected", "/ size) <= reach", "/ size) <= 1e9")
+def test_a_curve_does_not_jump_to_its_neighbour() -> None:
+    """Bumps of 0.05 width next to a straight line: across the tangent there the line is the nearer one."""
+
+    def both(x: np.ndarray) -> np.ndarray:
+        bump = 0.1 * np.exp(-(((x[0] - 0.52) / 0.02) ** 2))
+        return np.array([(x[1] - bump) * (x[1] - 0.03 - bump)])
+
+    found = follow(both, [0.0, 0.0], [1, 1], [-1, -1], [1, 1], step=0.05)
+    off = np.abs(found.points[:, 1] - 0.1 * np.exp(-(((found.points[:, 0] - 0.52) / 0.02) ** 2)))
+    assert found.end is End.LEFT and off.max() < 1e-9
 
 
 def test_what_is_not_there_is_said() -> None:

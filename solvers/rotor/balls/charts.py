@@ -371,7 +371,9 @@ class _Bordered:
         try:
             machine = self.family(float(point[0]), float(point[1]))
         except InputError:
-            # A step may lead out of the chart, where values need not make a machine.
+            # A step may lead out of the chart, where values need not make a machine, or one at rest.
+            return None
+        if not machine.speed > 0.0:
             return None
         if self.fold:
             rotor = RotorWithBalls(machine.system, tuple(machine.races))
