@@ -162,6 +162,7 @@ RECIPES = (
         for scene in ("balls", "balls_and_liquid", "long_rotor")
     ),
     _example("view", "balls", "--speed", "600 rpm", view_balls_slow="view"),
+    _example("view", "spindle", "--speed", "335Hz", view_spindle="view"),
     _example("view", "runup", "--speed", "24 rad/s", view_runup_resonance="view"),
     _example("view", "vertical_rig", "--speed", "8 rad/s", view_vertical_rig_slow="view"),
     _example("view", "centrifuge", "--mode", "3", view_mode="view"),

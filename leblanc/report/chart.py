@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from leblanc.report.page import About, notes, write_page
 from leblanc.report.parts import Cell, doubt, picture, table
-from leblanc.results.motion.ball_chart import BallChart
+from leblanc.results.races.chart import BallChart
 from leblanc.text.numbers import number
 from leblanc.text.races.chart import HEAD, STATES, answer, curves, facts, limits, what
 from leblanc.units import RPM

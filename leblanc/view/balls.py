@@ -10,7 +10,7 @@ import numpy as np
 
 from leblanc.results.base import one_line
 from leblanc.results.drawn import DrawnRace
-from leblanc.results.motion.ball_view import BallView
+from leblanc.results.races.drawn import BallView
 from leblanc.units import DEGREE, LENGTH, MINUS, MM, unit_for
 from leblanc.view.parts import NO_CELLS, Instant, Label, Picture, Piece, Stage, placed, turned
 from leblanc.view.scene import compose, describe_speed, place_in_words

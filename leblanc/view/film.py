@@ -23,7 +23,7 @@ from leblanc.results.drawn import (
     RunupView,
     Scale,
 )
-from leblanc.results.motion.ball_view import BallView
+from leblanc.results.races.drawn import BallView
 from leblanc.units import DEGREE, LENGTH, RPM, in_rpm, unit_for, with_unit
 from leblanc.view.balls import ball_still, with_balls
 from leblanc.view.inset import with_inset

@@ -21,7 +21,7 @@ from leblanc.figures.drawing.page import (
     style,
 )
 from leblanc.results.base import one_line
-from leblanc.results.motion.ball_chart import BallChart
+from leblanc.results.races.chart import BallChart
 from leblanc.text.races.chart import CURVES, STATES, alt, answer, what
 from leblanc.units import RPM, unit_for
 from meshes.arrays import Array, Flags, Indices

@@ -12,8 +12,8 @@ import numpy as np
 
 from fluid.fill import Fill
 from leblanc.results.base import Note
-from leblanc.results.motion.ball_chart import BallChart, Curve
 from leblanc.results.notes import balls as notes
+from leblanc.results.races.chart import BallChart, Curve
 from leblanc.scene.scene import Scene, dry_rotor
 from leblanc.scene.schema.load import SceneError
 from leblanc.scene.schema.paths import keys_of, rule_at

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from leblanc.results.motion.ball_chart import BallChart, Curve
+from leblanc.results.races.chart import BallChart, Curve
 from leblanc.text.numbers import number
 from leblanc.text.run import Limit
 from leblanc.units import RPM, UNBALANCE, in_rpm, rpm_bands, unit_for, with_unit
