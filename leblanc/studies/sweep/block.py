@@ -108,7 +108,12 @@ BALLS_OVER_SPEED: tuple[Output, ...] = (
 )
 BALLS_SINGLE: tuple[Output, ...] = (
     Output(
-        "balanced_from", NUMBER, False, "rad s-1", "speed from which on the balanced state is stable", "of these"
+        "balanced_from",
+        NUMBER,
+        False,
+        "rad s-1",
+        "speed from which on the balanced state is stable",
+        "of these",
     ),
 )
 
