@@ -64,7 +64,7 @@ def test_balls_that_resist_leave_a_band() -> None:
     assert any(note.code == "sticks" for note in result.notes)
 
 
-@pytest.mark.parametrize("command", ["explain", "map", "optimise", "view"])
+@pytest.mark.parametrize("command", ["map", "view"])
 def test_other_commands_refuse_balls_in_one_line(command: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main([command, str(ROOT / "examples" / "balls_and_liquid.toml")]) == 2
     said = capsys.readouterr().err.strip()

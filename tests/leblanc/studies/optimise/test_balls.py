@@ -80,9 +80,9 @@ def _short(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_least_mass_is_the_unbalance_over_the_radius(count: int) -> None:
     """Of a planar rotor: the mass of all balls times the radius holds all but what the limit allows.
 
-    Balls that hold less stand where the deflection is, so that the triangle of the unbalance U, that of the
-    balls B and what is left r has |U|^2 = r^2 + B^2 - 2 r B cos a, with a the angle of the dynamic stiffness D,
-    and |w| = Omega^2 r/|D| [theory: balls, eq. 22].
+    Balls that hold less stand where the deflection is: for the unbalance U, that of the balls B and what is
+    left r the triangle |U|^2 = r^2 + B^2 - 2 r B cos a, with a the angle of the dynamic stiffness D, and
+    |w| = Omega^2 r/|D| [theory: balls, eq. 22].
     """
     limit = 2e-6
     task = Optimisation(
@@ -149,7 +149,7 @@ def _judged(scene: Scene, task: Optimisation, **own: float) -> Verdict:
 @kills(f"{ROOM}.problem:BallProblem._amplitude", "self.task.quantile", "0.0")
 @pytest.mark.parametrize(("low", "wide"), [(1.0, 2.5), (3.0, 1.3)])
 def test_the_largest_unbalance_of_a_range_decides(low: float, wide: float) -> None:
-    """Balls that hold just more than the largest of a range balance all of it; a little less leaves the rest."""
+    """Balls that hold just more than the largest of a range balance all; a little less leaves the rest."""
     most = low * wide * 1e-4
     task = Optimisation(objective="robust", unbalance=(low * 1e-4, most), balls={"mass": ["1 g", "20 g"]})
     scene = planar()
@@ -220,7 +220,7 @@ def test_workers_do_not_change_the_answer(monkeypatch: pytest.MonkeyPatch) -> No
 
 
 def test_liquid_beside_the_balls_stays() -> None:
-    """A design of a scene with liquid is judged with it: balanced, the liquid stands evenly and does nothing."""
+    """A design is judged with the scene's liquid: balanced, that stands evenly and does nothing."""
     scene = lb.example("balls_and_liquid")
     problem = ball_problem(scene, Optimisation(balls={"drag": [0.1, 1.0]}))
     found = problem.judged(np.log([0.3, 0.4]))
