@@ -14,7 +14,6 @@ ROTORS = (
 )
 WHOLE = ("two_plane_rig", "vertical_rig", "centrifuge", "runup")  # run-ups held to their end
 BALLS = ("balls", "balls_and_liquid")
-_NOT_BALLS = ("explain", "optimise", "trade")
 DOCS = ("closed_baffles", "lobes", "smallest_scene")
 COMMANDS = (
     *(
@@ -108,6 +107,8 @@ def _runs() -> Iterator[Case]:
     yield _case("explain-top_loader", f"explain {_scene('top_loader')} --json")
     for name in BALLS:
         yield _case(f"run-{name}", f"run {_scene(name)} --json --out out")
+        yield _case(f"explain-{name}", f"explain {_scene(name)} --json")
+    yield _case("words-explain-balls", f"explain {_scene('balls')}")
     yield _case("run-exact", "run small/horizontal_rig_exact.toml --workers 1 --json --out out")
     yield _case("run-spindle", f"run {_scene('spindle')} --json --out out")
     yield _case("run-top_loader", f"run {_scene('top_loader')} --json --out out")
@@ -144,6 +145,8 @@ def _optimums() -> Iterator[Case]:
             f"optimise-{objective}",
             f"optimise small/horizontal_rig.toml --objective {objective} --steady --no-front --json",
         )
+    yield _case("optimise-balls", f"optimise {_scene('balls_design')} --json --out out")
+    yield _case("words-optimise-balls", f"optimise {_scene('balls_design')} --out out")
     yield _case("optimise-layout", "optimise examples/tub.toml --objective layout --json --out out")
     typed = "optimise examples/tub.toml --objective floor_force --no-front --json --out out"
     yield _case("optimise-floor_force", typed)
@@ -175,6 +178,7 @@ def _sweeps() -> Iterator[Case]:
     for study in ("fill_grid", "uncertain_rig", "centrifuge_shares"):
         more = " --netcdf --emulate" if study == "uncertain_rig" else ""
         yield _case(f"sweep-{study}", f"sweep small/{study}.toml --workers 0{more} --json --out out")
+    yield _case("sweep-balls", "sweep small/balls_grid.toml --workers 0 --json --out out")
     yield _case("sweep-workers", "sweep small/centrifuge_shares.toml --workers 1 --json --out out")
 
 
@@ -340,7 +344,6 @@ def _wrong() -> Iterator[Case]:
         "bearing-nothing": "bearing --speed 33Hz",
         "bearing-balls": "bearing --speed 33Hz --ftf 0.4",
         "bearing-both": "bearing --speed 33Hz --ftf 0.4 --pitch-diameter 31mm",
-        **{f"{command}-balls": f"{command} {_scene('balls_and_liquid')}" for command in _NOT_BALLS},
         "compare-balls": f"compare {_scene('balls')} --models statics",
         "runup-missing": f"runup {smallest}",
         "map-over": f"map {_scene('balls')} --over rotor.beauty",

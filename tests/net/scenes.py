@@ -28,6 +28,8 @@ SMALL: dict[str, tuple[str, dict[str, str]]] = {
     ),
     "fill_grid": ("examples/studies/fill_grid.toml", {}),
     "uncertain_rig": ("examples/studies/uncertain_rig.toml", {"samples": "24"}),
+    "balls": ("examples/balls.toml", {"speeds.count": "15"}),
+    "balls_grid": ("examples/studies/balls_grid.toml", {}),
     "centrifuge_shares": ("examples/studies/centrifuge_shares.toml", {"samples": "4"}),
     # Run-ups in pieces: with gravity stronger than the spin, and with the liquid caught. The moment between
     # them, and bores later on, turn rounding into per cents.

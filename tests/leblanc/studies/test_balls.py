@@ -70,9 +70,8 @@ def test_balls_that_resist_leave_a_band() -> None:
     assert any(note.code == "sticks" for note in result.notes)
 
 
-@pytest.mark.parametrize("command", ["explain", "optimise"])
-def test_other_commands_refuse_balls_in_one_line(command: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main([command, str(ROOT / "examples" / "balls_and_liquid.toml")]) == 2
+def test_models_of_liquid_are_not_compared_beside_balls(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["compare", str(ROOT / "examples" / "balls_and_liquid.toml"), "--models", "statics"]) == 2
     said = capsys.readouterr().err.strip()
     assert "chambers.1.kind" in said
     assert len(said.splitlines()) == 1
