@@ -9,10 +9,10 @@ import numpy as np
 
 from leblanc.results.base import Note
 from leblanc.results.machine.loads import MachineLoads
-from leblanc.results.motion.ball_states import BallsResult
-from leblanc.results.motion.balls import RaceOfBalls
 from leblanc.results.notes import balls as notes
 from leblanc.results.notes import response as response_notes
+from leblanc.results.races.balls import RaceOfBalls
+from leblanc.results.races.states import BallsResult
 from leblanc.scene.inputs import input_rows
 from leblanc.scene.races import BallRace
 from leblanc.scene.scene import Scene

@@ -8,13 +8,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from leblanc.results.motion.ball_numbers import BallExplanation, RaceNumbers
+from leblanc.results.races.numbers import BallExplanation, RaceNumbers
 from leblanc.scene.races import BallRace
 from leblanc.scene.scene import Scene, TwoPlaneRotor, dry_rotor, require_clear
 from leblanc.scene.unbalances import unbalances_of
 from leblanc.studies.explain import explain_scene
+from leblanc.studies.models.choose import runup_outlook
 from leblanc.studies.races.states import worst_states
-from leblanc.studies.runup import runup_outlook
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
 from solvers.rotor.balls.states import RotorWithBalls, turning

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from leblanc.results.motion.ball_states import reported_state
+from leblanc.results.races.states import reported_state
 from leblanc.scene.scene import Scene, dry_rotor, require_clear
 from leblanc.studies.models.choose import axial_gravity
 from leblanc.studies.models.liquid import synchronous_model

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import leblanc as lb
-from leblanc.results.motion.ball_states import BallsResult
+from leblanc.results.races.states import BallsResult
 from leblanc.studies.drives import drive_of, numerics_of, planned
 from leblanc.studies.machine import loaded_machine
 from leblanc.studies.runup import across_gravity, chosen_run

@@ -11,8 +11,8 @@ import pytest
 
 import leblanc as lb
 from leblanc.cli import main
-from leblanc.results.motion.ball_numbers import BallExplanation
-from leblanc.results.motion.ball_states import BallsResult
+from leblanc.results.races.numbers import BallExplanation
+from leblanc.results.races.states import BallsResult
 from leblanc.scene.scene import Scene, dry_rotor
 from leblanc.studies.batch import answer_scenes
 from leblanc.studies.fit import Measurement, _answer, fit_scene

@@ -11,7 +11,7 @@ import pytest
 
 import leblanc as lb
 from leblanc.cli import main
-from leblanc.results.motion.ball_states import BallsResult
+from leblanc.results.races.states import BallsResult
 from meshes.errors import InputError
 from solvers.rotor.balls.swing import ball_swing
 from tests.mutants import kills

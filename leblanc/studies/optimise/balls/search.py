@@ -10,8 +10,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from leblanc.results.base import Note
-from leblanc.results.motion.ball_design import BallDesignResult, DesignedRace, TriedDesigns
 from leblanc.results.notes import ball_design as notes
+from leblanc.results.races.design import BallDesignResult, DesignedRace, TriedDesigns
 from leblanc.scene.races import BallRace
 from leblanc.scene.scene import Scene
 from leblanc.scene.tasks import Optimisation

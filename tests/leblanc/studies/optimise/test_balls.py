@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 
 import leblanc as lb
 from leblanc.cli import main
-from leblanc.results.motion.ball_design import BallDesignResult
+from leblanc.results.races.design import BallDesignResult
 from leblanc.scene.scene import JeffcottRotor, Scene, dry_rotor
 from leblanc.scene.schema.load import SceneError
 from leblanc.scene.tasks import BallRanges, Optimisation
