@@ -130,7 +130,7 @@ RECIPES = (
     Recipe(("validation.figures.two_plane",), ("two_plane_balls",)),
     Recipe(
         ("validation.figures.ball_charts",),
-        ("balls_damping", "balls_reference", "balls_charts"),
+        ("balls_damping", "balls_reference", "balls_unlike", "balls_charts"),
         minutes=True,
     ),
     Recipe(("validation.figures.exciter_more",), ("exciter_traces", "exciter_trends")),
