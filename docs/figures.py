@@ -159,7 +159,7 @@ RECIPES = (
     ),
     *(
         _example("view", scene, **{f"view_{scene}": "view"})
-        for scene in ("balls", "balls_and_liquid", "long_rotor")
+        for scene in ("balls", "balls_and_liquid", "long_rotor", "blood_pump")
     ),
     _example("view", "balls", "--speed", "600 rpm", view_balls_slow="view"),
     _example("view", "spindle", "--speed", "335Hz", view_spindle="view"),

@@ -250,6 +250,7 @@ def _modes() -> Iterator[Case]:
 def _views() -> Iterator[Case]:
     for name in ("vibratory_table", *BALLS, "long_rotor", *ROTORS, *DOCS):
         yield _case(f"view-{name}", f"view {_scene(name)} --json --out out", needs="screen")
+    yield _case("view-blood_pump", f"view {_scene('blood_pump')} --json --out out", needs="screen")
     yield _case("view-spindle", f"view {_scene('spindle')} --mode 2 --json --out out", needs="screen")
     yield _case(
         "view-mode",
@@ -335,7 +336,6 @@ def _wrong() -> Iterator[Case]:
         "runup-magnetic": f"runup {pump}",
         "optimise-magnetic": f"optimise {pump}",
         "compare-magnetic": f"compare {pump} --models statics",
-        "view-magnetic": f"view {pump}",
         **{
             f"{name}-spindle": f"{name} {_scene('spindle')}"
             for name in ("explain", "map", "runup", "optimise", "trade")
