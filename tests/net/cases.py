@@ -109,6 +109,8 @@ def _runs() -> Iterator[Case]:
         yield _case(f"run-{name}", f"run {_scene(name)} --json --out out")
         yield _case(f"explain-{name}", f"explain {_scene(name)} --json")
     yield _case("words-explain-balls", f"explain {_scene('balls')}")
+    for name in ("tub_balls", "linear_balls"):
+        yield _case(f"run-{name}", f"run small/{name}.toml --json --out out")
     yield _case("run-exact", "run small/horizontal_rig_exact.toml --workers 1 --json --out out")
     yield _case("run-spindle", f"run {_scene('spindle')} --json --out out")
     yield _case("run-top_loader", f"run {_scene('top_loader')} --json --out out")
@@ -133,6 +135,10 @@ def _runups() -> Iterator[Case]:
     for name in BALLS:
         yield _case(
             f"runup-{name}", f"runup {_scene(name)} --cells 32 --samples 201 --no-check --json --out out"
+        )
+    for name in ("tub_balls", "linear_balls"):
+        yield _case(
+            f"runup-{name}", f"runup small/{name}.toml --cells 16 --samples 101 --no-check --json --out out"
         )
     yield _case("runup-check", "runup small/runup.toml --samples 51 --json --out out")
 

@@ -55,6 +55,24 @@ SMALL: dict[str, tuple[str, dict[str, str]]] = {
     ),
 }
 
+# A race on the tub's drum, and a linear layer beside balls: tables may stand in any order.
+_RACE = '''15
+
+[[chambers]]
+kind = "balls"
+radius = "168 mm"
+count = 3
+mass = "60 g"
+drag = "2 N*s/m"
+plane = "115 mm"'''
+SMALL |= {
+    "tub_balls": ("examples/tub.toml", {"speeds.count": _RACE, "runup.duration": '"2 s"'}),
+    "linear_balls": (
+        "examples/balls_and_liquid.toml",
+        {"speeds.count": '9\n\n[model]\nliquid = "linear"', "runup.duration": '"4 s"'},
+    ),
+}
+
 _SMALLEST = "docs/examples/smallest_scene.toml"
 _RIG = "examples/horizontal_rig.toml"
 
