@@ -10,7 +10,7 @@ from solvers.rotor.exciter.machine import (
     stuck_speeds,
 )
 from solvers.rotor.exciter.motion import Start, critical_speed, integrate, printed_critical_speed
-from validation.cases import exciter_more
+from validation.cases import exciter_beyond, exciter_more
 from validation.cases.case import Case, Effect, compare, shape_verdict
 
 # The typical experiment [YF17, section 5.3].
@@ -18,8 +18,7 @@ MACHINE = Dimensionless(smallness=0.01, drag=0.4, unbalance=0.25, damping=0.03)
 
 
 def cases() -> list[Case]:
-    """Stuck speeds, characteristic speeds, time integration, critical "
-    "speed, the worked table, traces and trends."""
+    """Stuck, characteristic and critical speeds, the worked table, traces, trends, and what lies beyond."""
     return [
         *_roots(),
         *_characteristic(),
@@ -27,6 +26,7 @@ def cases() -> list[Case]:
         *_critical(),
         *_table(),
         *exciter_more.cases(),
+        *exciter_beyond.cases(),
     ]
 
 

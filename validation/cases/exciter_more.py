@@ -1,6 +1,6 @@
-"""The exciter's traces, trends and regimes beyond the critical speed [YF17, fig. 3 to 6, eq. 21].
+"""The exciter's traces and trends [YF17, fig. 3 to 6, eq. 21].
 
-Trends and regimes take minutes; they are kept in `validation/data/exciter_more.json`, which `python -m
+Trends take minutes; they are kept in `validation/data/exciter_more.json`, which `python -m
 validation.cases.exciter_more` makes anew.
 """
 
@@ -24,15 +24,13 @@ from solvers.rotor.exciter.machine import (
     platform_motion,
     stuck_speeds,
 )
-from solvers.rotor.exciter.motion import Start, Trace, critical_speeds, initial_state, trace
-from solvers.rotor.exciter.steps import advance
+from solvers.rotor.exciter.motion import Trace, critical_speeds, trace
 from validation.cases.case import Case, compare
 
 DATA = Path(__file__).parents[1] / "data" / "exciter_more.json"
 TYPICAL = Dimensionless(smallness=0.01, drag=0.4, unbalance=0.25, damping=0.03)
 SPEED = 5.0
 _PRINTED_GAP = 0.01105
-_BLOCKS, _LAST = 40, 10
 # Curves of a panel: what runs along it, its values, what tells the curves apart, its values, the rest.
 PANELS: tuple[tuple[str, tuple[float, ...], str, tuple[float, ...], dict[str, float]], ...] = (
     (
@@ -109,9 +107,9 @@ def traces() -> Traces:
 
 
 def cases() -> list[Case]:
-    """Traces, critical speed in dimensions, trends, regimes."""
+    """Traces, critical speed in dimensions, trends."""
     kept: dict[str, Any] = json.loads(DATA.read_text(encoding="utf-8"))
-    return [*_traces(), *_dimensional(), *_trends(kept["panels"]), *_regimes(kept["regimes"])]
+    return [*_traces(), *_dimensional(), *_trends(kept["panels"])]
 
 
 def _traces() -> list[Case]:
@@ -201,89 +199,6 @@ def _trends(panels: list[dict[str, Any]]) -> list[Case]:
     return found
 
 
-def _regimes(runs: list[dict[str, Any]]) -> list[Case]:
-    """What the balls do beyond the critical speed."""
-    counts = {name: sum(run["regime"] == name for run in runs) for name in REGIMES}
-    total = len(runs)
-    source = "YF17, section 5.3"
-    third = [run for run in runs if run["start"] == "third"]
-    left = sum(run["regime"] == "third" for run in third)
-    return [
-        Case(
-            name="exciter/beyond-balancing",
-            source=source,
-            quantity=f"runs of {total} beyond the critical speed that end balanced",
-            printed="may occur",
-            computed=float(counts["balanced"]),
-            difference="none",
-            verdict="agrees" if counts["balanced"] else "differs",
-            note=", ".join(f"{name} {count}" for name, count in counts.items() if count),
-        ),
-        Case(
-            name="exciter/beyond-third",
-            source=source,
-            quantity=f"runs of {len(third)} begun at the third stuck speed, balls together, that stay there",
-            printed="may be stable",
-            computed=float(left),
-            difference="none" if left else "never",
-            verdict="agrees" if left else "differs",
-            note="two balls part and balance; the source does not print where it saw this motion",
-        ),
-        Case(
-            name="exciter/beyond-chaos",
-            source=source,
-            quantity=f"runs of {total} that never settle",
-            printed="may occur",
-            computed=float(counts["unsettled"]),
-            difference="none" if counts["unsettled"] else "not seen",
-            verdict="agrees" if counts["unsettled"] else "differs",
-            note="ball speeds, block by block, change by more than a thousandth in the last quarter; "
-            "one ball stuck and one with the shaft is a regime that the source does not name",
-        ),
-    ]
-
-
-REGIMES = ("balanced", "with the shaft", "dual", "third", "one stuck", "unsettled")
-
-
-def regime(machine: Dimensionless, speed: float, start: str, separation: float) -> str:
-    """What two balls do in the end.
-
-    Parameters
-    ----------
-    machine, speed : its numbers; n of the shaft
-    start : of `Start`, or `third`: together at the third stuck speed
-    separation : rad
-
-    Returns
-    -------
-    One of `REGIMES`: balanced: with the shaft, and the platform at less than a fiftieth of what the
-    unbalance alone makes; with the shaft: but not balanced; dual, third: both at the first or third stuck
-    speed, to 2 %; one stuck: one of them at less than half the shaft's speed; unsettled: their mean speeds
-    still change by more than a thousandth
-    """
-    roots = stuck_speeds(speed, machine)
-    kind = "regime" if start == "third" else start
-    stuck = float(roots[2] if start == "third" else roots[0])
-    state = initial_state(machine, speed, stuck, 2, Start(kind, separation))
-    total = 18.0 / min(machine.smallness * machine.drag, machine.damping)
-    steps = math.ceil(total / _BLOCKS * 24 * max(speed, 1.0) / (2.0 * math.pi))
-    means, sums = np.zeros((_BLOCKS, 3)), np.zeros(4)
-    numbers = machine.numbers(speed)
-    advance(state, numbers, total / (_BLOCKS * steps), steps, math.inf, means, _BLOCKS - _LAST, sums)
-    last = means[-_LAST:, :2]
-    mean, swing = last.mean(axis=0), np.ptp(last, axis=0)
-    if np.any(swing > 1e-3 * speed):
-        return "unsettled"
-    if np.all(np.abs(mean - speed) <= 1e-3 * speed):
-        bare = machine.unbalance * speed**2 / abs(1.0 - speed**2)
-        return "balanced" if np.hypot(sums[2], sums[3]) <= 0.02 * max(bare, 0.02) else "with the shaft"
-    for name, root in (("dual", roots[0]), ("third", roots[2])):
-        if np.all(np.abs(mean - root) <= 0.02 * root):
-            return name
-    return "one stuck" if mean.min() < 0.5 * speed else "unsettled"
-
-
 def measure() -> dict[str, Any]:
     """Make the kept runs anew."""
     panels = []
@@ -293,30 +208,10 @@ def measure() -> dict[str, Any]:
             machines = [Dimensionless(**{along: value, apart: other, **rest}) for value in values]
             curves.append([round(float(n), 3) for n in critical_speeds(machines, workers=2)])
         panels.append({"along": along, "values": values, "apart": apart, "others": others, "curves": curves})
-    runs = []
-    for smallness, unbalance in ((0.01, 0.25), (0.01, 0.0), (0.02, 0.5), (0.05, 1.0)):
-        machine = Dimensionless(smallness, 0.4, unbalance, 0.03)
-        critical = float(critical_speeds([machine])[0])
-        for share in (1.05, 1.25, 2.0):
-            for start, separation in (("released", 0.3), ("released", 2.0), ("rest", 0.3), ("third", 0.05)):
-                speed = share * critical
-                seen = regime(machine, speed, start, separation)
-                runs.append(
-                    {
-                        "smallness": smallness,
-                        "unbalance": unbalance,
-                        "speed": round(speed, 3),
-                        "start": start,
-                        "separation": separation,
-                        "regime": seen,
-                    }
-                )
     return {
-        "about": "Critical speeds of figures 5 and 6 of YF17, released, 0.3 "
-        "rad apart, and the regimes of two "
-        "balls beyond the critical speed, b = 0.4, h = 0.03; by validation.cases.exciter_more.",
+        "about": "Critical speeds of figures 5 and 6 of YF17, released, 0.3 rad apart; "
+        "by validation.cases.exciter_more.",
         "panels": panels,
-        "regimes": runs,
     }
 
 

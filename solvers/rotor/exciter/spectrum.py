@@ -51,7 +51,8 @@ def spectrum(samples: Array, sample_time: float) -> tuple[Array, Array]:
         raise InputError("samples", samples.size, "16 or more")
     window = 0.5 * (1.0 - np.cos(2.0 * math.pi * np.arange(samples.size) / samples.size))
     amplitude = np.abs(np.fft.rfft((samples - samples.mean()) * window)) * 4.0 / samples.size
-    return 2.0 * math.pi * np.fft.rfftfreq(samples.size, sample_time), np.asarray(amplitude)
+    frequency = 2.0 * math.pi * np.fft.rfftfreq(samples.size, sample_time)
+    return np.asarray(frequency, dtype=np.float64), np.asarray(amplitude, dtype=np.float64)
 
 
 def lines(samples: Array, sample_time: float, least: float = 0.01) -> Lines:

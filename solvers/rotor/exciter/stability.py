@@ -47,7 +47,7 @@ def stuck_roots(machine: Dimensionless, stuck: float, share: float = 1.0) -> Com
     steady = share * q * q / stiffness
     # The platform's answer to a change of the balls' speed, times `platform`, and its acceleration.
     answer = np.array([2.0 * q * (share + steady) - 2j * h * steady, -1j * (share + steady)])
-    acceleration = polynomial.polyadd(
+    acceleration: Complex = polynomial.polyadd(
         polynomial.polymul([-q * q, 2j * q, 1.0], answer),
         polynomial.polymul(steady * np.array([-2.0 * q, 1j]), platform),
     )
