@@ -122,6 +122,7 @@ RECIPES = (
     Recipe(("validation.figures.two_plane",), ("two_plane_balls",)),
     Recipe(("validation.figures.ball_charts",), ("balls_damping", "balls_reference"), minutes=True),
     Recipe(("validation.figures.exciter_more",), ("exciter_traces", "exciter_trends")),
+    Recipe(("validation.figures.exciter_beyond",), ("exciter_beyond",)),
     Recipe(("validation.cases.weak_motor",), ("runup_weak_motor",)),
     Recipe(("validation.figures.runup_lag",), ("runup_lag",)),
     Recipe(

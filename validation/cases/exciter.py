@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import numpy as np
+from numpy.typing import NDArray
+
+from meshes.arrays import Array
 from solvers.rotor.exciter.machine import (
     Dimensionless,
     Exciter,
@@ -9,12 +13,14 @@ from solvers.rotor.exciter.machine import (
     platform_motion,
     stuck_speeds,
 )
-from solvers.rotor.exciter.motion import Start, critical_speed, integrate, printed_critical_speed
+from solvers.rotor.exciter.motion import RANGES, Start, critical_speed, integrate, printed_critical_speed
 from validation.cases import exciter_beyond, exciter_more
 from validation.cases.case import Case, Effect, compare, shape_verdict
 
 # The typical experiment [YF17, section 5.3].
 MACHINE = Dimensionless(smallness=0.01, drag=0.4, unbalance=0.25, damping=0.03)
+
+COUNT = 196  # as many machines as the source integrated
 
 
 def cases() -> list[Case]:
@@ -28,6 +34,29 @@ def cases() -> list[Case]:
         *exciter_more.cases(),
         *exciter_beyond.cases(),
     ]
+
+
+def sample(count: int = COUNT) -> Array:
+    """Machines spread evenly over the source's ranges, shape (count, 4): Hammersley's points.
+
+    Parameters
+    ----------
+    count : how many
+    """
+    turns = np.arange(count)
+    shares = np.stack([(turns + 0.5) / count, *(_mirrored(turns, base) for base in (2, 3, 5))], axis=-1)
+    low, high = np.array(list(RANGES.values())).T
+    return np.asarray(low + shares * (high - low))
+
+
+def _mirrored(numbers: NDArray[np.int_], base: int) -> Array:
+    """Digits of each number mirrored at the point, in the middle of what the last digit leaves open."""
+    found, rest, weight = np.zeros(numbers.shape), numbers.copy(), 1.0
+    while rest.any():
+        weight /= base
+        found += weight * (rest % base)
+        rest //= base
+    return found + 0.5 * weight
 
 
 def _roots() -> list[Case]:

@@ -213,7 +213,7 @@ def _regimes(kept: dict[str, Any]) -> list[Case]:
             "chaotic for as long as the source's figure 3 runs, 315 turns",
             len(chaotic),
             f"{note}; {counts[Kind.CHAOTIC.value]} still chaotic after {DECAYS:g} decay times; the longest "
-            f"chaos seen lasts {longest:.0f} of them; what was followed long enough ended in another motion",
+            f"chaos seen lasts {longest:.0f} of them; most runs followed longer ended in another motion",
         ),
     ]
 
@@ -225,7 +225,7 @@ def _decay(row: dict[str, Any]) -> float:
 
 def _sample() -> list[Dimensionless]:
     """196 machines over the source's ranges, as many as it integrated."""
-    from validation.figures.exciter import sample
+    from validation.cases.exciter import sample
 
     return [Dimensionless(*row) for row in sample().tolist()]
 

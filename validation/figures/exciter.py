@@ -10,16 +10,15 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save, style
 from leblanc.figures.exciter import exciter_figure
 from leblanc.studies.exciter import answer_exciter
 from meshes.arrays import Array
 from solvers.rotor.exciter.machine import Dimensionless, Exciter, characteristic_speeds
-from solvers.rotor.exciter.motion import RANGES, Start, critical_speeds, printed_critical_speed
+from solvers.rotor.exciter.motion import Start, critical_speeds, printed_critical_speed
+from validation.cases.exciter import COUNT, sample
 
-COUNT = 196  # as many machines as the source integrated
 _FRAME = Frame(left=0.72, top=0.15, between=0.0, below=0.45)
 _APART = 0.6  # inches between two plots side by side
 STARTS = (
@@ -50,29 +49,6 @@ class Comparison:
     def error(self) -> Array:
         """Printed over computed, less 1, shape (m,)."""
         return np.asarray(self.printed / self.computed - 1.0)
-
-
-def sample(count: int = COUNT) -> Array:
-    """Machines spread evenly over the source's ranges, shape (count, 4): Hammersley's points.
-
-    Parameters
-    ----------
-    count : how many
-    """
-    turns = np.arange(count)
-    shares = np.stack([(turns + 0.5) / count, *(_mirrored(turns, base) for base in (2, 3, 5))], axis=-1)
-    low, high = np.array(list(RANGES.values())).T
-    return np.asarray(low + shares * (high - low))
-
-
-def _mirrored(numbers: NDArray[np.int_], base: int) -> Array:
-    """Digits of each number mirrored at the point, in the middle of what the last digit leaves open."""
-    found, rest, weight = np.zeros(numbers.shape), numbers.copy(), 1.0
-    while rest.any():
-        weight /= base
-        found += weight * (rest % base)
-        rest //= base
-    return found + 0.5 * weight
 
 
 def compare(count: int = COUNT, workers: int = 2) -> Comparison:
