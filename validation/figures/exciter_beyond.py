@@ -75,8 +75,7 @@ def beyond_figure(directory: Path) -> Path:
             "speed (eps = 0.01, b = 0.4, delta = 0.05, h = 0.03, n = 8.15), and in chaos over two decay "
             "times (eps = 0.00695, b = 0.132, delta = 0.891, h = 0.0485, n = 34). Below: what four starts "
             "end in at 1.25 times the critical speed, marks of one machine side by side; line: the unbalance "
-            "past which one ball of two can slip, the other at the resonance (theory: exciter, eq. 7). No "
-            "mark: in step with the shaft and still settling."
+            "past which one ball of two can slip, the other at the resonance (theory: exciter, eq. 7)."
         )
         frame = Frame(left=0.6, top=0.25, between=0.75, below=0.45)
         lay_out(figure, [top, bottom], [1.7, 2.4], frame, text)
