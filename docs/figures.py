@@ -97,6 +97,14 @@ RECIPES = (
         runup_horizontal_rig_time="runup_time",
     ),
     _example("run", "balls", balls_states="balls"),
+    _example("map", "balls", balls_map="map"),
+    _example(
+        "map",
+        "long_rotor",
+        *("--over", "rotor.supports.0.damping", "--over", "rotor.supports.1.damping"),
+        *("--from", "0.25", "--to", "16000"),
+        long_rotor_map="map",
+    ),
     _example("runup", "balls", balls_runup="runup_time"),
     _example("run", "balls_and_liquid", balls_and_liquid="balls"),
     _example("runup", "programme", programme_speed="runup_speed", programme_time="runup_time"),
@@ -120,7 +128,11 @@ RECIPES = (
     ),
     Recipe(("docs/house.py", "--picture", "rooms.png"), ("rooms",)),
     Recipe(("validation.figures.two_plane",), ("two_plane_balls",)),
-    Recipe(("validation.figures.ball_charts",), ("balls_damping", "balls_reference"), minutes=True),
+    Recipe(
+        ("validation.figures.ball_charts",),
+        ("balls_damping", "balls_reference", "balls_charts"),
+        minutes=True,
+    ),
     Recipe(("validation.figures.exciter_more",), ("exciter_traces", "exciter_trends")),
     Recipe(("validation.figures.exciter_beyond",), ("exciter_beyond",)),
     Recipe(("validation.cases.weak_motor",), ("runup_weak_motor",)),
@@ -146,6 +158,12 @@ RECIPES = (
             *("vibratory_table", "washing_machine"),
         )
     ),
+    *(
+        _example("view", scene, **{f"view_{scene}": "view"})
+        for scene in ("balls", "balls_and_liquid", "long_rotor")
+    ),
+    _example("view", "balls", "--speed", "600 rpm", view_balls_slow="view"),
+    _example("view", "spindle", "--speed", "335Hz", view_spindle="view"),
     _example("view", "runup", "--speed", "24 rad/s", view_runup_resonance="view"),
     _example("view", "vertical_rig", "--speed", "8 rad/s", view_vertical_rig_slow="view"),
     _example("view", "centrifuge", "--mode", "3", view_mode="view"),

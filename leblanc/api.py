@@ -14,7 +14,7 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from leblanc.scene.scene import Scene, load_scene
+from leblanc.scene.scene import Scene, dry_rotor, load_scene
 from meshes.errors import InputError
 
 if TYPE_CHECKING:
@@ -30,8 +30,11 @@ if TYPE_CHECKING:
     from leblanc.results.magnetic.control import MagneticResult
     from leblanc.results.magnetic.explanation import MagneticExplanation
     from leblanc.results.models.comparison import Comparison
+    from leblanc.results.motion.ball_design import BallDesignResult
+    from leblanc.results.motion.ball_numbers import BallExplanation
     from leblanc.results.motion.ball_states import BallsResult
     from leblanc.results.optimum import OptimumResult
+    from leblanc.results.races.chart import BallChart
     from leblanc.results.response import RunResult
     from leblanc.results.runup import RunupResult
     from leblanc.results.spindles.bearing import BearingResult
@@ -103,8 +106,12 @@ def run(
     return run_scene(machine, holding=Holding(workers, solver=solver or COUPLED), cycles=cycles)
 
 
-def explain(scene: SceneOrPath) -> Explanation | ExciterExplanation | MagneticExplanation:
+def explain(
+    scene: SceneOrPath,
+) -> Explanation | ExciterExplanation | MagneticExplanation | BallExplanation:
     """A scene's dimensionless numbers, the liquid model that answers at each speed, and why.
+
+    Of balls in races: what they hold and from which speed on they balance.
 
     Parameters
     ----------
@@ -125,6 +132,10 @@ def explain(scene: SceneOrPath) -> Explanation | ExciterExplanation | MagneticEx
         from leblanc.studies.magnetic.explain import explain_magnetic
 
         return explain_magnetic(machine)
+    if machine.balls:
+        from leblanc.studies.races.explain import explain_balls
+
+        return explain_balls(machine)
     from leblanc.studies.explain import explain_exciter, explain_scene
 
     return explain_exciter(machine) if machine.rotor.kind == "exciter" else explain_scene(machine)
@@ -217,6 +228,59 @@ def map_whirl(
         return map_scene(machine, volumes, speeds, most, law, progress, cycles)
 
 
+def map_balls(
+    scene: SceneOrPath,
+    over: str | Sequence[str] = (),
+    *,
+    start: Quantity | None = None,
+    stop: Quantity | None = None,
+    values: int = 31,
+    speeds: int = 61,
+    log: bool | None = None,
+    state: str = "balanced",
+    progress: Callable[[int, int], None] | None = None,
+) -> BallChart:
+    """Where the balls of a scene keep the rotor balanced, over its speeds and another of its numbers.
+
+    Parameters
+    ----------
+    scene : the machine with its races, or the path of its file
+    over : path of the number, as "chambers.0.drag"; several keep their ratios; the drag in all races if empty
+    start, stop : first and last value of it (`--from` and `--to`); chosen about what the scene has if None
+    values, speeds : how many of each
+    log : space the values by their logarithm; where they span a decade if None
+    state : balanced; heavy or light, with the balls of each race together on that side of its plane
+    progress : called with the number of points done and of all
+
+    Raises
+    ------
+    SceneError, InputError : as for `run`; no race, a path that leads to no number
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> chart = lb.map_balls(lb.example("balls"), "rotor.unbalance", values=5, speeds=9)
+    >>> chart.growing[-1].tolist()  # beyond what two balls hold
+    [-1, -1, -1, -1, -1, -1, -1, -1, -1]
+    """
+    machine = _scene(scene)
+    from leblanc.studies.races.chart import chart_scene
+
+    paths = (over,) if isinstance(over, str) else tuple(over)
+    with _keywords():
+        return chart_scene(
+            machine,
+            paths,
+            start,
+            stop,
+            values=values,
+            speeds=speeds,
+            log=log,
+            state=state,
+            progress=progress,
+        )
+
+
 def optimise(
     scene: SceneOrPath,
     objective: str | None = None,
@@ -228,8 +292,11 @@ def optimise(
     emulator: str | PathLike[str] | None = None,
     front: bool = True,
     progress: Callable[[int], None] | None = None,
-) -> OptimumResult | LayoutResult:
-    """Best volume of liquid for each chamber, or the best layout of a tub's springs and dampers.
+    workers: int = 1,
+) -> OptimumResult | LayoutResult | BallDesignResult:
+    """Best volume of liquid for each chamber, best balls, or best layout of a tub's springs and dampers.
+
+    Where the scene has balls these are chosen, and its liquid stays as it is filled.
 
     Parameters
     ----------
@@ -241,7 +308,8 @@ def optimise(
     seed : of the random sample of robust
     emulator : store of a sweep over the volumes, from which the search gets an emulator
     front : find out as well what must be given up for what
-    progress : called with the number of sets of volumes judged
+    progress : called with the number of sets of volumes, or designs of balls, judged
+    workers : processes that judge designs of balls where one takes its time; the answer is the same with any
 
     Raises
     ------
@@ -255,7 +323,8 @@ def optimise(
     True
     """
     machine = _scene(scene)
-    from leblanc.questions import optimisation_of
+    from leblanc.questions import optimisation_of, require_no_emulator
+    from leblanc.studies.optimise.balls.search import optimise_balls
     from leblanc.studies.optimise.emulated import emulated_vibration
     from leblanc.studies.optimise.layout import optimise_layout
     from leblanc.studies.optimise.optimise import optimise_scene
@@ -266,8 +335,11 @@ def optimise(
             return optimise_layout(
                 machine, task, None if progress is None else lambda count, _: progress(count)
             )
-        surrogate = None if emulator is None else emulated_vibration(Path(emulator), machine, task)
         told = None if progress is None else lambda count, _: progress(count)
+        if machine.balls:
+            require_no_emulator(emulator)
+            return optimise_balls(machine, task, told, workers)
+        surrogate = None if emulator is None else emulated_vibration(Path(emulator), machine, task)
         return optimise_scene(machine, task=task, front=front, progress=told, emulator=surrogate)
 
 
@@ -338,11 +410,10 @@ def fit(
     """
     machine = _scene(scene)
     from leblanc.studies.fit import fit_scene, read_measured, require_scale
-    from leblanc.studies.models.choose import prepare
 
     with _keywords():
         free = require_scale(scale) != "given"
-        table = read_measured(measured, prepare(machine).system.coordinates, free)
+        table = read_measured(measured, dry_rotor(machine).system().coordinates, free)
         return fit_scene(machine, table, tuple(unknown), starts, seed, scale)
 
 

@@ -357,6 +357,17 @@ def optimisation_of(
     return task.altered(steady=task.steady or steady)
 
 
+def require_no_emulator(store: object) -> None:
+    """Refuse an emulator of a sweep over volumes where balls are chosen.
+
+    Raises
+    ------
+    InputError : one is given
+    """
+    if store is not None:
+        raise InputError("--emulator", str(store), "left out with balls, whose designs it does not know")
+
+
 def _length(given: Quantity, option: str) -> float:
     """A length above 0 in metres."""
     value = parse_option(given, LENGTH, option)

@@ -275,13 +275,31 @@ def in_rpm(speed: float, missing: str = NOT_FOUND) -> str:
 
 
 def rpm_range(low: float, high: float) -> str:
-    """A range of speeds for print.
+    """A range of speeds for print; one number where both ends print alike.
 
     Parameters
     ----------
     low, high : rad/s
     """
-    return f"{number(low * RPM)} to {in_rpm(high)}"
+    first, last = number(low * RPM), in_rpm(high)
+    return last if last == in_rpm(low) else f"{first} to {last}"
+
+
+def over_rpm(low: float, high: float, before: str = "from", between: str = "to") -> str:
+    """Where a range of speeds is, as a part of a sentence: "from 1 to 2 rpm", or "at 2 rpm".
+
+    Parameters
+    ----------
+    low, high : rad/s
+    before, between : words of a range that is not one speed
+
+    Examples
+    --------
+    >>> over_rpm(10.0, 20.0, "between", "and"), over_rpm(20.0, 20.0)
+    ('between 95.49 and 191 rpm', 'at 191 rpm')
+    """
+    last = in_rpm(high)
+    return f"at {last}" if last == in_rpm(low) else f"{before} {number(low * RPM)} {between} {last}"
 
 
 def rpm_bands(bands: Iterable[tuple[float, float]]) -> str:

@@ -9,6 +9,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from meshes.arrays import Array, Complex
 from meshes.liquid_section import free_sides
@@ -78,27 +79,32 @@ def _side(nodes: Complex, share: Array) -> Complex:
     return np.asarray(at + 4.0 * share * (1.0 - share) * middle)
 
 
-def area_within(loops: tuple[Complex, ...], radius: float) -> float:
-    """Area of a section inside the circle about the origin, m^2.
+def area_within(loops: tuple[Complex, ...], radius: ArrayLike) -> Array:
+    """Area of a section inside circles about the origin, m^2.
 
     Exact for straight sides: each one's share is a triangle where it runs inside the circle and a sector
     where it does not.
 
     Parameters
     ----------
-    loops : as from `wall_loops`, about the centre of the circle
-    radius : of the circle, m
+    loops : as from `wall_loops`, about the centre of the circles
+    radius : of each circle, m, shape (...)
+
+    Returns
+    -------
+    shape (...)
     """
     start = np.concatenate(loops)
     end = np.concatenate([np.roll(loop, -1) for loop in loops])
-    enters, leaves = _roots(start, end, radius)
+    reach = np.asarray(radius, dtype=float)[..., None]
+    enters, leaves = _roots(start, end, reach)
     inner, outer = start + enters * (end - start), start + leaves * (end - start)
     triangle = (inner.conj() * outer).imag
     sector = np.angle(start.conj() * inner) + np.angle(outer.conj() * end)
-    return 0.5 * float(np.sum(np.where(enters < leaves, triangle, 0.0) + radius**2 * sector))
+    return np.asarray(0.5 * np.sum(np.where(enters < leaves, triangle, 0.0) + reach**2 * sector, axis=-1))
 
 
-def _roots(start: Complex, end: Complex, radius: float) -> tuple[Array, Array]:
+def _roots(start: Complex, end: Complex, radius: float | Array) -> tuple[Array, Array]:
     """Between which shares of its length each side is inside the circle; both alike where it never is."""
     along = end - start
     square = np.abs(along) ** 2

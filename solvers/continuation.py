@@ -18,8 +18,9 @@ from meshes.errors import InputError, require_positive
 
 _ROUNDS = 12
 _DIFFERENCE = 1e-6  # of the unit of an unknown
-_SHORTEST = 1.0 / 256.0  # of the first step
+_SHORTEST = 1.0 / 4096.0  # of the first step
 _STRAIGHT = 0.9  # least cosine between the directions of two points
+_BESIDE = 0.5  # of a step: a point further from the guess than that is on another curve
 _EASY = 4  # rounds up to which the next step may be longer
 
 
@@ -29,6 +30,7 @@ class End(Enum):
     LEFT = "it leaves the box"
     CLOSED = "it closes"
     LOST = "no further point is found"
+    NOWHERE = "what it is a curve of ends"
     LONG = "the most points are reached"
 
 
@@ -69,7 +71,7 @@ def follow(
 
     Parameters
     ----------
-    equations : what is left of each at a point
+    equations : what is left of each at a point; nan where there are none
     start : near the curve, shape (m + 1,)
     unit : size of each unknown on which lengths are measured, shape (m + 1,)
     low, high : corners of the box in which the curve is wanted; infinite where there is none
@@ -81,7 +83,7 @@ def follow(
 
     Returns
     -------
-    Curve; only its start, as given, and `End.LOST` where no point is found near it
+    Curve; only its start, as given, and `End.LOST` or `End.NOWHERE` where no point is found near it
 
     Raises
     ------
@@ -100,22 +102,27 @@ def follow(
     if not np.all(np.isfinite(size) & (size > 0.0)) or way not in (1, -1):
         raise InputError("unit, way", (size.tolist(), way), "positive sizes, and 1 or -1")
     slope = _slope(equations, begin, size)
+    if not np.isfinite(slope).all():
+        return Curve(begin[None], End.NOWHERE)
     tangent = way * _tangent(slope)
     found = _corrected(equations, begin, tangent, size, tolerance)
-    if found is None:
-        return Curve(begin[None], End.LOST)
+    if isinstance(found, End):
+        return Curve(begin[None], found)
     points, length, travelled = [found[0]], step, 0.0
     renew(points[0])
-    tangent = _onward(equations, points[0], size, tangent)
-    first = tangent
+    first = _onward(equations, points[0], size, tangent)
+    if first is None:
+        return Curve(np.array(points), End.NOWHERE)
+    tangent = first
     while len(points) < most:
         guess = points[-1] + length * size * tangent
-        answer = _corrected(equations, guess, tangent, size, tolerance)
-        ahead = None if answer is None else _onward(equations, answer[0], size, tangent)
-        if answer is None or ahead is None or ahead @ tangent < _STRAIGHT:
+        answer = _corrected(equations, guess, tangent, size, tolerance, _BESIDE * length)
+        ahead = None if isinstance(answer, End) else _onward(equations, answer[0], size, tangent)
+        if isinstance(answer, End) or ahead is None or ahead @ tangent < _STRAIGHT:
             length *= 0.5
             if length < _SHORTEST * step:
-                return Curve(np.array(points), End.LOST)
+                ends = answer is End.NOWHERE or (answer is not End.LOST and ahead is None)
+                return Curve(np.array(points), End.NOWHERE if ends else End.LOST)
             continue
         point = answer[0]
         points.append(point)
@@ -149,27 +156,38 @@ def _tangent(slope: Array) -> Array:
     return np.asarray(tangent * np.sign(tangent[heavy]))
 
 
-def _onward(equations: Equations, point: Array, size: Array, tangent: Array) -> Array:
-    """Direction of the curve at a point, on the side of the last one."""
-    ahead = np.linalg.svd(_slope(equations, point, size))[2][-1]
+def _onward(equations: Equations, point: Array, size: Array, tangent: Array) -> Array | None:
+    """Direction of the curve at a point, on the side of the last one; None next to where it ends."""
+    slope = _slope(equations, point, size)
+    if not np.isfinite(slope).all():
+        return None
+    ahead = np.linalg.svd(slope)[2][-1]
     return np.asarray(ahead if ahead @ tangent >= 0.0 else -ahead)
 
 
 def _corrected(
-    equations: Equations, guess: Array, tangent: Array, size: Array, tolerance: float
-) -> tuple[Array, int] | None:
-    """Point of the curve on the plane across the tangent, and the rounds taken; None where none is found."""
+    equations: Equations,
+    guess: Array,
+    tangent: Array,
+    size: Array,
+    tolerance: float,
+    reach: float = np.inf,
+) -> tuple[Array, int] | End:
+    """Point of the curve on the plane across the tangent, and the rounds taken; why where none is found.
+
+    Within `reach` of the guess, in the units: beyond there it is a point of another curve.
+    """
     point = guess.copy()
     for count in range(1, _ROUNDS + 1):
         left = equations(point)
         if not np.isfinite(left).all():
-            return None
+            return End.NOWHERE
         matrix = np.vstack((_slope(equations, point, size), tangent))
         away = np.append(left, tangent @ ((point - guess) / size))
         if not np.isfinite(matrix).all():
-            return None
+            return End.NOWHERE
         change = np.linalg.lstsq(matrix, -away, rcond=None)[0]
         point = point + size * change
         if np.abs(change).max() <= tolerance:
-            return point, count
-    return None
+            return (point, count) if np.linalg.norm((point - guess) / size) <= reach else End.LOST
+    return End.LOST

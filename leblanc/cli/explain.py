@@ -11,6 +11,7 @@ from leblanc.cli.terminal.output import load, print_json, print_table
 
 if TYPE_CHECKING:
     from leblanc.results.explanation import Explanation
+    from leblanc.results.motion.ball_numbers import BallExplanation
 
 
 def explain(
@@ -41,6 +42,15 @@ def explain(
             print(told.name)
             print_table(explanation_rows(told), indent=2)
         return
+    if machine.balls:
+        from leblanc.studies.races.explain import explain_balls
+
+        balls = explain_balls(machine)
+        if json:
+            print_json(balls.to_json())
+        else:
+            _print_balls(balls)
+        return
     answer = explain_scene(machine)
     if json:
         print_json(answer.to_json())
@@ -48,8 +58,20 @@ def explain(
         _print(answer)
 
 
-def _print(answer: Explanation) -> None:
-    """The explanation as text."""
+def _print_balls(answer: BallExplanation) -> None:
+    """The explanation of a scene with balls: that of the scene without them, and theirs."""
+    from leblanc.text.races.numbers import ball_rows, race_rows
+
+    _print(answer.machine, len(answer.machine.layers) > 0)
+    for k, race in enumerate(answer.races):
+        print(f"race {k + 1}")
+        print_table(race_rows(race, float(answer.speed[-1])), indent=2)
+    print("balls")
+    print_table([*ball_rows(answer), *(("not told", text) for text in answer.lacking)], indent=2)
+
+
+def _print(answer: Explanation, liquid: bool = True) -> None:
+    """The explanation as text; of the liquid only where there is any."""
     from leblanc.results.base import percent
     from leblanc.text.closed_forms import closed_form_rows
     from leblanc.text.explanation import (
@@ -68,6 +90,8 @@ def _print(answer: Explanation) -> None:
     if answer.modes:
         print("natural frequencies at rest, without liquid")
         print_table(mode_rows(answer.modes), indent=2)
+    if not liquid:
+        return
     for k, layer in enumerate(answer.layers):
         print(f"chamber {k + 1}")
         print_table(layer_rows(layer), indent=2)

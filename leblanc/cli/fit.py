@@ -35,11 +35,11 @@ def fit(
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> None:
     """Unknowns of a scene from a measured curve, each with its uncertainty."""
+    from leblanc.scene.scene import dry_rotor
     from leblanc.studies.fit import fit_scene, read_measured, require_scale
-    from leblanc.studies.models.choose import prepare
 
     machine, free = load(scene), require_scale(scale, "--scale") != "given"
-    table = read_measured(measured, prepare(machine).system.coordinates, free)
+    table = read_measured(measured, dry_rotor(machine).system().coordinates, free)
     folder = results_dir(machine.name, out, scene, machine.digest, "fit.nc")
     with working("search") as update:
         found = fit_scene(machine, table, unknown, starts, seed, scale, lambda part: update(part, 1.0))

@@ -1,4 +1,4 @@
-"""`leblanc optimise`: the best volume of liquid for each chamber."""
+"""`leblanc optimise`: the best volumes of liquid, the best balls, the best layout of mounts."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from leblanc.cli.terminal.output import load, print_json, say
+from leblanc.cli.terminal.output import load, print_json, processes, say
 from leblanc.contents import results_dir
 
 if TYPE_CHECKING:
@@ -42,6 +42,12 @@ def optimise(
         Path | None,
         typer.Option(help="Store of a sweep over the volumes: the search asks an emulator of it."),
     ] = None,
+    workers: Annotated[
+        int | None,
+        typer.Option(
+            help="Processes that judge designs of balls where one takes its time [default: all cores]."
+        ),
+    ] = None,
     no_front: Annotated[
         bool, typer.Option("--no-front", help="Leave out what must be given up for what.")
     ] = False,
@@ -50,20 +56,27 @@ def optimise(
     ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> None:
-    """Best volume(s) for an objective, or layout of a tub's mounts. Figures, data file, report."""
-    from leblanc.questions import optimisation_of
+    """Best volume(s), balls, or layout of a tub's mounts, for an objective. Figures, data file, report."""
+    from leblanc.questions import optimisation_of, require_no_emulator
+    from leblanc.report.page import about, command_line
 
     machine = load(scene)
     task = optimisation_of(machine, objective, deflection, limit, steady, seed)
     if task.objective == "layout":
-        _layout(machine, task, results_dir(machine.name, out, scene, machine.digest, "layout.nc"), json)
+        folder = results_dir(machine.name, out, scene, machine.digest, "layout.nc", "layout.html")
+        _layout(machine, scene, task, folder, json)
         return
     folder = results_dir(machine.name, out, scene, machine.digest, "optimum.nc", "optimise.html")
+    if machine.balls:
+        require_no_emulator(emulator)
+        options = ("--objective", objective, None), ("--limit", limit, None), ("--steady", steady, False)
+        command = command_line("optimise", scene, *options, ("--seed", seed, None))
+        _balls(machine, task, scene, folder, command, processes(workers), json)
+        return
     result = _run(machine, task, not no_front, emulator)
 
     from leblanc.figures.optimise import write_figures
     from leblanc.report.optimise import write_optimise_report
-    from leblanc.report.page import about, command_line
     from leblanc.results.netcdf import write_netcdf
 
     write_netcdf(result.named_arrays(), folder / "optimum.nc")
@@ -91,12 +104,14 @@ def optimise(
     _finish(result, scene)
 
 
-def _layout(machine: Scene, task: Optimisation, folder: Path, json: bool) -> None:
+def _layout(machine: Scene, scene: Path, task: Optimisation, folder: Path, json: bool) -> None:
     """Where the mounts of a tub sit best."""
     from leblanc.cli.terminal.output import print_table
     from leblanc.cli.terminal.progress import working
     from leblanc.figures.drawing.page import save
-    from leblanc.figures.machine import layout_figure
+    from leblanc.figures.machine import layout_figure, places_figure
+    from leblanc.report.layout import write_layout_report
+    from leblanc.report.page import about, command_line
     from leblanc.results.netcdf import write_netcdf
     from leblanc.studies.optimise.layout import optimise_layout
     from leblanc.text.layout import MOUNTS, PAIR_HEAD, answer, coupling_rows, facts, mount_rows
@@ -104,7 +119,13 @@ def _layout(machine: Scene, task: Optimisation, folder: Path, json: bool) -> Non
     with working("layouts") as update:
         result = optimise_layout(machine, task, lambda count, _: update(what=f"{count} layouts judged"))
     write_netcdf(result.named_arrays(), folder / "layout.nc")
-    files = save(layout_figure(result), folder, "layout", "Layout of springs and dampers")
+    figures = (
+        save(places_figure(result), folder, "places", "Places of springs and dampers"),
+        save(layout_figure(result), folder, "layout", "Couplings and natural frequencies"),
+    )
+    command = command_line("optimise", scene, ("--objective", "layout", None))
+    what = about(machine, command, "layout.nc", task, ("runup", "model"))
+    write_layout_report(result, what, figures, folder / "layout.html")
     if json:
         print_json(result.to_json())
     else:
@@ -114,12 +135,56 @@ def _layout(machine: Scene, task: Optimisation, folder: Path, json: bool) -> Non
         print_table(mount_rows(result), MOUNTS)
         print()
         print_table(coupling_rows(result), PAIR_HEAD)
-        print(f"See {files.png}; the data are in {folder / 'layout.nc'}")
+        print(f"Read {folder / 'layout.html'}; the data are in {folder / 'layout.nc'}")
     if not result.feasible:
         from leblanc.scene.schema.load import NotConverged
 
         raise NotConverged([f"{machine.name}: {answer(result)}"])
     say(f"{result.name}: {result.evaluations} layouts judged")
+
+
+def _balls(
+    machine: Scene, task: Optimisation, scene: Path, folder: Path, command: str, workers: int, json: bool
+) -> None:
+    """The best balls of a scene's races."""
+    from leblanc.cli.terminal.output import print_table
+    from leblanc.cli.terminal.progress import working
+    from leblanc.figures.races.design import write_design_figure
+    from leblanc.report.design import write_design_report
+    from leblanc.report.page import about
+    from leblanc.results.netcdf import write_netcdf
+    from leblanc.studies.optimise.balls.search import optimise_balls
+    from leblanc.text.races.design import RACE_HEAD, answer, constraint_rows, facts, nearest, paste, race_rows
+
+    with working("designs") as update:
+        result = optimise_balls(
+            machine, task, lambda count, share: update(share, 1.0, f"{count} designs judged"), workers
+        )
+    write_netcdf(result.named_arrays(), folder / "optimum.nc")
+    figure = write_design_figure(result, folder)
+    what = about(machine, command, "optimum.nc", task, ("runup",) if task.objective != "peak" else ())
+    write_design_report(result, what, figure, folder / "optimise.html")
+    if json:
+        print_json(result.to_json())
+    else:
+        print(answer(result))
+        print_table(race_rows(result), RACE_HEAD)
+        print()
+        print_table(facts(result), indent=2)
+        print()
+        print_table(constraint_rows(result), ("constraint", "value", "at most", ""))
+        for note in result.notes:
+            print(f"note: {note.text}")
+        for k, keys in enumerate(paste(result)):
+            print(f"For race {k + 1} of the scene: {keys}")
+        print(f"Read {folder / 'optimise.html'}; the data are in {folder / 'optimum.nc'}")
+    if result.interrupted:
+        raise KeyboardInterrupt
+    if not result.feasible:
+        from leblanc.scene.schema.load import NotConverged
+
+        raise NotConverged([f"{scene}: no balls meet every constraint: {nearest(result)}"])
+    say(f"{result.name}: {result.evaluations} designs judged")
 
 
 def _finish(result: OptimumResult, scene: Path) -> None:

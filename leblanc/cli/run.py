@@ -105,24 +105,33 @@ def run(
 
 def _run_balls(machine: Scene, scene: Path, folder: Path, json: bool) -> None:
     """Where the balls of a rotor rest in the drum."""
-    from leblanc.figures.races.balls import write_balls_figure
+    from leblanc.figures.races.balls import write_balls_figures
     from leblanc.report.page import about, command_line
     from leblanc.report.run import write_balls_report
     from leblanc.results.netcdf import write_netcdf
     from leblanc.studies.races.balls import run_balls
+    from leblanc.text.closed_forms import closed_form_rows
+    from leblanc.text.machine import load_table
     from leblanc.text.races.balls import answer, facts, limits
 
     with working("states of the balls"):
         result = run_balls(machine)
     write_netcdf(result.named_arrays(), folder / "response.nc")
-    figure = write_balls_figure(result, folder)
+    figures = write_balls_figures(result, folder)
     what = about(machine, command_line("run", scene), "response.nc", unused=("runup", "optimise"))
-    write_balls_report(result, what, figure, folder / "summary.html")
+    write_balls_report(result, what, figures, folder / "summary.html")
     if json:
         print_json(result.to_json())
     else:
         print(answer(result))
         print_table(facts(result))
+        if result.loads is not None:
+            head, lines = load_table(result.loads)
+            print()
+            print_table(lines, head)
+        if forms := closed_form_rows(result.closed_forms):
+            print("\nClosed forms beside the answer")
+            print_table(forms, indent=2)
         print("\nLimits of the answer")
         print_table([(limit.label, limit.where) for limit in limits(result)], indent=2)
         for note in result.notes:
@@ -203,7 +212,7 @@ def _run_spindle(machine: Scene, scene: Path, folder: Path, json: bool) -> None:
     from leblanc.report.spindle import write_spindle_report
     from leblanc.results.netcdf import write_netcdf
     from leblanc.studies.spindles.unit import run_spindle
-    from leblanc.text.spindles.unit import HEAD, answer, compliance_rows, limits
+    from leblanc.text.spindles.unit import HEAD, answer, cage_rows, compliance_rows, limits
 
     with working("compliances"):
         result = run_spindle(machine)
@@ -217,6 +226,9 @@ def _run_spindle(machine: Scene, scene: Path, folder: Path, json: bool) -> None:
         print(answer(result))
         print()
         print_table(compliance_rows(result), HEAD, right=True)
+        if cages := cage_rows(result):
+            print()
+            print_table(cages)
         print("\nLimits of the answer")
         print_table([(limit.label, limit.where) for limit in limits(result)], indent=2)
         print(f"Read {folder / 'summary.html'}; the data are in {folder / 'response.nc'}")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, cast
 
 import typer
 
@@ -15,6 +15,7 @@ from leblanc.files import require_writable
 
 if TYPE_CHECKING:
     from leblanc.results.drawn import ModeView
+    from leblanc.results.spindles.drawn import SpindleView
     from leblanc.scene.scene import Scene
     from leblanc.view.film import Film
     from leblanc.view.parts import Picture
@@ -23,7 +24,11 @@ if TYPE_CHECKING:
 def view(
     scene: Annotated[Path, typer.Argument(help="Scene file (TOML).")],
     speed: Annotated[
-        str | None, typer.Option(help="Spin speed, rad/s or with a unit [default: the last].")
+        str | None,
+        typer.Option(
+            help="Spin speed, rad/s or with a unit [default: the last]; of a spindle: the natural motion "
+            "next to this frequency."
+        ),
     ] = None,
     factor: Annotated[
         float | None, typer.Option(help="How many times larger the deflection is drawn [default: chosen].")
@@ -40,7 +45,10 @@ def view(
     frames: Annotated[
         int | None, typer.Option(help="Of the film, at most [default: 60; of a mode 48].")
     ] = None,
-    mode: Annotated[int | None, typer.Option(help="Number of a sloshing mode to show instead.")] = None,
+    mode: Annotated[
+        int | None,
+        typer.Option(help="Number of a sloshing mode to show instead; of a spindle of its natural motion."),
+    ] = None,
     chamber: Annotated[int, typer.Option(help="Whose mode, from 1.")] = 1,
     window: Annotated[bool, typer.Option("--window", help="Open a window and write nothing.")] = False,
     browser: Annotated[
@@ -64,9 +72,17 @@ def view(
         return
     if not window:
         screenshot = _target(machine, scene, screenshot, animate, out)
-    wave = None if mode is None else _mode(machine, mode, spin, chamber)
-    with working("solving"):
-        picture, numbers = _still(machine, spin, factor) if wave is None else _of_mode(wave)
+    wave: ModeView | SpindleView | None
+    if machine.rotor.kind == "spindle":
+        from leblanc.studies.spindles.drawn import spindle_view
+        from leblanc.view.spindle import spindle_picture
+
+        unit = spindle_view(machine, mode, spin, factor)
+        wave, picture, numbers = unit, spindle_picture(unit), unit.to_json()
+    else:
+        wave = None if mode is None else _mode(machine, mode, spin, chamber)
+        with working("solving"):
+            picture, numbers = _still(machine, spin, factor) if wave is None else _of_mode(wave)
     if window:
         from leblanc.view.files import open_window
 
@@ -154,6 +170,12 @@ def _still(machine: Scene, speed: float | None, factor: float | None) -> tuple[P
 
         table = table_view(machine, speed)
         return table_picture(table), table.to_json()
+    if machine.balls:
+        from leblanc.studies.shapes.balls import ball_view
+        from leblanc.view.balls import ball_still
+
+        seen = ball_view(machine, speed, factor)
+        return ball_still(seen, -1), seen.to_json()
     from leblanc.studies.shapes.machine import machine_view
     from leblanc.view.scene import still
 
@@ -164,7 +186,7 @@ def _still(machine: Scene, speed: float | None, factor: float | None) -> tuple[P
 def _files(
     machine: Scene,
     picture: Picture,
-    wave: ModeView | None,
+    wave: ModeView | SpindleView | None,
     screenshot: Path | None,
     animate: Path | None,
     frames: int | None,
@@ -184,7 +206,7 @@ def _files(
 
 
 def _film(
-    machine: Scene, wave: ModeView | None, path: Path, frames: int | None, factor: float | None
+    machine: Scene, wave: ModeView | SpindleView | None, path: Path, frames: int | None, factor: float | None
 ) -> None:
     """Write a film, with a bar on a terminal."""
     from leblanc.view.film import FRAMES, require_frames, write_film
@@ -192,10 +214,15 @@ def _film(
     if wave is None:
         require_frames(frames or FRAMES)
     with working("solving") as update:
-        if wave is not None:
+        if machine.rotor.kind == "spindle":
+            from leblanc.view.film import ROUND
+            from leblanc.view.spindle import spindle_film
+
+            film = spindle_film(cast("SpindleView", wave), frames or ROUND)
+        elif wave is not None:
             from leblanc.view.film import ROUND, mode_film
 
-            film = mode_film(wave, frames or ROUND)
+            film = mode_film(cast("ModeView", wave), frames or ROUND)
         else:
             film = _film_of(machine, frames or FRAMES, factor, lambda done: update(done, 1.0))
         update(0.0, film.count, "drawing")
@@ -211,6 +238,11 @@ def _film_of(machine: Scene, frames: int, factor: float | None, progress: Callab
         from leblanc.studies.shapes.machine import runup_view
 
         return runup_film(runup_view(machine, frames, factor, progress))
+    if machine.balls:
+        from leblanc.studies.shapes.balls import ball_view
+        from leblanc.view.film import ball_film
+
+        return ball_film(ball_view(machine, factor=factor, every=True), frames)
     from leblanc.studies.shapes.machine import drawn_liquid, machine_motion
     from leblanc.studies.shapes.scale import scale_of
 

@@ -294,7 +294,8 @@ def levels(chamber: FilledChamber, centre: complex, depth_factor: float, bend: f
     ramp, found = bend * chamber.height, []
     farthest = (chamber.radius + abs(centre)) ** 2
     for loops in walls(chamber):
-        wanted = _within(chamber, loops, 0j, math.inf) - _within(chamber, loops, 0j, rest)
+        outside = [_within(chamber, loops, 0j, np.array([radius]))[0] for radius in (math.inf, rest)]
+        wanted = float(outside[0] - outside[1])
         taken = partial(_within, chamber, loops, centre)
         level = _square(taken, wanted, farthest, 0.0)
         upright = _is_upright(chamber, level, ramp)
@@ -309,34 +310,36 @@ def _is_upright(chamber: FilledChamber, square: float, ramp: float) -> bool:
     )
 
 
-def _square(taken: Callable[[float], float], area: float, farthest: float, ramp: float) -> float:
+def _square(taken: Callable[[Array], Array], area: float, farthest: float, ramp: float) -> float:
     """Square of the surface's radius on the floor that leaves an area outside it in the mean over the height.
 
     Parameters
     ----------
-    taken : area inside a radius
+    taken : areas inside some radii, and the whole area inside an infinite one
     area : outside of it, m^2
     farthest : square of the farthest wall's distance, m^2
     ramp : growth of the square from floor to lid, m^2
     """
-    whole, low, high = taken(math.inf), -ramp, farthest
+    whole, low, high = float(taken(np.array([math.inf]))[0]), -ramp, farthest
     share, weight = np.polynomial.legendre.leggauss(HEIGHTS) if ramp > 0.0 else (np.zeros(1), np.full(1, 2.0))
     for _ in range(BISECTIONS):
         middle = 0.5 * (low + high)
         squares = np.maximum(middle + 0.5 * ramp * (1.0 + share), 0.0)
-        inside = sum(0.5 * w * taken(math.sqrt(q)) for w, q in zip(weight, squares, strict=True))
+        inside = float(0.5 * weight @ taken(np.sqrt(squares)))
         low, high = (middle, high) if whole - inside > area else (low, middle)
     return 0.5 * (low + high)
 
 
-def _within(chamber: FilledChamber, loops: tuple[Complex, ...], centre: complex, radius: float) -> float:
-    """Area of a body's room inside a circle about the rotation axis, m^2."""
+def _within(chamber: FilledChamber, loops: tuple[Complex, ...], centre: complex, radius: Array) -> Array:
+    """Areas of a body's room inside circles about the rotation axis, m^2."""
     if len(walls(chamber)) == 1 and chamber.section is None:
-        both = (_common(wall, radius, abs(centre)) for wall in (chamber.radius, chamber.inner_radius))
-        outer, inner = both
-        return outer - inner
-    if math.isinf(radius):
-        return Remainder(loops, ()).area
+        both = [
+            np.array([_common(wall, one, abs(centre)) for one in radius.tolist()])
+            for wall in (chamber.radius, chamber.inner_radius)
+        ]
+        return np.asarray(both[0] - both[1])
+    if np.isinf(radius).all():
+        return np.full(radius.shape, Remainder(loops, ()).area)
     return area_within(tuple(loop + centre for loop in loops), radius)
 
 

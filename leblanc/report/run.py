@@ -102,7 +102,7 @@ def write_run_report(result: RunResult, what: About, figures: Sequence[FigureFil
     write_page("run", what, parts, path)
 
 
-def closed_form_tables(result: RunResult) -> list[Table]:
+def closed_form_tables(result: RunResult | BallsResult) -> list[Table]:
     """What closed forms say beside the answer, and the angles of the vector model at some speeds."""
     forms = result.closed_forms
     if forms is None or not (rows := closed_form_rows(forms)):
@@ -293,14 +293,14 @@ def ball_states(result: BallsResult) -> Table:
     return table("States", head, rows)
 
 
-def write_balls_report(result: BallsResult, what: About, figure: FigureFiles, path: Path) -> None:
+def write_balls_report(result: BallsResult, what: About, figures: Sequence[FigureFiles], path: Path) -> None:
     """Write the report.
 
     Parameters
     ----------
     result : the answer
     what : it is about
-    figure : of it
+    figures : of it
     path : the file to write or replace
     """
     low, high = number(float(result.speed[0]) * RPM), number(float(result.speed[-1]) * RPM)
@@ -318,8 +318,10 @@ def write_balls_report(result: BallsResult, what: About, figure: FigureFiles, pa
         "doubt": doubt(limit_checks(balls_limits(result))),
         "facts": table("", (), balls_facts(result)),
         "states": ball_states(result),
+        "loads": load_part(result.loads),
+        "closed_forms": closed_form_tables(result),
         "checks": limit_checks(balls_limits(result)),
-        "pictures": [picture(figure)],
+        "pictures": [picture(figure) for figure in figures],
         "models": [("balls", model)],
         "remarks": [note.text for note in result.notes],
     }

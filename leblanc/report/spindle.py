@@ -11,7 +11,7 @@ from leblanc.report.page import About, write_page
 from leblanc.report.parts import Cell, doubt, picture, table
 from leblanc.results.spindles.unit import SpindleResult
 from leblanc.text.numbers import number
-from leblanc.text.spindles.unit import HEAD, answer, compliance_rows, limits, remarks
+from leblanc.text.spindles.unit import HEAD, answer, cage_rows, compliance_rows, limits, remarks
 
 if TYPE_CHECKING:
     from leblanc.figures.drawing.page import FigureFiles
@@ -44,6 +44,7 @@ def write_spindle_report(
         "compliances": table(
             "At the ends of the band and at the natural frequencies", HEAD, compliance_rows(result)
         ),
+        "cages": table("At the speed at which the spindle turns", (), cage_rows(result)),
         "checks": checks,
         "pictures": [picture(figure) for figure in figures],
         "remarks": remarks(result),

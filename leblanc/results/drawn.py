@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -422,6 +422,26 @@ class MachineView:
 
 
 @dataclass(frozen=True)
+class DrawnRace:
+    """A race as it is drawn: a ring as wide as its balls.
+
+    Parameters
+    ----------
+    ring : its number among the chambers drawn
+    radius : of the circle of the balls' centres, m
+    ball : radius of a ball, m
+    assumed : the scene does not say how large the balls are
+    balls : numbers of its balls among those of all races, the first and the one behind the last
+    """
+
+    ring: int
+    radius: float
+    ball: float
+    assumed: bool
+    balls: tuple[int, int]
+
+
+@dataclass(frozen=True)
 class RunupView:
     """A run-up frame by frame with its layers as they are drawn; f frames.
 
@@ -435,6 +455,8 @@ class RunupView:
     turn : of the drum in each frame as drawn, rad, shape (f,)
     slower : how many times slower than in truth it turns
     parts : drum, housing, springs and dampers
+    races : with balls, whose rings stand behind the chambers with liquid
+    balls : angle of each ball in the drum in each frame, rad, shape (f, N)
     """
 
     result: RunupResult
@@ -446,6 +468,8 @@ class RunupView:
     turn: Array
     slower: float
     parts: MachineParts
+    races: tuple[DrawnRace, ...] = ()
+    balls: Array = field(default_factory=lambda: np.zeros((0, 0)))
 
 
 @dataclass(frozen=True)

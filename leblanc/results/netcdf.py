@@ -1,4 +1,4 @@
-"""Arrays with names, dimensions and units: in memory, as an xarray dataset, as a netCDF file.
+"""Arrays with names, dimensions and units: in memory, for JSON, as an xarray dataset, as a netCDF file.
 
 To import xarray, with pandas and dask, takes longer than most answers, so results are kept and written
 without it. This is the only door to xarray, and to h5netcdf, which writes the files.
@@ -128,6 +128,27 @@ def flags(dims: tuple[str, ...], values: NDArray[Any], meanings: str, name: str,
     found.attrs["flag_values"] = np.arange(2 - len(meanings.split()), 2, dtype=np.int8)
     found.attrs["flag_meanings"] = meanings
     return found
+
+
+def finite(values: NDArray[Any]) -> list[Any]:
+    """Nested lists, None in place of what is not finite, complex numbers as [re, im]."""
+    known = np.isfinite(values)
+    if np.iscomplexobj(values):
+        values, known = np.stack([values.real, values.imag], axis=-1), np.stack([known, known], axis=-1)
+    if known.all():
+        return list(values.tolist())
+    found: list[Any] = np.where(known, values, np.array(None)).tolist()
+    return found
+
+
+def pair(name: str, dims: tuple[str, ...], values: NDArray[Any], long_name: str) -> dict[str, Variable]:
+    """Real and imaginary part of a deflection, both nan where one is."""
+    values = np.where(np.isnan(values), complex(np.nan, np.nan), values)
+    real, imag = f"{long_name}, real part", f"{long_name}, imaginary part"
+    return {
+        f"{name}_real": variable(dims, values.real, "m", real, "along the unbalance"),
+        f"{name}_imag": variable(dims, values.imag, "m", imag, "90 deg ahead of it"),
+    }
 
 
 def write_netcdf(found: NamedArrays, path: Path) -> None:

@@ -15,11 +15,10 @@ from leblanc.results.choice import ModelSpan
 from leblanc.results.machine.keys import Loaded
 from leblanc.results.machine.loads import MachineLoads
 from leblanc.results.motion.closed_forms import ClosedForms
-from leblanc.results.motion.encoding import finite, pair
 from leblanc.results.motion.held import HELD_MODELS, MOTIONS, Held, numbered
 from leblanc.results.motion.self_excited import SelfExcited
 from leblanc.results.motion.tilting import Motion
-from leblanc.results.netcdf import NamedArrays, Variable, flags
+from leblanc.results.netcdf import NamedArrays, Variable, finite, flags, pair
 from leblanc.results.netcdf import variable as var
 from meshes.arrays import Array, Complex, Flags
 from meshes.errors import InputError

@@ -13,10 +13,11 @@ from leblanc.scene.rotors import JeffcottRotor
 from leblanc.scene.rows import Row, RowTable, Value, curve_words, degrees, mm, row, rpm, three
 from leblanc.scene.scene import Model, Scene
 from leblanc.scene.schema.load import escaped
-from leblanc.scene.tasks import Layout, Optimisation, Runup, pairs_of
+from leblanc.scene.tasks import BallRanges, Layout, Optimisation, Runup, pairs_of
 from leblanc.units import (
     ANGULAR_SPEED,
     LENGTH,
+    MASS,
     MINUS,
     MM,
     RPM,
@@ -358,6 +359,7 @@ def optimise_rows(wanted: Optimisation) -> list[Row]:
         ("balance_quality", "Balance quality", _grade(wanted.balance_quality)),
         ("volumes", "Volumes", _volumes(wanted)),
         ("layout", "Layout of the mounts", _layout(wanted.layout)),
+        ("balls", "Balls", _ball_ranges(wanted.balls)),
     ):
         if getattr(wanted, name) != getattr(_DEFAULT, name):
             said.append(row(label, text, f"optimise.{name}"))
@@ -429,6 +431,19 @@ def _layout(wanted: Layout | None) -> str:
     )
     band = "" if wanted.band is None else f", running at {_span(wanted.band, ANGULAR_SPEED)}"
     return found + band + ("" if wanted.sag is None else f", sag at most {mm(wanted.sag)}")
+
+
+def _ball_ranges(wanted: BallRanges | None) -> str:
+    if wanted is None:
+        return ""
+    spans = (
+        ("balls", wanted.count and f"{wanted.count[0]} to {wanted.count[1]}"),
+        ("mass", _span(wanted.mass, MASS)),
+        ("diameter", _span(wanted.diameter, LENGTH)),
+        ("drag", wanted.drag and f"{number(wanted.drag[0])} to {number(wanted.drag[1])} N s/m"),
+        ("radius", _span(wanted.radius, LENGTH)),
+    )
+    return ", ".join(f"{name} {text}" for name, text in spans if text)
 
 
 def _volumes(wanted: Optimisation) -> str:

@@ -22,11 +22,11 @@ from leblanc.scene.schema.rules import (
     quantity,
     whole,
 )
+from leblanc.scene.tasks import MAX_BALLS
 
 if TYPE_CHECKING:
     from solvers.rotor.balls.balancers import BallRace as Race
 
-MAX_BALLS = 64  # in one race
 _SOLID = 0.4  # inertia of a ball about its own centre over m r^2
 _ADDED = 0.5  # mass of liquid that a ball takes along over what it displaces
 

@@ -13,13 +13,21 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 from pydantic import Field, PlainValidator
 
 from leblanc import units
+from leblanc.scene.bearings import (
+    BallDiameter,
+    CagedBearing,
+    ContactAngle,
+    PitchDiameter,
+    caged,
+    rolling_columns,
+    rolling_conflicts,
+)
 from leblanc.scene.loads import Load, PlaneUnbalance, Sheds, unbalance_table
 from leblanc.scene.magnetic import MagneticRotor
-from leblanc.scene.rows import Row, RowTable, Value, degrees, mm, row, three, unbalance
+from leblanc.scene.rows import Row, RowTable, Value, mm, row, three, unbalance
 from leblanc.scene.schema.part import Conflict, Part
 from leblanc.scene.schema.rules import (
     DAMPING,
-    LENGTH,
     POSITION,
     SPEED,
     STIFFNESS,
@@ -147,6 +155,14 @@ class Support(Part):
         description="the same in all directions across the axis"
     )
     damping: Damping = Field(description="likewise")
+    ball_diameter: BallDiameter = None
+    pitch_diameter: PitchDiameter = None
+    contact_angle: ContactAngle = 0.0
+
+    @classmethod
+    def conflicts(cls, values: Mapping[str, Any], given: Mapping[str, Any]) -> Iterator[Conflict]:
+        """Balls and their circle belong together."""
+        yield from rolling_conflicts(values, given)
 
 
 class TwoPlaneRotor(Part):
@@ -222,6 +238,10 @@ class TwoPlaneRotor(Part):
         """The rotor without liquid."""
         return self._machine
 
+    def caged(self) -> tuple[CagedBearing, ...]:
+        """Supports whose balls are given."""
+        return caged([(f"support {k + 1}", support) for k, support in enumerate(self.supports)])
+
     def rows(self) -> list[Row]:
         """What it says once, for readers."""
         across, about = f"{number(self.transverse_inertia)} kg m²", f"{number(self.polar_inertia)} kg m²"
@@ -235,16 +255,19 @@ class TwoPlaneRotor(Part):
 
     def tables(self) -> list[RowTable]:
         """Its supports and unbalances, for readers."""
+        balls, columns = rolling_columns(self.supports, "rotor.supports")
         supports = tuple(
             (
                 Value(f"{k + 1}"),
                 Value(number(support.position * MM), (f"rotor.supports.{k}.position",)),
                 Value(number(support.stiffness), (f"rotor.supports.{k}.stiffness",)),
                 Value(number(support.damping), (f"rotor.supports.{k}.damping",)),
+                *columns[k],
             )
             for k, support in enumerate(self.supports)
         )
-        found = [RowTable(("Support", "at (mm)", "stiffness (N/m)", "damping (N s/m)"), supports)]
+        head = ("Support", "at (mm)", "stiffness (N/m)", "damping (N s/m)", *balls)
+        found = [RowTable(head, supports)]
         if self.unbalances:
             found.append(unbalance_table("Unbalance", "rotor.unbalances", self.unbalances))
         return found
@@ -331,27 +354,14 @@ class Bearing(Part):
     """A bearing of the drum in its tub."""
 
     position: Position = Field(description="along the axis: y, from the tub's centre of mass")
-    ball_diameter: Annotated[float | None, LENGTH] = Field(
-        None, description="of its balls; the speed of its cage is told with this and pitch_diameter"
-    )
-    pitch_diameter: Annotated[float | None, LENGTH] = Field(
-        None, description="of the circle of the balls' centres"
-    )
-    contact_angle: Annotated[float, quantity(units.ANGLE, 0.0, 1.57)] = Field(
-        0.0, description="of the balls with the rings, from the plane across the axis"
-    )
+    ball_diameter: BallDiameter = None
+    pitch_diameter: PitchDiameter = None
+    contact_angle: ContactAngle = 0.0
 
     @classmethod
     def conflicts(cls, values: Mapping[str, Any], given: Mapping[str, Any]) -> Iterator[Conflict]:
         """Balls and their circle belong together."""
-        ball, pitch = values.get("ball_diameter"), values.get("pitch_diameter")
-        for key, other in (("ball_diameter", "pitch_diameter"), ("pitch_diameter", "ball_diameter")):
-            if key in given and other not in given:
-                yield Conflict((other,), f"given with {key}")
-        if ball is not None and pitch is not None and not ball < pitch:
-            yield Conflict(("ball_diameter",), f"below pitch_diameter, {pitch:g} m")
-        if "contact_angle" in given and "ball_diameter" not in given:
-            yield Conflict(("contact_angle",), "left out without ball_diameter and pitch_diameter")
+        yield from rolling_conflicts(values, given)
 
 
 class TubRotor(Part):
@@ -430,6 +440,10 @@ class TubRotor(Part):
             dampers=tuple(damper.mount() for damper in self.dampers),
         )
 
+    def caged(self) -> tuple[CagedBearing, ...]:
+        """Bearings whose balls are given."""
+        return caged([(f"bearing {k + 1}", bearing) for k, bearing in enumerate(self.bearings)])
+
     def machine(self) -> Tub:
         """Tub and drum without liquid."""
         return self._machine
@@ -479,19 +493,17 @@ class TubRotor(Part):
 
 
 def _bearing_table(bearings: Sequence[Bearing]) -> RowTable:
-    """Bearings for readers; columns of their balls where some are given."""
-    known = any(part.ball_diameter is not None for part in bearings)
-    lines = []
-    for k, part in enumerate(bearings):
-        at = f"rotor.bearings.{k}"
-        sizes = [
-            Value("not given" if size is None else number(size * MM), (f"{at}.{name}",))
-            for name, size in (("ball_diameter", part.ball_diameter), ("pitch_diameter", part.pitch_diameter))
-        ]
-        balls = [*sizes, Value(degrees(part.contact_angle), (f"{at}.contact_angle",))] if known else []
-        lines.append((Value(f"{k + 1}"), Value(number(part.position * MM), (f"{at}.position",)), *balls))
-    more = ("balls (mm)", "their circle (mm)", "contact angle (deg)") if known else ()
-    return RowTable(("Bearing", "at y (mm)", *more), tuple(lines))
+    """Bearings for readers; columns of their balls where some are known."""
+    head, columns = rolling_columns(bearings, "rotor.bearings")
+    rows = [
+        (
+            Value(f"{k + 1}"),
+            Value(number(part.position * MM), (f"rotor.bearings.{k}.position",)),
+            *columns[k],
+        )
+        for k, part in enumerate(bearings)
+    ]
+    return RowTable(("Bearing", "at y (mm)", *head), tuple(rows))
 
 
 class Balls(Part):

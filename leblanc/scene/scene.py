@@ -345,21 +345,13 @@ class Scene(Part):
 def _ball_conflicts(values: Mapping[str, Any]) -> Iterator[Conflict]:
     """Races stand behind the liquid, and on a rotor whose motion with balls is known."""
     chambers, rotor = values.get("chambers", ()), values.get("rotor")
-    races = [k for k, chamber in enumerate(chambers) if isinstance(chamber, BallRace)]
-    for k in races:
+    for k in [k for k, chamber in enumerate(chambers) if isinstance(chamber, BallRace)]:
         if any(isinstance(chamber, Chamber) for chamber in chambers[k + 1 :]):
             yield Conflict(("chambers", k), "behind the chambers with liquid in the file")
         if isinstance(rotor, Exciter):
             yield Conflict(("chambers", k), "left out for an exciter, which has balls of its own")
         elif chambers[k].start == "bottom" and rotor is not None and rotor.axis == "vertical":
             yield Conflict(("chambers", k, "start"), "spread where the axis stands and has no bottom")
-    if races:
-        for key in ("cabinet", "points"):
-            if values.get(key):
-                yield Conflict((key,), "left out with balls, whose forces it does not know")
-        if getattr(rotor, "bearings", ()):
-            text = "left out with balls, whose forces they do not know"
-            yield Conflict(("rotor", "bearings"), text)
 
 
 def _friction_content(friction: Friction) -> dict[str, object]:
@@ -553,7 +545,9 @@ def rotor_content(rotor: AnyRotor) -> dict[str, Any]:
         balls = rotor.balls.model_dump()
         balls |= {"kind": rotor.balls.name, "pendulum_inertia": rotor.balls.pendulum_inertia or 0.0}
         return rotor.model_dump(exclude={"balls"}) | {"balls": balls}
-    if isinstance(rotor, MagneticRotor | Spindle):
+    if isinstance(rotor, Spindle):
+        return rotor.content()
+    if isinstance(rotor, MagneticRotor):
         return rotor.model_dump()
     machine = asdict(rotor.machine())
     if not machine.get("loads", True):
@@ -621,11 +615,14 @@ def machine_content(scene: Scene) -> dict[str, Any]:
     scene : the machine
     """
     bearings = getattr(scene.rotor, "bearings", ())
+    caged = scene.rotor.caged() if isinstance(scene.rotor, TwoPlaneRotor) else ()
     parts = {
         "cabinet": scene.cabinet and scene.cabinet.model_dump(),
         "points": [point.model_dump() for point in scene.points],
         "bearings": [bearing.position for bearing in bearings],
         "balls": [race_content(race) for race in scene.balls],
+        # Balls of a tub's bearings came before there was a place for them here.
+        "rolling": [asdict(part) for part in caged],
     }
     return {name: part for name, part in parts.items() if part}
 
@@ -649,7 +646,7 @@ def optimise_content(wanted: Optimisation) -> dict[str, Any]:
     wanted : of a scene
     """
     duty = [(stage.speed, stage.weight) for stage in wanted.duty]
-    later = {"balance_quality", "floor_force", "walking_margin", "point_clearance"}
+    later = {"balance_quality", "floor_force", "walking_margin", "point_clearance", "balls"}
     later = {name for name in later if getattr(wanted, name) is None}
     return wanted.model_dump(exclude={"duty", *later}) | {"duty": duty}
 

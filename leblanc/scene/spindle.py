@@ -10,10 +10,20 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 from pydantic import Field, PlainValidator
 
 from leblanc import units
+from leblanc.scene.bearings import (
+    ROLLING,
+    BallDiameter,
+    CagedBearing,
+    ContactAngle,
+    PitchDiameter,
+    caged,
+    rolling_columns,
+    rolling_conflicts,
+)
 from leblanc.scene.rows import Row, RowTable, Value, row
 from leblanc.scene.schema.part import Conflict, Part
-from leblanc.scene.schema.rules import Axis, Length, Mass, Refused, entries, one_of, quantity
-from leblanc.units import MASS, MM, number, with_unit
+from leblanc.scene.schema.rules import SPEED, Axis, Length, Mass, Refused, entries, one_of, quantity
+from leblanc.units import MASS, MM, in_rpm, number, with_unit
 
 if TYPE_CHECKING:
     from solvers.rotor.shaft.structure import Coordinate, Station, Structure
@@ -130,6 +140,14 @@ class SpindleJoint(Part):
     damping: _Damping = Field(0.0, description="across the axis")
     angular_stiffness: _AngularStiffness = Field(0.0, description="against a difference of the slopes")
     angular_damping: _AngularDamping = Field(0.0, description="likewise")
+    ball_diameter: BallDiameter = None
+    pitch_diameter: PitchDiameter = None
+    contact_angle: ContactAngle = 0.0
+
+    @classmethod
+    def conflicts(cls, values: Mapping[str, Any], given: Mapping[str, Any]) -> Iterator[Conflict]:
+        """Balls and their circle belong together."""
+        yield from rolling_conflicts(values, given)
 
 
 class Spindle(Part):
@@ -162,11 +180,21 @@ class Spindle(Part):
         Field(description="bearings, clamps and supports, one table each")
     )
 
+    rotation: Annotated[float | None, SPEED] = Field(
+        None,
+        description="speed at which the spindle turns, which has no part in its vibration; the cages of "
+        "joints with ball_diameter and pitch_diameter are told at it",
+    )
+
     _POINTS: ClassVar = ("driven", "measured", "wanted")
 
     @classmethod
     def conflicts(cls, values: Mapping[str, Any], given: Mapping[str, Any]) -> Iterator[Conflict]:
         """Beams have names of their own, stations are there, a joint has two ends."""
+        if "joints" in values and "rotation" not in given:
+            for k, joint in enumerate(values["joints"]):
+                if joint.ball_diameter is not None:
+                    yield Conflict(("joints", k, "ball_diameter"), "left out without rotor.rotation")
         beams = values.get("beams")
         if not beams:
             return
@@ -246,6 +274,21 @@ class Spindle(Part):
         )
         return Structure(beams, masses, joints)
 
+    def caged(self) -> tuple[CagedBearing, ...]:
+        """Joints whose balls are given."""
+        return caged([(f"{joint.station} to {joint.to}", joint) for joint in self.joints])
+
+    def content(self) -> dict[str, Any]:
+        """For a fingerprint; what came later counts only where it is given."""
+        found = self.model_dump()
+        if self.rotation is None:
+            del found["rotation"]
+        for joint in found["joints"]:
+            if joint["ball_diameter"] is None:
+                for key in ROLLING:
+                    del joint[key]
+        return found
+
     def machine(self) -> Structure:
         """Beams, masses and joints as the solvers take them."""
         return self._machine
@@ -258,6 +301,7 @@ class Spindle(Part):
             row("Driven by a unit force at", self.driven, "rotor.driven"),
             row("Vibration measured at", self.measured, "rotor.measured"),
             row("Vibration wanted at", self.wanted, "rotor.wanted"),
+            *([] if self.rotation is None else [row("Turns at", in_rpm(self.rotation), "rotor.rotation")]),
             *(
                 row(
                     f"Material of {beam.name}",
@@ -290,16 +334,18 @@ class Spindle(Part):
             for b, beam in enumerate(self.beams)
             for k, section in enumerate(beam.sections)
         )
+        balls, columns = rolling_columns(self.joints, "rotor.joints")
         keys = ("stiffness", "damping", "angular_stiffness", "angular_damping")
         joints = tuple(
             (
                 Value(f"{part.station} to {part.to}"),
                 *(Value(number(getattr(part, key)), (f"rotor.joints.{k}.{key}",)) for key in keys),
+                *columns[k],
             )
             for k, part in enumerate(self.joints)
         )
         heads = ("stiffness (N/m)", "damping (N s/m)", "angular (N m/rad)", "its damping (N m s/rad)")
         return [
             RowTable(("Section", "length (mm)", "diameter (mm)", "bore (mm)"), sections),
-            RowTable(("Joint", *heads), joints),
+            RowTable(("Joint", *heads, *balls), joints),
         ]

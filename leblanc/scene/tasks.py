@@ -21,6 +21,7 @@ from leblanc.scene.schema.rules import (
     Spans,
     Speed,
     Truth,
+    Whole,
     entries,
     one_of,
     quantity,
@@ -52,6 +53,7 @@ OBJECTIVES = ("working_speed", "peak", "mean", "least_mass", "robust", *LOADS, "
 MEASURES = ("couplings", "separation")  # of a layout
 LOADS_OVER = ("operating", "runup", "both")
 MAX_DUTY = 1000
+MAX_BALLS = 64  # in one race
 MAX_SAMPLES = 100_000
 
 _LENGTH = quantity(units.LENGTH, 1e-12, 1e3)
@@ -101,8 +103,35 @@ class Layout(Part):
     )
 
 
+_Counts = Annotated[tuple[int, int] | None, PlainValidator(Span(Whole(1, MAX_BALLS)))]
+_Masses = Annotated[_Pair | None, PlainValidator(Span(Quantity(units.MASS, 1e-9, 1e9)))]
+_Lengths = Annotated[_Pair | None, PlainValidator(Span(Quantity(units.LENGTH, 1e-6, 1e3)))]
+_Drags = Annotated[_Pair | None, PlainValidator(Span(Quantity(units.DAMPING, 0.0, 1e15)))]
+
+
+class BallRanges(Part):
+    """Least and most of what is chosen of the balls of every race.
+
+    What is left out stays as the scene has it.
+    """
+
+    count: _Counts = Field(None, description="how many balls")
+    mass: _Masses = Field(None, description="of each ball, where the scene gives a mass")
+    diameter: _Lengths = Field(None, description="of the balls, where the scene gives their density")
+    drag: _Drags = Field(None, description="force on a ball over its speed in the drum")
+    radius: _Lengths = Field(None, description="of the circle of the balls' centres")
+
+    @classmethod
+    def conflicts(cls, values: Mapping[str, Any], given: Mapping[str, Any]) -> Iterator[Conflict]:
+        """Something is chosen; one of mass and diameter follows from the other."""
+        if not given:
+            yield Conflict(("count",), "given, or one of mass, diameter, drag, radius")
+        if values.get("mass") is not None and values.get("diameter") is not None:
+            yield Conflict(("diameter",), "left out where mass is given")
+
+
 class Optimisation(Part):
-    """What the liquid of a scene, or the layout of its mounts, is chosen for."""
+    """What the liquid of a scene, its balls, or the layout of its mounts, is chosen for."""
 
     objective: Annotated[str, one_of(*OBJECTIVES)] = Field(
         "working_speed",
@@ -123,7 +152,9 @@ class Optimisation(Part):
         Field((), description="speeds of the duty cycle; all of the scene's alike if left out")
     )
     vibration_limit: Annotated[float | None, _LENGTH] = Field(
-        None, description="amplitude for least_mass; one per cent above the least possible if left out"
+        None,
+        description="amplitude for least_mass; if left out one per cent above the least possible, with "
+        "balls a hundredth of the amplitude without them",
     )
     limit_at: Annotated[str, one_of("working_speed", "operating")] = Field(
         "working_speed", description="whether the limit holds at the working or at all operating speeds"
@@ -207,6 +238,12 @@ class Optimisation(Part):
     )
     layout: Layout | None = Field(
         None, description="for the objective layout of a tub; its defaults if left out"
+    )
+    balls: BallRanges | None = Field(
+        None,
+        description="ranges in which the balls of all races are chosen; if left out 2 to 8 balls of a "
+        "quarter to four times the mass, or half to twice the diameter, and a hundredth to a hundred times "
+        "the drag",
     )
 
 

@@ -14,8 +14,9 @@ from leblanc.scene.scene import JeffcottRotor, Scene
 from leblanc.studies.models.choose import choose_all, prepare
 from leblanc.studies.models.liquid import synchronous_model
 from leblanc.studies.peaks import responses_between
+from leblanc.studies.races.balls import run_balls
 from leblanc.studies.run import run_scene
-from meshes.arrays import Array, Flags
+from meshes.arrays import Array, Flags, Index
 from meshes.errors import InputError
 from solvers.synchronous.peaks import highest
 from solvers.synchronous.response import Response, joined, machine_responses
@@ -38,7 +39,11 @@ class Answers:
         against whirls as well
     model : of the liquid, by name
     error_estimate : of the model taken, relative, of amplitude and liquid the larger one; nan where unknown
-    peak_amplitude, peak_amplitude_dry : largest over the range of speeds, found between them as well, m
+    peak_amplitude, peak_amplitude_dry : largest over the range of speeds, found between them as well, m; with
+        balls at the speeds themselves
+    amplitude_without, state, balanced : with balls, else None: amplitude without them, m, how they rest, and
+        whether the balanced state is stable
+    balanced_from : with balls, else None: speed from which on it is, rad/s, nan if at none, shape (n,)
     """
 
     speed: Array
@@ -57,6 +62,13 @@ class Answers:
     error_estimate: Array
     peak_amplitude: Array
     peak_amplitude_dry: Array
+    amplitude_without: Array | None = None
+    state: NDArray[np.str_] | None = None
+    balanced: Flags | None = None
+    balanced_from: Array | None = None
+
+
+_OF_BALLS = ("amplitude_without", "state", "balanced")  # and their first speed, which starts alike
 
 
 def answer_scenes(scenes: Sequence[Scene]) -> Answers:
@@ -84,17 +96,37 @@ def answer_scenes(scenes: Sequence[Scene]) -> Answers:
     counts = {scene.speeds.count for scene in scenes}
     if len(counts) != 1:
         raise InputError("scenes", sorted(counts), "at least one, all with one number of speeds")
+    if any(scene.balls for scene in scenes):
+        return _joined([_with_balls(scene) for scene in scenes])
     planar = [k for k, scene in enumerate(scenes) if isinstance(scene.rotor, JeffcottRotor)]
     others = [k for k, scene in enumerate(scenes) if not isinstance(scene.rotor, JeffcottRotor)]
     parts = [_planar([scenes[k] for k in planar])] if planar else []
     parts += [_single(scenes[k]) for k in others]
-    order = np.argsort(np.array([*planar, *others], dtype=np.intp))
-    return Answers(
-        **{
-            field.name: np.concatenate([getattr(part, field.name) for part in parts])[order]
-            for field in fields(Answers)
-        }
-    )
+    return _joined(parts, np.argsort(np.array([*planar, *others], dtype=np.intp)))
+
+
+def _joined(parts: Sequence[Answers], order: Index | None = None) -> Answers:
+    """Answers one behind the other, or in an order; what none of them has is None."""
+    found: dict[str, Any] = {}
+    for name in (field.name for field in fields(Answers)):
+        each = [getattr(part, name) for part in parts]
+        if any(values is None for values in each):
+            continue
+        found[name] = np.concatenate(each) if order is None else np.concatenate(each)[order]
+    return Answers(**found)
+
+
+def _with_balls(scene: Scene) -> Answers:
+    """Answers of one scene with balls as `run` gives them: the state reported at each speed."""
+    result = run_balls(scene)
+    nothing = np.full(result.speed.shape, np.nan)
+    over = [field.name for field in fields(Answers) if not field.name.startswith("peak_")]
+    found: dict[str, Any] = {name: getattr(result, name, nothing)[None] for name in over[:-1]}
+    found["in_range"] = np.ones((1, result.speed.size), dtype=bool)
+    found["balanced_from"] = np.array([result.balanced_from])
+    for name in ("amplitude", "amplitude_dry"):
+        found[f"peak_{name}"] = np.fmax.reduce(found[name], axis=1)
+    return Answers(**found)
 
 
 def _planar(scenes: Sequence[Scene]) -> Answers:
@@ -146,7 +178,7 @@ def _single(scene: Scene) -> Answers:
     """Answers of one scene as `run` gives them."""
     result = run_scene(scene)
     nothing = np.full(result.speed.shape, np.nan)
-    over = [field.name for field in fields(Answers) if not field.name.startswith("peak_")]
+    over = [field.name for field in fields(Answers) if not field.name.startswith(("peak_", *_OF_BALLS))]
     found: dict[str, Any] = {name: getattr(result, name) for name in over}
     found["peak_amplitude"] = np.array(result.peak["amplitude"])
     found["peak_amplitude_dry"] = np.array(result.peak_dry["amplitude"])

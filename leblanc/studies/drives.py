@@ -37,7 +37,11 @@ def planned(scene: Scene) -> Runup | Programme:
     InputError : it has none, or is of a kind whose motion in time is another's
     """
     if isinstance(scene.rotor, MagneticRotor):
-        allowed = "jeffcott, two_plane or tub for this; `leblanc run` follows its [rotor.trial] in time"
+        missing = "" if scene.rotor.trial is not None else ", once the scene has that table"
+        allowed = (
+            "jeffcott, two_plane or tub for this; type `leblanc run` in place of `leblanc runup`: it follows "
+            f"[rotor.trial] in time, its pulsating speed and its start off the centre{missing}"
+        )
         raise InputError("rotor.kind", scene.rotor.kind, allowed)
     require_whirl(scene)
     if scene.speed_plan is None:

@@ -16,7 +16,7 @@ import numpy as np
 from leblanc import units
 from leblanc.results.base import Note
 from leblanc.results.fit import POOR, REACH, FitCode, FitResult, Measured, fit_notes, poor_note
-from leblanc.scene.scene import Scene
+from leblanc.scene.scene import Scene, dry_rotor, require_no_balls
 from leblanc.scene.schema.load import SceneError
 from leblanc.studies.drives import numerics_of, planned
 from leblanc.studies.models.choose import across_gravity, choose_all, liquid_models, prepare
@@ -182,6 +182,8 @@ def fit_scene(
     """
     from scipy.optimize import least_squares
 
+    if measurement.over != "time":
+        require_no_balls(scene, f"a fit over {measurement.over}; with balls it takes a run-up over time")
     first = _first(scene, unknown)
     points = measurement.at.size * len(measurement.columns)
     problem = _Problem(scene, tuple(unknown), first, measurement, require_scale(scale))
@@ -409,7 +411,7 @@ def _answer(scene: Scene, over: str, at: Array, names: Sequence[str]) -> list[Ar
         filled = [_with_more(scene, volume) for volume in at.tolist()]
         return [np.array([_of_fill(each, name) for each in filled]) for name in names]
     history = _history(scene)
-    own = {name: history.coordinates[:, k] for k, name in enumerate(prepare(scene).system.coordinates)}
+    own = {name: history.coordinates[:, k] for k, name in enumerate(dry_rotor(scene).system().coordinates)}
     own["amplitude"] = history.amplitude
     for name in names:
         if name not in own:

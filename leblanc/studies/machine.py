@@ -43,6 +43,7 @@ def loaded_machine(scene: Scene, fills: Sequence[Fill] | None = None) -> LoadedM
         None if scene.cabinet is None else scene.cabinet.standing(),
         tuple(point.moving() for point in scene.points),
         (bearings[0].position, bearings[1].position) if bearings else None,
+        tuple(race.race() for race in scene.balls),
     )
 
 

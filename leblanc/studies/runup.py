@@ -39,6 +39,7 @@ from solvers.layer.records import Outcome
 from solvers.liquid_model import LONG
 from solvers.runup.ensemble import EnsembleTask, Member, Spread, member_of, run_member, spread_over
 from solvers.runup.ensemble import ensemble as made_ensemble
+from solvers.runup.linear import couple_linear
 from solvers.runup.long_wave import couple
 from solvers.runup.machine import Drive, Handover, RunupModel
 from solvers.runup.runup import (
@@ -71,14 +72,12 @@ def require_layers(scene: Scene) -> None:
 
 
 def require_room(scene: Scene) -> None:
-    """Compartments and balls are for long waves.
+    """Compartments are for long waves.
 
     Raises
     ------
-    InputError : linear layers where baffles cut the liquid into compartments, or beside balls
+    InputError : linear layers where baffles cut the liquid into compartments
     """
-    if scene.model.liquid == "linear" and scene.balls:
-        raise InputError("model.liquid", "linear", "auto or long_wave where balls run beside the liquid")
     if scene.model.liquid == "linear" and any(fill.compartments > 1 for fill in scene.fills):
         text = "auto or long_wave where baffles cut the liquid into compartments"
         raise InputError("model.liquid", "linear", text)
@@ -245,7 +244,7 @@ def chosen_run(
     system, friction = rotor_in_time(scene), scene.model.friction
 
     def run(name: str, resolved: RunupNumerics, report: Progress) -> RunupHistory:
-        model = model_with_balls(scene) if scene.balls else runup_model(name)
+        model = model_of(scene, name)
         given = system, scene.fills, drive, friction, gravity, resolved, report, model, snapshots, follow
         return run_up(*given)
 
@@ -297,8 +296,6 @@ less than {percent(wave)} of the depth and the liquid hardly lags, otherwise lon
 
 def _ruled_out(scene: Scene) -> str:
     """Why linear layers are not tried, or nothing."""
-    if scene.balls:
-        return "linear layers do not run beside balls"
     if any(fill.uneven for fill in scene.fills):
         return "baffles stand in the liquid, whose waves linear layers do not hold back"
     if scene.runup is not None and scene.runup.motor is not None:
@@ -374,6 +371,8 @@ def runup_scene(
     taken = chosen_run(scene, drive, gravity, numerics, first, times, machine is not None)
     history = taken.history
     rest = None if progress is None else lambda part: progress(share + (1.0 - share) * part)
+    if taken.model == "linear":
+        tasks = [replace(task, model=model_of(scene, "linear")) for task in tasks]
     spread = rounding_spread(taken, tasks, seed, workers, rest)
     dry = dry_run(scene, history, drive, gravity, numerics)
     steady, bands = steady_response(scene, history.speed), whirl_bands(scene, history.speed)
@@ -425,14 +424,18 @@ def runup_scene(
     )
 
 
-def model_with_balls(scene: Scene) -> RunupModel:
-    """Long waves with the balls of a scene beside them.
+def model_of(scene: Scene, name: str) -> RunupModel:
+    """A liquid model by its name, with the balls of a scene beside it.
 
     Parameters
     ----------
-    scene : with races
+    scene : the machine
+    name : "long_wave" or "linear"
     """
-    return partial(couple, balls=started_balls(scene), position=_position(scene))
+    if not scene.balls:
+        return runup_model(name)
+    made = couple_linear if name == "linear" else couple
+    return partial(made, balls=started_balls(scene), position=_position(scene))
 
 
 def _position(scene: Scene) -> float:
@@ -470,7 +473,7 @@ def ensemble_tasks(
     if count == 0:
         return []
     system, friction = rotor_in_time(scene), scene.model.friction
-    model = model_with_balls(scene) if scene.balls else runup_model("long_wave")
+    model = model_of(scene, "long_wave")
     return made_ensemble(system, scene.fills, drive, friction, gravity, numerics, model, count, seed)
 
 
@@ -482,7 +485,7 @@ def rounding_spread(
     Parameters
     ----------
     taken : the unchanged run
-    tasks : the changed ones
+    tasks : the changed ones, with the same model
     seed : of the changes
     workers : processes; with 1 they are run here
     progress : called with the share of them that is done
@@ -490,8 +493,6 @@ def rounding_spread(
     if not tasks or not taken.history.converged:
         return None
     members = [member_of(taken.history)]
-    if taken.model == "linear":
-        tasks = [replace(task, model=runup_model("linear")) for task in tasks]
     try:
         for member in _each(tasks, workers):
             members.append(member)
@@ -537,7 +538,7 @@ def dry_run(
     empty, model = [replace(fill, volume=0.0) for fill in scene.fills], runup_model("linear")
     alone = replace(numerics, companion=False)
     if scene.balls:
-        model = partial(couple, position=_position(scene))
+        model = partial(couple_linear, position=_position(scene))
     return run_up(rotor_in_time(scene), empty, drive, scene.model.friction, gravity, alone, None, model)
 
 

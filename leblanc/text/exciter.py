@@ -7,7 +7,7 @@ import math
 from leblanc.results.exciter import ExciterResult
 from leblanc.text.numbers import NOT_FOUND, ranges
 from leblanc.text.run import Limit
-from leblanc.units import LENGTH, in_rpm, rpm_range, with_unit
+from leblanc.units import LENGTH, in_rpm, over_rpm, with_unit
 
 NUMBERS = {
     "smallness": "Share of the balls in the moving mass, over their rolling inertia",
@@ -99,7 +99,7 @@ def lines(result: ExciterResult) -> list[str]:
     if math.isfinite(result.critical):
         first, _, last = result.characteristic
         sentences += [
-            f"Three stuck speeds of the balls from {rpm_range(first, last)} of the shaft",
+            f"Three stuck speeds of the balls {over_rpm(first, last)} of the shaft",
             f"Critical speed, up to which the balls stick together: {in_rpm(result.critical)}",
         ]
     else:

@@ -17,7 +17,7 @@ from leblanc.results.models.comparison import Comparison, ModelAnswer
 from leblanc.results.motion.tilting import RestMode
 from leblanc.text.numbers import NOT_FOUND, number
 from leblanc.text.run import amplitude_place, error_words, speeds_words
-from leblanc.units import LENGTH, RPM, TORQUE, VOLUME, Unit, in_rpm, rpm_range, unit_for, with_unit
+from leblanc.units import LENGTH, RPM, TORQUE, VOLUME, Unit, in_rpm, over_rpm, unit_for, with_unit
 from meshes.arrays import Array
 
 Rows = list[tuple[str, str]]
@@ -52,9 +52,7 @@ def machine_rows(answer: Explanation) -> Rows:
 
 def _held_words(held: HeldCost, tolerance: float) -> str:
     """What motions held in time take, and why they are held."""
-    where = (
-        f"{held.speeds} speeds from {rpm_range(held.first, held.last)}, {held.words}, good to a factor of two"
-    )
+    where = f"{held.speeds} speeds {over_rpm(held.first, held.last)}, {held.words}, good to a factor of two"
     if held.asked:
         return f"{where}; the cores share it"
     why = f"no steady model is within {percent(tolerance)} there, or a whirl grows by itself"

@@ -14,6 +14,7 @@ from leblanc.units import LENGTH, MM, with_unit
 Rows = list[tuple[str, ...]]
 
 MOUNTS = "mount", "at x, y, z (mm)", "before", "direction", "before"
+FREQUENCIES = "mode", "after (Hz)", "before (Hz)"
 PAIR_HEAD = "coupling", "stiffness", "before", "damping", "before"
 _SHOWN = 5e-4  # couplings below are printed as 0
 
@@ -71,6 +72,39 @@ def _mass(result: LayoutResult) -> str:
         if abs(value) >= _SHOWN
     ]
     return ", ".join(found) + ", which no mount changes" if found else "none about the centre of mass"
+
+
+def frequency_rows(result: LayoutResult) -> Rows:
+    """Natural frequencies at rest by rising frequency, as `FREQUENCIES` heads them.
+
+    Parameters
+    ----------
+    result : of the search
+    """
+    hertz = result.frequency / (2.0 * math.pi)
+    return [
+        (f"{k + 1}", number(float(after)), number(float(before)))
+        for k, (before, after) in enumerate(hertz.T.tolist())
+    ]
+
+
+def remarks(result: LayoutResult) -> list[str]:
+    """What the search assumes, a sentence or two each.
+
+    Parameters
+    ----------
+    result : of the search
+    """
+    found = [
+        "A layout is judged at rest and without liquid: frequencies are those without damping and spin, "
+        "which couples alpha and gamma whatever the layout.",
+        "A coupling is the term of the matrix about the common centre of mass of tub and drum over the root "
+        "of the product of those on the diagonal: 0 where two motions are separate, 1 where they are one.",
+        "Mounts at one place stay together, and springs and dampers keep their stiffness and damping.",
+    ]
+    if result.mirrored:
+        found.append("Mounts are alike on both sides of x = 0, and stay so.")
+    return found
 
 
 def mount_rows(result: LayoutResult) -> Rows:

@@ -14,7 +14,7 @@ from leblanc.results.motion.held import HELD_MODELS, Held
 from leblanc.results.notes.response import plane_words
 from leblanc.results.response import RunResult, grade_words
 from leblanc.text.numbers import NOT_FOUND, number, ranges
-from leblanc.units import LENGTH, MASS, RPM, VOLUME, in_rpm, rpm_bands, rpm_range, unit_for, with_unit
+from leblanc.units import LENGTH, MASS, RPM, VOLUME, in_rpm, over_rpm, rpm_bands, unit_for, with_unit
 from meshes.arrays import Array, Flags
 
 AGAINST = 0.5  # from here on a whirl counts as one with or against the spin
@@ -451,7 +451,7 @@ def machine(result: RunResult) -> str:
     carries = f"{chambers} with {volume} of {liquids}" if count else "no chamber"
     speeds = f"at {in_rpm(float(r.speed[0]))}"
     if r.speed.size > 1:
-        speeds = f"from {rpm_range(r.speed[0], r.speed[-1])} in {r.speed.size} speeds"
+        speeds = f"{over_rpm(r.speed[0], r.speed[-1])} in {r.speed.size} speeds"
     return f"A rotor with a {result.axis} axis that carries {carries}, {speeds}."
 
 

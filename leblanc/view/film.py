@@ -23,7 +23,9 @@ from leblanc.results.drawn import (
     RunupView,
     Scale,
 )
+from leblanc.results.races.drawn import BallView
 from leblanc.units import DEGREE, LENGTH, RPM, in_rpm, unit_for, with_unit
+from leblanc.view.balls import ball_still, with_balls
 from leblanc.view.inset import with_inset
 from leblanc.view.parts import Inset, Instant, Picture, Stage
 from leblanc.view.picture import Pixels, fill, pixels, plotter, write_png
@@ -95,6 +97,39 @@ def sweep_film(
     return Film(len(chosen), picture)
 
 
+def ball_film(view: BallView, frames: int = FRAMES) -> Film:
+    """Steady states over the speeds of a machine with balls, evenly chosen.
+
+    Parameters
+    ----------
+    view : the machine at all its speeds
+    frames : how many at most
+
+    Raises
+    ------
+    InputError : too few frames or too many
+    """
+    require_frames(frames)
+    speed, amplitude = view.result.speed, view.result.amplitude
+    chosen = np.unique(np.linspace(0, speed.size - 1, min(frames, speed.size)).round().astype(int)).tolist()
+    turn = TURN * np.cumsum(speed[chosen]) / speed[chosen].max()
+    said = (
+        f"From frame to frame spin and whirl turn by {math.degrees(TURN):.0f}{DEGREE} at the highest speed."
+    )
+    known = np.isfinite(amplitude)
+    name = f"amplitude, up to {with_unit(float(amplitude[known].max(initial=0.0)), LENGTH)}"
+
+    def picture(k: int) -> Picture:
+        index = chosen[k]
+        shown = ball_still(view, index, float(turn[k] - turn[0]), said)
+        if known.sum() < 2:
+            return shown
+        inset = Inset(speed[known], ((name, amplitude[known]),), float(speed[index]), "speed")
+        return replace(shown, inset=inset)
+
+    return Film(len(chosen), picture)
+
+
 def require_frames(frames: int) -> None:
     """A number of frames that a film can have.
 
@@ -129,7 +164,11 @@ def runup_film(view: RunupView) -> Film:
 
     def picture(k: int) -> Picture:
         inset = Inset(time, curves, float(view.frames.time[k]), "time")
-        return replace(compose(stage, _instant(stage, view, k)), inset=inset)
+        instant = _instant(stage, view, k)
+        shown = compose(stage, instant)
+        if view.races:
+            shown = with_balls(shown, stage, instant, view.races, view.balls[k])
+        return replace(shown, inset=inset)
 
     return Film(view.frames.time.size, picture)
 
@@ -140,18 +179,25 @@ def _instant(stage: Stage, view: RunupView, k: int) -> Instant:
     found = tuple(map(complex, frames.deflection[k]))
     spread = [j for j in range(len(found)) if planes[j] != planes[0]]
     lean = (found[spread[0]] - found[0]) / (planes[spread[0]] - planes[0]) if spread else 0j
+    rings = [view.fills[race.ring].chamber.plane for race in view.races]
+    if rings:
+        liquids = found[: len(view.fills) - len(rings)]
+        found = (*liquids, *(found[0] + lean * (plane - planes[0]) for plane in rings))
     speed, name = float(frames.speed[k]), one_line(view.result.name)
     unit = unit_for(LENGTH, float(frames.amplitude.max()))  # one for all frames
-    state = [
-        f"t = {frames.time[k]:.2f} s, amplitude {unit.text(frames.amplitude[k])}",
-        f"liquid model {view.result.model}",
-    ]
+    wet = any(fill.volume > 0.0 for fill in view.fills)
+    state = [f"t = {frames.time[k]:.2f} s, amplitude {unit.text(frames.amplitude[k])}"]
+    state += [f"liquid model {view.result.model}"] if wet or not view.races else []
     caption = [
         stage.scale.in_words(),
         f"Spin, and whirl that goes with it, are {view.slower:g} times slower than they are.",
-        "The surface stands upright along the axis.",
+        *(["The surface stands upright along the axis."] if wet or not view.races else []),
         view.parts.sketched,
     ]
+    if rings:
+        caption.append("Races are rings as wide as their balls; balls at one place lie side by side.")
+    if rings and view.result.kind != "jeffcott" and not spread:
+        caption.append("How the axis leans is not kept in a run-up with chambers in fewer than two planes.")
     if stage.lying:
         caption.append("Liquid that gravity holds at the bottom is drawn as a pool.")
     return Instant(

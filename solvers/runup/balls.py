@@ -12,7 +12,7 @@ from meshes.errors import InputError
 from solvers.layer.records import Record, records
 from solvers.rotor.balls.balancers import BallRace, race_arrays
 from solvers.rotor.system import RotorSystem
-from solvers.runup.state import BALL, State
+from solvers.runup.state import BALL
 
 
 @dataclass(frozen=True)
@@ -89,41 +89,44 @@ def race_planes(system: RotorSystem, balls: Balls) -> Array:
     return np.asarray(planes, dtype=float).reshape(len(balls.places), 2, len(system.coordinates))
 
 
-def _along(races: Array, state: State) -> Array:
+def _along(races: Array, roll: Array) -> Array:
     """Part of the motion of each race's centre along the race at its ball, for unit rates, shape (N, n)."""
-    across = np.stack((-np.sin(state.roll), np.cos(state.roll)), axis=1)
+    across = np.stack((-np.sin(roll), np.cos(roll)), axis=1)
     return np.asarray(np.einsum("ji,jin->jn", across, races))
 
 
-def balls_energy(balls: Record, races: Array, state: State, spin: float) -> float:
+def balls_energy(
+    balls: Record, races: Array, rate: Array, roll: Array, roll_rate: Array, spin: float
+) -> float:
     """Kinetic energy of the balls, J [theory: races, eq. 1].
 
     Parameters
     ----------
     balls, races : as in `solvers.runup.state.Machine`
-    state : of the moment
+    rate : of the rotor's coordinates, shape (n,)
+    roll, roll_rate : angle of each ball in the standing frame, and its rate, shape (N,)
     spin : rad/s
     """
-    carried = races @ state.rate
+    carried = races @ rate
     axis = 0.5 * balls.mass * np.square(carried).sum(axis=1)
-    meeting = balls.mass * balls.radius * state.roll_rate * (_along(races, state) @ state.rate)
-    own = 0.5 * balls.inertia * np.square(state.roll_rate) - balls.carried * spin * state.roll_rate
+    meeting = balls.mass * balls.radius * roll_rate * (_along(races, roll) @ rate)
+    own = 0.5 * balls.inertia * np.square(roll_rate) - balls.carried * spin * roll_rate
     return float(np.sum(axis + meeting + own + 0.5 * balls.driven * spin**2))
 
 
-def balls_inertia(balls: Record, races: Array, state: State) -> tuple[Array, Array]:
+def balls_inertia(balls: Record, races: Array, roll: Array) -> tuple[Array, Array]:
     """What the balls add to the rotor's inertia against a blow, and how their rates answer one.
 
     Parameters
     ----------
     balls, races : as in `solvers.runup.state.Machine`
-    state : of the moment
+    roll : angle of each ball in the standing frame, shape (N,)
 
     Returns
     -------
     kg and kg m^2, shape (n, n); fall of the balls' rates for unit jumps of the rotor's rates, shape (N, n)
     """
-    along, moving = _along(races, state), balls.mass * balls.radius
+    along, moving = _along(races, roll), balls.mass * balls.radius
     whole = np.einsum("j,jin,jim->nm", balls.mass, races, races)
     answer = (moving / balls.inertia)[:, None] * along
     return whole - np.einsum("j,jn,jm->nm", moving, along, answer), answer

@@ -412,46 +412,89 @@ def _measure_layers(machine, state, room):
 
 
 @_unwrapped
-def _add_balls(machine, state, room, dt):
-    """Rows and columns of the balls, on a straight line about their way so far [theory: races, eq. 2-3]."""
-    n, spin, gained = room.change.size, 0.5 * (room.spins[0] + room.spins[1]), room.spins[1] - room.spins[0]
-    left, right = room.left, room.right
-    for j in range(machine.balls.shape[0]):
-        ball, b, row, angle, rate = (
-            machine.balls[j],
-            machine.races[j],
-            n + j,
-            state.roll[j],
-            state.roll_rate[j],
-        )
-        moving, middle, last = ball.mass * ball.radius, angle + 0.5 * dt * rate, angle + dt * rate
-        x, y, x_end, y_end = np.cos(middle), np.sin(middle), np.cos(last), np.sin(last)
-        past = spin - rate
-        # It sticks by a drag that is large beside all others while the drum hardly passes it.
-        press = ball.resistance * ball.mass * (ball.radius * rate) ** 2
-        room.held[j] = press / max(abs(past), _CREEP * spin)
-        pull = moving * (machine.gravity[1] * x - machine.gravity[0] * y)
-        left[row, row] = ball.inertia + dt * (0.5 * ball.drag + room.held[j])
-        right[row] = dt * (ball.drag * past + room.held[j] * (room.spins[1] - rate) + pull)
-        right[row] += ball.carried * gained
-        # Its momentum at the end, had it kept its rate, and how that changes with the rate.
-        given_x, given_y = -moving * rate * (y_end - np.sin(angle)), moving * rate * (x_end - np.cos(angle))
-        slope_x = -moving * (y_end + 0.5 * dt * rate * x_end)
-        slope_y = moving * (x_end - 0.5 * dt * rate * y_end)
-        for i in range(n):
-            left[row, i] = moving * (b[1, i] * x - b[0, i] * y)
-            left[i, row] = b[0, i] * slope_x + b[1, i] * slope_y
-            right[i] -= b[0, i] * given_x + b[1, i] * given_y
-            for k in range(n):
-                left[i, k] += ball.mass * (b[0, i] * b[0, k] + b[1, i] * b[1, k])
+def add_ball(ball, b, gravity, row, moving, spins, dt, n, left, right):
+    """Row and column of a ball, on a straight line about its way so far [theory: races, eq. 2-3].
+
+    Parameters
+    ----------
+    ball : record BALL
+    b : displacement of the axis in its plane for unit coordinates, shape (2, n)
+    gravity : across the axis, shape (2,)
+    row : of its own equation
+    moving : its angle in the standing frame and its rate
+    spins : at both ends of the step
+    dt, n : of the step, coordinates of the rotor
+    left, right : equations, changed in place
+
+    Returns
+    -------
+    What it resists to rolling, as a drag
+    """
+    angle, rate = moving
+    spin, gained = 0.5 * (spins[0] + spins[1]), spins[1] - spins[0]
+    lever, middle, last = ball.mass * ball.radius, angle + 0.5 * dt * rate, angle + dt * rate
+    x, y, x_end, y_end = np.cos(middle), np.sin(middle), np.cos(last), np.sin(last)
+    past = spin - rate
+    # It sticks by a drag that is large beside all others while the drum hardly passes it.
+    press = ball.resistance * ball.mass * (ball.radius * rate) ** 2
+    held = press / max(abs(past), _CREEP * spin)
+    pull = lever * (gravity[1] * x - gravity[0] * y)
+    left[row, row] = ball.inertia + dt * (0.5 * ball.drag + held)
+    right[row] = dt * (ball.drag * past + held * (spins[1] - rate) + pull)
+    right[row] += ball.carried * gained
+    # Its momentum at the end, had it kept its rate, and how that changes with the rate.
+    given_x, given_y = -lever * rate * (y_end - np.sin(angle)), lever * rate * (x_end - np.cos(angle))
+    slope_x = -lever * (y_end + 0.5 * dt * rate * x_end)
+    slope_y = lever * (x_end - 0.5 * dt * rate * y_end)
+    for i in range(n):
+        left[row, i] = lever * (b[1, i] * x - b[0, i] * y)
+        left[i, row] = b[0, i] * slope_x + b[1, i] * slope_y
+        right[i] -= b[0, i] * given_x + b[1, i] * given_y
+        for k in range(n):
+            left[i, k] += ball.mass * (b[0, i] * b[0, k] + b[1, i] * b[1, k])
+    return held
 
 
 @_unwrapped
-def _dragged(machine, state, room, dt, j):
-    """Impulse of the torque of the drum on a ball, by drag and by what it resists to rolling."""
-    rate, change = state.roll_rate[j], room.roll[j]
-    slow = 0.5 * (room.spins[0] + room.spins[1]) - rate - 0.5 * change
-    return dt * (machine.balls[j].drag * slow + room.held[j] * (room.spins[1] - rate - change))
+def ball_dragged(ball, held, rate, change, spins, dt):
+    """Impulse of the torque of the drum on a ball, by drag and by what it resists to rolling.
+
+    Parameters
+    ----------
+    ball : record BALL
+    held : as from `add_ball`
+    rate, change : of the ball, at the beginning and over the step
+    spins, dt : of the step
+    """
+    slow = 0.5 * (spins[0] + spins[1]) - rate - 0.5 * change
+    return dt * (ball.drag * slow + held * (spins[1] - rate - change))
+
+
+@_unwrapped
+def ball_turned(ball, held, rate, change, spins, dt):
+    """Impulse of the torque that a ball takes from the drum [theory: races, eq. 1].
+
+    Parameters are those of `ball_dragged`.
+    """
+    gained = spins[1] - spins[0]
+    return ball_dragged(ball, held, rate, change, spins, dt) + ball.driven * gained - ball.carried * change
+
+
+@_unwrapped
+def tally_ball(ball, held, gravity, moving, change, spins, dt, sums):
+    """Add the works of one step of a ball to `sums`, a record SUMS.
+
+    Parameters
+    ----------
+    ball, held, gravity, moving, spins, dt : as in `add_ball`
+    change : of its rate over the step
+    """
+    angle, rate = moving
+    spin, mean, middle = 0.5 * (spins[0] + spins[1]), rate + 0.5 * change, angle + 0.5 * dt * rate
+    sums.drive += spin * ball_turned(ball, held, rate, change, spins, dt)
+    sums.friction += (spin - mean) * ball_dragged(ball, held, rate, change, spins, dt)
+    pull = gravity[1] * np.cos(middle) - gravity[0] * np.sin(middle)
+    sums.gravity += dt * ball.mass * ball.radius * mean * pull
 
 
 @_unwrapped
@@ -489,7 +532,10 @@ def _move_rotor(machine, state, room, dt):
             for k in range(n):
                 left[i, k] += (mass - xx) * b[0, i] * b[0, k] + (mass - yy) * b[1, i] * b[1, k]
                 left[i, k] -= xy * (b[0, i] * b[1, k] + b[1, i] * b[0, k])
-    _add_balls(machine, state, room, dt)
+    for j in range(machine.balls.shape[0]):
+        moving = state.roll[j], state.roll_rate[j]
+        ball, b = machine.balls[j], machine.races[j]
+        room.held[j] = add_ball(ball, b, machine.gravity, n + j, moving, room.spins, dt, n, left, right)
     solve(left, right)
     for i in range(n):
         change[i] = right[i]
@@ -514,13 +560,6 @@ def _disagreement(machine, room, dt):
 
 
 @_unwrapped
-def _turned(machine, state, room, dt, j):
-    """Impulse of the torque that a ball takes from the drum [theory: races, eq. 1]."""
-    ball, gained = machine.balls[j], room.spins[1] - room.spins[0]
-    return _dragged(machine, state, room, dt, j) + ball.driven * gained - ball.carried * room.roll[j]
-
-
-@_unwrapped
 def _spin_after(machine, state, room, dt):
     """Spin at the end of the step: on its ramp, or by the motor [theory: coupling, eq. 6]."""
     n, shaft = room.change.size, state.shaft[0]
@@ -539,7 +578,8 @@ def _spin_after(machine, state, room, dt):
     for j in range(machine.pools.shape[0]):
         load += room.drag[j]
     for j in range(machine.balls.shape[0]):
-        load += _turned(machine, state, room, dt, j)
+        rate, change = state.roll_rate[j], room.roll[j]
+        load += ball_turned(machine.balls[j], room.held[j], rate, change, room.spins, dt)
     after = spin
     for _ in range(4):
         after = spin + (dt * motor_torque(machine.curve, 0.5 * (spin + after)) - load) / shaft.inertia
@@ -576,12 +616,8 @@ def _tally(machine, state, room, dt):
                 0.5 * dt * machine.gravity[i] * (room.before[first + j, i] + room.after[first + j, i])
             )
     for j in range(machine.balls.shape[0]):
-        ball, angle, rate = machine.balls[j], state.roll[j], state.roll_rate[j]
-        mean, middle = rate + 0.5 * room.roll[j], angle + 0.5 * dt * rate
-        sums.drive += spin * _turned(machine, state, room, dt, j)
-        sums.friction += (spin - mean) * _dragged(machine, state, room, dt, j)
-        pull = machine.gravity[1] * np.cos(middle) - machine.gravity[0] * np.sin(middle)
-        sums.gravity += dt * ball.mass * ball.radius * mean * pull
+        ball, moving = machine.balls[j], (state.roll[j], state.roll_rate[j])
+        tally_ball(ball, room.held[j], machine.gravity, moving, room.roll[j], room.spins, dt, sums)
     if machine.curve.shape[1] > 0:
         sums.motor += dt * spin * motor_torque(machine.curve, spin)
 

@@ -18,6 +18,7 @@ from meshes.errors import InputError
 from solvers.layer.records import Outcome, records
 from solvers.layer.state import ring
 from solvers.rotor.system import RotorSystem
+from solvers.runup.balls import NO_BALLS, Balls, ball_records, balls_energy, balls_inertia, race_planes
 from solvers.runup.machine import Handover, Reading, Transfer
 from solvers.runup.state import (
     CREST,
@@ -55,6 +56,17 @@ class LinearCoupled(CoupledRotor):
     machine: LinearMachine
     rows: int = 0
     kept: list[Array] = field(default_factory=list)
+
+    @property
+    def sloshing(self) -> slice:
+        """Rows of the layers among place and rate, two each."""
+        n = len(self.system.coordinates)
+        return slice(n, n + 2 * len(self.fills))
+
+    @property
+    def rolling(self) -> slice:
+        """Rows of the balls."""
+        return slice(self.sloshing.stop, None)
 
     @property
     def gravity(self) -> Array:
@@ -144,13 +156,15 @@ class LinearCoupled(CoupledRotor):
             d, rate, kappa = m.place[row], m.rate[row], layer.curvature
             total += layer.mass * (axis @ rate + 0.5 * (1.0 + kappa) * rate @ rate)
             total += 0.5 * layer.inertia * m.carried[j] ** 2 - layer.mass * kappa * m.carried[j] ** 2 * d @ d
-        return float(total)
+        roll, roll_rate = m.place[self.rolling], m.rate[self.rolling]
+        return float(total + balls_energy(m.balls, m.races, v, roll, roll_rate, self.spin))
 
     def switch(self) -> float:
         """Catch and let go liquid as `solvers.runup.long_wave.Coupled.switch`; energy brought in, J."""
         m, n, active = self.machine, len(self.system.coordinates), self.machine.active > 0.0
         pools = self.swings & ~active
-        self.lean[pools], self.lean_rate[pools] = m.place[n::2][pools], m.rate[n::2][pools]
+        place, rate = m.place[self.sloshing][::2], m.rate[self.sloshing][::2]
+        self.lean[pools], self.lean_rate[pools] = place[pools], rate[pools]
         own = self._own_rotation()
         wanted = self.caught(active, own)
         anew = wanted != active
@@ -168,7 +182,10 @@ class LinearCoupled(CoupledRotor):
                 self.lean_rate[j] = m.rate[n + 2 * j] = self.fallen_rate(own)[j]
                 lost -= m.planes[j].T @ self._momentum(j)
         # What else moves keeps its momentum: the offsets' rates act on the rotor through their masses.
-        m.rate[:n] += np.linalg.solve(whole, lost)
+        inertia, along = balls_inertia(m.balls, m.races, m.place[self.rolling])
+        jump = np.linalg.solve(whole + inertia, lost)
+        m.rate[:n] += jump
+        m.rate[self.rolling] -= along @ jump
         after, now = self.energy(), self._own_rotation()
         rise = (self._offset() - offset).real * abs(float(self.gravity[0])) * self.masses
         for j in np.flatnonzero(anew).tolist():
@@ -181,9 +198,9 @@ class LinearCoupled(CoupledRotor):
 
     def _own_rotation(self) -> Array:
         """Rotation of the liquid itself, of a pool as if it were spread, rad/s, shape (l,)."""
-        m, n = self.machine, len(self.system.coordinates)
-        inertia = np.maximum(self.spread_inertia, 1e-300)
-        return np.where(m.active > 0.0, m.carried, self.pool_inertia * self.swings * m.rate[n::2] / inertia)
+        m, inertia = self.machine, np.maximum(self.spread_inertia, 1e-300)
+        swing = self.pool_inertia * self.swings * m.rate[self.sloshing][::2]
+        return np.where(m.active > 0.0, m.carried, swing / inertia)
 
     def _momentum(self, j: int) -> Array:
         """Momentum of a liquid relative to its chamber's axis, standing frame, kg m/s, shape (2,)."""
@@ -203,7 +220,7 @@ class LinearCoupled(CoupledRotor):
         deflection = np.array([complex(*(plane @ q)) for plane in self.seen])
         offset = self._offset()
         depth = np.array([fill.depth for fill in self.fills])
-        swing = self.swings * (m.rate[n::2] - self.spin)
+        swing = self.swings * (m.rate[self.sloshing][::2] - self.spin)
         rise = (m.layers.curvature - 1.0) * np.abs(offset)
         nothing = np.full(len(self.fills), np.nan)
         return Reading(
@@ -218,8 +235,8 @@ class LinearCoupled(CoupledRotor):
             depth_min=np.where(active, depth - rise, nothing),
             depth_max=np.where(active, depth + rise, nothing),
             mean_rotation=np.where(active, m.carried - self.spin, swing),
-            ball_angle=np.zeros(0),
-            ball_speed=np.zeros(0),
+            ball_angle=m.place[self.rolling] - self.shaft.angle,
+            ball_speed=m.rate[self.rolling].copy(),
         )
 
     def depth(self) -> Array:
@@ -233,9 +250,10 @@ class LinearCoupled(CoupledRotor):
 
     def _offset(self) -> Complex:
         """Offset of each liquid's centre of mass from its chamber's axis, standing frame, complex, m."""
-        m, n = self.machine, len(self.system.coordinates)
-        self.lean[:] = np.where(m.active > 0.0, self.lean, m.place[n::2])
-        return np.where(m.active > 0.0, m.place[n::2] + 1j * m.place[n + 1 :: 2], self.pool_offset)
+        m, active = self.machine, self.machine.active > 0.0
+        first, second = m.place[self.sloshing].reshape(-1, 2).T
+        self.lean[:] = np.where(active, self.lean, first)
+        return np.where(active, first + 1j * second, self.pool_offset)
 
 
 def couple_linear(
@@ -248,8 +266,10 @@ def couple_linear(
     dispersion: bool,
     enstrophy: bool = False,
     handover: Handover = Handover.RIDING,
+    balls: Balls = NO_BALLS,
+    position: float = 0.0,
 ) -> LinearCoupled:
-    """Rotor without deflection, liquid at rest in the drum.
+    """Rotor without deflection, liquid at rest in the drum, balls where they start.
 
     Parameters are those of `solvers.runup.long_wave.couple`; `cells` sets the length of the steps alone, and
     the exact linear theory has all dispersion and no bores.
@@ -260,9 +280,9 @@ def couple_linear(
     """
     from solvers.runup.linear_kernel import LINEAR_LAYER, LinearMachine
 
-    rest = at_rest(system, fills, spin, gravity)
+    rest = at_rest(system, fills, spin, gravity, position)
     n, count = len(system.coordinates), len(fills)
-    size = n + 2 * count
+    size = n + 2 * count + len(balls.places)
     layers = records(LINEAR_LAYER, count)
     for j, fill in enumerate(fills):
         layers[j] = _layer(fill, friction)
@@ -290,10 +310,15 @@ def couple_linear(
         carried=np.full(count, spin),
         sums=records(SUMS),
         crest=records(CREST),
+        balls=ball_records(balls),
+        races=race_planes(system, balls),
         left=np.zeros((size, size)),
         change=np.zeros(size),
         swing=np.zeros(n),
+        held=np.zeros(len(balls.places)),
     )
+    machine.place[n + 2 * count :] = balls.places
+    machine.rate[n + 2 * count :] = spin * np.array(balls.shares, dtype=float)
     found = LinearCoupled(
         system=system,
         fills=tuple(fills),
@@ -306,6 +331,7 @@ def couple_linear(
         cells=cells,
         machine=machine,
     )
+    found.position = position
     machine.active[:] = found.begins_as_layer(spin)
     return found
 

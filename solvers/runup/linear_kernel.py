@@ -15,7 +15,7 @@ from meshes.arrays import Array
 from solvers.layer.drag import mean_rate
 from solvers.layer.finite_volume import COMPILED
 from solvers.layer.records import Outcome, Record, floats
-from solvers.runup.kernel import motor_torque, solve, watch
+from solvers.runup.kernel import add_ball, ball_turned, motor_torque, solve, tally_ball, watch
 
 _jit: Any = njit(**COMPILED)
 
@@ -25,7 +25,7 @@ LINEAR_LAYER = floats("mass", "curvature", "rate", "power", "inertia", "top", "s
 
 
 class LinearMachine(NamedTuple):
-    """Rotor and l linear layers; n coordinates, N = n + 2 l.
+    """Rotor, l linear layers and b balls; n coordinates, N = n + 2 l + b.
 
     Parameters
     ----------
@@ -42,13 +42,14 @@ class LinearMachine(NamedTuple):
     gravity : across the axis, shape (2,)
     curve : the motor's, shape (2, k)
     watched : displacement of the axis whose amplitude counts, for unit coordinates, shape (2, n)
-    place, rate : rotor's coordinates and the layers' offsets, two parts each, and their rates, shape (N,); of
-        a pool its angle from the bottom, and 0
+    place, rate : rotor's coordinates, the layers' offsets, two parts each, and the balls' angles in the
+        standing frame, and their rates, shape (N,); of a pool its angle from the bottom, and 0
     shaft : record SHAFT of `solvers.runup.state`, shape (1,)
     carried : rotation of each layer as a whole, rad/s, shape (l,)
     sums : record SUMS, shape (1,)
     crest : record CREST of `solvers.runup.state`, shape (1,)
-    left, change, swing : scratch, shapes (N, N), (N,), (n,)
+    balls, races : as in `solvers.runup.state.Machine`, shapes (b,) and (b, 2, n)
+    left, change, swing, held : scratch, shapes (N, N), (N,), (n,), (b,)
     """
 
     matrices: Array
@@ -69,9 +70,12 @@ class LinearMachine(NamedTuple):
     carried: Array
     sums: Record
     crest: Record
+    balls: Record
+    races: Array
     left: Array
     change: Array
     swing: Array
+    held: Array
 
 
 @_jit
@@ -237,6 +241,10 @@ def _tally(m, spin, spins, dt):
         sums.drive += 2.0 * mass * kappa * gained * (x * v - y * u - whole * (x * x + y * y))
         sums.drive += layer.inertia * spin * gained
         sums.gravity += dt * mass * (m.gravity[0] * u + m.gravity[1] * v)
+    for j in range(m.balls.shape[0]):
+        row = n + 2 * m.layers.shape[0] + j
+        moving = m.place[row], m.rate[row]
+        tally_ball(m.balls[j], m.held[j], m.gravity, moving, m.change[row], spins, dt, sums)
     if m.curve.shape[1] > 0:
         sums.motor += dt * spin * motor_torque(m.curve, spin)
 
@@ -257,6 +265,7 @@ def advance_linear(m, stop, angle_step, most):
     Outcome.DONE, RAN_OUT, or STOPPED where the motor stands
     """
     n, spins, taken, shaft = m.unbalance.size, (0.0, 0.0), 0, m.shaft[0]
+    balls = n + 2 * m.layers.shape[0]
     while shaft.time < stop:
         before = shaft.spin
         if before <= 0.0:
@@ -282,6 +291,10 @@ def advance_linear(m, stop, angle_step, most):
             _rotor_rows(m, spin, first, last, spins, dt)
             for j in range(m.layers.shape[0]):
                 _assemble(m, j, spin, m.carried[j], _carry(m, j, spin, spins, dt), dt)
+            for j in range(m.balls.shape[0]):
+                row, ball, b = balls + j, m.balls[j], m.races[j]
+                moving = m.place[row], m.rate[row]
+                m.held[j] = add_ball(ball, b, m.gravity, row, moving, spins, dt, n, m.left, m.change)
             solve(m.left, m.change)
             if m.curve.shape[1] > 0:
                 load = 0.0
@@ -292,6 +305,9 @@ def advance_linear(m, stop, angle_step, most):
                     load += m.layers[j].inertia * gained * m.active[j]
                     if m.active[j] == 0.0 and m.pools[j].mass > 0.0:
                         load += dt * _drag(m, j, spin - m.rate[n + 2 * j])
+                for j in range(m.balls.shape[0]):
+                    rate, change = m.rate[balls + j], m.change[balls + j]
+                    load += ball_turned(m.balls[j], m.held[j], rate, change, spins, dt)
                 after = before + (dt * motor_torque(m.curve, spin) - load) / shaft.inertia
                 if after <= 0.0:
                     return Outcome.STOPPED

@@ -177,7 +177,12 @@ class Coupled(CoupledRotor):
             rate = plane @ v
             total += 0.5 * self.masses[j] * rate @ rate + momentum @ rate
             total += 0.5 * self.pool_inertia[j] * self.lean_rate[j] ** 2
-        return float(total + balls_energy(self.balls, self.machine.races, self.state, self.spin))
+        return float(
+            total
+            + balls_energy(
+                self.balls, self.machine.races, v, self.state.roll, self.state.roll_rate, self.spin
+            )
+        )
 
     def _pressed(self) -> float:
         """Energy of what full gaps hold beyond their room, J [theory: long_wave, eq. 19]."""
@@ -278,7 +283,7 @@ class Coupled(CoupledRotor):
         weights = np.concatenate((self.masses[self.active], self.masses[self.pooled]))
         for mass, plane in zip(weights, self.machine.planes, strict=True):
             whole += mass * plane.T @ plane
-        inertia, along = balls_inertia(self.balls, self.machine.races, self.state)
+        inertia, along = balls_inertia(self.balls, self.machine.races, self.state.roll)
         jump = np.linalg.solve(whole + inertia, lost)
         self.state.rate[:] += jump
         self.state.roll_rate[:] -= along @ jump

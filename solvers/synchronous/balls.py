@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -11,9 +11,10 @@ from numpy.typing import ArrayLike
 from fluid.fill import Fill, Fills
 from meshes.arrays import Array, Complex, Flags
 from meshes.errors import InputError
-from solvers.liquid_model import Whirls
+from solvers.liquid_model import LiquidModel, Whirls
 from solvers.rotor.balls.balancers import BallRace
-from solvers.rotor.balls.steady import BallStates, RotorWithBalls, collected, starts_of, steady_states
+from solvers.rotor.balls.states import RotorWithBalls
+from solvers.rotor.balls.steady import BallStates, collected, starts_of, steady_states
 from solvers.rotor.system import RotorSystem
 from solvers.synchronous.balance import backward_mass, directions
 from solvers.synchronous.models import STATICS
@@ -45,11 +46,12 @@ def wet_states(
     races: Sequence[BallRace],
     speed: ArrayLike,
     gravity: float = 0.0,
+    model: LiquidModel = STATICS,
 ) -> WetStates:
     """Steady states of balls and liquid in one drum [theory: races, eq. 8].
 
-    The liquid is in its exact equilibrium: at each round it counts as the mass that its unbalance is over the
-    deflection, and the balls settle anew. States that do not come to an end so are left out.
+    At each round the liquid counts as the mass that its unbalance is over the deflection, and the balls
+    settle anew. States that do not come to an end so are left out.
 
     Parameters
     ----------
@@ -58,6 +60,7 @@ def wet_states(
     races : with their balls, one or more
     speed : Omega, rad/s, above 0, shape (s,)
     gravity : along the axis, m/s^2
+    model : of the liquid at rest in the drum, by default its exact equilibrium
 
     Raises
     ------
@@ -74,14 +77,14 @@ def wet_states(
     if not np.all(np.isfinite(spin) & (spin > 0.0)):
         raise InputError("speed", spin.tolist(), "finite numbers above 0")
     machine, starts = RotorWithBalls(system, tuple(races)), starts_of([len(race.masses) for race in races])
-    small = _masses(wet, spin, np.zeros((spin.size, len(wet))), gravity)
+    small = _masses(model, wet, spin, np.zeros((spin.size, len(wet))), gravity)
     compliance = machine.compliance(spin, _added(system, wet, small))
     each, many = np.repeat(compliance, len(starts), axis=0), np.repeat(spin, len(starts))
     places, rests = machine.settle(each, np.tile(starts, (spin.size, 1)))
     mass, going = np.repeat(small, len(starts), axis=0), np.arange(many.size)
     for _ in range(_ROUNDS):
         seen = _seen(system, wet, machine.coordinates(each[going], places[going]))
-        found = _masses(wet, many[going], np.abs(seen), gravity)
+        found = _masses(model, wet, many[going], np.abs(seen), gravity)
         far = np.abs(found - mass[going]).max(axis=1) > _AGREES * small.max()
         going, found = going[far], found[far]
         if not going.size:
@@ -95,17 +98,42 @@ def wet_states(
     shape = spin.size, len(starts)
     own = each.reshape(*shape, *each.shape[1:])
     kept = (rests & agrees).reshape(shape)
-    share = _added(system, wet, small)
-    states = collected(machine, spin, own, places.reshape(*shape, -1), kept, share)
-    return _with_liquid(system, fills, wet, states, gravity)
+    states = collected(machine, spin, own, places.reshape(*shape, -1), kept, _in_step(system, wet, small))
+    return _with_liquid(model, system, fills, wet, states, gravity)
 
 
-def _masses(wet: Sequence[Fill], spin: Array, deflection: Array, gravity: float) -> Array:
+def in_step(
+    system: RotorSystem,
+    fills: Sequence[Fill],
+    speed: float,
+    gravity: float = 0.0,
+    model: LiquidModel = STATICS,
+) -> RotorSystem:
+    """The rotor with its liquid as a mass in step with the axis, for small motions about a balanced state.
+
+    [theory: races, eq. 8]
+
+    Parameters
+    ----------
+    system : the dry rotor
+    fills : chambers with their liquid, any number
+    speed : Omega, rad/s
+    gravity : along the axis, m/s^2
+    model : of the liquid
+    """
+    wet = [fill for fill in fills if fill.volume > 0.0]
+    if not wet:
+        return system
+    masses = _masses(model, wet, np.array([speed]), np.zeros((1, len(wet))), gravity)
+    return replace(system, mass=system.mass + _in_step(system, wet, masses)[0])
+
+
+def _masses(model: LiquidModel, wet: Sequence[Fill], spin: Array, deflection: Array, gravity: float) -> Array:
     """Unbalance of each liquid over the deflection, kg, shape (p, l)."""
     found = np.zeros(deflection.shape)
     for j, fill in enumerate(wet):
         whirls = Whirls.synchronous(spin, deflection[:, j], np.full(spin.size, gravity))
-        answer = STATICS.answer(Fills.of([fill]).at(np.zeros(spin.size, dtype=np.intp)), whirls)
+        answer = model.answer(Fills.of([fill]).at(np.zeros(spin.size, dtype=np.intp)), whirls)
         slope, moved = answer.slope, deflection[:, j] > 0.0
         found[:, j] = np.divide(answer.unbalance.real, deflection[:, j], out=slope.copy(), where=moved)
     return found
@@ -120,13 +148,28 @@ def _added(system: RotorSystem, wet: Sequence[Fill], mass: Array) -> Complex:
     return total
 
 
+def _in_step(system: RotorSystem, wet: Sequence[Fill], mass: Array) -> Array:
+    """The liquid's share in the mass matrix in slow motion as seen from the rotor, shape (p, n, n).
+
+    It then answers as at rest in the rotor, in both directions; the backward whirl of synchronous motion on
+    unlike supports is none of these.
+    """
+    planes = np.array([system.at(fill.chamber.plane) for fill in wet])
+    return np.asarray(np.einsum("pj,jai,jak->pik", mass, planes, planes))
+
+
 def _seen(system: RotorSystem, fills: Sequence[Fill], coordinates: Complex) -> Complex:
     """Forward deflection of each chamber's axis, m, shape (..., l)."""
     return np.asarray(0.5 * coordinates @ directions(system, fills).conj().T)
 
 
 def _with_liquid(
-    system: RotorSystem, fills: Sequence[Fill], wet: Sequence[Fill], states: BallStates, gravity: float
+    model: LiquidModel,
+    system: RotorSystem,
+    fills: Sequence[Fill],
+    wet: Sequence[Fill],
+    states: BallStates,
+    gravity: float,
 ) -> WetStates:
     """Where the liquid is in each state."""
     shape = states.kind.shape
@@ -138,7 +181,7 @@ def _with_liquid(
             continue
         size = np.abs(seen[..., j]).reshape(-1)
         whirls = Whirls.synchronous(many, size, np.full(many.size, gravity))
-        answer = STATICS.answer(Fills.of([fill]).at(np.zeros(many.size, dtype=np.intp)), whirls)
+        answer = model.answer(Fills.of([fill]).at(np.zeros(many.size, dtype=np.intp)), whirls)
         along = np.exp(1j * np.angle(seen[..., j]))
         moment[..., j] = answer.unbalance.reshape(shape) * along
         dry |= answer.dry_patch.reshape(shape)

@@ -53,10 +53,11 @@ def test_commands_keep_what_another_scene_gave(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Capture
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    text = (EXAMPLES / "vibratory_table.toml").read_text(encoding="utf-8")
+    text = (EXAMPLES / "spindle.toml").read_text(encoding="utf-8")
+    text = text.replace('"Spindle unit on its test rig"', '"Spindle"')
     for name in ("a.toml", "b.toml"):
         Path(name).write_text(text, encoding="utf-8")
-    report = tmp_path / "out" / "Vibratory table" / "summary.html"
+    report = tmp_path / "out" / "Spindle" / "summary.html"
     assert main(["run", "a.toml"]) == 0
     checksum = hashlib.sha256(report.read_bytes()).hexdigest()
     assert made(report.parent)["run"]["files"]["summary.html"] == checksum  # type: ignore[index]
@@ -64,8 +65,8 @@ def test_commands_keep_what_another_scene_gave(
     capsys.readouterr()
 
     assert main(["run", "b.toml"]) == 0
-    aside = "out/Vibratory table (2)"
-    told = f"out/Vibratory table: what ../../a.toml gave, a scene of the same name, is now in {aside}"
+    aside = "out/Spindle (2)"
+    told = f"out/Spindle: what ../../a.toml gave, a scene of the same name, is now in {aside}"
     assert told in capsys.readouterr().err.splitlines()
     assert (Path(aside) / report.name).stat().st_mtime_ns == before
     assert made(report.parent)["run"]["scene"] == "../../b.toml"
@@ -74,7 +75,7 @@ def test_commands_keep_what_another_scene_gave(
     assert main(["run", "b.toml"]) == 0  # the same again
     shutil.move("b.toml", "c.toml")
     assert main(["run", "c.toml"]) == 0  # the same file by another name: nothing else could be overwritten
-    assert {path.name for path in Path("out").iterdir()} == {"Vibratory table", "Vibratory table (2)"}
+    assert {path.name for path in Path("out").iterdir()} == {"Spindle", "Spindle (2)"}
 
 
 def test_what_another_scene_gave_comes_back_from_a_command_that_fails_at_once(folder: Path) -> None:

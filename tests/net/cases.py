@@ -14,7 +14,7 @@ ROTORS = (
 )
 WHOLE = ("two_plane_rig", "vertical_rig", "centrifuge", "runup")  # run-ups held to their end
 BALLS = ("balls", "balls_and_liquid")
-_NOT_BALLS = ("explain", "map", "optimise", "view", "trade")
+_NOT_BALLS = ("explain", "optimise", "trade")
 DOCS = ("closed_baffles", "lobes", "smallest_scene")
 COMMANDS = (
     *(
@@ -160,6 +160,13 @@ def _maps() -> Iterator[Case]:
         yield _case(f"map-{name}", f"map {_scene(name)} {_GRID} --json --out out")
     friction = "--friction linear:0.5 --max-volume 20ml"
     yield _case("map-friction", f"map small/horizontal_rig.toml {_GRID} {friction} --json --out out")
+    for name in (*BALLS, "long_rotor"):
+        grid = "--values 5 --speeds 7"
+        yield _case(f"map-{name}", f"map {_scene(name)} {grid} --json --out out")
+    typed = (
+        f"map {_scene('balls')} --over rotor.unbalance --to 1e-3 --state light --values 5 --speeds 7 --json"
+    )
+    yield _case("map-balls_light", f"{typed} --out out")
     wall = "--friction wall --max-volume 20ml"
     yield _case("map-wall", f"map small/horizontal_rig.toml {_GRID} {wall} --json --out out")
 
@@ -237,8 +244,9 @@ def _modes() -> Iterator[Case]:
 
 
 def _views() -> Iterator[Case]:
-    for name in ("vibratory_table", *ROTORS, *DOCS):
+    for name in ("vibratory_table", *BALLS, "long_rotor", *ROTORS, *DOCS):
         yield _case(f"view-{name}", f"view {_scene(name)} --json --out out", needs="screen")
+    yield _case("view-spindle", f"view {_scene('spindle')} --mode 2 --json --out out", needs="screen")
     yield _case(
         "view-mode",
         "view examples/centrifuge.toml --mode 1 --screenshot mode.png --json --out out",
@@ -326,7 +334,7 @@ def _wrong() -> Iterator[Case]:
         "view-magnetic": f"view {pump}",
         **{
             f"{name}-spindle": f"{name} {_scene('spindle')}"
-            for name in ("explain", "map", "runup", "optimise", "view", "trade")
+            for name in ("explain", "map", "runup", "optimise", "trade")
         },
         "compare-spindle": f"compare {_scene('spindle')} --models statics",
         "bearing-nothing": "bearing --speed 33Hz",
@@ -335,6 +343,9 @@ def _wrong() -> Iterator[Case]:
         **{f"{command}-balls": f"{command} {_scene('balls_and_liquid')}" for command in _NOT_BALLS},
         "compare-balls": f"compare {_scene('balls')} --models statics",
         "runup-missing": f"runup {smallest}",
+        "map-over": f"map {_scene('balls')} --over rotor.beauty",
+        "map-balls-volumes": f"map {_scene('balls')} --volumes 3",
+        "map-values": f"map {rig} --values 3",
         "map-volumes": f"map {rig} --volumes 0",
         "map-friction": f"map {rig} --friction sticky",
         "compare-exciter": f"compare {table} --models statics",

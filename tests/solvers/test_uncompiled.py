@@ -20,6 +20,7 @@ ROOT = Path(__file__).parents[2]
             "layer/uncompiled_drag",
             "layer/uncompiled_baffles",
             "layer/uncompiled_inside",
+            "runup/uncompiled_balls",
             "runup/uncompiled_long_wave",
             "runup/uncompiled_linear",
             "runup/uncompiled_pool",

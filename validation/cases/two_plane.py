@@ -9,13 +9,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from solvers.rotor.balls.balancers import simulate
-from solvers.rotor.two_plane import TwoPlane
-from solvers.rotor.two_plane_balance import (
+from solvers.rotor.balls.two_plane_balance import (
     RigidRotor,
     dynamic_balancing,
     of_two_planes,
     potential_hessian,
 )
+from solvers.rotor.two_plane import TwoPlane
 from validation.cases import two_plane_damping, two_plane_layers
 from validation.cases.case import Case
 from validation.cases.two_plane_machine import BALLS, LONG, RACES, SCATTERED, SHORT, bare_deflection

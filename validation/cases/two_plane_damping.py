@@ -20,8 +20,8 @@ from solvers.rotor.balls.balancers import race_arrays, simulate
 from solvers.rotor.balls.stability import balanced_stability, linearised
 from solvers.rotor.balls.states import balanced_places, quarter_turn
 from solvers.rotor.balls.steps import advance
+from solvers.rotor.balls.two_plane_balance import dynamic_balancing, of_two_planes
 from solvers.rotor.two_plane import TwoPlane
-from solvers.rotor.two_plane_balance import dynamic_balancing, of_two_planes
 from validation.cases.case import Case
 from validation.cases.two_plane_machine import BALLS, LONG, RACES, SCATTERED, bare_deflection
 

@@ -11,8 +11,8 @@ from fluid.friction.laws import Friction, FrictionLaw
 from fluid.liquid import Liquid
 from meshes.arrays import Array
 from meshes.chamber import Chamber
+from solvers.rotor.balls.two_plane_balance import dynamic_balancing, of_two_planes
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
-from solvers.rotor.two_plane_balance import dynamic_balancing, of_two_planes
 from solvers.rotor.vibration import unbalance_response
 from solvers.runup.machine import Ramp
 from solvers.runup.runup import RunupNumerics, run_up

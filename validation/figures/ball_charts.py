@@ -1,7 +1,8 @@
 """Charts of stability of ball balancers: `python -m validation.figures.ball_charts`.
 
-The long rotor of `leblanc validate two_plane` over speed and damping of its supports, and the dimensionless
-machine of the literature [RCFW08] over speed, unbalance and damping. Charts and tables are computed here
+The long rotor of `leblanc validate two_plane` over speed and damping of its supports, the dimensionless
+machine of the literature [RCFW08] over speed, unbalance and damping, and both kinds of states of the rotor of
+`examples/balls.toml`. Charts and tables are computed here
 alone: the source prints curves, of which no numbers are at hand.
 """
 
@@ -19,11 +20,12 @@ from numpy.typing import ArrayLike
 from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save, style
 from meshes.arrays import Array
 from solvers.rotor.balls.balancers import BallRace
-from solvers.rotor.balls.charts import Chart, Crossing, Machine, stability_chart
+from solvers.rotor.balls.charts import Chart, Crossing, Machine, State, stability_chart
 from solvers.rotor.balls.stability import balanced_stability
+from solvers.rotor.balls.two_plane_balance import dynamic_balancing, of_two_planes
+from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import RotorSystem
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
-from solvers.rotor.two_plane_balance import dynamic_balancing, of_two_planes
 from validation.cases.two_plane_damping import DAMPINGS, SIDES, damped, edge
 from validation.cases.two_plane_machine import BALLS, LONG, RACES
 
@@ -100,6 +102,30 @@ def reference_charts(values: int = 21) -> tuple[Chart, Chart]:
     return (
         stability_chart(unbalanced, speeds, np.linspace(0.1, 1e5 * _MOST, values)),
         stability_chart(held, speeds, np.linspace(1e-3, 0.2, values)),
+    )
+
+
+def state_charts(values: int = 25) -> tuple[Chart, Chart, Chart]:
+    """The rotor of `examples/balls.toml` over speed, rad/s, and what two balls hold over the unbalance.
+
+    The balanced state, both balls together behind the unbalance, and both together near its other side.
+
+    Parameters
+    ----------
+    values : of the speed; two in three of the second
+    """
+
+    def family(speed: float, ratio: float) -> Machine:
+        mass = ratio * 6e-4 / (2.0 * 0.065)
+        race = BallRace(0.0, 0.065, (mass, mass), 0.1)
+        return Machine(Jeffcott(4.0, 4.4e4, 84.0, 6e-4).system(), (race,), speed)
+
+    ratios, enough = np.linspace(0.21, 2.17, 2 * values // 3), np.linspace(1.0, 2.17, values // 2)
+    slow, fast = np.linspace(40.0, 104.0, values), np.linspace(104.0, 250.0, values)
+    return (
+        stability_chart(family, np.linspace(40.0, 250.0, 2 * values), enough),
+        stability_chart(family, slow, ratios, State([-1.1, -1.1])),
+        stability_chart(family, fast, ratios, State([-2.3, -2.3])),
     )
 
 
@@ -215,6 +241,45 @@ def reference_figure(directory: Path) -> Path:
     return save(figure, directory, "balls_reference", "Stability of the reference machine").png
 
 
+def states_figure(directory: Path) -> Path:
+    """Balanced state and balls together, over speed and what the balls hold.
+
+    Parameters
+    ----------
+    directory : where the PNG and SVG go
+    """
+    balanced, slow, fast = state_charts()
+    with style():
+        figure = Figure()
+        panels: list[Any] = [figure.add_axes((0, 0, 1, 1), label=str(k)) for k in range(2)]
+        _draw(panels[0], balanced)
+        _draw(panels[1], slow)
+        _draw(panels[1], fast)
+        words = (
+            ("balanced", ((145.0, 0.6, "not enough balls"), (80.0, 1.6, "unstable"), (180.0, 1.6, "stable"))),
+            ("both balls together", ((65.0, 1.3, "stable"), (107.0, 1.9, "none"), (190.0, 1.6, "unstable"))),
+        )
+        for axes, (name, places) in zip(panels, words, strict=True):
+            for x, y, word in places:
+                axes.text(
+                    x, y, word, ha="center", bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.5}
+                )
+            axes.set_xlim(balanced.first[0], balanced.first[-1])
+            axes.set_ylim(slow.second[0], slow.second[-1])
+            axes.set_xlabel("Speed (rad/s)")
+            axes.set_ylabel("Capacity over unbalance (\N{EN DASH})")
+            axes.set_title(name)
+        text = (
+            "Two balls on the rotor of examples/balls.toml, critical speed 105 rad/s: states by "
+            "the roots of small motions, stable where hatched. Left: balls that take all unbalance "
+            "away. Right: both in one place, where they stay below the critical speed, and above "
+            "it if they do not suffice; between the dashed curves no such state exists."
+        )
+        lay_out(figure, [panels], [2.7], replace(_FRAME, top=0.35), text)
+        _part(panels)
+    return save(figure, directory, "balls_charts", "Stability of two states").png
+
+
 def _part(panels: Sequence[Any]) -> None:
     """Room for the labels between two plots side by side."""
     for axes in panels:
@@ -240,12 +305,13 @@ def table() -> str:
 
 
 def main() -> None:
-    """Draw both figures and print the table."""
+    """Draw the figures and print the table."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--out", type=Path, default=Path("docs/images"))
     parser.add_argument("--table", action="store_true", help="print the table as well")
     options = parser.parse_args()
-    for path in (damping_figure(options.out), reference_figure(options.out)):
+    for draw in (damping_figure, reference_figure, states_figure):
+        path = draw(options.out)
         path.with_suffix(".svg").unlink()
         print(path)
     if options.table:

@@ -11,8 +11,8 @@ import numpy as np
 from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save, style
 from leblanc.units import MM
 from solvers.rotor.balls.balancers import simulate
+from solvers.rotor.balls.two_plane_balance import dynamic_balancing, of_two_planes
 from solvers.rotor.two_plane import TwoPlane
-from solvers.rotor.two_plane_balance import dynamic_balancing, of_two_planes
 from validation.cases.two_plane_machine import BALLS, LONG, RACES, SCATTERED, SHORT, bare_deflection
 
 _FRAME = Frame(left=0.74, top=0.3, between=0.42, below=0.45)

@@ -86,6 +86,10 @@ def questions(scene: Scene, quick: bool = False, layer: bool | None = None) -> t
     """
     if isinstance(scene.rotor, Exciter):
         return (exciter_question(scene, quick),)
+    if scene.balls:
+        # The states in which balls rest are found in one way only; steps of a run-up go with the cells.
+        planned(scene)
+        return (runup_question(scene, quick),)
     found = [response_question(scene, quick)]
     if scene.runup is not None:
         found.append(runup_question(scene, quick))
@@ -252,15 +256,17 @@ def _flank(amplitude: Array, top: int, way: int) -> int | None:
 def runup_question(scene: Scene, quick: bool = False) -> Question:
     """The passage of the largest vibration of a scene's run-up.
 
-    Best are the long waves on the finest cells, with dispersion if the scene has it.
+    Best are the long waves on the finest cells, with dispersion if the scene has it. Without liquid the cells
+    say how far the rotor turns in a step.
     """
     plan, about = passage(scene)
     cut = scene.altered(runup=plan)
     cells = _enough(_doubled(QUICK_CELLS if quick else CELLS, 2 * plan.cells), scene)
     own = DISPERSION if plan.dispersion else ""
     ladder = tuple(Case(RUNUP, "long_wave", n, own) for n in reversed(cells))
-    layers = [Case(RUNUP, "long_wave", n, variant) for variant in ("", DISPERSION) for n in cells]
-    linear = () if is_cut(scene) else (Case(RUNUP, "linear"),)
+    variants = ("", DISPERSION) if scene.fills else ("",)
+    layers = [Case(RUNUP, "long_wave", n, variant) for variant in variants for n in cells]
+    linear = () if is_cut(scene) or scene.balls else (Case(RUNUP, "linear"),)
     cases = (Case(RUNUP, "auto"), *linear, *layers)
     return Question(RUNUP, cut, about, cases, ladder[0], ladder[:3])
 

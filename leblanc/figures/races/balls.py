@@ -19,6 +19,7 @@ from leblanc.figures.drawing.page import (
     save,
     style,
 )
+from leblanc.figures.machine import machine_figure
 from leblanc.figures.response import DRY, WET
 from leblanc.results.base import one_line
 from leblanc.results.motion.ball_states import BallsResult
@@ -55,19 +56,36 @@ def balls_figure(result: BallsResult) -> Figure:
         above.tick_params(labelbottom=False)
         below.set_xlabel("Speed (rpm)")
         add_rate_axis(above, "Speed (rad/s)")
-        lay_out(figure, [[above], [below]], [2.3, 1.6], FRAME, _caption(result), most_lines=6)
+        zero = "the unbalance" if result.kind == "jeffcott" else "angle 0 of the unbalances"
+        text = f"{answer(result)} Zero mark: {zero}."
+        lay_out(figure, [[above], [below]], [2.3, 1.6], FRAME, _caption(result, text), most_lines=6)
     return figure
 
 
-def write_balls_figure(result: BallsResult, directory: Path) -> FigureFiles:
-    """Draw the figure and write it as PNG and SVG.
+def write_balls_figures(result: BallsResult, directory: Path) -> tuple[FigureFiles, ...]:
+    """Draw the figures and write each as PNG and SVG.
 
     Parameters
     ----------
     result : the answer
     directory : where the files go; made if it is missing
     """
-    return save(balls_figure(result), directory, "balls", TITLE)
+    found = [save(balls_figure(result), directory, "balls", TITLE)]
+    if result.loads is not None:
+        title = "Clearances and forces on the floor"
+        found.append(save(loads_figure(result), directory, "machine", title))
+    return tuple(found)
+
+
+def loads_figure(result: BallsResult) -> Figure:
+    """Clearances, forces under the feet, margin against walking and torque of the stable states over speed.
+
+    Parameters
+    ----------
+    result : the answer, of a scene with a cabinet, points or bearings
+    """
+    assert result.loads is not None
+    return machine_figure(result.loads, lambda text: _caption(result, f"{text} Stable states only."))
 
 
 def _draw_amplitudes(axes: Any, result: BallsResult) -> None:
@@ -106,12 +124,11 @@ def _draw_angles(axes: Any, result: BallsResult) -> None:
     axes.set_ylabel("Angle from the\nzero mark (deg)")
 
 
-def _caption(result: BallsResult) -> Caption:
+def _caption(result: BallsResult, text: str) -> Caption:
     assumed = ", ".join(map(one_line, result.assumed)) or "nothing"
-    zero = "the unbalance" if result.kind == "jeffcott" else "angle 0 of the unbalances"
     count = sum(race.count for race in result.races)
     return Caption(
-        f"{answer(result)} Zero mark: {zero}.",
+        text,
         f"Scene: {one_line(result.name)}, {result.axis} axis, {count} ball{'' if count == 1 else 's'}. "
         f"Assumed: {assumed}.",
     )

@@ -8,8 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.results.motion.encoding import finite
-from leblanc.results.netcdf import Variable
+from leblanc.results.netcdf import Variable, finite
 from leblanc.results.netcdf import variable as var
 from meshes.arrays import Array, Index
 from solvers.rotor.loads.turn import Extremes

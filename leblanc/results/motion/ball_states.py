@@ -3,21 +3,42 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.results.base import Note, Result, attributes, one_line, texts
+from leblanc.results.base import Note, Result, attributes, carried, one_line, texts
 from leblanc.results.exciter import number_or_none
-from leblanc.results.motion.balls import RaceOfBalls, ball_moment
-from leblanc.results.netcdf import NamedArrays, flags
+from leblanc.results.machine.loads import MachineLoads
+from leblanc.results.motion.balls import GravityOnBalls, RaceOfBalls, ball_moment
+from leblanc.results.motion.closed_forms import ClosedForms
+from leblanc.results.netcdf import NamedArrays, Variable, finite, flags
 from leblanc.results.netcdf import variable as var
 from meshes.arrays import Array, Complex, Flags, Index
 from solvers.rotor.balls.steady import BallKind, BallStates
 
 STATE_NAMES: Mapping[int, str] = {kind: kind.name.lower() for kind in BallKind}
+
+
+def reported_state(states: BallStates, sizes: Array) -> Index:
+    """Which state is reported at each speed, shape (s,): of the stable ones that with the largest amplitude.
+
+    Where none is stable it is the one whose small motions grow least; -1 where none was found.
+
+    Parameters
+    ----------
+    states : all that were found
+    sizes : amplitude of each, m, shape (s, b)
+    """
+    if states.kind.shape[1] == 0:
+        return np.full(states.speed.shape, -1)
+    largest = np.argmax(np.where(states.stable, sizes, -1.0), axis=1)
+    growth = np.where(states.kind > 0, np.nan_to_num(states.growth, nan=np.inf), np.inf)
+    least = np.argmin(growth, axis=1)
+    found = np.where(states.stable.any(axis=1), largest, least)
+    return np.where((states.kind > 0).any(axis=1), found, -1)
 
 
 @dataclass(frozen=True)
@@ -43,6 +64,16 @@ class BallsResult(Result):
     can_balance : the balls can take all unbalance away
     sticking : deflection in the plane of each race below which its balls stay where they are, m
     notes : limits of validity and findings
+    loads : forces and clearances of the state reported where it is stable; None where the scene asks for none
+    closed_forms : what the sources' closed forms say of the rotor
+    liquid_model : name of the liquid's model; empty without liquid
+    error_estimate : estimated relative error of the state reported by that model, of amplitude and liquid the
+        larger one, the balls held where they are, shape (s,); None without liquid
+    in_range : gravity across the axis leaves liquid and balls on their walls, shape (s,); None where it does
+        not act
+    capture_speed : above which a ring of liquid stands against it, rad/s; None where it does not act
+    gravity : what it does to the balls; None where it does not act
+    tolerance : relative error that the scene allows
 
     Examples
     --------
@@ -77,6 +108,17 @@ class BallsResult(Result):
     can_balance: bool
     sticking: tuple[float, ...]
     notes: tuple[Note, ...]
+    loads: MachineLoads | None = None
+    closed_forms: ClosedForms = field(default_factory=ClosedForms)
+    liquid_model: str = ""
+    error_estimate: Array | None = None
+    in_range: Flags | None = None
+    capture_speed: float | None = None
+    gravity: GravityOnBalls | None = None
+    tolerance: float | None = None
+
+    balancing = carried("closed_forms.balancing")
+    cage_speed = carried("closed_forms.cage_speed")
 
     @property
     def speed(self) -> Array:
@@ -94,12 +136,7 @@ class BallsResult(Result):
 
         Where none is stable it is the one whose small motions grow least; -1 where none was found.
         """
-        stable = self.states.stable
-        largest = np.argmax(np.where(stable, self.sizes, -1.0), axis=1)
-        growth = np.where(self.states.kind > 0, np.nan_to_num(self.states.growth, nan=np.inf), np.inf)
-        least = np.argmin(growth, axis=1)
-        found = np.where(stable.any(axis=1), largest, least)
-        return np.where((self.states.kind > 0).any(axis=1), found, -1)
+        return reported_state(self.states, self.sizes)
 
     def _of_chosen(self, values: NDArray[Any], missing: Any) -> NDArray[Any]:
         """Values of the states that are reported."""
@@ -178,7 +215,7 @@ class BallsResult(Result):
     @property
     def model(self) -> NDArray[np.str_]:
         """What answers at each speed, shape (s,)."""
-        return np.full(self.speed.shape, "balls and statics" if self.liquid_mass > 0.0 else "balls")
+        return np.full(self.speed.shape, f"balls and {self.liquid_model}" if self.liquid_model else "balls")
 
     @property
     def balanced(self) -> Flags:
@@ -207,7 +244,23 @@ class BallsResult(Result):
             "balanced_from": number_or_none(self.balanced_from),
             "states": [self._states_at(k) for k in range(self.speed.size)],
             "notes": texts(self.notes),
+            **({} if self.loads is None else self.loads.to_json()),
+            **self.closed_forms.to_json(),
+            **({} if self.error_estimate is None else {"error_estimate": finite(self.error_estimate)}),
+            **({} if self.in_range is None else {"in_range": self.in_range.tolist()}),
+            **({} if self.gravity is None else {"gravity": self.gravity.to_json()}),
         }
+
+    def _estimates(self) -> dict[str, Variable]:
+        """Arrays of what the states leave out."""
+        found = {} if self.gravity is None else self.gravity.variables()
+        if self.error_estimate is not None:
+            text = "by the liquid's model, the balls held where they are"
+            found["error_estimate"] = var(("speed",), self.error_estimate, "1", "estimated error", text)
+        if self.in_range is not None:
+            text = "gravity leaves liquid and balls on their walls"
+            found["in_range"] = flags(("speed",), self.in_range, "no yes", "in range", text)
+        return found
 
     def _states_at(self, k: int) -> list[dict[str, Any]]:
         """All states at one speed."""
@@ -242,6 +295,9 @@ class BallsResult(Result):
                 "state_kind": var(every, self.states.kind.astype(np.int32), "1", f"0 to 3: {kinds}"),
                 "state_amplitude": var(every, self.sizes, "m", "amplitude of each state found"),
                 "state_growth": var(every, self.states.growth, "s-1", "its growth of small motions"),
+                **({} if self.loads is None else self.loads.variables()),
+                **self.closed_forms.variables(),
+                **self._estimates(),
             },
             coords={"speed": var(over, self.speed, "rad s-1", "spin speed")},
             attrs=attributes(

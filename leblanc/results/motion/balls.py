@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
+from leblanc.results.netcdf import Variable, finite, variable
 from meshes.arrays import Array, Complex
 
 
@@ -28,6 +30,38 @@ class RaceOfBalls:
     plane: float
     radius: float
     diameter: float | None = None
+
+
+@dataclass(frozen=True)
+class GravityOnBalls:
+    """What gravity across the axis does to N balls that rest in a drum, at s speeds [theory: races, eq. 11].
+
+    Parameters
+    ----------
+    share : gravity over the centrifugal acceleration of the balls that have least of it, shape (s,)
+    ball_swing : amplitude of each ball's angle about its place, once a turn, rad, shape (s, N)
+    amplitude : by which the axis is shaken with twice the spin, m, shape (s,)
+    """
+
+    share: Array
+    ball_swing: Array
+    amplitude: Array
+
+    def to_json(self) -> dict[str, Any]:
+        """Plain values over the speeds, SI."""
+        return {name: finite(getattr(self, name)) for name in ("share", "ball_swing", "amplitude")}
+
+    def variables(self) -> dict[str, Variable]:
+        """Arrays over `speed` and `ball`."""
+        over = ("speed",)
+        text = "of gravity across the axis, about the place at rest"
+        return {
+            "gravity_share": variable(over, self.share, "1", "gravity over centrifugal acceleration"),
+            "ball_swing": variable(("speed", "ball"), self.ball_swing, "rad", "swing of the ball", text),
+            "swing_amplitude": variable(
+                over, self.amplitude, "m", "shake by the balls' swing", "twice a turn"
+            ),
+        }
 
 
 def ball_moment(races: Sequence[RaceOfBalls], angle: Array) -> Complex:

@@ -8,11 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.results.motion.encoding import finite
-from leblanc.results.netcdf import Variable, flags
+from leblanc.results.netcdf import Variable, finite, flags
 from leblanc.results.netcdf import variable as var
 from meshes.arrays import Array, Flags
-from solvers.rotor.two_plane_balance import Balancing
+from solvers.rotor.balls.two_plane_balance import Balancing
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from leblanc.results.motion.encoding import finite
-from leblanc.results.netcdf import Variable, flags
+from leblanc.results.netcdf import Variable, finite, flags
 from leblanc.results.netcdf import variable as var
 from meshes.arrays import Array, Flags
 

@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.results.motion.encoding import finite, pair
-from leblanc.results.netcdf import Variable, flags
+from leblanc.results.netcdf import Variable, finite, flags, pair
 from leblanc.results.netcdf import variable as var
 from meshes.arrays import Array, Complex, Flags
 from solvers.held.state import COUPLED

@@ -1,9 +1,12 @@
-"""Notes of a rotor with balls at rest in the drum."""
+"""Notes of a rotor with balls at rest in the drum, and of charts of their stability."""
 
 from __future__ import annotations
 
-from leblanc.results.base import Note, NoteCode
-from leblanc.units import LENGTH, UNBALANCE, in_rpm, with_unit
+import math
+from collections.abc import Sequence
+
+from leblanc.results.base import Note, NoteCode, percent
+from leblanc.units import LENGTH, UNBALANCE, in_rpm, number, over_rpm, with_unit
 
 
 class BallCode(NoteCode):
@@ -17,6 +20,12 @@ class BallCode(NoteCode):
     LIQUID_IN_STEP = "liquid_in_step"
     COVERED = "covered"
     RUNS_ON = "runs_on"
+    FREE = "free_balls"
+    NOT_THERE = "not_there"
+    BETWEEN_LINES = "between_lines"
+    IN_RATIO = "in_ratio"
+    LOADS_OF_STATES = "loads_of_states"
+    LIQUID_WAVES = "liquid_waves"
 
 
 def capacity(enough: bool, most: float) -> Note:
@@ -58,10 +67,27 @@ def sticks(deflection: float) -> Note:
     return Note(BallCode.STICKS, {"deflection": deflection}, text)
 
 
-def lies() -> Note:
-    """Gravity across the axis turns in the drum."""
-    text = "Gravity across the axis is left out: it turns in the drum and swings the balls. A run-up has it."
-    return Note(BallCode.LIES, {}, text)
+def lies(rows: Sequence[tuple[float, float, float, float]]) -> Note:
+    """Gravity across the axis turns in the drum.
+
+    Parameters
+    ----------
+    rows : at some speeds the speed, rad/s, gravity over the balls' centrifugal acceleration, the largest
+        swing of a ball, rad, nan where it is not known, and what that shakes the axis by, m; none where
+        sizes are not told
+    """
+    told = []
+    for speed, share, swing, moved in dict.fromkeys(rows):
+        text = f"at {in_rpm(speed)} it is {percent(share)} of what presses a ball to its race"
+        if math.isfinite(swing):
+            text += (
+                f", balls swing by up to {number(math.degrees(swing))} deg once a turn and shake the axis by "
+                f"{with_unit(moved, LENGTH)} with twice the spin"
+            )
+        told.append(text)
+    sizes = f": {'; '.join(told)}" if told else ", and turns in the drum"
+    text = f"Gravity across the axis is left out of the states{sizes}. A run-up has all of it."
+    return Note(BallCode.LIES, {"rows": tuple(rows)}, text)
 
 
 def uneven_supports() -> Note:
@@ -73,13 +99,19 @@ def uneven_supports() -> Note:
     return Note(BallCode.UNEVEN, {}, text)
 
 
-def liquid_in_step() -> Note:
-    """How the liquid enters the growth."""
+def liquid_in_step(model: str) -> Note:
+    """How the liquid enters the growth.
+
+    Parameters
+    ----------
+    model : of the liquid in the states
+    """
+    how = "linear theory, a full chamber's mass" if model == "linear" else "its exact equilibrium"
     text = (
-        "In the states the liquid is in its exact equilibrium. In the growth of small motions it is a mass "
+        f"In the states the liquid is in {how}. In the growth of small motions it is a mass "
         "in step with the axis: whirls that the liquid itself excites are told by the scene without balls."
     )
-    return Note(BallCode.LIQUID_IN_STEP, {}, text)
+    return Note(BallCode.LIQUID_IN_STEP, {"model": model}, text)
 
 
 def runs_on(first: float, last: float) -> Note:
@@ -90,7 +122,7 @@ def runs_on(first: float, last: float) -> Note:
     first, last : of them, rad/s
     """
     text = (
-        f"At speeds from {in_rpm(first)} to {in_rpm(last)} no state in which all balls rest is stable: they "
+        f"{over_rpm(first, last).capitalize()} no state in which all balls rest is stable: they "
         "run in their races. What is told there is the state that small motions leave most slowly; a run-up "
         "shows the motion itself."
     )
@@ -104,3 +136,81 @@ def covered() -> Note:
         "turns with the drum."
     )
     return Note(BallCode.COVERED, {}, text)
+
+
+def free_balls() -> Note:
+    """Which motions of the balls do not count."""
+    text = (
+        "Balls that the balance does not need may move freely without unbalancing the rotor: no instability."
+    )
+    return Note(BallCode.FREE, {}, text)
+
+
+def not_there(share: float, state: str) -> Note:
+    """Where a chart has nothing to judge.
+
+    Parameters
+    ----------
+    share : of the points
+    state : balanced, heavy or light
+    """
+    where = f"At {number(100.0 * share)} % of the points there is no such state: "
+    why = (
+        "the balls are too light for the unbalance." if state == "balanced" else "the balls stand elsewhere."
+    )
+    return Note(BallCode.NOT_THERE, {"share": share}, where + why)
+
+
+def between_lines() -> Note:
+    """What a grid can miss."""
+    text = (
+        "A curve is sought wherever two neighbours of the grid differ and followed from there: one that "
+        "passes between the lines of the grid is not seen, and one on which several roots pass at once is "
+        "not drawn."
+    )
+    return Note(BallCode.BETWEEN_LINES, {}, text)
+
+
+def in_ratio(paths: Sequence[str]) -> Note:
+    """Several numbers vary together.
+
+    Parameters
+    ----------
+    paths : of them
+    """
+    verb = "keeps its" if len(paths) == 2 else "keep their"
+    text = f"{', '.join(paths[1:])} {verb} ratio to {paths[0]}."
+    return Note(BallCode.IN_RATIO, {"paths": tuple(paths)}, text)
+
+
+def loads_of_states() -> Note:
+    """Of which motion forces and clearances are."""
+    text = (
+        "Forces and clearances are those of the stable state that is told, at the speeds of the scene; where "
+        "the balls run they are not known, and a run-up shows them."
+    )
+    return Note(BallCode.LOADS_OF_STATES, {}, text)
+
+
+def liquid_waves(speed: float, amplitude: float, ripple: float, liquid: float, worst: float) -> Note:
+    """What gravity across the axis does by waves in the liquid, the balls held where they rest.
+
+    Parameters
+    ----------
+    speed : the last, rad/s
+    amplitude, ripple : change of the amplitude's mean there, and by how much it goes up and down, relative;
+        nan where it is not known
+    liquid : by which the liquid's centre of mass goes round its mean in the drum there, m
+    worst : largest change of the mean at any speed of a stable state, relative
+    """
+    data = {"amplitude": amplitude, "ripple": ripple, "liquid": liquid, "worst": worst}
+    if not math.isfinite(amplitude):
+        text = f"What gravity's waves in the liquid do to the state at {in_rpm(speed)} is not known."
+        return Note(BallCode.LIQUID_WAVES, data, text)
+    text = (
+        f"At {in_rpm(speed)} gravity's waves in the liquid change the mean amplitude by {percent(amplitude)} "
+        f"and move it up and down by {percent(ripple)}, and the liquid's centre of mass goes round its mean "
+        f"in the drum by {with_unit(liquid, LENGTH)}; at the other speeds the mean changes by up to "
+        f"{percent(worst)}. These are estimates, with the balls held where they rest."
+    )
+    return Note(BallCode.LIQUID_WAVES, data, text)

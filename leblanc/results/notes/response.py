@@ -17,7 +17,7 @@ from leblanc.units import (
     RPM,
     VOLUME,
     in_rpm,
-    number,
+    over_rpm,
     rpm_bands,
     rpm_range,
     with_unit,
@@ -106,10 +106,9 @@ def tolerance_missed(choice: Choice, speed: Array, cost: HeldCost | None = None)
     (first, last), worst = speed[missed][[0, -1]], choice.error[missed].max()
     size = f"up to {percent(worst)}" if np.isfinite(worst) else "without a bound"
     whose = " of the model asked for" if choice.prescribed else ""
-    text = (
-        f"Between {number(first * RPM)} and {in_rpm(last)} the estimated error{whose} is {size}, more than "
-        f"the tolerance of {percent(choice.tolerance)}."
-    )
+    where = over_rpm(first, last, "between", "and").capitalize()
+    limit = percent(choice.tolerance)
+    text = f"{where} the estimated error{whose} is {size}, more than the tolerance of {limit}."
     data = {"first": first, "last": last, "error": worst}
     if cost is not None and not cost.asked:
         text += f' [model] held = "auto" holds {cost.speeds} speeds in time, for {cost.words}.'
@@ -240,8 +239,7 @@ def _waves_words(held: Held) -> str:
 
 def _between(speed: Array) -> str:
     """First and last of some speeds."""
-    low, high = float(speed.min()), float(speed.max())
-    return f"at {in_rpm(low)}" if low == high else f"between {number(low * RPM)} and {in_rpm(high)}"
+    return over_rpm(float(speed.min()), float(speed.max()), "between", "and")
 
 
 def one_family(answer: Response) -> Note | None:
@@ -391,7 +389,7 @@ def several_answers(first: float, last: float, stable: bool) -> Note:
     """
     which = "largest stable one" if stable else "largest"
     text = (
-        f"Several deflections satisfy the balance between {number(first * RPM)} and {in_rpm(last)}; "
+        f"Several deflections satisfy the balance {over_rpm(first, last, 'between', 'and')}; "
         f"reported is the {which}, where a slow run-up arrives."
     )
     return Note(RunCode.SEVERAL_ANSWERS, {"first": first, "last": last}, text)

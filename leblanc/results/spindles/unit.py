@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from leblanc.results.base import Result, attributes
+from leblanc.results.motion.closed_forms import Cage
 from leblanc.results.netcdf import NamedArrays
 from leblanc.results.netcdf import variable as var
 from meshes.arrays import Array, Complex
@@ -57,6 +58,8 @@ class SpindleResult(Result):
     least_dissipation : smallest -Im of the compliance at the force over its size; not below 0 where joints
         only take energy
     source, digest : of the scene
+    rotation : of the spindle, rad/s; None where the scene does not say it
+    cages : of the joints whose balls are given, at that speed
 
     Examples
     --------
@@ -88,6 +91,13 @@ class SpindleResult(Result):
     least_dissipation: float
     source: str = ""
     digest: str = ""
+    rotation: float | None = None
+    cages: tuple[Cage, ...] = ()
+
+    @property
+    def cage_speed(self) -> dict[str, float]:
+        """Speed of each cage without slip, rad/s, by its joint."""
+        return {cage.name: float(cage.speed[0]) for cage in self.cages}
 
     @property
     def transmissibility(self) -> Complex:
@@ -134,6 +144,7 @@ class SpindleResult(Result):
                 for mode in self.modes
             ],
             "checks": self.checks,
+            **({"rotation": self.rotation, "cage_speed": self.cage_speed} if self.cages else {}),
         }
 
     def named_arrays(self) -> NamedArrays:

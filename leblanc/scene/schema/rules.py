@@ -176,9 +176,9 @@ class Entries:
 
 @dataclass(frozen=True)
 class Span:
-    """Two values of one quantity, the lower first."""
+    """Two values of one quantity, or two whole numbers, the lower first."""
 
-    each: Quantity
+    each: Quantity | Whole
 
     @property
     def allowed(self) -> str:
@@ -186,7 +186,7 @@ class Span:
         return f"a list of two, the second at least the first, each {self.each.allowed}"
 
     def __call__(self, value: object) -> tuple[float, float]:
-        """Both in SI units."""
+        """Both in SI units, whole numbers as they are."""
         if not isinstance(value, list | tuple) or len(value) != 2:
             raise Refused(self.allowed)
         low, high = map(self.each, value)

@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
 from fluid.printed import liquid_angle_as_printed
 from leblanc.results.motion.closed_forms import Cage, ClosedForms, VectorModel
+from leblanc.scene.bearings import CagedBearing
 from leblanc.scene.scene import Scene, TubRotor, TwoPlaneRotor
 from leblanc.studies.closed_forms.upright import lacking, upright
 from leblanc.studies.models.choose import Prepared
 from meshes.arrays import Array
 from meshes.errors import InputError
+from solvers.rotor.balls.two_plane_balance import Balancing, dynamic_balancing, of_two_planes
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import cage_speed
-from solvers.rotor.two_plane_balance import Balancing, dynamic_balancing, of_two_planes
 from solvers.rotor.vector_model import balance_angles, deflection_lag, unbalance_left
 from solvers.synchronous.response import Response
 
@@ -101,11 +103,14 @@ def _balancing(scene: Scene, speed: Array) -> tuple[Balancing | None, str | None
     if not isinstance(scene.rotor, TwoPlaneRotor):
         return None, None
     refused = "Conditions of balancing in two planes"
-    if len({fill.chamber.plane for fill in scene.fills if fill.volume > 0.0}) < 2:
-        return None, f"{refused}: liquid is in fewer than two planes."
-    liquid = sum(fill.mass for fill in scene.fills)
+    planes = [fill.chamber.plane for fill in scene.fills if fill.volume > 0.0]
+    planes += [race.plane for race in scene.balls]
+    if len(set(planes)) < 2:
+        what = "liquid and balls are" if scene.balls else "liquid is"
+        return None, f"{refused}: {what} in fewer than two planes."
+    added = sum(fill.mass for fill in scene.fills) + sum(sum(race.race().masses) for race in scene.balls)
     try:
-        rotor = of_two_planes(scene.rotor.machine(), liquid)
+        rotor = of_two_planes(scene.rotor.machine(), added)
     except InputError as error:
         return None, f"{refused}: {error}."
     return dynamic_balancing(rotor, speed), None
@@ -114,7 +119,7 @@ def _balancing(scene: Scene, speed: Array) -> tuple[Balancing | None, str | None
 def _no_balls(scene: Scene) -> str | None:
     """Why the speed of no cage is told, though there are bearings."""
     rotor = scene.rotor
-    if not isinstance(rotor, TubRotor) or not rotor.bearings or any(b.ball_diameter for b in rotor.bearings):
+    if not isinstance(rotor, TubRotor) or not rotor.bearings or rotor.caged():
         return None
     return (
         "Speed of the bearings' cages: ball_diameter and pitch_diameter are not given in [[rotor.bearings]]."
@@ -123,12 +128,21 @@ def _no_balls(scene: Scene) -> str | None:
 
 def _cages(scene: Scene, speed: Array) -> tuple[Cage, ...]:
     """Speeds of the cages of the bearings whose balls are given."""
+    bearings = scene.rotor.caged() if isinstance(scene.rotor, TubRotor | TwoPlaneRotor) else ()
+    return cages_of(bearings, speed)
+
+
+def cages_of(bearings: Sequence[CagedBearing], speed: Array) -> tuple[Cage, ...]:
+    """Speeds of cages without slip [DR18, eq. 9-10; theory: rotor, eq. 32].
+
+    Parameters
+    ----------
+    bearings : whose balls are given
+    speed : of the shaft, rad/s, shape (n,)
+    """
     found = []
-    for k, bearing in enumerate(scene.rotor.bearings if isinstance(scene.rotor, TubRotor) else ()):
-        ball, pitch = bearing.ball_diameter, bearing.pitch_diameter
-        if ball is None or pitch is None:
-            continue
-        printed = 0.5 * speed if bearing.contact_angle == 0.0 else np.full(speed.shape, math.nan)
-        cage = cage_speed(speed, pitch, ball, bearing.contact_angle)
-        found.append(Cage(f"bearing {k + 1}", cage, printed))
+    for part in bearings:
+        printed = 0.5 * speed if part.contact_angle == 0.0 else np.full(speed.shape, math.nan)
+        cage = cage_speed(speed, part.pitch_diameter, part.ball_diameter, part.contact_angle)
+        found.append(Cage(part.name, cage, printed))
     return tuple(found)

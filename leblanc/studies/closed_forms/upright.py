@@ -27,12 +27,17 @@ def lacking(scene: Scene) -> str | None:
     if not isinstance(scene.rotor, TwoPlaneRotor):
         if scene.rotor.kind == "jeffcott":
             return f"{stability}: a planar rotor does not tilt; it takes a two_plane rotor with rotor.pivot."
-        return f"{stability}: it takes a two_plane rotor with rotor.pivot."
+        return (
+            f"{stability}: a tub hangs on its springs, without the ball joint of the source's condition; it "
+            "takes a two_plane rotor with rotor.pivot."
+        )
     if scene.rotor.pivot is None:
         return f"{stability}: rotor.pivot, the place of a ball joint, is not given."
     walls = [fill.chamber for fill in scene.fills]
     if any(chamber.section is not None or chamber.baffles is not None for chamber in walls):
         return f"{stability}: a chamber has baffles or a section of its own."
+    if scene.balls:
+        return f"{stability}: balls that can move in their races are not in its condition."
     return None
 
 

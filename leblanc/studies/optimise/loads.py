@@ -17,7 +17,7 @@ from leblanc.studies.machine import loaded_machine, steady_power
 from leblanc.studies.optimise.answers import FilledMachine, with_volumes
 from leblanc.studies.optimise.constraints import Constraint
 from leblanc.studies.optimise.passages import Passages, WorstLoads
-from leblanc.units import LENGTH, rpm_range, with_unit
+from leblanc.units import LENGTH, over_rpm, with_unit
 from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.rotor.loads.turn import turn_extremes
@@ -255,7 +255,7 @@ def load_place(task: Optimisation, speeds: Speeds | None = None) -> str:
     """
     steady = "at the operating speeds"
     if speeds is not None:
-        steady = f"from {rpm_range(speeds.start, speeds.stop)}"
+        steady = over_rpm(speeds.start, speeds.stop)
     in_time = "over the run-up in time"
     return {"operating": steady, "runup": in_time, "both": f"{steady} and {in_time}"}[task.loads_over]
 

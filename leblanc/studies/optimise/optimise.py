@@ -106,7 +106,9 @@ def optimise_scene(
     if task.objective == "layout":
         raise InputError("--objective", "layout", "one of the liquid here; optimise_layout answers this one")
     require_whirl(scene)
-    require_no_balls(scene, "this; `leblanc run` and `leblanc runup` answer with balls")
+    require_no_balls(scene, "a search over volumes alone; optimise_balls answers this one")
+    if task.balls is not None:
+        raise InputError("optimise.balls", "given", "left out where no chamber is of kind balls")
     if not scene.fills:
         raise InputError("chambers", "none", "at least one to choose the volume of")
     require_clear(scene, "a search over volumes, which rests on the equilibrium in a ring", baffles=True)

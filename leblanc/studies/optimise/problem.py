@@ -55,7 +55,7 @@ from leblanc.studies.optimise.robust import (
     unbalance_range,
 )
 from leblanc.studies.optimise.walls import most_cells
-from leblanc.units import LENGTH, in_rpm, rpm_range, with_unit
+from leblanc.units import LENGTH, in_rpm, over_rpm, with_unit
 from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.search import Found, Judgement
@@ -271,7 +271,7 @@ def _peak(scene: Scene, task: Optimisation, machine: FilledMachine, problem: Pro
         evaluate = replace(problem.evaluate, vibration=RunupPeak(scene, problem.evaluate.runs))
         return replace(problem, evaluate=evaluate, meaning="largest amplitude of the run-up in time")
     speeds = scene.speeds
-    text = f"largest steady amplitude from {rpm_range(speeds.start, speeds.stop)}"
+    text = f"largest steady amplitude {over_rpm(speeds.start, speeds.stop)}"
     evaluate = replace(problem.evaluate, vibration=PeakOver(machine, speeds))
     return replace(problem, evaluate=evaluate, meaning=text, speeds=(speeds.stop, *_resonances(scene)))
 

@@ -8,19 +8,28 @@ from dataclasses import replace
 import numpy as np
 
 from leblanc.results.base import Note
+from leblanc.results.machine.loads import MachineLoads
 from leblanc.results.motion.ball_states import BallsResult
 from leblanc.results.motion.balls import RaceOfBalls
 from leblanc.results.notes import balls as notes
+from leblanc.results.notes import response as response_notes
 from leblanc.scene.inputs import input_rows
 from leblanc.scene.races import BallRace
-from leblanc.scene.scene import Scene, dry_rotor, require_clear
-from leblanc.studies.models.choose import axial_gravity
+from leblanc.scene.scene import Scene
+from leblanc.studies.closed_forms.told import closed_forms
+from leblanc.studies.machine import loaded_machine, loads_over_speed
+from leblanc.studies.models.choose import Prepared, carried_from, choose_all, prepare
 from leblanc.studies.models.validity import doubts
+from leblanc.studies.races.estimates import carried_balls, gravity_on_balls, liquid_errors
+from leblanc.studies.races.states import liquid_beside
 from meshes.errors import InputError
-from solvers.rotor.balls.steady import BallKind, RotorWithBalls, turning
+from solvers.rotor.balls.balancers import BallRace as Race
+from solvers.rotor.balls.states import RotorWithBalls, turning
+from solvers.rotor.balls.steady import BallKind
 from solvers.rotor.vibration import orbit
 from solvers.runup.balls import Balls
 from solvers.synchronous.balls import wet_states
+from solvers.synchronous.errors import GravityError
 from solvers.synchronous.response import response
 
 APART = 0.1  # rad between balls at the bottom of a race whose diameter the scene does not say
@@ -71,22 +80,20 @@ def run_balls(scene: Scene) -> BallsResult:
 
     Raises
     ------
-    InputError : no race, a section or baffles that the exact equilibrium of the liquid does not know, a
-        liquid model other than that
+    InputError : no race, a section or baffles that the equilibrium of the liquid does not know, a model of
+        liquid that is not at rest in the drum
     """
     if not scene.balls:
         raise InputError("chambers", len(scene.chambers), "with one of kind balls for this")
-    require_clear(scene, "balls beside liquid")
-    if scene.model.liquid not in ("auto", "statics"):
-        raise InputError("model.liquid", scene.model.liquid, "auto or statics beside balls")
-    rotor = dry_rotor(scene)
-    system, speed, gravity = rotor.system(), scene.speed_array(), axial_gravity(scene)
+    liquid, model = liquid_beside(scene)
+    machine = replace(prepare(scene.without_balls()), scene=scene)
+    rotor, system, speed, gravity = machine.rotor, machine.system, machine.speed, machine.axial_gravity
     races = [race.race() for race in scene.balls]
     place = scene.fills[0].chamber.plane if scene.fills else scene.balls[0].plane
-    found = wet_states(system, scene.fills, races, speed, gravity)
+    found = wet_states(system, scene.fills, races, speed, gravity, model)
     way = orbit(system, found.states.coordinates, place)
     lost = found.states.kind == BallKind.NONE
-    without = response(rotor, scene.fills, speed, gravity, position=place)
+    without = response(rotor, scene.fills, speed, gravity, model, position=place)
     answer = BallsResult(
         name=scene.name,
         source=scene.source,
@@ -110,11 +117,48 @@ def run_balls(scene: Scene) -> BallsResult:
         can_balance=RotorWithBalls(system, tuple(races)).balanced() is not None,
         sticking=tuple(race.rolling_resistance * race.radius for race in scene.balls),
         notes=(),
+        closed_forms=closed_forms(machine),
+        liquid_model=liquid if any(fill.volume > 0.0 for fill in scene.fills) else "",
+        tolerance=scene.model.tolerance,
     )
-    return replace(answer, notes=_run_notes(scene, answer, turning(system) is not None))
+    answer, waves = _estimated(machine, races, replace(answer, loads=_loads(scene, answer)))
+    alike = turning(system) is not None
+    return replace(answer, notes=_run_notes(scene, answer, alike, waves))
 
 
-def _run_notes(scene: Scene, answer: BallsResult, alike: bool) -> tuple[Note, ...]:
+def _estimated(
+    machine: Prepared, races: list[Race], answer: BallsResult
+) -> tuple[BallsResult, GravityError | None]:
+    """The same with what its states leave out: errors of the liquid's model, gravity across the axis."""
+    error = in_range = captured_from = waves = None
+    if answer.liquid_model:
+        linear = answer.liquid_model == "linear"
+        error, waves = liquid_errors(machine, races, answer.ball_angle, answer.position, linear)
+    if machine.across_gravity > 0.0:
+        in_range = carried_balls(machine, races)
+        if answer.liquid_model:
+            (choice,) = choose_all([replace(machine, scene=machine.scene.without_balls())])
+            in_range, captured_from = in_range & choice.in_range, choice.captured_from
+    coordinates = answer.states.coordinates[np.arange(answer.speed.size), answer.chosen]
+    swing = gravity_on_balls(machine, races, answer.ball_angle, coordinates, answer.position)
+    answer = replace(answer, error_estimate=error, in_range=in_range)
+    return replace(answer, capture_speed=captured_from, gravity=swing), waves
+
+
+def _loads(scene: Scene, answer: BallsResult) -> MachineLoads | None:
+    """Forces and clearances of the stable states; None where the scene asks for none."""
+    machine = loaded_machine(scene)
+    if machine is None:
+        return None
+    coordinates = answer.states.coordinates[np.arange(answer.speed.size), answer.chosen]
+    coordinates = np.where(answer.stable[:, None], coordinates, complex(np.nan, np.nan))
+    asked = np.arange(answer.speed.size)
+    return loads_over_speed(machine, scene.model.friction, answer.speed, coordinates, asked)
+
+
+def _run_notes(
+    scene: Scene, answer: BallsResult, alike: bool, waves: GravityError | None
+) -> tuple[Note, ...]:
     """What was assumed, and what is not told."""
     found = [notes.capacity(answer.can_balance, sum(answer.capacity)), notes.points()]
     if answer.unstable.any():
@@ -122,12 +166,39 @@ def _run_notes(scene: Scene, answer: BallsResult, alike: bool) -> tuple[Note, ..
         found.append(notes.runs_on(first, last))
     if any(answer.sticking):
         found.append(notes.sticks(max(answer.sticking)))
-    if scene.rotor.axis == "horizontal":
-        found.append(notes.lies())
+    if answer.gravity is not None:
+        found.append(_gravity(answer))
     if not alike:
         found.append(notes.uneven_supports())
     if scene.fills:
-        found.append(notes.liquid_in_step())
+        found.append(notes.liquid_in_step(answer.liquid_model))
+        if answer.capture_speed is not None:
+            found.append(response_notes.not_carried(answer.capture_speed, carried_from(scene)))
+        if waves is not None and answer.gravity is not None:
+            found.append(_waves(answer, waves))
     if any(race.liquid is not None for race in scene.balls):
         found.append(notes.covered())
+    if answer.loads is not None:
+        found += [response_notes.loads(), notes.loads_of_states()]
     return (*found, *doubts(scene))
+
+
+def _gravity(answer: BallsResult) -> Note:
+    """How much gravity across the axis does, at the last speed and where it does most to balls that rest."""
+    assert answer.gravity is not None
+    assert answer.in_range is not None
+    swing = answer.gravity.ball_swing.max(axis=1)
+    worst = np.where(answer.stable & answer.in_range, np.nan_to_num(swing, nan=-1.0), -1.0)
+    at = [int(np.argmax(worst)), -1] if worst.max() >= 0.0 else [-1]
+    columns = answer.speed, answer.gravity.share, swing, answer.gravity.amplitude
+    return notes.lies(list(zip(*(column[at].tolist() for column in columns), strict=True)))
+
+
+def _waves(answer: BallsResult, waves: GravityError) -> Note:
+    """What gravity's waves in the liquid do to the states that are told."""
+    assert answer.in_range is not None
+    worst = float(np.max(waves.amplitude[answer.stable & answer.in_range], initial=0.0))
+    amplitude, ripple, liquid = (
+        float(size[-1]) for size in (waves.amplitude, waves.ripple, waves.liquid_ripple)
+    )
+    return notes.liquid_waves(float(answer.speed[-1]), amplitude, ripple, liquid, worst)

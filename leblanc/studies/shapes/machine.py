@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import cmath
 import math
 from collections.abc import Callable
 
@@ -28,9 +27,11 @@ from leblanc.scene.scene import Exciter, JeffcottRotor, Scene, Speeds, dry_rotor
 from leblanc.studies.models.choose import across_gravity, axial_gravity, choose, liquid_models
 from leblanc.studies.run import run_scene
 from leblanc.studies.runup import runup_scene
-from leblanc.studies.shapes.bodies import bodies_at_rest, is_cut, wall_is_dry
-from leblanc.studies.shapes.layer import body_at_rest, body_of_layer, body_of_pool
+from leblanc.studies.shapes.balls import drawn_races, ringed, side_by_side
+from leblanc.studies.shapes.bodies import is_cut, wall_is_dry
+from leblanc.studies.shapes.layer import body_of_layer, body_of_pool
 from leblanc.studies.shapes.scale import SHOWN, THIN, drawn_volume, given_scale, scale_of, wave_scale
+from leblanc.studies.shapes.still import liquid_at, places_of
 from leblanc.studies.shapes.supports import machine_parts
 from meshes.arrays import Array, Complex
 from meshes.chamber_section import surface_is_whole
@@ -46,8 +47,6 @@ from solvers.statics.hydrostatics import optimal_volume
 from solvers.synchronous.response import response
 
 TURN = math.radians(18.0)  # most of the drum from one frame of a film to the next
-
-GAP = 0.25  # between chambers moved apart, over the wider one's radius
 
 SWING, MOST = 0.35, 100.0  # vibration as drawn over the track's radius, and the largest factor
 
@@ -123,37 +122,6 @@ def _lean(scene: Scene, result: RunResult) -> Complex:
     return np.asarray(np.where(known, high, np.nan) - np.where(known, low, np.nan))
 
 
-def places_of(scene: Scene) -> tuple[tuple[float, ...], bool]:
-    """Middle of each chamber along the axis as drawn, and whether some were moved out of each other.
-
-    A planar rotor's chambers that do not lie inside one another stand one behind the other.
-
-    Parameters
-    ----------
-    scene : the machine
-    """
-    chambers = [fill.chamber for fill in scene.fills]
-    if not isinstance(scene.rotor, JeffcottRotor):
-        return tuple(chamber.plane for chamber in chambers), False
-    stacks: list[list[int]] = []
-    for k in sorted(range(len(chambers)), key=lambda k: -chambers[k].radius):
-        for stack in stacks:
-            if chambers[k].radius <= chambers[stack[-1]].inner_radius:
-                stack.append(k)
-                break
-        else:
-            stacks.append([k])
-    places, behind = [0.0] * len(chambers), 0.0
-    for stack in stacks:
-        height = max(chambers[k].height for k in stack)
-        middle = behind - 0.5 * height
-        for k in stack:
-            places[k] = middle
-        behind -= height + GAP * max(chamber.radius for chamber in chambers)
-    shift = 0.5 * (max(places) + min(places)) if places else 0.0
-    return tuple(place - shift for place in places), len(stacks) > 1
-
-
 def machine_view(scene: Scene, speed: float | None = None, factor: float | None = None) -> MachineView:
     """A scene's machine at one speed and its liquid as drawn.
 
@@ -186,27 +154,17 @@ def drawn_liquid(motion: MachineMotion, index: int, scale: Scale) -> DrawnLiquid
     motion, index : the machine, which of its speeds
     scale : of deflection and depth
     """
-    chambers = range(len(motion.fills))
+    speed, found = float(motion.speed[index]), motion.deflection[index]
     return DrawnLiquid(
         scale,
-        tuple(_body(motion, k, index, scale) for k in chambers),
+        tuple(
+            liquid_at(fill, complex(found[k]), speed, motion.gravity, scale)
+            for k, fill in enumerate(motion.fills)
+        ),
         tuple(drawn_volume(fill, scale.depth) for fill in motion.fills),
         dry_walls(motion, index),
         dry_walls(motion, index, scale),
     )
-
-
-def _body(motion: MachineMotion, k: int, index: int, scale: Scale) -> Liquid:
-    """Liquid of a chamber at a speed; None if there is none."""
-    fill, speed = motion.fills[k], float(motion.speed[index])
-    if fill.volume == 0.0:
-        return None
-    volume = drawn_volume(fill, scale.depth)
-    found = complex(motion.deflection[index, k])
-    deflection = scale.deflection * found if cmath.isfinite(found) else 0j
-    if is_cut(fill):
-        return bodies_at_rest(fill, volume, deflection, speed, motion.gravity)
-    return body_at_rest(fill.chamber, volume, deflection, speed, motion.gravity)
 
 
 def dry_walls(motion: MachineMotion, index: int, scale: Scale | None = None) -> tuple[bool, ...]:
@@ -291,17 +249,26 @@ def runup_view(
     kept = result.frames
     assert kept is not None
     if factor is None:
-        scale = runup_scale(max((fill.chamber.radius for fill in scene.fills), default=0.1), result, kept)
+        widest = max((fill.chamber.radius for fill in ringed(scene).fills), default=0.1)
+        scale = runup_scale(widest, result, kept)
     else:
         scale = given_scale(factor, scene.fills, kept.deflection)
     turn, slower = strobe(kept.time, kept.speed)
+    rings = ringed(scene)
+    none = (None,) * len(scene.balls)
     bodies = tuple(
-        tuple(_liquid(fill, scale, kept, k, j, float(turn[k])) for j, fill in enumerate(scene.fills))
+        tuple(_liquid(fill, scale, kept, k, j, float(turn[k])) for j, fill in enumerate(scene.fills)) + none
         for k in range(kept.time.size)
     )
-    places = places_of(scene)[0]
-    parts = machine_parts(scene, places)
-    return RunupView(result, kept, scene.fills, places, scale, bodies, turn, slower, parts)
+    places, races = places_of(rings)[0], drawn_races(scene)
+    parts = machine_parts(rings, places)
+    balls = (
+        np.stack([np.interp(kept.time, result.time, np.unwrap(way)) for way in result.ball_angle.T], axis=1)
+        if races
+        else np.zeros((kept.time.size, 0))
+    )
+    drawn = np.array([side_by_side(races, row) for row in balls])
+    return RunupView(result, kept, rings.fills, places, scale, bodies, turn, slower, parts, races, drawn)
 
 
 def strobe(time: Array, speed: Array) -> tuple[Array, float]:
@@ -342,6 +309,8 @@ def runup_scale(radius: float, result: RunupResult, frames: RunupFrames) -> Scal
     wanted = min(MOST, SHOWN * radius / largest) if largest > 0.0 else 1.0
     thin = any(c.radius - c.mean_surface_radius < THIN * c.radius for c in result.chambers if c.volume > 0.0)
     both = 1.0
+    if result.races and not any(chamber.volume > 0.0 for chamber in result.chambers):
+        return Scale(float(f"{rounded_down(max(1.0, wanted)):.6g}"))
     if thin or largest < VISIBLE * radius:
         fits = film_factor(result.chambers, frames.depth, frames.deflection)
         both = float(f"{max(1.0, min(fits, wanted)):.2g}")

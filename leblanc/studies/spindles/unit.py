@@ -8,6 +8,7 @@ import numpy as np
 
 from leblanc.results.spindles.unit import NaturalMode, SpindleResult
 from leblanc.scene.spindle import Spindle
+from leblanc.studies.closed_forms.told import cages_of
 from meshes.arrays import Array, Complex
 from meshes.errors import InputError
 from solvers.rotor.shaft.natural import modes
@@ -74,6 +75,8 @@ def run_spindle(scene: Scene) -> SpindleResult:
         least_dissipation=float((-driven.imag / np.abs(driven)).min()),
         source=scene.source,
         digest=scene.digest,
+        rotation=rotor.rotation,
+        cages=() if rotor.rotation is None else cages_of(rotor.caged(), np.array([rotor.rotation])),
     )
 
 

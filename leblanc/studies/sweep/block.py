@@ -100,6 +100,43 @@ SINGLE: tuple[Output, ...] = (
 
 OUTPUTS = OVER_SPEED + SINGLE
 
+# Of scenes with balls besides.
+BALLS_OVER_SPEED: tuple[Output, ...] = (
+    Output("amplitude_without", NUMBER, True, "m", "amplitude", "without balls, with the liquid"),
+    Output("state", TEXT, True, "1", "how the balls rest", "balanced, together, apart or none"),
+    _flag("balanced", "the balanced state is stable", "whichever state is reported"),
+)
+BALLS_SINGLE: tuple[Output, ...] = (
+    Output(
+        "balanced_from",
+        NUMBER,
+        False,
+        "rad s-1",
+        "speed from which on the balanced state is stable",
+        "of these",
+    ),
+)
+
+
+def outputs_of(balls: bool) -> tuple[Output, ...]:
+    """What a store keeps of each sample.
+
+    Parameters
+    ----------
+    balls : the scenes have races with balls
+    """
+    return OUTPUTS + BALLS_OVER_SPEED + BALLS_SINGLE if balls else OUTPUTS
+
+
+def single_outputs(balls: bool) -> tuple[Output, ...]:
+    """Those that are one number a sample; the parameter is that of `outputs_of`."""
+    return SINGLE + BALLS_SINGLE if balls else SINGLE
+
+
+def with_balls(table: Mapping[str, Any]) -> bool:
+    """Whether the content of a scene file has races with balls."""
+    return any(chamber.get("kind") == "balls" for chamber in table.get("chambers", ()))
+
 
 def blank(output: Output, samples: int, speeds: int) -> NDArray[Any]:
     """Values of samples without an answer: nan, -1 or an empty text.
@@ -122,12 +159,15 @@ def values_of(answers: Answers) -> dict[str, NDArray[Any]]:
     ----------
     answers : arrays of shape (scenes, speeds)
     """
+    balls = answers.balanced_from is not None
     values = {
         output.name: np.asarray(getattr(answers, output.name)).astype(
             object if output.kind == TEXT else output.kind
         )
-        for output in OVER_SPEED
+        for output in OVER_SPEED + (BALLS_OVER_SPEED if balls else ())
     }
+    if balls:
+        values["balanced_from"] = np.asarray(answers.balanced_from)
     # fmax takes the other of two where one is not a number; a whole row without numbers gives none.
     values["peak_growth"] = np.fmax.reduce(values["growth"], axis=1)
     # Where no whirl is known to grow and some are not known, whether one grows is not known either.
@@ -193,13 +233,19 @@ def _in_si(table: Mapping[str, Any], place: tuple[str, ...], tables: _Tables) ->
     for key, value in table.items():
         below = (*place, key)
         if isinstance(value, list) and (*below, "*") in tables:
-            plain[key] = [_in_si(entry, (*below, "*"), tables) for entry in value]
+            plain[key] = [_in_si(entry, _place_in(below, entry, tables), tables) for entry in value]
         elif isinstance(value, dict) and below in tables:
             plain[key] = _in_si(value, below, tables)
         elif isinstance(value, str):
             rule = rule_of(tables[place].model_fields[key])
             plain[key] = rule(value) if isinstance(rule, Quantity) else value
     return plain
+
+
+def _place_in(below: tuple[str, ...], entry: Mapping[str, Any], tables: _Tables) -> tuple[str, ...]:
+    """Place of an entry of a list, by its kind where that has a table of its own."""
+    other = (*below, f"*{entry.get('kind', '')}")
+    return other if other in tables else (*below, "*")
 
 
 def make_scenes(make: Maker, rows: Iterable[Sequence[Any]]) -> tuple[list[Scene | None], list[str]]:
@@ -286,7 +332,8 @@ def answer_block(block: Block) -> BlockAnswer:
         kept = [k for k, scene in enumerate(scenes) if scene is not None]
         pieces = _answer([scene for scene in scenes if scene is not None])
     speeds = int(block.table["speeds"]["count"])
-    values = {output.name: blank(output, len(scenes), speeds) for output in OUTPUTS}
+    balls = with_balls(block.table)
+    values = {output.name: blank(output, len(scenes), speeds) for output in outputs_of(balls)}
     status = np.full(len(scenes), FAILED, dtype=np.int8)
     done = 0
     for count, found in pieces:
@@ -300,7 +347,8 @@ def answer_block(block: Block) -> BlockAnswer:
         lost = np.count_nonzero(~np.asarray(found.converged), axis=1)
         status[places] = np.where(lost == 0, DONE, NOT_CONVERGED)
         for k in np.flatnonzero(lost):
-            reasons[places[k]] = f"no bounded deflection found at {lost[k]} of {speeds} speeds"
+            what = "state of the balls" if balls else "bounded deflection"
+            reasons[places[k]] = f"no {what} found at {lost[k]} of {speeds} speeds"
     return BlockAnswer(block.number, values, status, tuple(reasons), own_versions())
 
 

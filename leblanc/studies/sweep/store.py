@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 from leblanc.results.base import one_line, versions
 from leblanc.results.netcdf import NamedArrays, variable
 from leblanc.scene.schema.load import shown
-from leblanc.studies.sweep.block import FLAG, NUMBER, OUTPUTS, PENDING, STATUS, TEXT, Output
+from leblanc.studies.sweep.block import FLAG, NUMBER, PENDING, STATUS, TEXT, Output, outputs_of
 from leblanc.studies.sweep.study import Sweep, VariedField
 from meshes.errors import InputError
 
@@ -264,7 +264,7 @@ def _create(path: Path, sweep: Sweep) -> None:
             attributes=attributes,
         )
 
-    for output in OUTPUTS:
+    for output in outputs_of(bool(sweep.scene.balls)):
         fill = {NUMBER: np.nan, FLAG: -1, TEXT: ""}[output.kind]
         array(output.name, output.kind, output.over_speed, fill, _output_attributes(output))
     for field in sweep.fields:

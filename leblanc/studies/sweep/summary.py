@@ -12,7 +12,7 @@ import numpy as np
 
 from leblanc.results.notes.response import plane_words
 from leblanc.results.sweep import QUANTILES, Sensitivity, Statistics, SweepResult
-from leblanc.studies.sweep.block import DONE, FAILED, NOT_CONVERGED, SINGLE
+from leblanc.studies.sweep.block import DONE, FAILED, NOT_CONVERGED, single_outputs
 from leblanc.studies.sweep.sampling import sample_rows
 from leblanc.studies.sweep.store import Store, read_arrays
 from leblanc.studies.sweep.study import Sweep
@@ -191,7 +191,8 @@ def summarise(store: Store, sweep: Sweep) -> SweepResult:
     fields = sample_rows(sweep)(0, store.samples)
     categorical = [field.categorical for field in sweep.fields]
     single, shares = {}, {}
-    for output in SINGLE:
+    outputs = single_outputs(bool(sweep.scene.balls))
+    for output in outputs:
         values = store.read(output.name)
         single[output.name] = statistics(values[:, None])
         shares[output.name] = sensitivity(sweep.method, fields, categorical, values, sweep.seed)
@@ -212,8 +213,11 @@ def summarise(store: Store, sweep: Sweep) -> SweepResult:
         reasons=_grouped(store),
         speed=None if own_speeds else sweep.scene.speed_array(),
         single=single,
-        units={output.name: output.units for output in SINGLE},
-        over_speed={name: _over_speed(store, name, speeds) for name in OVER_SPEED},
+        units={output.name: output.units for output in outputs},
+        over_speed={
+            name: _over_speed(store, name, speeds)
+            for name in (*OVER_SPEED, *(["amplitude_without"] if sweep.scene.balls else []))
+        },
         sensitivities=shares,
         digest=sweep.digest,
         read=partial(read_arrays, store.path),
@@ -223,10 +227,10 @@ def summarise(store: Store, sweep: Sweep) -> SweepResult:
 
 def _plane(sweep: Sweep) -> str:
     """Plane of the amplitudes, with its place unless that varies."""
-    if not sweep.scene.fills:
+    if not sweep.scene.chambers:
         return plane_words(0.0, chambers=False)
     varied = any(field.path.startswith("chambers.0.plane") for field in sweep.fields)
-    words = plane_words(sweep.scene.fills[0].chamber.plane, chambers=True)
+    words = plane_words(sweep.scene.chambers[0].plane, chambers=True)
     return words.partition(" at ")[0] if varied else words
 
 

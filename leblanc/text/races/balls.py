@@ -12,6 +12,8 @@ from leblanc.text.numbers import ranges
 from leblanc.text.run import Limit
 from leblanc.units import LENGTH, UNBALANCE, in_rpm, number, with_unit
 
+FAR = math.radians(15.0)  # swing of a ball up to which small swings tell it
+
 
 def answer(result: BallsResult) -> str:
     """From where on the balls balance the rotor, and what they do at the largest amplitude.
@@ -65,12 +67,23 @@ def limits(result: BallsResult) -> list[Limit]:
     result : the answer
     """
     several = result.states.stable.sum(axis=1) > 1
+    missed = np.zeros(result.speed.shape, dtype=bool)
+    if result.error_estimate is not None and result.tolerance is not None:
+        missed = result.converged & ~(result.error_estimate <= result.tolerance)
     checks = [
         ("No state found", ~result.converged),
         ("No state is stable", result.unstable & result.converged),
         ("Several states are stable, the largest is told", several),
         ("More amplitude than without balls", result.amplitude > result.amplitude_without),
     ]
+    if result.liquid_model and result.tolerance is not None:
+        checks.append((f"Error above {number(100.0 * result.tolerance)} % or unknown", missed))
+    if result.gravity is not None and result.in_range is not None:
+        far = np.nan_to_num(result.gravity.ball_swing).max(axis=1) > FAR
+        checks += [
+            ("Gravity outweighs the spin", ~result.in_range),
+            (f"Balls swing by more than {number(math.degrees(FAR))} deg", far & result.in_range),
+        ]
     return [Limit(label, ranges(result.speed, mask), bool(mask.any())) for label, mask in checks]
 
 

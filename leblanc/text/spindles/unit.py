@@ -8,6 +8,7 @@ import math
 from leblanc.results.spindles.unit import RECIPROCITY, WAYS, SpindleResult
 from leblanc.text.numbers import number
 from leblanc.text.run import Limit
+from leblanc.units import LENGTH, in_rpm, with_unit
 
 PER_NEWTON = 1e9  # nm/N in one m/N
 THEORIES = {
@@ -51,7 +52,7 @@ def answer(result: SpindleResult) -> str:
     return (
         f"Natural frequencies between {number(low)} and {high}: {every} Hz. A force of 1 N at "
         f"{result.driven_at} moves {result.wanted_at} most at {hertz(strongest.frequency)}, by "
-        f"{number(abs(strongest.wanted) * PER_NEWTON)} nm, "
+        f"{with_unit(abs(strongest.wanted), LENGTH)}, "
         f"{number(abs(strongest.wanted / strongest.measured))} times what {result.measured_at} shows."
     )
 
@@ -70,7 +71,17 @@ def facts(result: SpindleResult) -> list[tuple[str, str]]:
         )
         for k, mode in enumerate(result.modes[:6])
     ]
-    return [*found, ("Natural frequencies in the band", str(len(result.modes)))]
+    return [*found, ("Natural frequencies in the band", str(len(result.modes))), *cage_rows(result)]
+
+
+def cage_rows(result: SpindleResult) -> list[tuple[str, str]]:
+    """Speed of each cage: label and value; nothing where no balls are given.
+
+    Parameters
+    ----------
+    result : the answer
+    """
+    return [(f"Cage of {cage.name}", f"{in_rpm(float(cage.speed[0]))} without slip") for cage in result.cages]
 
 
 def compliance_rows(result: SpindleResult) -> list[tuple[str, ...]]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -187,6 +187,21 @@ def race_arrays(system: RotorSystem, races: Sequence[BallRace]) -> tuple[Array, 
     axes = [system.at(race.position) for race in races for _ in race.masses]
     rows = [(mass, race.radius, race.drag, race.rolling) for race in races for mass in race.masses]
     return np.array(axes), np.array(rows)
+
+
+def with_balls_at(system: RotorSystem, races: Sequence[BallRace], places: Array) -> RotorSystem:
+    """The rotor with its balls held where they are: a part of its mass and of its unbalance.
+
+    Parameters
+    ----------
+    system : the rotor without balls
+    races : that hold them
+    places : of each ball in the rotor, race by race, rad, shape (N,)
+    """
+    axes, balls = race_arrays(system, races)
+    mass = system.mass + np.einsum("j,jin,jim->nm", balls[:, 0], axes, axes)
+    turning = balls[:, 0] * balls[:, 1] * np.exp(1j * places)
+    return replace(system, mass=mass, unbalance=system.unbalance + turning @ (axes[:, 0] - 1j * axes[:, 1]))
 
 
 def _initial(

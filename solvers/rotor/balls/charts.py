@@ -1,7 +1,8 @@
 """Charts of stability over two parameters: where balls keep a rotor balanced, and the curves where that ends.
 
 On such a curve a root stands on the imaginary axis: a pair of them, where the balls begin to swing or the
-rotor to whirl (Hopf), or one at 0, where steady states meet or part (a fold or a branching).
+rotor to whirl (Hopf), or one at 0, where steady states meet or part (a fold or a branching). Where the
+supports differ it is a multiplier of half a turn that stands on the unit circle.
 """
 
 from __future__ import annotations
@@ -16,13 +17,15 @@ from numpy.typing import ArrayLike
 from meshes.arrays import Array, Complex, Indices
 from meshes.errors import InputError
 from solvers.continuation import Curve, End, follow
-from solvers.rotor.balls.balancers import BallRace
-from solvers.rotor.balls.stability import linearised
-from solvers.rotor.balls.states import balanced_places, steady_places, turning_deflection
+from solvers.roots import bracketed_root
+from solvers.rotor.balls.balancers import BallRace, race_arrays
+from solvers.rotor.balls.stability import HalfTurn, Linearised, small_motions
+from solvers.rotor.balls.states import RotorWithBalls
 from solvers.rotor.system import RotorSystem
 
-NONE = -1  # in counts of growing roots: the state is not there
+NONE = -1  # in counts of growing roots: the state is not there, or its half turn did not settle
 _HALVINGS = 40
+_MEETS = 1e-5  # of the spin: a root below this next to the end of a state tells that two states meet there
 _NEAR = 0.03  # of a cell of the chart: a crossing this close to a known curve lies on it
 _STILL = 1e-6  # of the spin: a root slower than that is real
 
@@ -33,7 +36,7 @@ class Machine:
 
     Parameters
     ----------
-    system : the same in every direction across its axis
+    system : any rotor
     races : one or more
     speed : Omega, rad/s
     """
@@ -61,7 +64,8 @@ class Edge:
     ----------
     kind : a pair of roots, or one at 0
     first, second : the two parameters, shape (k,)
-    frequency : of the pair as seen from the rotor, rad/s, shape (k,)
+    frequency : of the pair as seen from the rotor, rad/s, shape (k,). Where the supports differ it may be the
+        spin itself: a single multiplier is then at -1
     ends : why it ends, at its first and at its last point
     """
 
@@ -82,7 +86,7 @@ class Chart:
     growing : number of roots with a positive real part, neutral directions left out; `NONE` where the state
         does not exist, shape (a, b)
     growth : largest real part, 1/s; nan where the state does not exist, shape (a, b)
-    edges : curves on which the number of growing roots changes
+    edges : curves on which the number of growing roots changes, or on which the state meets another and ends
     """
 
     first: Array
@@ -92,8 +96,37 @@ class Chart:
     edges: tuple[Edge, ...]
 
 
+@dataclass(frozen=True)
+class Rest:
+    """Balls at rest in a rotor.
+
+    Parameters
+    ----------
+    machine : rotor and balls
+    speed : Omega, rad/s
+    places : of the balls in the rotor, rad, shape (N,)
+    coordinates : complex amplitudes of the rotor, shape (n,); None where it is balanced
+    """
+
+    machine: RotorWithBalls
+    speed: float
+    places: Array
+    coordinates: Complex | None
+
+    def motions(self, steps: int | None = None) -> Linearised | HalfTurn:
+        """Small motions about it, without neutral directions.
+
+        Parameters
+        ----------
+        steps : of half a turn where the supports differ; None: as many as needed
+        """
+        return small_motions(self.machine, self.speed, self.places, self.coordinates, steps=steps)
+
+
 class State:
-    """The state whose stability is charted: balanced, or next to given places of the balls.
+    """The state whose stability is charted: balanced, or one with a deflection next to given places.
+
+    Where the supports differ the balls follow the forward part of the rotor's motion [theory: races, eq. 5].
 
     Parameters
     ----------
@@ -103,36 +136,58 @@ class State:
     def __init__(self, places: ArrayLike | None = None) -> None:
         self.places = None if places is None else np.asarray(places, dtype=float)
 
-    def matrix(self, machine: Machine) -> Array | None:
-        """Rates of small disturbances, without neutral directions; None where there is no such state.
+    def at(self, machine: Machine, near: Array | None = None) -> Rest | None:
+        """The state; None where there is none within a quarter turn of the places.
 
         Parameters
         ----------
         machine : at a point of the chart
+        near : places to begin from in place of those given, rad, shape (N,)
         """
-        system, races, speed = machine.system, machine.races, machine.speed
+        rotor = RotorWithBalls(machine.system, tuple(machine.races))
         if self.places is None:
-            try:
-                places = balanced_places(system, races)
-            except InputError:
-                return None
-            return linearised(system, races, speed, places).matrix()
-        found = steady_places(system, races, speed, self.places)
-        if found is None or np.abs(np.angle(np.exp(1j * (found - self.places)))).max() > 0.5 * np.pi:
+            places = rotor.balanced()
+            return None if places is None else Rest(rotor, machine.speed, places, None)
+        begin = self.places if near is None else near
+        found = rotor.nearest(rotor.compliance(np.array([machine.speed]))[0], begin)
+        if found is None or np.abs(np.angle(np.exp(1j * (found - begin)))).max() > 0.5 * np.pi:
             return None
-        deflection = turning_deflection(system, races, speed, found)
-        return linearised(system, races, speed, found, deflection).matrix()
+        return _held(rotor, machine.speed, found)[0]
+
+
+def _held(rotor: RotorWithBalls, speed: float, places: Array) -> tuple[Rest, Array]:
+    """Balls at these places, and the pulls on them, 0 if they rest there, over the largest possible."""
+    compliance = rotor.compliance(np.array([speed]))
+    pulls = rotor.pulls(compliance, places[None])[0][0]
+    return Rest(rotor, speed, places, rotor.coordinates(compliance, places[None])[0]), pulls
+
+
+def gathered(system: RotorSystem, races: Sequence[BallRace], light: bool = False) -> State:
+    """The state with the balls of each race together, next to the heavy side of its plane or opposite to it.
+
+    The heavy side is where the unbalance bends the slowly turning rotor to. The state itself is sought anew
+    at each point of a chart.
+
+    Parameters
+    ----------
+    system, races : rotor and balls
+    light : opposite
+    """
+    axes, _ = race_arrays(system, races)
+    bent = np.linalg.solve(system.stiffness, system.unbalance)
+    forward = (axes[:, 0] + 1j * axes[:, 1]) @ bent
+    return State(np.angle(forward) + (np.pi if light else 0.0))
 
 
 def stability_chart(family: Family, first: ArrayLike, second: ArrayLike, state: State | None = None) -> Chart:
     """Count growing roots on a grid, and follow every curve on which the count changes.
 
     A curve that passes between the lines of the grid is not seen; one that is seen is followed to its end
-    or to the edge of the grid.
+    or to the edge of the grid. Where a state with a deflection ends in a fold, that is a curve as well.
 
     Parameters
     ----------
-    family : machine for each pair of values
+    family : machine for each pair of values, on any supports
     first, second : values of the grid, rising, two or more each
     state : whose stability; None: the balanced one
 
@@ -153,14 +208,79 @@ def stability_chart(family: Family, first: ArrayLike, second: ArrayLike, state: 
     edges: list[Edge] = []
     cell = np.array([(x[-1] - x[0]) / (x.size - 1), (y[-1] - y[0]) / (y.size - 1)])
     low, high = np.array([x[0], y[0]]), np.array([x[-1], y[-1]])
-    for inside, outside in _changes(x, y, growing):
+    for inside, outside in _neighbours(x, y, growing):
         where, root = _crossing(chosen, family, inside, outside)
         if root is None or any(_on(edge, where, cell) for edge in edges):
             continue
-        edge = follow_edge(family, where, root, low, high, chosen)
-        if edge is not None:
+        ends = chosen.at(family(*outside.tolist())) is None
+        edge = follow_edge(family, where, root, low, high, chosen, fold=ends)
+        # From a point that lies on none Newton's method may end on another curve.
+        if edge is not None and _on(edge, where, cell):
             edges.append(edge)
     return Chart(x, y, growing, growth, tuple(edges))
+
+
+def stable_bands(
+    family: Family, first: ArrayLike, second: float, state: State | None = None
+) -> tuple[Array, list[tuple[float, float]]]:
+    """Growth over the first parameter at one value of the second, and the bands of it without growth.
+
+    Parameters
+    ----------
+    family : machine for each pair of values
+    first : values that rise, shape (a,)
+    second : the other parameter
+    state : whose stability; None: the balanced one
+
+    Returns
+    -------
+    growth : largest real part, 1/s; nan where the state does not exist, shape (a,)
+    bands : ends of each; between two values they are where the growth changes its sign, to rounding
+    """
+    x, chosen = np.asarray(first, dtype=float), state or State()
+
+    def largest(at: Array, _: Indices) -> Array:
+        return np.array([_counted(chosen, family(float(value), second))[1] for value in at])
+
+    growth = largest(x, np.zeros(0, dtype=np.int64))
+    stable = growth <= 0.0
+    changes = np.flatnonzero(stable[1:] != stable[:-1])
+    # Where the state ends there is no sign to change: the last value that has it stands.
+    known = changes[np.isfinite(growth[changes]) & np.isfinite(growth[changes + 1])]
+    ends = {k: float(x[k] if stable[k] else x[k + 1]) for k in changes.tolist()}
+    if known.size:
+        found = bracketed_root(largest, x[known], x[known + 1])[0]
+        ends |= dict(zip(known.tolist(), found.tolist(), strict=True))
+    edges = [ends[k] for k in changes.tolist()]
+    edges = ([float(x[0])] if stable[0] else []) + edges + ([float(x[-1])] if stable[-1] else [])
+    return growth, list(zip(edges[::2], edges[1::2], strict=True))
+
+
+def existence_bounds(
+    family: Family, first: float, second: ArrayLike, state: State | None = None
+) -> list[float]:
+    """Values of the second parameter between which the state begins or ends to exist, by halving.
+
+    Parameters
+    ----------
+    family : machine for each pair of values
+    first : one value of the first parameter; the balanced state exists at all speeds or at none
+    second : values that rise, shape (b,)
+    state : None: the balanced one
+    """
+    y, chosen = np.asarray(second, dtype=float), state or State()
+
+    def exists(at: float) -> bool:
+        return chosen.at(family(first, at)) is not None
+
+    there, found = [exists(at) for at in y.tolist()], []
+    for k in [k for k in range(y.size - 1) if there[k] != there[k + 1]]:
+        low, high = float(y[k]), float(y[k + 1])
+        for _ in range(_HALVINGS):
+            middle = 0.5 * (low + high)
+            low, high = (middle, high) if exists(middle) == there[k] else (low, middle)
+        found.append(0.5 * (low + high))
+    return found
 
 
 def follow_edge(
@@ -170,6 +290,7 @@ def follow_edge(
     low: ArrayLike,
     high: ArrayLike,
     state: State | None = None,
+    fold: bool = False,
 ) -> Edge | None:
     """Follow the curve on which a root stays on the imaginary axis, both ways [theory: balls, eq. 39].
 
@@ -180,6 +301,8 @@ def follow_edge(
     root : there, 1/s, near the imaginary axis
     low, high : corners of the rectangle of values, shape (2,)
     state : whose stability; None: the balanced one
+    fold : the state with a deflection meets another there, so that its places are no function of the values:
+        they are followed along with them
 
     Returns
     -------
@@ -187,15 +310,22 @@ def follow_edge(
     """
     corner, far = np.asarray(low, dtype=float), np.asarray(high, dtype=float)
     at, span = np.asarray(where, dtype=float), far - corner
-    speed = family(*at.tolist()).speed
-    swings = abs(root.imag) > _STILL * speed
-    test = _Bordered(family, state or State(), swings)
-    start = np.append(at, abs(root.imag)) if swings else at
-    test.renew(start)
-    unit = np.append(span, speed) if swings else span
-    box = (np.append(corner, 0.0), np.append(far, np.inf)) if swings else (corner, far)
+    speed, chosen = family(*at.tolist()).speed, state or State()
+    rest = chosen.at(family(*at.tolist()))
+    if rest is None:
+        return None
+    swings = not fold and abs(root.imag) > _STILL * speed
+    start, unit, box = at, span, (corner, far)
+    if swings:
+        start, unit = np.append(at, abs(root.imag)), np.append(span, speed)
+        box = np.append(corner, 0.0), np.append(far, np.inf)
+    elif fold:
+        endless = np.full(rest.places.size, np.inf)
+        start, unit = np.append(at, rest.places), np.append(span, np.ones(endless.size))
+        box = np.append(corner, -endless), np.append(far, endless)
     ways = []
     for way in (1, -1):
+        test = _Bordered(family, chosen, swings, fold, rest.places)
         test.renew(start)
         ways.append(follow(test, start, unit, *box, step=0.02, way=way, renew=test.renew))
         if ways[-1].end is End.CLOSED:
@@ -217,61 +347,73 @@ def _joined(ways: Sequence[Curve], kind: Crossing) -> Edge:
 
 
 class _Bordered:
-    """The equation det(A - i w) = 0, made smooth and of order one by a border [theory: balls, eq. 39].
+    """A motion neither grows nor fades: det(A - i w) = 0 made smooth by a border [theory: balls, eq. 39].
+
+    The same with the map of half a turn less e^{i pi w/Omega} where the supports differ. The largest growth
+    would do as a test too, but has kinks where two motions take turns, and does not tell the frequency.
 
     Parameters
     ----------
     family, state : of the chart
-    swings : a pair of roots; else one at 0
+    swings : a pair of roots, whose frequency is the third unknown; else one root at 0
+    fold : the places of the balls are unknowns as well, and the pulls on them equations
+    near : places of the balls at the start, rad, shape (N,)
     """
 
-    def __init__(self, family: Family, state: State, swings: bool) -> None:
-        self.family, self.state, self.swings = family, state, swings
+    def __init__(self, family: Family, state: State, swings: bool, fold: bool, near: Array) -> None:
+        self.family, self.state, self.swings, self.fold, self.near = family, state, swings, fold, near
         self.left, self.right = np.zeros(0, dtype=complex), np.zeros(0, dtype=complex)
+        # Fixed between two points of the curve: another number of steps is another function.
+        self.steps: int | None = None
 
-    def _shifted(self, point: Array) -> Complex | None:
+    def _rest(self, point: Array) -> tuple[Rest, Array] | None:
+        """The state, and the pulls that are left on its balls where their places are unknowns."""
         try:
             machine = self.family(float(point[0]), float(point[1]))
         except InputError:
-            # A step may lead out of the chart, where values need not make a machine.
+            # A step may lead out of the chart, where values need not make a machine, or one at rest.
             return None
-        matrix = self.state.matrix(machine)
-        if matrix is None:
+        if not machine.speed > 0.0:
             return None
-        shift = 1j * point[2] if self.swings else 0.0
-        # Over the spin, and position against speed likewise: entries of one size.
-        scale = np.ones(len(matrix))
-        scale[: len(matrix) - machine.system.mass.shape[0] - _count(machine)] = machine.speed
-        matrix = scale[:, None] * matrix / scale / machine.speed
-        return np.asarray(matrix - shift / machine.speed * np.eye(len(matrix)), dtype=complex)
+        if self.fold:
+            rotor = RotorWithBalls(machine.system, tuple(machine.races))
+            return _held(rotor, machine.speed, point[2:])
+        rest = self.state.at(machine, None if self.state.places is None else self.near)
+        return None if rest is None else (rest, np.zeros(0))
+
+    def _matrix(self, rest: Rest, point: Array) -> Complex:
+        frequency = float(point[2]) if self.swings else 0.0
+        return rest.motions(self.steps).lasting(frequency, rest.speed)
 
     def renew(self, point: Array) -> None:
-        """Take the directions that A - i w maps to least as the border."""
-        matrix = self._shifted(point)
-        if matrix is not None:
-            before, _, after = np.linalg.svd(matrix)
-            self.left, self.right = before[:, -1], after[-1].conj()
+        """Take the directions that the matrix maps to least as the border, and this state's places."""
+        found = self._rest(point)
+        if found is None:
+            return
+        rest, self.near = found[0], found[0].places
+        motions = rest.motions()
+        self.steps = motions.steps if isinstance(motions, HalfTurn) else None
+        before, _, after = np.linalg.svd(self._matrix(rest, point))
+        self.left, self.right = before[:, -1], after[-1].conj()
 
     def __call__(self, point: Array) -> Array:
-        matrix = self._shifted(point)
-        size = self.left.size
-        if matrix is None or len(matrix) != size:
+        found, size = self._rest(point), self.left.size
+        matrix = None if found is None else self._matrix(found[0], point)
+        if found is None or matrix is None or len(matrix) != size:
             return np.full(point.size - 1, np.nan)
         whole = np.zeros((size + 1, size + 1), dtype=complex)
         whole[:size, :size], whole[:size, size], whole[size, :size] = matrix, self.left, self.right.conj()
-        one = np.zeros(size + 1, dtype=complex)
-        one[size] = 1.0
-        left = np.linalg.solve(whole, one)[size]
-        return np.array([left.real, left.imag]) if self.swings else np.array([left.real])
-
-
-def _count(machine: Machine) -> int:
-    return sum(len(race.masses) for race in machine.races)
+        unit = np.zeros(size + 1, dtype=complex)
+        unit[size] = 1.0
+        left = np.linalg.solve(whole, unit)[size]
+        return np.array([*found[1], left.real, *([left.imag] if self.swings else [])])
 
 
 def _roots(state: State, machine: Machine) -> Complex | None:
-    matrix = state.matrix(machine)
-    return None if matrix is None else np.asarray(np.linalg.eigvals(matrix), dtype=complex)
+    """Of the state; None where it does not exist, or where half a turn did not settle."""
+    rest = state.at(machine)
+    motions = None if rest is None else rest.motions()
+    return None if motions is None or not motions.settled else motions.roots()
 
 
 def _counted(state: State, machine: Machine) -> tuple[int, float]:
@@ -282,33 +424,44 @@ def _counted(state: State, machine: Machine) -> tuple[int, float]:
     return int(np.sum(roots.real > 0.0)), float(roots.real.max())
 
 
-def _changes(x: Array, y: Array, growing: Indices) -> list[tuple[Array, Array]]:
-    """Neighbours of the grid with different numbers of growing roots."""
+def _neighbours(x: Array, y: Array, growing: Indices) -> list[tuple[Array, Array]]:
+    """Pairs of the grid with different numbers of growing roots, one with the state first."""
     found = []
     for i, a in enumerate(x):
         for j, b in enumerate(y):
             for k, m in ((i + 1, j), (i, j + 1)):
-                if k == x.size or m == y.size or NONE in (growing[i, j], growing[k, m]):
+                if k == x.size or m == y.size or growing[i, j] == growing[k, m]:
                     continue
-                if growing[i, j] != growing[k, m]:
-                    found.append((np.array([a, b]), np.array([x[k], y[m]])))
+                pair = np.array([a, b]), np.array([x[k], y[m]])
+                found.append(pair if growing[i, j] != NONE else pair[::-1])
     return found
 
 
 def _crossing(state: State, family: Family, inside: Array, outside: Array) -> tuple[Array, complex | None]:
-    """Where between two points the number of growing roots first changes, and the root next to the axis."""
-    wanted = _counted(state, family(*inside.tolist()))[0]
+    """Where between two points the number of growing roots first changes, and the root next to the axis.
+
+    None where the state ends there without meeting another.
+    """
+    wanted, other = (_counted(state, family(*point.tolist()))[0] for point in (inside, outside))
+    if other == NONE and state.places is None:
+        return inside, None
     low, high = inside, outside
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
-        if _counted(state, family(*middle.tolist()))[0] == wanted:
+        count = _counted(state, family(*middle.tolist()))[0]
+        if count == wanted or (other == NONE and count != NONE):
             low = middle
         else:
             high = middle
-    roots = _roots(state, family(*high.tolist()))
+    where = low if other == NONE else high
+    machine = family(*where.tolist())
+    roots = _roots(state, machine)
     if roots is None:
-        return high, None
-    return high, complex(roots[np.argmin(np.abs(roots.real))])
+        return where, None
+    if other != NONE:
+        return where, complex(roots[np.argmin(np.abs(roots.real))])
+    least = complex(roots[np.argmin(np.abs(roots))])
+    return where, least if abs(least) <= _MEETS * machine.speed else None
 
 
 def _on(edge: Edge, where: Array, cell: Array) -> bool:

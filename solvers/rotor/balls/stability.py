@@ -1,4 +1,4 @@
-"""Small motions of rotor and balls about steady ones: roots in the turning frame, multipliers elsewhere.
+"""How small motions about steady ones grow: roots in the turning frame, multipliers of half a turn elsewhere.
 
 The balls of a race have no place of their own: where more of them stand than the balance needs, they can move
 along a family of balanced states. These directions are told, and are no instability.
@@ -7,26 +7,27 @@ along a family of balanced states. These directions are told, and are no instabi
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from meshes.arrays import Array, Complex
+from meshes.arrays import Array, Complex, Flags
 from meshes.errors import InputError, require_positive
-from solvers.rotor.balls.balancers import BallRace, race_arrays
+from solvers.rotor.balls.balancers import BallRace
 from solvers.rotor.balls.states import (
+    RotorWithBalls,
     balanced_places,
-    ball_moments,
-    checked_places,
     quarter_turn,
     require_balance,
+    turning,
     without_unbalance,
 )
 from solvers.rotor.system import RotorSystem
 
-_RANK = 1e-9  # of the largest: smaller singular values are none
-_STEPS, _MOST = 32, 4096  # of half a turn
+_RANK = 1e-7  # of the largest: smaller singular values are none
+STEPS = 32  # of half a turn, at least
+_MOST = 4096
 _GONE = 1e-300  # a multiplier that is nothing
 _SETTLED = 1e-6  # over a radian: change of the logarithm of a multiplier between two numbers of steps
 
@@ -47,6 +48,7 @@ class Linearised:
     damping: Array
     stiffness: Array
     neutral: Array
+    settled = True
 
     def matrix(self) -> Array:
         """Rates of (z without the neutral directions, z'), shape (2 (n + N) - d,) twice.
@@ -69,6 +71,63 @@ class Linearised:
         found = np.linalg.eigvals(self.matrix())
         return np.asarray(found[np.argsort(-found.real)])
 
+    def lasting(self, frequency: float, speed: float) -> Complex:
+        """Matrix that is singular where a motion of this frequency neither grows nor fades, without units.
+
+        Parameters
+        ----------
+        frequency : as seen from the rotor, rad/s
+        speed : Omega, rad/s
+        """
+        matrix = _over_spin(self.matrix(), self.mass.shape[0], speed) / speed
+        return np.asarray(matrix - 1j * frequency / speed * np.eye(len(matrix)))
+
+
+@dataclass(frozen=True)
+class HalfTurn:
+    """What half a turn makes of small motions, the rotor's part reversed [theory: balls, eq. 36].
+
+    Parameters
+    ----------
+    map : P Phi of (z without the neutral directions, z'), z = (q, psi), shape (2 (n + N) - d,) twice
+    neutral : directions of the balls, orthonormal, along which nothing changes, shape (N, d)
+    speed : Omega, rad/s
+    steps : of the Magnus method
+    settled : twice the steps hardly change the largest growth
+    """
+
+    map: Array
+    neutral: Array
+    speed: float
+    steps: int
+    settled: bool = True
+
+    def roots(self) -> Complex:
+        """Characteristic exponents, log(multiplier) over the time of half a turn, 1/s, the largest first."""
+        found = np.linalg.eigvals(self.map)
+        # What heavy drag leaves of a ball's speed may be below the least number.
+        found = np.log(np.where(np.abs(found) < _GONE, _GONE, found.astype(complex)))
+        found = found[np.argsort(-found.real)]
+        return np.asarray(found * self.speed / np.pi)
+
+    def lasting(self, frequency: float, speed: float) -> Complex:
+        """Matrix that is singular where a motion of this frequency neither grows nor fades, without units.
+
+        Parameters
+        ----------
+        frequency : as seen from the rotor, rad/s, known up to twice the spin
+        speed : Omega, rad/s
+        """
+        matrix = _over_spin(self.map, (len(self.map) + self.neutral.shape[1]) // 2, speed)
+        return np.asarray(matrix - np.exp(1j * np.pi * frequency / speed) * np.eye(len(matrix)))
+
+
+def _over_spin(matrix: Array, moving: int, speed: float) -> Array:
+    """Positions against speeds over the spin: entries of one size. The last `moving` unknowns are speeds."""
+    scale = np.ones(len(matrix))
+    scale[: len(matrix) - moving] = speed
+    return np.asarray(scale[:, None] * matrix / scale)
+
 
 @dataclass(frozen=True)
 class Stability:
@@ -82,6 +141,7 @@ class Stability:
     neutral : directions of the balls along which the rotor stays balanced, orthonormal, shape (N, d)
     places : of the balls, rad, shape (N,)
     roots : characteristic roots, or characteristic exponents of the half turn, 1/s, shape (2 (n + N) - d,)
+    settled : False where the steps of the half turn did not suffice for the growth
     """
 
     growth: float
@@ -89,31 +149,39 @@ class Stability:
     neutral: Array
     places: Array
     roots: Complex
+    settled: bool = True
 
     @property
     def stable(self) -> bool:
         """All disturbances but those along the neutral directions die out."""
-        return self.growth < 0.0
+        return self.settled and self.growth < 0.0
 
 
-def neutral_directions(system: RotorSystem, races: Sequence[BallRace], places: ArrayLike) -> Array:
-    """Directions in which balls can move without a change of the unbalance [theory: balls, eq. 35].
+def neutral_directions(machine: RotorWithBalls, places: ArrayLike, free: Flags | None = None) -> Array:
+    """Directions in which balls can move and neither unbalance nor pull changes [theory: balls, eq. 35].
 
     Parameters
     ----------
-    system, races : rotor and balls
+    machine : rotor and balls
     places : of the balls, rad, shape (N,)
+    free : balls in whose plane the axis does not move [theory: races, eq. 7], shape (N,); None: all
 
     Returns
     -------
     Orthonormal columns, shape (N, d)
     """
-    moved = 1j * ball_moments(system, races, places)
+    moved = 1j * machine.moments(places)
+    mine = np.flatnonzero(np.ones(moved.shape[1], dtype=bool) if free is None else free)
+    if not mine.size:
+        return np.zeros((moved.shape[1], 0))
     # Shifts and tilts have different units: each row over its own size.
     rows = np.vstack((moved.real, moved.imag))
     sizes = np.abs(rows).sum(axis=1)
-    rows = rows[sizes > _RANK * sizes.max()]
-    return _null_space(rows / np.abs(rows).sum(axis=1)[:, None])
+    rows = (rows / np.where(sizes > 0.0, sizes, 1.0)[:, None])[sizes > _RANK * sizes.max()]
+    own = _null_space(rows[:, mine])
+    found = np.zeros((moved.shape[1], own.shape[1]))
+    found[mine] = own
+    return found
 
 
 def _across(neutral: Array) -> Array:
@@ -125,6 +193,47 @@ def _null_space(rows: Array) -> Array:
     from scipy.linalg import null_space
 
     return np.asarray(null_space(rows, rcond=_RANK))
+
+
+def small_motions(
+    machine: RotorWithBalls,
+    speed: float,
+    places: ArrayLike,
+    coordinates: ArrayLike | None = None,
+    free: Flags | None = None,
+    steps: int | None = None,
+) -> Linearised | HalfTurn:
+    """Small motions about a state in which the balls rest in the rotor, on any supports.
+
+    In the turning frame where the rotor is the same in every direction; else over half a turn.
+
+    Parameters
+    ----------
+    machine : rotor and balls
+    speed : Omega, rad/s, above 0
+    places : psi of each ball, at which it rests, rad, shape (N,)
+    coordinates : complex amplitudes of the rotor, q = Re(coordinates e^{i Omega t}), shape (n,); None:
+        balanced, without any
+    free : balls in whose plane the axis does not move, shape (N,); None: all of a balanced rotor, else none
+    steps : of the half turn; None: as many as its growth needs
+
+    Raises
+    ------
+    InputError : a speed that is not positive, places that are not one for each ball
+    """
+    require_positive("speed", speed)
+    angles = machine.checked(places)
+    moved = np.zeros(len(machine.system.coordinates), dtype=complex)
+    if coordinates is not None:
+        moved = np.asarray(coordinates, dtype=complex)
+    still = np.full(angles.size, coordinates is None) if free is None else free
+    neutral = neutral_directions(machine, angles, still)
+    turn = turning(machine.system)
+    if turn is not None:
+        return _turning_motions(machine, speed, angles, moved.real, turn, neutral)
+    if steps is not None:
+        return _half_turn(machine, speed, angles, moved, neutral, steps)
+    return _settled_half_turn(machine, speed, angles, moved, neutral)
 
 
 def linearised(
@@ -148,15 +257,20 @@ def linearised(
     ------
     InputError : a speed that is not positive, supports that differ in two directions
     """
-    require_positive("speed", speed)
-    turn = quarter_turn(system)
-    axes, balls = race_arrays(system, races)
-    angles = checked_places(places, balls.shape[0])
-    n, count = len(system.coordinates), balls.shape[0]
-    whole, along, outward = _directions(system, axes, balls, angles)
+    quarter_turn(system)
+    found = small_motions(RotorWithBalls(system, tuple(races)), speed, places, deflection)
+    assert isinstance(found, Linearised)
+    return found
+
+
+def _turning_motions(
+    machine: RotorWithBalls, speed: float, angles: Array, deflection: Array, turn: Array, neutral: Array
+) -> Linearised:
+    system, moment, balls, whole = machine.system, machine.moment, machine.balls, machine.mass
+    n, count = len(system.coordinates), moment.size
+    outward, along = _directions(machine, angles)
     damping = system.damping + speed * system.gyroscopic
     mass, drag, held = (np.zeros((n + count, n + count)) for _ in range(3))
-    moment = balls[:, 0] * balls[:, 1]
     mass[:n, :n], mass[:n, n:], mass[n:, :n] = whole, (moment * along.T), (moment * along.T).T
     mass[n:, n:] = np.diag(balls[:, 3] * balls[:, 0] * balls[:, 1] ** 2)
     drag[:n, :n] = damping + 2.0 * speed * whole @ turn
@@ -166,17 +280,15 @@ def linearised(
     held[:n, :n] = system.stiffness + speed * damping @ turn - speed**2 * whole
     held[:n, n:] = -(speed**2) * moment * along.T
     held[n:, :n] = held[:n, n:].T
-    moved = np.zeros(n) if deflection is None else np.asarray(deflection, dtype=float)
-    held[n:, n:] = np.diag(speed**2 * moment * (outward @ moved))
-    neutral = neutral_directions(system, races, angles) if deflection is None else np.zeros((count, 0))
+    held[n:, n:] = np.diag(speed**2 * moment * (outward @ deflection))
     return Linearised(mass, drag, held, neutral)
 
 
-def _directions(system: RotorSystem, axes: Array, balls: Array, angles: Array) -> tuple[Array, Array, Array]:
-    """Mass with the balls on board; motion of the axis along the race and outward at each ball, (N, n)."""
-    x, y = np.cos(angles)[:, None], np.sin(angles)[:, None]
-    whole = system.mass + np.einsum("j,jai,jak->ik", balls[:, 0], axes, axes)
-    return whole, axes[:, 1] * x - axes[:, 0] * y, axes[:, 0] * x + axes[:, 1] * y
+def _directions(machine: RotorWithBalls, angles: Array) -> tuple[Array, Array]:
+    """Motion of the axis outward and along the race at each ball, for unit coordinates, (..., N, n)."""
+    x, y = np.cos(angles)[..., None], np.sin(angles)[..., None]
+    first, second = machine.axes[:, 0], machine.axes[:, 1]
+    return first * x + second * y, second * x - first * y
 
 
 def balanced_roots(system: RotorSystem, races: Sequence[BallRace], speed: float) -> Complex:
@@ -233,18 +345,16 @@ def balanced_stability(
     [False, True]
     """
     require_positive("speed", speed)
+    machine = RotorWithBalls(system, tuple(races))
     if places is None:
         angles = balanced_places(system, races)
     else:
-        angles = checked_places(places, sum(len(race.masses) for race in races))
+        angles = machine.checked(places)
         require_balance(system, races, angles)
-    if is_isotropic(system):
-        found = linearised(system, races, speed, angles)
-        roots, neutral = found.roots(), found.neutral
-    else:
-        neutral = neutral_directions(system, races, angles)
-        roots = balanced_exponents(system, races, speed, angles)
-    return Stability(float(roots[0].real), float(abs(roots[0].imag)), neutral, angles, roots)
+    found = small_motions(machine, speed, angles)
+    roots = found.roots()
+    frequency = float(abs(roots[0].imag))
+    return Stability(float(roots[0].real), frequency, found.neutral, angles, roots, found.settled)
 
 
 def light_ball_roots(system: RotorSystem, races: Sequence[BallRace], speed: float) -> Complex:
@@ -265,7 +375,8 @@ def light_ball_roots(system: RotorSystem, races: Sequence[BallRace], speed: floa
     """
     require_positive("speed", speed)
     quarter_turn(system)
-    axes, balls = race_arrays(system, races)
+    machine = RotorWithBalls(system, tuple(races))
+    axes, balls = machine.axes, machine.balls
     n = len(system.coordinates)
     matrix = np.zeros((2 * n, 2 * n))
     matrix[:n, n:] = np.eye(n)
@@ -290,82 +401,41 @@ def light_ball_roots(system: RotorSystem, races: Sequence[BallRace], speed: floa
     return np.array(sorted(roots, key=lambda root: root.imag))
 
 
-def is_isotropic(system: RotorSystem) -> bool:
-    """Whether the rotor is the same in every direction across its axis.
-
-    Parameters
-    ----------
-    system : the rotor
-    """
-    try:
-        quarter_turn(system)
-    except InputError:
-        return False
-    return True
-
-
-def balanced_exponents(
-    system: RotorSystem, races: Sequence[BallRace], speed: float, places: ArrayLike
-) -> Complex:
-    """Characteristic exponents of the balanced state on any supports [theory: balls, eq. 36].
-
-    In the standing frame the coefficients have the period of a turn; after half a turn the balls are
-    opposite, which is the same machine with the rotor's coordinates reversed. The map over half a turn is
-    made of steps of the fourth-order Magnus method, their number doubled until the exponents stay.
-
-    Parameters
-    ----------
-    system : any rotor
-    races, speed : as in `balanced_stability`
-    places : of the balls, rad, shape (N,)
-
-    Returns
-    -------
-    log(multiplier) over half a turn's time, 1/s, the largest growth first, shape (2 (n + N) - d,)
-
-    Raises
-    ------
-    InputError : exponents that do not settle
-    """
-    require_positive("speed", speed)
-    axes, balls = race_arrays(system, races)
-    angles = checked_places(places, balls.shape[0])
-    neutral = neutral_directions(system, races, angles)
-    steps = _STEPS
-    last: Array = np.zeros(0)
-    while steps <= _MOST:
-        found = np.linalg.eigvals(_half_turn(system, axes, balls, angles, speed, neutral, steps))
-        # What heavy drag leaves of a ball's speed may be below the least number.
-        found = np.log(np.where(np.abs(found) < _GONE, _GONE, found.astype(complex)))
-        found = found[np.argsort(-found.real)]
-        growth = np.asarray(found.real, dtype=np.float64)
-        if last.size and np.abs(growth[0] - last[0]) <= _SETTLED * max(1.0, abs(growth[0])):
-            return np.asarray(found * speed / np.pi)
+def _settled_half_turn(
+    machine: RotorWithBalls, speed: float, angles: Array, coordinates: Complex, neutral: Array
+) -> HalfTurn:
+    """The number of steps is doubled until the largest growth stays."""
+    steps, last = STEPS, np.nan
+    while True:
+        found = _half_turn(machine, speed, angles, coordinates, neutral, steps)
+        growth = float(found.roots()[0].real) * np.pi / speed
+        if abs(growth - last) <= _SETTLED * max(1.0, abs(growth)):
+            return found
+        if steps >= _MOST:
+            return replace(found, settled=False)
         steps, last = 2 * steps, growth
-    raise InputError("speed", speed, f"one at which {_MOST} steps in half a turn are enough")
 
 
 def _half_turn(
-    system: RotorSystem,
-    axes: Array,
-    balls: Array,
-    angles: Array,
+    machine: RotorWithBalls,
     speed: float,
+    angles: Array,
+    coordinates: Complex,
     neutral: Array,
     steps: int,
-) -> Array:
-    """Map of (q, psi, q', psi') over half a turn, the rotor's part reversed, without neutral directions."""
+) -> HalfTurn:
+    """Steps of the fourth-order Magnus method, at two points of Gauss each."""
     from scipy.linalg import expm
 
     step = np.pi / (speed * steps)
     apart = np.sqrt(3.0) / 6.0
     begin = np.arange(steps)[:, None] + np.array([0.5 - apart, 0.5 + apart])
-    rates = _standing_rates(system, axes, balls, angles, speed, step * begin.reshape(-1))
+    rates = _standing_rates(machine, speed, angles, coordinates, step * begin.reshape(-1))
     rates = rates.reshape(steps, 2, *rates.shape[1:])
     first, second = rates[:, 0], rates[:, 1]
     mean, twist = 0.5 * step * (first + second), second @ first - first @ second
     pieces = expm(mean + (np.sqrt(3.0) / 12.0) * step**2 * twist)
-    size, n = rates.shape[-1] // 2, len(system.coordinates)
+    size, n = rates.shape[-1] // 2, len(machine.system.coordinates)
     reverse = np.ones(2 * size)
     reverse[:n] = reverse[size : size + n] = -1.0
     whole = np.eye(2 * size)
@@ -377,21 +447,22 @@ def _half_turn(
     kept[:n, :n] = np.eye(n)
     kept[n:size, n : n + held.shape[1]] = held
     kept[size:, n + held.shape[1] :] = np.eye(size)
-    return np.asarray(kept.T @ whole @ kept)
+    return HalfTurn(np.asarray(kept.T @ whole @ kept), neutral, speed, steps)
 
 
 def _standing_rates(
-    system: RotorSystem, axes: Array, balls: Array, angles: Array, speed: float, times: Array
+    machine: RotorWithBalls, speed: float, angles: Array, coordinates: Complex, times: Array
 ) -> Array:
-    """Matrices of the small motions in the standing frame at each time, shape (times, 2 (n + N), ...)."""
+    """Rates of small motions in the standing frame at each time, shape (times, 2 (n + N), 2 (n + N)).
+
+    Theory: races, eq. 6.
+    """
+    system, moment, balls = machine.system, machine.moment[:, None], machine.balls
     n, count = len(system.coordinates), balls.shape[0]
-    turned = angles + speed * times[:, None]
-    x, y = np.cos(turned)[..., None], np.sin(turned)[..., None]
-    along, outward = axes[:, 1] * x - axes[:, 0] * y, axes[:, 0] * x + axes[:, 1] * y
-    moment = (balls[:, 0] * balls[:, 1])[:, None]
-    whole = system.mass + np.einsum("j,jai,jak->ik", balls[:, 0], axes, axes)
+    outward, along = _directions(machine, angles + speed * times[:, None])
+    steady = np.real(coordinates * np.exp(1j * speed * times)[:, None])
     mass, drag, held = (np.zeros((times.size, n + count, n + count)) for _ in range(3))
-    mass[:, :n, :n], mass[:, n:, :n] = whole, moment * along
+    mass[:, :n, :n], mass[:, n:, :n] = machine.mass, moment * along
     mass[:, :n, n:] = np.swapaxes(moment * along, 1, 2)
     mass[:, n:, n:] = np.diag(balls[:, 3] * balls[:, 0] * balls[:, 1] ** 2)
     drag[:, :n, :n] = system.damping + speed * system.gyroscopic
@@ -399,6 +470,8 @@ def _standing_rates(
     drag[:, n:, n:] = np.diag(balls[:, 2] * balls[:, 1] ** 2)
     held[:, :n, :n] = system.stiffness
     held[:, :n, n:] = -(speed**2) * np.swapaxes(moment * along, 1, 2)
+    each = np.arange(n, n + count)
+    held[:, each, each] = speed**2 * moment[:, 0] * np.einsum("tjn,tn->tj", outward, steady)
     rates = np.zeros((times.size, 2 * (n + count), 2 * (n + count)))
     rates[:, : n + count, n + count :] = np.eye(n + count)
     rates[:, n + count :] = -np.linalg.solve(mass, np.concatenate((held, drag), axis=2))

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from meshes.arrays import Array, Complex
-from meshes.errors import InputError, require_positive
+from meshes.arrays import Array, Complex, Flags
+from meshes.errors import InputError
 from solvers.roots import bracketed_root
 from solvers.rotor.balls.balancers import BallRace, race_arrays
 from solvers.rotor.system import RotorSystem
@@ -19,7 +20,11 @@ from solvers.rotor.system import RotorSystem
 _PAIRS = (("x", "y"), ("alpha", "beta"))
 _ALIKE = 1e-9  # relative; two directions that differ by rounding alone are the same
 _BALANCED = 1e-9  # of the balls' own moment: what may be left of a balanced rotor's unbalance
-_ROUNDS = 60  # of Newton's method for steady places
+_STILL = 1e-7  # of the bare rotor's deflection, or of the balls': counts as none
+_SETTLING = 400  # rounds
+_LONGEST = 0.4  # rad, that a ball moves in a round
+_RESTS = 1e-11  # of the pull on a ball of the bare rotor: what a state may leave
+_NEWTON = 60  # rounds
 
 
 def quarter_turn(system: RotorSystem) -> Array:
@@ -52,52 +57,256 @@ def quarter_turn(system: RotorSystem) -> Array:
     return turn
 
 
-def ball_moments(system: RotorSystem, races: Sequence[BallRace], places: ArrayLike) -> Complex:
-    """Share of each ball in the unbalance, m R (B_1 - i B_2)^T e^{i psi} [theory: balls, eq. 21].
+def turning(system: RotorSystem) -> Array | None:
+    """J of `quarter_turn`, shape (n, n); None where the rotor is not the same in every direction.
 
     Parameters
     ----------
-    system, races : rotor and balls
-    places : psi of each ball in the rotor, race by race, rad, shape (N,)
-
-    Returns
-    -------
-    One column for each ball, in the units of the rotor's unbalance, shape (n, N)
-
-    Raises
-    ------
-    InputError : places that are not one finite angle for each ball
+    system : any rotor
     """
-    axes, balls = race_arrays(system, races)
-    angles = checked_places(places, balls.shape[0])
-    size = balls[:, 0] * balls[:, 1]
-    across = axes[:, 0] - 1j * axes[:, 1]
-    return np.asarray((size * np.exp(1j * angles))[:, None] * across).T
+    try:
+        return quarter_turn(system)
+    except InputError:
+        return None
 
 
-def checked_places(places: ArrayLike, count: int) -> Array:
-    """Places of the balls as an array.
+@dataclass(frozen=True)
+class RotorWithBalls:
+    """A linear rotor, with the liquid's share in its matrices, and balls in races; N balls, n coordinates.
 
     Parameters
     ----------
-    places : angles, rad
-    count : of the balls
-
-    Raises
-    ------
-    InputError : not one finite angle for each ball
+    system : the rotor without balls
+    races : that hold them, one or more
     """
-    angles = np.asarray(places, dtype=float)
-    if angles.shape != (count,) or not np.isfinite(angles).all():
-        raise InputError("places", angles.tolist(), f"finite angles of {count} balls")
-    return angles
+
+    system: RotorSystem
+    races: tuple[BallRace, ...]
+
+    @cached_property
+    def _arrays(self) -> tuple[Array, Array]:
+        return race_arrays(self.system, self.races)
+
+    @property
+    def axes(self) -> Array:
+        """Displacement of the axis in the plane of each ball for unit coordinates, shape (N, 2, n)."""
+        return self._arrays[0]
+
+    @property
+    def balls(self) -> Array:
+        """Mass, radius, drag, rolling inertia of each, shape (N, 4)."""
+        return self._arrays[1]
+
+    @property
+    def moment(self) -> Array:
+        """m R of each ball, kg m, shape (N,)."""
+        return np.asarray(self.balls[:, 0] * self.balls[:, 1])
+
+    @property
+    def push(self) -> Complex:
+        """Unbalance of each ball at angle 0, as that of a rotor, shape (N, n)."""
+        return np.asarray(self.moment[:, None] * (self.axes[:, 0] - 1j * self.axes[:, 1]))
+
+    @property
+    def mass(self) -> Array:
+        """Mass matrix with the balls, shape (n, n)."""
+        added = np.einsum("j,jin,jim->nm", self.balls[:, 0], self.axes, self.axes)
+        return np.asarray(self.system.mass + added)
+
+    def carrying(self, added: Array) -> RotorWithBalls:
+        """The same with more in its mass matrix.
+
+        Parameters
+        ----------
+        added : of the liquid, which goes with the rotor, shape (n, n)
+        """
+        return replace(self, system=replace(self.system, mass=self.system.mass + added))
+
+    def checked(self, places: ArrayLike) -> Array:
+        """Places of the balls as an array.
+
+        Parameters
+        ----------
+        places : psi of each ball in the rotor, race by race, rad, shape (N,)
+
+        Raises
+        ------
+        InputError : not one finite angle for each ball
+        """
+        angles, count = np.asarray(places, dtype=float), len(self.balls)
+        if angles.shape != (count,) or not np.isfinite(angles).all():
+            raise InputError("places", angles.tolist(), f"finite angles of {count} balls")
+        return angles
+
+    def moments(self, places: ArrayLike) -> Complex:
+        """Share of each ball in the unbalance, m R (B_1 - i B_2)^T e^{i psi} [theory: balls, eq. 21].
+
+        Parameters
+        ----------
+        places : psi of each ball in the rotor, race by race, rad, shape (N,)
+
+        Returns
+        -------
+        One column for each ball, in the units of the rotor's unbalance, shape (n, N)
+
+        Raises
+        ------
+        InputError : places that are not one finite angle for each ball
+        """
+        return np.asarray(np.exp(1j * self.checked(places))[:, None] * self.push).T
+
+    def forward(self, coordinates: Complex) -> Complex:
+        """Forward part of the axis in the plane of each ball, m, shape (..., N)."""
+        onward = 0.5 * (self.axes[:, 0] + 1j * self.axes[:, 1])
+        return np.asarray(coordinates @ onward.T)
+
+    def compliance(self, speed: Array, added: Complex | None = None) -> Complex:
+        """Answer of the coordinates to an unbalance over it, shape (s, n, n).
+
+        Parameters
+        ----------
+        speed : rad/s, shape (s,)
+        added : the liquid's share in the mass matrix, shape (s, n, n)
+        """
+        s = speed[:, None, None]
+        damping = self.system.damping + s * self.system.gyroscopic
+        mass = self.mass if added is None else self.mass + added
+        return np.asarray(s**2 * np.linalg.inv(self.system.stiffness + 1j * s * damping - s**2 * mass))
+
+    def coordinates(self, compliance: Complex, places: Array) -> Complex:
+        """Complex amplitudes with the balls at some places [theory: races, section 3].
+
+        Parameters
+        ----------
+        compliance : of each of p problems, shape (p, n, n)
+        places : of the balls, rad, shape (p, N)
+
+        Returns
+        -------
+        Q, m or rad, shape (p, n)
+        """
+        load = self.system.unbalance + np.exp(1j * places) @ self.push
+        return np.asarray(np.einsum("pij,pj->pi", compliance, load))
+
+    def at_rest(self, compliance: Complex, places: Array) -> Flags:
+        """Balls in whose plane the axis does not move, shape (p, N).
+
+        Parameters
+        ----------
+        compliance, places : see `coordinates`
+        """
+        bare, each = self._answers(compliance)
+        scale = np.abs(bare).max(axis=1) + np.abs(each).max(axis=(1, 2))
+        size = np.abs(self.forward(self.coordinates(compliance, places)))
+        return np.asarray(size <= _STILL * scale[:, None])
+
+    def _answers(self, compliance: Complex) -> tuple[Complex, Complex]:
+        """Forward deflection at each ball by the rotor's unbalance, (p, N), and by each ball, (p, N, N)."""
+        bare = self.forward(np.einsum("pij,j->pi", compliance, self.system.unbalance))
+        each = self.forward(np.einsum("pij,kj->pki", compliance, self.push))
+        return bare, np.moveaxis(each, 1, 2)
+
+    def _scaled_answers(self, compliance: Complex) -> tuple[Complex, Complex]:
+        """The same over the largest deflection that all together could give."""
+        bare, each = self._answers(compliance)
+        scale = np.abs(bare).max(axis=1) + np.abs(each).sum(axis=2).max(axis=1)
+        scale = np.where(scale > 0.0, scale, 1.0)
+        return bare / scale[:, None], each / scale[:, None, None]
+
+    def pulls(self, compliance: Complex, places: Array) -> tuple[Array, Array]:
+        """Motion of the axis along the race at each ball, 0 where balls rest [theory: races, eq. 5].
+
+        Parameters
+        ----------
+        compliance, places : see `coordinates`
+
+        Returns
+        -------
+        Im[w e^{-i psi}] over the deflection that unbalance and balls all together could give, shape (p, N);
+        its derivatives by the places, shape (p, N, N)
+        """
+        return _pulls(*self._scaled_answers(compliance), places)
+
+    def settle(self, compliance: Complex, places: Array, rounds: int = _SETTLING) -> tuple[Array, Flags]:
+        """Let the balls go where they are pulled, as in a stiff oil, until they rest [theory: races, eq. 5].
+
+        Implicit steps that grow as the pull fades; in the end they are Newton's.
+
+        Parameters
+        ----------
+        compliance : of each of p problems, shape (p, n, n)
+        places : start of the balls, rad, shape (p, N)
+        rounds : most steps
+
+        Returns
+        -------
+        Places, shape (p, N), and whether the balls rest there, shape (p,)
+        """
+        answers = self._scaled_answers(compliance)
+        found, length = places.astype(float).copy(), np.full(places.shape[0], 0.5)
+        unit = np.eye(places.shape[1])
+        size = np.full(places.shape[0], np.inf)
+        for _ in range(rounds):
+            (pull, slope), before = _pulls(*answers, found), size
+            size = np.abs(pull).max(axis=1)
+            busy = size > _RESTS
+            if not busy.any():
+                break
+            shrink = np.where(np.isfinite(before), before / np.maximum(size, 1e-300), 1.0)
+            length = np.clip(length * np.clip(shrink, 0.5, 3.0), 0.5, 1e9)
+            step = np.linalg.solve(unit / length[:, None, None] - slope, pull[:, :, None])[:, :, 0]
+            most = np.abs(step).max(axis=1, initial=1e-300)
+            step *= np.minimum(1.0, _LONGEST / most)[:, None]
+            found += step * busy[:, None]
+        return found, np.asarray(size <= 1e3 * _RESTS)
+
+    def nearest(self, compliance: Complex, places: ArrayLike) -> Array | None:
+        """Places next to given ones at which the balls rest, whether they would go there or not.
+
+        Newton's method on the pulls [theory: races, eq. 5]. Balls may sit in one another: nothing in the
+        equations keeps them apart.
+
+        Parameters
+        ----------
+        compliance : shape (n, n)
+        places : where the search begins, rad, shape (N,)
+
+        Returns
+        -------
+        Places, rad, shape (N,); None where the search finds none
+        """
+        answers = self._scaled_answers(compliance[None])
+        angles = self.checked(places).copy()
+        for _ in range(_NEWTON):
+            pull, slope = (part[0] for part in _pulls(*answers, angles[None]))
+            if np.abs(pull).max() <= 1e-2 * _RESTS:
+                return angles
+            change = np.linalg.lstsq(slope, -pull, rcond=1e-12)[0]
+            angles += change / max(1.0, 2.0 * float(np.abs(change).max()))
+        return None
+
+    def balanced(self) -> Array | None:
+        """Places of `balanced_places`, rad, shape (N,); None where the balls cannot balance the rotor."""
+        try:
+            return balanced_places(self.system, self.races)
+        except InputError:
+            return None
+
+
+def _pulls(bare: Complex, each: Complex, places: Array) -> tuple[Array, Array]:
+    """Pull on each ball, shape (p, N), and its derivatives by the places, shape (p, N, N)."""
+    turn = np.exp(1j * places)
+    seen = (bare + np.einsum("pjk,pk->pj", each, turn)) * turn.conj()
+    slope = (turn.conj()[:, :, None] * each * turn[:, None, :]).real
+    return np.asarray(seen.imag), np.asarray(slope - seen.real[:, :, None] * np.eye(places.shape[1]))
 
 
 def balanced_places(system: RotorSystem, races: Sequence[BallRace]) -> Array:
     """Places at which the balls take away the whole unbalance [theory: balls, eq. 21].
 
     Of all such places those that are evenly spread over an arc of each race; of all shares of the races in
-    the unbalance those with the least sum of squares. Three balls and more have a family of further ones.
+    the unbalance those whose squares, each over what its race can hold, have the least sum. So races in one
+    plane are used to the same extent. Three balls and more have a family of further places.
 
     Parameters
     ----------
@@ -124,13 +333,13 @@ def balanced_places(system: RotorSystem, races: Sequence[BallRace]) -> Array:
             raise InputError("races", race.masses, "balls of one race alike; else give their places")
     rows = [system.at(race.position) for race in races]
     across = np.array([row[0] - 1j * row[1] for row in rows]).T
-    shares = np.linalg.lstsq(across, -system.unbalance, rcond=None)[0]
+    most = np.array([sum(race.masses) * race.radius for race in races])
+    weights = np.sqrt(most)
+    shares = weights * np.linalg.lstsq(across * weights, -system.unbalance.astype(complex), rcond=None)[0]
     places: list[float] = []
-    for race, share in zip(races, shares.tolist(), strict=True):
+    for race, held, share in zip(races, most.tolist(), shares.tolist(), strict=True):
         # A share at rounding has no direction.
-        most = sum(race.masses) * race.radius
-        wanted = share if abs(share) > 1e-12 * most else 0.0
-        places += _arc(race, wanted)
+        places += _arc(race, share if abs(share) > 1e-12 * held else 0.0)
     require_balance(system, races, places)
     return np.array(places)
 
@@ -147,7 +356,7 @@ def require_balance(system: RotorSystem, races: Sequence[BallRace], places: Arra
     ------
     InputError : they leave some of it
     """
-    moments = ball_moments(system, races, places)
+    moments = RotorWithBalls(system, tuple(races)).moments(places)
     left = float(np.abs(system.unbalance + moments.sum(axis=1)).max())
     most = float(np.abs(moments).sum())
     if not left <= _BALANCED * most:
@@ -162,6 +371,8 @@ def _arc(race: BallRace, share: complex) -> list[float]:
         raise InputError("races", race.masses, f"balls of {abs(share):.6g} kg m or more together")
     if count == 1 or wanted >= count:
         gap = 0.0
+    elif count == 2:
+        gap = 2.0 * math.acos(0.5 * wanted)
     else:
         # The sum of unit vectors a gap apart falls from their number at 0 to 0 when they stand all round.
         def left(at: Array, _: object) -> Array:
@@ -171,96 +382,6 @@ def _arc(race: BallRace, share: complex) -> list[float]:
         gap = float(bracketed_root(left, np.array([1e-9]), np.array([whole]))[0][0]) if wanted else whole
     middle = float(np.angle(share)) if share else gap * 0.5 * (count - 1)
     return [middle + gap * (k - 0.5 * (count - 1)) for k in range(count)]
-
-
-def turning_stiffness(system: RotorSystem, races: Sequence[BallRace], speed: float) -> Array:
-    """What a deflection that turns with the rotor is held by, balls included [theory: balls, eq. 30].
-
-    K + Omega (C + Omega G) J - Omega^2 (M + sum m B^T B), shape (n, n).
-
-    Parameters
-    ----------
-    system, races : a rotor alike in every direction, and its balls
-    speed : Omega, rad/s
-    """
-    axes, balls = race_arrays(system, races)
-    whole = system.mass + np.einsum("j,jai,jak->ik", balls[:, 0], axes, axes)
-    turned = (system.damping + speed * system.gyroscopic) @ quarter_turn(system)
-    return np.asarray(system.stiffness + speed * turned - speed**2 * whole)
-
-
-def turning_deflection(
-    system: RotorSystem, races: Sequence[BallRace], speed: float, places: ArrayLike
-) -> Array:
-    """Deflection, at rest in the rotor, with balls held at their places [theory: balls, eq. 30].
-
-    Parameters
-    ----------
-    system, races : a rotor alike in every direction, and its balls
-    speed : Omega, rad/s
-    places : of the balls, rad, shape (N,)
-
-    Returns
-    -------
-    p at the moment when the unbalance's angle is that of its complex number, m or rad, shape (n,)
-    """
-    whole = system.unbalance + ball_moments(system, races, places).sum(axis=1)
-    return np.linalg.solve(turning_stiffness(system, races, speed), speed**2 * whole.real)
-
-
-def pulls(system: RotorSystem, races: Sequence[BallRace], speed: float, places: ArrayLike) -> Array:
-    """Displacement of the axis along the race at each ball, 0 where balls rest [theory: balls, eq. 31].
-
-    Parameters
-    ----------
-    system, races, speed, places : see `turning_deflection`
-
-    Returns
-    -------
-    t_j^T B_j p, m, shape (N,): the ball is driven onward by m R Omega^2 times it
-    """
-    axes, balls = race_arrays(system, races)
-    angles = checked_places(places, balls.shape[0])
-    moved = axes @ turning_deflection(system, races, speed, angles)
-    return np.asarray(moved[:, 1] * np.cos(angles) - moved[:, 0] * np.sin(angles))
-
-
-def steady_places(
-    system: RotorSystem, races: Sequence[BallRace], speed: float, places: ArrayLike
-) -> Array | None:
-    """Places next to given ones at which the balls rest in the rotor [theory: balls, eq. 31].
-
-    Balanced or not, by Newton's method on the pulls. Balls may sit in one another: nothing in the equations
-    keeps them apart.
-
-    Parameters
-    ----------
-    system, races, speed : see `turning_deflection`
-    places : where the search begins, rad, shape (N,)
-
-    Returns
-    -------
-    Places, rad, shape (N,); None where the search finds none
-    """
-    require_positive("speed", speed)
-    axes, balls = race_arrays(system, races)
-    angles = checked_places(places, balls.shape[0]).copy()
-    held = turning_stiffness(system, races, speed)
-    size = float(np.abs(ball_moments(system, races, angles)).sum() + np.abs(system.unbalance).sum())
-    scale = speed**2 * size / float(np.abs(held).max())
-    for _ in range(_ROUNDS):
-        x, y = np.cos(angles), np.sin(angles)
-        along = axes[:, 1] * x[:, None] - axes[:, 0] * y[:, None]
-        outward = axes[:, 0] * x[:, None] + axes[:, 1] * y[:, None]
-        deflection = turning_deflection(system, races, speed, angles)
-        left = along @ deflection
-        if np.abs(left).max() <= 1e-13 * max(scale, float(np.abs(deflection).max())):
-            return angles
-        push = (speed**2 * balls[:, 0] * balls[:, 1])[:, None] * along
-        slope = along @ np.linalg.solve(held, push.T) - np.diag(outward @ deflection)
-        change = np.linalg.lstsq(slope, -left, rcond=1e-12)[0]
-        angles += change / max(1.0, 2.0 * float(np.abs(change).max()))
-    return None
 
 
 def without_unbalance(system: RotorSystem) -> RotorSystem:

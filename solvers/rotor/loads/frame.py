@@ -10,6 +10,7 @@ import numpy as np
 
 from fluid.fill import Fill
 from meshes.arrays import Array
+from solvers.rotor.balls.balancers import BallRace
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.tub import Mount, Tub, Vector, displacement
 from solvers.rotor.two_plane import TwoPlane
@@ -151,17 +152,21 @@ class Weight:
     turns: bool = True
 
 
-def weights_of(rotor: AnyRotor, fills: Sequence[Fill], frame: Frame) -> tuple[Weight, ...]:
-    """Masses of a rotor and of the liquid in its chambers, which counts at its chamber's centre.
+def weights_of(
+    rotor: AnyRotor, fills: Sequence[Fill], frame: Frame, races: Sequence[BallRace] = ()
+) -> tuple[Weight, ...]:
+    """Masses of a rotor, of liquid and of balls, which count at the centre of their chamber or race.
 
     Parameters
     ----------
     rotor : dry
     fills : its chambers with their liquid
     frame : of the rotor
+    races : with their balls
     """
+    rolling = [Weight(sum(race.masses), frame.on_axis(race.position)) for race in races]
     liquid = [Weight(fill.mass, frame.on_axis(fill.chamber.plane)) for fill in fills if fill.volume > 0.0]
     if isinstance(rotor, Tub):
         tub = Weight(rotor.tub_mass, (0.0, 0.0, 0.0), turns=False)
-        return (tub, Weight(rotor.drum_mass, rotor.drum_position), *liquid)
-    return (Weight(rotor.mass, (0.0, 0.0, 0.0)), *liquid)
+        return (tub, Weight(rotor.drum_mass, rotor.drum_position), *liquid, *rolling)
+    return (Weight(rotor.mass, (0.0, 0.0, 0.0)), *liquid, *rolling)

@@ -10,6 +10,7 @@ import numpy as np
 from fluid.fill import Fill
 from meshes.arrays import Array
 from meshes.errors import InputError
+from solvers.rotor.balls.balancers import BallRace
 from solvers.rotor.loads.bearings import bearing_forces, hub_load, weight_load
 from solvers.rotor.loads.floor import (
     Cabinet,
@@ -79,6 +80,7 @@ class LoadedMachine:
     cabinet : None where it is not known
     points : whose motion counts
     bearings : places of two along the axis of a tub's drum, m; None where they are not known
+    races : with balls, whose weight hangs on the drum
 
     Raises
     ------
@@ -92,6 +94,7 @@ class LoadedMachine:
     cabinet: Cabinet | None = None
     points: tuple[Point, ...] = ()
     bearings: tuple[float, float] | None = None
+    races: tuple[BallRace, ...] = ()
 
     def __post_init__(self) -> None:
         tub = isinstance(self.rotor, Tub)
@@ -118,8 +121,8 @@ class LoadedMachine:
 
     @cached_property
     def weights(self) -> tuple[Weight, ...]:
-        """Masses of rotor and liquid."""
-        return weights_of(self.rotor, self.fills, self.frame)
+        """Masses of rotor, liquid and balls."""
+        return weights_of(self.rotor, self.fills, self.frame, self.races)
 
     @cached_property
     def pull(self) -> Array:

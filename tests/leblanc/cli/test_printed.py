@@ -103,7 +103,7 @@ LAYER = [
         ["--model", "kdv", "--profile"],
         ["--model", "linear"],
         ["--model", "fem"],
-        ["--model", "long_wave", "--duration", "2", "--ramp", "1"],
+        ["--model", "long_wave", "--duration", "0.5", "--ramp", "0.2"],
     ],
     ids=lambda it: "-".join(it[1:2]),
 )

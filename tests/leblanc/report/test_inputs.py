@@ -83,7 +83,12 @@ ROTORS: dict[str, dict[str, Any]] = {
     },
     "two_plane": {
         "kind": "two_plane", "mass": "20 kg", "transverse_inertia": 0.7, "polar_inertia": 0.2,
-        "supports": [{"position": "-30 cm", "stiffness": 4e4, "damping": 80}],
+        "supports": [
+            {
+                "position": "-30 cm", "stiffness": 4e4, "damping": 80, "ball_diameter": "8 mm",
+                "pitch_diameter": "40 mm", "contact_angle": "15 deg",
+            },
+        ],
         "unbalances": [{"position": "10 cm", "size": "1.5 kg*mm", "angle": "120 deg", "sheds": SHEDS}],
         "axis": "vertical", "pivot": "-45 mm",
     },

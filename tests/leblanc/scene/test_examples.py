@@ -51,6 +51,7 @@ def test_the_examples_of_each_kind() -> None:
         "spindle",
         "balls",
         "balls_and_liquid",
+        "long_rotor",
     }
 
 

@@ -28,6 +28,7 @@ from leblanc.units import (
     allowed_as_typed,
     celsius,
     in_rpm,
+    over_rpm,
     parse,
     rpm_range,
     unit_for,
@@ -98,6 +99,10 @@ def test_values_side_by_side_share_a_unit() -> None:
     assert unit_for(LENGTH, 3e-6, 7e-3, math.nan).name == "mm"
     assert unit_for(LENGTH, math.nan, math.inf).name == "mm"
     assert rpm_range(1.0 / units.RPM, 12345.0 / units.RPM) == "1 to 12345 rpm"
+    # One speed is one number, and speeds that print alike are one.
+    assert rpm_range(44.307, 44.307) == rpm_range(44.307, 44.3071) == "423.1 rpm"
+    assert over_rpm(44.307, 44.307) == over_rpm(44.307, 44.3071, "between", "and") == "at 423.1 rpm"
+    assert over_rpm(1.0 / units.RPM, 2.0 / units.RPM) == "from 1 to 2 rpm"
     assert in_rpm(math.nan, "none") == "none"
 
 

@@ -20,6 +20,7 @@ from leblanc.studies.closed_forms import told
 from leblanc.studies.closed_forms.told import vector_model
 from leblanc.studies.models.choose import prepare
 from leblanc.text.closed_forms import HEAD, closed_form_rows, vector_rows
+from leblanc.text.spindles.unit import cage_rows
 from meshes.chamber import Chamber
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.vector_model import balance_residual
@@ -137,6 +138,51 @@ def test_cages_of_bearings() -> None:
     assert "half the shaft's" in dict(closed_form_rows(closed_forms(scene)))["cage of bearing 1"]
     bare = scene.replace({"rotor.bearings": [{"position": -0.06}, {"position": -0.15}]})
     assert any("ball_diameter" in text for text in lb.explain(bare).not_told)
+
+
+def test_cages_of_supports_and_of_a_spindle() -> None:
+    """Of every part of a scene that may be a rolling bearing; the fingerprint knows the balls."""
+    balls = {"ball_diameter": "6.35 mm", "pitch_diameter": "31 mm", "contact_angle": "15 deg"}
+    share = 0.5 * (1.0 - 6.35 / 31.0 * np.cos(np.radians(15.0)))
+    scene = lb.example("two_plane_rig")
+    table = scene.table()
+    table["rotor"]["supports"][1] |= balls
+    rolling = lb.Scene(**table)
+    assert rolling.digest != scene.digest
+    for answer in (lb.explain(rolling), lb.run(rolling.replace({"speeds.count": 3}))):
+        assert list(answer.cage_speed) == ["support 2"]
+        speed = np.array(answer.cage_speed["support 2"]) / share
+        np.testing.assert_allclose(speed[[0, -1]], [rolling.speeds.start, rolling.speeds.stop], rtol=1e-12)
+    bare = lb.example("spindle").replace({"speeds.count": 3})
+    table = bare.table()
+    table["rotor"]["joints"][2] |= balls
+    with pytest.raises(SceneError, match="rotation"):
+        lb.Scene(**table)
+    table["rotor"]["rotation"] = "33 Hz"
+    spindle = lb.Scene(**table)
+    assert spindle.digest != bare.digest
+    found = lb.run(spindle)
+    (name,) = found.cage_speed
+    assert name.startswith("spindle.2 to ")
+    assert found.cage_speed[name] == pytest.approx(share * 2.0 * np.pi * 33.0)
+    assert found.to_json()["cage_speed"] == found.cage_speed
+    assert "cage_speed" not in lb.run(bare).to_json()
+    assert any(label.startswith("Cage of spindle.2") for label, _ in cage_rows(found))
+
+
+def test_what_cannot_stand_upright_is_said() -> None:
+    """A planar rotor does not tilt, a tub has no ball joint, balls move in their races."""
+    table = top().table()
+    race = {"kind": "balls", "radius": 0.1, "count": 2, "mass": 0.01, "drag": 1.0}
+    table["chambers"] = [*table["chambers"], race]
+    with_balls = lb.Scene(**table).replace({"speeds.count": 2})
+    words = {
+        "does not tilt": closed_forms(lb.example("vertical_rig")).lacking,
+        "ball joint of the source": closed_forms(lb.example("top_loader")).lacking,
+        "move in their races": lb.run(with_balls).closed_forms.lacking,
+    }
+    for word, lacking in words.items():
+        assert any("upright" in text and word in text for text in lacking)
 
 
 @pytest.mark.parametrize(

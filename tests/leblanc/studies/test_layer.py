@@ -270,6 +270,13 @@ def test_long_wave_that_leaves_its_range_is_exit_code_3(capsys: pytest.CaptureFi
     assert "axis" in err and "Traceback" not in err
 
 
+@pytest.fixture
+def short_films(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Films of a few frames: every frame is drawn alike, and drawing takes the time."""
+    monkeypatch.setattr("leblanc.figures.wave.MOST_FRAMES", 12)
+
+
+@pytest.mark.usefixtures("short_films")
 def test_wave_figure_and_film(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     film = tmp_path / "wave.gif"
     options = ["--whirl-speed", "34", "--friction", "linear:1", "--cells", "64", "--out", str(tmp_path)]
@@ -289,6 +296,7 @@ def test_steady_film_runs_with_the_whirl() -> None:
     assert np.abs(film.depth.mean(axis=1) / answer.depth.mean() - 1.0).max() < 1e-3
 
 
+@pytest.mark.usefixtures("short_films")
 def test_film_of_one_family(tmp_path: Path) -> None:
     film = tmp_path / "wave.gif"
     options = ["--radius", "0.15", "--volume", repr(VOLUME), "--height", "0.01", "--speed", "40"]

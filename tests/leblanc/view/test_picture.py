@@ -32,7 +32,8 @@ EXAMPLES = Path(__file__).parents[3] / "examples"
 MACHINES = sorted(
     path.stem
     for path in EXAMPLES.glob("*.toml")
-    if path.stem not in ("vibratory_table", "blood_pump", "spindle", "balls", "balls_and_liquid")
+    if path.stem
+    not in ("vibratory_table", "blood_pump", "spindle", "balls", "balls_and_liquid", "long_rotor")
 )
 
 

@@ -20,10 +20,10 @@ from solvers.rotor.balls.balancers import (
     BallRace,
     simulate,
 )
+from solvers.rotor.balls.two_plane_balance import dynamic_balancing, of_two_planes
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import RotorSystem
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
-from solvers.rotor.two_plane_balance import dynamic_balancing, of_two_planes
 from tests.mutants import kills
 from tests.oracles.balls import balanced_places, residual_unbalance, unbalance_in_planes
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -10,24 +11,20 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from meshes.errors import InputError
+from solvers.rotor.balls import stability
 from solvers.rotor.balls.balancers import BallRace, race_arrays, simulate
 from solvers.rotor.balls.motion import rates
 from solvers.rotor.balls.stability import (
-    balanced_exponents,
+    STEPS,
+    HalfTurn,
     balanced_roots,
     balanced_stability,
     light_ball_roots,
     linearised,
     neutral_directions,
+    small_motions,
 )
-from solvers.rotor.balls.states import (
-    balanced_places,
-    ball_moments,
-    pulls,
-    quarter_turn,
-    steady_places,
-    turning_deflection,
-)
+from solvers.rotor.balls.states import RotorWithBalls, balanced_places, quarter_turn
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import RotorSystem
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
@@ -39,7 +36,19 @@ LONG = TwoPlane(10.0, 0.5, 0.1, SUPPORTS, ())
 LOADED = replace(LONG, unbalances=UNBALANCES)
 RACES = (BallRace(0.15, 0.08, (0.015, 0.015), 0.3), BallRace(-0.15, 0.08, (0.015, 0.015), 0.3))
 THREE = (replace(RACES[0], masses=(0.015,) * 3), replace(RACES[1], masses=(0.015,) * 4))
+UNLIKE = replace(LOADED.system(), stiffness=LOADED.system().stiffness * np.diag([1.0, 1.6, 1.6, 1.0]))
+_TURNING = "solvers.rotor.balls.stability:_turning_motions"
 PLANAR = Jeffcott(10.0, 2e4, 60.0, 1.2e-3).system()
+
+
+def rest_near(
+    machine: RotorWithBalls, speed: float, places: Sequence[float]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Places next to given ones at which the balls rest, and the rotor's complex amplitudes there."""
+    compliance = machine.compliance(np.array([speed]))
+    found = machine.nearest(compliance[0], places)
+    assert found is not None
+    return found, machine.coordinates(compliance, found[None])[0]
 
 
 def motion_derivative(
@@ -66,15 +75,13 @@ def motion_derivative(
     return np.array(columns).T
 
 
-@kills("solvers.rotor.balls.stability:linearised", "damping + 2.0 * speed", "damping + speed")
-@kills("solvers.rotor.balls.stability:linearised", "-2.0 * speed * moment", "2.0 * speed * moment")
-@kills("solvers.rotor.balls.stability:linearised", "-(speed**2) * moment", "speed**2 * moment")
-@kills("solvers.rotor.balls.stability:linearised", "+ speed * damping @ turn", "- speed * damping @ turn")
-@kills(
-    "solvers.rotor.balls.stability:linearised", "np.diag(speed**2 * moment", "np.diag(-(speed**2) * moment"
-)
-@kills("solvers.rotor.balls.stability:linearised", "np.diag(balls[:, 2] *", "np.diag(0.5 * balls[:, 2] *")
-@kills("solvers.rotor.balls.states:turning_stiffness", "+ speed * turned", "- speed * turned")
+@kills(_TURNING, "damping + 2.0 * speed", "damping + speed")
+@kills(_TURNING, "-2.0 * speed * moment", "2.0 * speed * moment")
+@kills(_TURNING, "-(speed**2) * moment", "speed**2 * moment")
+@kills(_TURNING, "+ speed * damping @ turn", "- speed * damping @ turn")
+@kills(_TURNING, "np.diag(speed**2 * moment", "np.diag(-(speed**2) * moment")
+@kills(_TURNING, "np.diag(balls[:, 2] *", "np.diag(0.5 * balls[:, 2] *")
+@kills("solvers.rotor.balls.states:RotorWithBalls.compliance", "+ 1j * s * damping", "- 1j * s * damping")
 @pytest.mark.parametrize(
     ("system", "races"),
     [
@@ -90,9 +97,8 @@ def test_linear_equations_are_the_derivative_of_the_motion(
     """About a steady state with deflection, found by Newton's method from places that are none."""
     speed, count = 70.0, sum(len(race.masses) for race in races)
     begin = np.random.default_rng(0).uniform(0.0, 2.0 * np.pi, count)
-    places = steady_places(system, races, speed, begin)
-    assert places is not None
-    deflection = turning_deflection(system, races, speed, places)
+    places, coordinates = rest_near(RotorWithBalls(system, races), speed, begin)
+    deflection = coordinates.real
     small = linearised(system, races, speed, places, deflection)
     size = small.mass.shape[0]
     found = np.zeros((2 * size, 2 * size))
@@ -105,15 +111,65 @@ def test_linear_equations_are_the_derivative_of_the_motion(
 
 def test_steady_balls_are_not_pulled_and_the_rotor_stays() -> None:
     system, speed = LOADED.system(), 70.0
-    places = steady_places(system, RACES, speed, [0.3, 0.4, 2.0, 2.1])
-    assert places is not None
-    deflection = turning_deflection(system, RACES, speed, places)
-    assert np.abs(deflection).max() > 1e-6
-    assert np.abs(pulls(system, RACES, speed, places)).max() < 1e-12 * np.abs(deflection).max()
+    machine = RotorWithBalls(system, RACES)
+    places, coordinates = rest_near(machine, speed, [0.3, 0.4, 2.0, 2.1])
+    assert np.abs(coordinates).max() > 1e-6
+    # Seen from the ball the axis moves outward or inward, not along the race: rounding of Newton's method.
+    seen = (machine.axes @ coordinates.real) @ np.array([1.0, 1.0j]) * np.exp(-1j * places)
+    assert np.abs(seen.imag).max() < 1e-11 * np.abs(seen).max()
     balanced = balanced_places(system, RACES)
     run = simulate(system, RACES, speed, 0.5, places=balanced, samples=5)
     # From the balanced state, at rest, nothing moves: rounding of the unbalance's force alone.
     assert np.abs(run.coordinates).max() < 1e-12
+
+
+@kills("solvers.rotor.balls.states:_pulls", "slope - seen.real", "slope + seen.real")
+@kills("solvers.rotor.balls.states:_pulls", "turn.conj()[:, :, None] * each", "turn[:, :, None] * each")
+@pytest.mark.parametrize("system", [LOADED.system(), UNLIKE], ids=["alike", "unlike"])
+def test_slopes_of_the_pulls_are_their_derivatives(system: RotorSystem) -> None:
+    machine, places = RotorWithBalls(system, THREE), np.random.default_rng(1).uniform(0.0, 6.0, 7)
+    compliance = machine.compliance(np.array([70.0]))
+    slope, step = machine.pulls(compliance, places[None])[1][0], 1e-5
+    for k in range(7):
+        aside = np.zeros(7)
+        aside[k] = step
+        ahead, behind = (machine.pulls(compliance, (places + way * aside)[None])[0][0] for way in (1, -1))
+        # Of order one: a third derivative times the square of the step, and rounding over it.
+        assert slope[:, k] == pytest.approx((ahead - behind) / (2.0 * step), abs=1e-9)
+
+
+def test_races_in_one_plane_share_the_unbalance_by_what_they_hold() -> None:
+    """The small race 1e-4 kg m, the large 9e-4: together they hold all but a thousandth."""
+    system = Jeffcott(10.0, 2e4, 60.0, 0.999e-3).system()
+    small = BallRace(0.0, 0.05, (1e-3, 1e-3), 0.3)
+    races = (small, replace(small, radius=0.09, masses=(5e-3, 5e-3)))
+    places = balanced_places(system, races)
+    # cos of half the gap is the share of what it holds, the same in both.
+    assert np.cos(0.5 * (places[1] - places[0])) == pytest.approx(0.999, abs=1e-12)
+    assert np.cos(0.5 * (places[3] - places[2])) == pytest.approx(0.999, abs=1e-12)
+
+
+@kills("solvers.rotor.balls.stability:neutral_directions", "rows[:, mine]", "rows[:, : mine.size]")
+def test_balls_in_a_plane_at_rest_move_freely_beside_others_that_hold_a_deflection() -> None:
+    """Three balls of nothing to balance in the middle, two off it that leave a couple: the middle stays."""
+    supports = (Support(0.2, 1e4, 40.0), Support(-0.2, 1e4, 40.0))
+    couple = (PlaneUnbalance(0.15, 8e-4, 0.0), PlaneUnbalance(-0.15, 8e-4, np.pi))
+    system = replace(LONG, supports=supports, unbalances=couple).system()
+    light = replace(RACES[0], masses=(1e-3,))
+    races = (light, replace(light, position=-0.15), replace(RACES[0], position=0.0, masses=(0.01,) * 3))
+    machine = RotorWithBalls(system, races)
+    even = 2.0 * np.pi * np.arange(3) / 3.0
+    places, q = rest_near(machine, 70.0, [0.1, np.pi + 0.1, *even])
+    compliance = machine.compliance(np.array([70.0]))
+    free = machine.at_rest(compliance, places[None])[0]
+    assert free.tolist() == [False, False, True, True, True]
+    small = small_motions(machine, 70.0, places, q, free)
+    assert small.neutral.shape == (5, 1)
+    assert np.abs(small.neutral[:, 0]) == pytest.approx([0.0, 0.0, *[3.0**-0.5] * 3], abs=1e-6)
+    # Without the direction the roots are those of the whole matrix but the one at 0.
+    whole = small_motions(machine, 70.0, places, q).roots()
+    whole = np.delete(whole, np.argmin(np.abs(whole)))
+    assert np.sort(whole.real) == pytest.approx(np.sort(small.roots().real), abs=1e-6)
 
 
 def test_light_balls_leave_the_rotor_alone() -> None:
@@ -158,17 +214,60 @@ def test_motion_in_time_grows_and_decays_as_the_roots_say(
     assert rate == pytest.approx(root.real, rel=0.1)
 
 
+def settled_map(machine: RotorWithBalls, places: np.ndarray, q: np.ndarray | None) -> None:
+    """The half turn has the real parts of the roots in the turning frame."""
+    small = small_motions(machine, 70.0, places, q)
+    whole = np.zeros(len(machine.system.coordinates), dtype=complex) if q is None else q
+    over = stability._settled_half_turn(machine, 70.0, places, whole, small.neutral)
+    assert over.settled
+    roots, found = np.sort(small.roots().real), np.sort(over.roots().real)
+    # Settled to 1e-6 in half a turn for the leading one; the others are of the same fourth order.
+    assert found == pytest.approx(roots, abs=1e-4 * 70.0 / np.pi)
+    assert found[-1] == pytest.approx(roots[-1], abs=4e-6 * 70.0 / np.pi)
+
+
 @kills("solvers.rotor.balls.stability:_standing_rates", "-2.0 * speed * np", "2.0 * speed * np")
 @kills("solvers.rotor.balls.stability:_half_turn", "second @ first - first @ second", "first @ second")
-def test_multipliers_of_alike_supports_are_the_roots() -> None:
-    """The half turn of a rotor alike in every direction: real parts of its roots, frequencies up to turns."""
-    for system, races in ((LOADED.system(), RACES), (PLANAR, (replace(RACES[0], position=0.0),))):
-        places = balanced_places(system, races)
-        roots = np.sort(linearised(system, races, 70.0, places).roots().real)
-        found = np.sort(balanced_exponents(system, races, 70.0, places).real)
-        # Settled to 1e-6 in half a turn for the leading one; the others are of the same fourth order.
-        assert found == pytest.approx(roots, abs=1e-4 * 70.0 / np.pi)
-        assert found[-1] == pytest.approx(roots[-1], abs=4e-6 * 70.0 / np.pi)
+@pytest.mark.parametrize(
+    "machine",
+    [
+        RotorWithBalls(LOADED.system(), RACES),
+        RotorWithBalls(PLANAR, (replace(RACES[0], position=0.0),)),
+        RotorWithBalls(LOADED.system(), THREE),
+    ],
+    ids=["two planes", "one plane", "more balls"],
+)
+def test_multipliers_of_alike_supports_are_the_roots(machine: RotorWithBalls) -> None:
+    """About the balanced state: real parts of its roots, frequencies up to turns."""
+    settled_map(machine, balanced_places(machine.system, machine.races), None)
+
+
+@kills(
+    "solvers.rotor.balls.stability:_standing_rates",
+    "= speed**2 * moment[:, 0]",
+    "= -(speed**2) * moment[:, 0]",
+)
+@kills("solvers.rotor.balls.stability:_standing_rates", "1j * speed * times", "-1j * speed * times")
+def test_multipliers_are_the_roots_about_a_deflection_as_well() -> None:
+    machine = RotorWithBalls(LOADED.system(), RACES)
+    settled_map(machine, *rest_near(machine, 70.0, [0.3, 0.4, 2.0, 2.1]))
+
+
+def test_half_turn_is_of_fourth_order_and_says_where_it_has_not_settled(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Of an unlike rotor with a deflection; 16 for each halving of the step."""
+    machine = RotorWithBalls(UNLIKE, RACES)
+    places, q = rest_near(machine, 70.0, [1.9, 1.9, -1.8, -1.8])
+    assert np.abs(q).max() > 1e-6
+    maps = [small_motions(machine, 70.0, places, q, steps=steps) for steps in (32, 64, 128)]
+    assert all(isinstance(each, HalfTurn) for each in maps)
+    off = [np.abs(each.map - maps[-1].map).max() for each in maps[:2]]  # type: ignore[union-attr]
+    # Against the finest in place of the exact: (1 - 1/256)/(1/16 - 1/256) = 17.
+    assert off[0] / off[1] == pytest.approx(17.0, rel=0.1)
+    monkeypatch.setattr(stability, "_MOST", STEPS)
+    assert not balanced_stability(UNLIKE, RACES, 70.0).settled
+    assert not balanced_stability(UNLIKE, RACES, 70.0).stable
 
 
 @pytest.mark.parametrize(("speed", "grows"), [(40.0, True), (100.0, False)])
@@ -191,12 +290,14 @@ def test_more_balls_than_the_balance_needs_are_told_and_are_no_growth() -> None:
     system = LOADED.system()
     found = balanced_stability(system, THREE, 120.0)
     assert found.neutral.shape == (7, 3) and found.stable
-    moved = ball_moments(system, THREE, found.places + 1e-6 * found.neutral[:, 0])
+    machine = RotorWithBalls(system, THREE)
+    moved = machine.moments(found.places + 1e-6 * found.neutral[:, 0])
     left = np.abs(system.unbalance + moved.sum(axis=1)).max()
     # Left in second order alone.
     assert left < 1e-10 * np.abs(moved).sum()
     assert balanced_stability(system, RACES, 120.0).neutral.shape == (4, 0)
-    assert neutral_directions(LONG.system(), RACES, [0.0, np.pi, 0.3, 0.3 + np.pi]).shape == (4, 2)
+    opposite = neutral_directions(RotorWithBalls(LONG.system(), RACES), [0.0, np.pi, 0.3, 0.3 + np.pi])
+    assert opposite.shape == (4, 2)
     # The whole matrix has a root at 0 for each of them, and the same others.
     small = linearised(system, THREE, 120.0, found.places)
     size = small.mass.shape[0]
@@ -222,7 +323,7 @@ def test_balanced_places_balance(share: float, angle: float, first: int, second:
     unbalances = (PlaneUnbalance(0.15, share * most[0], angle), PlaneUnbalance(-0.15, share * most[1], 1.0))
     system = replace(LONG, unbalances=unbalances).system()
     places = balanced_places(system, races)
-    left = system.unbalance + ball_moments(system, races, places).sum(axis=1)
+    left = system.unbalance + RotorWithBalls(system, races).moments(places).sum(axis=1)
     # The gap is found to rounding; the sum of up to six vectors of size one.
     assert np.abs(left).max() < 1e-10 * sum(most)
 

@@ -12,8 +12,7 @@ from hypothesis import strategies as st
 from meshes.errors import InputError
 from solvers.rotor.balls.balancers import BallRace
 from solvers.rotor.balls.stability import balanced_stability
-from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
-from solvers.rotor.two_plane_balance import (
+from solvers.rotor.balls.two_plane_balance import (
     RigidRotor,
     circulatory,
     dynamic_balancing,
@@ -23,13 +22,18 @@ from solvers.rotor.two_plane_balance import (
     single_plane_balancing,
     turning_state,
 )
+from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
 from tests.mutants import kills
 
 ROTOR = RigidRotor(10.0, (0.5, 0.6, 0.1), (1e4, 1.3e4), (0.2, -0.25))
 
 
-@kills("solvers.rotor.two_plane_balance:RigidRotor.support", "sum(k * z for k, z", "sum(-k * z for k, z")
-@kills("solvers.rotor.two_plane_balance:RigidRotor.support", "sum(k * z * z for k, z", "sum(k * z for k, z")
+@kills(
+    "solvers.rotor.balls.two_plane_balance:RigidRotor.support", "sum(k * z for k, z", "sum(-k * z for k, z"
+)
+@kills(
+    "solvers.rotor.balls.two_plane_balance:RigidRotor.support", "sum(k * z * z for k, z", "sum(k * z for k, z"
+)
 def test_support() -> None:
     """[FF20, eq. 17]."""
     k1, k2, l1, l2 = 1e4, 1.3e4, 0.2, 0.25
@@ -53,18 +57,22 @@ def elastic_less_kinetic(rotor: RigidRotor, speed: float, q: np.ndarray) -> floa
 
 
 @kills(
-    "solvers.rotor.two_plane_balance:potential_hessian",
+    "solvers.rotor.balls.two_plane_balance:potential_hessian",
     "tilt_x, tilt_y = (b - c)",
     "tilt_x, tilt_y = (a - c)",
 )
 @kills(
-    "solvers.rotor.two_plane_balance:potential_hessian", "[0.0, tilt_y, -k14, 0.0]", "[0.0, tilt_y, k14, 0.0]"
+    "solvers.rotor.balls.two_plane_balance:potential_hessian",
+    "[0.0, tilt_y, -k14, 0.0]",
+    "[0.0, tilt_y, k14, 0.0]",
 )
 @kills(
-    "solvers.rotor.two_plane_balance:potential_hessian", "[k14, 0.0, 0.0, shift]", "[-k14, 0.0, 0.0, shift]"
+    "solvers.rotor.balls.two_plane_balance:potential_hessian",
+    "[k14, 0.0, 0.0, shift]",
+    "[-k14, 0.0, 0.0, shift]",
 )
 @kills(
-    "solvers.rotor.two_plane_balance:potential_hessian",
+    "solvers.rotor.balls.two_plane_balance:potential_hessian",
     "shift = rotor.mass * speed**2 - k11",
     "shift = rotor.mass * speed**2 + k11",
 )
@@ -91,14 +99,26 @@ def test_hessian() -> None:
 
 
 @kills(
-    "solvers.rotor.two_plane_balance:dynamic_balancing", "v11, v22, v33 = (b - c)", "v11, v22, v33 = (b + c)"
+    "solvers.rotor.balls.two_plane_balance:dynamic_balancing",
+    "v11, v22, v33 = (b - c)",
+    "v11, v22, v33 = (b + c)",
 )
 @kills(
-    "solvers.rotor.two_plane_balance:dynamic_balancing", "(a - c) * square - k33", "(a - c) * square + k33"
+    "solvers.rotor.balls.two_plane_balance:dynamic_balancing",
+    "(a - c) * square - k33",
+    "(a - c) * square + k33",
 )
-@kills("solvers.rotor.two_plane_balance:dynamic_balancing", "rotor.mass * square - k11", "square - k11")
-@kills("solvers.rotor.two_plane_balance:dynamic_balancing", "v11 * v33 - k14 * k14", "v11 * v33 + k14 * k14")
-@kills("solvers.rotor.two_plane_balance:dynamic_balancing", "v22 * v33 - k14 * k14", "v11 * v33 - k14 * k14")
+@kills("solvers.rotor.balls.two_plane_balance:dynamic_balancing", "rotor.mass * square - k11", "square - k11")
+@kills(
+    "solvers.rotor.balls.two_plane_balance:dynamic_balancing",
+    "v11 * v33 - k14 * k14",
+    "v11 * v33 + k14 * k14",
+)
+@kills(
+    "solvers.rotor.balls.two_plane_balance:dynamic_balancing",
+    "v22 * v33 - k14 * k14",
+    "v11 * v33 - k14 * k14",
+)
 def test_conditions() -> None:
     """Yes exactly where the Hessian is positive definite, over speed; the limit is where it becomes so."""
     answer = dynamic_balancing(ROTOR, np.linspace(0.0, 200.0, 401))
@@ -119,16 +139,18 @@ def test_conditions() -> None:
 
 
 @kills(
-    "solvers.rotor.two_plane_balance:_tilt_limits",
+    "solvers.rotor.balls.two_plane_balance:_tilt_limits",
     "excess * k11 + rotor.mass * k33",
     "excess * k11 + 2.0 * rotor.mass * k33",
 )
 @kills(
-    "solvers.rotor.two_plane_balance:_tilt_limits",
+    "solvers.rotor.balls.two_plane_balance:_tilt_limits",
     "k11 * k33 - k14 * k14\n    # Never",
     "k11 * k33 + k14 * k14\n    # Never",
 )
-@kills("solvers.rotor.two_plane_balance:of_two_planes", "mass=rotor.mass + added_mass", "mass=rotor.mass")
+@kills(
+    "solvers.rotor.balls.two_plane_balance:of_two_planes", "mass=rotor.mass + added_mass", "mass=rotor.mass"
+)
 def test_resonances() -> None:
     """They are the speeds at which the whole undamped rotor has no stiffness against its unbalance."""
     rotor = TwoPlane(10.0, 0.5, 0.1, (Support(0.2, 1e4, 0.0), Support(-0.25, 1.3e4, 0.0)))
@@ -142,7 +164,7 @@ def test_resonances() -> None:
     assert of_two_planes(rotor, 0.5).mass == 10.5
 
 
-@kills("solvers.rotor.two_plane_balance:_root", "math.sqrt(stiffness / inertia)", "stiffness / inertia")
+@kills("solvers.rotor.balls.two_plane_balance:_root", "math.sqrt(stiffness / inertia)", "stiffness / inertia")
 def test_uncoupled() -> None:
     """k14 = 0 [FF20, eq. 34]: the largest of three square roots."""
     rotor = RigidRotor(8.0, (0.5, 0.7, 0.2), (1e4, 1e4), (0.3, -0.3))
@@ -243,9 +265,9 @@ def test_dissipative_function_of_the_source() -> None:
     assert circulatory([3.0, 5.0], [0.2, -0.3]) == pytest.approx(expected, rel=1e-14)
 
 
-@kills("solvers.rotor.two_plane_balance:circulatory", "[b14, 0.0, 0.0, -b11]", "[b14, 0.0, 0.0, b11]")
-@kills("solvers.rotor.two_plane_balance:turning_state", "- potential_hessian", "+ potential_hessian")
-@kills("solvers.rotor.two_plane_balance:plane_compliance", "- 2.0 * position", "+ 2.0 * position")
+@kills("solvers.rotor.balls.two_plane_balance:circulatory", "[b14, 0.0, 0.0, -b11]", "[b14, 0.0, 0.0, b11]")
+@kills("solvers.rotor.balls.two_plane_balance:turning_state", "- potential_hessian", "+ potential_hessian")
+@kills("solvers.rotor.balls.two_plane_balance:plane_compliance", "- 2.0 * position", "+ 2.0 * position")
 @pytest.mark.parametrize("speed", [20.0, 47.0, 130.0])
 def test_steady_state_by_the_sources_matrices(speed: float) -> None:
     """[FF20, eq. 27-29], with V's sign as derived, against the response of the whole rotor."""
@@ -269,7 +291,7 @@ def test_steady_state_by_the_sources_matrices(speed: float) -> None:
     assert complex(compliance) == pytest.approx(complex(seen), rel=1e-9)
 
 
-@kills("solvers.rotor.two_plane_balance:single_plane_balancing", ".real < 0.0", ".real > 0.0")
+@kills("solvers.rotor.balls.two_plane_balance:single_plane_balancing", ".real < 0.0", ".real > 0.0")
 @pytest.mark.parametrize("inertia", [(0.5, 0.1), (0.1, 0.18)], ids=["long", "short"])
 @pytest.mark.parametrize("damping", [0.5, 40.0, 400.0])
 def test_one_plane_balances_where_the_roots_say_so(inertia: tuple[float, float], damping: float) -> None:

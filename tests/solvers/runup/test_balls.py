@@ -16,13 +16,17 @@ from meshes.chamber import Chamber
 from meshes.errors import InputError
 from solvers.layer.records import Outcome
 from solvers.rotor.balls.balancers import BallRace, simulate
+from solvers.rotor.balls.steady import BallKind
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import RotorSystem
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
 from solvers.runup.balls import Balls, spread_balls
+from solvers.runup.linear import couple_linear
 from solvers.runup.long_wave import Coupled, couple
-from solvers.runup.machine import Motor, Ramp
+from solvers.runup.machine import Handover, Motor, Ramp
 from solvers.runup.runup import RunupHistory, RunupNumerics, run_up
+from solvers.synchronous.balls import wet_states
+from tests.mutants import kills
 
 FRICTION = Friction()
 ROTOR = Jeffcott(4.0, 4.4e4, 84.0, 6e-4)
@@ -191,6 +195,32 @@ def test_balls_and_liquid_take_the_unbalance_together() -> None:
     assert run.depth_max[-1, 0] - run.depth_min[-1, 0] < 0.02 * fill.depth
 
 
+def test_liquid_counts_as_its_mass_in_step_in_the_slow_motions_of_balls() -> None:
+    """Below the resonance the balanced state grows, swinging with 0.38 rad/s as seen from the rotor.
+
+    Two samples apart foretell the third: w'' = a w' + b w for a pair of roots.
+    """
+    fill, spin = Fill(Chamber(0.065, 0.02), KNOWN_LIQUIDS["water"], 3e-5), 80.0
+    race = BallRace(0.0, 0.065, (7.1e-3,) * 2, 0.1)
+    known = wet_states(ROTOR.system(), [fill], [race], [spin]).states
+    assert known.kind[0, 0] == BallKind.BALANCED
+    places = known.places[0, 0] + np.array([1e-4, -1e-4])
+    balls = Balls((race,), tuple(places.tolist()), (1.0, 1.0))
+    made = couple(ROTOR.system(), (fill,), spin, Friction("linear", 10.0), 0.0, 64, False, balls=balls)
+    seen = []
+    for k in range(1, 14):
+        x, y = held(made, 0.5 * k).read().coordinates
+        seen.append((x + 1j * y) * np.exp(-0.5j * k * spin))
+    w = np.array(seen[2:]) / np.abs(seen[4:]).max()
+    size = np.abs(w[2:])
+    rows = np.column_stack((w[1:-1], w[:-2])) / size[:, None]
+    left, right = (np.concatenate((part.real, part.imag)) for part in (rows, w[2:] / size))
+    first, second = np.linalg.lstsq(left, right, rcond=None)[0]
+    grown = np.roots([1.0, -first, -second]).astype(complex)
+    # The layer lags by its waves' damping: some per cent of a share of 7 % of the mass; cells of 1/64 turn.
+    assert (np.log(grown[0]) / 0.5).real == pytest.approx(known.growth[0, 0], rel=0.02)
+
+
 def test_liquid_caught_beside_balls_keeps_the_momentum() -> None:
     """A lying drum: what is caught hands its momentum to rotor and balls; the energy is told."""
     fill = Fill(Chamber(0.065, 0.02), KNOWN_LIQUIDS["water"], 3e-5)
@@ -200,6 +230,100 @@ def test_liquid_caught_beside_balls_keeps_the_momentum() -> None:
     assert run.converged
     assert any(each.captured for each in run.transfers)
     assert run.audit.closure < 2e-2
+
+
+@pytest.mark.parametrize("gravity", [0.0, 9.81])
+@pytest.mark.parametrize(
+    "drive", [Ramp(20.0, 150.0, 40.0, 3.0), Motor(20.0, 0.05, (0.0, 160.0), (2.0, 0.0), 3.0)]
+)
+def test_beside_no_liquid_both_models_are_the_same(drive: Ramp | Motor, gravity: float) -> None:
+    """Rotor and balls are stepped alike; of a motor one model stops its rounds where the other goes on."""
+    race = BallRace(0.0, 0.065, (0.02, 0.02), 0.5, resistance=1e-3, carried=0.43, driven=0.46)
+    numerics = RunupNumerics(cells=64, samples=60, companion=False)
+    runs = []
+    for model in (couple, couple_linear):
+        made = partial(model, balls=spread_balls([race]))
+        runs.append(run_up(ROTOR.system(), [], drive, FRICTION, gravity, numerics, None, made))
+    assert all(each.converged for each in runs)
+    for name in ("amplitude", "ball_angle", "ball_speed", "speed"):
+        waves, linear = (np.asarray(getattr(each, name)) for each in runs)
+        apart = (1e-9 if isinstance(drive, Ramp) else 5e-4) * np.abs(waves).max()
+        np.testing.assert_allclose(linear, waves, rtol=0.0, atol=apart, err_msg=name)
+    assert runs[1].audit.closure < 1e-3
+
+
+def beside_layer(scale: float) -> tuple[RunupHistory, RunupHistory]:
+    """Balls beside a layer by both models; unbalance and balls grow together, so that they move alike."""
+    fill = Fill(Chamber(0.25, 0.04), KNOWN_LIQUIDS["water"], 5e-4)
+    rotor = Jeffcott(30.0, 30.0 * 25.0**2, 2.0 * 0.06 * 30.0 * 25.0, scale)
+    race = BallRace(0.0, 0.2, (4.0 * scale, 4.0 * scale), 40.0 * scale)
+    runs = []
+    for model in (couple, couple_linear):
+        numerics = RunupNumerics(cells=128, samples=200, companion=False, dispersion=model is couple)
+        made, drive = partial(model, balls=spread_balls([race])), Ramp(5.0, 60.0, 10.0, 6.0)
+        law = Friction("linear", 3.0)
+        runs.append(run_up(rotor.system(), [fill], drive, law, 0.0, numerics, None, made))
+    return runs[0], runs[1]
+
+
+@kills("solvers.runup.linear:couple_linear", "spin * np.array(balls.shares", "0.0 * np.array(balls.shares")
+def test_small_waves_beside_balls_are_those_of_the_long_wave_model() -> None:
+    """Two models that share the rotor and the balls alone; without balls they are within 0.5 % as well."""
+    gaps = []
+    for scale in (1e-3, 1e-2):
+        waves, linear = beside_layer(scale)
+        assert waves.converged and linear.converged
+        size = waves.amplitude.max()
+        gaps.append(np.abs(linear.amplitude - waves.amplitude).max() / size)
+        moved = np.abs(linear.ball_angle - waves.ball_angle).max()
+        assert moved < (0.1 if scale == 1e-3 else 1.0)
+        assert linear.audit.closure < 5e-3
+    assert gaps[0] < 0.01
+    # The waves of the linear layer are off by the order of the amplitude.
+    assert gaps[1] > 2.0 * gaps[0]
+
+
+def test_light_balls_leave_a_linear_layer_as_it_is() -> None:
+    fill = Fill(Chamber(0.25, 0.04), KNOWN_LIQUIDS["water"], 5e-4)
+    rotor, drive = Jeffcott(30.0, 30.0 * 25.0**2, 90.0, 1e-3), Ramp(5.0, 60.0, 10.0, 6.0)
+    numerics, law = RunupNumerics(cells=128, samples=200, companion=False), Friction("linear", 3.0)
+    runs = [
+        run_up(rotor.system(), [fill], drive, law, 0.0, numerics, None, partial(couple_linear, balls=balls))
+        for balls in (Balls(), spread_balls([BallRace(0.0, 0.2, (1e-14, 1e-14), 1e-13)]))
+    ]
+    size = runs[0].amplitude.max()
+    np.testing.assert_allclose(runs[1].amplitude, runs[0].amplitude, rtol=0.0, atol=1e-10 * size)
+
+
+@kills("solvers.runup.linear:LinearCoupled.switch", "-= along @ jump", "-= 0.0 * (along @ jump)")
+@kills("solvers.runup.linear:LinearCoupled.switch", "solve(whole + inertia, lost)", "solve(whole, lost)")
+def test_a_linear_layer_caught_beside_balls_keeps_the_momentum() -> None:
+    """What is caught hands its momentum to rotor and balls together, without a torque about the races."""
+    fill = Fill(Chamber(0.065, 0.02), KNOWN_LIQUIDS["water"], 3e-5)
+    balls = spread_balls([BallRace(0.0, 0.065, (0.2, 0.3), 0.1)])
+    carried = Handover.CARRIED
+    made = couple_linear(
+        ROTOR.system(), [fill], 5.0, Friction("wall"), 9.81, 64, False, False, carried, balls
+    )
+    place, masses = np.array([0.4, 2.0]), np.array(balls.races[0].masses)
+    made.machine.place[-2:], made.machine.place[2], made.machine.rate[2] = place, 2.6, 40.0
+    made.shaft.spin = 30.0
+
+    def momentum() -> tuple[complex, np.ndarray]:
+        m = made.machine
+        axis, roll = complex(*m.rate[:2]), m.rate[-2:]
+        rolling = masses * (axis + 1j * 0.065 * roll * np.exp(1j * place))
+        liquid = made._momentum(0) + made.masses[0] * m.rate[:2]
+        along = masses * (1.4 * 0.065 * roll + (np.exp(-1j * place) * axis).imag)
+        return complex(4.0 * axis + rolling.sum() + complex(*liquid)), along
+
+    made.machine.active[0] = 0.0
+    before, along = momentum()
+    made.switch()
+    assert made.transfers
+    after, still = momentum()
+    assert abs(after - before) < 1e-12 * max(abs(before), 1e-6)
+    np.testing.assert_allclose(still, along, rtol=1e-12)
 
 
 def test_wrong_input() -> None:

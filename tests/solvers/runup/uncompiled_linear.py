@@ -16,7 +16,9 @@ from meshes.baffles import Baffles
 from meshes.chamber import Chamber
 from meshes.errors import InputError
 from solvers.layer.records import Outcome
+from solvers.rotor.balls.balancers import BallRace
 from solvers.rotor.jeffcott import Jeffcott
+from solvers.runup.balls import Balls
 from solvers.runup.linear import LinearCoupled, couple_linear, plate_curves
 from solvers.runup.linear_kernel import plate_drag
 from solvers.whirl.growth import asynchronous_growth
@@ -242,3 +244,30 @@ def test_smeared_baffles_follow_the_law() -> None:
     closed = replace(FILL, chamber=replace(chamber, baffles=Baffles(6, 0.1)))
     with pytest.raises(InputError, match="compartments"):
         plate_curves([FILL, closed])
+
+
+RACE = BallRace(0.0, 0.2, (0.1, 0.15), 2.0, carried=0.43, driven=0.46)
+
+
+@kills("solvers.runup.kernel:add_ball", "+ b[1, i] * b[1, k]", "+ 0.0 * b[1, k]")
+@kills("solvers.runup.kernel:add_ball", "+ b[1, i] * slope_y", "- b[1, i] * slope_y")
+@kills("solvers.runup.kernel:ball_turned", "- ball.carried * change", "+ ball.carried * change")
+@kills("solvers.runup.kernel:tally_ball", "(spin - mean) * ball_dragged", "spin * ball_dragged")
+@kills("solvers.runup.linear_kernel:advance_linear", "m.balls[j], m.races[j]", "m.balls[0], m.races[j]")
+@kills("solvers.runup.linear_kernel:_tally", "m.change[row], spins, dt, sums", "0.0, spins, dt, sums")
+def test_balls_energy() -> None:
+    """The balance of rotor, layer and balls closes with the square of the step."""
+    left = []
+    for cells in (64, 128):
+        balls = Balls((RACE,), (0.4, 2.0), (1.0, 0.5))
+        made = couple_linear(
+            ROTOR.system(), [FILL], 30.0, Friction("linear", 2.0), 3.0, cells, False, balls=balls
+        )
+        made.machine.rate[:2] = 0.05, -0.02
+        before = made.energy()
+        assert made.advance(0.5, 20.0, 0.8, 10**6) == Outcome.DONE
+        s = made.sums
+        gained = s.unbalance + s.drive + s.gravity - s.support - s.friction
+        left.append(abs(gained - (made.energy() - before)) / s.drive)
+    assert left[1] < 2e-3
+    assert 3.0 < left[0] / left[1] < 5.0

@@ -9,9 +9,9 @@ import numpy as np
 
 from meshes.arrays import Array
 from solvers.rotor.balls.stability import balanced_roots
+from solvers.rotor.balls.two_plane_balance import dynamic_balancing, of_two_planes
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.two_plane import TwoPlane
-from solvers.rotor.two_plane_balance import dynamic_balancing, of_two_planes
 from solvers.rotor.vibration import unbalance_response
 from validation.cases.case import Case, compare
 from validation.cases.two_plane_machine import BALLS, LONG, RACES

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from fluid.liquid import known_liquid
-from solvers.rotor.two_plane_balance import RigidRotor, dynamic_balancing
+from solvers.rotor.balls.two_plane_balance import RigidRotor, dynamic_balancing
 from solvers.rotor.vector_model import balance_angles
 from solvers.synchronous.response import response
 from validation.cases.case import Case, compare

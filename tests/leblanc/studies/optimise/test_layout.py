@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,9 @@ import pytest
 
 import leblanc as lb
 from leblanc.cli import main
+from leblanc.figures.machine import places_figure
+from leblanc.report.layout import write_layout_report
+from leblanc.report.page import about
 from leblanc.results.machine.layout import LayoutResult, pair_names
 from leblanc.scene.schema.load import SceneError
 from leblanc.studies.optimise.layout import separation, suspension_of
@@ -20,6 +24,7 @@ from leblanc.text.layout import answer, coupling_rows, facts, mount_rows
 from meshes.errors import InputError
 from solvers.rotor.layout import Mounts, centre_of_mass, couplings, mass_matrix, natural_frequencies
 from tests.mutants import kills
+from tests.oracles.pages import read_page
 
 FOUR = [
     {"position": [x, y, z], "stiffness": [4e3, 3e3, 5e3]}
@@ -203,7 +208,22 @@ def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert found["objective"] == "layout" and found["value"] < found["baseline"] and found["feasible"]
     assert set(found["coupling_terms"]) == {"stiffness", "damping", "mass"}
     assert list(found["coupling_terms"]["mass"]) == list(pair_names())
-    assert {path.name for path in (tmp_path / "out").iterdir()} >= {"layout.nc", "layout.png", "layout.svg"}
+    names = {path.name for path in (tmp_path / "out").iterdir()}
+    assert names >= {"layout.nc", "layout.html", "layout.png", "layout.svg", "places.png", "places.svg"}
+    # The report has the numbers of the JSON: places before and after, frequencies, couplings, the sag.
+    page = read_page(tmp_path / "out" / "layout.html")
+    for mount in found["mounts"]:
+        row = next(row for row in page.rows if row[0] == mount["name"])
+        for text, place in zip(row[1:3], (mount["position"], mount["position_before"]), strict=True):
+            np.testing.assert_allclose(
+                np.array(text.split(", "), dtype=float), np.array(place) * 1e3, atol=0.05
+            )
+    rates = next(table for table in page.tables if table[0][0] == "mode")[1:]
+    for k, key in ((1, "after"), (2, "before")):
+        hertz = [2.0 * math.pi * float(row[k]) for row in rates]
+        np.testing.assert_allclose(hertz, found["natural_frequency"][key], rtol=1e-3)
+    assert any("Sag under the weight" in row[0] for row in page.rows)
+    assert page.captions == 2 and all(page.alts)
     assert main(["optimise", str(scene), "--out", str(tmp_path / "out")]) == 0
     assert "squared couplings" in capsys.readouterr().out
 
@@ -215,6 +235,30 @@ def test_words() -> None:
     assert "none about the centre of mass" in dict(facts(found))["Couplings of the mass"]
     figure = found.plot()
     assert len(figure.axes) == 3
+
+
+def test_places_are_drawn_where_they_are() -> None:
+    """Along the axis and from the side, in millimetres; what stays has no arrow."""
+    found = best(lb.example("tub"), reach=[0, 0.05, 0], turn=0)
+    front, side = places_figure(found).axes
+    for axes, across in ((front, 0), (side, 1)):
+        ends = [(line.get_xdata()[0], line.get_ydata()[0]) for line in axes.lines]
+        drawn = {(round(float(x), 6), round(float(y), 6)) for x, y in ends}
+        for mount in found.mounts:
+            for place in (mount.position, mount.position_before):
+                assert (round(1e3 * place[across], 6), round(1e3 * place[2], 6)) in drawn
+    # Nothing moves across the axis or up: arrows are in the side view alone.
+    assert not front.texts and side.texts
+
+
+def test_a_layout_that_sags_too_much_is_doubtful(tmp_path: Path) -> None:
+    found = best(lb.example("tub"), reach=[0, 0.05, 0], turn=0)
+    limits = {"sag": replace(found.constraints["sag"], limit=1e-3, satisfied=False)}
+    sunk, what, path = replace(found, constraints=limits), about(lb.example("tub")), tmp_path / "layout.html"
+    write_layout_report(sunk, what, (), path)
+    text = path.read_text(encoding="utf-8")
+    assert "Doubtful: sag under the weight" in text
+    assert "exceeds it least" in text
 
 
 def test_other_rotors_have_no_mounts() -> None:

@@ -29,11 +29,11 @@ from leblanc.studies.sweep.block import (
     DONE,
     FAILED,
     NOT_CONVERGED,
-    OUTPUTS,
     OVER_SPEED,
     PENDING,
     STATUS,
     make_scenes,
+    outputs_of,
     scene_maker,
     values_of,
 )
@@ -531,5 +531,5 @@ def test_peaks_are_those_between_the_speeds() -> None:
 
 
 def test_every_output_of_a_batch_is_kept() -> None:
-    assert {field.name for field in fields(Answers)} <= {output.name for output in OUTPUTS}
+    assert {field.name for field in fields(Answers)} <= {output.name for output in outputs_of(balls=True)}
     assert {field.name for field in fields(Answers)} >= {output.name for output in OVER_SPEED}

@@ -1,0 +1,123 @@
+"""What a scene may say of the balls of a rolling bearing: the speed of its cage follows from it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Annotated, Any, Protocol
+
+from pydantic import Field
+
+from leblanc import units
+from leblanc.scene.rows import Value, degrees
+from leblanc.scene.schema.part import Conflict
+from leblanc.scene.schema.rules import LENGTH, quantity
+from leblanc.units import MM, number
+
+ROLLING = ("ball_diameter", "pitch_diameter", "contact_angle")
+
+BallDiameter = Annotated[
+    float | None,
+    LENGTH,
+    Field(description="of its balls; the speed of its cage is told with this and pitch_diameter"),
+]
+PitchDiameter = Annotated[float | None, LENGTH, Field(description="of the circle of the balls' centres")]
+ContactAngle = Annotated[
+    float,
+    quantity(units.ANGLE, 0.0, 1.57),
+    Field(description="of the balls with the rings, from the plane across the axis"),
+]
+
+
+class Rolls(Protocol):
+    """A part of a scene that may be a rolling bearing."""
+
+    @property
+    def ball_diameter(self) -> float | None:
+        """Of a ball, m."""
+
+    @property
+    def pitch_diameter(self) -> float | None:
+        """Of the circle of the balls' centres, m."""
+
+    @property
+    def contact_angle(self) -> float:
+        """Rad."""
+
+
+@dataclass(frozen=True)
+class CagedBearing:
+    """A bearing whose balls are given.
+
+    Parameters
+    ----------
+    name : by which results tell it
+    ball_diameter, pitch_diameter : of a ball, of the circle of the balls' centres, m
+    contact_angle : rad
+    """
+
+    name: str
+    ball_diameter: float
+    pitch_diameter: float
+    contact_angle: float
+
+
+def caged(named: Sequence[tuple[str, Rolls]]) -> tuple[CagedBearing, ...]:
+    """Those of some parts whose balls are given.
+
+    Parameters
+    ----------
+    named : parts with their names
+    """
+    return tuple(
+        CagedBearing(name, part.ball_diameter, part.pitch_diameter, part.contact_angle)
+        for name, part in named
+        if part.ball_diameter is not None and part.pitch_diameter is not None
+    )
+
+
+def rolling_conflicts(values: Mapping[str, Any], given: Mapping[str, Any]) -> Iterator[Conflict]:
+    """Balls and their circle belong together.
+
+    Parameters
+    ----------
+    values : of the part, checked
+    given : what the file says
+    """
+    ball, pitch = values.get("ball_diameter"), values.get("pitch_diameter")
+    for key, other in (("ball_diameter", "pitch_diameter"), ("pitch_diameter", "ball_diameter")):
+        if key in given and other not in given:
+            yield Conflict((other,), f"given with {key}")
+    if ball is not None and pitch is not None and not ball < pitch:
+        yield Conflict(("ball_diameter",), f"below pitch_diameter, {pitch:g} m")
+    if "contact_angle" in given and "ball_diameter" not in given:
+        yield Conflict(("contact_angle",), "left out without ball_diameter and pitch_diameter")
+
+
+def rolling_columns(parts: Sequence[Rolls], field: str) -> tuple[tuple[str, ...], list[tuple[Value, ...]]]:
+    """Balls of parts as columns of a table for readers; none where no balls are given.
+
+    Parameters
+    ----------
+    parts : of a scene
+    field : their path in it
+
+    Returns
+    -------
+    Heads of the columns, and for each part its cells
+    """
+    if all(part.ball_diameter is None for part in parts):
+        return (), [()] * len(parts)
+    rows: list[tuple[Value, ...]] = []
+    for k, part in enumerate(parts):
+        sizes = zip(ROLLING, (part.ball_diameter, part.pitch_diameter), strict=False)
+        rows.append(
+            (
+                *(
+                    Value("not given" if size is None else number(size * MM), (f"{field}.{k}.{name}",))
+                    for name, size in sizes
+                ),
+                Value(degrees(part.contact_angle), (f"{field}.{k}.contact_angle",)),
+            )
+        )
+    return ("balls (mm)", "their circle (mm)", "contact angle (deg)"), rows

@@ -1,0 +1,300 @@
+"""Charts of the balls of a scene: where a state is stable, over its speeds and any other number of it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+
+from fluid.fill import Fill
+from leblanc.results.base import Note
+from leblanc.results.notes import balls as notes
+from leblanc.results.races.chart import BallChart, Curve
+from leblanc.scene.scene import Scene, dry_rotor
+from leblanc.scene.schema.load import SceneError
+from leblanc.scene.schema.paths import keys_of, rule_at
+from leblanc.scene.schema.rules import Quantity, Refused
+from leblanc.studies.models.choose import axial_gravity
+from leblanc.studies.models.validity import doubts
+from leblanc.studies.races.states import liquid_beside
+from leblanc.units import parse_option
+from meshes.arrays import Array
+from meshes.errors import InputError, require_positive
+from solvers.liquid_model import LiquidModel
+from solvers.rotor.balls.balancers import BallRace
+from solvers.rotor.balls.charts import (
+    Edge,
+    Family,
+    Machine,
+    State,
+    existence_bounds,
+    gathered,
+    stability_chart,
+    stable_bands,
+)
+from solvers.rotor.balls.states import turning
+from solvers.rotor.system import RotorSystem
+from solvers.synchronous.balls import in_step
+
+VALUES, SPEEDS = 31, 61
+FEWEST, MOST = 2, 1000  # values or speeds of a chart
+STATES = ("balanced", "heavy", "light")
+_WIDE, _USUAL = 100.0, 10.0  # factors on both sides of the scene's drag, of any other number
+_DECADE = 10.0  # a range as wide as this is spaced by logarithms
+_ROOTS = ("rotor", "chambers", "gravity")
+_KEPT = 4096  # machines
+
+
+@dataclass(frozen=True)
+class _Varied:
+    """Numbers of a scene that vary together.
+
+    Parameters
+    ----------
+    paths : of them, the first one leads
+    rule : of the first
+    own : what the scene has there, SI, nan where it says nothing
+    shares : of each over the first
+    """
+
+    paths: tuple[str, ...]
+    rule: Quantity
+    own: float
+    shares: tuple[float, ...]
+
+
+def chart_scene(
+    scene: Scene,
+    over: Sequence[str] = (),
+    start: str | float | None = None,
+    stop: str | float | None = None,
+    *,
+    values: int = VALUES,
+    speeds: int = SPEEDS,
+    log: bool | None = None,
+    state: str = STATES[0],
+    progress: Callable[[int, int], None] | None = None,
+) -> BallChart:
+    """Stability of a state of the balls over the scene's speeds and another of its numbers.
+
+    Parameters
+    ----------
+    scene : with races, and chambers with liquid or none
+    over : paths of numbers of the scene, which keep their ratios; the drag in all races if empty
+    start, stop : first and last value of the first of them, SI or with a unit; a tenth and ten times what the
+        scene has if None, of the drag a hundredth and a hundred times
+    values, speeds : how many of each, at least 2
+    log : space the values by their logarithm; where they span a decade if None
+    state : balanced; heavy or light, with the balls of each race together on that side of its plane
+    progress : called now and then with the number of points of the grid done and of all
+
+    Raises
+    ------
+    InputError : no race, a path that leads to no such number, a value out of its range, a rotor that the
+        solver does not know
+    SceneError : a value at which the scene is none
+    """
+    _check(scene, values, speeds, state)
+    varied = _varied(scene, tuple(over))
+    low, high = _ends(varied, start, stop, not over)
+    log = low > 0.0 and high >= _DECADE * low if log is None else log
+    if log and low <= 0.0:
+        raise InputError("--from", low, "above 0 for values spaced by their logarithm")
+    speed = np.linspace(scene.speeds.start, scene.speeds.stop, speeds)
+    first, last = (math.log(low), math.log(high)) if log else (low, high)
+    second = np.linspace(first, last, values)
+    family = _family(scene, varied, log)
+    rotor, races = dry_rotor(scene).system(), [race.race() for race in scene.balls]
+    chosen = State() if state == "balanced" else gathered(rotor, races, state == "light")
+    chart = stability_chart(_told(family, speeds * values, progress), speed, second, chosen)
+    bounds = existence_bounds(family, float(speed[0]), second) if state == "balanced" else []
+    own = _parts(scene)
+    growth, bands = stable_bands(lambda at, _: _machine(own, at), speed, 0.0, chosen)
+    answer = BallChart(
+        name=scene.name,
+        source=scene.source,
+        assumed=scene.assumed,
+        digest=scene.digest,
+        axis=scene.rotor.axis,
+        state=state,
+        paths=varied.paths,
+        dimension=varied.rule.dimension,
+        log=log,
+        speed=speed,
+        value=_values(second, low, high, log),
+        growing=chart.growing.T,
+        growth=chart.growth.T,
+        edges=tuple(_curve(edge, log) for edge in chart.edges),
+        bounds=tuple(np.exp(bounds).tolist() if log else bounds),
+        scene_value=varied.own,
+        scene_growth=growth,
+        scene_bands=tuple(bands),
+        capacity=tuple(race.capacity for race in scene.balls),
+        notes=(),
+    )
+    return replace(answer, notes=_notes(scene, answer, turning(rotor) is not None))
+
+
+def _check(scene: Scene, values: int, speeds: int, state: str) -> None:
+    if not scene.balls:
+        raise InputError("chambers", len(scene.chambers), "with one of kind balls for this")
+    for field, count in (("--values", values), ("--speeds", speeds)):
+        if not FEWEST <= count <= MOST:
+            raise InputError(field, count, f"a whole number from {FEWEST} to {MOST}")
+    if state not in STATES:
+        raise InputError("--state", state, f"one of {', '.join(STATES)}")
+    if scene.speeds.stop <= scene.speeds.start:
+        raise InputError("speeds.stop", scene.speeds.stop, "above speeds.start for a map")
+    liquid_beside(scene)
+
+
+def _varied(scene: Scene, over: tuple[str, ...]) -> _Varied:
+    """What varies: the paths given, or the drag of all races."""
+    first = len(scene.liquids)
+    paths = over or tuple(f"chambers.{first + k}.drag" for k in range(len(scene.balls)))
+    if len(set(paths)) < len(paths):
+        raise InputError("--over", ", ".join(paths), "paths that differ")
+    rules = [_rule(scene, path) for path in paths]
+    if len({rule.dimension for rule in rules}) > 1:
+        raise InputError("--over", ", ".join(paths), "paths of quantities of one kind")
+    own = [_own(scene, path) for path in paths]
+    together = all(math.isfinite(value) for value in own) and own[0] != 0.0
+    # Numbers that have no ratio take the same value.
+    shares = tuple(value / own[0] for value in own) if together else (1.0,) * len(own)
+    return _Varied(paths, rules[0], own[0], shares)
+
+
+def _rule(scene: Scene, path: str) -> Quantity:
+    """Rule of a number that may take any value in between."""
+    if keys_of(path)[0] not in _ROOTS:
+        raise InputError("--over", path, f"the path of a number under {', '.join(_ROOTS)}")
+    try:
+        rule = rule_at(Scene, scene.table(), path)
+    except Refused as refused:
+        raise InputError("--over", path, refused.allowed) from None
+    if not isinstance(rule, Quantity):
+        raise InputError("--over", path, "the path of a number that may take any value in between")
+    return rule
+
+
+def _own(scene: Scene, path: str) -> float:
+    """What the scene has at a path, SI; nan where that is nothing."""
+    found: object = scene
+    for key in keys_of(path):
+        found = found[key] if isinstance(key, int) and isinstance(found, tuple) else getattr(found, str(key))
+    return float(found) if isinstance(found, float | int) else math.nan
+
+
+def _ends(
+    varied: _Varied, start: str | float | None, stop: str | float | None, drag: bool
+) -> tuple[float, float]:
+    """First and last value, SI."""
+    factor, own, ends = _WIDE if drag else _USUAL, varied.own, []
+    for option, given, chosen in (("--from", start, own / factor), ("--to", stop, own * factor)):
+        if given is None and not own > 0.0:
+            raise InputError(option, given, f"given where the scene has no {varied.paths[0]} above 0")
+        value = chosen if given is None else parse_option(given, varied.rule.dimension, option)
+        try:
+            ends.append(varied.rule(value))
+        except Refused as refused:
+            raise InputError(option, value, refused.allowed) from None
+    if not ends[0] < ends[1]:
+        raise InputError("--to", ends[1], f"above the first value, {ends[0]:g}")
+    return ends[0], ends[1]
+
+
+def _values(second: Array, low: float, high: float, log: bool) -> Array:
+    """Values of the grid; their ends as they were asked for, without the rounding of a logarithm."""
+    value = np.exp(second) if log else second.copy()
+    value[0], value[-1] = low, high
+    return value
+
+
+def _curve(edge: Edge, log: bool) -> Curve:
+    """A curve with values in place of their logarithms."""
+    value = np.exp(edge.second) if log else edge.second
+    ends = edge.ends[0].name.lower(), edge.ends[1].name.lower()
+    return Curve(edge.kind.name.lower(), edge.first, value, edge.frequency, ends)
+
+
+class _Parts(NamedTuple):
+    """Dry rotor, races, liquid, gravity along the axis and the model of the liquid."""
+
+    system: RotorSystem
+    races: tuple[BallRace, ...]
+    fills: tuple[Fill, ...]
+    gravity: float
+    model: LiquidModel
+
+
+def _parts(scene: Scene) -> _Parts:
+    races = tuple(race.race() for race in scene.balls)
+    return _Parts(
+        dry_rotor(scene).system(), races, scene.fills, axial_gravity(scene), liquid_beside(scene)[1]
+    )
+
+
+def _machine(parts: _Parts, speed: float) -> Machine:
+    """At a speed, with the liquid in step [theory: races, eq. 8]."""
+    require_positive("speed", speed)  # a curve that is followed may lead out of the chart
+    return Machine(in_step(parts.system, parts.fills, speed, parts.gravity, parts.model), parts.races, speed)
+
+
+def _family(scene: Scene, varied: _Varied, log: bool) -> Family:
+    """The scene's machine at each speed and value, or logarithm of one."""
+
+    @lru_cache(maxsize=_KEPT)
+    def parts(at: float) -> _Parts:
+        value = math.exp(at) if log else at
+        changes = {path: value * share for path, share in zip(varied.paths, varied.shares, strict=True)}
+        try:
+            return _parts(scene.replace(changes))
+        except SceneError as error:
+            fault = error.faults[0]
+            where = f"{varied.paths[0]} at {value:g}"
+            allowed = f"such that {fault.field} is {fault.allowed}"
+            raise InputError("--over", where, allowed) from None
+
+    return lambda speed, at: _machine(parts(at), speed)
+
+
+def _told(family: Family, total: int, progress: Callable[[int, int], None] | None) -> Family:
+    """The same, telling how many points of the grid are done."""
+    if progress is None:
+        return family
+    done = 0
+
+    def told(speed: float, at: float) -> Machine:
+        nonlocal done
+        done += 1
+        progress(min(done, total), total)
+        return family(speed, at)
+
+    return told
+
+
+def _notes(scene: Scene, answer: BallChart, alike: bool) -> tuple[Note, ...]:
+    """What was assumed, and what is not told."""
+    found = []
+    if answer.state == "balanced":
+        found.append(notes.free_balls())
+    if answer.missing.any():
+        found.append(notes.not_there(float(np.mean(answer.missing)), answer.state))
+    if answer.edges:
+        found.append(notes.between_lines())
+    if len(answer.paths) > 1:
+        found.append(notes.in_ratio(answer.paths))
+    found.append(notes.points())
+    if scene.rotor.axis == "horizontal":
+        found.append(notes.lies([]))
+    if not alike:
+        found.append(notes.uneven_supports())
+    if scene.fills:
+        found.append(notes.liquid_in_step(liquid_beside(scene)[0]))
+    if any(race.liquid is not None for race in scene.balls):
+        found.append(notes.covered())
+    return (*found, *doubts(scene))

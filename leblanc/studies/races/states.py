@@ -1,0 +1,117 @@
+"""The state of rotor and balls that is reported at a speed, without all that a result of `run` carries."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from leblanc.results.motion.ball_states import reported_state
+from leblanc.scene.scene import Scene, dry_rotor, require_clear
+from leblanc.studies.models.choose import axial_gravity
+from leblanc.studies.models.liquid import synchronous_model
+from meshes.arrays import Array, Complex, Flags
+from meshes.errors import InputError
+from solvers.liquid_model import LiquidModel
+from solvers.rotor.balls.steady import BallKind
+from solvers.rotor.vibration import orbit
+from solvers.synchronous.balls import wet_states
+from solvers.synchronous.models import STATICS
+
+MODELS = ("statics", "linear")  # of liquid at rest in the drum, with which states of balls are found
+
+
+@dataclass(frozen=True)
+class ReportedStates:
+    """The state that `run` reports at each of s speeds; n coordinates.
+
+    Parameters
+    ----------
+    speed : rad/s, shape (s,)
+    amplitude : of the axis at the first chamber, m, nan where no state was found, shape (s,)
+    stable : small motions do not grow, shape (s,)
+    growth : of small motions, 1/s, infinite where no state was found, shape (s,)
+    balanced : the balanced state is stable, whichever is reported, shape (s,)
+    balanced_growth : of small motions about the balanced state, 1/s, nan where there is none, shape (s,)
+    coordinates : complex amplitudes of the rotor, shape (s, n)
+    """
+
+    speed: Array
+    amplitude: Array
+    stable: Flags
+    growth: Array
+    balanced: Flags
+    balanced_growth: Array
+    coordinates: Complex
+
+
+def plane_of(scene: Scene) -> float:
+    """Plane whose motion is reported: of the first chamber with liquid, or the first race, m.
+
+    Parameters
+    ----------
+    scene : with races
+    """
+    return scene.fills[0].chamber.plane if scene.fills else scene.balls[0].plane
+
+
+def liquid_beside(scene: Scene) -> tuple[str, LiquidModel]:
+    """Model of the liquid that rests in the drum beside balls, and its name; auto is the exact equilibrium.
+
+    Parameters
+    ----------
+    scene : with races, and chambers with liquid or none
+
+    Raises
+    ------
+    InputError : a section or baffles that the equilibrium of the liquid does not know, a model of liquid that
+        is not at rest in the drum
+    """
+    require_clear(scene, "balls beside liquid")
+    name = "statics" if scene.model.liquid == "auto" else scene.model.liquid
+    if not scene.fills:
+        return name, STATICS
+    if name not in MODELS:
+        allowed = f"auto, {' or '.join(MODELS)} beside balls; `leblanc runup` takes long waves through time"
+        raise InputError("model.liquid", name, allowed)
+    return name, synchronous_model(name)
+
+
+def reported_states(scene: Scene, speed: ArrayLike) -> ReportedStates:
+    """State of rotor, balls and liquid that is reported at some speeds [theory: races, eq. 5-8].
+
+    Parameters
+    ----------
+    scene : with races, and chambers with liquid or none
+    speed : rad/s, above 0, shape (s,)
+
+    Raises
+    ------
+    InputError : as `liquid_beside`
+    """
+    system, spin = dry_rotor(scene).system(), np.asarray(speed, dtype=float)
+    races = [race.race() for race in scene.balls]
+    model = liquid_beside(scene)[1]
+    states = wet_states(system, scene.fills, races, spin, axial_gravity(scene), model).states
+    way = orbit(system, states.coordinates, plane_of(scene))
+    sizes = np.asarray(np.abs(way.forward) + np.abs(way.backward))
+    chosen = reported_state(states, sizes)
+    rows, found = np.arange(spin.size), chosen >= 0
+    if not found.any():
+        n = len(system.coordinates)
+        nothing, none = np.full(spin.size, np.nan), np.zeros(spin.size, dtype=bool)
+        lost = np.full((spin.size, n), complex(np.nan, np.nan))
+        return ReportedStates(spin, nothing, none, np.full(spin.size, np.inf), none, nothing, lost)
+    rests = states.kind == BallKind.BALANCED
+    return ReportedStates(
+        speed=spin,
+        amplitude=np.where(found, sizes[rows, chosen], np.nan),
+        stable=found & states.stable[rows, chosen],
+        growth=np.where(found, states.growth[rows, chosen], np.inf),
+        balanced=np.asarray((rests & states.stable).any(axis=1)),
+        balanced_growth=np.where(
+            rests.any(axis=1), np.where(rests, states.growth, np.inf).min(axis=1), np.nan
+        ),
+        coordinates=states.coordinates[rows, chosen],
+    )

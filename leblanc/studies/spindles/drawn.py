@@ -1,0 +1,140 @@
+"""A spindle unit as a picture draws it."""
+
+from __future__ import annotations
+
+import math
+from itertools import accumulate
+
+import numpy as np
+
+from leblanc.results.spindles.drawn import (
+    DrawnBeam,
+    DrawnJoint,
+    DrawnMass,
+    DrawnSection,
+    DrawnStation,
+    SpindleView,
+)
+from leblanc.scene.scene import Scene
+from leblanc.scene.spindle import Beam, Spindle, SpindleMass
+from leblanc.studies.spindles.unit import places_of
+from meshes.errors import InputError
+from solvers.rotor.shaft.natural import modes
+
+STEEL = 7850.0  # kg/m^3, of the discs that stand for masses
+_WIDE = 1.5  # radius of a disc without inertia over the beam's
+SHOWN = 0.06  # largest deflection as drawn over the length of the machine
+_TOUCH = 1e-9  # m, by which sections that meet may overlap
+
+
+def spindle_view(
+    scene: Scene, number: int | None = None, speed: float | None = None, factor: float | None = None
+) -> SpindleView:
+    """A spindle unit in one of the natural motions of its band.
+
+    Parameters
+    ----------
+    scene : of kind "spindle"
+    number : which natural motion, from 1; the first if nothing is given
+    speed : the natural motion nearest to this frequency instead, rad/s
+    factor : of the deflection as drawn, over what would be chosen
+
+    Raises
+    ------
+    InputError : another rotor, no such natural motion, a value out of its range
+    """
+    rotor = scene.rotor
+    if not isinstance(rotor, Spindle):
+        raise InputError("rotor.kind", rotor.kind, "spindle for this")
+    if factor is not None and not (math.isfinite(factor) and factor > 0.0):
+        raise InputError("--factor", factor, "a finite number above 0")
+    machine, band = rotor.machine(), scene.speed_array()
+    found = modes(machine, float(band[0]), float(band[-1]))
+    if not found:
+        raise InputError("speeds.stop", float(band[-1]), "such that a natural frequency lies in the band")
+    if speed is not None:
+        if not (math.isfinite(speed) and speed > 0.0):
+            raise InputError("--speed", speed, "a finite number above 0")
+        number = 1 + int(np.argmin([abs(mode.frequency - speed) for mode in found]))
+    chosen = 1 if number is None else number
+    if not 1 <= chosen <= len(found):
+        raise InputError("--mode", chosen, f"a whole number from 1 to {len(found)}, the natural motions here")
+    mode, places = found[chosen - 1], places_of(machine)
+    sections = [_sections(beam, place) for beam, place in zip(rotor.beams, places, strict=True)]
+    levels = levels_of(sections)
+    starts = [[place, *(section.end for section in own)] for place, own in zip(places, sections, strict=True)]
+
+    def at(name: str) -> tuple[int, float]:
+        beam, station = rotor.station(name)
+        return beam, starts[beam][station]
+
+    beams = tuple(
+        DrawnBeam(beam.name, own, level, place + along, deflection)
+        for beam, own, level, place, (along, deflection) in zip(
+            rotor.beams, sections, levels, places, mode.along, strict=True
+        )
+    )
+    length = max(max(row) for row in starts) - min(min(row) for row in starts)
+    roles = (("force", rotor.driven), ("measured", rotor.measured), ("wanted", rotor.wanted))
+    return SpindleView(
+        name=scene.name,
+        assumed=bool(scene.assumed),
+        number=chosen,
+        count=len(found),
+        frequency=mode.frequency,
+        beams=beams,
+        masses=tuple(_disc(part, *at(part.station), sections) for part in rotor.masses),
+        joints=tuple(
+            DrawnJoint(
+                at(joint.station)[0], None if joint.to == "ground" else at(joint.to)[0], at(joint.station)[1]
+            )
+            for joint in rotor.joints
+        ),
+        stations=tuple(DrawnStation(name, *at(station)) for name, station in roles),
+        factor=SHOWN * length * (1.0 if factor is None else factor),
+    )
+
+
+def _sections(beam: Beam, place: float) -> tuple[DrawnSection, ...]:
+    """Sections of a beam along the machine."""
+    ends = list(accumulate((section.length for section in beam.sections), initial=place))
+    return tuple(
+        DrawnSection(ends[k], ends[k + 1], section.diameter, section.bore)
+        for k, section in enumerate(beam.sections)
+    )
+
+
+def levels_of(beams: list[tuple[DrawnSection, ...]]) -> list[int]:
+    """Level of each beam: on the axis as long as no two would lie in one another, else beside it.
+
+    Parameters
+    ----------
+    beams : sections of each
+    """
+    levels: list[int] = []
+    for own in beams:
+        level = 0
+        while any(
+            other_level == level and not _have_room(own, other)
+            for other, other_level in zip(beams, levels, strict=False)
+        ):
+            level += 1
+        levels.append(level)
+    return levels
+
+
+def _have_room(first: tuple[DrawnSection, ...], second: tuple[DrawnSection, ...]) -> bool:
+    """Wherever both are, one of them lies inside the other's bore."""
+    return all(
+        a.diameter <= b.bore or b.diameter <= a.bore
+        for a in first
+        for b in second
+        if min(a.end, b.end) - max(a.start, b.start) > _TOUCH
+    )
+
+
+def _disc(part: SpindleMass, beam: int, place: float, beams: list[tuple[DrawnSection, ...]]) -> DrawnMass:
+    """A thin disc of steel with the mass of a body and its inertia across the axis, m R^2/4."""
+    wide = 0.5 * _WIDE * max(section.diameter for section in beams[beam])
+    radius = 2.0 * math.sqrt(part.inertia / part.mass) if part.inertia > 0.0 else wide
+    return DrawnMass(beam, place, radius, part.mass / (STEEL * math.pi * radius**2))

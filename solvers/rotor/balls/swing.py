@@ -1,0 +1,96 @@
+"""Gravity across the axis and balls that rest in a drum: they swing about their places once a turn."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from meshes.arrays import Array, Complex
+from meshes.errors import require_not_negative, require_positive
+from solvers.rotor.balls.balancers import BallRace, race_arrays
+from solvers.rotor.system import RotorSystem
+
+
+@dataclass(frozen=True)
+class Swing:
+    """Small swings of N balls by gravity, and what they do to a rotor of n coordinates.
+
+    Parameters
+    ----------
+    balls : complex amplitude of each ball's angle in the drum, psi + Re(balls e^{i Omega t}), rad, shape (N,)
+    coordinates : complex amplitudes of the rotor at twice the spin, Re(coordinates e^{2 i Omega t}), (n,)
+    """
+
+    balls: Complex
+    coordinates: Complex
+
+
+def ball_swing(speed: Array, radius: Array, rate: Array, rolling: Array, gravity: float) -> Array:
+    """Swing of a single ball on a rotor that does not give way [theory: races, eq. 12].
+
+    Parameters
+    ----------
+    speed : Omega, rad/s, shape (...)
+    radius : R of its path, m, shape (...)
+    rate : its drag over its mass b/m, 1/s, shape (...)
+    rolling : kappa, shape (...)
+    gravity : across the axis, m/s^2
+
+    Returns
+    -------
+    Amplitude of its angle in the drum, rad, shape (...)
+
+    Examples
+    --------
+    >>> f"{float(ball_swing(100.0, 0.1, 14.0, 1.4, 9.81)):.5f} rad"
+    '0.00697 rad'
+    """
+    return np.asarray(gravity / (radius * np.square(speed)) / np.hypot(rolling, rate / speed))
+
+
+def gravity_swing(
+    system: RotorSystem,
+    races: Sequence[BallRace],
+    speed: float,
+    places: Array,
+    coordinates: Complex,
+    gravity: float,
+) -> Swing:
+    """Swings of balls about places at which they rest, rotor and balls together [theory: races, eq. 11].
+
+    To first order in g/(R Omega^2). Balls that swing once a turn shake the axis with twice the spin, and
+    otherwise only with their weight, which is in the equilibrium at rest. Where the supports differ, what
+    comes back to the balls with three times the spin is left out.
+
+    Parameters
+    ----------
+    system : the rotor without balls, with the liquid's share in its mass matrix
+    races : that hold the balls
+    speed : Omega, rad/s, above 0
+    places : of the balls in the drum, rad, shape (N,)
+    coordinates : complex amplitudes of the rotor there, shape (n,)
+    gravity : across the axis, against the first direction, m/s^2
+
+    Raises
+    ------
+    InputError : a speed that is not positive, a negative gravity
+    """
+    require_positive("speed", speed)
+    require_not_negative("gravity", gravity)
+    axes, balls = race_arrays(system, races)
+    mass, radius, drag, rolling = balls.T
+    along = 1j * np.exp(1j * places)
+    whole = system.mass + np.einsum("j,jin,jim->nm", mass, axes, axes)
+    damping = system.damping + speed * system.gyroscopic
+    held = system.stiffness + 2j * speed * damping - 4.0 * speed**2 * whole
+    # A ball that swings by 1 rad pushes forward with twice the spin.
+    push = (2.0 * mass * radius * speed**2 * along)[:, None] * (axes[:, 0] - 1j * axes[:, 1])
+    moved = np.linalg.solve(held, push.T)
+    forward = 0.5 * (axes[:, 0] + 1j * axes[:, 1])
+    outward = ((forward @ coordinates) * np.exp(-1j * places)).real
+    own = rolling * radius * -(speed**2) + 1j * speed * drag * radius / mass + speed**2 * outward
+    matrix = np.diag(own) - 4.0 * speed**2 * np.conj(along)[:, None] * (forward @ moved)
+    swing = np.linalg.solve(matrix, -gravity * along)
+    return Swing(swing, moved @ swing)
