@@ -14,10 +14,13 @@ from solvers.rotor.exciter.machine import Dimensionless
 from solvers.rotor.exciter.motion import RANGES, critical_speed
 from solvers.rotor.exciter.regimes import Kind
 from solvers.rotor.exciter.stability import capture_unbalance, third_speed
-from validation.cases import exciter, exciter_beyond, exciter_more, two_plane, two_plane_damping
-from validation.cases.exciter import sample
-from validation.figures import two_plane as two_plane_figures
-from validation.figures.exciter import Comparison, compare, table
+from validation.cases import exciter, two_plane
+from validation.cases.exciter import beyond as exciter_beyond
+from validation.cases.exciter import traces as exciter_more
+from validation.cases.exciter.speeds import sample
+from validation.cases.two_plane import damping as two_plane_damping
+from validation.figures.exciter.speeds import Comparison, compare, table
+from validation.figures.rotors import two_plane as two_plane_figures
 
 
 def test_cases_of_the_exciter() -> None:
