@@ -116,7 +116,7 @@ RECIPES = (
         {"optimise_conditions": "conditions"},
     ),
     Recipe(
-        ("validation.figures.tub",),
+        ("validation.figures.rotors.tub",),
         (
             "tub_fig4_vertical",
             "tub_fig5_longitudinal",
@@ -127,15 +127,16 @@ RECIPES = (
         ),
     ),
     Recipe(("docs/house.py", "--picture", "rooms.png"), ("rooms",)),
-    Recipe(("validation.figures.two_plane",), ("two_plane_balls",)),
+    Recipe(("validation.figures.rotors.two_plane",), ("two_plane_balls",)),
     Recipe(
-        ("validation.figures.ball_charts",),
+        ("validation.figures.rotors.ball_charts",),
         ("balls_damping", "balls_reference", "balls_unlike", "balls_charts"),
         minutes=True,
     ),
-    Recipe(("validation.figures.exciter_more",), ("exciter_traces", "exciter_trends")),
-    Recipe(("validation.cases.weak_motor",), ("runup_weak_motor",)),
-    Recipe(("validation.figures.runup_lag",), ("runup_lag",)),
+    Recipe(("validation.figures.exciter.traces",), ("exciter_traces", "exciter_trends")),
+    Recipe(("validation.figures.exciter.beyond",), ("exciter_beyond",)),
+    Recipe(("validation.cases.rotors.weak_motor",), ("runup_weak_motor",)),
+    Recipe(("validation.figures.rotors.runup_lag",), ("runup_lag",)),
     Recipe(
         ("validation.figures.kept",),
         (
@@ -189,12 +190,12 @@ RECIPES = (
         ("layer_limiting_wave",),
         {"layer_limiting_wave": "wave"},
     ),
-    Recipe(("validation.figures.whirl_passage",), ("whirl_passage",), minutes=True),
+    Recipe(("validation.figures.rotors.whirl_passage",), ("whirl_passage",), minutes=True),
     Recipe(("validation.models.figure",), ("models",)),
     Recipe(("validation.breaking.figure",), ("breaking", "breaking_crest")),
     Recipe(("validation.exact.figure",), ("wave_errors", "wave_ends")),
     Recipe(("validation.exact_whirl.figure",), ("exact_whirl",)),
-    Recipe(("validation.figures.baffles",), ("whirl_baffles",)),
+    Recipe(("validation.figures.liquid.baffles",), ("whirl_baffles",)),
     Recipe(("validation.cases.baffles.figure",), ("baffles_decay",)),
     Recipe(("validation.cases.claims.figure",), ("claims_rings",)),
     Recipe(
@@ -202,14 +203,14 @@ RECIPES = (
         ("tub_layout",),
         {"tub_layout": "layout"},
     ),
-    Recipe(("validation.figures.fill_sweep",), ("fill_sweep",)),
-    Recipe(("validation.figures.runup_trends",), ("runup_trends",), minutes=True),
+    Recipe(("validation.figures.rotors.fill_sweep",), ("fill_sweep",)),
+    Recipe(("validation.figures.rotors.runup_trends",), ("runup_trends",), minutes=True),
     Recipe(
-        ("validation.figures.exciter",),
+        ("validation.figures.exciter.speeds",),
         ("exciter_table", "exciter_start", "exciter_regression"),
         minutes=True,
     ),
-    Recipe(("validation.figures.blood_pump",), ("blood_pump", "blood_pump_coils")),
+    Recipe(("validation.figures.rotors.blood_pump",), ("blood_pump", "blood_pump_coils")),
     Recipe(("examples/ross_flexible_rotor.py",), ("ross_flexible_rotor",), minutes=True, needs="ross"),
 )
 

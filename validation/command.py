@@ -75,25 +75,9 @@ def all_cases(
 
 def _group(name: str) -> Callable[[], list[Case]]:
     """The function that computes a group."""
-    from validation.cases import (
-        baffles,
-        blood_pump,
-        claims,
-        errata,
-        exact_wave,
-        exciter,
-        fill_sweep,
-        layer,
-        optimal_volume,
-        rigs,
-        runup,
-        spindle,
-        tub,
-        turning,
-        two_plane,
-        vector_model,
-        whirl,
-    )
+    from validation.cases import baffles, claims, errata, exciter, fill_sweep, two_plane
+    from validation.cases.liquid import exact_wave, layer, optimal_volume
+    from validation.cases.rotors import blood_pump, rigs, runup, spindle, tub, turning, vector_model, whirl
 
     return {
         "errata": errata.cases,

@@ -33,7 +33,7 @@ from solvers.synchronous.models import Linear
 from solvers.synchronous.response import response
 from solvers.whirl.growth import asynchronous_growth
 from tests.mutants import kills
-from validation.benchmarks import peer_ross
+from validation.benchmarks.peers import ross as peer_ross
 
 CHAMBER = Chamber(radius=0.15, height=0.01)
 WATER = Liquid("water", 1000.0, 1e-6)
@@ -320,24 +320,26 @@ def test_growth() -> None:
 PEER = peer_ross.RotorProblem(speed=np.linspace(5.3, 600.0, 12))
 
 
-@kills("validation.benchmarks.peer_ross:RotorProblem.exact", "place @ supports", "-place @ supports")
+@kills("validation.benchmarks.peers.ross:RotorProblem.exact", "place @ supports", "-place @ supports")
 @kills(
-    "validation.benchmarks.peer_ross:RotorProblem.exact",
+    "validation.benchmarks.peers.ross:RotorProblem.exact",
     "(rotor.transverse_inertia - rotor.polar",
     "(rotor.transverse_inertia + rotor.polar",
 )
 @kills(
-    "validation.benchmarks.peer_ross:RotorProblem.exact",
+    "validation.benchmarks.peers.ross:RotorProblem.exact",
     "direct * turning - crossed**2",
     "direct * turning + crossed**2",
 )
 @kills(
-    "validation.benchmarks.peer_ross:RotorProblem.exact",
+    "validation.benchmarks.peers.ross:RotorProblem.exact",
     "supports.sum(axis=0) - rotor.mass",
     "supports.sum(axis=0) + rotor.mass",
 )
 @kills(
-    "validation.benchmarks.peer_ross:RotorProblem.exact", "turning - arm * crossed", "turning + arm * crossed"
+    "validation.benchmarks.peers.ross:RotorProblem.exact",
+    "turning - arm * crossed",
+    "turning + arm * crossed",
 )
 def test_peer_answer() -> None:
     """The benchmark's closed form against the matrices of the rigid rotor."""
@@ -348,10 +350,12 @@ def test_peer_answer() -> None:
 
 
 @kills(
-    "validation.benchmarks.peer_ross:RotorProblem.rigid", "self.diameter**2 / 16.0", "self.diameter**2 / 8.0"
+    "validation.benchmarks.peers.ross:RotorProblem.rigid",
+    "self.diameter**2 / 16.0",
+    "self.diameter**2 / 8.0",
 )
 @kills(
-    "validation.benchmarks.peer_ross:RotorProblem.rigid",
+    "validation.benchmarks.peers.ross:RotorProblem.rigid",
     "places - masses @ places",
     "places + masses @ places",
 )

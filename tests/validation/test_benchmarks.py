@@ -11,11 +11,12 @@ import numpy as np
 import pytest
 
 from tests.mutants import kills
-from validation.benchmarks import ours, peer_pypde, report, timing
+from validation.benchmarks import ours, report, timing
 from validation.benchmarks import ours as layers
 from validation.benchmarks import report as table
 from validation.benchmarks.__main__ import PEERS
 from validation.benchmarks.growth import Growth
+from validation.benchmarks.peers import pypde as peer_pypde
 from validation.benchmarks.problems import (
     WANTED,
     distance,
@@ -229,7 +230,7 @@ def test_force() -> None:
     assert problem.force(0.25 * whirl.ramp * 40.0) == pytest.approx(early)
 
 
-@kills("validation.benchmarks.peer_pypde:constants", '"c": problem.drift', '"c": -problem.drift - 1.0')
+@kills("validation.benchmarks.peers.pypde:constants", '"c": problem.drift', '"c": -problem.drift - 1.0')
 def test_equation_of_py_pde() -> None:
     """The text that py-pde is given, evaluated by hand, leaves the steady wave where it is."""
     problem = steady_problem()

@@ -12,8 +12,8 @@ from leblanc.scene.scene import jeffcott, load_scene
 from meshes.errors import InputError
 from tests.mutants import kills
 from tests.oracles.cases import kept_cases
-from validation.cases.layer import rotor_cases
-from validation.cases.rigs import horizontal_rig, horizontal_rotor, vertical_rig, vertical_rotor
+from validation.cases.liquid.layer import rotor_cases
+from validation.cases.rotors.rigs import horizontal_rig, horizontal_rotor, vertical_rig, vertical_rotor
 from validation.command import GROUPS, all_cases
 
 
@@ -39,7 +39,7 @@ def test_layer_against_computed_flow() -> None:
 
 
 @kills("solvers.pypde.coupled:RotorLayersPDE.evolution_rate", "damping @ rate", "1.05 * damping @ rate")
-@kills("validation.cases.layer:rotor_cases", "apart[CELLS[-1]])", "apart[CELLS[0]])")
+@kills("validation.cases.liquid.layer:rotor_cases", "apart[CELLS[-1]])", "apart[CELLS[0]])")
 def test_a_rotor_and_its_layer_by_py_pde_and_by_the_steps_of_run_ups() -> None:
     """Two codes of one set of equations come together with the second order of both."""
     found = {case.name.partition("/")[2]: case for case in rotor_cases()}

@@ -11,8 +11,9 @@ from typing import Any
 
 import pytest
 
-from validation.benchmarks import cold_child, cold_start
-from validation.benchmarks.cold_start import ColdStart
+from validation.benchmarks.cold import child as cold_child
+from validation.benchmarks.cold import start as cold_start
+from validation.benchmarks.cold.start import ColdStart
 
 SITE = sysconfig.get_paths()["purelib"]
 OURS = f"{cold_start.ROOT}/{cold_child.FRONT}"

@@ -12,7 +12,7 @@ from validation.cases import errata
 from validation.cases.case import Case, Effect, compare, shape_verdict
 from validation.cases.errata import formulas
 from validation.cases.errata.tub import tub_matrices
-from validation.cases.rigs import horizontal_rig
+from validation.cases.rotors.rigs import horizontal_rig
 
 
 @cache

@@ -15,15 +15,17 @@ from leblanc.studies.models.choose import axial_gravity
 from solvers.statics.hydrostatics import equilibrium
 from solvers.synchronous.response import response
 from tests.mutants import kills
-from validation.cases import errata, fill_optimum, layer, tub
-from validation.cases import runup as runup_given
+from validation.cases import errata
 from validation.cases.case import Case, compare
-from validation.cases.rigs import data
-from validation.cases.runup import GIVEN, Point
-from validation.figures import rigs as rig_figures
-from validation.figures import volume as volume_figures
-from validation.figures import whirl as whirl_figures
-from validation.figures.layer import bore_summary
+from validation.cases.liquid import fill_optimum, layer
+from validation.cases.rotors import runup as runup_given
+from validation.cases.rotors import tub
+from validation.cases.rotors.rigs import data
+from validation.cases.rotors.runup import GIVEN, Point
+from validation.figures.liquid import volume as volume_figures
+from validation.figures.liquid.layer import bore_summary
+from validation.figures.rotors import rigs as rig_figures
+from validation.figures.rotors import whirl as whirl_figures
 from validation.notebook_page import Table, case_table, from_markdown, picture, verdicts
 from validation.trade import again, kept, names
 from validation.trade.answers import Case as TradeCase
@@ -117,11 +119,15 @@ def test_growth_in_time_lies_on_its_lines() -> None:
 
 
 @kills(
-    "validation.figures.layer:bore_summary",
+    "validation.figures.liquid.layer:bore_summary",
     "1e3 * (depth - np.array(run[key]))",
     "depth - np.array(run[key])",
 )
-@kills("validation.figures.layer:bore_summary", "np.argmax(np.abs(values))", "np.argmin(np.abs(values))")
+@kills(
+    "validation.figures.liquid.layer:bore_summary",
+    "np.argmax(np.abs(values))",
+    "np.argmin(np.abs(values))",
+)
 def test_summary() -> None:
     """Signs and units: the model with dispersion is millimetres too high, that with friction turns least."""
     found = bore_summary()
@@ -136,10 +142,18 @@ def test_summary() -> None:
     assert plain[2] < found["with both"][2] < 0.0
 
 
-@kills("validation.cases.fill_optimum:closed_forms", "rotor.mass + fill.full_mass", "rotor.mass + fill.mass")
-@kills("validation.cases.fill_optimum:closed_forms", "rotor.damping * speed", "rotor.damping")
-@kills("validation.cases.fill_optimum:closed_forms", "rotor.unbalance * speed**2", "rotor.unbalance * speed")
-@kills("validation.cases.fill_optimum:closed_forms", "form.full_volume", "form.optimal_volume")
+@kills(
+    "validation.cases.liquid.fill_optimum:closed_forms",
+    "rotor.mass + fill.full_mass",
+    "rotor.mass + fill.mass",
+)
+@kills("validation.cases.liquid.fill_optimum:closed_forms", "rotor.damping * speed", "rotor.damping")
+@kills(
+    "validation.cases.liquid.fill_optimum:closed_forms",
+    "rotor.unbalance * speed**2",
+    "rotor.unbalance * speed",
+)
+@kills("validation.cases.liquid.fill_optimum:closed_forms", "form.full_volume", "form.optimal_volume")
 def test_closed_forms() -> None:
     """The amplitude is the solver's with ample liquid; the volume is the edge of the full unbalance."""
     for name in ("runup", "washing_machine"):
@@ -163,7 +177,7 @@ def test_the_search_finds_the_closed_forms() -> None:
     assert {case.verdict for case in fill_optimum.cases()} == {"agrees"}
 
 
-@kills("validation.cases.tub:_measured", "1800e-6 /", "1800e-3 /")
+@kills("validation.cases.rotors.tub:_measured", "1800e-6 /", "1800e-3 /")
 def test_measured_amplitude() -> None:
     """As one mass on its springs, which the errata work out: 0.0805 mm at the worst speed for 1800 g mm."""
     case = next(one for one in tub.cases() if one.name == "tub/measured-amplitude")
@@ -183,7 +197,7 @@ def test_run_up_given(share: float, verdict: str) -> None:
         moved = peak * share * 1e-3, speed * share
         return Point(volume, friction, *moved, math.nan, end * share * 1e-3, 0.0, math.nan, True)
 
-    with mock.patch("validation.cases.runup.run", run):
+    with mock.patch("validation.cases.rotors.runup.run", run):
         assert [case.verdict for case in runup_given.cases()] == [verdict] * 9
 
 

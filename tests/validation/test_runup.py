@@ -13,9 +13,9 @@ import pytest
 
 from fluid.fill import Fill
 from tests.mutants import kills
-from validation.cases import runup
-from validation.cases.rigs import horizontal_rig
-from validation.figures import runup_lag, runup_trends
+from validation.cases.rotors import runup
+from validation.cases.rotors.rigs import horizontal_rig
+from validation.figures.rotors import runup_lag, runup_trends
 
 RPM = math.pi / 30.0
 
@@ -45,7 +45,7 @@ def test_the_run_up_with_weak_friction() -> None:
 
 
 @kills(
-    "validation.cases.runup:best_volume",
+    "validation.cases.rotors.runup:best_volume",
     "optimal_volume(CHAMBER, deflection, RAMP.stop, _GRAVITY)",
     "optimal_volume(CHAMBER, deflection, RAMP.start, _GRAVITY)",
 )
@@ -59,7 +59,9 @@ def test_best_volume() -> None:
 
 
 @kills(
-    "validation.cases.runup:steady_end", "fills, [RAMP.stop], _GRAVITY", "fills[:0], [RAMP.stop], _GRAVITY"
+    "validation.cases.rotors.runup:steady_end",
+    "fills, [RAMP.stop], _GRAVITY",
+    "fills[:0], [RAMP.stop], _GRAVITY",
 )
 def test_steady_end() -> None:
     """Beyond the volume that covers the wall the liquid is the added mass m_f; below, it does less."""
@@ -74,7 +76,7 @@ def test_steady_end() -> None:
 
 
 @kills(
-    "validation.figures.runup_lag:orders",
+    "validation.figures.rotors.runup_lag:orders",
     "/ math.log(point.rate / other.rate)",
     "/ math.log(other.rate / point.rate)",
 )
@@ -96,12 +98,12 @@ def test_orders() -> None:
 
 
 @kills(
-    "validation.figures.runup_lag:lag",
+    "validation.figures.rotors.runup_lag:lag",
     "np.exp(-1j * exact_angle) / turn_mean(h.liquid_position",
     "np.exp(1j * exact_angle) / turn_mean(h.liquid_position",
 )
 @kills(
-    "validation.figures.runup_lag:lag",
+    "validation.figures.rotors.runup_lag:lag",
     "h.deflection[:, 0] * np.exp(-1j * h.angle)",
     "h.deflection[:, 0] * np.exp(1j * h.angle)",
 )
@@ -178,7 +180,7 @@ def test_tables_and_figures(tmp_path: Path) -> None:
 
 
 @kills(
-    "validation.figures.runup_lag:steady",
+    "validation.figures.rotors.runup_lag:steady",
     "answer.deflection, -answer.liquid_angle",
     "answer.deflection_dry, -answer.liquid_angle",
 )

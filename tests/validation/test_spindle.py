@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from validation.cases import spindle, turning
+from validation.cases.rotors import spindle, turning
 
 
 def test_table_of_the_bearing() -> None:

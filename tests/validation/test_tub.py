@@ -12,8 +12,8 @@ from leblanc.scene.scene import dry_rotor, load_scene
 from solvers.rotor.tub import Tub
 from solvers.rotor.vibration import critical_speeds, unbalance_response
 from tests.mutants import kills
-from validation.cases.tub import FARTHEST, amplitude, cases, direction, suspended_tub
-from validation.figures.tub import draw, main, plots
+from validation.cases.rotors.tub import FARTHEST, amplitude, cases, direction, suspended_tub
+from validation.figures.rotors.tub import draw, main, plots
 
 
 def test_verdicts() -> None:
@@ -42,11 +42,11 @@ def test_the_example_is_the_machine_of_the_cases() -> None:
 
 
 @kills(
-    "validation.cases.tub:direction",
+    "validation.cases.rotors.tub:direction",
     "side * math.sin(turn)",
     "side * math.cos(angle) * math.sin(turn)",
 )
-@kills("validation.cases.tub:direction", "math.sin(angle) * flat", "math.sin(angle)")
+@kills("validation.cases.rotors.tub:direction", "math.sin(angle) * flat", "math.sin(angle)")
 def test_direction() -> None:
     """A unit vector, at its angle to the plane across the axis; on the other side half a turn about z."""
     for angle in (-1.2, 0.3, 1.3):
@@ -58,7 +58,7 @@ def test_direction() -> None:
             np.testing.assert_allclose(other, one * [-1.0, -1.0, 1.0], atol=1e-15)
 
 
-@kills("validation.cases.tub:direction", ", side * math.sin(turn)", ", math.sin(turn)")
+@kills("validation.cases.rotors.tub:direction", ", side * math.sin(turn)", ", math.sin(turn)")
 def test_static_balance() -> None:
     """Turned springs that carry the weight leave no force along the axis and none across it."""
     machine = suspended_tub(0.0, 0.0, 0.5)
@@ -66,8 +66,8 @@ def test_static_balance() -> None:
     np.testing.assert_allclose(pull[:2], 0.0, atol=1e-15)
 
 
-@kills("validation.cases.tub:suspended_tub", "DAMPER - known.friction", "DAMPER + known.friction")
-@kills("validation.cases.tub:suspended_tub", "SPRING - known.lateral", "SPRING + known.lateral")
+@kills("validation.cases.rotors.tub:suspended_tub", "DAMPER - known.friction", "DAMPER + known.friction")
+@kills("validation.cases.rotors.tub:suspended_tub", "SPRING - known.lateral", "SPRING + known.lateral")
 def test_vertical_resonance() -> None:
     """In the middle everything up and down is one oscillator, 2 c (sin^2 75 + lateral share) over 60.7 kg."""
     machine, speed = suspended_tub(), np.linspace(2.0, 60.0, 50)

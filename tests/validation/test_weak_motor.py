@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from leblanc.scene.examples import example
-from validation.cases.weak_motor import with_and_without
+from validation.cases.rotors.weak_motor import with_and_without
 
 
 def test_liquid_takes_a_weak_motor_through_the_resonance() -> None:

@@ -22,7 +22,7 @@ from solvers.runup.machine import Ramp
 from solvers.runup.runup import RunupHistory, RunupNumerics, run_up
 from solvers.whirl.growth import growth_map
 from validation.benchmarks.timing import Answer, Contestant, Go, Sample, measure, one_core
-from validation.cases.tub import suspended_tub
+from validation.cases.rotors.tub import suspended_tub
 
 _OURS = "leblanc"
 _ROTOR = Jeffcott(30.0, 30.0 * 25.0**2, 2.0 * 0.06 * 30.0 * 25.0, 0.1)

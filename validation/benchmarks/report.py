@@ -282,7 +282,7 @@ def growth_figure(growths: Sequence[Growth], name: str, directory: Path) -> Path
     return save(figure, directory, name, text).png
 
 
-_MODULE = "validation.benchmarks.peer_"
+_MODULE = "validation.benchmarks.peers."
 # Cells of the long-wave runs, of the slow Python kernel, and of the reference.
 _CELLS, _SLOW, _REFERENCE = (64, 96, 128, 192, 256, 384, 512), (128,), 2048
 _QUICK_CELLS, _QUICK_REFERENCE = (32, 64), 128

@@ -34,8 +34,8 @@
 # * Coils that follow at once, as in the source. What slow coils do is shown at the end.
 
 # %%
-from validation.cases import blood_pump
-from validation.figures.blood_pump import coils_figure, trial_figure
+from validation.cases.rotors import blood_pump
+from validation.figures.rotors.blood_pump import coils_figure, trial_figure
 from validation.notebook_page import case_table, drawn, verdicts
 
 # %% [markdown]

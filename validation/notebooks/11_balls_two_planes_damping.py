@@ -29,8 +29,8 @@
 # * Balls are points that roll; a race keeps them in its plane; no gravity.
 
 # %%
-from validation.cases import two_plane_damping
-from validation.figures.ball_charts import damping_figure
+from validation.cases.two_plane import damping as two_plane_damping
+from validation.figures.rotors.ball_charts import damping_figure
 from validation.notebook_page import case_table, drawn, verdicts
 
 # %% [markdown]

@@ -39,8 +39,9 @@
 #   90 rad/s, and 50 mm by 20 mm at 100 rad/s, with deflections of 1, 3 and 10 mm.
 
 # %%
-from validation.cases import errata, optimal_volume
-from validation.figures.volume import law_figure, volume_figure
+from validation.cases import errata
+from validation.cases.liquid import optimal_volume
+from validation.figures.liquid.volume import law_figure, volume_figure
 from validation.notebook_page import case_table, picture, verdicts
 
 # %% [markdown]

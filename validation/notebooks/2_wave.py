@@ -36,9 +36,9 @@
 #   oscillates with the whirl (Stokes), on the wall alone, since a plane flow has neither floor nor lid.
 
 # %%
-from validation.cases import layer
-from validation.cases.rigs import data
-from validation.figures.layer import bore_figure, bore_summary, force_figure
+from validation.cases.liquid import layer
+from validation.cases.rotors.rigs import data
+from validation.figures.liquid.layer import bore_figure, bore_summary, force_figure
 from validation.notebook_page import Table, case_table, picture, verdicts
 
 Table(("How sure the computed flow is, by its file",), ((data("openfoam_layer.json")["accuracy"],),))

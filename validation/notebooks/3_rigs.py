@@ -44,10 +44,10 @@ import math
 import leblanc as lb
 from leblanc.figures.response import amplitude_figure, liquid_figure
 from leblanc.studies.run import run_scene
-from validation.cases import rigs, vector_model
-from validation.cases.rigs import data
-from validation.figures import runup_lag
-from validation.figures.rigs import angle_figure
+from validation.cases.rotors import rigs, vector_model
+from validation.cases.rotors.rigs import data
+from validation.figures.rotors import runup_lag
+from validation.figures.rotors.rigs import angle_figure
 from validation.notebook_page import Table, case_table, picture, verdicts
 
 # %% [markdown]

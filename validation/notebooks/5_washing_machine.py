@@ -37,10 +37,10 @@
 # %%
 from dataclasses import fields
 
-from validation.cases import tub
 from validation.cases.errata import tub as tub_errata
-from validation.cases.tub import Assumed
-from validation.figures.tub import draw, plots
+from validation.cases.rotors import tub
+from validation.cases.rotors.tub import Assumed
+from validation.figures.rotors.tub import draw, plots
 from validation.notebook_page import Table, case_table, picture, verdicts
 
 known = Assumed()

@@ -37,8 +37,8 @@
 
 # %%
 from validation.cases import exciter, two_plane
-from validation.figures.exciter import machine_figure
-from validation.figures.two_plane import balls_figure
+from validation.figures.exciter.speeds import machine_figure
+from validation.figures.rotors.two_plane import balls_figure
 from validation.notebook_page import case_table, drawn, verdicts
 
 # %% [markdown]

@@ -57,10 +57,10 @@ from solvers.potential.strip import nodes
 from solvers.potential.unsteady import invariants, rates, started
 from validation.breaking import crests
 from validation.breaking.figure import breaking_figure, crest_figure
-from validation.cases import exact_wave
+from validation.cases.liquid import exact_wave
 from validation.exact import kept
 from validation.exact.figure import ends_figure, maps_figure
-from validation.figures.exact_wave import (
+from validation.figures.liquid.exact_wave import (
     LAYER,
     SHARE,
     SHARP,

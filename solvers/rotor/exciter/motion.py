@@ -207,6 +207,34 @@ def initial_state(machine: Dimensionless, speed: float, stuck: float, balls: int
     return state
 
 
+def placed_state(machine: Dimensionless, speed: float, ball_speed: ArrayLike, ball_angle: ArrayLike) -> Array:
+    """State at time 0 of balls that turn evenly, each at its own speed, and of the platform that they shake.
+
+    Parameters
+    ----------
+    machine, speed : its numbers; n of the shaft
+    ball_speed, ball_angle : of each ball, shape (N,)
+
+    Returns
+    -------
+    As of `initial_state`
+
+    Raises
+    ------
+    InputError : not one speed and one angle a ball, or not finite
+    """
+    speeds, angles = np.asarray(ball_speed, dtype=float), np.asarray(ball_angle, dtype=float)
+    if speeds.ndim != 1 or speeds.size < 1 or speeds.shape != angles.shape:
+        raise InputError("ball_speed, ball_angle", (speeds.tolist(), angles.tolist()), "one of each a ball")
+    if not (np.all(np.isfinite(speeds)) and np.all(np.isfinite(angles))):
+        raise InputError("ball_speed, ball_angle", (speeds.tolist(), angles.tolist()), "finite numbers")
+    turning = np.append(speeds, speed)
+    weight = np.append(np.full(speeds.size, 1.0 / speeds.size), machine.unbalance)
+    answer = turning**2 / (1.0 - turning**2 + 2j * machine.damping * turning)
+    wave = weight * answer * np.exp(1j * np.append(angles, 0.0))
+    return np.concatenate(([wave.sum().imag, (1j * turning * wave).sum().imag], angles, speeds))
+
+
 @dataclass(frozen=True)
 class Trace:
     """Motion after transients have died out, in the machine's own units; s samples, N balls.

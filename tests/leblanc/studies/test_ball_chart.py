@@ -23,7 +23,7 @@ EXAMPLES = Path(__file__).parents[3] / "examples"
 STUDY = "leblanc.studies.races.chart"
 CHARTS = "solvers.rotor.balls.charts"
 # Of each support, N s/m, and the least speed above which the long rotor stays balanced, rad/s: motions in
-# time confirm both sides (`validation.cases.two_plane_damping`).
+# time confirm both sides (`validation.cases.two_plane.damping`).
 EDGES = {0.5: 79.23, 5.0: 59.37, 40.0: 49.66, 8000.0: 48.86}
 SUPPORTS = [f"rotor.supports.{k}.damping" for k in (0, 1)]
 

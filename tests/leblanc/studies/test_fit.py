@@ -18,7 +18,7 @@ from leblanc.results.fit import FitCode
 from leblanc.studies.fit import Measurement, _answer, _uncertainty, fit_scene, read_measured
 from meshes.errors import InputError
 from tests.mutants import kills
-from validation.cases.rigs import _fit, _liquid_angle, data, horizontal_rig
+from validation.cases.rotors.rigs import _fit, _liquid_angle, data, horizontal_rig
 
 RIG = lb.example("horizontal_rig")
 SPEED = np.linspace(60.0, 180.0, 30)

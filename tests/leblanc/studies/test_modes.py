@@ -23,7 +23,7 @@ from solvers.sloshing.forced import mode_damping
 from solvers.sloshing.system import surface_system
 from tests.mutants import kills
 from tests.oracles.sloshing import ring_decay, sector_frequencies
-from validation.figures.baffle_table import RADIUS, SPIN, SURFACE, baffle_row, markdown
+from validation.figures.liquid.baffle_table import RADIUS, SPIN, SURFACE, baffle_row, markdown
 
 R, A, H = 0.15, 0.135, 0.05
 VOLUME = math.pi * (R**2 - A**2) * H

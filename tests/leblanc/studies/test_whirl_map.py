@@ -317,7 +317,7 @@ def test_the_hatch_leaves_the_colours() -> None:
 
 
 def test_validation_agrees() -> None:
-    from validation.cases.whirl import cases
+    from validation.cases.rotors.whirl import cases
 
     found = cases()
     assert len(found) == 22 and {one.verdict for one in found} == {"agrees"}

@@ -22,7 +22,7 @@ from solvers.potential.strip import nodes
 from solvers.potential.unsteady import invariants, started
 from solvers.synchronous.models import LINEAR, STATICS
 from tests.mutants import kills
-from validation.cases.rigs import data
+from validation.cases.rotors.rigs import data
 
 MODEL = Potential()
 

@@ -25,7 +25,7 @@ from solvers.potential.steady import (
 )
 from solvers.potential.strip import nodes
 from tests.mutants import kills
-from validation.cases.rigs import data
+from validation.cases.rotors.rigs import data
 
 
 def detuning(whirl_ratio: float) -> float:

@@ -26,7 +26,7 @@ from solvers.rotor.balls.steps import advance
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
 from tests.mutants import kills
-from validation.figures.ball_charts import reference
+from validation.figures.rotors.ball_charts import reference
 
 RACE = BallRace(0.0, 0.08, (0.015, 0.015), 0.3)
 

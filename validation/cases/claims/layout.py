@@ -17,7 +17,7 @@ from solvers.rotor.tub import Mount, Tub, Vector
 from solvers.rotor.two_plane import PlaneUnbalance
 from solvers.rotor.vibration import unbalance_response
 from validation.cases.case import Case, shape_verdict
-from validation.cases.tub import DAMPER, SPRING, suspended_tub
+from validation.cases.rotors.tub import DAMPER, SPRING, suspended_tub
 
 NAMES = ("x", "y", "z", "alpha", "beta", "gamma")
 _SPREAD = (0.2, 0.15)  # m, of the mounts across and along the axis

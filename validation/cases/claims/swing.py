@@ -13,7 +13,7 @@ from scipy.optimize import minimize_scalar
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.vibration import unbalance_response
 from validation.cases.case import Case, compare, shape_verdict
-from validation.cases.rigs import vertical_rotor
+from validation.cases.rotors.rigs import vertical_rotor
 
 LOAD, SWING, POWER = 35e-3, 35e-3, 180.0  # kg, m, W: as printed
 PLACE = 0.2  # m from the axis, assumed: the inside of the drum

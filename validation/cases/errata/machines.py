@@ -14,7 +14,7 @@ from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.two_plane import TwoPlane
 from solvers.rotor.vibration import unbalance_response
 from validation.cases.case import Case, compare
-from validation.cases.two_plane_machine import BALLS, LONG, RACES
+from validation.cases.two_plane.machine import BALLS, LONG, RACES
 
 
 def cases() -> list[Case]:

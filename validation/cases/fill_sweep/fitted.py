@@ -19,7 +19,7 @@ import numpy as np
 from meshes.arrays import Array
 from validation.cases.fill_sweep import machine
 from validation.cases.fill_sweep.machine import RANGES, Values
-from validation.cases.rigs import data
+from validation.cases.rotors.rigs import data
 
 KEPT = Path(__file__).parent / "answers.json"
 DRAWS, SEED = 400, 11

@@ -1,0 +1,1 @@
+"""What a command takes from a cold start, and where the time goes."""

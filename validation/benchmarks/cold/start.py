@@ -1,0 +1,288 @@
+"""What a command costs from a cold start, and what takes the time.
+
+    python -m validation.benchmarks.cold.start                          # the usual commands on shipped scenes
+    python -m validation.benchmarks.cold.start run examples/tub.toml    # any command
+    python -m validation.benchmarks.cold.start --json validation/benchmarks/cold/cold_start.json  # as kept
+
+All times are processor time, user and system, of a process of its own with its threads: medians of runs in
+turn with those of what they are compared with, so that other work on the machine acts on both alike. The
+libraries' part is a process that imports all modules of libraries that the command ended with, in the same
+order, and nothing of ours. Compiled kernels come from numba's cache: an untimed run comes first. POSIX only.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import statistics
+import subprocess
+import sys
+import tempfile
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from validation.benchmarks.cold.child import FRONT, OURS
+
+KEPT = Path(__file__).with_name("cold_start.json")
+ROOT = Path(__file__).resolve().parents[3]
+RIG, RUNUP = "examples/horizontal_rig.toml", "examples/runup.toml"
+COMMANDS = (
+    *(("--help",), ("explain", RIG), ("run", RIG), ("map", RIG), ("optimise", RIG)),
+    ("runup", RUNUP),
+)
+_PICTURES, _FILES = {"matplotlib", "PIL", "contourpy", "numpy"}, {"h5py", "h5netcdf"}  # beside the physics
+_ENTRY = f"import sys; from {FRONT}.cli import main; sys.exit(main())"
+_IMPORT_ALL = """
+import importlib, sys
+for name in sys.stdin.read().split():
+    try:
+        importlib.import_module(name)
+    except ImportError:  # an alias that a library sets up by itself
+        pass
+"""
+
+
+@dataclass(frozen=True)
+class ColdStart:
+    """What one command costs from a cold start; processor time, s.
+
+    Parameters
+    ----------
+    arguments : behind `leblanc`
+    total : of the command
+    libraries : of importing the modules of libraries that it ends with, Python's own start included
+    modules : how many modules of each library that is
+    notes : call of the command function, "import", "physics" or "work", library: share of the command's time
+    """
+
+    arguments: tuple[str, ...]
+    total: float
+    libraries: float
+    modules: dict[str, int]
+    notes: dict[tuple[str, str, str], float]
+
+    @property
+    def ratio(self) -> float:
+        """Time of the command over that of its libraries."""
+        return self.total / self.libraries
+
+    @property
+    def physics(self) -> float:
+        """Time of the command that goes into its answer."""
+        return sum(seconds for _, seconds in self.shares(2, where=[(1, "physics")]))
+
+    def parts(self) -> dict[str, float]:
+        """What the time goes into, s: the answer, imports, pictures and the data file among what is left."""
+        found = dict.fromkeys(("libraries", "own modules", "physics", "pictures", "data file", "rest"), 0.0)
+        for (_, kind, name), share in self.notes.items():
+            if kind == "import":
+                part = "own modules" if name in OURS else "libraries"
+            elif kind == "physics":
+                part = "physics"
+            else:
+                part = "pictures" if name in _PICTURES else "data file" if name in _FILES else "rest"
+            found[part] += share * self.total
+        return found
+
+    def shares(self, *fields: int, where: Sequence[tuple[int, str]] = ()) -> list[tuple[str, float]]:
+        """Times summed over all other fields of the notes, s, the longest first.
+
+        Parameters
+        ----------
+        fields : of the notes that stay apart: 0 call, 1 import, physics or work, 2 library
+        where : fields and the values that they must have
+        """
+        found: dict[str, float] = {}
+        for key, share in self.notes.items():
+            if all(key[field] == value for field, value in where):
+                name = " ".join(key[field] for field in fields)
+                found[name] = found.get(name, 0.0) + share * self.total
+        return sorted(found.items(), key=lambda row: -row[1])
+
+
+def processor_time(command: Sequence[str], given: str = "") -> float:
+    """Processor time of one process and of what it waits for, s.
+
+    Parameters
+    ----------
+    command : program and arguments
+    given : on its standard input
+
+    Raises
+    ------
+    RuntimeError : it fails
+    """
+    with tempfile.TemporaryFile() as source, tempfile.TemporaryFile() as said:
+        source.write(given.encode())
+        source.seek(0)
+        process = subprocess.Popen(
+            command, cwd=ROOT, stdin=source, stdout=subprocess.DEVNULL, stderr=said, env=_settings()
+        )
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+        if process.returncode != 0:
+            said.seek(0)
+            message = said.read().decode(errors="replace")
+            raise RuntimeError(f"{' '.join(command)} ended with code {process.returncode}\n{message}")
+    return usage.ru_utime + usage.ru_stime
+
+
+def medians(programs: Mapping[str, tuple[Sequence[str], str]], repeats: int) -> dict[str, float]:
+    """Median processor time of each of some programs, s; they run in turn.
+
+    Parameters
+    ----------
+    programs : by name, as `processor_time` takes them
+    repeats : of each
+    """
+    found: dict[str, list[float]] = {name: [] for name in programs}
+    for _ in range(repeats):
+        for name, (command, given) in programs.items():
+            found[name].append(processor_time(command, given))
+    return {name: statistics.median(times) for name, times in found.items()}
+
+
+def _settings() -> dict[str, str]:
+    """One thread for everybody, our packages from this tree, compiled sources kept as Python usually does."""
+    threads = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS"), "1")
+    path = os.pathsep.join(filter(None, (str(ROOT), os.environ.get("PYTHONPATH"))))
+    kept = {key: value for key, value in os.environ.items() if key != "PYTHONDONTWRITEBYTECODE"}
+    return kept | threads | {"PYTHONPATH": path, "MPLBACKEND": "Agg"}
+
+
+def third_party(modules: Iterable[str]) -> list[str]:
+    """Modules that belong to libraries, in the order given: neither Python's own nor ours.
+
+    Parameters
+    ----------
+    modules : full names
+    """
+    own = sys.stdlib_module_names | OURS | {"__main__", "__mp_main__"}
+    return [name for name in modules if name.partition(".")[0] not in own]
+
+
+def cold_start(arguments: Sequence[str], repeats: int = 5) -> ColdStart:
+    """Measure one command.
+
+    Parameters
+    ----------
+    arguments : behind `leblanc`; its files go to a folder that is removed
+    repeats : of each measurement
+    """
+    with tempfile.TemporaryDirectory() as scratch:
+        writes = arguments[0] in {"run", "map", "runup", "optimise"} and "--out" not in arguments
+        whole = [*arguments, *(("--out", scratch) if writes else ())]
+        file = Path(scratch) / "watched.json"
+        watched = [sys.executable, "-m", "validation.benchmarks.cold.child", str(file), *whole]
+        processor_time(watched)  # fills the caches of Python and numba
+        notes: Counter[tuple[str, str, str]] = Counter()
+        for _ in range(repeats):
+            processor_time(watched)
+            found = json.loads(file.read_text(encoding="utf-8"))
+            notes.update({(call, kind, name): count for call, kind, name, count in found["notes"]})
+        modules = third_party(found["modules"])
+        programs = {
+            "total": ([sys.executable, "-c", _ENTRY, *whole], ""),
+            "libraries": ([sys.executable, "-c", _IMPORT_ALL], "\n".join(modules)),
+        }
+        times = medians(programs, repeats)
+    counts = Counter(name.partition(".")[0] for name in modules)
+    shares = {key: count / notes.total() for key, count in notes.items()}
+    return ColdStart(tuple(arguments), **times, modules=dict(counts.most_common()), notes=shares)
+
+
+def text(found: ColdStart) -> str:
+    """A measurement as text.
+
+    Parameters
+    ----------
+    found : of one command
+    """
+    lines = [
+        f"leblanc {' '.join(found.arguments)}",
+        f"  {found.total:.2f} s in all; importing its libraries alone {found.libraries:.2f} s; "
+        f"ratio {found.ratio:.2f}, without the physics {(found.total - found.physics) / found.libraries:.2f}",
+        "  modules: " + ", ".join(f"{name} {count}" for name, count in found.modules.items()),
+    ]
+    for kind in ("import", "physics", "work"):
+        rows = found.shares(2, where=[(1, kind)])
+        lines.append(f"  {kind} {sum(seconds for _, seconds in rows):.2f} s: {_listed(rows)}")
+    for call, seconds in found.shares(0):
+        if seconds >= 0.01 * found.total:
+            lines.append(f"    {seconds:6.2f} s {call}: {_listed(found.shares(1, 2, where=[(0, call)]))}")
+    return "\n".join(lines)
+
+
+def _listed(rows: Iterable[tuple[str, float]]) -> str:
+    return ", ".join(f"{name} {seconds:.2f}" for name, seconds in rows if seconds >= 0.01)
+
+
+def front_doors(repeats: int) -> dict[str, float]:
+    """Processor time of small programs: Python alone, and imports, s.
+
+    Parameters
+    ----------
+    repeats : of each
+    """
+    programs = {"python": "pass", "import numpy": "import numpy", f"import {FRONT}": f"import {FRONT}"}
+    programs[f"import {FRONT}.cli"] = f"import {FRONT}.cli"
+    return medians({name: ([sys.executable, "-c", code], "") for name, code in programs.items()}, repeats)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Measure and print.
+
+    Parameters
+    ----------
+    arguments : of the command line; None: the process's own
+
+    Returns
+    -------
+    Exit code
+    """
+    parser = argparse.ArgumentParser(
+        prog="python -m validation.benchmarks.cold.start",
+        description=__doc__,
+        formatter_class=argparse.RawTextHelpFormatter,
+    )
+    parser.add_argument("--repeats", type=int, default=5, help="of each measurement [default: 5]")
+    parser.add_argument("--json", type=Path, metavar="FILE", help="write the numbers there as well")
+    parser.add_argument("command", nargs=argparse.REMAINDER, help="what stands behind `leblanc`")
+    chosen = parser.parse_args(arguments)
+    doors = front_doors(2 * chosen.repeats)
+    print(*(f"{seconds:.3f} s {name}" for name, seconds in doors.items()), sep="\n", flush=True)
+    found = []
+    for command in [tuple(chosen.command)] if chosen.command else COMMANDS:
+        found.append(cold_start(command, chosen.repeats))
+        print(f"\n{text(found[-1])}", flush=True)
+    if chosen.json is not None:
+        rows = ",\n".join(json.dumps(_plain(start)) for start in found)
+        whole = f'{{"imports": {json.dumps(doors)}, "commands": [\n{rows}\n]}}\n'
+        chosen.json.write_text(whole, encoding="utf-8")
+    return 0
+
+
+def _plain(found: ColdStart) -> dict[str, Any]:
+    """A measurement as it is kept, shares by kind and library."""
+    notes: dict[tuple[str, str], float] = {}
+    for (_, kind, name), share in found.notes.items():
+        notes[kind, name] = notes.get((kind, name), 0.0) + share
+    rows = sorted(notes.items(), key=lambda row: -row[1])
+    return asdict(found) | {"notes": [[*key, round(share, 4)] for key, share in rows if share >= 5e-4]}
+
+
+def kept() -> list[ColdStart]:
+    """The measurements that are kept with the package, without calls, in the order of the commands."""
+    rows = json.loads(KEPT.read_text(encoding="utf-8"))["commands"]
+    for row in rows:
+        row["arguments"] = tuple(row["arguments"])
+        row["notes"] = {("", kind, name): share for kind, name, share in row["notes"]}
+    return [ColdStart(**row) for row in rows]
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

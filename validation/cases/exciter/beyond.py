@@ -1,0 +1,379 @@
+"""What two balls do beyond the critical speed [YF17, section 5.3], and how the stuck motion ends.
+
+Both take minutes; they are kept in `validation/data/exciter_beyond.json`, which `python -m
+validation.cases.exciter.beyond` makes anew.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+from collections import Counter
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from meshes.arrays import Array
+from solvers.rotor.exciter.machine import Dimensionless, characteristic_speeds, stuck_speeds
+from solvers.rotor.exciter.motion import RANGES, Start, critical_speed, initial_state, placed_state
+from solvers.rotor.exciter.regimes import Kind, Regime, decay_time, regime
+from solvers.rotor.exciter.spectrum import Lines, combination, lines
+from solvers.rotor.exciter.stability import (
+    parting_roots,
+    resonance_speed,
+    stuck_roots,
+    third_speed,
+)
+from solvers.rotor.exciter.tangent import follow
+from validation.cases.case import Case, compare
+from validation.cases.exciter.speeds import sample
+
+DATA = Path(__file__).parents[2] / "data" / "exciter_beyond.json"
+_SOURCE = "YF17, section 5.3"
+# Smallness and damping of a map; the first that of the typical experiment, the other the corner of the
+# source's ranges where a ball at the third speed slips most.
+MAPS = ((0.01, 0.03), (0.005, 0.07))
+UNBALANCES = tuple(np.round(np.linspace(*RANGES["unbalance"], 7), 4).tolist())
+DRAGS = tuple(np.round(np.linspace(*RANGES["drag"], 7), 4).tolist())
+BEYOND = 1.25  # speed of the shaft over the critical one
+DECAYS = 15.0  # length of a run of the map in decay times
+STARTS = ("released", "resonance and third", "shaft and third", "both third")
+# The typical experiment with a fifth of its unbalance, beyond its critical speed: three frequencies.
+THREE = Dimensionless(smallness=0.01, drag=0.4, unbalance=0.05, damping=0.03)
+THREE_SPEED = 8.15
+# A machine in the source's ranges that stays chaotic long.
+CHAOTIC = Dimensionless(smallness=0.00695, drag=0.1322, unbalance=0.8909, damping=0.04845)
+CHAOTIC_SPEED = 34.0
+SWEPT = (0.001, 0.005, 0.01, 0.02, 0.05)
+SWEPT_UNBALANCES = (0.0, 0.25, 1.0)
+_PRINTED_TIME = 315.0 * 2.0 * math.pi  # when figure 3 of the source begins, the balls' turns at about 1
+_ORDER = 5  # of the combinations of frequencies looked for
+
+
+def start_state(machine: Dimensionless, speed: float, start: str) -> Array:
+    """State at the start of a run of the map.
+
+    Parameters
+    ----------
+    machine, speed : its numbers; n of the shaft
+    start : one of `STARTS`: released 0.3 rad apart as the critical speed is searched; or placed in steady
+        motion: one ball at the resonance and one at the third stuck speed; one opposite to the unbalance and
+        one at the third speed; both at the third speed of one, 2 rad apart
+    """
+    if start == "released":
+        return initial_state(machine, speed, 1.0, 2, Start())
+    third = third_speed(machine, speed, 0.5)
+    low = min(resonance_speed(machine, speed, 0.5), 1.0)
+    speeds, angles = {
+        "resonance and third": ((low, third), (0.0, 0.0)),
+        "shaft and third": ((speed, third), (math.pi, 0.0)),
+        "both third": ((third, third), (0.0, 2.0)),
+    }[start]
+    return placed_state(machine, speed, speeds, angles)
+
+
+@dataclass(frozen=True)
+class Three:
+    """A motion with three frequencies and the lines of its platform.
+
+    Parameters
+    ----------
+    regime : of the two balls
+    lines : of the platform
+    made_of : of each line the integers that make it of the two balls' speeds and the shaft's; None if none do
+    made_of_two : the same of the resonance's ball and the shaft
+    """
+
+    regime: Regime
+    lines: Lines
+    made_of: tuple[tuple[int, ...] | None, ...]
+    made_of_two: tuple[tuple[int, ...] | None, ...]
+
+
+@cache
+def three_frequencies() -> Three:
+    """One ball at the resonance, one at the third stuck speed, an unbalance that catches neither."""
+    state = start_state(THREE, THREE_SPEED, "resonance and third")
+    found = regime(THREE, THREE_SPEED, state, samples=1 << 14)
+    seen = lines(found.motion.samples, found.motion.sample_time, 0.005)
+    slow, fast = np.sort(found.ball_speed)
+    near = 4.0 * seen.resolution
+
+    def made(basic: tuple[float, ...]) -> tuple[tuple[int, ...] | None, ...]:
+        return tuple(combination(w, basic, _ORDER, near) for w in seen.frequency.tolist())
+
+    return Three(found, seen, made((slow, fast, THREE_SPEED)), made((slow, THREE_SPEED)))
+
+
+def cases() -> list[Case]:
+    """How the stuck motion ends, and the motions beyond the critical speed."""
+    kept: dict[str, Any] = json.loads(DATA.read_text(encoding="utf-8"))
+    return [*_stuck(kept["sweeps"]), *_third(), *_regimes(kept)]
+
+
+def _stuck(sweeps: list[dict[str, Any]]) -> list[Case]:
+    """Where the motion with the balls together loses its stability."""
+    machine = Dimensionless(smallness=0.01, drag=0.4, unbalance=0.25, damping=0.03)
+    through = characteristic_speeds(machine).through_resonance
+    typical = next(s for s in sweeps if s["smallness"] == 0.01 and s["unbalance"] == 0.25)
+    return [
+        Case(
+            name="exciter/stuck-stable-up-to",
+            source=_SOURCE,
+            quantity="shaft speed from which small disturbances of the stuck motion grow, typical experiment",
+            printed=7.0,
+            computed=through,
+            difference=7.0 / through - 1.0,
+            verdict="differs",
+            note="at n2 the balls part, at n3 the motion ends in a fold; no oscillation starts before "
+            f"({_growing_roots()} of 196 machines); a slow run-up in time loses it at {typical['lost']:.2f}",
+        ),
+        Case(
+            name="exciter/third-together",
+            source=_SOURCE,
+            quantity="both balls together at the third stuck speed: slowest rate at which they part, "
+            "196 machines of the source's ranges at 1.25 n1",
+            printed="may be stable",
+            computed=_slowest_parting(),
+            difference="they part",
+            verdict="differs",
+            note="any stuck speed above the natural frequency drives balls apart; in units of the natural "
+            "frequency",
+        ),
+    ]
+
+
+def _third() -> list[Case]:
+    """One ball at the third stuck speed."""
+    found = three_frequencies()
+    fast = float(found.regime.ball_speed.max())
+    third = found.regime.kind is Kind.THIRD
+    all_told = all(made is not None for made in found.made_of)
+    beyond = sum(made is None for made in found.made_of_two)
+    what = "delta = 0.05, otherwise the typical experiment, n = 8.15"
+    return [
+        compare(
+            "exciter/third-speed",
+            "YF17, eq. 9",
+            f"third stuck speed of one ball of two, the other at the resonance, {what}",
+            third_speed(THREE, THREE_SPEED, 0.5),
+            fast,
+            tolerance=1e-3,
+            note="eq. 9 with chi = h/(2 b), one ball of two" + ("" if third else "; it did not stay there"),
+        ),
+        Case(
+            name="exciter/third-lines",
+            source=_SOURCE,
+            quantity=f"lines of the platform above 0.5 % of the largest, {what}",
+            printed="resonance, shaft, third",
+            computed=", ".join(f"{w:.3f}" for w in found.lines.frequency.tolist()),
+            difference="none" if all_told else "other lines",
+            verdict="agrees" if third and all_told and beyond else "differs",
+            note=f"all are sums of the three speeds; {beyond} of {len(found.made_of)} are not sums of two",
+        ),
+    ]
+
+
+def _regimes(kept: dict[str, Any]) -> list[Case]:
+    """What the runs of the maps end in."""
+    runs = kept["runs"]
+    counts = Counter(row["kind"] for row in runs)
+    seen = ", ".join(f"{kind.value} {counts[kind.value]}" for kind in Kind if counts[kind.value])
+    longest = max(row["chaos"] for row in [*runs, *kept["chaos"]])
+    chaotic = [row for row in runs if row["chaos"] * _decay(row) >= _PRINTED_TIME]
+    note = "kept runs over the source's ranges of b and delta, four starts each"
+
+    def counted(name: str, quantity: str, number: int, more: str) -> Case:
+        return Case(
+            name=f"exciter/beyond-{name}",
+            source=_SOURCE,
+            quantity=f"of {len(runs)} runs at 1.25 times the critical speed: {quantity}",
+            printed="may occur",
+            computed=float(number),
+            difference="none" if number else "never",
+            verdict="agrees" if number else "differs",
+            note=more,
+        )
+
+    return [
+        counted("balancing", "balanced in the end", counts[Kind.BALANCED.value], f"{note}: {seen}"),
+        counted(
+            "third",
+            "at least one ball at the third stuck speed in the end",
+            counts[Kind.THIRD.value],
+            f"{note}; one ball there, the other at the resonance or with the shaft, or both swinging around "
+            "opposite places",
+        ),
+        counted(
+            "chaos",
+            "chaotic for as long as the source's figure 3 runs, 315 turns",
+            len(chaotic),
+            f"{note}; {counts[Kind.CHAOTIC.value]} still chaotic after {DECAYS:g} decay times; the longest "
+            f"chaos seen lasts {longest:.0f} of them; most runs followed longer ended in another motion",
+        ),
+    ]
+
+
+def _decay(row: dict[str, Any]) -> float:
+    """Decay time of the machine of a kept run."""
+    return 1.0 / float(min(row["smallness"] * row["drag"], row["damping"]))
+
+
+def _sample() -> list[Dimensionless]:
+    """196 machines over the source's ranges, as many as it integrated."""
+    return [Dimensionless(*row) for row in sample().tolist()]
+
+
+@cache
+def _growing_roots() -> int:
+    """Machines of the sample whose slowest stuck motion has a growing root below n2."""
+    count = 0
+    for machine in _sample():
+        through = characteristic_speeds(machine).through_resonance
+        speeds = 1.0 + (through - 1.0) * np.linspace(0.05, 0.999, 40)
+        slowest = stuck_speeds(speeds, machine)[:, 0]
+        count += any(stuck_roots(machine, float(q))[0].real > 0.0 for q in slowest)
+    return count
+
+
+@cache
+def _slowest_parting() -> float:
+    """Smallest growth of the parting of two balls at the third stuck speed, over the sample."""
+    found = []
+    for machine in _sample():
+        first = characteristic_speeds(machine).second_pair
+        if math.isfinite(first):
+            found.append(float(parting_roots(machine, third_speed(machine, 1.25 * first))[0].real))
+    return min(found)
+
+
+def sweep(
+    machine: Dimensionless, start: float, stop: float, step: float = 0.02, hold: float = 60.0
+) -> dict[str, float]:
+    """Raise the shaft's speed slowly from the stuck motion until a ball passes 1.3 natural frequencies.
+
+    Parameters
+    ----------
+    machine : its numbers
+    start, stop : shaft speeds
+    step, hold : of the speed, and for how long each is held
+
+    Returns
+    -------
+    lost : the speed at which a ball passed; nan if none did; apart : angle between the balls before that
+
+    Balls closer than a thousandth are set that far apart at each step, so that they can part.
+    """
+    speed, phase, apart = start, 0.0, 1e-3
+    state = initial_state(machine, start, float(stuck_speeds(start, machine)[0]), 2, Start("regime", apart))
+    while speed < stop:
+        found = follow(machine, speed, state, hold, blocks=4, start=phase / speed)
+        if found.ball_speed[-1].max() > 1.3:
+            return {"lost": speed, "apart": apart}
+        state, phase = found.state, speed * found.time
+        apart = abs((state[2] - state[3] + math.pi) % (2.0 * math.pi) - math.pi)
+        if apart < 1e-3:
+            state[3] = state[2] + 1e-3
+        speed += step
+    return {"lost": math.nan, "apart": apart}
+
+
+def run(machine: Dimensionless, speed: float, start: str) -> dict[str, Any]:
+    """One run of a map as it is kept; chaos in decay times.
+
+    Parameters
+    ----------
+    machine, speed, start : see `start_state`
+    """
+    found = regime(machine, speed, start_state(machine, speed, start), DECAYS)
+    return {
+        "smallness": machine.smallness,
+        "damping": machine.damping,
+        "drag": machine.drag,
+        "unbalance": machine.unbalance,
+        "speed": round(speed, 3),
+        "start": start,
+        "kind": found.kind.value,
+        "places": [place.value for place in found.places],
+        "ball_speed": [round(float(value), 5) for value in found.ball_speed],
+        "growth": round(found.growth, 5),
+        "chaos": round(found.chaos / decay_time(machine), 2),
+    }
+
+
+def _cell(machine: Dimensionless) -> list[dict[str, Any]]:
+    critical = critical_speed(machine, width=0.2, ratio=1.2).holds
+    return [run(machine, BEYOND * critical, start) for start in STARTS]
+
+
+def long_chaos(seed: int, decays: float = 60.0, steps: int = 24) -> dict[str, float]:
+    """A long run of the machine that stays chaotic, from scattered balls.
+
+    Parameters
+    ----------
+    seed : of the balls' angles and speeds
+    decays : length in decay times
+    steps : in a turn of the shaft
+    """
+    random = np.random.default_rng(seed)
+    angles, speeds = random.uniform(0.0, 2.0 * math.pi, 2), random.uniform(0.5, 1.0, 2) * CHAOTIC_SPEED
+    state = np.concatenate(([0.0, 0.0], angles, speeds))
+    time = decays * decay_time(CHAOTIC)
+    found = regime(CHAOTIC, CHAOTIC_SPEED, state, decays, steps)
+    blocks = found.motion.growth.size
+    until = max(1, round(found.chaos / time * blocks))
+    return {
+        "seed": seed,
+        "chaos": round(found.chaos / decay_time(CHAOTIC), 2),
+        "growth": round(float(found.motion.growth[:until].mean()), 4),
+        "kind": found.kind.value,  # type: ignore[dict-item]
+    }
+
+
+def measure(workers: int = 1) -> dict[str, Any]:
+    """Make the kept runs anew.
+
+    Parameters
+    ----------
+    workers : threads
+    """
+    machines = [
+        Dimensionless(smallness, drag, unbalance, damping)
+        for smallness, damping in MAPS
+        for drag in DRAGS
+        for unbalance in UNBALANCES
+    ]
+    with ThreadPoolExecutor(max_workers=workers) as pool:
+        runs = [row for cell in pool.map(_cell, machines) for row in cell]
+        chaos = list(pool.map(long_chaos, range(8)))
+    sweeps = []
+    for smallness in SWEPT:
+        for unbalance in SWEPT_UNBALANCES:
+            machine = Dimensionless(smallness, 0.4, unbalance, 0.03)
+            found = sweep(machine, 12.0, 22.3)
+            sweeps.append(
+                {"smallness": smallness, "unbalance": unbalance}
+                | {name: round(value, 4) for name, value in found.items()}
+            )
+    return {"runs": runs, "chaos": chaos, "sweeps": sweeps}
+
+
+def main() -> None:
+    """Measure and keep."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--workers", type=int, default=1, help="threads (default 1)")
+    kept = measure(parser.parse_args().workers)
+    about = "Beyond the critical speed of YF17: maps, chaos, run-ups; by validation.cases.exciter.beyond."
+    rows = ",\n".join(
+        f' "{name}": [\n' + ",\n".join("  " + json.dumps(row) for row in kept[name]) + "\n ]" for name in kept
+    )
+    DATA.write_text(f'{{\n "about": {json.dumps(about)},\n{rows}\n}}\n', encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,1 @@
+"""Liquid alone: layers under a whirl, the exact wave, the volumes that are best."""

@@ -1,0 +1,77 @@
+"""The vector model against the solved rotor [DR18, eq. 24-26]."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from fluid.printed import liquid_angle_as_printed
+from meshes.errors import InputError
+from solvers.rotor.vector_model import balance_residual, deflection_lag, unbalance_left
+from solvers.statics.hydrostatics import equilibrium
+from solvers.synchronous.response import response
+from validation.cases.case import Case
+from validation.cases.rotors.rigs import horizontal_rig, horizontal_rotor
+
+_RPM = 2.0 * math.pi / 60.0
+
+
+def cases() -> list[Case]:
+    """Equation 24 at every speed of the solved response, equation 25 as printed, equation 26."""
+    rotor, fills = horizontal_rotor(0.1, 1000.0 * _RPM), horizontal_rig()
+    speed = np.linspace(100.0, 2000.0, 201) * _RPM
+    answer = response(rotor, fills, speed, gravity=0.0)
+    size = np.abs(answer.deflection)
+    liquid = sum(
+        fill.liquid.density * equilibrium(fill.chamber, fill.volume, size, speed, 0.0).unbalance()[0]
+        for fill in fills
+    )
+    ratio = rotor.unbalance / np.asarray(liquid)
+    # The rotor's unbalance seen from the liquid, which lies along the deflection.
+    angle = -answer.liquid_angle
+    lag = np.asarray(deflection_lag(speed, rotor.mass, rotor.damping, rotor.stiffness))
+    residual = np.abs(np.asarray(balance_residual(angle, lag, ratio))) / np.maximum(1.0, ratio)
+    left = np.asarray(unbalance_left(angle, ratio))
+    total = np.abs(rotor.unbalance + liquid * np.exp(1j * answer.liquid_angle)) / rotor.unbalance
+    return [
+        Case(
+            name="vector_model/eq-24",
+            source="DR18, eq. 24",
+            quantity="largest residual of the balance of angles over 201 speeds of the solved response",
+            printed=0.0,
+            computed=float(residual.max()),
+            difference="rounding" if residual.max() < 1e-10 else "more than rounding",
+            verdict="agrees" if residual.max() < 1e-10 else "differs",
+        ),
+        Case(
+            name="vector_model/eq-26",
+            source="DR18, eq. 26",
+            quantity="largest difference of the total unbalance over the rotor's from the solved response",
+            printed=0.0,
+            computed=float(np.max(np.abs(left - total))),
+            difference="rounding" if np.max(np.abs(left - total)) < 1e-10 else "more than rounding",
+            verdict="agrees" if np.max(np.abs(left - total)) < 1e-10 else "differs",
+        ),
+        _printed_angle(lag, ratio, angle, speed),
+    ]
+
+
+def _printed_angle(lag: np.ndarray, ratio: np.ndarray, angle: np.ndarray, speed: np.ndarray) -> Case:
+    """Angle of eq. 25 as printed at 900 rpm, where the solved response has another."""
+    k = int(np.argmin(np.abs(speed - 900.0 * _RPM)))
+    computed = math.degrees(angle[k])
+    try:
+        printed: float | None = math.degrees(liquid_angle_as_printed(float(lag[k]), float(ratio[k])))
+    except InputError:
+        printed = None
+    return Case(
+        name="vector_model/eq-25",
+        source="DR18, eq. 25",
+        quantity=f"angle of the liquid at {speed[k] / _RPM:.0f} rpm, deg",
+        printed=printed,
+        computed=computed,
+        difference="no real angle" if printed is None else f"{printed - computed:+.1f} deg",
+        verdict="erratum",
+        note=f"the cosine lost a factor 1/k; here k = {ratio[k]:.3g}",
+    )

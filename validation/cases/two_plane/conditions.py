@@ -1,0 +1,136 @@
+"""Balancing in two planes: the conditions of [FF20] against the motion of rotors with ball balancers."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from solvers.rotor.balls.balancers import simulate
+from solvers.rotor.balls.two_plane_balance import (
+    RigidRotor,
+    dynamic_balancing,
+    of_two_planes,
+    potential_hessian,
+)
+from solvers.rotor.two_plane import TwoPlane
+from validation.cases.case import Case
+from validation.cases.two_plane import damping as two_plane_damping
+from validation.cases.two_plane import layers as two_plane_layers
+from validation.cases.two_plane.machine import BALLS, LONG, RACES, SCATTERED, SHORT, bare_deflection
+
+
+@dataclass(frozen=True)
+class Balanced:
+    """What balancers in two planes made of a rotor.
+
+    Parameters
+    ----------
+    left : largest deflection at the supports in the end, over that without balancers
+    converged : the integration is sound
+    """
+
+    left: float
+    converged: bool
+
+
+def cases() -> list[Case]:
+    """The conditions beside their potential, then each kind of balancer in time."""
+    return [_hessian(), _special(), *(case for group in DEMONSTRATIONS for case in group())]
+
+
+def balls_in_time(rotor: TwoPlane, speed: float, duration: float = 60.0) -> Balanced:
+    """Two ball balancers with two balls each, from scattered places.
+
+    Parameters
+    ----------
+    rotor, speed : with its unbalances; rad/s
+    duration : s
+    """
+    system = rotor.system()
+    run = simulate(system, RACES, speed, duration, places=SCATTERED)
+    last, ratios = -run.time.size // 10, []
+    for support in rotor.supports:
+        size = np.abs(run.deflection(system, support.position))[last:]
+        ratios.append(float(size.max()) / bare_deflection(rotor, support.position, speed))
+    return Balanced(max(ratios), run.converged)
+
+
+def _hessian() -> Case:
+    """Conditions 33 to 35 against the potential's second derivatives, over many rotors and speeds."""
+    rng, wrong, count = np.random.default_rng(5), 0, 0
+    for _ in range(200):
+        c = float(rng.uniform(0.05, 0.5))
+        a, b = c * rng.uniform(0.6, 3.0, 2)
+        if max(a, b, c) > a + b + c - max(a, b, c):
+            continue
+        stiffness, far = tuple(rng.uniform(1e3, 1e5, 2)), tuple(rng.uniform(0.05, 0.5, 2))
+        rotor = RigidRotor(float(rng.uniform(1.0, 50.0)), (a, b, c), stiffness, (far[0], -far[1]))
+        answer = dynamic_balancing(rotor, np.geomspace(1.0, 3e3, 40))
+        definite = [np.linalg.eigvalsh(potential_hessian(rotor, float(w)))[0] > 0.0 for w in answer.speed]
+        wrong += int(np.sum(answer.possible != np.array(definite)))
+        count += answer.speed.size
+    return Case(
+        name="two_plane/potential",
+        source="FF20, eq. 32-35",
+        quantity=f"answers of the conditions that the potential's minimum contradicts, of {count}",
+        printed=0.0,
+        computed=float(wrong),
+        difference="none" if wrong == 0 else f"{wrong}",
+        verdict="agrees" if wrong == 0 else "differs",
+        note="eq. 21, 27 to 31 print the form with the other sign; eq. 34 to 37 write c for k and a for v",
+    )
+
+
+def _special() -> Case:
+    """Without coupling the limit is a square root [FF20, eq. 37]."""
+    rotor = RigidRotor(10.0, (0.5, 0.5, 0.1), (1e4, 1e4), (0.2, -0.2))
+    printed, computed = math.sqrt(800.0 / 0.4), dynamic_balancing(rotor, 1.0).above
+    order = (
+        "of eq. 37 holds"
+        if printed >= math.sqrt(2e4 / 10.0)
+        else "of eq. 37 does not hold: tilt is the lower"
+    )
+    return Case(
+        name="two_plane/uncoupled",
+        source="FF20, eq. 37",
+        quantity="speed above which a rotor with k14 = 0 is balanced, rad/s",
+        printed=printed,
+        computed=computed,
+        difference=printed / computed - 1.0,
+        verdict="agrees" if math.isclose(printed, computed, rel_tol=1e-12) else "differs",
+        note=f"the order of the limits {order}",
+    )
+
+
+def _balls() -> list[Case]:
+    """A long and a short rotor, below and above the resonances, with two ball balancers."""
+    found = []
+    for name, rotor in (("long", LONG), ("short", SHORT)):
+        for speed in (30.0, 120.0):
+            answer = dynamic_balancing(of_two_planes(rotor, BALLS), speed)
+            said, seen = bool(answer.possible[0]), balls_in_time(rotor, speed)
+            balanced = seen.left < 1e-6
+            found.append(
+                Case(
+                    name=f"two_plane/balls-{name}-{speed:.0f}",
+                    source="FF20, eq. 33-35",
+                    quantity=f"{name} rotor, two ball balancers, {speed:.0f} rad/s: deflection over the bare",
+                    printed="balanced" if said else "not balanced",
+                    computed=seen.left,
+                    difference="none" if said == balanced else "the other way",
+                    verdict="agrees" if seen.converged and said == balanced else "differs",
+                    note=answer.why(),
+                )
+            )
+    return found
+
+
+# Each kind of balancer adds its own function here.
+DEMONSTRATIONS: tuple[Callable[[], list[Case]], ...] = (
+    _balls,
+    two_plane_damping.cases,
+    two_plane_layers.cases,
+)

@@ -1,0 +1,1 @@
+"""Figures of liquid alone: layers, baffles, the exact wave, best volumes."""

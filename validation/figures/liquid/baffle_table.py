@@ -1,0 +1,127 @@
+"""What radial baffles do to the slowest waves: a table over their number, depth and place.
+
+`python -m validation.figures.liquid.baffle_table` prints the tables of docs/modes.md.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from leblanc.studies.modes import Resolution, ring_sections
+from meshes.baffles import Baffles
+from solvers.sloshing.forced import forced_response, mode_damping
+from solvers.sloshing.modes import sloshing_modes, spectrum
+from solvers.sloshing.system import condense
+
+RADIUS, SURFACE, SPIN, HEIGHT, WATER = 0.15, 0.135, 40.0, 0.05, 1.004e-6
+COUNTS, SHARES = (1, 2, 3, 4, 6, 8), (0.25, 0.5, 0.75, 1.0)
+
+
+@dataclass(frozen=True)
+class BaffleRow:
+    """Slowest waves against and with the spin that push the drum, for one set of baffles.
+
+    Parameters
+    ----------
+    count : baffles
+    share : of the layer's depth that they take
+    against, along : frequencies relative to the drum, rad/s; the same where the slowest stands
+    damping_against, damping_along : decay rates in water, 1/s
+    synchronous : force ratio of a synchronous whirl
+    error : largest relative error of the frequencies, estimated
+    """
+
+    count: int
+    share: float
+    against: float
+    along: float
+    damping_against: float
+    damping_along: float
+    synchronous: float
+    error: float
+
+
+def baffle_row(
+    count: int, share: float, wall_gap: float = 0.0, fineness: Resolution | None = None
+) -> BaffleRow:
+    """One line of the table.
+
+    Parameters
+    ----------
+    count : baffles, 0 for none
+    share : of the layer's depth, from the wall or from the gap inwards
+    wall_gap : between them and the wall, over the layer's depth
+    fineness : of the mesh
+    """
+    depth = RADIUS - SURFACE
+    tip = 0.0 if share + wall_gap >= 1.0 else RADIUS - (share + wall_gap) * depth
+    baffles = Baffles(count, tip, wall_gap * depth) if count else None
+    fine = fineness or Resolution(48, 4)
+    coarse, system = (condense(section) for section in ring_sections(RADIUS, SURFACE, baffles, fine))
+    known = spectrum(system)
+    modes = sloshing_modes(system, SPIN, max(8, 2 * count + 2), known)
+    # The slowest waves either way that move the centre of mass; between closed baffles all of them stand.
+    push = np.linalg.norm(modes.amplitude @ system.moment.T, axis=1)
+    felt = push > 0.1 * push.max()
+    runs = modes.travelling > 0.5
+    stands = not runs.any()
+    against = int(np.flatnonzero(felt & (stands | (modes.frequency < 0.0)))[0])
+    along = against if stands else int(np.flatnonzero(felt & runs & (modes.frequency > 0.0))[0])
+    chosen = [against, along]
+    damping = mode_damping(system, modes, WATER, HEIGHT).rate
+    other = spectrum(coarse).frequency[chosen] * SPIN
+    first, second = (float(modes.frequency[k]) for k in chosen)
+    return BaffleRow(
+        count=count,
+        share=share,
+        against=first,
+        along=second,
+        damping_against=float(damping[chosen[0]]),
+        damping_along=float(damping[chosen[1]]),
+        synchronous=float(forced_response(system, SPIN, SPIN, known).force_ratio.real),
+        error=float(np.max(np.abs(other / np.abs([first, second]) - 1.0)) / (4.0**fine.order - 1.0)),
+    )
+
+
+def baffle_rows(counts: Sequence[int], shares: Sequence[float], wall_gap: float = 0.0) -> list[BaffleRow]:
+    """All lines of a table: without baffles first."""
+    rows = [baffle_row(0, 0.0)]
+    return rows + [baffle_row(count, share, wall_gap) for count in counts for share in shares]
+
+
+def markdown(rows: Sequence[BaffleRow]) -> list[str]:
+    """The table in Markdown.
+
+    Parameters
+    ----------
+    rows : its lines; the first is that without baffles
+    """
+    clear = rows[0]
+    lines = [
+        "| baffles | of the depth | against, rad/s | change | with, rad/s | change | decay, 1/s | G(0) |",
+        "|---|---|---|---|---|---|---|---|",
+    ]
+    for row in rows:
+        stands = row.against == row.along
+        size = abs(row.against)
+        cells = [f"{row.count}", f"{100.0 * row.share:.0f} %"]
+        cells += [f"{size:.3f} (stands)" if stands else f"{row.against:.3f}", _change(size, -clear.against)]
+        cells += ["", ""] if stands else [f"{row.along:.3f}", _change(row.along, clear.along)]
+        decay = f"{row.damping_against:.3f}" + ("" if stands else f", {row.damping_along:.3f}")
+        lines.append("| " + " | ".join([*cells, decay, f"{row.synchronous:.4f}"]) + " |")
+    return lines
+
+
+def _change(value: float, clear: float) -> str:
+    return f"{100.0 * (value / clear - 1.0):+.2f} %"
+
+
+if __name__ == "__main__":
+    for gap, shares in ((0.0, SHARES), (0.25, (0.25, 0.5, 0.75))):
+        rows = baffle_rows(COUNTS, shares, gap)
+        worst = max(row.error for row in rows)
+        print(f"Gap at the wall {100.0 * gap:.0f} % of the depth; errors below {worst:.1g}")
+        print("\n".join(markdown(rows)), end="\n\n")

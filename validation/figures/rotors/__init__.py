@@ -1,0 +1,1 @@
+"""Figures of rotors with liquid or balls."""

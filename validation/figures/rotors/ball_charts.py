@@ -1,0 +1,359 @@
+"""Charts of stability of ball balancers: `python -m validation.figures.rotors.ball_charts`.
+
+The long rotor of `leblanc validate two_plane` over speed and damping of its supports, the dimensionless
+machine of the literature [RCFW08] over speed, unbalance and damping, and both kinds of states of the rotor of
+`examples/balls.toml`. Charts and tables are computed here
+alone: the source prints curves, of which no numbers are at hand.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save, style
+from meshes.arrays import Array
+from solvers.rotor.balls.balancers import BallRace
+from solvers.rotor.balls.charts import Chart, Crossing, Machine, State, stability_chart
+from solvers.rotor.balls.stability import balanced_stability
+from solvers.rotor.balls.two_plane_balance import dynamic_balancing, of_two_planes
+from solvers.rotor.jeffcott import Jeffcott
+from solvers.rotor.system import RotorSystem
+from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
+from validation.cases.two_plane.damping import DAMPINGS, SIDES, damped, edge
+from validation.cases.two_plane.machine import BALLS, LONG, RACES
+
+_FRAME = Frame(left=0.7, top=0.15, between=0.0, below=0.5)
+_APART = 0.65  # inches between two plots side by side
+# Of the reference machine: J_t, J_p, static unbalance and couple, a ball, its place, drag over mass.
+ACROSS, ALONG, SMALL, BALL, PLACE, DRAG = 3.25, 0.5, 5e-5, 1e-4, 2.0, 0.01
+DAMPING, PHASE = 0.02, 1.0
+_MOST = 1.9e-4  # of the unbalances on the chart; from 1.912e-4 on the balls do not suffice
+
+
+def reference(
+    small: float = SMALL, damping: float = DAMPING, drag: float = DRAG, alike: bool = True
+) -> tuple[RotorSystem, tuple[BallRace, ...]]:
+    """The dimensionless rotor of [RCFW08] with two races of two balls, lengths over the races' radius.
+
+    k_11 = 1 and k_22 = 9 are springs of 1/2 at +-3. The couple is (J_t - J_p) times the misalignment.
+
+    Parameters
+    ----------
+    small : eps of the mass's eccentricity and chi of the misalignment, alike
+    damping : c of the supports over their stiffness
+    drag : of the race on a ball over its mass; in the reading taken here
+    alike : supports alike in both directions; else 5 and 45 in the second one
+
+    Returns
+    -------
+    Rotor and races
+    """
+    half = ACROSS - ALONG
+    unbalances = (
+        PlaneUnbalance(0.0, small),
+        PlaneUnbalance(1.0, 0.5 * half * small, PHASE),
+        PlaneUnbalance(-1.0, 0.5 * half * small, PHASE + np.pi),
+    )
+    supports = (Support(3.0, 0.5, 0.5 * damping), Support(-3.0, 0.5, 0.5 * damping))
+    system = TwoPlane(1.0, ACROSS, ALONG, supports, unbalances).system()
+    if not alike:
+        stiffness = np.diag([1.0, 5.0, 45.0, 9.0])
+        system = replace(system, stiffness=stiffness, damping=damping * stiffness)
+    races = tuple(BallRace(z, 1.0, (BALL, BALL), drag * BALL, 1.0) for z in (PLACE, -PLACE))
+    return system, races
+
+
+def damping_chart(values: int = 25) -> Chart:
+    """Long rotor over speed, rad/s, and the decimal logarithm of the damping of each support, N s/m.
+
+    Parameters
+    ----------
+    values : of each axis
+    """
+
+    def family(speed: float, power: float) -> Machine:
+        return Machine(damped(LONG, 10.0**power).system(), RACES, speed)
+
+    return stability_chart(family, np.linspace(30.0, 110.0, values), np.linspace(-0.6, 4.2, values))
+
+
+def reference_charts(values: int = 21) -> tuple[Chart, Chart]:
+    """The reference machine over speed and unbalance, and over speed and damping of the supports.
+
+    Parameters
+    ----------
+    values : of each axis
+    """
+
+    def unbalanced(speed: float, share: float) -> Machine:
+        return Machine(*reference(1e-5 * max(share, 0.0)), speed)
+
+    def held(speed: float, damping: float) -> Machine:
+        return Machine(*reference(damping=damping), speed)
+
+    speeds = np.linspace(0.4, 4.0, 2 * values - 1)
+    return (
+        stability_chart(unbalanced, speeds, np.linspace(0.1, 1e5 * _MOST, values)),
+        stability_chart(held, speeds, np.linspace(1e-3, 0.2, values)),
+    )
+
+
+def unlike_chart(values: int = 21) -> Chart:
+    """The reference machine with supports of 5 and 45 in one direction, over speed and damping.
+
+    Parameters
+    ----------
+    values : of the damping; nearly twice as many of the speed
+    """
+
+    def held(speed: float, damping: float) -> Machine:
+        return Machine(*reference(damping=damping, alike=False), speed)
+
+    return stability_chart(held, np.linspace(1.0, 6.0, 2 * values - 1), np.linspace(2e-3, 0.2, values))
+
+
+def state_charts(values: int = 25) -> tuple[Chart, Chart, Chart]:
+    """The rotor of `examples/balls.toml` over speed, rad/s, and what two balls hold over the unbalance.
+
+    The balanced state, both balls together behind the unbalance, and both together near its other side.
+
+    Parameters
+    ----------
+    values : of the speed; two in three of the second
+    """
+
+    def family(speed: float, ratio: float) -> Machine:
+        mass = ratio * 6e-4 / (2.0 * 0.065)
+        race = BallRace(0.0, 0.065, (mass, mass), 0.1)
+        return Machine(Jeffcott(4.0, 4.4e4, 84.0, 6e-4).system(), (race,), speed)
+
+    ratios, enough = np.linspace(0.21, 2.17, 2 * values // 3), np.linspace(1.0, 2.17, values // 2)
+    slow, fast = np.linspace(40.0, 104.0, values), np.linspace(104.0, 250.0, values)
+    return (
+        stability_chart(family, np.linspace(40.0, 250.0, 2 * values), enough),
+        stability_chart(family, slow, ratios, State([-1.1, -1.1])),
+        stability_chart(family, fast, ratios, State([-2.3, -2.3])),
+    )
+
+
+def reference_growth(speeds: ArrayLike, alike: bool = True, drag: float = DRAG) -> Array:
+    """Largest growth of disturbances of the balanced reference machine, of its supports alike or not.
+
+    Parameters
+    ----------
+    speeds : rad/s in units of the natural frequency, shape (s,)
+    alike, drag : see `reference`
+    """
+    system, races = reference(alike=alike, drag=drag)
+    found = [balanced_stability(system, races, speed).growth for speed in np.asarray(speeds).tolist()]
+    return np.array(found)
+
+
+def bands(speeds: Array, growth: Array) -> list[tuple[float, float]]:
+    """Speeds between which a disturbance dies out, to the step of the speeds.
+
+    Parameters
+    ----------
+    speeds, growth : rising; of the same shape
+    """
+    found: list[tuple[float, float]] = []
+    for speed, rate in zip(speeds.tolist(), growth.tolist(), strict=True):
+        if rate >= 0.0:
+            continue
+        last = found[-1] if found else None
+        if last is not None and np.isclose(last[1], speed, rtol=0.0, atol=1.5 * (speeds[1] - speeds[0])):
+            found[-1] = (last[0], speed)
+        else:
+            found.append((speed, speed))
+    return found
+
+
+def _draw(axes: Any, chart: Chart, scale: float = 1.0) -> None:
+    """Stable ground hatched, edges as lines that differ by their dashes."""
+    # Between two values the growth is nearly straight where it passes 0.
+    growth = np.ma.masked_invalid(chart.growth.T)
+    axes.contourf(
+        chart.first, scale * chart.second, growth, levels=[-1e9, 0.0], colors=["0.9"], hatches=["///"]
+    )
+    looks = {Crossing.HOPF: ("C0", "-", "a pair of roots"), Crossing.ZERO: ("C3", "--", "one root at 0")}
+    known: set[str] = set()
+    for curve in chart.edges:
+        color, dashes, label = looks[curve.kind]
+        shown = f"_{label}" if label in known else label
+        known.add(label)
+        axes.plot(curve.first, scale * curve.second, color=color, linestyle=dashes, label=shown)
+    axes.set_xlim(chart.first[0], chart.first[-1])
+    axes.set_ylim(scale * chart.second[0], scale * chart.second[-1])
+
+
+def damping_figure(directory: Path) -> Path:
+    """Where balls balance the long rotor over speed and damping, with motions in time on both sides.
+
+    Parameters
+    ----------
+    directory : where the PNG and SVG go
+    """
+    chart = damping_chart()
+    with style():
+        figure = Figure()
+        axes: Any = figure.add_axes((0, 0, 1, 1))
+        _draw(axes, chart)
+        above = dynamic_balancing(of_two_planes(LONG, BALLS), 1.0).above
+        axes.axvline(above, color="0.25", linestyle=":", linewidth=1.4, label="conditions of FF20")
+        for share, mark, label in zip(
+            SIDES, ("x", "o"), ("in time: grows", "in time: dies out"), strict=True
+        ):
+            speeds = [share * edge(damping) for damping in DAMPINGS]
+            axes.plot(speeds, np.log10(DAMPINGS), mark, color="black", markerfacecolor="none", label=label)
+        ticks = [0, 1, 2, 3, 4]
+        axes.set_yticks(ticks, [f"{10**tick:g}" for tick in ticks])
+        axes.set_xlabel("Speed (rad/s)")
+        axes.set_ylabel("Damping of each support (N s/m)")
+        axes.text(82.0, 2.6, "balanced", bbox={"facecolor": "white", "edgecolor": "none"})
+        axes.text(33.0, 2.6, "not balanced", bbox={"facecolor": "white", "edgecolor": "none"})
+        text = (
+            "Balanced state of the long rotor with two ball balancers, by the roots of small motions: stable "
+            "where hatched. Rotor of 10 kg, balls of 15 g, drag of the races 0.3 N s/m. Made-up machine."
+        )
+        lay_out(figure, [[axes]], [2.9], _FRAME, text)
+    return save(figure, directory, "balls_damping", "Stability over speed and damping").png
+
+
+def reference_figure(directory: Path) -> Path:
+    """The reference machine over speed and unbalance, and over speed and damping.
+
+    Parameters
+    ----------
+    directory : where the PNG and SVG go
+    """
+    charts = reference_charts()
+    with style():
+        figure = Figure()
+        panels: list[Any] = [figure.add_axes((0, 0, 1, 1), label=str(k)) for k in range(2)]
+        for axes, chart in zip(panels, charts, strict=True):
+            _draw(axes, chart)
+            axes.set_xlabel("Speed over natural frequency of shift (\N{EN DASH})")
+        panels[0].set_ylabel("Unbalances, 10\N{SUPERSCRIPT MINUS}\N{SUPERSCRIPT FIVE} (\N{EN DASH})")
+        panels[1].set_ylabel("Damping over stiffness (\N{EN DASH})")
+        panels[0].xaxis.set_major_formatter(number)
+        text = (
+            "Balanced state of the dimensionless rotor with two races of two balls "
+            "of RCFW08, by the roots of "
+            "small motions: stable where hatched. Left: damping 0.02. Right: both "
+            "unbalances 5e-5. Drag of the "
+            "races over a ball's mass 0.01; supports alike in both directions."
+        )
+        lay_out(figure, [panels], [2.7], _FRAME, text)
+        _part(panels)
+    return save(figure, directory, "balls_reference", "Stability of the reference machine").png
+
+
+def unlike_figure(directory: Path) -> Path:
+    """The reference machine on unlike supports over speed and damping.
+
+    Parameters
+    ----------
+    directory : where the PNG and SVG go
+    """
+    chart = unlike_chart()
+    with style():
+        figure = Figure()
+        axes: Any = figure.add_axes((0, 0, 1, 1))
+        _draw(axes, chart)
+        axes.set_xlabel("Speed over natural frequency of shift (\N{EN DASH})")
+        axes.set_ylabel("Damping over stiffness (\N{EN DASH})")
+        text = (
+            "Balanced state of the dimensionless rotor of RCFW08 on supports of 5 and 45 in one "
+            "direction, 1 and 9 in the other, by the multipliers of half a turn: stable where "
+            "hatched. Unbalances 5e-5, drag of the races over a ball's mass 0.01."
+        )
+        lay_out(figure, [[axes]], [2.9], _FRAME, text)
+    return save(figure, directory, "balls_unlike", "Stability on unlike supports").png
+
+
+def states_figure(directory: Path) -> Path:
+    """Balanced state and balls together, over speed and what the balls hold.
+
+    Parameters
+    ----------
+    directory : where the PNG and SVG go
+    """
+    balanced, slow, fast = state_charts()
+    with style():
+        figure = Figure()
+        panels: list[Any] = [figure.add_axes((0, 0, 1, 1), label=str(k)) for k in range(2)]
+        _draw(panels[0], balanced)
+        _draw(panels[1], slow)
+        _draw(panels[1], fast)
+        words = (
+            ("balanced", ((145.0, 0.6, "not enough balls"), (80.0, 1.6, "unstable"), (180.0, 1.6, "stable"))),
+            ("both balls together", ((65.0, 1.3, "stable"), (107.0, 1.9, "none"), (190.0, 1.6, "unstable"))),
+        )
+        for axes, (name, places) in zip(panels, words, strict=True):
+            for x, y, word in places:
+                axes.text(
+                    x, y, word, ha="center", bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.5}
+                )
+            axes.set_xlim(balanced.first[0], balanced.first[-1])
+            axes.set_ylim(slow.second[0], slow.second[-1])
+            axes.set_xlabel("Speed (rad/s)")
+            axes.set_ylabel("Capacity over unbalance (\N{EN DASH})")
+            axes.set_title(name)
+        text = (
+            "Two balls on the rotor of examples/balls.toml, critical speed 105 rad/s: states by "
+            "the roots of small motions, stable where hatched. Left: balls that take all unbalance "
+            "away. Right: both in one place, where they stay below the critical speed, and above "
+            "it if they do not suffice; between the dashed curves no such state exists."
+        )
+        lay_out(figure, [panels], [2.7], replace(_FRAME, top=0.35), text)
+        _part(panels)
+    return save(figure, directory, "balls_charts", "Stability of two states").png
+
+
+def _part(panels: Sequence[Any]) -> None:
+    """Room for the labels between two plots side by side."""
+    for axes in panels:
+        box = axes.get_position()
+        shift = 0.5 * _APART / 6.3 if axes is panels[1] else 0.0
+        axes.set_position((box.x0 + shift, box.y0, box.width - 0.5 * _APART / 6.3, box.height))
+
+
+def table() -> str:
+    """Bands of speed in which the balanced reference machine is stable, as a table in Markdown."""
+    speeds = np.linspace(0.2, 8.0, 391)
+    lines = [
+        "| drag over a ball's mass | supports alike | supports 5 and 45 in one direction |",
+        "|---|---|---|",
+    ]
+    for drag in (0.01, 1.0, 100.0):
+        cells = []
+        for alike in (True, False):
+            found = bands(speeds, reference_growth(speeds, alike, drag))
+            cells.append(", ".join(f"{low:.2f} to {high:.2f}" for low, high in found))
+        lines.append(f"| {drag:g} | {cells[0]} | {cells[1]} |")
+    return "\n".join(lines)
+
+
+def main() -> None:
+    """Draw the figures and print the table."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--out", type=Path, default=Path("docs/images"))
+    parser.add_argument("--table", action="store_true", help="print the table as well")
+    options = parser.parse_args()
+    for draw in (damping_figure, reference_figure, unlike_figure, states_figure):
+        path = draw(options.out)
+        path.with_suffix(".svg").unlink()
+        print(path)
+    if options.table:
+        print(table())
+
+
+if __name__ == "__main__":
+    main()
