@@ -169,7 +169,7 @@ def test_gravity_is_told_with_its_size() -> None:
     assert any(note.code == "lies" and "twice the spin" in note.text for note in result.notes)
     assert any(note.code == "liquid_waves" for note in result.notes)
     told = json.loads(json.dumps(result.to_json(), default=lambda value: value.tolist()))
-    assert set(told["gravity"]) == {"share", "ball_swing", "amplitude"}
+    assert set(told["gravity"]) == {"share", "ball_swing", "amplitude", "power"}
     assert told["in_range"] == [True] * 7
     slow = lb.run(lying(**{"speeds.start": "60 rpm", "speeds.stop": "160 rpm"}))
     assert isinstance(slow, BallsResult)
