@@ -19,6 +19,7 @@ from solvers.rotor.system import RotorSystem
 # Coordinates that a turn of the machine about its spin axis takes into one another.
 _PAIRS = (("x", "y"), ("alpha", "beta"))
 _ALIKE = 1e-9  # relative; two directions that differ by rounding alone are the same
+_EXACTLY = 1e-12  # relative: as much as is wanted
 _BALANCED = 1e-9  # of the balls' own moment: what may be left of a balanced rotor's unbalance
 _STILL = 1e-7  # of the bare rotor's deflection, or of the balls': counts as none
 _SETTLING = 400  # rounds
@@ -304,14 +305,15 @@ def _pulls(bare: Complex, each: Complex, places: Array) -> tuple[Array, Array]:
 def balanced_places(system: RotorSystem, races: Sequence[BallRace]) -> Array:
     """Places at which the balls take away the whole unbalance [theory: balls, eq. 21].
 
-    Of all such places those that are evenly spread over an arc of each race; of all shares of the races in
-    the unbalance those whose squares, each over what its race can hold, have the least sum. So races in one
-    plane are used to the same extent. Three balls and more have a family of further places.
+    Of all shares of the planes in the unbalance those whose squares, each over what the plane's races can
+    hold, have the least sum, and the races of a plane are used to the same extent, each with its balls evenly
+    over an arc. Where balls of a plane differ, or a race has a single one, all of them together close a
+    polygon. There may be further places.
 
     Parameters
     ----------
     system : the rotor with its unbalance
-    races : the balls of one race alike; a race with one ball serves if its moment happens to be right
+    races : one or more
 
     Returns
     -------
@@ -319,7 +321,7 @@ def balanced_places(system: RotorSystem, races: Sequence[BallRace]) -> Array:
 
     Raises
     ------
-    InputError : balls of one race that differ, or that cannot balance this unbalance
+    InputError : balls that cannot balance this unbalance
 
     Examples
     --------
@@ -327,21 +329,100 @@ def balanced_places(system: RotorSystem, races: Sequence[BallRace]) -> Array:
     >>> rotor = Jeffcott(10.0, 1e4, 40.0, 1.2e-3).system()
     >>> balanced_places(rotor, [BallRace(0.0, 0.08, (0.015, 0.015), 0.3)]).round(3)
     array([2.094, 4.189])
+
+    The same with a race for each ball:
+
+    >>> balanced_places(rotor, [BallRace(0.0, 0.08, (0.015,), 0.3)] * 2).round(3)
+    array([4.189, 2.094])
     """
-    for race in races:
-        if len(set(race.masses)) > 1:
-            raise InputError("races", race.masses, "balls of one race alike; else give their places")
-    rows = [system.at(race.position) for race in races]
+    arms = [np.array(race.masses) * race.radius for race in races]
+    planes: dict[float, list[int]] = {}
+    for k, race in enumerate(races):
+        planes.setdefault(race.position, []).append(k)
+    rows = [system.at(position) for position in planes]
     across = np.array([row[0] - 1j * row[1] for row in rows]).T
-    most = np.array([sum(race.masses) * race.radius for race in races])
+    most = np.array([sum(float(arms[k].sum()) for k in members) for members in planes.values()])
     weights = np.sqrt(most)
     shares = weights * np.linalg.lstsq(across * weights, -system.unbalance.astype(complex), rcond=None)[0]
-    places: list[float] = []
-    for race, held, share in zip(races, most.tolist(), shares.tolist(), strict=True):
+    places: list[Array] = [np.zeros(0)] * len(races)
+    for members, held, share in zip(planes.values(), most.tolist(), shares.tolist(), strict=True):
         # A share at rounding has no direction.
-        places += _arc(race, share if abs(share) > 1e-12 * held else 0.0)
-    require_balance(system, races, places)
-    return np.array(places)
+        wanted = share if abs(share) > 1e-12 * held else 0.0
+        found = _in_plane([arms[k] for k in members], wanted)
+        if found is None:
+            masses = [races[k].masses for k in members]
+            raise InputError("races", masses, f"balls that can hold {abs(share):.6g} kg m in their plane")
+        for k, part in zip(members, found, strict=True):
+            places[k] = part
+    every = np.concatenate(places)
+    require_balance(system, races, every)
+    return every
+
+
+def _in_plane(arms: list[Array], share: complex) -> list[Array] | None:
+    """Places of the balls of one plane, race by race, whose moments add up to a share; None if they cannot.
+
+    Parameters
+    ----------
+    arms : m R of each ball of each race, kg m
+    share : kg m
+    """
+    whole = sum(float(arm.sum()) for arm in arms)
+    wanted = abs(share) / whole
+    alike = all(np.ptp(arm) == 0.0 for arm in arms)
+    if alike and all(arm.size > 1 or abs(wanted - 1.0) <= _EXACTLY for arm in arms):
+        if wanted > 1.0 + _EXACTLY:
+            return None
+        return [_arc(arm.size, wanted * arm.size, share) for arm in arms]
+    order = np.argsort(-np.concatenate(arms), kind="stable")
+    sides = _polygon(np.concatenate(arms)[order].tolist(), abs(share))
+    if sides is None:
+        return None
+    every = np.zeros(order.size)
+    every[order] = np.array(sides) + (float(np.angle(share)) if share else 0.0)
+    return np.split(every, np.cumsum([arm.size for arm in arms])[:-1])
+
+
+def _arc(count: int, wanted: float, share: complex) -> Array:
+    """Places of equal balls, evenly over an arc about the share, with a given sum of unit vectors."""
+    if count == 1 or wanted >= count:
+        gap = 0.0
+    elif count == 2:
+        gap = 2.0 * math.acos(0.5 * wanted)
+    else:
+        # The sum of unit vectors a gap apart falls from their number at 0 to 0 when they stand all round.
+        def left(at: Array, _: object) -> Array:
+            return np.asarray(np.sin(0.5 * count * at) / np.sin(0.5 * at) - wanted)
+
+        whole = 2.0 * math.pi / count
+        gap = float(bracketed_root(left, np.array([1e-9]), np.array([whole]))[0][0]) if wanted else whole
+    middle = float(np.angle(share)) if share else gap * 0.5 * (count - 1)
+    return np.asarray(middle + gap * (np.arange(count) - 0.5 * (count - 1)))
+
+
+def _polygon(arms: list[float], wanted: float) -> list[float] | None:
+    """Directions in which arms, the longest first, add up to a vector along angle 0; None if they cannot.
+
+    The longest arm, the vector and what the others give together are a triangle [theory: balls, eq. 21]. The
+    others give as much as they would if all were used to the same extent, or next to that.
+    """
+    first, others = arms[0], arms[1:]
+    if not others:
+        return [0.0] if abs(wanted - first) <= _EXACTLY * first else None
+    together = sum(others)
+    least = max(abs(first - wanted), 2.0 * others[0] - together, 0.0)
+    largest = min(first + wanted, together)
+    if least > largest + _EXACTLY * first:
+        return None
+    rest = min(max(wanted * together / (first + together), least), largest)
+    own, other = 0.0, math.pi if wanted == 0.0 else 0.0
+    if wanted > 0.0 and rest > 0.0:
+        # One height for both sides: its rounding next to a flat triangle then cancels in their sum.
+        along = (first**2 + wanted**2 - rest**2) / (2.0 * wanted)
+        height = math.sqrt(max(first**2 - along**2, 0.0))
+        own, other = math.atan2(height, along), math.atan2(-height, wanted - along)
+    turned = _polygon(others, rest)
+    return None if turned is None else [own, *(other + angle for angle in turned)]
 
 
 def require_balance(system: RotorSystem, races: Sequence[BallRace], places: ArrayLike) -> None:
@@ -361,27 +442,6 @@ def require_balance(system: RotorSystem, races: Sequence[BallRace], places: Arra
     most = float(np.abs(moments).sum())
     if not left <= _BALANCED * most:
         raise InputError("places", places, f"such that the unbalance is balanced; {left:.3g} is left")
-
-
-def _arc(race: BallRace, share: complex) -> list[float]:
-    """Places of equal balls, evenly over an arc, whose moments add up to a share, kg m."""
-    count, moment = len(race.masses), race.masses[0] * race.radius
-    wanted = abs(share) / moment
-    if wanted > count * (1.0 + 1e-12):
-        raise InputError("races", race.masses, f"balls of {abs(share):.6g} kg m or more together")
-    if count == 1 or wanted >= count:
-        gap = 0.0
-    elif count == 2:
-        gap = 2.0 * math.acos(0.5 * wanted)
-    else:
-        # The sum of unit vectors a gap apart falls from their number at 0 to 0 when they stand all round.
-        def left(at: Array, _: object) -> Array:
-            return np.asarray(np.sin(0.5 * count * at) / np.sin(0.5 * at) - wanted)
-
-        whole = 2.0 * math.pi / count
-        gap = float(bracketed_root(left, np.array([1e-9]), np.array([whole]))[0][0]) if wanted else whole
-    middle = float(np.angle(share)) if share else gap * 0.5 * (count - 1)
-    return [middle + gap * (k - 0.5 * (count - 1)) for k in range(count)]
 
 
 def without_unbalance(system: RotorSystem) -> RotorSystem:

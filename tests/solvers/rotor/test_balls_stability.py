@@ -328,6 +328,32 @@ def test_balanced_places_balance(share: float, angle: float, first: int, second:
     assert np.abs(left).max() < 1e-10 * sum(most)
 
 
+PLACES = "solvers.rotor.balls.states"
+
+
+@kills(f"{PLACES}:_polygon", "2.0 * others[0] - together", "0.0 * others[0] - together")
+@kills(f"{PLACES}:_polygon", "math.atan2(-height", "math.atan2(height")
+@kills(f"{PLACES}:_in_plane", "np.argsort(-np.concatenate(arms)", "np.argsort(np.concatenate(arms)")
+@given(st.lists(st.lists(st.floats(1e-3, 0.05), min_size=1, max_size=3), min_size=1, max_size=3), st.data())
+def test_any_balls_of_a_plane_close_a_polygon_or_cannot(
+    masses: list[list[float]], data: st.DataObject
+) -> None:
+    """They hold anything from nothing, or what the longest arm has over the others, to all together."""
+    arms = np.sort([0.1 * mass for part in masses for mass in part])
+    least, most = max(0.0, 2.0 * float(arms[-1]) - float(arms.sum())), float(arms.sum())
+    races = [BallRace(0.0, 0.1, tuple(part), 0.3) for part in masses]
+    size = least + data.draw(st.floats(0.001, 0.999)) * (most - least)
+    system = Jeffcott(10.0, 1e4, 40.0, size).system()
+    if arms.size > 1:
+        places = balanced_places(system, races)
+        left = system.unbalance + RotorWithBalls(system, tuple(races)).moments(places).sum(axis=1)
+        # Rounding of up to nine vectors; an arc's gap is found to rounding.
+        assert np.abs(left).max() < 1e-12 * most
+    for beyond in [most * 1.001, *([least * 0.999] if least > 1e-6 * most else [])]:
+        with pytest.raises(InputError):
+            balanced_places(Jeffcott(10.0, 1e4, 40.0, beyond).system(), races)
+
+
 def test_balls_that_do_not_balance_are_refused() -> None:
     for masses in ((0.015,), (0.015, 0.02)):
         with pytest.raises(InputError):
