@@ -130,7 +130,7 @@ RECIPES = (
     Recipe(("validation.figures.rotors.two_plane",), ("two_plane_balls",)),
     Recipe(
         ("validation.figures.rotors.ball_charts",),
-        ("balls_damping", "balls_reference", "balls_charts"),
+        ("balls_damping", "balls_reference", "balls_unlike", "balls_charts"),
         minutes=True,
     ),
     Recipe(("validation.figures.exciter.traces",), ("exciter_traces", "exciter_trends")),
@@ -160,7 +160,7 @@ RECIPES = (
     ),
     *(
         _example("view", scene, **{f"view_{scene}": "view"})
-        for scene in ("balls", "balls_and_liquid", "long_rotor")
+        for scene in ("balls", "balls_and_liquid", "long_rotor", "blood_pump")
     ),
     _example("view", "balls", "--speed", "600 rpm", view_balls_slow="view"),
     _example("view", "spindle", "--speed", "335Hz", view_spindle="view"),

@@ -30,11 +30,11 @@ if TYPE_CHECKING:
     from leblanc.results.magnetic.control import MagneticResult
     from leblanc.results.magnetic.explanation import MagneticExplanation
     from leblanc.results.models.comparison import Comparison
-    from leblanc.results.motion.ball_design import BallDesignResult
-    from leblanc.results.motion.ball_numbers import BallExplanation
-    from leblanc.results.motion.ball_states import BallsResult
     from leblanc.results.optimum import OptimumResult
     from leblanc.results.races.chart import BallChart
+    from leblanc.results.races.design import BallDesignResult
+    from leblanc.results.races.numbers import BallExplanation
+    from leblanc.results.races.states import BallsResult
     from leblanc.results.response import RunResult
     from leblanc.results.runup import RunupResult
     from leblanc.results.spindles.bearing import BearingResult

@@ -11,7 +11,7 @@ from leblanc.cli.terminal.output import load, print_json, print_table
 
 if TYPE_CHECKING:
     from leblanc.results.explanation import Explanation
-    from leblanc.results.motion.ball_numbers import BallExplanation
+    from leblanc.results.races.numbers import BallExplanation
 
 
 def explain(

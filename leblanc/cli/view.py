@@ -15,10 +15,13 @@ from leblanc.files import require_writable
 
 if TYPE_CHECKING:
     from leblanc.results.drawn import ModeView
+    from leblanc.results.magnetic.drawn import MagneticView
     from leblanc.results.spindles.drawn import SpindleView
     from leblanc.scene.scene import Scene
     from leblanc.view.film import Film
     from leblanc.view.parts import Picture
+
+    Drawn = ModeView | SpindleView | MagneticView  # what has a film of its own
 
 
 def view(
@@ -72,13 +75,21 @@ def view(
         return
     if not window:
         screenshot = _target(machine, scene, screenshot, animate, out)
-    wave: ModeView | SpindleView | None
+    wave: Drawn | None
     if machine.rotor.kind == "spindle":
         from leblanc.studies.spindles.drawn import spindle_view
         from leblanc.view.spindle import spindle_picture
 
         unit = spindle_view(machine, mode, spin, factor)
         wave, picture, numbers = unit, spindle_picture(unit), unit.to_json()
+    elif machine.rotor.kind == "magnetic":
+        from leblanc.studies.magnetic.drawn import magnetic_view
+        from leblanc.view.magnetic import magnetic_picture
+
+        _require_no_mode(mode)
+        with working("motion in time"):
+            held = magnetic_view(machine, spin, factor)
+        wave, picture, numbers = held, magnetic_picture(held), held.to_json()
     else:
         wave = None if mode is None else _mode(machine, mode, spin, chamber)
         with working("solving"):
@@ -155,6 +166,14 @@ def _mode(machine: Scene, number: int, speed: float | None, chamber: int) -> Mod
     return mode_view(machine, number, speed, chamber)
 
 
+def _require_no_mode(mode: int | None) -> None:
+    """A rotor in magnetic bearings has no sloshing mode."""
+    from meshes.errors import InputError
+
+    if mode is not None:
+        raise InputError("--mode", mode, "left out for a rotor in magnetic bearings")
+
+
 def _of_mode(wave: ModeView) -> tuple[Picture, dict[str, object]]:
     """Picture of a sloshing mode and its numbers."""
     from leblanc.view.film import mode_picture
@@ -186,7 +205,7 @@ def _still(machine: Scene, speed: float | None, factor: float | None) -> tuple[P
 def _files(
     machine: Scene,
     picture: Picture,
-    wave: ModeView | SpindleView | None,
+    wave: Drawn | None,
     screenshot: Path | None,
     animate: Path | None,
     frames: int | None,
@@ -205,9 +224,7 @@ def _files(
     return made
 
 
-def _film(
-    machine: Scene, wave: ModeView | SpindleView | None, path: Path, frames: int | None, factor: float | None
-) -> None:
+def _film(machine: Scene, wave: Drawn | None, path: Path, frames: int | None, factor: float | None) -> None:
     """Write a film, with a bar on a terminal."""
     from leblanc.view.film import FRAMES, require_frames, write_film
 
@@ -219,6 +236,11 @@ def _film(
             from leblanc.view.spindle import spindle_film
 
             film = spindle_film(cast("SpindleView", wave), frames or ROUND)
+        elif machine.rotor.kind == "magnetic":
+            from leblanc.view.film import FRAMES
+            from leblanc.view.magnetic import magnetic_film
+
+            film = magnetic_film(cast("MagneticView", wave), frames or FRAMES)
         elif wave is not None:
             from leblanc.view.film import ROUND, mode_film
 

@@ -26,8 +26,8 @@ from leblanc.figures.drawing.page import (
 from leblanc.figures.machine import machine_figure
 from leblanc.figures.response import DRY, SHADE, UNSTABLE, WET
 from leblanc.results.base import one_line, percent
-from leblanc.results.motion.balls import in_race
 from leblanc.results.notes.response import plane_label
+from leblanc.results.races.balls import in_race
 from leblanc.results.runup import RunupResult
 from leblanc.text.runup import describe_model, largest, largest_dry
 from leblanc.units import LENGTH, MM, RPM, friction_words, with_unit

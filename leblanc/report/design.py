@@ -9,7 +9,7 @@ from leblanc.report.page import About, write_page
 from leblanc.report.parts import Cell, Table, doubt, picture, table
 from leblanc.report.run import limit_checks
 from leblanc.results.base import texts
-from leblanc.results.motion.ball_design import BallDesignResult
+from leblanc.results.races.design import BallDesignResult
 from leblanc.text.races.design import RACE_HEAD, answer, constraint_rows, facts, limits, paste, race_rows
 
 if TYPE_CHECKING:

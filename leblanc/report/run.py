@@ -14,8 +14,8 @@ from leblanc.report.page import About, models, notes, why, write_page
 from leblanc.report.parts import Cell, Table, doubt, load_part, picture, table
 from leblanc.results.exciter import ExciterResult
 from leblanc.results.magnetic.control import MagneticResult
-from leblanc.results.motion.ball_states import STATE_NAMES, BallsResult
 from leblanc.results.notes.response import OF_MODELS, RunCode
+from leblanc.results.races.states import STATE_NAMES, BallsResult
 from leblanc.results.response import RunResult
 from leblanc.results.whirl_map import WhirlMap
 from leblanc.text import magnetic

@@ -14,10 +14,10 @@ from fluid.friction.laws import Friction
 from leblanc.results.base import FilledChamber, Note, Result, attributes, one_line, texts
 from leblanc.results.machine.keys import Loaded
 from leblanc.results.machine.loads import MachineLoads
-from leblanc.results.motion.balls import RaceOfBalls, ball_moment, in_race
 from leblanc.results.motion.passages import Passage, falling, pieces
 from leblanc.results.netcdf import NamedArrays, flags, variable
 from leblanc.results.notes.response import plane_words
+from leblanc.results.races.balls import RaceOfBalls, ball_moment, in_race
 from leblanc.results.response import phase
 from leblanc.units import friction_words
 from meshes.arrays import Array, Complex, Flags

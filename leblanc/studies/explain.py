@@ -29,7 +29,15 @@ from leblanc.scene.rows import baffle_words
 from leblanc.scene.scene import Runup, Scene
 from leblanc.studies.closed_forms.told import closed_forms
 from leblanc.studies.exciter import printed_critical
-from leblanc.studies.models.choose import Prepared, balance_from, choose_all, costed, held_cost, prepare
+from leblanc.studies.models.choose import (
+    Prepared,
+    balance_from,
+    choose_all,
+    costed,
+    held_cost,
+    prepare,
+    runup_outlook,
+)
 from leblanc.studies.models.liquid import synchronous_model
 from leblanc.studies.run import rest_modes
 from meshes.arrays import Array
@@ -115,7 +123,7 @@ def explain_scene(scene: Scene) -> Explanation:
         estimates=speed_estimates(choice, machine.speed),
         tolerance=choice.tolerance,
         modes=bare.modes,
-        runup=_runup(scene),
+        runup=runup_outlook(scene),
         whirl=_whirl(machine, growth),
         held=held_cost(machine, choice, growth),
         source=scene.source,
@@ -216,14 +224,6 @@ def _carrying(scene: Scene, fill: Fill, captured_from: float | None) -> BaffleOu
     asked = rise.rate * 0.5 * fill.mass * (fill.chamber.radius**2 + fill.surface_radius**2)
     enough = speed * math.sqrt(asked / able) if able > 0.0 else math.inf
     return BaffleOutlook(speed, able, asked, enough)
-
-
-def _runup(scene: Scene) -> str:
-    if scene.speed_plan is None:
-        return ""
-    from leblanc.studies.runup import runup_outlook
-
-    return runup_outlook(scene)
 
 
 @dataclass(frozen=True)

@@ -54,6 +54,7 @@ def loads_over_speed(
     coordinates: Complex,
     asked: Index,
     held: Mapping[float, HeldState] | None = None,
+    lost: Array | float = 0.0,
 ) -> MachineLoads:
     """Loads of steady motions, each over its turn [theory: loads, eq. 14-16 and 18-19].
 
@@ -65,8 +66,9 @@ def loads_over_speed(
     coordinates : complex amplitudes, shape (k, n)
     asked : which of the speeds are those of the scene
     held : motions held in time by their speed, whose own turns and heat count there
+    lost : power that is lost besides what supports and liquid take, W, shape (k,)
     """
-    power = steady_power(machine, friction, coordinates, speed)
+    power = steady_power(machine, friction, coordinates, speed) + lost
     worst, states = turn_extremes(machine, coordinates, speed), held or {}
     rows = [worst.at(np.array([k])) for k in range(speed.size)] if states else []
     for k, spin in enumerate(speed.tolist()):

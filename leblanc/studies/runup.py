@@ -28,7 +28,7 @@ from leblanc.studies.drives import planned as planned
 from leblanc.studies.drives import programme_notes, rotor_in_time, unbalance_left
 from leblanc.studies.machine import loaded_machine, loads_over_time
 from leblanc.studies.models.choose import across_gravity as across_gravity  # of a run-up, asked for with it
-from leblanc.studies.models.choose import axial_gravity, is_cut, prepare
+from leblanc.studies.models.choose import axial_gravity, is_cut, prepare, ruled_out_linear
 from leblanc.studies.models.liquid import RUNUP_MODELS, runup_model
 from leblanc.studies.models.validity import doubts
 from leblanc.studies.peaks import responses_between
@@ -48,7 +48,6 @@ from solvers.runup.runup import (
     LinearRunError,
     RunupHistory,
     RunupNumerics,
-    largest_wave,
     linear_run_error,
     run_up,
 )
@@ -256,7 +255,7 @@ def chosen_run(
         found = linear_run_error(history, scene.fills)
         reason = f"the scene asks for linear layers; {_judged_by(found)}."
         return RunupChoice(history, model, found.estimate + history.error_estimate, reason)
-    ruled_out = _ruled_out(scene)
+    ruled_out = ruled_out_linear(scene)
     if not ruled_out:
         first = run("linear", replace(numerics, companion=False), None)
         found = linear_run_error(first, scene.fills)
@@ -274,41 +273,6 @@ def _by_steps(history: RunupHistory) -> float:
     """Error by cells, steps and hand-over together, over the largest amplitude."""
     handed = history.handover_estimate
     return history.error_estimate + (0.0 if math.isnan(handed) else handed)
-
-
-def runup_outlook(scene: Scene) -> str:
-    """Which liquid model the run-up of a scene will take, as far as that is known before, in words."""
-    liquid, tolerance = scene.model.liquid, scene.model.tolerance
-    if scene.speed_plan is None:
-        return ""
-    if liquid not in ("auto", *RUNUP_MODELS):
-        return f"none: {liquid} does not go through time; ask for auto, long_wave or linear"
-    if liquid != "auto":
-        return f"{liquid}, as the scene asks"
-    ruled_out, wave = _ruled_out(scene), largest_wave(tolerance)
-    if ruled_out:
-        return f"long waves: {ruled_out}"
-    return (
-        f"linear layers first, for a twentieth of the time of long waves; they stay if the surface rises by \
-less than {percent(wave)} of the depth and the liquid hardly lags, otherwise long waves follow"
-    )
-
-
-def _ruled_out(scene: Scene) -> str:
-    """Why linear layers are not tried, or nothing."""
-    if any(fill.uneven for fill in scene.fills):
-        return "baffles stand in the liquid, whose waves linear layers do not hold back"
-    if scene.runup is not None and scene.runup.motor is not None:
-        return "a motor feels the torque of the waves, which linear layers leave out"
-    if scene.programme is not None and scene.programme.motor is not None:
-        return "a motor feels the torque of the waves, which linear layers leave out"
-    if scene.programme is not None and scene.programme.coasts:
-        return "a coasting drum feels the torque of the waves, which linear layers leave out"
-    if scene.model.friction.law == "quadratic":
-        return "linear layers do not feel quadratic friction"
-    if largest_wave(scene.model.tolerance) == 0.0:
-        return f"linear layers are not known to be within {percent(scene.model.tolerance)}"
-    return ""
 
 
 def _judged_by(found: LinearRunError) -> str:

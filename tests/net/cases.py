@@ -14,7 +14,6 @@ ROTORS = (
 )
 WHOLE = ("two_plane_rig", "vertical_rig", "centrifuge", "runup")  # run-ups held to their end
 BALLS = ("balls", "balls_and_liquid")
-_NOT_BALLS = ("explain", "optimise", "trade")
 DOCS = ("closed_baffles", "lobes", "smallest_scene")
 COMMANDS = (
     *(
@@ -108,6 +107,10 @@ def _runs() -> Iterator[Case]:
     yield _case("explain-top_loader", f"explain {_scene('top_loader')} --json")
     for name in BALLS:
         yield _case(f"run-{name}", f"run {_scene(name)} --json --out out")
+        yield _case(f"explain-{name}", f"explain {_scene(name)} --json")
+    yield _case("words-explain-balls", f"explain {_scene('balls')}")
+    for name in ("tub_balls", "linear_balls"):
+        yield _case(f"run-{name}", f"run small/{name}.toml --json --out out")
     yield _case("run-exact", "run small/horizontal_rig_exact.toml --workers 1 --json --out out")
     yield _case("run-spindle", f"run {_scene('spindle')} --json --out out")
     yield _case("run-top_loader", f"run {_scene('top_loader')} --json --out out")
@@ -133,6 +136,10 @@ def _runups() -> Iterator[Case]:
         yield _case(
             f"runup-{name}", f"runup {_scene(name)} --cells 32 --samples 201 --no-check --json --out out"
         )
+    for name in ("tub_balls", "linear_balls"):
+        yield _case(
+            f"runup-{name}", f"runup small/{name}.toml --cells 16 --samples 101 --no-check --json --out out"
+        )
     yield _case("runup-check", "runup small/runup.toml --samples 51 --json --out out")
 
 
@@ -144,6 +151,8 @@ def _optimums() -> Iterator[Case]:
             f"optimise-{objective}",
             f"optimise small/horizontal_rig.toml --objective {objective} --steady --no-front --json",
         )
+    yield _case("optimise-balls", f"optimise {_scene('balls_design')} --json --out out")
+    yield _case("words-optimise-balls", f"optimise {_scene('balls_design')} --out out")
     yield _case("optimise-layout", "optimise examples/tub.toml --objective layout --json --out out")
     typed = "optimise examples/tub.toml --objective floor_force --no-front --json --out out"
     yield _case("optimise-floor_force", typed)
@@ -175,6 +184,7 @@ def _sweeps() -> Iterator[Case]:
     for study in ("fill_grid", "uncertain_rig", "centrifuge_shares"):
         more = " --netcdf --emulate" if study == "uncertain_rig" else ""
         yield _case(f"sweep-{study}", f"sweep small/{study}.toml --workers 0{more} --json --out out")
+    yield _case("sweep-balls", "sweep small/balls_grid.toml --workers 0 --json --out out")
     yield _case("sweep-workers", "sweep small/centrifuge_shares.toml --workers 1 --json --out out")
 
 
@@ -246,6 +256,7 @@ def _modes() -> Iterator[Case]:
 def _views() -> Iterator[Case]:
     for name in ("vibratory_table", *BALLS, "long_rotor", *ROTORS, *DOCS):
         yield _case(f"view-{name}", f"view {_scene(name)} --json --out out", needs="screen")
+    yield _case("view-blood_pump", f"view {_scene('blood_pump')} --json --out out", needs="screen")
     yield _case("view-spindle", f"view {_scene('spindle')} --mode 2 --json --out out", needs="screen")
     yield _case(
         "view-mode",
@@ -331,7 +342,6 @@ def _wrong() -> Iterator[Case]:
         "runup-magnetic": f"runup {pump}",
         "optimise-magnetic": f"optimise {pump}",
         "compare-magnetic": f"compare {pump} --models statics",
-        "view-magnetic": f"view {pump}",
         **{
             f"{name}-spindle": f"{name} {_scene('spindle')}"
             for name in ("explain", "map", "runup", "optimise", "trade")
@@ -340,7 +350,6 @@ def _wrong() -> Iterator[Case]:
         "bearing-nothing": "bearing --speed 33Hz",
         "bearing-balls": "bearing --speed 33Hz --ftf 0.4",
         "bearing-both": "bearing --speed 33Hz --ftf 0.4 --pitch-diameter 31mm",
-        **{f"{command}-balls": f"{command} {_scene('balls_and_liquid')}" for command in _NOT_BALLS},
         "compare-balls": f"compare {_scene('balls')} --models statics",
         "runup-missing": f"runup {smallest}",
         "map-over": f"map {_scene('balls')} --over rotor.beauty",

@@ -28,6 +28,8 @@ SMALL: dict[str, tuple[str, dict[str, str]]] = {
     ),
     "fill_grid": ("examples/studies/fill_grid.toml", {}),
     "uncertain_rig": ("examples/studies/uncertain_rig.toml", {"samples": "24"}),
+    "balls": ("examples/balls.toml", {"speeds.count": "15"}),
+    "balls_grid": ("examples/studies/balls_grid.toml", {}),
     "centrifuge_shares": ("examples/studies/centrifuge_shares.toml", {"samples": "4"}),
     # Run-ups in pieces: with gravity stronger than the spin, and with the liquid caught. The moment between
     # them, and bores later on, turn rounding into per cents.
@@ -50,6 +52,24 @@ SMALL: dict[str, tuple[str, dict[str, str]]] = {
     "weak_motor_above": (
         "examples/weak_motor.toml",
         {"runup.start": '"40 rad/s"', "runup.duration": '"3 s"'},
+    ),
+}
+
+# A race on the tub's drum, and a linear layer beside balls: tables may stand in any order.
+_RACE = '''15
+
+[[chambers]]
+kind = "balls"
+radius = "168 mm"
+count = 3
+mass = "60 g"
+drag = "2 N*s/m"
+plane = "115 mm"'''
+SMALL |= {
+    "tub_balls": ("examples/tub.toml", {"speeds.count": _RACE, "runup.duration": '"2 s"'}),
+    "linear_balls": (
+        "examples/balls_and_liquid.toml",
+        {"speeds.count": '9\n\n[model]\nliquid = "linear"', "runup.duration": '"4 s"'},
     ),
 }
 

@@ -22,8 +22,8 @@ from leblanc.figures.drawing.page import (
 from leblanc.figures.machine import machine_figure
 from leblanc.figures.response import DRY, WET
 from leblanc.results.base import one_line
-from leblanc.results.motion.ball_states import BallsResult
-from leblanc.results.motion.balls import in_race
+from leblanc.results.races.balls import in_race
+from leblanc.results.races.states import BallsResult
 from leblanc.text.races.balls import alt, answer
 from leblanc.units import MM, RPM
 

@@ -12,7 +12,7 @@ from leblanc.figures.drawing.curves import gapped
 from leblanc.figures.drawing.page import Caption, Figure, FigureFiles, Frame, lay_out, number, save, style
 from leblanc.figures.response import DRY, WET
 from leblanc.results.base import one_line
-from leblanc.results.motion.ball_design import BallDesignResult
+from leblanc.results.races.design import BallDesignResult
 from leblanc.text.races.design import alt, answer
 from leblanc.units import MM, RPM
 from meshes.arrays import Flags

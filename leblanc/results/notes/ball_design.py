@@ -63,8 +63,8 @@ def unstable_speeds(first: float, last: float) -> Note:
     """
     text = (
         f"With these balls no state is stable at some speeds from {in_rpm(first)} to {in_rpm(last)}: the "
-        "balls run, and the amplitude taken there is that of the state which small motions leave most "
-        "slowly. A run-up in time shows the motion."
+        "balls run, and the amplitude taken there is that with all balls on the heavy side. "
+        "A run-up in time shows the motion."
     )
     return Note(DesignCode.UNSTABLE_SPEEDS, {"first": first, "last": last}, text)
 

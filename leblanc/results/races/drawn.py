@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from fluid.fill import Fill
 from leblanc.results.drawn import DrawnRace, Liquid, MachineParts, Scale
-from leblanc.results.motion.ball_states import BallsResult
+from leblanc.results.races.states import BallsResult
 from meshes.arrays import Array, Complex
 
 

@@ -39,9 +39,7 @@ def run_magnetic(scene: Scene, progress: Callable[[str], object] = lambda what: 
     """
     rotor = rotor_of(scene)
     machine, speed, trial = rotor.machine(), scene.speed_array(), rotor.trial
-    loads = {f"load {k + 1}": part.load() for k, part in enumerate(rotor.loads)}
-    if rotor.axis == "horizontal":
-        loads["gravity"] = Load((0.0, -machine.mass * scene.gravity))
+    loads = loads_of(scene)
     load_speed = float(speed[-1]) if trial is None else trial.speed
     band = BAND * machine.magnets.gap
     found = []
@@ -61,6 +59,20 @@ def run_magnetic(scene: Scene, progress: Callable[[str], object] = lambda what: 
         source=scene.source,
         digest=scene.digest,
     )
+
+
+def loads_of(scene: Scene) -> dict[str, Load]:
+    """Loads on the rotor of a scene by their names, gravity among them where it lies across the axis.
+
+    Parameters
+    ----------
+    scene : of kind "magnetic"
+    """
+    rotor = rotor_of(scene)
+    loads = {f"load {k + 1}": part.load() for k, part in enumerate(rotor.loads)}
+    if rotor.axis == "horizontal":
+        loads["gravity"] = Load((0.0, -rotor.mass * scene.gravity))
+    return loads
 
 
 def rotor_of(scene: Scene) -> MagneticOfScene:

@@ -15,10 +15,11 @@ from fluid.friction.laws import Friction, FrictionLaw
 from fluid.pool import balance_speed, pool_of
 from fluid.waves import capture_speed
 from fluid.whirl import covering_speed
+from leblanc.results.base import percent
 from leblanc.results.choice import Choice, HeldCost
 from leblanc.results.motion.held import HELD_MODELS
 from leblanc.scene.scene import Scene, dry_rotor, require_no_balls
-from leblanc.studies.models.liquid import synchronous_model
+from leblanc.studies.models.liquid import RUNUP_MODELS, synchronous_model
 from meshes.arrays import Array, Flags
 from meshes.chamber_section import rest_offset, surface_is_whole
 from meshes.errors import InputError
@@ -445,3 +446,52 @@ def carried_from(scene: Scene) -> float | None:
 def _has_surface(fill: Fill) -> bool:
     """Neither empty nor full to rounding."""
     return 0.0 < fill.volume < fill.chamber.capacity * (1.0 - 1e-9) and fill.surface_radius > 0.0
+
+
+def runup_outlook(scene: Scene) -> str:
+    """Which liquid model the run-up of a scene will take, as far as that is known before, in words.
+
+    Parameters
+    ----------
+    scene : the machine; nothing is said of one without a run-up or a programme
+    """
+    liquid, tolerance = scene.model.liquid, scene.model.tolerance
+    if scene.speed_plan is None:
+        return ""
+    from solvers.runup.runup import largest_wave
+
+    if liquid not in ("auto", *RUNUP_MODELS):
+        return f"none: {liquid} does not go through time; ask for auto, long_wave or linear"
+    if liquid != "auto":
+        return f"{liquid}, as the scene asks"
+    ruled_out, wave = ruled_out_linear(scene), largest_wave(tolerance)
+    if ruled_out:
+        return f"long waves: {ruled_out}"
+    return (
+        f"linear layers first, for a twentieth of the time of long waves; they stay if the surface rises by "
+        f"less than {percent(wave)} of the depth and the liquid hardly lags, otherwise long waves follow"
+    )
+
+
+def ruled_out_linear(scene: Scene) -> str:
+    """Why linear layers are not tried for the run-up of a scene, or nothing.
+
+    Parameters
+    ----------
+    scene : with a run-up or a programme
+    """
+    from solvers.runup.runup import largest_wave
+
+    if any(fill.uneven for fill in scene.fills):
+        return "baffles stand in the liquid, whose waves linear layers do not hold back"
+    if scene.runup is not None and scene.runup.motor is not None:
+        return "a motor feels the torque of the waves, which linear layers leave out"
+    if scene.programme is not None and scene.programme.motor is not None:
+        return "a motor feels the torque of the waves, which linear layers leave out"
+    if scene.programme is not None and scene.programme.coasts:
+        return "a coasting drum feels the torque of the waves, which linear layers leave out"
+    if scene.model.friction.law == "quadratic":
+        return "linear layers do not feel quadratic friction"
+    if largest_wave(scene.model.tolerance) == 0.0:
+        return f"linear layers are not known to be within {percent(scene.model.tolerance)}"
+    return ""

@@ -9,10 +9,10 @@ import numpy as np
 
 from leblanc.results.base import Note
 from leblanc.results.machine.loads import MachineLoads
-from leblanc.results.motion.ball_states import BallsResult
-from leblanc.results.motion.balls import RaceOfBalls
 from leblanc.results.notes import balls as notes
 from leblanc.results.notes import response as response_notes
+from leblanc.results.races.balls import RaceOfBalls
+from leblanc.results.races.states import BallsResult
 from leblanc.scene.inputs import input_rows
 from leblanc.scene.races import BallRace
 from leblanc.scene.scene import Scene
@@ -121,7 +121,8 @@ def run_balls(scene: Scene) -> BallsResult:
         liquid_model=liquid if any(fill.volume > 0.0 for fill in scene.fills) else "",
         tolerance=scene.model.tolerance,
     )
-    answer, waves = _estimated(machine, races, replace(answer, loads=_loads(scene, answer)))
+    answer, waves = _estimated(machine, races, answer)
+    answer = replace(answer, loads=_loads(scene, answer))
     alike = turning(system) is not None
     return replace(answer, notes=_run_notes(scene, answer, alike, waves))
 
@@ -153,7 +154,9 @@ def _loads(scene: Scene, answer: BallsResult) -> MachineLoads | None:
     coordinates = answer.states.coordinates[np.arange(answer.speed.size), answer.chosen]
     coordinates = np.where(answer.stable[:, None], coordinates, complex(np.nan, np.nan))
     asked = np.arange(answer.speed.size)
-    return loads_over_speed(machine, scene.model.friction, answer.speed, coordinates, asked)
+    swing = 0.0 if answer.gravity is None else answer.gravity.power
+    friction = scene.model.friction
+    return loads_over_speed(machine, friction, answer.speed, coordinates, asked, lost=swing)
 
 
 def _run_notes(

@@ -8,12 +8,12 @@ from typing import TypeVar
 
 import numpy as np
 
-from leblanc.results.motion.balls import GravityOnBalls
+from leblanc.results.races.balls import GravityOnBalls
 from leblanc.studies.models.choose import Prepared
 from meshes.arrays import Array, Complex, Flags, Index
 from solvers.liquid_model import ROUNDING
 from solvers.rotor.balls.balancers import BallRace, with_balls_at
-from solvers.rotor.balls.swing import gravity_swing
+from solvers.rotor.balls.swing import gravity_swing, swing_power
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import RotorSystem
 from solvers.synchronous.errors import GravityError, LinearError, error_estimate, machine_errors
@@ -100,15 +100,15 @@ def gravity_on_balls(
     for fill in machine.scene.fills:
         plane = system.at(fill.chamber.plane)
         system = replace(system, mass=system.mass + fill.mass * plane.T @ plane)
-    swing, moved = np.full(places.shape, np.nan), np.full(speed.shape, np.nan)
+    swing, (moved, power) = np.full(places.shape, np.nan), np.full((2, speed.size), np.nan)
     turning = 0.5 * (system.at(position)[0] + 1j * system.at(position)[1])
     back = 0.5 * (system.at(position)[0] - 1j * system.at(position)[1])
     for k in np.flatnonzero(np.isfinite(places).all(axis=1)).tolist():
         found = gravity_swing(system, races, float(speed[k]), places[k], coordinates[k], gravity)
-        swing[k] = np.abs(found.balls)
+        swing[k], power[k] = np.abs(found.balls), swing_power(races, float(speed[k]), found.balls)
         moved[k] = abs(turning @ found.coordinates) + abs(back @ found.coordinates)
     least = min(race.radius for race in races)
-    return GravityOnBalls(gravity / (least * np.square(speed)), swing, moved)
+    return GravityOnBalls(gravity / (least * np.square(speed)), swing, moved, power)
 
 
 def carried_balls(machine: Prepared, races: Sequence[BallRace]) -> Flags:

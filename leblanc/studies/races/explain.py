@@ -8,13 +8,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from leblanc.results.motion.ball_numbers import BallExplanation, RaceNumbers
+from leblanc.results.races.numbers import BallExplanation, RaceNumbers
 from leblanc.scene.races import BallRace
 from leblanc.scene.scene import Scene, TwoPlaneRotor, dry_rotor, require_clear
 from leblanc.scene.unbalances import unbalances_of
 from leblanc.studies.explain import explain_scene
-from leblanc.studies.races.states import reported_states
-from leblanc.studies.runup import runup_outlook
+from leblanc.studies.models.choose import runup_outlook
+from leblanc.studies.races.states import worst_states
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
 from solvers.rotor.balls.states import RotorWithBalls, turning
@@ -51,7 +51,7 @@ def explain_balls(scene: Scene) -> BallExplanation:
     count = _FEW if scene.fills else _SPEEDS
     speed = np.linspace(scene.speeds.start, scene.speeds.stop, min(count, max(scene.speeds.count, 2)))
     speed = np.unique(speed)
-    states = reported_states(scene, speed)
+    states = worst_states(scene, speed)
     can = turned.balanced() is not None
     pairs = zip(scene.balls, shares.tolist(), strict=True)
     return BallExplanation(
@@ -141,7 +141,7 @@ def _balanced_from(scene: Scene, speed: Array, balanced: Flags) -> float:
     low, high = float(speed[first - 1]), float(speed[first])
     for _ in range(_FEWER if scene.fills else _HALVINGS):
         middle = 0.5 * (low + high)
-        stable = bool(reported_states(scene, [middle]).balanced[0])
+        stable = bool(worst_states(scene, [middle]).balanced[0])
         low, high = (low, middle) if stable else (middle, high)
     return high
 

@@ -1,4 +1,4 @@
-"""The state of rotor and balls that is reported at a speed, without all that a result of `run` carries."""
+"""The state of rotor and balls that counts at a speed, without all that a result of `run` carries."""
 
 from __future__ import annotations
 
@@ -7,13 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from leblanc.results.motion.ball_states import reported_state
+from leblanc.results.races.states import reported_state
 from leblanc.scene.scene import Scene, dry_rotor, require_clear
 from leblanc.studies.models.choose import axial_gravity
 from leblanc.studies.models.liquid import synchronous_model
 from meshes.arrays import Array, Complex, Flags
 from meshes.errors import InputError
 from solvers.liquid_model import LiquidModel
+from solvers.rotor.balls.states import RotorWithBalls
 from solvers.rotor.balls.steady import BallKind
 from solvers.rotor.vibration import orbit
 from solvers.synchronous.balls import wet_states
@@ -23,16 +24,17 @@ MODELS = ("statics", "linear")  # of liquid at rest in the drum, with which stat
 
 
 @dataclass(frozen=True)
-class ReportedStates:
-    """The state that `run` reports at each of s speeds; n coordinates.
+class WorstStates:
+    """The worst stable state at each of s speeds; n coordinates.
 
     Parameters
     ----------
     speed : rad/s, shape (s,)
-    amplitude : of the axis at the first chamber, m, nan where no state was found, shape (s,)
+    amplitude : of the axis in the plane where it is largest, of those of all chambers, m, shape (s,); where
+        no state is stable what all balls on the heavy side would make of it
     stable : small motions do not grow, shape (s,)
     growth : of small motions, 1/s, infinite where no state was found, shape (s,)
-    balanced : the balanced state is stable, whichever is reported, shape (s,)
+    balanced : the balanced state is stable, whichever is the worst, shape (s,)
     balanced_growth : of small motions about the balanced state, 1/s, nan where there is none, shape (s,)
     coordinates : complex amplitudes of the rotor, shape (s, n)
     """
@@ -46,14 +48,14 @@ class ReportedStates:
     coordinates: Complex
 
 
-def plane_of(scene: Scene) -> float:
-    """Plane whose motion is reported: of the first chamber with liquid, or the first race, m.
+def planes_of(scene: Scene) -> tuple[float, ...]:
+    """Planes of all chambers, the one that `run` reports first, m.
 
     Parameters
     ----------
-    scene : with races
+    scene : with chambers
     """
-    return scene.fills[0].chamber.plane if scene.fills else scene.balls[0].plane
+    return tuple(dict.fromkeys(chamber.plane for chamber in scene.chambers))
 
 
 def liquid_beside(scene: Scene) -> tuple[str, LiquidModel]:
@@ -78,8 +80,8 @@ def liquid_beside(scene: Scene) -> tuple[str, LiquidModel]:
     return name, synchronous_model(name)
 
 
-def reported_states(scene: Scene, speed: ArrayLike) -> ReportedStates:
-    """State of rotor, balls and liquid that is reported at some speeds [theory: races, eq. 5-8].
+def worst_states(scene: Scene, speed: ArrayLike) -> WorstStates:
+    """The stable state of rotor, balls and liquid with the largest amplitude [theory: races, eq. 5-8].
 
     Parameters
     ----------
@@ -94,20 +96,21 @@ def reported_states(scene: Scene, speed: ArrayLike) -> ReportedStates:
     races = [race.race() for race in scene.balls]
     model = liquid_beside(scene)[1]
     states = wet_states(system, scene.fills, races, spin, axial_gravity(scene), model).states
-    way = orbit(system, states.coordinates, plane_of(scene))
-    sizes = np.asarray(np.abs(way.forward) + np.abs(way.backward))
+    ways = [orbit(system, states.coordinates, plane) for plane in planes_of(scene)]
+    sizes = np.max([np.abs(way.forward) + np.abs(way.backward) for way in ways], axis=0)
     chosen = reported_state(states, sizes)
     rows, found = np.arange(spin.size), chosen >= 0
+    most = gathered_amplitude(scene, spin)
     if not found.any():
         n = len(system.coordinates)
         nothing, none = np.full(spin.size, np.nan), np.zeros(spin.size, dtype=bool)
         lost = np.full((spin.size, n), complex(np.nan, np.nan))
-        return ReportedStates(spin, nothing, none, np.full(spin.size, np.inf), none, nothing, lost)
-    rests = states.kind == BallKind.BALANCED
-    return ReportedStates(
+        return WorstStates(spin, most, none, np.full(spin.size, np.inf), none, nothing, lost)
+    rests, stable = states.kind == BallKind.BALANCED, found & states.stable[rows, chosen]
+    return WorstStates(
         speed=spin,
-        amplitude=np.where(found, sizes[rows, chosen], np.nan),
-        stable=found & states.stable[rows, chosen],
+        amplitude=np.where(stable, sizes[rows, chosen], most),
+        stable=stable,
         growth=np.where(found, states.growth[rows, chosen], np.inf),
         balanced=np.asarray((rests & states.stable).any(axis=1)),
         balanced_growth=np.where(
@@ -115,3 +118,25 @@ def reported_states(scene: Scene, speed: ArrayLike) -> ReportedStates:
         ),
         coordinates=states.coordinates[rows, chosen],
     )
+
+
+def gathered_amplitude(scene: Scene, speed: Array) -> Array:
+    """Amplitude with all balls where they add most to the unbalance, m, shape (s,).
+
+    In the plane where it is largest, of those of all chambers. It bounds every motion in which the balls rest
+    in the drum; liquid is left out.
+
+    Parameters
+    ----------
+    scene : with races
+    speed : rad/s, shape (s,)
+    """
+    system = dry_rotor(scene).system()
+    machine = RotorWithBalls(system, tuple(race.race() for race in scene.balls))
+    loads = np.vstack((system.unbalance[None], machine.push))
+    each = np.einsum("sij,lj->lsi", machine.compliance(speed), loads)
+    found = []
+    for plane in planes_of(scene):
+        ways = [orbit(system, coordinates, plane) for coordinates in each]
+        found.append(np.sum([np.abs(way.forward) + np.abs(way.backward) for way in ways], axis=0))
+    return np.asarray(np.max(found, axis=0))

@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
-from leblanc.results.motion.ball_states import BallsResult
 from leblanc.results.notes.response import plane_words
+from leblanc.results.races.states import BallsResult
 from leblanc.text.numbers import ranges
 from leblanc.text.run import Limit
 from leblanc.units import LENGTH, UNBALANCE, in_rpm, number, with_unit

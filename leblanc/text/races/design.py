@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from leblanc.results.motion.ball_design import BallDesignResult, DesignedRace
+from leblanc.results.races.design import BallDesignResult, DesignedRace
 from leblanc.text.numbers import NOT_FOUND, number
 from leblanc.text.optimum import shown
 from leblanc.text.run import Limit

@@ -94,3 +94,16 @@ def gravity_swing(
     matrix = np.diag(own) - 4.0 * speed**2 * np.conj(along)[:, None] * (forward @ moved)
     swing = np.linalg.solve(matrix, -gravity * along)
     return Swing(swing, moved @ swing)
+
+
+def swing_power(races: Sequence[BallRace], speed: float, swing: Complex) -> float:
+    """Mean power that the drag of the races turns into heat as balls swing, W; the motor replaces it.
+
+    Parameters
+    ----------
+    races : that hold the balls
+    speed : Omega, rad/s
+    swing : complex amplitude of each ball, as of `Swing`, rad, shape (N,)
+    """
+    drag = np.array([race.drag * race.radius**2 for race in races for _ in race.masses])
+    return float(0.5 * speed**2 * drag @ np.square(np.abs(swing)))

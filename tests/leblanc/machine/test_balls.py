@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import leblanc as lb
-from leblanc.results.motion.ball_states import BallsResult
+from leblanc.results.races.states import BallsResult
 from leblanc.studies.drives import drive_of, numerics_of, planned
 from leblanc.studies.machine import loaded_machine
 from leblanc.studies.runup import across_gravity, chosen_run
@@ -119,7 +119,16 @@ def test_balanced_rotor_leaves_its_feet_in_peace() -> None:
     assert rest.sum() == pytest.approx(9.81 * (10.0 + 4.0 + 10.0 + 0.06) - 98.1, rel=1e-12)
     np.testing.assert_allclose(worst.floor_force[balanced], np.tile(rest, (balanced.sum(), 1)), rtol=1e-12)
     np.testing.assert_allclose(worst.walking[balanced], 1.0, rtol=1e-12)
-    np.testing.assert_allclose(result.loads.torque[balanced], 0.0, atol=1e-15)
+    # The rotor lies: its balls swing once a turn, and their drag is all that the motor replaces.
+    assert result.gravity is not None
+    power = (result.loads.torque * result.speed)[balanced]
+    np.testing.assert_allclose(power, result.gravity.power[balanced], rtol=1e-9)
+    assert np.all(power > 0.0)
+    upright = rig(**{"cabinet": None, "rotor.axis": "vertical"})
+    still = lb.run(upright)
+    assert isinstance(still, BallsResult)
+    assert still.loads is not None
+    np.testing.assert_allclose(still.loads.torque[balanced], 0.0, atol=1e-15)
     np.testing.assert_allclose(worst.clearance[balanced, 0], 2e-3, rtol=1e-12)
 
 

@@ -12,8 +12,8 @@ import pytest
 import leblanc as lb
 from leblanc.cli import main
 from leblanc.figures.races.chart import chart_figure, regions
-from leblanc.results.motion.ball_states import BallsResult
 from leblanc.results.races.chart import BallChart
+from leblanc.results.races.states import BallsResult
 from leblanc.text.races.chart import answer, curves, facts, limits
 from meshes.errors import InputError
 from solvers.rotor.balls.steady import BallKind

@@ -11,7 +11,7 @@ import pytest
 
 import leblanc as lb
 from leblanc.cli import main
-from leblanc.results.motion.ball_states import BallsResult
+from leblanc.results.races.states import BallsResult
 from meshes.errors import InputError
 from solvers.rotor.balls.swing import ball_swing
 from tests.mutants import kills
@@ -70,9 +70,8 @@ def test_balls_that_resist_leave_a_band() -> None:
     assert any(note.code == "sticks" for note in result.notes)
 
 
-@pytest.mark.parametrize("command", ["explain", "optimise"])
-def test_other_commands_refuse_balls_in_one_line(command: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main([command, str(ROOT / "examples" / "balls_and_liquid.toml")]) == 2
+def test_models_of_liquid_are_not_compared_beside_balls(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["compare", str(ROOT / "examples" / "balls_and_liquid.toml"), "--models", "statics"]) == 2
     said = capsys.readouterr().err.strip()
     assert "chambers.1.kind" in said
     assert len(said.splitlines()) == 1
@@ -170,7 +169,7 @@ def test_gravity_is_told_with_its_size() -> None:
     assert any(note.code == "lies" and "twice the spin" in note.text for note in result.notes)
     assert any(note.code == "liquid_waves" for note in result.notes)
     told = json.loads(json.dumps(result.to_json(), default=lambda value: value.tolist()))
-    assert set(told["gravity"]) == {"share", "ball_swing", "amplitude"}
+    assert set(told["gravity"]) == {"share", "ball_swing", "amplitude", "power"}
     assert told["in_range"] == [True] * 7
     slow = lb.run(lying(**{"speeds.start": "60 rpm", "speeds.stop": "160 rpm"}))
     assert isinstance(slow, BallsResult)

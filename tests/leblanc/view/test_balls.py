@@ -12,8 +12,8 @@ import pytest
 import leblanc as lb
 from leblanc.cli import main
 from leblanc.results.drawn import DrawnRace
-from leblanc.results.motion.ball_states import BallsResult
 from leblanc.results.races.drawn import BallView
+from leblanc.results.races.states import BallsResult
 from leblanc.studies.shapes.balls import ball_radius, ball_view, drawn_races, ringed, side_by_side
 from leblanc.studies.shapes.machine import runup_view
 from leblanc.view.balls import ball_still

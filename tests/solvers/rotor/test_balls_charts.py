@@ -98,7 +98,6 @@ def of_unbalance(speed: float, unbalance: float) -> Machine:
     return Machine(Jeffcott(10.0, 2e4, 60.0, unbalance).system(), (RACE,), speed)
 
 
-@kills("solvers.rotor.balls.charts:_held", "rotor.coordinates(compliance, places[None])[0]", "np.zeros(2)")
 @pytest.mark.parametrize(
     ("make", "values", "exact"),
     [
@@ -130,6 +129,7 @@ def heavy(speed: float, unbalance: float) -> Machine:
     )
 
 
+@kills("solvers.rotor.balls.charts:_held", "rotor.coordinates(compliance, places[None])[0]", "np.zeros(2)")
 def test_states_of_a_heavy_ball_meet_in_the_fold_of_their_quadratic() -> None:
     """|D a - m R| = U: two deflections a that meet where U = m R |Im D|/|D|, and none below."""
     chart = stability_chart(heavy, np.linspace(20.0, 44.0, 5), np.linspace(2e-4, 1.5e-3, 5), State([-0.8]))

@@ -15,7 +15,7 @@ from meshes.arrays import Array, Complex
 from solvers.layer.records import Outcome
 from solvers.rotor.balls.balancers import BallRace, simulate, with_balls_at
 from solvers.rotor.balls.steady import steady_states
-from solvers.rotor.balls.swing import ball_swing, gravity_swing
+from solvers.rotor.balls.swing import ball_swing, gravity_swing, swing_power
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import RotorSystem
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
@@ -109,6 +109,7 @@ def test_a_stiff_rotor_leaves_each_ball_alone() -> None:
     assert fast[0] / fast[1] == pytest.approx(4.0)
 
 
+@kills("solvers.rotor.balls.swing:swing_power", "0.5 * speed**2", "speed**2")
 def test_a_run_up_held_at_a_speed_swings_so() -> None:
     """The steps of run-ups, gravity against the first direction, in phase."""
     race, speed = BallRace(0.0, 0.065, (7.1e-3, 7.1e-3), 0.1), 150.0
@@ -116,12 +117,15 @@ def test_a_run_up_held_at_a_speed_swings_so() -> None:
     swing = gravity_swing(ROTOR.system(), [race], speed, places, coordinates, 9.81)
     balls = Balls((race,), tuple(places), (1.0, 1.0))
     made = couple(ROTOR.system(), (), speed, Friction(), 9.81, 64, False, balls=balls)
-    turn, rows = 2.0 * math.pi / speed, []
-    for k in range(32 * 20):
+    turn, rows, heat = 2.0 * math.pi / speed, [], []
+    for k in range(32 * 20 + 1):
         assert made.advance(4.0 + k * turn / 32.0, 0.0, 0.8, 10**7) is Outcome.DONE
         reading = made.read()
         rows.append([reading.time, *(reading.ball_angle - places)])
-    time, psi = np.array(rows)[:, 0], np.array(rows)[:, 1:]
+        heat.append(float(made.sums.friction))
+    time, psi = np.array(rows)[:-1, 0], np.array(rows)[:-1, 1:]
+    power = (heat[-1] - heat[0]) / (20 * turn)
+    assert power == pytest.approx(swing_power([race], speed, swing.balls), rel=0.02)
     # Told in the drum's frame or in the standing one.
     if abs(psi[0, 0]) > 3.0:
         psi = psi - speed * time[:, None]

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from leblanc.results.motion.ball_design import DesignRange
+from leblanc.results.races.design import DesignRange
 from leblanc.scene.races import BallRace
 from leblanc.scene.scene import Scene
 from leblanc.scene.tasks import MAX_BALLS, BallRanges, Optimisation

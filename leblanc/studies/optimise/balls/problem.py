@@ -29,7 +29,7 @@ from leblanc.studies.optimise.balls.design import (
 )
 from leblanc.studies.optimise.problem import operating_speeds, working_speed
 from leblanc.studies.optimise.robust import DOUBLE, operating_conditions, unbalance_range
-from leblanc.studies.races.states import ReportedStates, plane_of, reported_states
+from leblanc.studies.races.states import WorstStates, planes_of, worst_states
 from leblanc.studies.runup import chosen_run
 from leblanc.units import in_rpm, rpm_range
 from meshes.arrays import Array
@@ -43,7 +43,7 @@ OBJECTIVES = ("working_speed", "peak", "mean", "least_mass", "robust")
 # Fields of a task that say nothing of balls.
 _OF_LIQUID = ("deflection", "temperature", "dry_patch", "least_film", "whirl_limit", "spill", "loads_over")
 _OF_LOADS = ("floor_force", "walking_margin", "slip_margin", "point_clearance", "motor_torque", "volumes")
-_MOST_SPEEDS = 25  # of the scene's or a range's, at which a design is judged
+_MOST_SPEEDS = 17  # of the scene's or a range's, at which a design is judged
 _SLACK = 0.01  # default limit of the amplitude over that without balls
 _NEUTRAL = 1e-9  # of the speed: growth that is rounding
 _FADES = 0.01  # of the speed: a decay that is fast
@@ -176,19 +176,19 @@ class BallProblem:
             values["balance_quality"] = max(self._quality(each) for each in states)
         return self._weighed(vibration, mass, growth, values)
 
-    def _states(self, scene: Scene, sizes: tuple[float, ...]) -> ReportedStates:
+    def _states(self, scene: Scene, sizes: tuple[float, ...]) -> WorstStates:
         rotor = with_unbalances(scene.rotor, sizes)
-        return reported_states(scene.altered(rotor=rotor), self.asked)
+        return worst_states(scene.altered(rotor=rotor), self.asked)
 
-    def _at(self, states: ReportedStates, name: str, speeds: Array) -> Array:
+    def _at(self, states: WorstStates, name: str, speeds: Array) -> Array:
         return np.asarray(getattr(states, name)[np.searchsorted(states.speed, speeds)])
 
-    def _largest(self, states: list[ReportedStates], speeds: Array) -> float:
+    def _largest(self, states: list[WorstStates], speeds: Array) -> float:
         """Largest amplitude at some speeds in any condition; infinite where none was found."""
         found = np.array([self._at(each, "amplitude", speeds) for each in states])
         return float(np.where(np.isnan(found), np.inf, found).max())
 
-    def _amplitude(self, scene: Scene, states: list[ReportedStates]) -> float:
+    def _amplitude(self, scene: Scene, states: list[WorstStates]) -> float:
         """What the objective looks at, m."""
         if self.in_time:
             return run_up_peak(scene)
@@ -202,7 +202,7 @@ class BallProblem:
             float(np.quantile(over, self.task.quantile, method="higher")) if over.size > 1 else float(over[0])
         )
 
-    def _quality(self, states: ReportedStates) -> float:
+    def _quality(self, states: WorstStates) -> float:
         """Balance quality of rotor and balls together at the working speed, m/s."""
         row = int(np.searchsorted(states.speed, self.working_speed))
         coordinates = states.coordinates[row][None]
@@ -355,9 +355,9 @@ def bare_amplitude(problem: BallProblem) -> float:
     found = []
     for sizes in problem.unbalances:
         changed = scene.altered(rotor=with_unbalances(scene.rotor, sizes))
-        rotor, place = dry_rotor(changed), plane_of(scene)
-        answer = response(rotor, scene.fills, problem.speeds, axial_gravity(scene), position=place)
-        found.append(answer.amplitude)
+        given = dry_rotor(changed), scene.fills, problem.speeds, axial_gravity(scene)
+        sizes_at = [response(*given, position=plane).amplitude for plane in planes_of(scene)]
+        found.append(np.max(sizes_at, axis=0))
     each = np.array(found)
     over = each @ problem.weights if problem.weights.size else each.max(axis=1)
     return float(np.quantile(over, problem.task.quantile, method="higher"))

@@ -10,8 +10,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from leblanc.results.base import Note
-from leblanc.results.motion.ball_design import BallDesignResult, DesignedRace, TriedDesigns
 from leblanc.results.notes import ball_design as notes
+from leblanc.results.races.design import BallDesignResult, DesignedRace, TriedDesigns
 from leblanc.scene.races import BallRace
 from leblanc.scene.scene import Scene
 from leblanc.scene.tasks import Optimisation
@@ -27,7 +27,7 @@ from leblanc.studies.optimise.balls.design import (
 )
 from leblanc.studies.optimise.balls.problem import BallProblem, Verdict, ball_problem
 from leblanc.studies.races.balls import run_balls
-from leblanc.studies.races.states import reported_states
+from leblanc.studies.races.states import worst_states
 from meshes.arrays import Array
 from meshes.errors import InputError
 
@@ -40,10 +40,10 @@ _SETTLED = 1e-7  # spread of a population that has come together
 _NEAR = 0.2  # numbers of balls whose best score is within this of the best may be looked at closer
 _CLOSER = 2  # of them, and the one with the fewest balls; the best alone where a design takes its time
 _STEPS, _FEW_STEPS = 80, 25  # of the search downhill, a variable
-_ROUNDS = 30  # of lighter balls and better drag in turn
+_ROUNDS = 12  # of lighter balls and better drag in turn
 _HALVINGS = 50
-_DRAGS, _TIGHTER = 9, 4  # places over the range of a drag, and how often that is narrowed about the best
-_SAME = 1e-9  # relative: masses that are one
+_DRAGS, _TIGHTER = 7, 3  # places over the range of a drag, and how often that is narrowed about the best
+_SAME = 1e-7  # relative: masses that are one
 _SLOW = 1e-3  # of the working speed: a decay to be told
 _EDGE = 1e-3  # of a range: its end
 
@@ -247,17 +247,19 @@ def _lightest(tried: _Tried, start: Array) -> Array:
     drags = [k for k, v in enumerate(variables) if v.name == "drag"]
     wide = [k for k, v in enumerate(variables) if v.name == "radius"]
     best = start
-    for _ in range(_ROUNDS):
+    for turn in range(_ROUNDS):
         before = tried.one(best)
         for k in wide:
             best = _widest(tried, best, k)
         for k in sizes:
             best = _smallest(tried, best, k)
         for k in drags:
-            best = _quickest(tried, best, k)
+            best = _quickest(tried, best, k, 0.5**turn)
         after = tried.one(best)
-        if before.mass - after.mass <= _SAME * after.mass and after.growth >= before.growth - _SAME:
+        if before.mass - after.mass <= _SAME * after.mass:
             break
+    for k in sizes:
+        best = _smallest(tried, best, k)
     return best
 
 
@@ -290,10 +292,13 @@ def _widest(tried: _Tried, row: Array, k: int) -> Array:
     return _bisected(tried, row, k, tried.problem.variables[k].bounds[1])
 
 
-def _quickest(tried: _Tried, row: Array, k: int) -> Array:
-    """The drag at which small motions fade quickest; the same where no other keeps the constraints."""
+def _quickest(tried: _Tried, row: Array, k: int, share: float) -> Array:
+    """The drag at which small motions fade quickest; the same where no other keeps the constraints.
+
+    It is looked for over a share of its range about where it is.
+    """
     low, high = tried.problem.variables[k].bounds
-    centre, half = float(row[k]), high - low
+    centre, half = float(row[k]), share * (high - low)
     for _ in range(_TIGHTER):
         places = np.linspace(max(centre - half, low), min(centre + half, high), _DRAGS)
         rows = [_moved(row, k, centre), *(_moved(row, k, place) for place in places.tolist())]
@@ -391,7 +396,7 @@ def _findings(
         yield notes.slow(-verdict.growth)
     if problem.task.objective in ("peak", "mean") and not problem.in_time:
         scene = with_balls(problem.scene, problem.variables, best)
-        found = reported_states(scene, problem.speeds)
+        found = worst_states(scene, problem.speeds)
         if not found.stable.all():
             first, last = found.speed[~found.stable][[0, -1]].tolist()
             yield notes.unstable_speeds(first, last)

@@ -41,15 +41,17 @@ class GravityOnBalls:
     share : gravity over the centrifugal acceleration of the balls that have least of it, shape (s,)
     ball_swing : amplitude of each ball's angle about its place, once a turn, rad, shape (s, N)
     amplitude : by which the axis is shaken with twice the spin, m, shape (s,)
+    power : that the drag of the races takes so, W, shape (s,)
     """
 
     share: Array
     ball_swing: Array
     amplitude: Array
+    power: Array
 
     def to_json(self) -> dict[str, Any]:
         """Plain values over the speeds, SI."""
-        return {name: finite(getattr(self, name)) for name in ("share", "ball_swing", "amplitude")}
+        return {name: finite(getattr(self, name)) for name in ("share", "ball_swing", "amplitude", "power")}
 
     def variables(self) -> dict[str, Variable]:
         """Arrays over `speed` and `ball`."""
@@ -57,6 +59,7 @@ class GravityOnBalls:
         text = "of gravity across the axis, about the place at rest"
         return {
             "gravity_share": variable(over, self.share, "1", "gravity over centrifugal acceleration"),
+            "swing_power": variable(over, self.power, "W", "power that the swing of the balls takes"),
             "ball_swing": variable(("speed", "ball"), self.ball_swing, "rad", "swing of the ball", text),
             "swing_amplitude": variable(
                 over, self.amplitude, "m", "shake by the balls' swing", "twice a turn"

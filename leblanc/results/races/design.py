@@ -10,9 +10,9 @@ import numpy as np
 
 from leblanc.results.base import ConstraintValue, Note, Result, attributes, texts
 from leblanc.results.exciter import number_or_none
-from leblanc.results.motion.ball_states import BallsResult
 from leblanc.results.netcdf import NamedArrays
 from leblanc.results.netcdf import variable as var
+from leblanc.results.races.states import BallsResult
 from meshes.arrays import Array
 
 

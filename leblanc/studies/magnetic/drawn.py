@@ -1,0 +1,88 @@
+"""A rotor in magnetic bearings as a picture draws it: its trial in time, or its orbit at a speed."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from leblanc.results.drawn import rounded_down
+from leblanc.results.magnetic.drawn import MagneticView
+from leblanc.scene.scene import Scene
+from leblanc.studies.magnetic.run import loads_of, rotor_of
+from meshes.arrays import Array
+from meshes.errors import InputError
+from solvers.rotor.magnetic.linear import closed_loop, orbit_size
+from solvers.rotor.magnetic.motion import integrate
+
+GAP, ORBIT = 0.35, 0.5  # gap as drawn over the rotor's radius, orbit as drawn over the gap
+_LONG = 1.3  # of a rotor whose length the scene does not say, over the distance of its bearings
+_ROUND = 121  # instants of an orbit
+
+
+def magnetic_view(scene: Scene, speed: float | None = None, factor: float | None = None) -> MagneticView:
+    """A rotor in magnetic bearings with its first controller.
+
+    Parameters
+    ----------
+    scene : of kind "magnetic"
+    speed : of an orbit by the unbalances alone, rad/s; the trial in time if None and the scene has one
+    factor : of the path as drawn; that of the gap in a trial, chosen for an orbit, if None
+
+    Raises
+    ------
+    InputError : another rotor, a value out of its range, a speed at which the controller does not hold it
+    """
+    rotor = rotor_of(scene)
+    if factor is not None and not (math.isfinite(factor) and factor > 0.0):
+        raise InputError("--factor", factor, "a finite number above 0")
+    machine, controller = rotor.machine(), rotor.controllers()[0]
+    gap = machine.magnets.gap
+    said = rotor.drag is not None
+    radius = (
+        rotor.drag.radius if rotor.drag is not None else math.sqrt(2.0 * machine.polar_inertia / machine.mass)
+    )
+    length = rotor.drag.length if rotor.drag is not None else _LONG * (machine.second - machine.first)
+    wider = float(f"{rounded_down(GAP * radius / gap):.6g}")
+    trial = rotor.trial if speed is None else None
+    if trial is not None:
+        motion = integrate(
+            machine,
+            controller,
+            trial.law(),
+            trial.duration,
+            tuple(loads_of(scene).values()),
+            place=(*trial.offset, 0.0, 0.0),
+            samples=trial.samples,
+        )
+        time, spin, path, chosen = motion.time, motion.speed, motion.displacement, wider
+    else:
+        at = scene.speeds.stop if speed is None else speed
+        if not (math.isfinite(at) and at > 0.0):
+            raise InputError("--speed", at, "a finite number above 0")
+        loop = closed_loop(machine, controller, at)
+        if not loop.stable:
+            raise InputError("--speed", at, f"one at which {controller.name} control holds the rotor")
+        place, _ = loop.unbalance()
+        turn: Array = np.linspace(0.0, 2.0 * math.pi, _ROUND)
+        time, spin = turn / at, np.full(_ROUND, at)
+        path = (place * np.exp(1j * turn[:, None])).real
+        largest = float(orbit_size(place).max())
+        chosen = float(f"{rounded_down(wider * ORBIT * gap / largest):.6g}") if largest > 0.0 else wider
+    return MagneticView(
+        name=scene.name,
+        assumed=bool(scene.assumed),
+        lying=rotor.axis == "horizontal",
+        controller=controller.name,
+        trial=trial is not None,
+        time=time,
+        speed=spin,
+        displacement=path,
+        gap=gap,
+        planes=(machine.first, machine.second),
+        radius=radius,
+        length=length,
+        sketched=not said,
+        gap_factor=wider,
+        path_factor=chosen if factor is None else factor,
+    )
