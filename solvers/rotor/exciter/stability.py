@@ -36,7 +36,7 @@ def stuck_roots(machine: Dimensionless, stuck: float, share: float = 1.0) -> Com
     Where the slowest stuck speed meets the second, a real root is zero:
 
     >>> machine = Dimensionless(0.01, 0.4, 0.0, 0.03)
-    >>> merger = 1.000858
+    >>> merger = 1.00137541
     >>> bool(abs(stuck_roots(machine, merger)[0]) < 1e-3)
     True
     """
