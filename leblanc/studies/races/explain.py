@@ -71,7 +71,7 @@ def explain_balls(scene: Scene) -> BallExplanation:
 
 
 def needed_shares(turned: RotorWithBalls) -> tuple[Array, float]:
-    """Unbalance that the balls of each race must hold where the rotor is balanced [theory: balls, eq. 21].
+    """Unbalance that the balls of each race must hold where the rotor is balanced [theory: races, eq. 11].
 
     Of all shares that do it those that go with what the races can hold.
 
