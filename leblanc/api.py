@@ -31,9 +31,9 @@ if TYPE_CHECKING:
     from leblanc.results.magnetic.explanation import MagneticExplanation
     from leblanc.results.models.comparison import Comparison
     from leblanc.results.motion.ball_design import BallDesignResult
-    from leblanc.results.motion.ball_numbers import BallExplanation
     from leblanc.results.motion.ball_states import BallsResult
     from leblanc.results.optimum import OptimumResult
+    from leblanc.results.races.numbers import BallExplanation
     from leblanc.results.response import RunResult
     from leblanc.results.runup import RunupResult
     from leblanc.results.spindles.bearing import BearingResult
@@ -132,7 +132,7 @@ def explain(
 
         return explain_magnetic(machine)
     if machine.balls:
-        from leblanc.studies.races.explain import explain_balls
+        from leblanc.studies.explain import explain_balls
 
         return explain_balls(machine)
     from leblanc.studies.explain import explain_exciter, explain_scene

@@ -10,7 +10,7 @@ import numpy as np
 from leblanc.figures.drawing.page import Caption, Figure, Frame, add_rate_axis, lay_out, number, style
 from leblanc.figures.response import DRY, WET
 from leblanc.results.base import one_line
-from leblanc.results.motion.ball_numbers import BallExplanation
+from leblanc.results.races.numbers import BallExplanation
 from leblanc.text.races.numbers import alt
 from leblanc.units import RPM
 

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from leblanc.results.base import one_line
-from leblanc.results.motion.ball_numbers import BallExplanation, RaceNumbers
+from leblanc.results.races.numbers import BallExplanation, RaceNumbers
 from leblanc.text.explanation import machine_rows
 from leblanc.text.numbers import number, ranges
 from leblanc.units import LENGTH, MASS, MM, RPM, UNBALANCE, in_rpm, with_unit

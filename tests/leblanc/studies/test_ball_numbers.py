@@ -11,8 +11,8 @@ import pytest
 
 import leblanc as lb
 from leblanc.cli import main
-from leblanc.results.motion.ball_numbers import BallExplanation
 from leblanc.results.motion.ball_states import BallsResult
+from leblanc.results.races.numbers import BallExplanation
 from leblanc.scene.scene import Scene, dry_rotor
 from leblanc.studies.batch import answer_scenes
 from leblanc.studies.fit import Measurement, _answer, fit_scene
@@ -34,8 +34,8 @@ def explained(scene: Scene) -> BallExplanation:
     return told
 
 
-@kills("leblanc.studies.races.explain:_numbers", "inertia / race.drag", "race.each / race.drag")
-@kills("leblanc.studies.races.explain:_balanced_from", "(low, middle) if stable", "(middle, high) if stable")
+@kills("leblanc.studies.races.numbers:_numbers", "inertia / race.drag", "race.each / race.drag")
+@kills("leblanc.studies.races.numbers:_balanced_from", "(low, middle) if stable", "(middle, high) if stable")
 def test_the_example_in_numbers() -> None:
     """Sizes by hand; the edge of balancing by the roots of another code."""
     told = explained(EXAMPLE)

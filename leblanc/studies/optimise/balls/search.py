@@ -99,7 +99,7 @@ class _Tried:
 def optimise_balls(
     scene: Scene, task: Optimisation, progress: Progress | None = None, workers: int = 1
 ) -> BallDesignResult:
-    """Best balls of a scene's races within ranges [theory: races, eq. 10-12; SP97].
+    """Best balls of a scene's races within ranges [theory: races, eq. 10-12] [SP97].
 
     The same seed gives the same balls with any number of workers.
 

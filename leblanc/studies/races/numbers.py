@@ -4,17 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import replace
 
 import numpy as np
 
-from leblanc.results.motion.ball_numbers import BallExplanation, RaceNumbers
+from leblanc.results.explanation import Explanation
+from leblanc.results.races.numbers import BallExplanation, RaceNumbers
 from leblanc.scene.races import BallRace
 from leblanc.scene.scene import Scene, TwoPlaneRotor, dry_rotor, require_clear
 from leblanc.scene.unbalances import unbalances_of
-from leblanc.studies.explain import explain_scene
 from leblanc.studies.races.states import worst_states
-from leblanc.studies.runup import runup_outlook
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
 from solvers.rotor.balls.steady import RotorWithBalls, turning
@@ -30,21 +28,15 @@ _HALVINGS, _FEWER = 20, 8  # of the gap in which it becomes stable
 _LEFT = 1e-9  # of the unbalance: what may be left of it where races balance it
 
 
-def explain_balls(scene: Scene) -> BallExplanation:
+def ball_numbers(scene: Scene, machine: Explanation) -> BallExplanation:
     """Numbers of a scene with balls, beside those of the same scene without.
 
     Parameters
     ----------
     scene : with races
-
-    Raises
-    ------
-    InputError : no race, or as for the scene without them
+    machine : the scene without them
     """
-    if not scene.balls:
-        raise InputError("chambers", len(scene.chambers), "with one of kind balls for this")
     require_clear(scene, "balls beside liquid")
-    machine = replace(explain_scene(scene.without_balls()), digest=scene.digest, runup=runup_outlook(scene))
     system = dry_rotor(scene).system()
     turned = RotorWithBalls(system, tuple(race.race() for race in scene.balls))
     shares, left = needed_shares(turned)

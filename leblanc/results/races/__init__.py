@@ -1,0 +1,1 @@
+"""A scene with balls in numbers."""
