@@ -106,6 +106,7 @@ RECIPES = (
         long_rotor_map="map",
     ),
     _example("runup", "balls", balls_runup="runup_time"),
+    _example("optimise", "balls_design", balls_design="design"),
     _example("run", "balls_and_liquid", balls_and_liquid="balls"),
     _example("runup", "programme", programme_speed="runup_speed", programme_time="runup_time"),
     _example("optimise", "runup", optimise_objective="objective"),

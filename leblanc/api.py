@@ -133,7 +133,7 @@ def explain(
 
         return explain_magnetic(machine)
     if machine.balls:
-        from leblanc.studies.races.explain import explain_balls
+        from leblanc.studies.explain import explain_balls
 
         return explain_balls(machine)
     from leblanc.studies.explain import explain_exciter, explain_scene

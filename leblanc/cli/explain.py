@@ -19,7 +19,7 @@ def explain(
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> None:
     """Key numbers of the machine; which liquid model answers, and why."""
-    from leblanc.studies.explain import explain_exciter, explain_scene
+    from leblanc.studies.explain import explain_balls, explain_exciter, explain_scene
     from leblanc.text.explanation import exciter_rows
 
     machine = load(scene)
@@ -43,8 +43,6 @@ def explain(
             print_table(explanation_rows(told), indent=2)
         return
     if machine.balls:
-        from leblanc.studies.races.explain import explain_balls
-
         balls = explain_balls(machine)
         if json:
             print_json(balls.to_json())

@@ -140,7 +140,8 @@ class Optimisation(Part):
         "see loads_over: the largest force under a foot of the cabinet (floor_force), the share of its hold "
         "on the floor that the machine uses (walking_margin), the share of its gap that a point takes "
         "(point_clearance), the largest torque of the motor (motor_torque); or the mounts of a tub are "
-        "chosen in place of its liquid (layout)",
+        "chosen in place of its liquid (layout). Where there are balls these are chosen, for one of the "
+        "first five",
     )
     working_speed: Annotated[float | None, SPEED] = Field(
         None, description="the last of the scene's speeds if left out"
@@ -186,7 +187,9 @@ class Optimisation(Part):
         "and those of the duty cycle, or at all operating speeds where a margin or a range of them is given",
     )
     stability_margin: Annotated[float | None, quantity(units.RATE, 0.0, 1e6)] = Field(
-        None, description="least decay of every small whirl, at all operating speeds; 0 if left out"
+        None,
+        description="least decay of every small whirl, at all operating speeds; with balls of all small "
+        "motions, at the working speed unless operating is given; 0 if left out",
     )
     least_film: Annotated[float, quantity(units.LENGTH, 0.0, 1e3)] = Field(
         5e-5,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -24,6 +24,7 @@ from leblanc.results.explanation import (
     WhirlOutlook,
 )
 from leblanc.results.motion.tilting import RestMode
+from leblanc.results.races.numbers import BallExplanation
 from leblanc.scene.rotors import Exciter as ExciterOfScene
 from leblanc.scene.rows import baffle_words
 from leblanc.scene.scene import Runup, Scene
@@ -39,6 +40,7 @@ from leblanc.studies.models.choose import (
     runup_outlook,
 )
 from leblanc.studies.models.liquid import synchronous_model
+from leblanc.studies.races.numbers import ball_numbers
 from leblanc.studies.run import rest_modes
 from meshes.arrays import Array
 from meshes.errors import InputError
@@ -131,6 +133,23 @@ def explain_scene(scene: Scene) -> Explanation:
         digest=scene.digest,
         closed_forms=closed_forms(machine),
     )
+
+
+def explain_balls(scene: Scene) -> BallExplanation:
+    """Numbers of a scene with balls, beside those of the same scene without.
+
+    Parameters
+    ----------
+    scene : with races
+
+    Raises
+    ------
+    InputError : no race, or as for the scene without them
+    """
+    if not scene.balls:
+        raise InputError("chambers", len(scene.chambers), "with one of kind balls for this")
+    machine = replace(explain_scene(scene.without_balls()), digest=scene.digest, runup=runup_outlook(scene))
+    return ball_numbers(scene, machine)
 
 
 def _whirl(machine: Prepared, growth: Array) -> WhirlOutlook | None:

@@ -1,1 +1,1 @@
-"""Results of balls in their races: charts of their stability, and machines with them as drawn."""
+"""Balls in their races: states, numbers, charts of stability, designs, and machines with them as drawn."""

@@ -83,7 +83,7 @@ class TriedDesigns:
 
 @dataclass(frozen=True)
 class BallDesignResult(Result):
-    """The best balls of a scene's races [theory: races, eq. 9-11].
+    """The best balls of a scene's races [theory: races, eq. 13-15].
 
     Parameters
     ----------

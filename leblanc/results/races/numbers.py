@@ -70,7 +70,7 @@ class BallExplanation(Result):
     >>> import leblanc as lb
     >>> told = lb.explain(lb.example("balls"))
     >>> told.can_balance, round(told.balanced_from / told.machine.critical_speed_dry, 2)
-    (True, 1.02)
+    (True, 1.12)
     """
 
     figure: ClassVar[str] = "leblanc.figures.races.numbers:numbers_figure"

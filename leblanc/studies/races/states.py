@@ -121,7 +121,7 @@ def worst_states(scene: Scene, speed: ArrayLike) -> WorstStates:
 
 
 def gathered_amplitude(scene: Scene, speed: Array) -> Array:
-    """Amplitude with all balls where they add most to the unbalance, m, shape (s,).
+    """Amplitude with all balls where they add most to the unbalance [theory: races, eq. 15], m, shape (s,).
 
     In the plane where it is largest, of those of all chambers. It bounds every motion in which the balls rest
     in the drum; liquid is left out.

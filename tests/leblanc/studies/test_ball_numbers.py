@@ -34,8 +34,8 @@ def explained(scene: Scene) -> BallExplanation:
     return told
 
 
-@kills("leblanc.studies.races.explain:_numbers", "inertia / race.drag", "race.each / race.drag")
-@kills("leblanc.studies.races.explain:_balanced_from", "(low, middle) if stable", "(middle, high) if stable")
+@kills("leblanc.studies.races.numbers:_numbers", "inertia / race.drag", "race.each / race.drag")
+@kills("leblanc.studies.races.numbers:_balanced_from", "(low, middle) if stable", "(middle, high) if stable")
 def test_the_example_in_numbers() -> None:
     """Sizes by hand; the edge of balancing by the roots of another code."""
     told = explained(EXAMPLE)

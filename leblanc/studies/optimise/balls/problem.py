@@ -1,6 +1,6 @@
 """What a design of balls is judged by: an amplitude or the mass of all balls, and what it must keep to.
 
-[theory: optimum, eq. 14-16]
+[theory: races, eq. 13-15]
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ _SLACK = 0.01  # default limit of the amplitude over that without balls
 _NEUTRAL = 1e-9  # of the speed: growth that is rounding
 _FADES = 0.01  # of the speed: a decay that is fast
 _EQUAL = 1e-3  # of the amplitude without balls: what differs by less is equal
-_WHOLE = 10.0  # objective of a design that breaks a constraint, above those of all that keep them
+WHOLE = 10.0  # objective of a design that breaks a constraint, above those of all that keep them
 
 
 class Verdict(NamedTuple):
@@ -56,7 +56,7 @@ class Verdict(NamedTuple):
 
     Parameters
     ----------
-    score : to be made least: of the objective and, among equals, of the decay; above `_WHOLE` where a
+    score : to be made least: of the objective and, among equals, of the decay; above `WHOLE` where a
         constraint is broken
     value : of the objective, in its unit
     vibration : amplitude, m, infinite where there is no stable state
@@ -162,7 +162,7 @@ class BallProblem:
         if not sunk or values["fits"] > 1.0:
             over = 1.0 if not sunk else min(values["fits"] - 1.0, 1e6)
             lost = dict.fromkeys(self.limits, math.inf) | values
-            return Verdict(_WHOLE + 10.0 + over, math.inf, math.inf, mass, math.inf, over, lost)
+            return Verdict(WHOLE + 10.0 + over, math.inf, math.inf, mass, math.inf, over, lost)
         states = [self._states(scene, sizes) for sizes in self.unbalances]
         growth = max(float(np.max(self._at(each, "growth", self.growth_at))) for each in states)
         values["stable"] = growth
@@ -216,7 +216,7 @@ class BallProblem:
         worst = max(excess, default=-1.0)
         value = mass if self.by_mass else vibration
         if worst > 1e-9:
-            return Verdict(_WHOLE + min(worst, 9.0), value, vibration, mass, growth, worst, values)
+            return Verdict(WHOLE + min(worst, 9.0), value, vibration, mass, growth, worst, values)
         slow = 1.0 / (1.0 + max(-growth, 0.0) / (_FADES * self.working_speed))
         score = mass / self.mass_scale if self.by_mass else max(vibration / self.bare, _EQUAL) + _EQUAL * slow
         return Verdict(score, value, vibration, mass, growth, worst, values)

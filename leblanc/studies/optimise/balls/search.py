@@ -25,7 +25,7 @@ from leblanc.studies.optimise.balls.design import (
     whole_numbers,
     with_balls,
 )
-from leblanc.studies.optimise.balls.problem import BallProblem, Verdict, ball_problem
+from leblanc.studies.optimise.balls.problem import WHOLE, BallProblem, Verdict, ball_problem
 from leblanc.studies.races.balls import run_balls
 from leblanc.studies.races.states import worst_states
 from meshes.arrays import Array
@@ -37,13 +37,17 @@ _MEMBERS, _GENERATIONS = 8, 40  # of the search: members a variable, generations
 _FEW_MEMBERS, _FEW_GENERATIONS = 5, 10  # where a design takes tenths of a second
 _LEAST_MEMBERS = 16
 _SETTLED = 1e-7  # spread of a population that has come together
-_NEAR = 0.2  # numbers of balls whose best score is within this of the best may be looked at closer
-_CLOSER = 2  # of them, and the one with the fewest balls; the best alone where a design takes its time
+_CLOSER = 2  # numbers of balls looked at closer; the best alone for a mass, or where a design takes time
+_RESERVE = 1.01  # so much heavier are the fewest balls at first
+_ALIKE = 1e-3  # relative: scores that are one, of which the fewest balls are taken
 _STEPS, _FEW_STEPS = 80, 25  # of the search downhill, a variable
-_ROUNDS = 12  # of lighter balls and better drag in turn
-_HALVINGS = 50
-_DRAGS, _TIGHTER = 7, 3  # places over the range of a drag, and how often that is narrowed about the best
+_KEPT = 1e-9  # excess over a constraint that is rounding
+_ROUNDS = 6  # of lighter balls, race by race
 _SAME = 1e-7  # relative: masses that are one
+_FOUND = 1e-7  # of a size or its logarithm: how near the least is looked for
+_DRAGS, _BESIDE = 9, 0.4  # places over the range of a drag; how far beside the last one it is looked for
+_DRAG_FOUND = 1e-6  # of its logarithm: how near the best is looked for
+_MOST = 1e9  # 1/s: growth where there is no state
 _SLOW = 1e-3  # of the working speed: a decay to be told
 _EDGE = 1e-3  # of a range: its end
 
@@ -95,7 +99,7 @@ class _Tried:
 def optimise_balls(
     scene: Scene, task: Optimisation, progress: Progress | None = None, workers: int = 1
 ) -> BallDesignResult:
-    """Best balls of a scene's races within ranges [theory: races, eq. 9-11; SP97].
+    """Best balls of a scene's races within ranges [theory: races, eq. 13-15] [SP97].
 
     The same seed gives the same balls with any number of workers.
 
@@ -191,17 +195,54 @@ def _closer(tried: _Tried) -> Array:
         if key not in groups or score < groups[key][0]:
             groups[key] = score, row
     ranked = sorted(groups.values(), key=lambda found: (found[0], found[1].tolist()))
-    least = ranked[0][0]
-    near = [row for score, row in ranked if score <= least + _NEAR * abs(least)]
-    few = min(range(len(near)), key=lambda k: near[k][whole].sum())
-    near = near[:1] if tried.problem.costly else [near[k] for k in sorted({*range(len(near))[:_CLOSER], few})]
+    near = [row for _, row in ranked[: 1 if tried.problem.costly or tried.problem.by_mass else _CLOSER]]
     ends = []
     for k, row in enumerate(near):
-        tried.share = 0.8 + 0.2 * k / len(near)
-        ends.append(_lightest(tried, row) if tried.problem.by_mass else _downhill(tried, row))
-    scores = np.array([tried.one(row).score for row in ends])
-    alike = np.flatnonzero(scores <= scores.min() * (1.0 + 1e-6))
-    return min((ends[k] for k in alike.tolist()), key=lambda row: (row[whole].sum(), tried.one(row).score))
+        tried.share = 0.8 + 0.15 * k / len(near)
+        ends.append(_ended(tried, row))
+    best = ends[int(np.argmin([tried.one(row).score for row in ends]))]
+    return best if tried.problem.costly else _fewest(tried, best)
+
+
+def _ended(tried: _Tried, row: Array) -> Array:
+    """The end of the way from a design with as many balls."""
+    return _lightest(tried, row) if tried.problem.by_mass else _downhill(tried, row)
+
+
+def _fewest(tried: _Tried, best: Array) -> Array:
+    """The fewest balls that do as well: of the same mass and the same drag together, then closer.
+
+    Light balls of a race that stand together act as one of their mass and drag.
+    """
+    counts = [k for k, v in enumerate(tried.problem.variables) if v.name == "count"]
+    score = tried.one(best).score
+    if not counts or score >= WHOLE:
+        return best
+    for number in range(2, int(best[counts].max())):
+        row = _regrouped(tried.problem, best, number)
+        if np.array_equal(row, best):
+            continue
+        end = _ended(tried, row)
+        if tried.one(end).score <= score * (1.0 + _ALIKE):
+            return end
+    return best
+
+
+def _regrouped(problem: BallProblem, point: Array, number: int) -> Array:
+    """The point with at most so many balls in each race, of the same mass and drag together."""
+    changed = point.copy()
+    for k, own in enumerate(problem.variables):
+        if own.name != "count":
+            continue
+        count = max(min(point[k], float(number)), own.low)
+        more = _RESERVE * point[k] / count
+        powers = {"mass": 1.0, "diameter": 1.0 / 3.0, "drag": 1.0}
+        changed[k] = count
+        for j, other in enumerate(problem.variables):
+            if other.race == own.race and other.name in powers:
+                value = other.value(float(point[j])) * more ** powers[other.name]
+                changed[j] = other.searched(value)
+    return changed
 
 
 def _downhill(tried: _Tried, start: Array) -> Array:
@@ -236,31 +277,39 @@ def _downhill(tried: _Tried, start: Array) -> Array:
 
 
 def _lightest(tried: _Tried, start: Array) -> Array:
-    """Lighter balls race by race as long as all constraints are kept, and the quickest drag.
+    """Lighter balls race by race as long as all constraints are kept, each race with its quickest drag.
 
-    In turn: a better drag leaves room for lighter balls. The mass falls in every round.
+    The mass falls in every round; one round is enough for a single race.
     """
     variables = tried.problem.variables
-    if tried.one(start).excess > 1e-9:
-        return start
-    sizes = [k for k, v in enumerate(variables) if v.name in ("mass", "diameter")]
-    drags = [k for k, v in enumerate(variables) if v.name == "drag"]
-    wide = [k for k, v in enumerate(variables) if v.name == "radius"]
     best = start
-    for turn in range(_ROUNDS):
-        before = tried.one(best)
-        for k in wide:
-            best = _widest(tried, best, k)
-        for k in sizes:
-            best = _smallest(tried, best, k)
-        for k in drags:
-            best = _quickest(tried, best, k, 0.5**turn)
-        after = tried.one(best)
-        if before.mass - after.mass <= _SAME * after.mass:
+    if tried.one(start).excess > _KEPT:
+        for k, variable in enumerate(variables):
+            best = _quickest(tried, best, k) if variable.name == "drag" else best
+        if tried.one(best).excess > _KEPT:
+            return start
+    for _ in range(_ROUNDS):
+        before = tried.one(best).mass
+        for k, variable in enumerate(variables):
+            if variable.name == "radius":
+                best = _moved(best, k, variable.bounds[1]) if _kept(tried, best, k) else best
+        for k, variable in enumerate(variables):
+            if variable.name in ("mass", "diameter"):
+                best = _smallest(tried, best, k, _drag_of(tried, variable.race))
+        if before - tried.one(best).mass <= _SAME * before:
             break
-    for k in sizes:
-        best = _smallest(tried, best, k)
     return best
+
+
+def _kept(tried: _Tried, row: Array, k: int) -> bool:
+    """The constraints are kept with the most of one variable."""
+    return tried.one(_moved(row, k, tried.problem.variables[k].bounds[1])).excess <= _KEPT
+
+
+def _drag_of(tried: _Tried, race: int) -> int | None:
+    """Which variable is the drag of a race; None where it stays."""
+    found = [k for k, v in enumerate(tried.problem.variables) if (v.race, v.name) == (race, "drag")]
+    return found[0] if found else None
 
 
 def _moved(row: Array, k: int, value: float) -> Array:
@@ -270,43 +319,56 @@ def _moved(row: Array, k: int, value: float) -> Array:
     return changed
 
 
-def _bisected(tried: _Tried, row: Array, k: int, far: float) -> Array:
-    """As near to the far end of a variable as the constraints allow."""
-    if tried.one(_moved(row, k, far)).excess <= 1e-9:
-        return _moved(row, k, far)
-    good, bad = float(row[k]), far
-    for _ in range(_HALVINGS):
-        middle = 0.5 * (good + bad)
-        if abs(good - bad) <= 1e-11 * max(abs(good), 1e-3):
-            break
-        kept = tried.one(_moved(row, k, middle)).excess <= 1e-9
-        good, bad = (middle, bad) if kept else (good, middle)
-    return _moved(row, k, good)
+def _smallest(tried: _Tried, row: Array, k: int, drag: int | None) -> Array:
+    """The least size of the balls of a race with which some drag keeps the constraints, by halving."""
+
+    def kept(size: float, near: Array) -> Array | None:
+        moved = _moved(near, k, size)
+        if tried.one(moved).excess > _KEPT and drag is not None:
+            moved = _quickest(tried, moved, drag, _BESIDE)
+        return moved if tried.one(moved).excess <= _KEPT else None
+
+    best = row if drag is None else _quickest(tried, row, drag)
+    best = best if tried.one(best).excess <= _KEPT else row
+    bad = tried.problem.variables[k].bounds[0]
+    end = kept(bad, best)
+    if end is not None:
+        return end
+    while best[k] - bad > _FOUND:
+        middle = 0.5 * (float(best[k]) + bad)
+        lighter = kept(middle, best)
+        if lighter is None:
+            bad = middle
+        else:
+            best = lighter
+    return best
 
 
-def _smallest(tried: _Tried, row: Array, k: int) -> Array:
-    return _bisected(tried, row, k, tried.problem.variables[k].bounds[0])
+def _quickest(tried: _Tried, row: Array, k: int, beside: float | None = None) -> Array:
+    """The drag at which small motions fade quickest, whatever else it does.
 
-
-def _widest(tried: _Tried, row: Array, k: int) -> Array:
-    return _bisected(tried, row, k, tried.problem.variables[k].bounds[1])
-
-
-def _quickest(tried: _Tried, row: Array, k: int, share: float) -> Array:
-    """The drag at which small motions fade quickest; the same where no other keeps the constraints.
-
-    It is looked for over a share of its range about where it is.
+    Parameters
+    ----------
+    tried, row : the designs, and the one to begin at
+    k : variable that is the drag
+    beside : how far from there it is looked for; all over its range if None, first at some places
     """
+    from scipy.optimize import minimize_scalar
+
     low, high = tried.problem.variables[k].bounds
-    centre, half = float(row[k]), share * (high - low)
-    for _ in range(_TIGHTER):
-        places = np.linspace(max(centre - half, low), min(centre + half, high), _DRAGS)
-        rows = [_moved(row, k, centre), *(_moved(row, k, place) for place in places.tolist())]
-        found = tried.all(rows)
-        worth = [verdict.growth if verdict.excess <= 1e-9 else math.inf for verdict in found]
-        centre = float(rows[int(np.argmin(worth))][k])
-        half *= 2.0 / (_DRAGS - 1)
-    return _moved(row, k, centre)
+    begin = float(row[k])
+
+    def growth(place: float) -> float:
+        return min(tried.one(_moved(row, k, place)).growth, _MOST)
+
+    if beside is None:
+        places = np.linspace(low, high, _DRAGS)
+        begin, beside = min([begin, *places.tolist()], key=growth), float(places[1] - places[0])
+    near = max(begin - beside, low), min(begin + beside, high)
+    if near[1] <= near[0]:
+        return row
+    found = minimize_scalar(growth, bounds=near, method="bounded", options={"xatol": _DRAG_FOUND})
+    return _moved(row, k, min([begin, float(found.x)], key=growth))
 
 
 def _designed(race: BallRace) -> DesignedRace:

@@ -75,7 +75,7 @@ def _short(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @kills(f"{ROOM}.design:total_mass", "race.count * race.each", "race.each")
-@kills(f"{ROOM}.search:_lightest", 'v.name in ("mass", "diameter")', 'v.name in ("diameter",)')
+@kills(f"{ROOM}.search:_lightest", 'variable.name in ("mass", "diameter")', 'variable.name in ("diameter",)')
 @pytest.mark.parametrize("count", [2, 3])
 def test_least_mass_is_the_unbalance_over_the_radius(count: int) -> None:
     """Of a planar rotor: the mass of all balls times the radius holds all but what the limit allows.
@@ -96,14 +96,14 @@ def test_least_mass_is_the_unbalance_over_the_radius(count: int) -> None:
     turn = np.angle(held)
     holds = rest * np.cos(turn) + np.sqrt(UNBALANCE**2 - (rest * np.sin(turn)) ** 2)
     assert best.feasible
-    # Masses are halved until two differ by 1e-11 of their logarithm's 5; limits hold to 1e-9.
-    assert best.mass == pytest.approx(holds / RADIUS, rel=1e-7)
+    # The gap between masses is halved until it is 1e-7 of the mass; limits hold to 1e-9.
+    assert best.mass == pytest.approx(holds / RADIUS, rel=3e-7)
     assert best.value == best.mass
-    assert best.vibration == pytest.approx(limit, rel=1e-6)
+    assert best.vibration == pytest.approx(limit, rel=1e-4)
     assert best.count == [count]
 
 
-@kills(f"{ROOM}.search:_quickest", "np.argmin(worth)", "np.argmax(worth)")
+@kills(f"{ROOM}.search:_quickest", "min([begin, float(found.x)], key=growth)", "begin")
 @kills(f"{ROOM}.problem:_limits", "-margin if margin > 0.0", "-0.5 * margin if margin > 0.0")
 def test_the_leading_root_is_the_margin() -> None:
     """Lightest balls with a margin: the roots of rotor and balls, by another code, fade with just that."""

@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import replace
 
 import numpy as np
 
+from leblanc.results.explanation import Explanation
 from leblanc.results.races.numbers import BallExplanation, RaceNumbers
 from leblanc.scene.races import BallRace
 from leblanc.scene.scene import Scene, TwoPlaneRotor, dry_rotor, require_clear
 from leblanc.scene.unbalances import unbalances_of
-from leblanc.studies.explain import explain_scene
-from leblanc.studies.models.choose import runup_outlook
 from leblanc.studies.races.states import worst_states
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
@@ -30,21 +28,15 @@ _HALVINGS, _FEWER = 20, 8  # of the gap in which it becomes stable
 _LEFT = 1e-9  # of the unbalance: what may be left of it where races balance it
 
 
-def explain_balls(scene: Scene) -> BallExplanation:
+def ball_numbers(scene: Scene, machine: Explanation) -> BallExplanation:
     """Numbers of a scene with balls, beside those of the same scene without.
 
     Parameters
     ----------
     scene : with races
-
-    Raises
-    ------
-    InputError : no race, or as for the scene without them
+    machine : the scene without them
     """
-    if not scene.balls:
-        raise InputError("chambers", len(scene.chambers), "with one of kind balls for this")
     require_clear(scene, "balls beside liquid")
-    machine = replace(explain_scene(scene.without_balls()), digest=scene.digest, runup=runup_outlook(scene))
     system = dry_rotor(scene).system()
     turned = RotorWithBalls(system, tuple(race.race() for race in scene.balls))
     shares, left = needed_shares(turned)
@@ -71,7 +63,7 @@ def explain_balls(scene: Scene) -> BallExplanation:
 
 
 def needed_shares(turned: RotorWithBalls) -> tuple[Array, float]:
-    """Unbalance that the balls of each race must hold where the rotor is balanced [theory: balls, eq. 21].
+    """Unbalance that the balls of each race must hold where the rotor is balanced [theory: races, eq. 14].
 
     Of all shares that do it those that go with what the races can hold.
 
@@ -127,7 +119,9 @@ def _why(scene: Scene, shares: Array, left: float, can: bool) -> str:
     for k, (race, share) in enumerate(zip(scene.balls, shares.tolist(), strict=True)):
         if share > race.capacity:
             return f"the balls of race {k + 1} hold less than their share of the unbalance"
-    return "a single ball holds one size of unbalance alone"
+    if any(sum(race.count for race in scene.balls if race.plane == own.plane) == 1 for own in scene.balls):
+        return "a single ball holds one size of unbalance alone"
+    return "one ball outweighs the unbalance and the other balls of its plane"
 
 
 def _balanced_from(scene: Scene, speed: Array, balanced: Flags) -> float:
