@@ -187,3 +187,15 @@ def test_json_is_what_the_result_carries() -> None:
     told = json.loads(json.dumps(result.to_json(), default=lambda value: value.tolist()))
     assert [row[0]["state"] for row in told["states"]] == ["balanced"] * 3
     assert told["can_balance"] is True
+
+
+def test_a_race_for_each_ball_does_as_one_race() -> None:
+    """The balls of a plane balance together, whichever races they run in."""
+    scene = lb.example("balls").replace({"speeds.count": 15})
+    (race,) = scene.balls
+    apart = scene.replace({"chambers": [race.model_dump(exclude_none=True) | {"count": 1}] * 2})
+    one, two = lb.run(scene), lb.run(apart)
+    assert isinstance(one, BallsResult) and isinstance(two, BallsResult)
+    assert two.can_balance and two.balanced_from == one.balanced_from
+    np.testing.assert_allclose(two.amplitude, one.amplitude, atol=1e-12)
+    np.testing.assert_allclose(two.growth, one.growth, rtol=1e-7, atol=1e-9 * scene.speeds.stop)
