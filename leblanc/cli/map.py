@@ -103,7 +103,8 @@ def map(
     with working("preparing") as update:
         from leblanc.studies.whirl_map import SPEEDS, VOLUMES, map_scene
 
-        volumes, speeds = volumes or VOLUMES, speeds or SPEEDS
+        volumes = VOLUMES if volumes is None else volumes
+        speeds = SPEEDS if speeds is None else speeds
 
         def progress(done: int, total: int) -> None:
             update(done, total, "volumes" if done < total else "edges of the bands")

@@ -16,7 +16,7 @@ from leblanc.results.base import Note
 from leblanc.results.motion.cycles import DEEP, FAST_LAG, LargeWhirl
 from leblanc.results.notes import whirl_map as notes
 from leblanc.results.whirl_map import WhirlMap
-from leblanc.scene.scene import Scene, require_whirl
+from leblanc.scene.scene import Scene, require_no_balls, require_whirl
 from leblanc.studies.models.choose import Prepared, prepare
 from leblanc.studies.models.validity import doubts
 from leblanc.units import small_whirl_friction
@@ -186,6 +186,7 @@ def _check(scene: Scene, volumes: int, speeds: int) -> None:
     if scene.speeds.stop <= scene.speeds.start:
         raise InputError("speeds.stop", scene.speeds.stop, "above speeds.start for a map")
     require_whirl(scene)
+    require_no_balls(scene, "a map over liquid; `lb.map_balls` charts balls")
     if not scene.fills:
         raise InputError("chambers", "none", "at least one for a map over volume")
 

@@ -212,6 +212,8 @@ def test_each_kind_of_map_refuses_the_options_of_the_other(capsys: pytest.Captur
         assert main(["map", str(EXAMPLES / f"{name}.toml"), option, "3"]) == 2
         said = capsys.readouterr().err.strip()
         assert said.startswith(f"leblanc: {option} = 3: must be left out") and "\n" not in said
+    with pytest.raises(InputError, match="map_balls"):
+        lb.map_whirl(scene("balls"))
     with pytest.raises(InputError, match="kind balls"):
         lb.map_balls(scene("horizontal_rig"))
     assert isinstance(lb.map_balls(scene("balls"), values=2, speeds=2), BallChart)

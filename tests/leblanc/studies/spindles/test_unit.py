@@ -140,7 +140,7 @@ def test_figures_say_what_they_show(result: SpindleResult) -> None:
     assert len(second.axes) == 5
 
 
-@pytest.mark.parametrize("command", ["explain", "map", "runup", "optimise", "view"])
+@pytest.mark.parametrize("command", ["explain", "map", "runup", "optimise"])
 def test_what_makes_no_sense_is_refused_in_one_line(command: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main([command, str(example_path("spindle"))]) == 2
     said = capsys.readouterr().err.strip().splitlines()
