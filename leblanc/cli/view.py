@@ -14,9 +14,9 @@ from leblanc.contents import results_dir
 from leblanc.files import require_writable
 
 if TYPE_CHECKING:
-    from leblanc.results.drawn import ModeView
-    from leblanc.results.magnetic.drawn import MagneticView
-    from leblanc.results.spindles.drawn import SpindleView
+    from leblanc.results.drawn.machine import ModeView
+    from leblanc.results.drawn.magnetic import MagneticView
+    from leblanc.results.drawn.spindle import SpindleView
     from leblanc.scene.scene import Scene
     from leblanc.view.film import Film
     from leblanc.view.parts import Picture

@@ -24,7 +24,7 @@ from leblanc.figures.drawing.page import (
     style,
 )
 from leblanc.results.base import FilledChamber
-from leblanc.results.drawn import chord, rounded_down
+from leblanc.results.drawn.machine import chord, rounded_down
 from leblanc.results.motion.held import HELD_MODELS
 from leblanc.results.response import RunResult, peak, phase
 from leblanc.text.run import alts, amplitude_place

@@ -23,7 +23,7 @@ from leblanc.figures.drawing.page import (
 )
 from leblanc.figures.runup import caption
 from leblanc.results.base import FilledChamber
-from leblanc.results.drawn import film_factor, pool
+from leblanc.results.drawn.machine import film_factor, pool
 from leblanc.results.runup import RunupFrames, RunupResult
 from leblanc.units import LENGTH, MM, RPM, unit_for
 from meshes.arrays import Array

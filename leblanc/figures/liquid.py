@@ -12,7 +12,7 @@ from leblanc.figures.chambers import liquid_outline
 from leblanc.figures.drawing.page import Caption, Figure, Frame, lay_out, number, style
 from leblanc.figures.drawing.page import save as save  # a figure is drawn and written together
 from leblanc.results.base import FilledChamber
-from leblanc.results.drawn import rounded_down
+from leblanc.results.drawn.machine import rounded_down
 from leblanc.results.liquid import ModesResult, VolumeResult
 from leblanc.text.liquid import facts, question
 from leblanc.units import MM, RPM

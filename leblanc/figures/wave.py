@@ -26,7 +26,7 @@ from leblanc.figures.drawing.page import (
 )
 from leblanc.figures.response import STRIP
 from leblanc.results.base import one_line
-from leblanc.results.drawn import FILLED, LARGEST_FACTOR, rounded_down
+from leblanc.results.drawn.machine import FILLED, LARGEST_FACTOR, rounded_down
 from leblanc.results.layer import FreeWaveResult, LayerPeriodsResult, LayerResult, Wave, WaveFrames
 from leblanc.units import DEGREE, LENGTH, MINUS, MM, RPM, TIMES, with_unit
 from meshes.arrays import Array

@@ -9,8 +9,8 @@ from dataclasses import replace
 import numpy as np
 
 from leblanc.results.base import one_line
-from leblanc.results.drawn import DrawnRace
-from leblanc.results.races.drawn import BallView
+from leblanc.results.drawn.balls import BallView
+from leblanc.results.drawn.machine import DrawnRace
 from leblanc.units import DEGREE, LENGTH, MINUS, MM, unit_for
 from leblanc.view.parts import NO_CELLS, Instant, Label, Picture, Piece, Stage, placed, turned
 from leblanc.view.scene import compose, describe_speed, place_in_words

@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 
 from leblanc.files import writing
-from leblanc.results.drawn import DrawnLiquid, MachineMotion, Scale
+from leblanc.results.drawn.machine import DrawnLiquid, MachineMotion, Scale
 from leblanc.view.gate import address_of, gate
 from leblanc.view.parts import Picture
 from leblanc.view.picture import (

@@ -14,7 +14,8 @@ import numpy as np
 
 from leblanc.files import writing
 from leblanc.results.base import one_line
-from leblanc.results.drawn import (
+from leblanc.results.drawn.balls import BallView
+from leblanc.results.drawn.machine import (
     DrawnLiquid,
     LiquidBodies,
     LiquidShape,
@@ -23,7 +24,6 @@ from leblanc.results.drawn import (
     RunupView,
     Scale,
 )
-from leblanc.results.races.drawn import BallView
 from leblanc.units import DEGREE, LENGTH, RPM, in_rpm, unit_for, with_unit
 from leblanc.view.balls import ball_still, with_balls
 from leblanc.view.inset import with_inset

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from leblanc.results.drawn import MachineParts, Shell, Strut
+from leblanc.results.drawn.machine import MachineParts, Shell, Strut
 from leblanc.units import MM
 from leblanc.view.parts import Instant, Label, Piece, Stage, line, placed
 from meshes.arrays import Array, Complex, Indices

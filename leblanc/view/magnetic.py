@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from leblanc.results.base import one_line
-from leblanc.results.magnetic.drawn import MagneticView
+from leblanc.results.drawn.magnetic import MagneticView
 from leblanc.text.magnetic import NAMES
 from leblanc.units import LENGTH, MM, in_rpm, number, unit_for, with_unit
 from leblanc.view.film import Film

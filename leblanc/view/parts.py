@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fluid.fill import Fill
-from leblanc.results.drawn import Liquid, MachineParts, Scale
+from leblanc.results.drawn.machine import Liquid, MachineParts, Scale
 from leblanc.units import MM
 from meshes.arrays import Array, Complex, Indices
 

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from leblanc.results.base import one_line
-from leblanc.results.spindles.drawn import DrawnBeam, DrawnJoint, SpindleView
+from leblanc.results.drawn.spindle import DrawnBeam, DrawnJoint, SpindleView
 from leblanc.units import MM, number
 from leblanc.view.film import Film
 from leblanc.view.machine import cylinder, ground, spring

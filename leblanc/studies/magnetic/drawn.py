@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
-from leblanc.results.drawn import rounded_down
-from leblanc.results.magnetic.drawn import MagneticView
+from leblanc.results.drawn.machine import rounded_down
+from leblanc.results.drawn.magnetic import MagneticView
 from leblanc.scene.scene import Scene
 from leblanc.studies.magnetic.run import loads_of, rotor_of
 from meshes.arrays import Array

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from leblanc.results.drawn import DrawnRace
-from leblanc.results.races.drawn import BallView
+from leblanc.results.drawn.balls import BallView
+from leblanc.results.drawn.machine import DrawnRace
 from leblanc.scene.chambers import Chamber
 from leblanc.scene.races import BallRace
 from leblanc.scene.rotors import JeffcottRotor

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from fluid.fill import Fill
-from leblanc.results.drawn import (
+from leblanc.results.drawn.machine import (
     DrawnLiquid,
     Liquid,
     MachineMotion,

@@ -7,7 +7,7 @@ from itertools import accumulate
 
 import numpy as np
 
-from leblanc.results.spindles.drawn import (
+from leblanc.results.drawn.spindle import (
     DrawnBeam,
     DrawnJoint,
     DrawnMass,

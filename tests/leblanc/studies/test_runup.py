@@ -20,7 +20,7 @@ from fluid.liquid import known_liquid
 from leblanc.cli.runup import runup
 from leblanc.figures import films as film_figures
 from leblanc.figures import runup as figures
-from leblanc.results.drawn import film_factor, half_angle
+from leblanc.results.drawn.machine import film_factor, half_angle
 from leblanc.results.netcdf import write_netcdf
 from leblanc.results.notes.runup import RunupCode
 from leblanc.results.runup import RunupFrames, RunupResult, turn_mean

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from fluid.waves import free_wave_frequencies
-from leblanc.results.drawn import LiquidShape, Scale
+from leblanc.results.drawn.machine import LiquidShape, Scale
 from leblanc.results.motion.self_excited import SelfExcited
 from leblanc.scene.scene import Scene, Speeds, load_scene
 from leblanc.studies.run import run_scene

@@ -11,7 +11,7 @@ import pytest
 
 import leblanc as lb
 from leblanc.cli import main
-from leblanc.results.spindles.drawn import DrawnSection
+from leblanc.results.drawn.spindle import DrawnSection
 from leblanc.studies.spindles.drawn import levels_of, spindle_view
 from leblanc.view.parts import Picture
 from leblanc.view.spindle import SIDES, revolved, spindle_film, spindle_picture

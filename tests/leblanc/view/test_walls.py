@@ -19,7 +19,7 @@ import pytest
 
 from leblanc.figures import films
 from leblanc.results.base import FilledChamber
-from leblanc.results.drawn import MachineMotion, Scale, pool
+from leblanc.results.drawn.machine import MachineMotion, Scale, pool
 from leblanc.results.runup import RunupFrames
 from leblanc.scene.scene import scene_from_table
 from leblanc.studies.shapes.layer import body_of_pool

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from fluid.fill import Fill
-from leblanc.results.drawn import DrawnRace, Liquid, MachineParts, Scale
+from leblanc.results.drawn.machine import DrawnRace, Liquid, MachineParts, Scale
 from leblanc.results.races.states import BallsResult
 from meshes.arrays import Array, Complex
 
