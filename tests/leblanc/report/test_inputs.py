@@ -42,6 +42,10 @@ REST = {
             "measure": "separation", "reach": [0.01, 0.02, 0.03], "turn": "14 deg",
             "band": ["310 rpm", "420 rpm"], "sag": "71 mm",
         },
+        "balls": {
+            "count": [2, 7], "mass": ["3 g", "31 g"], "drag": ["0.01 N*s/m", "2.3 N*s/m"],
+            "radius": ["61 mm", "83 mm"],
+        },
         "objective": "robust", "working_speed": "600 rpm", "steady": True,
         "duty": [{"speed": "300 rpm", "weight": 2}], "vibration_limit": "1.5 mm", "limit_at": "operating",
         "deflection": "0.7 mm", "unbalance": ["1 kg*mm", "2 kg*mm"], "temperature": ["5 degC", "35 degC"],
@@ -141,6 +145,7 @@ OTHER_WAY = {
     "rotor.stiffness": "rotor.critical_speed",
     "rotor.damping": "rotor.damping_ratio",
     "rotor.balls.pendulum_inertia": "rotor.balls.kind",
+    "optimise.balls.diameter": "optimise.balls.mass",
 }
 LAWS = {"density": DensityLaw, "viscosity": ViscosityLaw}
 # Checked in a test of their own.
