@@ -615,13 +615,12 @@ def machine_content(scene: Scene) -> dict[str, Any]:
     scene : the machine
     """
     bearings = getattr(scene.rotor, "bearings", ())
-    caged = scene.rotor.caged() if isinstance(scene.rotor, TwoPlaneRotor) else ()
+    caged = scene.rotor.caged() if isinstance(scene.rotor, TubRotor | TwoPlaneRotor) else ()
     parts = {
         "cabinet": scene.cabinet and scene.cabinet.model_dump(),
         "points": [point.model_dump() for point in scene.points],
         "bearings": [bearing.position for bearing in bearings],
         "balls": [race_content(race) for race in scene.balls],
-        # Balls of a tub's bearings came before there was a place for them here.
         "rolling": [asdict(part) for part in caged],
     }
     return {name: part for name, part in parts.items() if part}
