@@ -36,7 +36,8 @@ def test_a_case_that_is_broken_fails_the_notebook(tmp_path: Path) -> None:
     right, wrong = tmp_path / "right.py", tmp_path / "wrong.py"
     right.write_text("\n\n# %%".join(cells), encoding="utf-8")
     fault = (
-        "\nfrom dataclasses import replace\n\nfrom validation.cases import tub\n\nright = tub.suspended_tub\n"
+        "\nfrom dataclasses import replace\n\nfrom validation.cases.rotors import tub\n\n"
+        "right = tub.suspended_tub\n"
         "tub.suspended_tub = lambda *given, **named: replace(right(*given, **named), drum_mass=20.0)"
     )
     wrong.write_text("\n\n# %%".join([cells[0], fault, *cells[1:]]), encoding="utf-8")

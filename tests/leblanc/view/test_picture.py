@@ -33,7 +33,15 @@ MACHINES = sorted(
     path.stem
     for path in EXAMPLES.glob("*.toml")
     if path.stem
-    not in ("vibratory_table", "blood_pump", "spindle", "balls", "balls_and_liquid", "long_rotor")
+    not in (
+        "vibratory_table",
+        "blood_pump",
+        "spindle",
+        "balls",
+        "balls_and_liquid",
+        "balls_design",
+        "long_rotor",
+    )
 )
 
 
