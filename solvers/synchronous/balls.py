@@ -14,7 +14,7 @@ from meshes.errors import InputError
 from solvers.liquid_model import LiquidModel, Whirls
 from solvers.rotor.balls.balancers import BallRace
 from solvers.rotor.balls.states import RotorWithBalls
-from solvers.rotor.balls.steady import BallStates, collected, starts_of, steady_states
+from solvers.rotor.balls.steady import BallStates, attracting, collected, starts_of, steady_states
 from solvers.rotor.system import RotorSystem
 from solvers.synchronous.balance import backward_mass, directions
 from solvers.synchronous.models import STATICS
@@ -97,7 +97,7 @@ def wet_states(
     agrees[going] = False
     shape = spin.size, len(starts)
     own = each.reshape(*shape, *each.shape[1:])
-    kept = (rests & agrees).reshape(shape)
+    kept = (rests & agrees & attracting(machine, each, places, len(starts))).reshape(shape)
     states = collected(machine, spin, own, places.reshape(*shape, -1), kept, _in_step(system, wet, small))
     return _with_liquid(model, system, fills, wet, states, gravity)
 

@@ -110,7 +110,7 @@ def test_a_tube_between_two_surfaces_has_a_free_inner_wall() -> None:
     assert np.all(mesh.wall[mesh.wall_piece == fixed] >= 13)
 
 
-def test_arrays_are_kept_apart_and_locked() -> None:
+def test_arrays_are_attracting_and_locked() -> None:
     points, cells = ring_of(6)
     mesh = liquid_section(points, cells, INNER)
     points[0] = 9.0

@@ -112,7 +112,7 @@ def test_wall_layers_are_thin_and_grow() -> None:
     assert np.allclose(steps[1:5] / steps[:4], 1.5, rtol=1e-6)
 
 
-def test_arrays_are_kept_apart_and_locked() -> None:
+def test_arrays_are_attracting_and_locked() -> None:
     triangles = np.array([[0, 1, 2], [0, 2, 3]])
     points = SQUARE.copy()
     section = Section(points, triangles)

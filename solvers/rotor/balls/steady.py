@@ -20,6 +20,8 @@ _STARTS = 5  # irregular ones besides those by intent
 _ALIKE = 1e-5  # of the balls' unbalance: states nearer than that are one
 _STILL = 1e-7  # of the bare rotor's amplitudes: counts as none
 _GROWS = 1e-9  # of the spin
+_NEUTRAL = 1e-9  # slope of a pull over the largest pull: balls that creep neither come nor go
+_TOGETHER = (1, 2)  # starts with all balls together
 
 
 class BallKind(IntEnum):
@@ -78,8 +80,8 @@ def starts_of(counts: Sequence[int]) -> Array:
 def steady_states(system: RotorSystem, races: Sequence[BallRace], speed: ArrayLike) -> BallStates:
     """States in which all balls rest in the drum, with the growth of small motions [theory: races, eq. 5].
 
-    All that are reached from starts of many kinds, and the balanced one where the balls can hold the
-    unbalance. Gravity across the axis has no part in it: it turns in the drum.
+    All that balls which creep come to from starts of many kinds, apart or kept together, and the balanced
+    one where they can hold the unbalance. Gravity across the axis has no part in it: it turns in the drum.
 
     Parameters
     ----------
@@ -113,7 +115,31 @@ def steady_states(system: RotorSystem, races: Sequence[BallRace], speed: ArrayLi
     each = np.repeat(compliance, len(starts), axis=0)
     places, rests = machine.settle(each, np.tile(starts, (spin.size, 1)))
     shape = (spin.size, len(starts))
-    return collected(machine, spin, compliance, places.reshape(*shape, -1), rests.reshape(shape))
+    kept = (rests & attracting(machine, each, places, len(starts))).reshape(shape)
+    return collected(machine, spin, compliance, places.reshape(*shape, -1), kept)
+
+
+def attracting(machine: RotorWithBalls, compliance: Complex, places: Array, count: int) -> Flags:
+    """States that balls which creep come to; from a start with all together, balls that stay so.
+
+    The last steps of a search are Newton's, and may end by chance, or by rounding, where balls that creep
+    would leave.
+
+    Parameters
+    ----------
+    machine : rotor and balls
+    compliance, places : of states from a number of starts at each speed, shapes (p, n, n) and (p, N)
+    count : of starts, those of `starts_of`
+    """
+    slope = machine.pulls(compliance, places)[1]
+    counts = [len(race.masses) for race in machine.races]
+    joined = np.repeat(np.eye(len(counts)), counts, axis=0)
+    together = (joined / counts).T @ slope @ joined
+    draws, draw_all = (np.linalg.eigvals(part).real.max(axis=1) <= _NEUTRAL for part in (slope, together))
+    # Together they stay but for rounding, which may part them where they draw apart.
+    stay = np.abs(np.exp(1j * places) @ joined / counts).min(axis=1) >= 1.0 - _NEUTRAL
+    stay &= np.isin(np.arange(places.shape[0]) % count, _TOGETHER)
+    return np.asarray(np.where(stay, draw_all, draws))
 
 
 def collected(

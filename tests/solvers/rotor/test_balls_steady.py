@@ -16,10 +16,11 @@ from solvers.rotor.balls import steady
 from solvers.rotor.balls.balancers import BallRace, simulate
 from solvers.rotor.balls.stability import balanced_stability, small_motions
 from solvers.rotor.balls.states import RotorWithBalls
-from solvers.rotor.balls.steady import BallKind, steady_states
+from solvers.rotor.balls.steady import BallKind, attracting, steady_states
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
 from solvers.rotor.vibration import unbalance_response
+from tests.mutants import kills
 
 ROTOR = Jeffcott(4.0, 4.4e4, 84.0, 6e-4)
 RACE = BallRace(0.0, 0.065, (7.1e-3, 7.1e-3), 0.1)
@@ -180,3 +181,30 @@ def test_wrong_input() -> None:
         steady_states(ROTOR.system(), [RACE], [-1.0])
     with pytest.raises(InputError, match="resistance"):
         simulate(ROTOR.system(), [BallRace(0.0, 0.1, (1e-3,), 0.1, resistance=0.01)], 50.0, 0.1)
+
+
+KEPT = "solvers.rotor.balls.steady:attracting"
+
+
+@kills(KEPT, "np.where(stay, draw_all, draws)", "stay | draws")
+@kills(KEPT, "np.where(stay, draw_all, draws)", "draws")
+@kills(KEPT, "stay &= np.isin", "stay |= np.isin")
+def test_places_that_creeping_balls_would_leave_are_not_kept() -> None:
+    """Two balls that hold H = 8e-4 kg m on a rotor of U = 6e-4, far above its critical speed.
+
+    On the light side both together are drawn there, by U/(U + H) of the pull, and from one another, by
+    (H - U)/(U + H). Nothing draws them to the heavy side, everything to where they balance.
+    """
+    machine = RotorWithBalls(
+        Jeffcott(4.0, 4.4e4, 1.0, 6e-4).system(), (BallRace(0.0, 0.1, (4e-3,) * 2, 0.1),)
+    )
+    light, heavy, apart = (np.pi, np.pi), (0.0, 0.0), np.pi + np.array([1.0, -1.0]) * np.arccos(0.75)
+    exact = [
+        machine.nearest(machine.compliance(np.array([400.0]))[0], np.array(p)) for p in (light, heavy, apart)
+    ]
+    places = np.array([place for place in exact if place is not None])
+    assert places.shape == (3, 2)
+    many = np.repeat(machine.compliance(np.array([400.0])), 3, axis=0)
+    # As from the starts 0, which is irregular, and 1 and 2, which begin together.
+    told = [attracting(machine, many, np.array([places[k]] * 3), 3).tolist() for k in range(3)]
+    assert told == [[False, True, True], [False, False, False], [True, True, True]]
