@@ -15,7 +15,7 @@ from leblanc.scene.unbalances import unbalances_of
 from leblanc.studies.races.states import worst_states
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
-from solvers.rotor.balls.states import RotorWithBalls, turning
+from solvers.rotor.balls.states import RotorWithBalls, balancing_shares, turning
 from solvers.rotor.balls.two_plane_balance import (
     Balancing,
     dynamic_balancing,
@@ -39,7 +39,8 @@ def ball_numbers(scene: Scene, machine: Explanation) -> BallExplanation:
     require_clear(scene, "balls beside liquid")
     system = dry_rotor(scene).system()
     turned = RotorWithBalls(system, tuple(race.race() for race in scene.balls))
-    shares, left = needed_shares(turned)
+    each, left = balancing_shares(turned)
+    shares = np.where(left <= _LEFT, np.abs(each), np.nan)
     count = _FEW if scene.fills else _SPEEDS
     speed = np.linspace(scene.speeds.start, scene.speeds.stop, min(count, max(scene.speeds.count, 2)))
     speed = np.unique(speed)
@@ -60,34 +61,6 @@ def ball_numbers(scene: Scene, machine: Explanation) -> BallExplanation:
         single_plane=_in_one_plane(scene, speed),
         lacking=tuple(_lacking(scene, turned)),
     )
-
-
-def needed_shares(turned: RotorWithBalls) -> tuple[Array, float]:
-    """Unbalance that the balls of each race must hold where the rotor is balanced [theory: races, eq. 14].
-
-    Of all shares that do it those that go with what the races can hold.
-
-    Parameters
-    ----------
-    turned : rotor and balls
-
-    Returns
-    -------
-    Size of each, kg m, shape (races,), nan where none do it; what they leave over the unbalance
-    """
-    counts = [len(race.masses) for race in turned.races]
-    first = np.cumsum([0, *counts[:-1]])
-    most = np.add.reduceat(turned.moment, first)
-    unit = turned.push[first] / turned.moment[first, None]
-    wanted = -turned.system.unbalance.astype(complex)
-    columns = (unit * np.sqrt(most)[:, None]).T
-    found, *_ = np.linalg.lstsq(columns, wanted, rcond=None)
-    scale = float(np.abs(wanted).max())
-    if scale == 0.0:
-        return np.zeros(len(counts)), 0.0
-    left = float(np.abs(columns @ found - wanted).max()) / scale
-    shares = np.abs(found) * np.sqrt(most)
-    return np.where(left <= _LEFT, shares, np.nan), left
 
 
 def _numbers(race: BallRace, share: float, critical: float) -> RaceNumbers:

@@ -302,6 +302,31 @@ def _pulls(bare: Complex, each: Complex, places: Array) -> tuple[Array, Array]:
     return np.asarray(seen.imag), np.asarray(slope - seen.real[:, :, None] * np.eye(places.shape[1]))
 
 
+def balancing_shares(machine: RotorWithBalls) -> tuple[Complex, float]:
+    """Unbalance that each race takes where the rotor is balanced [theory: races, eq. 14].
+
+    Of all shares that do it those whose squares, each over what its race can hold, have the least sum: races
+    of one plane are used to the same extent.
+
+    Parameters
+    ----------
+    machine : rotor and balls
+
+    Returns
+    -------
+    Share of each race in its plane, kg m, shape (races,); what they leave over the unbalance
+    """
+    counts = [len(race.masses) for race in machine.races]
+    first = np.cumsum([0, *counts[:-1]])
+    weights = np.sqrt(np.add.reduceat(machine.moment, first))
+    unit = machine.push[first] / machine.moment[first, None]
+    columns, wanted = (unit * weights[:, None]).T, -machine.system.unbalance.astype(complex)
+    found = np.linalg.lstsq(columns, wanted, rcond=None)[0]
+    scale = float(np.abs(wanted).max())
+    left = float(np.abs(columns @ found - wanted).max()) / scale if scale > 0.0 else 0.0
+    return np.asarray(weights * found), left
+
+
 def balanced_places(system: RotorSystem, races: Sequence[BallRace]) -> Array:
     """Places at which the balls take away the whole unbalance [theory: balls, eq. 21].
 
@@ -339,13 +364,10 @@ def balanced_places(system: RotorSystem, races: Sequence[BallRace]) -> Array:
     planes: dict[float, list[int]] = {}
     for k, race in enumerate(races):
         planes.setdefault(race.position, []).append(k)
-    rows = [system.at(position) for position in planes]
-    across = np.array([row[0] - 1j * row[1] for row in rows]).T
-    most = np.array([sum(float(arms[k].sum()) for k in members) for members in planes.values()])
-    weights = np.sqrt(most)
-    shares = weights * np.linalg.lstsq(across * weights, -system.unbalance.astype(complex), rcond=None)[0]
+    shares = balancing_shares(RotorWithBalls(system, tuple(races)))[0]
     places: list[Array] = [np.zeros(0)] * len(races)
-    for members, held, share in zip(planes.values(), most.tolist(), shares.tolist(), strict=True):
+    for members in planes.values():
+        held, share = sum(float(arms[k].sum()) for k in members), complex(shares[members].sum())
         # A share at rounding has no direction.
         wanted = share if abs(share) > 1e-12 * held else 0.0
         found = _in_plane([arms[k] for k in members], wanted)

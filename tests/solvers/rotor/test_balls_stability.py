@@ -354,6 +354,14 @@ def test_any_balls_of_a_plane_close_a_polygon_or_cannot(
             balanced_places(Jeffcott(10.0, 1e4, 40.0, beyond).system(), races)
 
 
+@kills(f"{PLACES}:balancing_shares", "np.sqrt(np.add.reduceat(machine.moment, first))", "np.ones(first.size)")
+def test_races_of_one_plane_are_used_to_the_same_extent() -> None:
+    """Two races of 2.4e-3 and 0.8e-3 kg m: all balls at the same angle from the unbalance, cos = -U/(H + h)."""
+    races = [BallRace(0.0, 0.08, (0.015, 0.015), 0.3), BallRace(0.0, 0.04, (0.01, 0.01), 0.3)]
+    places = balanced_places(Jeffcott(10.0, 1e4, 40.0, 1.2e-3).system(), races)
+    assert np.cos(places) == pytest.approx([-1.2 / 3.2] * 4, abs=1e-12)
+
+
 def test_balls_that_do_not_balance_are_refused() -> None:
     for masses in ((0.015,), (0.015, 0.02)):
         with pytest.raises(InputError):
