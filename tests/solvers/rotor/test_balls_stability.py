@@ -24,7 +24,7 @@ from solvers.rotor.balls.stability import (
     neutral_directions,
     small_motions,
 )
-from solvers.rotor.balls.states import RotorWithBalls, balanced_places, quarter_turn
+from solvers.rotor.balls.states import RotorWithBalls, balanced_places, balancing_shares, quarter_turn
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import RotorSystem
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
@@ -356,10 +356,12 @@ def test_any_balls_of_a_plane_close_a_polygon_or_cannot(
 
 @kills(f"{PLACES}:balancing_shares", "np.sqrt(np.add.reduceat(machine.moment, first))", "np.ones(first.size)")
 def test_races_of_one_plane_are_used_to_the_same_extent() -> None:
-    """Two races of 2.4e-3 and 0.8e-3 kg m: all balls at the same angle from the unbalance, cos = -U/(H + h)."""
-    races = [BallRace(0.0, 0.08, (0.015, 0.015), 0.3), BallRace(0.0, 0.04, (0.01, 0.01), 0.3)]
-    places = balanced_places(Jeffcott(10.0, 1e4, 40.0, 1.2e-3).system(), races)
-    assert np.cos(places) == pytest.approx([-1.2 / 3.2] * 4, abs=1e-12)
+    """Of 2.4e-3 and 0.8e-3 kg m: shares in that ratio, all balls at the angle with cos = -U/(H + h)."""
+    races = (BallRace(0.0, 0.08, (0.015, 0.015), 0.3), BallRace(0.0, 0.04, (0.01, 0.01), 0.3))
+    system = Jeffcott(10.0, 1e4, 40.0, 1.2e-3).system()
+    shares, left = balancing_shares(RotorWithBalls(system, races))
+    assert np.abs(shares) == pytest.approx([0.9e-3, 0.3e-3], rel=1e-12) and left < 1e-12
+    assert np.cos(balanced_places(system, races)) == pytest.approx([-1.2 / 3.2] * 4, abs=1e-12)
 
 
 def test_balls_that_do_not_balance_are_refused() -> None:
