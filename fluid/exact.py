@@ -25,24 +25,15 @@ _NARROW = 1e-3
 
 @dataclass(frozen=True)
 class TravellingWave:
-    """A wave of permanent form on the drum.
+    """A wave of permanent form on the drum."""
 
-    Parameters
-    ----------
-    height : H, crest minus trough (level at infinity, for a solitary wave), m^2; negative for a trough
-    sharpness : kappa of sech(kappa x) or cn(kappa x), 1/rad
-    speed : V seen from the drum, rad/s
-    level : eta at the foot of the humps, m^2
-    crests : how many there are round the drum
-    complement : 1 - m of the elliptic functions; 0 for a solitary wave
-    """
-
+    #: H, crest minus trough (level at infinity, for a solitary wave), m^2; negative for a trough
     height: float
-    sharpness: float
-    speed: float
-    level: float
-    crests: int
-    complement: float
+    sharpness: float  #: kappa of sech(kappa x) or cn(kappa x), 1/rad
+    speed: float  #: V seen from the drum, rad/s
+    level: float  #: eta at the foot of the humps, m^2
+    crests: int  #: how many there are round the drum
+    complement: float  #: 1 - m of the elliptic functions; 0 for a solitary wave
 
     def profile(self, theta: ArrayLike, time: ArrayLike = 0.0) -> Array:
         """Field at given angles and times; a crest (or trough) passes theta = 0 at time 0.

@@ -35,12 +35,6 @@ def compartment_share(count: int) -> float:
 class Fill:
     """A chamber, the liquid in it and how much of it.
 
-    Parameters
-    ----------
-    chamber : where the liquid is
-    liquid : what it is
-    volume : V, m^3, from 0 to the chamber's capacity
-
     Raises
     ------
     InputError : a volume outside that range
@@ -52,9 +46,9 @@ class Fill:
     (0.4991, 0.008123)
     """
 
-    chamber: Chamber
-    liquid: Liquid
-    volume: float
+    chamber: Chamber  #: where the liquid is
+    liquid: Liquid  #: what it is
+    volume: float  #: V, m^3, from 0 to the chamber's capacity
 
     def __post_init__(self) -> None:
         require_not_negative("volume", self.volume)
@@ -130,26 +124,15 @@ class Fill:
 
 @dataclass(frozen=True)
 class Fills:
-    """Many chambers with liquid as arrays, taken from `Fill`s, which check their values.
+    """Many chambers with liquid as arrays, taken from `Fill`s, which check their values."""
 
-    Parameters
-    ----------
-    chamber : of each
-    density : of its liquid, kg/m^3, shape (n,)
-    volume : V, m^3, shape (n,)
-    added_mass : in a small whirl with the spin, kg, shape (n,); 0 without liquid
-    depth : of the layer, m, shape (n,); in a section of another shape the least
-    origin : the fills they were taken from
-    which : index of each among those, shape (n,)
-    """
-
-    chamber: Chambers
-    density: Array
-    volume: Array
-    added_mass: Array
-    depth: Array
-    origin: tuple[Fill, ...]
-    which: NDArray[np.intp]
+    chamber: Chambers  #: of each
+    density: Array  #: of its liquid, kg/m^3, shape (n,)
+    volume: Array  #: V, m^3, shape (n,)
+    added_mass: Array  #: in a small whirl with the spin, kg, shape (n,); 0 without liquid
+    depth: Array  #: of the layer, m, shape (n,); in a section of another shape the least
+    origin: tuple[Fill, ...]  #: the fills they were taken from
+    which: NDArray[np.intp]  #: index of each among those, shape (n,)
 
     @classmethod
     def of(cls, fills: Sequence[Fill]) -> Fills:

@@ -23,27 +23,16 @@ from meshes.errors import InputError, require_positive
 
 @dataclass(frozen=True)
 class KdvCoefficients:
-    """One family of waves on a layer at one spin speed.
+    """One family of waves on a layer at one spin speed."""
 
-    Parameters
-    ----------
-    family : +1 prograde, -1 retrograde
-    linear_speed : lambda0, angular speed of long waves of vanishing height, rad/s
-    steepening : alpha, how much faster a thicker layer carries them, rad/(s m^2)
-    dispersion : delta, by how much a wave with n crests lags, times n^2, rad/s
-    coupling : q over the acceleration of the axis, m
-    radius, surface_radius : wall and mean free surface, m
-    spin : Omega, rad/s
-    """
-
-    family: int
-    linear_speed: float
-    steepening: float
-    dispersion: float
-    coupling: float
-    radius: float
+    family: int  #: +1 prograde, -1 retrograde
+    linear_speed: float  #: lambda0, angular speed of long waves of vanishing height, rad/s
+    steepening: float  #: alpha, how much faster a thicker layer carries them, rad/(s m^2)
+    dispersion: float  #: delta, by how much a wave with n crests lags, times n^2, rad/s
+    coupling: float  #: q over the acceleration of the axis, m
+    radius: float  #: wall and mean free surface, m
     surface_radius: float
-    spin: float
+    spin: float  #: Omega, rad/s
 
     @property
     def layer_log(self) -> float:
@@ -253,19 +242,13 @@ def force_ratio(c: KdvCoefficients, liquid_offset: ArrayLike, whirl_amplitude: A
 
 @dataclass(frozen=True)
 class Validity:
-    """What decides whether one family of weakly nonlinear waves is enough; shapes (...,).
+    """What decides whether one family of weakly nonlinear waves is enough; shapes (...,)."""
 
-    Parameters
-    ----------
-    amplitude : largest |eta|/A0; the coefficients are right to that order
-    thinnest : smallest depth of the layer, as area over A0; 0 or below is a dry patch that the model ignores
-    detuning : |s - lambda0| over the distance of the two families
-    neglected : linear response of the other family over that of this one, |s - lambda0|/|s - lambda_other|
-    """
-
-    amplitude: Array
+    amplitude: Array  #: largest |eta|/A0; the coefficients are right to that order
+    #: smallest depth of the layer, as area over A0; 0 or below is a dry patch that the model ignores
     thinnest: Array
-    detuning: Array
+    detuning: Array  #: |s - lambda0| over the distance of the two families
+    #: linear response of the other family over that of this one, |s - lambda0|/|s - lambda_other|
     neglected: Array
 
 

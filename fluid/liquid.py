@@ -19,13 +19,6 @@ from meshes.errors import InputError, require_not_negative, require_positive
 class Liquid:
     """A Newtonian liquid.
 
-    Parameters
-    ----------
-    name : what to call it in reports
-    density : rho, kg/m^3
-    viscosity : kinematic viscosity nu, m^2/s
-    law : how both change with temperature; None where that is not known, or where the name says it
-
     Raises
     ------
     InputError : a density that is not positive, a negative viscosity
@@ -36,9 +29,10 @@ class Liquid:
     True
     """
 
-    name: str
-    density: float
-    viscosity: float
+    name: str  #: what to call it in reports
+    density: float  #: rho, kg/m^3
+    viscosity: float  #: kinematic viscosity nu, m^2/s
+    #: how both change with temperature; None where that is not known, or where the name says it
     law: GivenLaw | BrineLaw | None = None
 
     def __post_init__(self) -> None:
@@ -82,21 +76,13 @@ _Property = Callable[[float], float]
 
 @dataclass(frozen=True)
 class TemperatureLaw:
-    """Density and viscosity of one liquid as its source gives them.
+    """Density and viscosity of one liquid as its source gives them."""
 
-    Parameters
-    ----------
-    lowest, highest : K, between which the source holds
-    density : kg/m^3, of the temperature in degrees Celsius
-    viscosity : dynamic, Pa s, of the temperature in degrees Celsius
-    source : keys of the references
-    """
-
-    lowest: float
+    lowest: float  #: K, between which the source holds
     highest: float
-    density: _Property
-    viscosity: _Property
-    source: str
+    density: _Property  #: kg/m^3, of the temperature in degrees Celsius
+    viscosity: _Property  #: dynamic, Pa s, of the temperature in degrees Celsius
+    source: str  #: keys of the references
 
     reference = REFERENCE
 
@@ -181,21 +167,13 @@ def oil_viscosity(celsius: float) -> float:
 
 @dataclass(frozen=True)
 class Salt:
-    """Coefficients of a salt in water [LC04, LAL07; refitted in LAL09].
+    """Coefficients of a salt in water [LC04, LAL07; refitted in LAL09]."""
 
-    Parameters
-    ----------
-    lowest, highest : K, between which they hold
-    most : mass fraction up to which they hold, below saturation at 20 degrees Celsius
-    volume : c_0 to c_4 of its apparent density
-    viscosity : v_1 to v_6
-    """
-
-    lowest: float
+    lowest: float  #: K, between which they hold
     highest: float
-    most: float
-    volume: tuple[float, float, float, float, float]
-    viscosity: tuple[float, float, float, float, float, float]
+    most: float  #: mass fraction up to which they hold, below saturation at 20 degrees Celsius
+    volume: tuple[float, float, float, float, float]  #: c_0 to c_4 of its apparent density
+    viscosity: tuple[float, float, float, float, float, float]  #: v_1 to v_6
 
 
 SALTS = {
@@ -220,18 +198,13 @@ SALTS = {
 class BrineLaw:
     """A salt in water over temperature [theory: liquids, eq. 6, 7].
 
-    Parameters
-    ----------
-    salt : one of `SALTS`
-    mass_fraction : of the salt in the solution
-
     Raises
     ------
     InputError : another salt, a mass fraction out of its range
     """
 
-    salt: str
-    mass_fraction: float
+    salt: str  #: one of `SALTS`
+    mass_fraction: float  #: of the salt in the solution
 
     reference = REFERENCE
     source = "LC04, LAL07, LAL09"

@@ -10,20 +10,12 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Symbol:
-    """One quantity.
+    """One quantity."""
 
-    Parameters
-    ----------
-    name : as arguments and fields are called
-    sign : in the theory pages, TeX
-    unit : SI; empty for a pure number
-    meaning : in words
-    """
-
-    name: str
-    sign: str
-    unit: str
-    meaning: str
+    name: str  #: as arguments and fields are called
+    sign: str  #: in the theory pages, TeX
+    unit: str  #: SI; empty for a pure number
+    meaning: str  #: in words
 
 
 CHAMBER = (

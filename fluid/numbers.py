@@ -16,26 +16,15 @@ from meshes.arrays import Array
 
 @dataclass(frozen=True)
 class LayerNumbers:
-    """What decides how a layer behaves; shapes (...,) of the speed.
+    """What decides how a layer behaves; shapes (...,) of the speed."""
 
-    Parameters
-    ----------
-    fill : volume over capacity
-    relative_depth : mean depth over radius, h0/R
-    curvature : (R/a)^2, kappa
-    centrifuge : centrifugal acceleration at the free surface over gravity, Omega^2 a/g
-    steepness : rise of the surface over the chamber's radius in chamber heights, beta R^2/h
-    reynolds : Omega R^2/nu
-    skin : depth of the laminar wall layer over the mean depth, sqrt(nu/Omega)/h0
-    """
-
-    fill: float
-    relative_depth: float
-    curvature: float
-    centrifuge: Array
-    steepness: Array
-    reynolds: Array
-    skin: Array
+    fill: float  #: volume over capacity
+    relative_depth: float  #: mean depth over radius, h0/R
+    curvature: float  #: (R/a)^2, kappa
+    centrifuge: Array  #: centrifugal acceleration at the free surface over gravity, Omega^2 a/g
+    steepness: Array  #: rise of the surface over the chamber's radius in chamber heights, beta R^2/h
+    reynolds: Array  #: Omega R^2/nu
+    skin: Array  #: depth of the laminar wall layer over the mean depth, sqrt(nu/Omega)/h0
 
 
 def layer_numbers(fill: Fill, speed: ArrayLike, gravity: float, axial_gravity: float) -> LayerNumbers:
@@ -68,26 +57,17 @@ def layer_numbers(fill: Fill, speed: ArrayLike, gravity: float, axial_gravity: f
 
 @dataclass(frozen=True)
 class WhirlNumbers:
-    """What decides which model of the layer holds under a whirl.
+    """What decides which model of the layer holds under a whirl."""
 
-    Parameters
-    ----------
-    relative_depth : mean depth over radius, h0/R
-    deflection : whirl amplitude over mean depth, w0/h0
-    detuning : distance of the whirl from the nearer free wave over the distance of the two
-    froude : whirl speed seen from the drum over the nearer free wave's
-    centrifuge : centrifugal acceleration at the free surface over gravity across the axis, Omega^2 a/g
-    reynolds : Omega R^2/nu
-    wall_layer : laminar layer of the oscillation at the wall over the mean depth, sqrt(2 nu/|s|)/h0; 0 for a
-        synchronous whirl, which moves nothing
-    """
-
-    relative_depth: float
-    deflection: float
-    detuning: float
-    froude: float
+    relative_depth: float  #: mean depth over radius, h0/R
+    deflection: float  #: whirl amplitude over mean depth, w0/h0
+    detuning: float  #: distance of the whirl from the nearer free wave over the distance of the two
+    froude: float  #: whirl speed seen from the drum over the nearer free wave's
+    #: centrifugal acceleration at the free surface over gravity across the axis, Omega^2 a/g
     centrifuge: float
-    reynolds: float
+    reynolds: float  #: Omega R^2/nu
+    #: laminar layer of the oscillation at the wall over the mean depth, sqrt(2 nu/|s|)/h0; 0 for a
+    #: synchronous whirl, which moves nothing
     wall_layer: float
 
 

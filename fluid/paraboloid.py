@@ -51,19 +51,13 @@ class Moments:
 
     The origin lies on the rotation axis at the chamber floor; x points along the deflection, z along the
     axis. A body that is symmetric about the plane of the deflection has y = xy = yz = 0.
-
-    Parameters
-    ----------
-    volume : integral of 1, m^3, shape (...,)
-    x, y, z : first moments, m^4; x is the unbalance of the liquid over its density
-    xx, yy, zz, xy, xz, yz : second moments, m^5
     """
 
-    volume: Array
-    x: Array
+    volume: Array  #: integral of 1, m^3, shape (...,)
+    x: Array  #: first moments, m^4; x is the unbalance of the liquid over its density
     y: Array
     z: Array
-    xx: Array
+    xx: Array  #: second moments, m^5
     yy: Array
     zz: Array
     xy: Array
@@ -78,20 +72,12 @@ class Moments:
 
 @dataclass(frozen=True)
 class Lens:
-    """Integrals over the lens about the rotation axis, x along the deflection, r the distance to the axis.
+    """Integrals over the lens about the rotation axis, x along the deflection, r the distance to the axis."""
 
-    Parameters
-    ----------
-    area : A, integral of 1, m^2, shape (...,)
-    x : S, integral of x, m^3, shape (...,)
-    polar : J, integral of r^2, m^4, shape (...,)
-    x_polar : T, integral of x r^2, m^5, shape (...,)
-    """
-
-    area: Array
-    x: Array
-    polar: Array
-    x_polar: Array
+    area: Array  #: A, integral of 1, m^2, shape (...,)
+    x: Array  #: S, integral of x, m^3, shape (...,)
+    polar: Array  #: J, integral of r^2, m^4, shape (...,)
+    x_polar: Array  #: T, integral of x r^2, m^5, shape (...,)
 
 
 def lens_moments(disc_radius: ArrayLike, radius: float, eccentricity: ArrayLike) -> Lens:

@@ -25,26 +25,15 @@ _TERMS, _STRIP, _POINTS = 40, 20.0, 200
 
 @dataclass(frozen=True)
 class Pool:
-    """A pool at rest and as a pendulum.
+    """A pool at rest and as a pendulum."""
 
-    Parameters
-    ----------
-    mass : m, kg
-    arm : distance of the centre of mass from the axis l_c, m
-    length : of the pendulum l = g/omega^2, from the slowest sloshing, m; at least the arm
-    half_angle : half of the wetted arc of the outer wall, rad
-    inner_half_angle : the same of the inner wall, 0 where it is dry, rad
-    area : of the section A, m^2
-    square, cube : integrals of r^2 and r^3 over the section, m^4 and m^5
-    """
-
-    mass: float
-    arm: float
-    length: float
-    half_angle: float
-    inner_half_angle: float
-    area: float
-    square: float
+    mass: float  #: m, kg
+    arm: float  #: distance of the centre of mass from the axis l_c, m
+    length: float  #: of the pendulum l = g/omega^2, from the slowest sloshing, m; at least the arm
+    half_angle: float  #: half of the wetted arc of the outer wall, rad
+    inner_half_angle: float  #: the same of the inner wall, 0 where it is dry, rad
+    area: float  #: of the section A, m^2
+    square: float  #: integrals of r^2 and r^3 over the section, m^4 and m^5
     cube: float
 
     @property

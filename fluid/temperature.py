@@ -39,14 +39,9 @@ class PropertyLaw(Protocol):
 
 @dataclass(frozen=True)
 class Constant:
-    """A property that does not change.
+    """A property that does not change."""
 
-    Parameters
-    ----------
-    value : in its SI unit
-    """
-
-    value: float
+    value: float  #: in its SI unit
     lowest: float = 0.0
     highest: float = math.inf
 
@@ -63,11 +58,6 @@ class Tabulated:
     property. Its error falls with the third power of the distance of even points; two points are joined by
     a straight line.
 
-    Parameters
-    ----------
-    temperatures : rising, K; at least two
-    values : in its SI unit, above 0
-
     Raises
     ------
     InputError : temperatures that do not rise, values that are not finite and above 0, different lengths
@@ -78,8 +68,8 @@ class Tabulated:
     8.6e-07
     """
 
-    temperatures: tuple[float, ...]
-    values: tuple[float, ...]
+    temperatures: tuple[float, ...]  #: rising, K; at least two
+    values: tuple[float, ...]  #: in its SI unit, above 0
 
     def __post_init__(self) -> None:
         count = len(self.temperatures)
@@ -117,13 +107,6 @@ class Tabulated:
 class Expansion:
     """Density of a liquid whose volume grows linearly [theory: liquids, eq. 2].
 
-    Parameters
-    ----------
-    value : density at that temperature, kg/m^3
-    temperature : K
-    expansion : of the volume there, 1/K
-    lowest, highest : between which this holds, K
-
     Raises
     ------
     InputError : a density that is not above 0, a range that does not rise, or in which the volume vanishes
@@ -134,10 +117,10 @@ class Expansion:
     863.952
     """
 
-    value: float
-    temperature: float
-    expansion: float
-    lowest: float
+    value: float  #: density at that temperature, kg/m^3
+    temperature: float  #: K
+    expansion: float  #: of the volume there, 1/K
+    lowest: float  #: between which this holds, K
     highest: float
 
     def __post_init__(self) -> None:
@@ -161,12 +144,6 @@ class Walther:
 
     log log(nu + 0.7) is a straight line over log T, nu in mm^2/s.
 
-    Parameters
-    ----------
-    temperatures : of the two points, K, rising
-    values : kinematic viscosity there, m^2/s, both above 2 mm^2/s
-    lowest, highest : between which the line holds, K
-
     Raises
     ------
     InputError : not two points, viscosities that are too small or do not fall, a range that does not rise, or
@@ -179,9 +156,9 @@ class Walther:
     8.5
     """
 
-    temperatures: tuple[float, float]
-    values: tuple[float, float]
-    lowest: float
+    temperatures: tuple[float, float]  #: of the two points, K, rising
+    values: tuple[float, float]  #: kinematic viscosity there, m^2/s, both above 2 mm^2/s
+    lowest: float  #: between which the line holds, K
     highest: float
 
     def __post_init__(self) -> None:
@@ -210,12 +187,6 @@ class Vogel:
 
     With c = 0 it is Andrade's law.
 
-    Parameters
-    ----------
-    a : m^2/s
-    b, c : K
-    lowest, highest : between which this holds, K; both above c
-
     Raises
     ------
     InputError : a coefficient a that is not above 0, a negative b, a range that does not rise or reaches c
@@ -227,10 +198,10 @@ class Vogel:
     7.389
     """
 
-    a: float
-    b: float
+    a: float  #: m^2/s
+    b: float  #: K
     c: float
-    lowest: float
+    lowest: float  #: between which this holds, K; both above c
     highest: float
 
     def __post_init__(self) -> None:
@@ -256,22 +227,15 @@ def _require_range(lowest: float, highest: float) -> None:
 class GivenLaw:
     """Density and viscosity of a liquid over temperature, each by a law of its own.
 
-    Parameters
-    ----------
-    density : kg/m^3
-    viscosity : kinematic, m^2/s
-    reference : temperature to which the liquid's own values belong, K
-    source : keys of the references
-
     Raises
     ------
     InputError : ranges that have no temperature in common, a reference out of them
     """
 
-    density: PropertyLaw
-    viscosity: PropertyLaw
-    reference: float = REFERENCE
-    source: str = AS_GIVEN
+    density: PropertyLaw  #: kg/m^3
+    viscosity: PropertyLaw  #: kinematic, m^2/s
+    reference: float = REFERENCE  #: temperature to which the liquid's own values belong, K
+    source: str = AS_GIVEN  #: keys of the references
 
     def __post_init__(self) -> None:
         if not self.lowest < self.highest:

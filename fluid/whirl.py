@@ -20,19 +20,12 @@ from meshes.arrays import Array, Complex
 
 @dataclass(frozen=True)
 class Layer:
-    """What the whirl of a drum knows of the liquid in a chamber.
+    """What the whirl of a drum knows of the liquid in a chamber."""
 
-    Parameters
-    ----------
-    mass : of the liquid m_l, kg
-    layer_tanh : T = tanh(L), from 0 to 1
-    rate : k of the linear friction, 1/s
-    stokes : chi sqrt(nu) of the laminar friction, k(s) = stokes sqrt(i s), s^(-1/2) [theory: whirl, eq. 12]
-    """
-
-    mass: float
-    layer_tanh: float
-    rate: float
+    mass: float  #: of the liquid m_l, kg
+    layer_tanh: float  #: T = tanh(L), from 0 to 1
+    rate: float  #: k of the linear friction, 1/s
+    #: chi sqrt(nu) of the laminar friction, k(s) = stokes sqrt(i s), s^(-1/2) [theory: whirl, eq. 12]
     stokes: float
 
 

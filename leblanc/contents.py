@@ -28,27 +28,17 @@ _MANY = 5  # files that a message names
 
 @dataclass
 class Record:
-    """What one command writes into a folder of results.
+    """What one command writes into a folder of results."""
 
-    Parameters
-    ----------
-    command : its name
-    folder : into which it writes; None until it has one
-    source : the scene or study file, as seen from the folder
-    state : fingerprint of the scene
-    written : files, in their order
-    previous : what the record said before
-    fresh : the folder and those above it that were not there before, the innermost first
-    aside : folder to which the results of another scene of the same name were moved; None if there were none
-    """
-
-    command: str
-    folder: Path | None = None
-    source: str = ""
-    state: str = ""
-    written: list[Path] = field(default_factory=list)
-    previous: dict[str, Any] = field(default_factory=dict)
+    command: str  #: its name
+    folder: Path | None = None  #: into which it writes; None until it has one
+    source: str = ""  #: the scene or study file, as seen from the folder
+    state: str = ""  #: fingerprint of the scene
+    written: list[Path] = field(default_factory=list)  #: files, in their order
+    previous: dict[str, Any] = field(default_factory=dict)  #: what the record said before
+    #: the folder and those above it that were not there before, the innermost first
     fresh: Sequence[Path] = ()
+    #: folder to which the results of another scene of the same name were moved; None if there were none
     aside: Path | None = None
 
     def open(

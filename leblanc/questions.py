@@ -76,19 +76,13 @@ def as_typed(error: InputError, given: Mapping[str, Any]) -> InputError:
 
 @dataclass(frozen=True)
 class LayerQuestion:
-    """A layer under a prescribed whirl, or its free wave.
+    """A layer under a prescribed whirl, or its free wave."""
 
-    Parameters
-    ----------
-    whirl : by the names of `leblanc.studies.layer.answer_layer`; empty where a free wave is asked for
-    duration : from rest, s; None for the settled answer
-    ramp : time over which the whirl grows, s
-    free : by the names of `leblanc.studies.layer.free_wave`; None where a whirl is given
-    """
-
+    #: by the names of `leblanc.studies.layer.answer_layer`; empty where a free wave is asked for
     whirl: dict[str, Any]
-    duration: float | None
-    ramp: float
+    duration: float | None  #: from rest, s; None for the settled answer
+    ramp: float  #: time over which the whirl grows, s
+    #: by the names of `leblanc.studies.layer.free_wave`; None where a whirl is given
     free: dict[str, Any] | None = None
 
 

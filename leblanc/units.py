@@ -26,20 +26,12 @@ _LONGEST = 64  # characters; no quantity needs more, and pint evaluates what it 
 
 @dataclass(frozen=True)
 class Dimension:
-    """A kind of quantity.
+    """A kind of quantity."""
 
-    Parameters
-    ----------
-    name : for messages, as in "must be a length"
-    unit : its SI unit, that of plain numbers; empty for a pure number
-    example : how a user may write one
-    also : other units taken as equal to the SI unit, but not their multiples
-    """
-
-    name: str
-    unit: str
-    example: str
-    also: tuple[str, ...] = ()
+    name: str  #: for messages, as in "must be a length"
+    unit: str  #: its SI unit, that of plain numbers; empty for a pure number
+    example: str  #: how a user may write one
+    also: tuple[str, ...] = ()  #: other units taken as equal to the SI unit, but not their multiples
 
     @property
     def allowed(self) -> str:
@@ -155,16 +147,10 @@ _HERTZ = re.compile(r"(?<![A-Za-z])([A-Za-z]*?)(?:Hz|hertz)(?![A-Za-z])")
 
 @dataclass(frozen=True)
 class Unit:
-    """A unit in which values are shown.
+    """A unit in which values are shown."""
 
-    Parameters
-    ----------
-    name : as printed, and as it may be typed
-    count : how many of it one SI unit is
-    """
-
-    name: str
-    count: float
+    name: str  #: as printed, and as it may be typed
+    count: float  #: how many of it one SI unit is
 
     def number(self, value: float) -> str:
         """The value in this unit for print, without the unit.

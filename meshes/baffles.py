@@ -22,25 +22,19 @@ class Baffles:
     the liquid; attached and piercing the surface, so that the liquid cannot go around; with a gap at the wall
     and piercing the surface; and standing free in the liquid.
 
-    Parameters
-    ----------
-    count : how many, 1 or more
-    tip_radius : distance of the inner edge from the axis, m; a + gap for a gap below the surface, 0 if the
-        baffles meet on the axis
-    wall_gap : distance of the outer edge from the wall, m; 0 if attached
-    first_angle : angle of the first, rad
-    loss : coefficient of the head lost at each, referred to the mean depth; None takes the law of
-        `fluid.friction.baffles`
-
     Raises
     ------
     InputError : a count that is not whole and positive, a negative length, a number that is not finite
     """
 
-    count: int
+    count: int  #: how many, 1 or more
+    #: distance of the inner edge from the axis, m; a + gap for a gap below the surface, 0 if the baffles meet
+    #: on the axis
     tip_radius: float = 0.0
-    wall_gap: float = 0.0
-    first_angle: float = 0.0
+    wall_gap: float = 0.0  #: distance of the outer edge from the wall, m; 0 if attached
+    first_angle: float = 0.0  #: angle of the first, rad
+    #: coefficient of the head lost at each, referred to the mean depth; None takes the law of
+    #: `fluid.friction.baffles`
     loss: float | None = None
 
     def __post_init__(self) -> None:

@@ -19,15 +19,6 @@ from meshes.errors import InputError, require_not_negative, require_positive
 class Chamber:
     """Chamber about the rotor's geometric axis: circular, or with a section of its own.
 
-    Parameters
-    ----------
-    radius : outer wall radius R, m; with a section the distance of its farthest point
-    height : extent along the axis h_c, m
-    inner_radius : inner wall radius R_i, m; 0 if there is no inner wall
-    plane : axial position of the chamber on the rotor, m
-    baffles : thin radial plates over the whole height; None without any
-    section : any other section; None for circular walls
-
     Raises
     ------
     InputError : a length that is not finite and positive, an inner wall outside the outer one, baffles whose
@@ -39,12 +30,12 @@ class Chamber:
     6.283
     """
 
-    radius: float
-    height: float
-    inner_radius: float = 0.0
-    plane: float = 0.0
-    baffles: Baffles | None = None
-    section: ChamberSection | None = None
+    radius: float  #: outer wall radius R, m; with a section the distance of its farthest point
+    height: float  #: extent along the axis h_c, m
+    inner_radius: float = 0.0  #: inner wall radius R_i, m; 0 if there is no inner wall
+    plane: float = 0.0  #: axial position of the chamber on the rotor, m
+    baffles: Baffles | None = None  #: thin radial plates over the whole height; None without any
+    section: ChamberSection | None = None  #: any other section; None for circular walls
 
     def __post_init__(self) -> None:
         require_positive("radius", self.radius)
@@ -78,14 +69,9 @@ class Chamber:
 
 @dataclass(frozen=True)
 class Chambers:
-    """Many chambers as arrays, taken from `Chamber`s, which check their values.
+    """Many chambers as arrays, taken from `Chamber`s, which check their values."""
 
-    Parameters
-    ----------
-    radius, height, inner_radius : of each, m, shape (n,)
-    """
-
-    radius: Array
+    radius: Array  #: of each, m, shape (n,)
     height: Array
     inner_radius: Array
 

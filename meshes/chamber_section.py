@@ -22,19 +22,12 @@ _STEP, _WHOLE = 1e-4, 1e-3
 
 @dataclass(frozen=True)
 class ChamberSection:
-    """Section with a name; two with the same content are equal. Made by `chamber_section`.
+    """Section with a name; two with the same content are equal. Made by `chamber_section`."""
 
-    Parameters
-    ----------
-    name : of the file it came from
-    digest : fingerprint of its nodes and triangles
-    mesh : the section, about the geometric axis
-    cell_size : at the walls of an outline that was meshed for it, m; None for a mesh from a file
-    """
-
-    name: str = field(compare=False)
-    digest: str
-    mesh: Section = field(compare=False, repr=False)
+    name: str = field(compare=False)  #: of the file it came from
+    digest: str  #: fingerprint of its nodes and triangles
+    mesh: Section = field(compare=False, repr=False)  #: the section, about the geometric axis
+    #: at the walls of an outline that was meshed for it, m; None for a mesh from a file
     cell_size: float | None = field(default=None, compare=False)
 
     @property

@@ -23,16 +23,11 @@ _HALVINGS = 60  # down to rounding
 
 @dataclass(frozen=True)
 class Remainder:
-    """What is left of a section.
+    """What is left of a section."""
 
-    Parameters
-    ----------
-    loops : closed outlines with it on their left, complex, m, shape (k,) each, the first point not repeated
-    arcs : the parts of the circle among them, shape (k,) each
-    """
-
+    #: closed outlines with it on their left, complex, m, shape (k,) each, the first point not repeated
     loops: tuple[Complex, ...]
-    arcs: tuple[Complex, ...]
+    arcs: tuple[Complex, ...]  #: the parts of the circle among them, shape (k,) each
 
     @property
     def area(self) -> float:

@@ -28,18 +28,11 @@ _WAVE_ERROR, _ACROSS = 0.01, 3
 
 @dataclass(frozen=True)
 class Finding:
-    """A fault of a mesh.
+    """A fault of a mesh."""
 
-    Parameters
-    ----------
-    what : the fault, with its figure
-    where : the worst place, m; two or three coordinates
-    change : what makes it better
-    """
-
-    what: str
-    where: tuple[float, ...]
-    change: str
+    what: str  #: the fault, with its figure
+    where: tuple[float, ...]  #: the worst place, m; two or three coordinates
+    change: str  #: what makes it better
 
     def __str__(self) -> str:
         place = ", ".join(f"{value:.4g}" for value in self.where)

@@ -22,28 +22,21 @@ class LiquidSection:
     """Liquid of a section with its free surface and its walls; made by `liquid_section`.
 
     A thin baffle is a slit: its two sides have nodes of their own, save those at a tip in the liquid.
-
-    Parameters
-    ----------
-    points : nodes, shape (N, 2), m, from the drum's geometric axis
-    cells : node numbers, counter-clockwise, shape (M, 3) or (M, 6) for triangles, (M, 4) or (M, 9) for
-        quadrilaterals: vertices, then the nodes on the sides 0-1, 1-2, ..., then the one in the middle
-    surface : sides on the free surface, shape (S, 2 or 3): start, end, node between, with the liquid on the
-        left, so that the angle falls from start to end
-    wall : sides on walls and baffles, shape (W, 2 or 3), with the liquid on the left
-    wall_piece : number of the connected piece of wall of each, shape (W,), from 0
-    fixed_piece : whether a piece is the outermost of its body of liquid, shape (pieces,): what is attached to
-        the outer wall is part of it; the others stand free in the liquid
-    surface_radius : a, m
     """
 
-    points: Array
+    points: Array  #: nodes, shape (N, 2), m, from the drum's geometric axis
+    #: node numbers, counter-clockwise, shape (M, 3) or (M, 6) for triangles, (M, 4) or (M, 9) for
+    #: quadrilaterals: vertices, then the nodes on the sides 0-1, 1-2, ..., then the one in the middle
     cells: Indices
+    #: sides on the free surface, shape (S, 2 or 3): start, end, node between, with the liquid on the left, so
+    #: that the angle falls from start to end
     surface: Indices
-    wall: Indices
-    wall_piece: Indices
+    wall: Indices  #: sides on walls and baffles, shape (W, 2 or 3), with the liquid on the left
+    wall_piece: Indices  #: number of the connected piece of wall of each, shape (W,), from 0
+    #: whether a piece is the outermost of its body of liquid, shape (pieces,): what is attached to the outer
+    #: wall is part of it; the others stand free in the liquid
     fixed_piece: NDArray[np.bool_]
-    surface_radius: float
+    surface_radius: float  #: a, m
 
     @property
     def order(self) -> int:

@@ -28,26 +28,18 @@ _SQUARE = np.array([[0, 0], [2, 0], [2, 2], [0, 2], [1, 0], [2, 1], [1, 2], [0, 
 
 @dataclass(frozen=True)
 class Quality:
-    """What can spoil a computation on a mesh.
+    """What can spoil a computation on a mesh."""
 
-    Parameters
-    ----------
-    triangles : how many cells there are
-    worst_angle : the angle at a vertex that differs most from that of the regular cell, 60 degrees for
-        triangles and 90 for quadrilaterals, rad; between tangents if curved
-    aspect_ratio : largest ratio of longest side to the breadth across it, 1 for regular cells, of the chords
-    smallest_area, largest_area : of single cells, m^2; negative if inverted
-    total_area : m^2
-    inverted : cells with a Jacobian that is zero or negative somewhere
-    """
-
-    triangles: int
+    triangles: int  #: how many cells there are
+    #: the angle at a vertex that differs most from that of the regular cell, 60 degrees for triangles and 90
+    #: for quadrilaterals, rad; between tangents if curved
     worst_angle: float
+    #: largest ratio of longest side to the breadth across it, 1 for regular cells, of the chords
     aspect_ratio: float
-    smallest_area: float
+    smallest_area: float  #: of single cells, m^2; negative if inverted
     largest_area: float
-    total_area: float
-    inverted: int
+    total_area: float  #: m^2
+    inverted: int  #: cells with a Jacobian that is zero or negative somewhere
 
 
 def edge_polynomials(nodes: Array) -> tuple[Array, Array, Array]:

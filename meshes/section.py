@@ -21,19 +21,15 @@ _MOST_NODES = 1_000_000
 class Section:
     """Triangulated section of a chamber; the arrays are copied and cannot be written to.
 
-    Parameters
-    ----------
-    points : nodes, shape (N, 2), m, from the chamber's geometric axis
-    triangles : node numbers, counter-clockwise: shape (M, 3) for straight edges; (M, 6) for curved ones,
-        the three vertices, then the nodes on the edges 0-1, 1-2, 2-0
-
     Raises
     ------
     InputError : a shape or number that does not fit, a triangle inverted or without area, triangles that
         overlap along an edge, a midside node that belongs to more than one edge
     """
 
-    points: Array
+    points: Array  #: nodes, shape (N, 2), m, from the chamber's geometric axis
+    #: node numbers, counter-clockwise: shape (M, 3) for straight edges; (M, 6) for curved ones, the three
+    #: vertices, then the nodes on the edges 0-1, 1-2, 2-0
     triangles: Indices
 
     def __post_init__(self) -> None:

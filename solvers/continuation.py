@@ -36,16 +36,10 @@ class End(Enum):
 
 @dataclass(frozen=True)
 class Curve:
-    """Points of a curve, one after the other.
+    """Points of a curve, one after the other."""
 
-    Parameters
-    ----------
-    points : shape (k, m + 1)
-    end : why there are no more
-    """
-
-    points: Array
-    end: End
+    points: Array  #: shape (k, m + 1)
+    end: End  #: why there are no more
 
 
 Equations = Callable[[Array], Array]  # of the unknowns, shape (m + 1,), what is left, shape (m,)

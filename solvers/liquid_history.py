@@ -9,50 +9,28 @@ from meshes.arrays import Array, Complex
 
 @dataclass(frozen=True)
 class LayerHistory:
-    """Whirl periods of a layer; k of them, n cells. Complex: along the deflection, 90 deg ahead of it.
+    """Whirl periods of a layer; k of them, n cells. Complex: along the deflection, 90 deg ahead of it."""
 
-    Parameters
-    ----------
-    time : middle of each period, s, shape (k,)
-    force_ratio : mean force on the drum over m_f omega_w^2 A, by the liquid's momentum, shape (k,)
-    pressure_ratio : the same by the pressure on the wall; the two differ by the model's error, shape (k,)
-    offset : mean offset of the liquid's centre of mass from the drum's axis, m, shape (k,)
-    mean_rotation : mean turning of the liquid relative to the drum, rad/s, shape (k,)
-    depth_max, depth_min : mean over the period of the largest and the least depth, m, shape (k,)
-    theta : angle from the deflection at the end, rad, ascending, shape (n,)
-    depth : depth of the layer there, m, shape (n,)
-    mass_error : relative change of the liquid's volume
-    converged : every period was finished and, where it was to settle, the last two agree
-    reason : why it is not, or empty
-    """
-
-    time: Array
-    force_ratio: Complex
+    time: Array  #: middle of each period, s, shape (k,)
+    force_ratio: Complex  #: mean force on the drum over m_f omega_w^2 A, by the liquid's momentum, shape (k,)
+    #: the same by the pressure on the wall; the two differ by the model's error, shape (k,)
     pressure_ratio: Complex
-    offset: Complex
-    mean_rotation: Array
-    depth_max: Array
+    offset: Complex  #: mean offset of the liquid's centre of mass from the drum's axis, m, shape (k,)
+    mean_rotation: Array  #: mean turning of the liquid relative to the drum, rad/s, shape (k,)
+    depth_max: Array  #: mean over the period of the largest and the least depth, m, shape (k,)
     depth_min: Array
-    theta: Array
-    depth: Array
-    mass_error: float
-    converged: bool
-    reason: str
+    theta: Array  #: angle from the deflection at the end, rad, ascending, shape (n,)
+    depth: Array  #: depth of the layer there, m, shape (n,)
+    mass_error: float  #: relative change of the liquid's volume
+    converged: bool  #: every period was finished and, where it was to settle, the last two agree
+    reason: str  #: why it is not, or empty
 
 
 @dataclass(frozen=True)
 class LayerFilm:
-    """Pictures of a layer in the drum frame; k of them, n cells.
+    """Pictures of a layer in the drum frame; k of them, n cells."""
 
-    Parameters
-    ----------
-    time : s, shape (k,)
-    theta : angle in the drum, rad, shape (n,)
-    depth : m, shape (k, n)
-    deflection : of the drum's axis, seen from the drum, m, complex, shape (k,)
-    """
-
-    time: Array
-    theta: Array
-    depth: Array
-    deflection: Complex
+    time: Array  #: s, shape (k,)
+    theta: Array  #: angle in the drum, rad, shape (n,)
+    depth: Array  #: m, shape (k, n)
+    deflection: Complex  #: of the drum's axis, seen from the drum, m, complex, shape (k,)

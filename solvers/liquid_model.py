@@ -37,22 +37,13 @@ _MOST_CRESTS = 64  # of a free wave
 
 @dataclass(frozen=True)
 class Whirl:
-    """A circular whirl of the drum's axis.
+    """A circular whirl of the drum's axis."""
 
-    Parameters
-    ----------
-    spin : Omega, rad/s, > 0
-    speed : omega_w in space, rad/s
-    amplitude : m
-    ramp : time over which the amplitude grows from nothing, s
-    gravity : across the axis, m/s^2
-    """
-
-    spin: float
-    speed: float
-    amplitude: float
-    ramp: float = 0.0
-    gravity: float = 0.0
+    spin: float  #: Omega, rad/s, > 0
+    speed: float  #: omega_w in space, rad/s
+    amplitude: float  #: m
+    ramp: float = 0.0  #: time over which the amplitude grows from nothing, s
+    gravity: float = 0.0  #: across the axis, m/s^2
 
     def __post_init__(self) -> None:
         require_positive("speed", self.spin)
@@ -94,22 +85,14 @@ def grown(time: Array | float, ramp: float) -> Array:
 
 @dataclass(frozen=True)
 class Whirls:
-    """n circular whirls, one for each of the fills that are asked about; all shapes (n,).
+    """n circular whirls, one for each of the fills that are asked about; all shapes (n,)."""
 
-    Parameters
-    ----------
-    spin : Omega, rad/s, above 0
-    speed : omega in space, rad/s, other than 0
-    deflection : of the chamber's axis, m, complex or real; 0 asks for the limit of a small one
-    axial_gravity : along the axis, m/s^2
-    gravity : across the axis, m/s^2
-    """
-
-    spin: Array
-    speed: Array
+    spin: Array  #: Omega, rad/s, above 0
+    speed: Array  #: omega in space, rad/s, other than 0
+    #: of the chamber's axis, m, complex or real; 0 asks for the limit of a small one
     deflection: Array | Complex
-    axial_gravity: Array
-    gravity: Array
+    axial_gravity: Array  #: along the axis, m/s^2
+    gravity: Array  #: across the axis, m/s^2
 
     @classmethod
     def synchronous(cls, spin: Array, deflection: Array | Complex, axial_gravity: Array) -> Whirls:
@@ -144,27 +127,19 @@ class Whirls:
 
 @dataclass(frozen=True)
 class LiquidAnswer:
-    """The liquid's answer to n whirls; all shapes (n,), complex numbers along the deflection.
+    """The liquid's answer to n whirls; all shapes (n,), complex numbers along the deflection."""
 
-    Parameters
-    ----------
-    unbalance : U, the force over the whirl speed squared, kg m: where the liquid stands still in the whirl's
-        frame its first moment about the rotation axis
-    slope : derivative of |U| with respect to the deflection at fixed volume, kg; nan where it is not known
-    offset : liquid's centre of mass from the chamber's axis, m
-    dry_patch : the wall is dry over its whole height somewhere
-    converged : the answer was found
-    limits : by its name each limit of the model, and where it is kept
-    error : estimated error of U, at rest relative, of waves over the larger of U and a full chamber's;
-        nan where the model has no estimate
-    """
-
+    #: U, the force over the whirl speed squared, kg m: where the liquid stands still in the whirl's frame its
+    #: first moment about the rotation axis
     unbalance: Complex
+    #: derivative of |U| with respect to the deflection at fixed volume, kg; nan where it is not known
     slope: Array
-    offset: Complex
-    dry_patch: Flags
-    converged: Flags
-    limits: Mapping[str, Flags]
+    offset: Complex  #: liquid's centre of mass from the chamber's axis, m
+    dry_patch: Flags  #: the wall is dry over its whole height somewhere
+    converged: Flags  #: the answer was found
+    limits: Mapping[str, Flags]  #: by its name each limit of the model, and where it is kept
+    #: estimated error of U, at rest relative, of waves over the larger of U and a full chamber's; nan where
+    #: the model has no estimate
     error: Array
 
     @classmethod
@@ -349,62 +324,38 @@ def added_mass_answer(
 
 @dataclass(frozen=True)
 class LiquidWave:
-    """Answer to one whirl with the wave that makes it.
+    """Answer to one whirl with the wave that makes it."""
 
-    Parameters
-    ----------
-    answer : of the whirl, shape (1,)
-    theta, depth : angle from the deflection, rad, ascending, and depth of the layer there, m, shape (k,)
-    numbers : dimensionless numbers of the whirl and of the wave, by name
-    ranges : those that bound the model here, by name
-    mass_error : of the surface drawn, relative
-    mean_rotation : of the liquid relative to the drum, rad/s
-    counter : size of the answer that goes round against the whirl over that with it
-    reason : why there is no answer, or empty
-    """
-
-    answer: LiquidAnswer
-    theta: Array
+    answer: LiquidAnswer  #: of the whirl, shape (1,)
+    theta: Array  #: angle from the deflection, rad, ascending, and depth of the layer there, m, shape (k,)
     depth: Array
-    numbers: Mapping[str, float]
-    ranges: Mapping[str, Range]
-    mass_error: float
-    mean_rotation: float = 0.0
-    counter: float = 0.0
-    reason: str = ""
+    numbers: Mapping[str, float]  #: dimensionless numbers of the whirl and of the wave, by name
+    ranges: Mapping[str, Range]  #: those that bound the model here, by name
+    mass_error: float  #: of the surface drawn, relative
+    mean_rotation: float = 0.0  #: of the liquid relative to the drum, rad/s
+    counter: float = 0.0  #: size of the answer that goes round against the whirl over that with it
+    reason: str = ""  #: why there is no answer, or empty
 
 
 @dataclass(frozen=True)
 class FreeWave:
-    """A wave that runs round the drum by itself, in two senses with one shape.
+    """A wave that runs round the drum by itself, in two senses with one shape."""
 
-    Parameters
-    ----------
-    whirl_speed : at which its crests go round in space, behind the drum and ahead of it, rad/s
-    theta, depth : angle from a crest, rad, ascending, and depth of the layer there, m, shape (k,)
-    crest, trough : greatest and least depth over that of the layer at rest
-    crest_number : speed of the liquid at the crest over that of the crest
-    numbers, ranges : as of `LiquidWave`
-    converged : the wave was found
-    mass_error : of the surface drawn, relative
-    error : estimated relative error of the speed along the wall; nan where there is no estimate
-    branch : kind of wave, where the model tells
-    reason : why there is no answer, or empty
-    """
-
+    #: at which its crests go round in space, behind the drum and ahead of it, rad/s
     whirl_speed: tuple[float, float]
-    theta: Array
+    theta: Array  #: angle from a crest, rad, ascending, and depth of the layer there, m, shape (k,)
     depth: Array
-    crest: float
+    crest: float  #: greatest and least depth over that of the layer at rest
     trough: float
-    crest_number: float
-    numbers: Mapping[str, float]
+    crest_number: float  #: speed of the liquid at the crest over that of the crest
+    numbers: Mapping[str, float]  #: as of `LiquidWave`
     ranges: Mapping[str, Range]
-    converged: bool
-    mass_error: float
+    converged: bool  #: the wave was found
+    mass_error: float  #: of the surface drawn, relative
+    #: estimated relative error of the speed along the wall; nan where there is no estimate
     error: float = math.nan
-    branch: str = ""
-    reason: str = ""
+    branch: str = ""  #: kind of wave, where the model tells
+    reason: str = ""  #: why there is no answer, or empty
 
 
 class WaveModel(LiquidModel, Protocol):

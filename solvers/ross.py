@@ -35,32 +35,20 @@ _ROTATION = np.array([[0.0, 1.0], [-1.0, 0.0]])  # as a matrix, what -i is to x 
 
 @dataclass(frozen=True)
 class Coefficients:
-    """Matrices on the two in-plane directions, at n points.
+    """Matrices on the two in-plane directions, at n points."""
 
-    Parameters
-    ----------
-    mass : M, kg, shape (n, 2, 2)
-    damping : C, N s/m, shape (n, 2, 2)
-    stiffness : K, N/m, shape (n, 2, 2)
-    """
-
-    mass: Array
-    damping: Array
-    stiffness: Array
+    mass: Array  #: M, kg, shape (n, 2, 2)
+    damping: Array  #: C, N s/m, shape (n, 2, 2)
+    stiffness: Array  #: K, N/m, shape (n, 2, 2)
 
 
 @dataclass(frozen=True)
 class LiquidElements:
-    """What one layer adds to a ROSS rotor.
+    """What one layer adds to a ROSS rotor."""
 
-    Parameters
-    ----------
-    bearings : the link, and an empty support of the liquid's node without which ROSS does not place its mass
-    mass : the liquid
-    """
-
+    #: the link, and an empty support of the liquid's node without which ROSS does not place its mass
     bearings: tuple[BearingElement, BearingElement]
-    mass: PointMass
+    mass: PointMass  #: the liquid
 
 
 def dynamic_stiffness(

@@ -35,18 +35,11 @@ _SHORTEST = (1e-5, 1e-2)
 
 @dataclass(frozen=True)
 class Judgement:
-    """What a judge says of m points.
+    """What a judge says of m points."""
 
-    Parameters
-    ----------
-    objective : to be least; infinite where there is no value, shape (m,)
-    excess : of the constraint that is exceeded most, relative; 0 or below where all hold, shape (m,)
-    details : further values by name, shape (m,) each
-    """
-
-    objective: Array
-    excess: Array
-    details: dict[str, Array] = field(default_factory=dict)
+    objective: Array  #: to be least; infinite where there is no value, shape (m,)
+    excess: Array  #: of the constraint that is exceeded most, relative; 0 or below where all hold, shape (m,)
+    details: dict[str, Array] = field(default_factory=dict)  #: further values by name, shape (m,) each
 
 
 def joined(parts: Sequence[Judgement]) -> Judgement:
@@ -63,32 +56,21 @@ Judge = Callable[[Array], Judgement]  # takes points, shape (m, n)
 
 @dataclass(frozen=True)
 class SearchPlan:
-    """How much a search tries.
+    """How much a search tries."""
 
-    Parameters
-    ----------
-    levels : of each coordinate in the grid, by the number of coordinates; beyond the last, lines instead
-    crossed : expected coordinates become levels even of three and more; else those points join the grid
-    finest : lowest level above the lower corner, over the box's width
-    valleys : of the grid from which steps go down
-    sweeps : of steps, at most
-    settled : relative gain of a round below which a valley counts as followed to its end
-    margin : values that differ by less, relative, count as equal in the end
-    edge : distance at which the edge of a plateau or of what is allowed counts as found, over its place
-    sections : into which such an edge is closed in at once
-    polish : sweeps in changing directions, at most
-    """
-
+    #: of each coordinate in the grid, by the number of coordinates; beyond the last, lines instead
     levels: tuple[int, ...] = (24, 11, 5)
+    #: expected coordinates become levels even of three and more; else those points join the grid
     crossed: bool = True
-    finest: float = 1e-4
-    valleys: int = 3
-    sweeps: int = 16
-    settled: float = 2e-5
-    margin: float = 1e-6
+    finest: float = 1e-4  #: lowest level above the lower corner, over the box's width
+    valleys: int = 3  #: of the grid from which steps go down
+    sweeps: int = 16  #: of steps, at most
+    settled: float = 2e-5  #: relative gain of a round below which a valley counts as followed to its end
+    margin: float = 1e-6  #: values that differ by less, relative, count as equal in the end
+    #: distance at which the edge of a plateau or of what is allowed counts as found, over its place
     edge: float = 1e-6
-    sections: int = 32
-    polish: int = 20
+    sections: int = 32  #: into which such an edge is closed in at once
+    polish: int = 20  #: sweeps in changing directions, at most
 
 
 def best_of(judged: Judgement, cost: Array, margin: float = 1e-6, tie: float | None = None) -> int:
@@ -117,23 +99,14 @@ def best_of(judged: Judgement, cost: Array, margin: float = 1e-6, tie: float | N
 
 @dataclass(frozen=True)
 class Found:
-    """The best point of a search and all that were judged; m points of n coordinates.
+    """The best point of a search and all that were judged; m points of n coordinates."""
 
-    Parameters
-    ----------
-    point : shape (n,)
-    objective, excess : its value; 0 or below if the point is allowed
-    points : all that were judged, shape (m, n)
-    judged : what was said of them
-    interrupted : from the keyboard: the best of what was judged until then
-    """
-
-    point: Array
-    objective: float
+    point: Array  #: shape (n,)
+    objective: float  #: its value; 0 or below if the point is allowed
     excess: float
-    points: Array
-    judged: Judgement
-    interrupted: bool = False
+    points: Array  #: all that were judged, shape (m, n)
+    judged: Judgement  #: what was said of them
+    interrupted: bool = False  #: from the keyboard: the best of what was judged until then
 
     @property
     def feasible(self) -> bool:

@@ -35,18 +35,11 @@ _BREAK = re.compile(r"(?<=[/_])(?=\w)")  # where a path or a name may go on in t
 
 @dataclass(frozen=True)
 class Table:
-    """Rows of texts and numbers.
+    """Rows of texts and numbers."""
 
-    Parameters
-    ----------
-    header : one word for each column
-    rows : as many cells each
-    foot : a line below, or empty
-    """
-
-    header: tuple[str, ...]
-    rows: tuple[tuple[str, ...], ...]
-    foot: str = ""
+    header: tuple[str, ...]  #: one word for each column
+    rows: tuple[tuple[str, ...], ...]  #: as many cells each
+    foot: str = ""  #: a line below, or empty
 
     def __repr__(self) -> str:
         lines = [" | ".join(row) for row in (self.header, *self.rows)]
@@ -74,18 +67,11 @@ class Table:
 
 @dataclass(frozen=True)
 class Picture:
-    """A figure as PNG.
+    """A figure as PNG."""
 
-    Parameters
-    ----------
-    png : the file's content
-    width : on the screen, pixels
-    alt : what it shows, for who cannot see it
-    """
-
-    png: bytes
-    width: int
-    alt: str
+    png: bytes  #: the file's content
+    width: int  #: on the screen, pixels
+    alt: str  #: what it shows, for who cannot see it
 
     def __repr__(self) -> str:
         return "figure"

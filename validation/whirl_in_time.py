@@ -27,18 +27,11 @@ _LARGE = 0.02  # of that depth; beyond it the layer is no longer linear
 
 @dataclass(frozen=True)
 class WhirlInTime:
-    """What a small disturbance did.
+    """What a small disturbance did."""
 
-    Parameters
-    ----------
-    growth : of the deflection's modulus over the last half of the time, 1/s
-    whirl_speed : of the deflection over it, rad/s, standing frame
-    linear : the layers stayed within the range of linear waves
-    """
-
-    growth: float
-    whirl_speed: float
-    linear: bool
+    growth: float  #: of the deflection's modulus over the last half of the time, 1/s
+    whirl_speed: float  #: of the deflection over it, rad/s, standing frame
+    linear: bool  #: the layers stayed within the range of linear waves
 
 
 def whirl_in_time(
@@ -90,18 +83,11 @@ def whirl_in_time(
 
 @dataclass(frozen=True)
 class LargeWhirl:
-    """A whirl that a machine has come to.
+    """A whirl that a machine has come to."""
 
-    Parameters
-    ----------
-    amplitude : mean deflection of the first chamber's axis, m
-    whirl_speed : rad/s, standing frame
-    spread : of the deflection over its mean
-    """
-
-    amplitude: float
-    whirl_speed: float
-    spread: float
+    amplitude: float  #: mean deflection of the first chamber's axis, m
+    whirl_speed: float  #: rad/s, standing frame
+    spread: float  #: of the deflection over its mean
 
 
 _SETTLING, _WATCHED = 900.0, 200.0  # rad of spin: until a whirl has settled, and over which it is measured
@@ -157,28 +143,18 @@ def _at_slip(fill: Fill, spin: float, slip: float) -> Fill:
 
 @dataclass(frozen=True)
 class Passage:
-    """A run-up through a band of self-excited whirl and back; k times on the way up, m on the way down.
+    """A run-up through a band of self-excited whirl and back; k times on the way up, m on the way down."""
 
-    Parameters
-    ----------
-    rate : of the ramp, rad/s^2
-    time, speed, amplitude, whirl_speed : s, rad/s, m, and rad/s in the standing frame, on the way up,
-        shape (k,)
-    lag : by which the liquid turns more slowly than the drum on the way up, rad/s, shape (k,)
-    speed_down, amplitude_down, whirl_speed_down : on the way down, the last first: speeds rise, shape (m,)
-    converged : the run came to its end
-    """
-
-    rate: float
-    time: Array
+    rate: float  #: of the ramp, rad/s^2
+    time: Array  #: s, rad/s, m, and rad/s in the standing frame, on the way up, shape (k,)
     speed: Array
     amplitude: Array
     whirl_speed: Array
-    lag: Array
-    speed_down: Array
+    lag: Array  #: by which the liquid turns more slowly than the drum on the way up, rad/s, shape (k,)
+    speed_down: Array  #: on the way down, the last first: speeds rise, shape (m,)
     amplitude_down: Array
     whirl_speed_down: Array
-    converged: bool
+    converged: bool  #: the run came to its end
 
     def at(self, speed: float, back: bool = False) -> float:
         """Amplitude at a speed on the way up or down, m.

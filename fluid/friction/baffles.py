@@ -112,22 +112,13 @@ def _missing(before: Array, depth: Array, tip: float, gap: float, head: Array) -
 
 @dataclass(frozen=True)
 class BaffleTorque:
-    """What baffles can do for a layer at a lag; n lags.
+    """What baffles can do for a layer at a lag; n lags."""
 
-    Parameters
-    ----------
-    lag : of the liquid's rotation behind the drum's, over the drum's, shape (n,)
-    loss : zeta, shape (n,)
-    before : depth before the baffles, m, shape (n,)
-    froude : of the flow past them, shape (n,)
-    torque : on the liquid, N m, shape (n,)
-    """
-
-    lag: Array
-    loss: Array
-    before: Array
-    froude: Array
-    torque: Array
+    lag: Array  #: of the liquid's rotation behind the drum's, over the drum's, shape (n,)
+    loss: Array  #: zeta, shape (n,)
+    before: Array  #: depth before the baffles, m, shape (n,)
+    froude: Array  #: of the flow past them, shape (n,)
+    torque: Array  #: on the liquid, N m, shape (n,)
 
 
 def baffle_torque(fill: Fill, spin: float, lag: Array) -> BaffleTorque:

@@ -51,14 +51,6 @@ _SLOWEST = 1e-9
 class Friction:
     """Friction of the liquid on its chamber.
 
-    Parameters
-    ----------
-    law : a `FrictionLaw` or its name
-    coefficient : k for the linear law, 1/s; c_f for the quadratic one, a number; 0 for the others. Stokes'
-        (laminar) law takes the liquid's viscosity and the frequency of the motion, see `at`, and so do the
-        waves under the law of the wall, see `fluid.friction.wall`
-    roughness : height of the wall's roughness for that one, m; 0 for the others
-
     Raises
     ------
     InputError : no such law, a coefficient or a roughness that is negative or not finite, a roughness that
@@ -70,9 +62,12 @@ class Friction:
     (1, 0.5)
     """
 
-    law: FrictionLaw = FrictionLaw.NONE
+    law: FrictionLaw = FrictionLaw.NONE  #: a `FrictionLaw` or its name
+    #: k for the linear law, 1/s; c_f for the quadratic one, a number; 0 for the others. Stokes' (laminar) law
+    #: takes the liquid's viscosity and the frequency of the motion, see `at`, and so do the waves under the
+    #: law of the wall, see `fluid.friction.wall`
     coefficient: float = 0.0
-    roughness: float = 0.0
+    roughness: float = 0.0  #: height of the wall's roughness for that one, m; 0 for the others
 
     def __post_init__(self) -> None:
         if self.law not in list(FrictionLaw):

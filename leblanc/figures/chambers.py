@@ -57,14 +57,9 @@ NOTED_LINES = 10  # of a caption with notes
 
 @dataclass(frozen=True)
 class Exaggeration:
-    """Factors that the drawing applies.
+    """Factors that the drawing applies."""
 
-    Parameters
-    ----------
-    deflection, depth : of the geometric centre and of the mean layer
-    """
-
-    deflection: float
+    deflection: float  #: of the geometric centre and of the mean layer
     depth: float
 
 
@@ -206,17 +201,11 @@ def side_by_side(chambers: tuple[FilledChamber, ...]) -> list[tuple[FilledChambe
 
 @dataclass(frozen=True)
 class LiquidOutline:
-    """A body of liquid seen along the axis, about the rotation axis.
+    """A body of liquid seen along the axis, about the rotation axis."""
 
-    Parameters
-    ----------
-    level : distance of the free surface, on the floor of a bowl, m
-    liquid : what lies outside of it
-    higher : what is covered up to some heights above the floor, if the surface is a bowl, from the lowest on
-    """
-
-    level: float
-    liquid: Remainder
+    level: float  #: distance of the free surface, on the floor of a bowl, m
+    liquid: Remainder  #: what lies outside of it
+    #: what is covered up to some heights above the floor, if the surface is a bowl, from the lowest on
     higher: tuple[Remainder, ...] = ()
 
 
@@ -387,26 +376,17 @@ def plates(
 
 @dataclass(frozen=True)
 class Views:
-    """What the figure of the chambers shows.
+    """What the figure of the chambers shows."""
 
-    Parameters
-    ----------
-    drawings : chambers of each column
-    instants : index of each view over the speeds of the curve
-    scales : exaggeration of each view; alike, so that views can be compared, if the smaller deflection can be
-        seen so
-    largest : deflection of all views as drawn, m
-    inner, bowls : index of the views in which liquid reaches an inner wall, and whose surface is a bowl
-    left_out : number of chambers that found no room
-    """
-
-    drawings: list[tuple[FilledChamber, ...]]
-    instants: list[int]
+    drawings: list[tuple[FilledChamber, ...]]  #: chambers of each column
+    instants: list[int]  #: index of each view over the speeds of the curve
+    #: exaggeration of each view; alike, so that views can be compared, if the smaller deflection can be seen
+    #: so
     scales: list[Exaggeration]
-    largest: float
-    inner: list[int]
+    largest: float  #: deflection of all views as drawn, m
+    inner: list[int]  #: index of the views in which liquid reaches an inner wall, and whose surface is a bowl
     bowls: list[int]
-    left_out: int
+    left_out: int  #: number of chambers that found no room
 
 
 def chamber_figure(result: RunResult) -> Figure:

@@ -31,24 +31,15 @@ TITLE = "leblanc: passive liquid balancers and rotors partly filled with liquid"
 
 @dataclass(frozen=True)
 class About:
-    """What a report is about and how to make it again.
+    """What a report is about and how to make it again."""
 
-    Parameters
-    ----------
-    name, source, digest : of the scene
-    inputs : what it says
-    elsewhere : assumed values that are not among the inputs
-    command : that writes the report; empty if it was no command
-    data : file of the numbers beside the report; empty if there is none
-    """
-
-    name: str
+    name: str  #: of the scene
     source: str
     digest: str
-    inputs: Inputs
-    elsewhere: tuple[str, ...] = ()
-    command: str = ""
-    data: str = ""
+    inputs: Inputs  #: what it says
+    elsewhere: tuple[str, ...] = ()  #: assumed values that are not among the inputs
+    command: str = ""  #: that writes the report; empty if it was no command
+    data: str = ""  #: file of the numbers beside the report; empty if there is none
 
 
 def about(

@@ -25,38 +25,22 @@ TYPES = {".svg": "image/svg+xml", ".png": "image/png"}
 
 @dataclass(frozen=True)
 class Cell:
-    """One value as printed.
+    """One value as printed."""
 
-    Parameters
-    ----------
-    text : the value with its unit
-    assumed : no source gives it
-    warning : a reader must not overlook it
-    path : in the scene; empty for a result
-    """
-
-    text: str
-    assumed: bool = False
-    warning: bool = False
-    path: str = ""
+    text: str  #: the value with its unit
+    assumed: bool = False  #: no source gives it
+    warning: bool = False  #: a reader must not overlook it
+    path: str = ""  #: in the scene; empty for a result
 
 
 @dataclass(frozen=True)
 class Table:
-    """A table; the first cell of each row is its heading.
+    """A table; the first cell of each row is its heading."""
 
-    Parameters
-    ----------
-    title : above it, may be empty
-    head : headings of the columns; none for a list of labels and values
-    rows : of cells, as many as there are columns
-    sentences : cells are sentences, not numbers
-    """
-
-    title: str
-    head: tuple[str, ...]
-    rows: tuple[tuple[Cell, ...], ...]
-    sentences: bool = False
+    title: str  #: above it, may be empty
+    head: tuple[str, ...]  #: headings of the columns; none for a list of labels and values
+    rows: tuple[tuple[Cell, ...], ...]  #: of cells, as many as there are columns
+    sentences: bool = False  #: cells are sentences, not numbers
 
 
 def table(
@@ -139,20 +123,13 @@ def doubt(checks: Table, holds: str = "") -> str:
 
 @dataclass(frozen=True)
 class Picture:
-    """A figure as a page shows it.
+    """A figure as a page shows it."""
 
-    Parameters
-    ----------
-    title, caption : below it
-    alt : what it shows, for who cannot see it
-    address : that holds the whole picture
-    shape : width and height of what is shown, the drawn caption cut off; None if not known
-    """
-
-    title: str
+    title: str  #: below it
     caption: str
-    alt: str
-    address: str
+    alt: str  #: what it shows, for who cannot see it
+    address: str  #: that holds the whole picture
+    #: width and height of what is shown, the drawn caption cut off; None if not known
     shape: tuple[float, float] | None
 
 
@@ -182,18 +159,11 @@ class Entry:
 
 @dataclass(frozen=True)
 class Inputs:
-    """What a scene says.
+    """What a scene says."""
 
-    Parameters
-    ----------
-    entries : single values
-    tables : of what there may be several of: chambers, supports, springs
-    unused : single values that the report's numbers do not depend on
-    """
-
-    entries: tuple[Entry, ...]
-    tables: tuple[Table, ...]
-    unused: tuple[Entry, ...] = ()
+    entries: tuple[Entry, ...]  #: single values
+    tables: tuple[Table, ...]  #: of what there may be several of: chambers, supports, springs
+    unused: tuple[Entry, ...] = ()  #: single values that the report's numbers do not depend on
 
     @property
     def cells(self) -> list[Cell]:

@@ -32,17 +32,11 @@ class Note:
 
     A program uses `code` and `data`, a reader reads `text`. A sentence is written in one place: the
     function that makes the note.
-
-    Parameters
-    ----------
-    code : kind of the sentence
-    data : the numbers of the sentence, SI
-    text : the sentence
     """
 
-    code: NoteCode
-    data: Mapping[str, object] = field(hash=False)
-    text: str
+    code: NoteCode  #: kind of the sentence
+    data: Mapping[str, object] = field(hash=False)  #: the numbers of the sentence, SI
+    text: str  #: the sentence
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "data", MappingProxyType(dict(self.data)))
@@ -150,19 +144,12 @@ def presented_by(address: str) -> Callable[[Any], Any]:
 
 @dataclass(frozen=True)
 class ConstraintValue:
-    """A constraint at what was found best.
+    """A constraint at what was found best."""
 
-    Parameters
-    ----------
-    limit, value : in the unit; the value must not be above the limit
-    satisfied : it is not
-    unit, meaning : of both, and what they are
-    """
-
-    limit: float
+    limit: float  #: in the unit; the value must not be above the limit
     value: float
-    satisfied: bool
-    unit: str
+    satisfied: bool  #: it is not
+    unit: str  #: of both, and what they are
     meaning: str
 
 
@@ -218,27 +205,17 @@ class Result(ABC):
 
 @dataclass(frozen=True)
 class FilledChamber:
-    """One chamber with its liquid.
+    """One chamber with its liquid."""
 
-    Parameters
-    ----------
-    radius, inner_radius, height, mean_surface_radius : m; the last one of the undisturbed layer
-    volume : of the liquid, m^3
-    liquid_name : as the scene names it
-    plane : position along the axis where that matters, m
-    baffles : None without any
-    section : None for circular walls
-    """
-
-    radius: float
+    radius: float  #: m; the last one of the undisturbed layer
     inner_radius: float
     height: float
-    volume: float
-    liquid_name: str
+    volume: float  #: of the liquid, m^3
+    liquid_name: str  #: as the scene names it
     mean_surface_radius: float
-    plane: float = 0.0
-    baffles: Baffles | None = None
-    section: ChamberSection | None = None
+    plane: float = 0.0  #: position along the axis where that matters, m
+    baffles: Baffles | None = None  #: None without any
+    section: ChamberSection | None = None  #: None for circular walls
 
     @property
     def least_depth(self) -> float:

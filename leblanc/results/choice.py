@@ -19,21 +19,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class HeldCost:
-    """What it takes to hold in time the motions that no steady model answers well enough.
+    """What it takes to hold in time the motions that no steady model answers well enough."""
 
-    Parameters
-    ----------
-    speeds : how many
-    first, last : of them, rad/s
-    seconds : processor time of all of them, s; good to a factor of two [theory: held, eq. 11 to 13]
-    asked : the scene has them held
-    """
-
-    speeds: int
-    first: float
+    speeds: int  #: how many
+    first: float  #: of them, rad/s
     last: float
-    seconds: float
-    asked: bool
+    seconds: float  #: processor time of all of them, s; good to a factor of two [theory: held, eq. 11 to 13]
+    asked: bool  #: the scene has them held
 
     @property
     def words(self) -> str:
@@ -58,38 +50,26 @@ def seconds_words(seconds: float) -> str:
 
 @dataclass(frozen=True)
 class Choice:
-    """The liquid model of a scene at each of its speeds, shape (n,).
+    """The liquid model of a scene at each of its speeds, shape (n,)."""
 
-    Parameters
-    ----------
-    model : of small deflections, by which the critical speeds are; it does not depend on the speeds asked for
-    models : name of the model taken at each speed
-    prescribed : the scene names the model itself
-    in_range : the liquid rides with the drum
-    captured_from : speed above which it does, rad/s; None if at every speed
-    tolerance : relative error that the scene allows
-    error : estimated relative error of what is taken, of amplitude and liquid the larger one; nan where there
-        is no estimate
-    linear : error of the linear theory against the exact equilibrium
-    gravity : what gravity across the axis does, which no model of a steady answer has, to the means over time
-        and as a ripple about them
-    cut : baffles cut the liquid of a chamber into compartments, or its section is no circle
-    held_model : of the waves, where motions are held in time
-    holding : processor time to hold rotor and waves in time at each speed, s; None where it was not asked for
-        or no wave can be held
-    """
-
+    #: of small deflections, by which the critical speeds are; it does not depend on the speeds asked for
     model: str
-    models: NDArray[np.str_]
-    prescribed: bool
-    in_range: Flags
-    captured_from: float | None
-    tolerance: float
+    models: NDArray[np.str_]  #: name of the model taken at each speed
+    prescribed: bool  #: the scene names the model itself
+    in_range: Flags  #: the liquid rides with the drum
+    captured_from: float | None  #: speed above which it does, rad/s; None if at every speed
+    tolerance: float  #: relative error that the scene allows
+    #: estimated relative error of what is taken, of amplitude and liquid the larger one; nan where there is
+    #: no estimate
     error: Array
-    linear: LinearError
+    linear: LinearError  #: error of the linear theory against the exact equilibrium
+    #: what gravity across the axis does, which no model of a steady answer has, to the means over time and as
+    #: a ripple about them
     gravity: GravityError
-    cut: bool = False
-    held_model: str = "long_wave"
+    cut: bool = False  #: baffles cut the liquid of a chamber into compartments, or its section is no circle
+    held_model: str = "long_wave"  #: of the waves, where motions are held in time
+    #: processor time to hold rotor and waves in time at each speed, s; None where it was not asked for or no
+    #: wave can be held
     holding: Array | None = None
 
     @property
@@ -100,64 +80,37 @@ class Choice:
 
 @dataclass(frozen=True)
 class ModelSpan:
-    """A range of speeds that one model answers.
+    """A range of speeds that one model answers."""
 
-    Parameters
-    ----------
-    first, last : rad/s
-    model : its name
-    in_range : it holds there
-    within_tolerance : its estimated error is below the scene's tolerance at every speed
-    error : largest estimate of it; nan where one is missing
-    linear_error : largest error that the linear theory may have against the exact equilibrium
-    strain : largest linear deflection over the one at which the law of the liquid bends
-    gravity_error : largest estimate of what gravity across the axis does to the mean of the amplitude; nan
-        where one is missing
-    liquid_error : the same of the mean of the liquid's offset
-    ripple : largest estimate of the amplitude's ripple about its mean
-    liquid_ripple : the same of the liquid's centre of mass in the drum, m
-    reason : why the model is taken, in words
-    better : what the next better model would cost and give, in words
-    """
-
-    first: float
+    first: float  #: rad/s
     last: float
-    model: str
-    in_range: bool
-    within_tolerance: bool
-    error: float
-    linear_error: float
-    strain: float
+    model: str  #: its name
+    in_range: bool  #: it holds there
+    within_tolerance: bool  #: its estimated error is below the scene's tolerance at every speed
+    error: float  #: largest estimate of it; nan where one is missing
+    linear_error: float  #: largest error that the linear theory may have against the exact equilibrium
+    strain: float  #: largest linear deflection over the one at which the law of the liquid bends
+    #: largest estimate of what gravity across the axis does to the mean of the amplitude; nan where one is
+    #: missing
     gravity_error: float
-    liquid_error: float
-    ripple: float
-    liquid_ripple: float
-    reason: str
-    better: str
+    liquid_error: float  #: the same of the mean of the liquid's offset
+    ripple: float  #: largest estimate of the amplitude's ripple about its mean
+    liquid_ripple: float  #: the same of the liquid's centre of mass in the drum, m
+    reason: str  #: why the model is taken, in words
+    better: str  #: what the next better model would cost and give, in words
 
 
 @dataclass(frozen=True)
 class SpeedEstimate:
-    """What is expected of the answer at one speed.
+    """What is expected of the answer at one speed."""
 
-    Parameters
-    ----------
-    speed : rad/s
-    model : that answers
-    in_range : the liquid rides with the drum
-    error : of the mean amplitude, relative; nan where there is no estimate
-    liquid_error : by gravity across the axis, of the mean of the liquid's offset, relative
-    ripple : by which gravity moves the amplitude up and down about its mean, relative
-    liquid_ripple : by which the liquid's centre of mass goes round its mean in the drum, m
-    """
-
-    speed: float
-    model: str
-    in_range: bool
-    error: float
-    liquid_error: float
-    ripple: float
-    liquid_ripple: float
+    speed: float  #: rad/s
+    model: str  #: that answers
+    in_range: bool  #: the liquid rides with the drum
+    error: float  #: of the mean amplitude, relative; nan where there is no estimate
+    liquid_error: float  #: by gravity across the axis, of the mean of the liquid's offset, relative
+    ripple: float  #: by which gravity moves the amplitude up and down about its mean, relative
+    liquid_ripple: float  #: by which the liquid's centre of mass goes round its mean in the drum, m
 
 
 def speed_estimates(choice: Choice, speed: Array) -> tuple[SpeedEstimate, ...]:

@@ -21,48 +21,19 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Check:
-    """One time integration beside the formulas.
+    """One time integration beside the formulas."""
 
-    Parameters
-    ----------
-    speed : of the shaft, rad/s
-    stuck_speed : mean speed of the balls, rad/s
-    slow, fast : amplitudes of the platform, m; nan where they cannot be distinguished
-    holds : the dual-frequency motion holds
-    converged : every number is finite
-    """
-
-    speed: float
-    stuck_speed: float
-    slow: float
+    speed: float  #: of the shaft, rad/s
+    stuck_speed: float  #: mean speed of the balls, rad/s
+    slow: float  #: amplitudes of the platform, m; nan where they cannot be distinguished
     fast: float
-    holds: bool
-    converged: bool
+    holds: bool  #: the dual-frequency motion holds
+    converged: bool  #: every number is finite
 
 
 @dataclass(frozen=True)
 class ExciterResult(Result):
     """Answer over speed; n speeds.
-
-    Parameters
-    ----------
-    name : of the scene
-    assumed : values that it assumes
-    machine : the exciter
-    numbers : its dimensionless numbers
-    start : from which the critical speed is searched
-    speed : of the shaft, rad/s, shape (n,)
-    stuck : speeds at which the balls can stick together, by size, rad/s, nan where there are fewer, shape
-        (n, 3)
-    slow, fast : amplitudes of the platform, m, shape (n,), the balls at the slowest stuck speed
-    dual_frequency : below the critical speed, shape (n,)
-    characteristic : shaft speeds between which there are three stuck speeds and, second, where the slowest
-        passes the resonance, rad/s; nan if there is one at every speed
-    critical : largest shaft speed at which the dual-frequency motion is reached, rad/s; nan if there is one
-        stuck speed at every speed
-    printed_critical : by the source's regression, rad/s; nan outside its ranges
-    checks : time integrations
-    source, digest : of the scene
 
     Examples
     --------
@@ -75,21 +46,26 @@ class ExciterResult(Result):
     figure: ClassVar[str] = "leblanc.figures.exciter:exciter_figure"
     summary: ClassVar[str] = "leblanc.text.exciter:facts"
 
-    name: str
-    assumed: tuple[str, ...]
-    machine: Exciter
-    numbers: Dimensionless
-    start: Start
-    speed: Array
+    name: str  #: of the scene
+    assumed: tuple[str, ...]  #: values that it assumes
+    machine: Exciter  #: the exciter
+    numbers: Dimensionless  #: its dimensionless numbers
+    start: Start  #: from which the critical speed is searched
+    speed: Array  #: of the shaft, rad/s, shape (n,)
+    #: speeds at which the balls can stick together, by size, rad/s, nan where there are fewer, shape (n, 3)
     stuck: Array
-    slow: Array
+    slow: Array  #: amplitudes of the platform, m, shape (n,), the balls at the slowest stuck speed
     fast: Array
-    dual_frequency: Flags
+    dual_frequency: Flags  #: below the critical speed, shape (n,)
+    #: shaft speeds between which there are three stuck speeds and, second, where the slowest passes the
+    #: resonance, rad/s; nan if there is one at every speed
     characteristic: tuple[float, float, float]
+    #: largest shaft speed at which the dual-frequency motion is reached, rad/s; nan if there is one stuck
+    #: speed at every speed
     critical: float
-    printed_critical: float
-    checks: tuple[Check, ...]
-    source: str = ""
+    printed_critical: float  #: by the source's regression, rad/s; nan outside its ranges
+    checks: tuple[Check, ...]  #: time integrations
+    source: str = ""  #: of the scene
     digest: str = ""
 
     @property

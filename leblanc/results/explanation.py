@@ -23,43 +23,27 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class SpinUp:
-    """How a smooth or rough wall carries the liquid of a chamber along [theory: friction, eq. 1-5].
+    """How a smooth or rough wall carries the liquid of a chamber along [theory: friction, eq. 1-5]."""
 
-    Parameters
-    ----------
-    regime : laminar, transition or turbulent
-    reynolds : of the flow against the wall, by the hydraulic diameter
-    lag : of that flow, rad/s: what the ramp asks of the wall, but no more than the whole last speed; that
-        speed itself where there is no ramp
-    ramp : whether a ramp asks
-    time : in which the lag comes down to a tenth at the last speed, the liquid being at rest in space, s
-    ramp_time : of the ramp, s; None without
-    """
-
-    regime: str
-    reynolds: float
+    regime: str  #: laminar, transition or turbulent
+    reynolds: float  #: of the flow against the wall, by the hydraulic diameter
+    #: of that flow, rad/s: what the ramp asks of the wall, but no more than the whole last speed; that speed
+    #: itself where there is no ramp
     lag: float
-    ramp: bool
+    ramp: bool  #: whether a ramp asks
+    #: in which the lag comes down to a tenth at the last speed, the liquid being at rest in space, s
     time: float
-    ramp_time: float | None
+    ramp_time: float | None  #: of the ramp, s; None without
 
 
 @dataclass(frozen=True)
 class BaffleOutlook:
-    """Whether baffles carry a layer round on the ramp of a run-up, by their law [theory: baffles, eq. 4].
+    """Whether baffles carry a layer round on the ramp of a run-up, by their law [theory: baffles, eq. 4]."""
 
-    Parameters
-    ----------
-    speed : at which they can least, where the run-up finds a layer first, rad/s
-    available : largest torque that they exert there before the liquid shoots over them, N m
-    asked : torque that the ramp asks to take the liquid along, N m
-    enough_from : speed above which they suffice, rad/s
-    """
-
-    speed: float
-    available: float
-    asked: float
-    enough_from: float
+    speed: float  #: at which they can least, where the run-up finds a layer first, rad/s
+    available: float  #: largest torque that they exert there before the liquid shoots over them, N m
+    asked: float  #: torque that the ramp asks to take the liquid along, N m
+    enough_from: float  #: speed above which they suffice, rad/s
 
     @property
     def left_behind(self) -> bool:
@@ -69,51 +53,35 @@ class BaffleOutlook:
 
 @dataclass(frozen=True)
 class LayerExplanation:
-    """One chamber in numbers, at the first and the last speed where they change.
+    """One chamber in numbers, at the first and the last speed where they change."""
 
-    Parameters
-    ----------
-    numbers : dimensionless numbers, shape (2,) where they depend on speed
-    depth : mean depth of the layer at fast spin, m
-    added_mass_ratio : mass of a full chamber over the rotor's, m_f/M
-    liquid_mass_ratio : mass of the liquid over the rotor's
-    optimal_volume : that just covers the wall at the dry rotor's deflection at the last speed, m^3; nan where
-        baffles cut the liquid or the section is no circle
-    walls : baffles, or the file of the section, in words; empty for a plain ring
-    carried_from : speed from which the walls carry the liquid round from rest, rad/s, inf where they never
-        do; None if the axis stands, or the section is no circle
-    spin_up : by the law of the wall; None under another law of friction, and where it does not know the walls
-    carrying : what the baffles can do on the ramp of the run-up; None without one of both, and for baffles
-        that part the liquid
-    """
-
-    numbers: LayerNumbers
-    depth: float
-    added_mass_ratio: float
-    liquid_mass_ratio: float
+    numbers: LayerNumbers  #: dimensionless numbers, shape (2,) where they depend on speed
+    depth: float  #: mean depth of the layer at fast spin, m
+    added_mass_ratio: float  #: mass of a full chamber over the rotor's, m_f/M
+    liquid_mass_ratio: float  #: mass of the liquid over the rotor's
+    #: that just covers the wall at the dry rotor's deflection at the last speed, m^3; nan where baffles cut
+    #: the liquid or the section is no circle
     optimal_volume: float
-    walls: str = ""
+    walls: str = ""  #: baffles, or the file of the section, in words; empty for a plain ring
+    #: speed from which the walls carry the liquid round from rest, rad/s, inf where they never do; None if
+    #: the axis stands, or the section is no circle
     carried_from: float | None = None
+    #: by the law of the wall; None under another law of friction, and where it does not know the walls
     spin_up: SpinUp | None = None
+    #: what the baffles can do on the ramp of the run-up; None without one of both, and for baffles that part
+    #: the liquid
     carrying: BaffleOutlook | None = None
 
 
 @dataclass(frozen=True)
 class WhirlOutlook:
-    """How large a self-excited whirl may grow, by rule and not by solving for it [theory: whirl, eq. 29].
+    """How large a self-excited whirl may grow, by rule and not by solving for it [theory: whirl, eq. 29]."""
 
-    Parameters
-    ----------
-    speed : spin speed of the scene inside a band of self-excited whirl at which it is largest, rad/s
-    amplitude : of the axis at the chambers, m; mostly within 10 %, up to half of it off next to an edge
-    whirl_speed : in space, rad/s
-    lag : of the liquid behind the drum, rad/s
-    """
-
-    speed: float
+    speed: float  #: spin speed of the scene inside a band of self-excited whirl at which it is largest, rad/s
+    #: of the axis at the chambers, m; mostly within 10 %, up to half of it off next to an edge
     amplitude: float
-    whirl_speed: float
-    lag: float
+    whirl_speed: float  #: in space, rad/s
+    lag: float  #: of the liquid behind the drum, rad/s
 
 
 # Of the scene, not part of the JSON, and what has keys of its own there.
@@ -123,25 +91,6 @@ _ABOUT = ("source", "assumed", "digest", "closed_forms")
 @dataclass(frozen=True)
 class Explanation(Result):
     """A scene in numbers.
-
-    Parameters
-    ----------
-    name : of the scene
-    critical_speed_dry, critical_speed_wet : without liquid, and with it at small deflections, rad/s; of
-        several the one at which the unbalance moves the axis most
-    damping_ratio : of the support; of several modes the one next to the dry critical speed, at that speed
-    speed_ratio : first and last speed over the dry critical speed
-    captured_from : speed above which the liquid rides with the drum, rad/s; None if at every speed
-    layers : one for each chamber; None for an empty one
-    models : which model answers at each speed, how well, and why
-    estimates : what is expected at every speed
-    tolerance : relative error that the scene allows
-    modes : of the dry rotor at rest; none for a planar rotor, whose only one is the critical speed
-    runup : which liquid model the run-up will take, in words; empty without one
-    whirl : how large the whirl grows by itself; None where none does, or nothing bounds it
-    held : what it takes to hold in time what steady models do not answer; None where they answer all
-    source, assumed, digest : of the scene
-    closed_forms : what the sources' closed forms say of it without an answer, and what it lacks for them
 
     Examples
     --------
@@ -154,23 +103,31 @@ class Explanation(Result):
     figure: ClassVar[str] = "leblanc.figures.explanation:model_figure"
     summary: ClassVar[str] = "leblanc.text.explanation:facts"
 
-    name: str
+    name: str  #: of the scene
+    #: without liquid, and with it at small deflections, rad/s; of several the one at which the unbalance
+    #: moves the axis most
     critical_speed_dry: float
     critical_speed_wet: float
+    #: of the support; of several modes the one next to the dry critical speed, at that speed
     damping_ratio: float
-    speed_ratio: tuple[float, float]
+    speed_ratio: tuple[float, float]  #: first and last speed over the dry critical speed
+    #: speed above which the liquid rides with the drum, rad/s; None if at every speed
     captured_from: float | None
-    layers: tuple[LayerExplanation | None, ...]
-    models: tuple[ModelSpan, ...]
-    tolerance: float
+    layers: tuple[LayerExplanation | None, ...]  #: one for each chamber; None for an empty one
+    models: tuple[ModelSpan, ...]  #: which model answers at each speed, how well, and why
+    tolerance: float  #: relative error that the scene allows
+    #: of the dry rotor at rest; none for a planar rotor, whose only one is the critical speed
     modes: tuple[RestMode, ...] = ()
-    runup: str = ""
+    runup: str = ""  #: which liquid model the run-up will take, in words; empty without one
+    #: how large the whirl grows by itself; None where none does, or nothing bounds it
     whirl: WhirlOutlook | None = None
+    #: what it takes to hold in time what steady models do not answer; None where they answer all
     held: HeldCost | None = None
-    estimates: tuple[SpeedEstimate, ...] = ()
-    source: str = ""
+    estimates: tuple[SpeedEstimate, ...] = ()  #: what is expected at every speed
+    source: str = ""  #: of the scene
     assumed: tuple[str, ...] = ()
     digest: str = ""
+    #: what the sources' closed forms say of it without an answer, and what it lacks for them
     closed_forms: ClosedForms = field(default_factory=ClosedForms)
 
     upright = carried("closed_forms.upright")
@@ -286,17 +243,6 @@ def _layer_variables(layers: tuple[LayerExplanation | None, ...]) -> dict[str, V
 class ExciterExplanation(Result):
     """Numbers that determine how a vibrating table with balls behaves, without any integration in time.
 
-    Parameters
-    ----------
-    name : of the scene
-    natural_frequency : of the platform, rad/s
-    speed_ratio : first and last shaft speed over it
-    dimensionless : numbers of the machine
-    characteristic : shaft speeds between which there are three stuck speeds and, second, where the slowest
-        passes the resonance, rad/s; nan if there is one at every speed
-    critical_speed_printed : by the source's regression, rad/s; nan outside its ranges
-    source, assumed, digest : of the scene
-
     Examples
     --------
     >>> import leblanc as lb
@@ -308,13 +254,15 @@ class ExciterExplanation(Result):
     figure: ClassVar[str] = "leblanc.figures.explanation:stuck_range_figure"
     summary: ClassVar[str] = "leblanc.text.explanation:exciter_facts"
 
-    name: str
-    natural_frequency: float
-    speed_ratio: tuple[float, float]
-    dimensionless: Dimensionless
+    name: str  #: of the scene
+    natural_frequency: float  #: of the platform, rad/s
+    speed_ratio: tuple[float, float]  #: first and last shaft speed over it
+    dimensionless: Dimensionless  #: numbers of the machine
+    #: shaft speeds between which there are three stuck speeds and, second, where the slowest passes the
+    #: resonance, rad/s; nan if there is one at every speed
     characteristic: tuple[float, float, float]
-    critical_speed_printed: float
-    source: str = ""
+    critical_speed_printed: float  #: by the source's regression, rad/s; nan outside its ranges
+    source: str = ""  #: of the scene
     assumed: tuple[str, ...] = ()
     digest: str = ""
 

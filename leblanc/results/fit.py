@@ -36,44 +36,17 @@ class FitCode(NoteCode):
 
 @dataclass(frozen=True)
 class Measured:
-    """One measured quantity.
+    """One measured quantity."""
 
-    Parameters
-    ----------
-    name : amplitude, peak, phase, liquid_offset, liquid_angle, or a coordinate of the rotor
-    unit : SI unit of its values; empty where their scale is free
-    value : measured, in that unit, shape (n,)
-    fitted : by the scene with the values found, shape (n,)
-    """
-
-    name: str
-    unit: str
-    value: Array
-    fitted: Array
+    name: str  #: amplitude, peak, phase, liquid_offset, liquid_angle, or a coordinate of the rotor
+    unit: str  #: SI unit of its values; empty where their scale is free
+    value: Array  #: measured, in that unit, shape (n,)
+    fitted: Array  #: by the scene with the values found, shape (n,)
 
 
 @dataclass(frozen=True)
 class FitResult(Result):
     """Values of a scene that bring it closest to what was measured; p unknowns, n measured points.
-
-    Parameters
-    ----------
-    name, source, assumed, digest : of the scene
-    unknown : paths of the unknowns, in the scene
-    value, std : found, SI, and their standard errors, nan where the data do not tell them, shape (p,)
-    first : values of the scene that the search began with, shape (p,)
-    correlation : of the errors of the values, shape (p, p)
-    over : "speed", "time" or "added" (liquid): what the quantities were measured over
-    at : those speeds, times or volumes, rad/s, s or m^3, rising, shape (n,)
-    measured : the quantities
-    scale : of the measured lengths over the scene's, of the first of them where each has its own; 1 where
-        it is given
-    residual_rms : root of the mean square of what is left, over that of what was measured
-    converged : the best search came to its end
-    evaluations : of the scene
-    notes : what the data cannot tell
-    signed : unknowns that may have either sign
-    freedom : degrees of freedom, measured values less those that were found; 0 where they are not known
 
     Examples
     --------
@@ -84,24 +57,27 @@ class FitResult(Result):
     {'rotor.mass': {'value': 4.0, 'std': 0.1}}
     """
 
-    name: str
+    name: str  #: of the scene
     source: str
     assumed: tuple[str, ...]
     digest: str
-    unknown: tuple[str, ...]
-    value: Array
+    unknown: tuple[str, ...]  #: paths of the unknowns, in the scene
+    value: Array  #: found, SI, and their standard errors, nan where the data do not tell them, shape (p,)
     std: Array
-    first: Array
-    correlation: Array
-    over: str
-    at: Array
-    measured: tuple[Measured, ...]
+    first: Array  #: values of the scene that the search began with, shape (p,)
+    correlation: Array  #: of the errors of the values, shape (p, p)
+    over: str  #: "speed", "time" or "added" (liquid): what the quantities were measured over
+    at: Array  #: those speeds, times or volumes, rad/s, s or m^3, rising, shape (n,)
+    measured: tuple[Measured, ...]  #: the quantities
+    #: of the measured lengths over the scene's, of the first of them where each has its own; 1 where it is
+    #: given
     scale: float
-    residual_rms: float
-    converged: bool
-    evaluations: int
-    notes: tuple[Note, ...]
-    signed: tuple[str, ...] = ()
+    residual_rms: float  #: root of the mean square of what is left, over that of what was measured
+    converged: bool  #: the best search came to its end
+    evaluations: int  #: of the scene
+    notes: tuple[Note, ...]  #: what the data cannot tell
+    signed: tuple[str, ...] = ()  #: unknowns that may have either sign
+    #: degrees of freedom, measured values less those that were found; 0 where they are not known
     freedom: int = 0
 
     figure: ClassVar[str] = "leblanc.figures.fit:fit_figure"

@@ -37,22 +37,14 @@ class LayerCode(NoteCode):
 
 @dataclass(frozen=True)
 class Number:
-    """A dimensionless number and the range in which the model holds.
+    """A dimensionless number and the range in which the model holds."""
 
-    Parameters
-    ----------
-    name, meaning : what it is
-    value : not finite where it has no bound or was not found
-    least, most : the model's range; None where it sets none
-    in_range : the value is within
-    """
-
-    name: str
+    name: str  #: what it is
     meaning: str
-    value: float
-    least: float | None
+    value: float  #: not finite where it has no bound or was not found
+    least: float | None  #: the model's range; None where it sets none
     most: float | None
-    in_range: bool
+    in_range: bool  #: the value is within
 
     def __str__(self) -> str:
         least, most = self.least or 0.0, math.inf if self.most is None else self.most
@@ -114,98 +106,52 @@ def no_exact_wave(reason: str) -> Note:
 
 @dataclass(frozen=True)
 class LayerCase:
-    """The layer and the whirl of a question.
+    """The layer and the whirl of a question."""
 
-    Parameters
-    ----------
-    model : of the liquid
-    radius, inner_radius, mean_depth : wall, inner wall (0 if none), layer undisturbed, m
-    speed, whirl_speed : spin; whirl in space, negative against the spin, rad/s
-    whirl_amplitude : m
-    solver : of the model's equations, by its name in py-pde; empty where that does not solve them
-    dispersion : of the finite depth, in a model that may have it or not
-    reason : why that model was taken, where the question left it open
-    """
-
-    model: str
-    radius: float
+    model: str  #: of the liquid
+    radius: float  #: wall, inner wall (0 if none), layer undisturbed, m
     inner_radius: float
     mean_depth: float
-    speed: float
+    speed: float  #: spin; whirl in space, negative against the spin, rad/s
     whirl_speed: float
-    whirl_amplitude: float
-    solver: str = ""
-    dispersion: bool = False
-    reason: str = ""
+    whirl_amplitude: float  #: m
+    solver: str = ""  #: of the model's equations, by its name in py-pde; empty where that does not solve them
+    dispersion: bool = False  #: of the finite depth, in a model that may have it or not
+    reason: str = ""  #: why that model was taken, where the question left it open
 
 
 @dataclass(frozen=True)
 class ExactWave:
-    """What the exact wave alone can tell.
+    """What the exact wave alone can tell."""
 
-    Parameters
-    ----------
-    state : "resolved"; in time also "short_waves" or "broken"; None where no wave was found
-    branch : "one_crest", "many_crests", or "lee_waves" where shorter waves ride on it
-    crest, trough : greatest and least depth over the mean depth
-    crest_number : speed of the liquid at the crest over that of the crest, 1 for the highest wave; nan where
-        the wave stands still in the drum
-    error_estimate : of the force, relative; in time the gap between pressure and momentum
-    largest_whirl : at which waves of this speed end, or up to which they were found, m; nan where the whirl
-        that was asked for has a wave
-    """
-
-    state: str | None
-    branch: str | None
-    crest: float
+    state: str | None  #: "resolved"; in time also "short_waves" or "broken"; None where no wave was found
+    branch: str | None  #: "one_crest", "many_crests", or "lee_waves" where shorter waves ride on it
+    crest: float  #: greatest and least depth over the mean depth
     trough: float
+    #: speed of the liquid at the crest over that of the crest, 1 for the highest wave; nan where the wave
+    #: stands still in the drum
     crest_number: float
-    error_estimate: float
+    error_estimate: float  #: of the force, relative; in time the gap between pressure and momentum
+    #: at which waves of this speed end, or up to which they were found, m; nan where the whirl that was asked
+    #: for has a wave
     largest_whirl: float
 
 
 @dataclass(frozen=True)
 class ExactPeriods:
-    """What the exact wave in time alone can tell.
+    """What the exact wave in time alone can tell."""
 
-    Parameters
-    ----------
-    state : "resolved", "short_waves" that the nodes do not resolve, or "broken"
-    crest, trough : greatest and least depth so far over the mean depth
-    crest_number : greatest speed so far of the liquid at a crest over that of the crest
-    nodes : round the wall at the end
-    force_gap : largest difference of the forces by pressure and by momentum, over the largest force
-    """
-
-    state: str
-    crest: float
+    state: str  #: "resolved", "short_waves" that the nodes do not resolve, or "broken"
+    crest: float  #: greatest and least depth so far over the mean depth
     trough: float
-    crest_number: float
-    nodes: int
-    force_gap: float
+    crest_number: float  #: greatest speed so far of the liquid at a crest over that of the crest
+    nodes: int  #: round the wall at the end
+    force_gap: float  #: largest difference of the forces by pressure and by momentum, over the largest force
 
 
 @dataclass(frozen=True)
 class LayerResult(Result):
     """Force and centre of mass of a liquid layer; complex: along the deflection, 90 deg ahead of it.
-
-    Parameters
-    ----------
-    case : the layer and the whirl
-    force_ratio : force on the drum over m_f omega_w^2 A
-    offset : liquid's centre of mass from the drum's axis, m
-    error_estimate : of the force ratio, over the larger of its size and 1; nan where the model has none
-    mass_error : of the surface that the model draws, relative
-    converged : the force is finite
-    in_range : the model holds; `validity` and `notes` say why not
-    mean_rotation : of the liquid relative to the drum, rad/s
-    wall_time : s
-    theta, depth : angle from the deflection, rad, and depth of the layer there, m, shape (k,)
-    notes : what the model leaves out here
-    gravity_offset : steady part of the offset under gravity across the axis, in space, m: up is negative
-    captured : centrifugal acceleration at the surface exceeds gravity
-    validity : dimensionless numbers the model rests on, each with its range
-    exact : what the exact wave alone tells; None for other models
 
     Examples
     --------
@@ -216,22 +162,24 @@ class LayerResult(Result):
     ('2.5615', True)
     """
 
-    case: LayerCase
-    force_ratio: complex
-    offset: complex
+    case: LayerCase  #: the layer and the whirl
+    force_ratio: complex  #: force on the drum over m_f omega_w^2 A
+    offset: complex  #: liquid's centre of mass from the drum's axis, m
+    #: of the force ratio, over the larger of its size and 1; nan where the model has none
     error_estimate: float
-    mass_error: float
-    converged: bool
-    in_range: bool
-    mean_rotation: float
-    wall_time: float
-    theta: Array
+    mass_error: float  #: of the surface that the model draws, relative
+    converged: bool  #: the force is finite
+    in_range: bool  #: the model holds; `validity` and `notes` say why not
+    mean_rotation: float  #: of the liquid relative to the drum, rad/s
+    wall_time: float  #: s
+    theta: Array  #: angle from the deflection, rad, and depth of the layer there, m, shape (k,)
     depth: Array
-    notes: tuple[Note, ...]
+    notes: tuple[Note, ...]  #: what the model leaves out here
+    #: steady part of the offset under gravity across the axis, in space, m: up is negative
     gravity_offset: float
-    captured: bool
-    validity: tuple[Number, ...]
-    exact: ExactWave | None = None
+    captured: bool  #: centrifugal acceleration at the surface exceeds gravity
+    validity: tuple[Number, ...]  #: dimensionless numbers the model rests on, each with its range
+    exact: ExactWave | None = None  #: what the exact wave alone tells; None for other models
 
     solver, model, model_reason = carried("case.solver"), carried("case.model"), carried("case.reason")
     dispersion = carried("case.dispersion")
@@ -298,21 +246,6 @@ class LayerResult(Result):
 class FreeWaveResult(Result):
     """A wave that runs round the drum by itself, behind the drum or ahead of it, with one shape.
 
-    Parameters
-    ----------
-    case : the layer; its whirl speed is that of the wave behind the drum, its whirl none
-    mode : crests round the drum
-    whirl_speed : at which the crests go round in space, behind the drum and ahead of it, rad/s, shape (2,)
-    crest, trough, crest_number, branch : as of `ExactWave`; no branch of a model that tells none
-    converged : the wave was found
-    in_range : the model holds; `validity` and `notes` say why not
-    mass_error : of the surface that the model draws, relative
-    error_estimate : of the speeds along the wall, relative; nan where the model has none
-    wall_time : s
-    theta, depth : angle from a crest, rad, and depth of the layer there, m, shape (k,)
-    notes : why there is no answer, and where the model is out of its range
-    validity : dimensionless numbers the model rests on, each with its range
-
     Examples
     --------
     >>> import leblanc as lb
@@ -322,22 +255,23 @@ class FreeWaveResult(Result):
     ['0.7512', '1.4952']
     """
 
-    case: LayerCase
-    mode: int
+    case: LayerCase  #: the layer; its whirl speed is that of the wave behind the drum, its whirl none
+    mode: int  #: crests round the drum
+    #: at which the crests go round in space, behind the drum and ahead of it, rad/s, shape (2,)
     whirl_speed: Array
-    crest: float
+    crest: float  #: as of `ExactWave`; no branch of a model that tells none
     trough: float
     crest_number: float
     branch: str | None
-    converged: bool
-    in_range: bool
-    mass_error: float
-    error_estimate: float
-    wall_time: float
-    theta: Array
+    converged: bool  #: the wave was found
+    in_range: bool  #: the model holds; `validity` and `notes` say why not
+    mass_error: float  #: of the surface that the model draws, relative
+    error_estimate: float  #: of the speeds along the wall, relative; nan where the model has none
+    wall_time: float  #: s
+    theta: Array  #: angle from a crest, rad, and depth of the layer there, m, shape (k,)
     depth: Array
-    notes: tuple[Note, ...]
-    validity: tuple[Number, ...]
+    notes: tuple[Note, ...]  #: why there is no answer, and where the model is out of its range
+    validity: tuple[Number, ...]  #: dimensionless numbers the model rests on, each with its range
 
     model, model_reason = carried("case.model"), carried("case.reason")
     dispersion = carried("case.dispersion")
@@ -396,14 +330,6 @@ class FreeWaveResult(Result):
 class LayerPeriodsResult(Result):
     """Whirl periods of a layer that starts from rest in its drum; k periods, n angles.
 
-    Parameters
-    ----------
-    case : the layer and the whirl
-    history : force, centre of mass and depths period by period, and the depth at the end
-    notes : why there is no answer, and where the model is out of its range
-    validity : dimensionless numbers the model rests on, each with its range
-    exact : what the exact wave alone tells; None for other models
-
     Examples
     --------
     >>> import leblanc as lb
@@ -414,11 +340,11 @@ class LayerPeriodsResult(Result):
     (True, True)
     """
 
-    case: LayerCase
-    history: LayerHistory
-    notes: tuple[Note, ...]
-    validity: tuple[Number, ...]
-    exact: ExactPeriods | None = None
+    case: LayerCase  #: the layer and the whirl
+    history: LayerHistory  #: force, centre of mass and depths period by period, and the depth at the end
+    notes: tuple[Note, ...]  #: why there is no answer, and where the model is out of its range
+    validity: tuple[Number, ...]  #: dimensionless numbers the model rests on, each with its range
+    exact: ExactPeriods | None = None  #: what the exact wave alone tells; None for other models
 
     solver, model, model_reason = carried("case.solver"), carried("case.model"), carried("case.reason")
     dispersion = carried("case.dispersion")
@@ -515,36 +441,26 @@ def _attributes(case: LayerCase, converged: bool, in_range: bool, notes: tuple[N
 class Wave:
     """A layer under a prescribed whirl as figures show it, in the frame of the deflection.
 
-    Parameters
-    ----------
-    title, model : of the figure; of the liquid
-    radius, inner_radius, mean_depth : wall, inner wall (0 if none), layer undisturbed, m
-    whirl_amplitude : m
-    spin, whirl_speed : rad/s; the spin positive, the whirl in space and negative against it
-    theta, depth : angle from the deflection in any order, rad, and depth there, m, shape (n,), n > 2
-    force_ratio : on the drum over that of a full drum; along the deflection, 90 deg ahead; nan if none found
-    offset : centre of mass from the geometric axis, same axes, m; nan if none was found
-    notes : limits of validity and findings, in words
-    towards : what lies at angle 0: the "deflection", or a "crest" of a wave that no whirl holds
-
     Raises
     ------
     InputError : a value out of its range, arrays that do not fit together
     """
 
-    title: str
+    title: str  #: of the figure; of the liquid
     model: str
-    radius: float
+    radius: float  #: wall, inner wall (0 if none), layer undisturbed, m
     inner_radius: float
     mean_depth: float
-    whirl_amplitude: float
-    spin: float
+    whirl_amplitude: float  #: m
+    spin: float  #: rad/s; the spin positive, the whirl in space and negative against it
     whirl_speed: float
-    theta: Array
+    theta: Array  #: angle from the deflection in any order, rad, and depth there, m, shape (n,), n > 2
     depth: Array
+    #: on the drum over that of a full drum; along the deflection, 90 deg ahead; nan if none found
     force_ratio: complex
-    offset: complex
-    notes: tuple[str, ...] = ()
+    offset: complex  #: centre of mass from the geometric axis, same axes, m; nan if none was found
+    notes: tuple[str, ...] = ()  #: limits of validity and findings, in words
+    #: what lies at angle 0: the "deflection", or a "crest" of a wave that no whirl holds
     towards: str = "deflection"
 
     def __post_init__(self) -> None:
@@ -574,24 +490,17 @@ class Wave:
 class WaveFrames:
     """A layer over time, in the frame of the drum.
 
-    Parameters
-    ----------
-    time : rising, s, shape (k,)
-    theta : angle from a mark on the drum, rad, shape (n,), n > 2
-    depth : m, shape (k, n)
-    deflection : complex, the mark on the real axis, m, shape (k,); of a free wave towards a crest
-    force_ratio, period_time, mean_rotation : means over periods of the whirl seen from the drum: force as in
-        `Wave`, middle of the period, s, and the liquid's rotation in the drum, rad/s; shape (p,)
-
     Raises
     ------
     InputError : values out of their range, arrays that do not fit together
     """
 
-    time: Array
-    theta: Array
-    depth: Array
-    deflection: Complex
+    time: Array  #: rising, s, shape (k,)
+    theta: Array  #: angle from a mark on the drum, rad, shape (n,), n > 2
+    depth: Array  #: m, shape (k, n)
+    deflection: Complex  #: complex, the mark on the real axis, m, shape (k,); of a free wave towards a crest
+    #: means over periods of the whirl seen from the drum: force as in `Wave`, middle of the period, s, and
+    #: the liquid's rotation in the drum, rad/s; shape (p,)
     force_ratio: Complex | None = None
     period_time: Array | None = None
     mean_rotation: Array | None = None

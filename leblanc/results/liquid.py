@@ -40,39 +40,18 @@ class Coverage(IntEnum):
 
 @dataclass(frozen=True)
 class Surface:
-    """Free surface that holds a given volume.
+    """Free surface that holds a given volume."""
 
-    Parameters
-    ----------
-    surface_constant : C of z = beta r^2 + C, m; None without gravity along the axis
-    unbalance_volume : first moment of the liquid about the rotation axis over its density, m^4
-    unbalance_volume_fem : the same by finite elements, m^4
-    case : against the optimal volume
-    converged : both surfaces hold the given volume
-    """
-
-    surface_constant: float | None
-    unbalance_volume: float
-    unbalance_volume_fem: float
-    case: Coverage
-    converged: bool
+    surface_constant: float | None  #: C of z = beta r^2 + C, m; None without gravity along the axis
+    unbalance_volume: float  #: first moment of the liquid about the rotation axis over its density, m^4
+    unbalance_volume_fem: float  #: the same by finite elements, m^4
+    case: Coverage  #: against the optimal volume
+    converged: bool  #: both surfaces hold the given volume
 
 
 @dataclass(frozen=True)
 class VolumeResult(Result):
     """Optimal volume of a chamber at a deflection and a speed.
-
-    Parameters
-    ----------
-    chamber : its walls
-    eccentricity, speed, gravity : deflection, m; spin speed, rad/s; gravity along the axis, m/s^2
-    optimal_volume : exact, m^3
-    optimal_volume_fem : by finite elements, m^3
-    fem_error : of the latter, relative
-    printed_eq18 : as the source prints it, m^3; None where the formula has no value
-    corrected_eq18 : with its moment corrected, m^3; None where the formula has no value
-    volume : that was given, m^3; None without one
-    surface : of that volume
 
     Examples
     --------
@@ -85,17 +64,17 @@ class VolumeResult(Result):
     figure: ClassVar[str] = "leblanc.figures.liquid:surface_figure"
     summary: ClassVar[str] = "leblanc.text.liquid:facts"
 
-    chamber: Chamber
-    eccentricity: float
+    chamber: Chamber  #: its walls
+    eccentricity: float  #: deflection, m; spin speed, rad/s; gravity along the axis, m/s^2
     speed: float
     gravity: float
-    optimal_volume: float
-    optimal_volume_fem: float
-    fem_error: float
-    printed_eq18: float | None
-    corrected_eq18: float | None
-    volume: float | None = None
-    surface: Surface | None = None
+    optimal_volume: float  #: exact, m^3
+    optimal_volume_fem: float  #: by finite elements, m^3
+    fem_error: float  #: of the latter, relative
+    printed_eq18: float | None  #: as the source prints it, m^3; None where the formula has no value
+    corrected_eq18: float | None  #: with its moment corrected, m^3; None where the formula has no value
+    volume: float | None = None  #: that was given, m^3; None without one
+    surface: Surface | None = None  #: of that volume
 
     @property
     def converged(self) -> bool:
@@ -210,34 +189,6 @@ _IN_JSON = (
 class ModesResult(Result):
     """Slowest modes of the liquid, by rising size of the frequency, seen from the drum.
 
-    Parameters
-    ----------
-    title : the chamber in words
-    speed : spin, rad/s
-    frequency : sigma, prograde positive, rad/s, shape (k,)
-    exact : of the ring without baffles, rad/s; None where no closed form is known
-    damping : decay rate of the amplitude in laminar layers, 1/s, shape (k,)
-    damping_ratio : over the size of the frequency, shape (k,)
-    plain_damping : without the Coriolis force in the layers on floor and lid, 1/s, shape (k,)
-    damping_spread : change of the damping for half or twice the layers' thickness at edges, relative, shape
-        (k,)
-    crests : round the drum, of the largest share, shape (k,)
-    travelling : 0 for a standing oscillation to 1 for a wave that runs one way, shape (k,)
-    multiplicity : modes with that frequency, shape (k,)
-    error_estimate : of the frequency, relative, from a mesh twice as coarse
-    synchronous_force_ratio : force of the liquid in a synchronous whirl over that of all that the wall
-        encloses, the mean over its directions
-    surface_radius : a, m
-    circulations : steady flows, without a frequency
-    unknowns : of the mesh, and
-    surface_unknowns : of the eigenproblem
-    converged : the eigenproblem is solved to rounding
-    wall_time : s
-    notes : what to know about these values
-    section : the liquid at rest
-    shapes : of the modes
-    phase : of each mode at the instant of its strongest flow, rad, shape (k,)
-
     Examples
     --------
     >>> import leblanc as lb
@@ -246,29 +197,32 @@ class ModesResult(Result):
     True
     """
 
-    title: str
-    speed: float
-    frequency: Array
-    exact: tuple[float | None, ...]
-    damping: Array
-    damping_ratio: Array
-    plain_damping: Array
+    title: str  #: the chamber in words
+    speed: float  #: spin, rad/s
+    frequency: Array  #: sigma, prograde positive, rad/s, shape (k,)
+    exact: tuple[float | None, ...]  #: of the ring without baffles, rad/s; None where no closed form is known
+    damping: Array  #: decay rate of the amplitude in laminar layers, 1/s, shape (k,)
+    damping_ratio: Array  #: over the size of the frequency, shape (k,)
+    plain_damping: Array  #: without the Coriolis force in the layers on floor and lid, 1/s, shape (k,)
+    #: change of the damping for half or twice the layers' thickness at edges, relative, shape (k,)
     damping_spread: Array
-    crests: NDArray[np.int64]
-    travelling: Array
-    multiplicity: NDArray[np.int64]
-    error_estimate: Array
+    crests: NDArray[np.int64]  #: round the drum, of the largest share, shape (k,)
+    travelling: Array  #: 0 for a standing oscillation to 1 for a wave that runs one way, shape (k,)
+    multiplicity: NDArray[np.int64]  #: modes with that frequency, shape (k,)
+    error_estimate: Array  #: of the frequency, relative, from a mesh twice as coarse
+    #: force of the liquid in a synchronous whirl over that of all that the wall encloses, the mean over its
+    #: directions
     synchronous_force_ratio: float
-    surface_radius: float
-    circulations: int
-    unknowns: int
-    surface_unknowns: int
-    converged: bool
-    wall_time: float
-    notes: tuple[Note, ...]
-    section: LiquidSection
-    shapes: SloshingModes
-    phase: Array
+    surface_radius: float  #: a, m
+    circulations: int  #: steady flows, without a frequency
+    unknowns: int  #: of the mesh, and
+    surface_unknowns: int  #: of the eigenproblem
+    converged: bool  #: the eigenproblem is solved to rounding
+    wall_time: float  #: s
+    notes: tuple[Note, ...]  #: what to know about these values
+    section: LiquidSection  #: the liquid at rest
+    shapes: SloshingModes  #: of the modes
+    phase: Array  #: of each mode at the instant of its strongest flow, rad, shape (k,)
 
     figure = "leblanc.figures.liquid:modes_figure"
     summary = "leblanc.text.liquid:modes_summary"

@@ -28,20 +28,14 @@ if TYPE_CHECKING:
 class Variable:
     """An array with names for its dimensions and with what a reader needs to use it.
 
-    Parameters
-    ----------
-    dims : a name for each dimension
-    values : real numbers or texts
-    attrs : units, long name and what else there is to say
-
     Raises
     ------
     InputError : another number of names, values that netCDF does not know
     """
 
-    dims: tuple[str, ...]
-    values: NDArray[Any]
-    attrs: dict[str, Any]
+    dims: tuple[str, ...]  #: a name for each dimension
+    values: NDArray[Any]  #: real numbers or texts
+    attrs: dict[str, Any]  #: units, long name and what else there is to say
 
     def __post_init__(self) -> None:
         if self.values.ndim != len(self.dims):
@@ -54,19 +48,14 @@ class Variable:
 class NamedArrays:
     """Variables over their coordinates.
 
-    Parameters
-    ----------
-    variables, coords : by name
-    attrs : of the whole
-
     Raises
     ------
     InputError : variables differ in the length of a dimension
     """
 
-    variables: Mapping[str, Variable]
+    variables: Mapping[str, Variable]  #: by name
     coords: Mapping[str, Variable]
-    attrs: Mapping[str, Any]
+    attrs: Mapping[str, Any]  #: of the whole
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "attrs", {"Conventions": "CF-1.11", **self.attrs})

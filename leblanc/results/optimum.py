@@ -164,24 +164,16 @@ def emulated(answer: EmulatedAnswer) -> Note:
 
 @dataclass(frozen=True)
 class WettingVolumes:
-    """Volumes of one chamber that wet its wall at a deflection and a speed, in closed form.
+    """Volumes of one chamber that wet its wall at a deflection and a speed, in closed form."""
 
-    Parameters
-    ----------
-    deflection : e, m
-    speed : rad/s
-    optimal_volume : the least that leaves no part of the wall dry over its whole height, m^3 [theory:
-        statics, eq. 8]
-    full_volume : the least that wets the whole wall up to the lid, beyond which more liquid adds nothing,
-        m^3; infinite where the chamber does not hold it [theory: optimum, eq. 1]
-    unbalance_share : liquid's unbalance with the optimal volume over the largest possible one at this
-        deflection
-    """
-
-    deflection: float
-    speed: float
+    deflection: float  #: e, m
+    speed: float  #: rad/s
+    #: the least that leaves no part of the wall dry over its whole height, m^3 [theory: statics, eq. 8]
     optimal_volume: float
+    #: the least that wets the whole wall up to the lid, beyond which more liquid adds nothing, m^3; infinite
+    #: where the chamber does not hold it [theory: optimum, eq. 1]
     full_volume: float
+    #: liquid's unbalance with the optimal volume over the largest possible one at this deflection
     unbalance_share: float
 
     def to_json(self) -> dict[str, float | None]:
@@ -191,20 +183,13 @@ class WettingVolumes:
 
 @dataclass(frozen=True)
 class ParetoFront:
-    """Points of which none is better than another in everything; m points of c chambers.
+    """Points of which none is better than another in everything; m points of c chambers."""
 
-    Parameters
-    ----------
-    volume : m^3, shape (m, c)
-    vibration : m, shape (m,)
-    mass : of the liquid, kg, shape (m,)
-    stability_margin : decay of the small whirl that dies out slowest at the operating speeds, 1/s; below 0 it
-        grows; shape (m,)
-    """
-
-    volume: Array
-    vibration: Array
-    mass: Array
+    volume: Array  #: m^3, shape (m, c)
+    vibration: Array  #: m, shape (m,)
+    mass: Array  #: of the liquid, kg, shape (m,)
+    #: decay of the small whirl that dies out slowest at the operating speeds, 1/s; below 0 it grows; shape
+    #: (m,)
     stability_margin: Array
 
     def to_json(self) -> list[dict[str, Any]]:
@@ -215,41 +200,26 @@ class ParetoFront:
 
 @dataclass(frozen=True)
 class Candidates:
-    """Sets of volumes that were evaluated; m of c chambers.
+    """Sets of volumes that were evaluated; m of c chambers."""
 
-    Parameters
-    ----------
-    volume : m^3, shape (m, c)
-    objective : in its unit, shape (m,)
-    excess : of the constraint that is exceeded most, relative; 0 or below where all hold, shape (m,)
-    vibration, mass : m and kg, shape (m,)
-    exact : the vibration is known, not an estimate from below, shape (m,)
-    exceeded : name of the constraint that is exceeded most, empty where all hold, one for each; none at all
-        where that is not known
-    """
-
-    volume: Array
-    objective: Array
-    excess: Array
-    vibration: Array
+    volume: Array  #: m^3, shape (m, c)
+    objective: Array  #: in its unit, shape (m,)
+    excess: Array  #: of the constraint that is exceeded most, relative; 0 or below where all hold, shape (m,)
+    vibration: Array  #: m and kg, shape (m,)
     mass: Array
-    exact: Flags
+    exact: Flags  #: the vibration is known, not an estimate from below, shape (m,)
+    #: name of the constraint that is exceeded most, empty where all hold, one for each; none at all where
+    #: that is not known
     exceeded: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
 class EmulatedAnswer:
-    """What an emulator says of the best volumes.
+    """What an emulator says of the best volumes."""
 
-    Parameters
-    ----------
-    value, deviation : vibration and its standard deviation, m
-    error : of the emulator on unseen samples
-    """
-
-    value: float
+    value: float  #: vibration and its standard deviation, m
     deviation: float
-    error: EmulatorError
+    error: EmulatorError  #: of the emulator on unseen samples
 
 
 @dataclass(frozen=True)
@@ -257,33 +227,22 @@ class ConditionTable:
     """Amplitudes with the best volumes over temperature and unbalance; n conditions were judged.
 
     t temperatures and u steps of the unbalances from least to most, of p unbalances each.
-
-    Parameters
-    ----------
-    temperature : K; a single nan where no range was given; shape (t,)
-    unbalance : size of each of the rotor's unbalances, kg m, shape (u, p)
-    amplitude : m, shape (t, u)
-    stability_margin : decay of the small whirl that dies out slowest at the operating speeds, 1/s, which no
-        unbalance changes; below 0 it grows; shape (t,)
-    amplitude_dry : without liquid, which no temperature changes, m, shape (u,)
-    condition_temperature, condition_unbalance : of the conditions that the volumes were chosen for, K and
-        kg m, shape (n,) and (n, p)
-    condition_amplitude, condition_amplitude_dry : m, shape (n,)
-    quantile : of the amplitudes that was to be small; 1 is the worst case
-    decisive : the condition that has this amplitude
     """
 
-    temperature: Array
-    unbalance: Array
-    amplitude: Array
-    amplitude_dry: Array
+    temperature: Array  #: K; a single nan where no range was given; shape (t,)
+    unbalance: Array  #: size of each of the rotor's unbalances, kg m, shape (u, p)
+    amplitude: Array  #: m, shape (t, u)
+    amplitude_dry: Array  #: without liquid, which no temperature changes, m, shape (u,)
+    #: decay of the small whirl that dies out slowest at the operating speeds, 1/s, which no unbalance
+    #: changes; below 0 it grows; shape (t,)
     stability_margin: Array
+    #: of the conditions that the volumes were chosen for, K and kg m, shape (n,) and (n, p)
     condition_temperature: Array
     condition_unbalance: Array
-    condition_amplitude: Array
+    condition_amplitude: Array  #: m, shape (n,)
     condition_amplitude_dry: Array
-    quantile: float
-    decisive: int
+    quantile: float  #: of the amplitudes that was to be small; 1 is the worst case
+    decisive: int  #: the condition that has this amplitude
 
     @property
     def heated(self) -> bool:
@@ -326,16 +285,10 @@ _ROBUST_ARRAYS = (*_OF_CONDITION, "stability_margin", *(f"condition_{name}" for 
 
 @dataclass(frozen=True)
 class CandidateChamber:
-    """A chamber of the scene whose volume was looked for.
+    """A chamber of the scene whose volume was looked for."""
 
-    Parameters
-    ----------
-    capacity : m^3
-    liquid_name : as the scene names it
-    """
-
-    capacity: float
-    liquid_name: str
+    capacity: float  #: m^3
+    liquid_name: str  #: as the scene names it
 
 
 def _quality_json(result: OptimumResult) -> dict[str, float | None]:
@@ -354,39 +307,6 @@ def _quality_json(result: OptimumResult) -> dict[str, float | None]:
 class OptimumResult(Result):
     """The best volumes of a scene and what they were chosen from; c chambers.
 
-    Parameters
-    ----------
-    name, source, assumed, digest : of the scene
-    chambers : whose volumes were looked for
-    friction : of the liquid
-    tolerance : relative error that the scene allows
-    in_time : the objective is judged by run-ups in time
-    objective, meaning, unit : name, description and unit of the value
-    working_speed : rad/s
-    volume : the answer, m^3, shape (c,)
-    value, baseline : of the objective with these volumes and without liquid
-    vibration, vibration_baseline : m; the value itself unless that is a mass
-    feasibility : whether every constraint is met
-    constraints : by name
-    mass : of the liquid, kg
-    growth : of the small whirl that grows most at the operating speeds, 1/s
-    closed_form : for each chamber, at the deflection that the answer itself has; empty where it has none
-    equal_within : relative difference below which values count as equal; of their volumes those with the
-        least liquid are the answer
-    evaluations : sets of volumes evaluated
-    candidates : all of them
-    front : what must be given up for what; None if it was not computed
-    sweep : from no liquid to the fullest chamber, shares as in the answer; None with the front
-    notes : limits and findings
-    response : of the machine with these volumes over the scene's speeds; None where the liquid model of the
-        search gives no steady answer, or where it was not computed; its models are those of the search
-    emulator : what the emulator that the search asked says of the answer; None without one
-    robust : amplitudes over temperature and unbalance, for the objective of that name; None for any other
-    balance_quality, balance_quality_dry : unbalance of rotor and liquid together over the rotor's mass times
-        the working speed, and that of the rotor alone, m/s [theory: balance_quality, eq. 1]; None where this
-        is not known
-    interrupted : from the keyboard; the answer is the best of what was tried until then
-
     Examples
     --------
     >>> import leblanc as lb
@@ -395,40 +315,50 @@ class OptimumResult(Result):
     (True, ['capacity', 'stability', 'wetting'], (2,))
     """
 
-    name: str
+    name: str  #: of the scene
     source: str
     assumed: tuple[str, ...]
     digest: str
-    chambers: tuple[CandidateChamber, ...]
-    friction: Friction
-    tolerance: float
-    in_time: bool
-    objective: str
+    chambers: tuple[CandidateChamber, ...]  #: whose volumes were looked for
+    friction: Friction  #: of the liquid
+    tolerance: float  #: relative error that the scene allows
+    in_time: bool  #: the objective is judged by run-ups in time
+    objective: str  #: name, description and unit of the value
     meaning: str
     unit: str
-    working_speed: float
-    volume: Array
-    value: float
+    working_speed: float  #: rad/s
+    volume: Array  #: the answer, m^3, shape (c,)
+    value: float  #: of the objective with these volumes and without liquid
     baseline: float
-    vibration: float
+    vibration: float  #: m; the value itself unless that is a mass
     vibration_baseline: float
-    feasibility: Feasibility
-    constraints: dict[str, ConstraintValue]
-    mass: float
-    growth: float
+    feasibility: Feasibility  #: whether every constraint is met
+    constraints: dict[str, ConstraintValue]  #: by name
+    mass: float  #: of the liquid, kg
+    growth: float  #: of the small whirl that grows most at the operating speeds, 1/s
+    #: for each chamber, at the deflection that the answer itself has; empty where it has none
     closed_form: tuple[WettingVolumes, ...]
+    #: relative difference below which values count as equal; of their volumes those with the least liquid are
+    #: the answer
     equal_within: float
-    evaluations: int
-    candidates: Candidates
-    front: ParetoFront | None
+    evaluations: int  #: sets of volumes evaluated
+    candidates: Candidates  #: all of them
+    front: ParetoFront | None  #: what must be given up for what; None if it was not computed
+    #: from no liquid to the fullest chamber, shares as in the answer; None with the front
     sweep: ParetoFront | None
-    notes: tuple[Note, ...]
+    notes: tuple[Note, ...]  #: limits and findings
+    #: of the machine with these volumes over the scene's speeds; None where the liquid model of the search
+    #: gives no steady answer, or where it was not computed; its models are those of the search
     response: RunResult | None = None
+    #: what the emulator that the search asked says of the answer; None without one
     emulator: EmulatedAnswer | None = None
+    #: amplitudes over temperature and unbalance, for the objective of that name; None for any other
     robust: ConditionTable | None = None
+    #: unbalance of rotor and liquid together over the rotor's mass times the working speed, and that of the
+    #: rotor alone, m/s [theory: balance_quality, eq. 1]; None where this is not known
     balance_quality: float | None = None
     balance_quality_dry: float | None = None
-    interrupted: bool = False
+    interrupted: bool = False  #: from the keyboard; the answer is the best of what was tried until then
 
     figure = "leblanc.figures.optimise:objective_figure"
     summary = "leblanc.text.optimum:summary"

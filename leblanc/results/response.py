@@ -81,39 +81,6 @@ def peak(deflection: NDArray[np.complex128] | Array) -> int | None:
 class RunResult(Loaded, Result):
     """Response to the unbalance at each speed, the machine it belongs to, and what a reader must know.
 
-    Parameters
-    ----------
-    name, source : of the scene, free text
-    assumed : field paths of the values that no source gives
-    inputs : label, value with its unit, field path
-    digest : of the scene
-    response : the answer at each speed, SI
-    liquid_mass : of all chambers, kg
-    notes : limits of validity and findings
-    axis : "horizontal" or "vertical"
-    chambers : one for each chamber
-    capture_speed : from it on a ring of liquid can stand against gravity across the axis, rad/s; None
-        if at any
-    critical_speed_dry, critical_speed_wet : without liquid and with its added mass, rad/s; of several the one
-        at which the unbalance moves the axis most
-    motion : None for a planar rotor
-    whirl : None where it was not computed
-    error_estimate : relative, of amplitude and liquid the larger one, nan where there is none, shape (n,);
-        None where nothing was estimated
-    models : which liquid model answers at which speeds, how well, and why; empty where that is not known
-    tolerance : relative error that the scene allows; None where nothing was estimated
-    refined : the answer between these speeds as well, where it takes that to find the largest amplitudes, by
-        rising speed; None where nobody looked
-    balance_quality, balance_quality_dry : unbalance of rotor and liquid together over the rotor's mass times
-        the speed, and that of the rotor alone, m/s [theory: balance_quality, eq. 1]; infinite where the
-        motion is; shape (n,); None where no mass spins
-    axial_gravity : gravity along the axis, m/s^2
-    held : of speeds at which the motion was held in time; None where it was at none
-    loads : forces and clearances at the speeds of `curve`; None where the scene asks for none
-    carried_from : speed from which the walls carry the liquid round from rest, rad/s, inf where nothing drags
-        on it; None where that is not asked or not known
-    closed_forms : what the sources' closed forms say beside the answer; None where nobody asked
-
     Raises
     ------
     InputError : no speed at all, an axis of another name, arrays of the response that do not fit together
@@ -129,31 +96,46 @@ class RunResult(Loaded, Result):
     figure: ClassVar[str] = "leblanc.figures.response:amplitude_figure"
     summary: ClassVar[str] = "leblanc.text.run:summary"
 
-    name: str
+    name: str  #: of the scene, free text
     source: str
-    assumed: tuple[str, ...]
-    inputs: tuple[tuple[str, str, str], ...]
-    digest: str
-    response: Response
-    liquid_mass: float
-    notes: tuple[Note, ...]
-    axis: str
-    chambers: tuple[FilledChamber, ...]
+    assumed: tuple[str, ...]  #: field paths of the values that no source gives
+    inputs: tuple[tuple[str, str, str], ...]  #: label, value with its unit, field path
+    digest: str  #: of the scene
+    response: Response  #: the answer at each speed, SI
+    liquid_mass: float  #: of all chambers, kg
+    notes: tuple[Note, ...]  #: limits of validity and findings
+    axis: str  #: "horizontal" or "vertical"
+    chambers: tuple[FilledChamber, ...]  #: one for each chamber
+    #: from it on a ring of liquid can stand against gravity across the axis, rad/s; None if at any
     capture_speed: float | None
+    #: without liquid and with its added mass, rad/s; of several the one at which the unbalance moves the axis
+    #: most
     critical_speed_dry: float
     critical_speed_wet: float
-    motion: Motion | None = None
-    whirl: SelfExcited | None = None
+    motion: Motion | None = None  #: None for a planar rotor
+    whirl: SelfExcited | None = None  #: None where it was not computed
+    #: relative, of amplitude and liquid the larger one, nan where there is none, shape (n,); None where
+    #: nothing was estimated
     error_estimate: Array | None = None
+    #: which liquid model answers at which speeds, how well, and why; empty where that is not known
     models: tuple[ModelSpan, ...] = ()
-    tolerance: float | None = None
+    tolerance: float | None = None  #: relative error that the scene allows; None where nothing was estimated
+    #: the answer between these speeds as well, where it takes that to find the largest amplitudes, by rising
+    #: speed; None where nobody looked
     refined: Response | None = None
+    #: unbalance of rotor and liquid together over the rotor's mass times the speed, and that of the rotor
+    #: alone, m/s [theory: balance_quality, eq. 1]; infinite where the motion is; shape (n,); None where no
+    #: mass spins
     balance_quality: Array | None = None
     balance_quality_dry: Array | None = None
-    axial_gravity: float = 0.0
-    held: Held | None = None
+    axial_gravity: float = 0.0  #: gravity along the axis, m/s^2
+    held: Held | None = None  #: of speeds at which the motion was held in time; None where it was at none
+    #: forces and clearances at the speeds of `curve`; None where the scene asks for none
     loads: MachineLoads | None = None
+    #: speed from which the walls carry the liquid round from rest, rad/s, inf where nothing drags on it; None
+    #: where that is not asked or not known
     carried_from: float | None = None
+    #: what the sources' closed forms say beside the answer; None where nobody asked
     closed_forms: ClosedForms | None = None
 
     def __post_init__(self) -> None:

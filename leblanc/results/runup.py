@@ -49,76 +49,30 @@ class Capture(NamedTuple):
 
 @dataclass(frozen=True)
 class Moment:
-    """An amplitude of a run-up and where it was.
+    """An amplitude of a run-up and where it was."""
 
-    Parameters
-    ----------
-    amplitude : m
-    speed : of the spin, rad/s
-    time : s
-    """
-
-    amplitude: float
-    speed: float
-    time: float
+    amplitude: float  #: m
+    speed: float  #: of the spin, rad/s
+    time: float  #: s
 
 
 @dataclass(frozen=True)
 class RunupFrames:
-    """The layers at regular times, for a film; f frames, l chambers, c cells, all in the drum frame.
+    """The layers at regular times, for a film; f frames, l chambers, c cells, all in the drum frame."""
 
-    Parameters
-    ----------
-    time, speed : s and rad/s, shape (f,)
-    deflection : complex, of each chamber's axis, m, shape (f, l)
-    amplitude : of the first of them, m, shape (f,)
-    theta : angle from the drum's zero mark of the cells, rad, shape (c,)
-    depth : of the layers, m, nan where the liquid is none, shape (f, l, c)
-    down : angle of gravity's direction, rad, shape (f,)
-    pool : angle of the middle of liquid that is no layer, rad, shape (f, l)
-    """
-
-    time: Array
+    time: Array  #: s and rad/s, shape (f,)
     speed: Array
-    deflection: Complex
-    amplitude: Array
-    theta: Array
-    depth: Array
-    down: Array
-    pool: Array
+    deflection: Complex  #: complex, of each chamber's axis, m, shape (f, l)
+    amplitude: Array  #: of the first of them, m, shape (f,)
+    theta: Array  #: angle from the drum's zero mark of the cells, rad, shape (c,)
+    depth: Array  #: of the layers, m, nan where the liquid is none, shape (f, l, c)
+    down: Array  #: angle of gravity's direction, rad, shape (f,)
+    pool: Array  #: angle of the middle of liquid that is no layer, rad, shape (f, l)
 
 
 @dataclass(frozen=True)
 class RunupResult(Loaded, Result):
     """A run-up of a scene; k times, l chambers.
-
-    Parameters
-    ----------
-    name, source, assumed, digest : of the scene
-    inputs : label, value with its unit, field path
-    kind, axis : of the rotor; "horizontal" or "vertical"
-    friction : law and coefficient
-    gravity : across the axis, m/s^2
-    model : of the liquid, "long_wave" or "linear"
-    model_reason : why that one, in words
-    model_error : estimated error of the amplitude over its largest, by the model and by its steps; nan where
-        one of them is not known
-    cells, dispersion : of each layer; whether its waves have the dispersion of the finite depth
-    history : of rotor and liquid
-    turning : index of the last time before the speed falls again; the last one of all if it never does
-    in_range : the layer describes the liquid at that time, shape (k,)
-    steady : synchronous response at the speeds passed, of a Jeffcott rotor; None for others
-    bands : of speed in which some whirl grows by itself, rad/s, an end of the range counting as an edge
-    chambers, planes : one for each chamber; its position along the axis, m
-    notes : limits of validity and findings
-    frames : the layers at regular times; None if they were not kept
-    history_dry : of the same rotor on the same way without liquid; None if it was not run
-    bore : what bores leave behind, "none" or "enstrophy"
-    spread : over an ensemble of runs that rounding tells apart; None if it was not asked for
-    passages : the steps of a programme that were reached; none of a run-up
-    unbalance_left : sizes of all unbalances over what they were at first, shape (k,); None where none leaves
-    loads : forces and clearances of each interval; None where the scene asks for none
-    races : with the balls that run in them; N balls in all
 
     Examples
     --------
@@ -129,36 +83,44 @@ class RunupResult(Loaded, Result):
     ('long_wave', True, (50,))
     """
 
-    name: str
+    name: str  #: of the scene
     source: str
     assumed: tuple[str, ...]
     digest: str
-    inputs: tuple[tuple[str, str, str], ...]
-    kind: str
+    inputs: tuple[tuple[str, str, str], ...]  #: label, value with its unit, field path
+    kind: str  #: of the rotor; "horizontal" or "vertical"
     axis: str
-    friction: Friction
-    gravity: float
-    model: str
-    model_reason: str
+    friction: Friction  #: law and coefficient
+    gravity: float  #: across the axis, m/s^2
+    model: str  #: of the liquid, "long_wave" or "linear"
+    model_reason: str  #: why that one, in words
+    #: estimated error of the amplitude over its largest, by the model and by its steps; nan where one of them
+    #: is not known
     model_error: float
-    cells: int
+    cells: int  #: of each layer; whether its waves have the dispersion of the finite depth
     dispersion: bool
-    history: RunupHistory
-    turning: int
-    in_range: Flags
+    history: RunupHistory  #: of rotor and liquid
+    turning: int  #: index of the last time before the speed falls again; the last one of all if it never does
+    in_range: Flags  #: the layer describes the liquid at that time, shape (k,)
+    #: synchronous response at the speeds passed, of a Jeffcott rotor; None for others
     steady: Response | None
+    #: of speed in which some whirl grows by itself, rad/s, an end of the range counting as an edge
     bands: Bands
-    chambers: tuple[FilledChamber, ...]
+    chambers: tuple[FilledChamber, ...]  #: one for each chamber; its position along the axis, m
     planes: tuple[float, ...]
-    notes: tuple[Note, ...]
-    frames: RunupFrames | None = None
+    notes: tuple[Note, ...]  #: limits of validity and findings
+    frames: RunupFrames | None = None  #: the layers at regular times; None if they were not kept
+    #: of the same rotor on the same way without liquid; None if it was not run
     history_dry: RunupHistory | None = None
+    #: over an ensemble of runs that rounding tells apart; None if it was not asked for
     spread: Spread | None = None
+    #: forces and clearances of each interval; None where the scene asks for none
     loads: MachineLoads | None = None
-    bore: str = "none"
-    passages: tuple[Passage, ...] = ()
+    bore: str = "none"  #: what bores leave behind, "none" or "enstrophy"
+    passages: tuple[Passage, ...] = ()  #: the steps of a programme that were reached; none of a run-up
+    #: sizes of all unbalances over what they were at first, shape (k,); None where none leaves
     unbalance_left: Array | None = None
-    races: tuple[RaceOfBalls, ...] = ()
+    races: tuple[RaceOfBalls, ...] = ()  #: with the balls that run in them; N balls in all
 
     figure = "leblanc.figures.runup:speed_figure"
     summary = "leblanc.text.runup:summary"

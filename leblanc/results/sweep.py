@@ -19,84 +19,43 @@ QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
 
 @dataclass(frozen=True)
 class Statistics:
-    """Of an output over the samples that have it; of arrays one for each speed.
+    """Of an output over the samples that have it; of arrays one for each speed."""
 
-    Parameters
-    ----------
-    count : samples
-    mean, deviation : nan without samples; the deviation of a single sample is 0
-    quantiles : at the shares `QUANTILES`, the last axis
-    """
-
-    count: NDArray[np.int64]
-    mean: Array
+    count: NDArray[np.int64]  #: samples
+    mean: Array  #: nan without samples; the deviation of a single sample is 0
     deviation: Array
-    quantiles: Array
+    quantiles: Array  #: at the shares `QUANTILES`, the last axis
 
 
 @dataclass(frozen=True)
 class Sensitivity:
-    """Shares of an output's variance, one for each varied field.
+    """Shares of an output's variance, one for each varied field."""
 
-    Parameters
-    ----------
-    method : in words
-    used : samples that went in; for "saltelli" points of the design
-    first : share that the field explains by itself, shape (fields,)
-    total : share that is gone once the field is known besides all others; None where the samples are too few
-    first_interval, total_interval : half widths of the 95 % intervals; None where the design is complete
-    """
-
-    method: str
-    used: int
-    first: Array
+    method: str  #: in words
+    used: int  #: samples that went in; for "saltelli" points of the design
+    first: Array  #: share that the field explains by itself, shape (fields,)
+    #: share that is gone once the field is known besides all others; None where the samples are too few
     total: Array | None = None
+    #: half widths of the 95 % intervals; None where the design is complete
     first_interval: Array | None = None
     total_interval: Array | None = None
 
 
 @dataclass(frozen=True)
 class EmulatorError:
-    """Error of an emulator on samples that it was not shown [theory: emulator, eq. 4].
+    """Error of an emulator on samples that it was not shown [theory: emulator, eq. 4]."""
 
-    Parameters
-    ----------
-    root_mean_square, largest : relative to the output for positive outputs, otherwise to its spread
-    spread : standard deviation of the output in the same measure, what knowing nothing leaves
-    within_two : share of the samples within two of the standard deviations that the emulator itself claims
-    samples : that were predicted
-    """
-
-    root_mean_square: float
+    root_mean_square: float  #: relative to the output for positive outputs, otherwise to its spread
     largest: float
-    spread: float
+    spread: float  #: standard deviation of the output in the same measure, what knowing nothing leaves
+    #: share of the samples within two of the standard deviations that the emulator itself claims
     within_two: float
-    samples: int
+    samples: int  #: that were predicted
 
 
 @dataclass(frozen=True)
 class SweepResult(Result):
     """What a sweep found.
-
-    Parameters
-    ----------
-    name : of the study
-    scene : name of the scene that the samples are made from
-    store : folder of the samples
-    method, seed : of sampling
-    fields : paths of what varies
-    speeds : at which each sample is answered, how many
-    samples, done, failed, not_converged : how many
-    reasons : why samples are not done, one example for all that differ in numbers only, and how many; the
-        most frequent first
-    speed : of all samples, rad/s; None where it differs between them
-    single : statistics of outputs that are one number a sample
-    units : of these outputs
-    over_speed : statistics of the others at each speed
-    sensitivities : of outputs that are one number a sample; None where the samples are too few
-    digest : fingerprint of the sweep
-    read : reads the store, each time it is called
-    plane : of the amplitudes, in words; empty for rotors that move in one plane
 
     Examples
     --------
@@ -108,26 +67,30 @@ class SweepResult(Result):
     figure: ClassVar[str] = "leblanc.figures.sweep:sweep_figure"
     summary: ClassVar[str] = "leblanc.text.sweep:summary"
 
-    name: str
-    scene: str
-    store: Path
-    method: str
+    name: str  #: of the study
+    scene: str  #: name of the scene that the samples are made from
+    store: Path  #: folder of the samples
+    method: str  #: of sampling
     seed: int
-    fields: tuple[str, ...]
-    speeds: int
-    samples: int
+    fields: tuple[str, ...]  #: paths of what varies
+    speeds: int  #: at which each sample is answered, how many
+    samples: int  #: how many
     done: int
     failed: int
     not_converged: int
+    #: why samples are not done, one example for all that differ in numbers only, and how many; the most
+    #: frequent first
     reasons: tuple[tuple[str, int], ...]
-    speed: Array | None
-    single: Mapping[str, Statistics]
-    units: Mapping[str, str]
-    over_speed: Mapping[str, Statistics]
+    speed: Array | None  #: of all samples, rad/s; None where it differs between them
+    single: Mapping[str, Statistics]  #: statistics of outputs that are one number a sample
+    units: Mapping[str, str]  #: of these outputs
+    over_speed: Mapping[str, Statistics]  #: statistics of the others at each speed
+    #: of outputs that are one number a sample; None where the samples are too few
     sensitivities: Mapping[str, Sensitivity | None]
-    digest: str
+    digest: str  #: fingerprint of the sweep
+    #: reads the store, each time it is called
     read: Callable[[], NamedArrays] = field(repr=False, compare=False)
-    plane: str = ""
+    plane: str = ""  #: of the amplitudes, in words; empty for rotors that move in one plane
 
     outputs = carried("single")
     sensitivity = carried("sensitivities")

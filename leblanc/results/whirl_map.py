@@ -23,27 +23,6 @@ if TYPE_CHECKING:
 class WhirlMap(Result):
     """Growth of self-excited whirl; n speeds, v volumes.
 
-    Parameters
-    ----------
-    name, source, assumed, digest : of the scene
-    speed : spin speed Omega, rad/s, shape (n,)
-    volume : liquid in all chambers together, m^3, shape (v,)
-    growth : of the whirl that grows most, 1/s, 0 if it is below rounding, nan if not found, shape (v, n)
-    whirl_speed : of that whirl in the standing frame, rad/s, positive with the spin, shape (v, n)
-    in_range : the plane layer describes the liquid there, shape (v, n)
-    edges : for each volume the bands of speed in which a whirl grows, rad/s; an end that is the first or last
-        speed is where the range ends
-    friction, damping : of the liquid, of the support, in words
-    scene_volume, scene_edges : of the scene as it stands, m^3 and as in `edges`
-    edges_not_known : for each volume the bands of speed in which the growth is not known, between the nearest
-        speeds where it is, rad/s
-    notes : limits of validity and findings
-    capacity : what the chambers that take liquid hold together, m^3
-    critical_speed_dry : without liquid; of several the one at which the unbalance moves the chambers most,
-        nan where there is none, rad/s
-    branches : of limit cycles of the scene as it stands; None where they were not asked for
-    depth : of the scene's deepest layer, m
-
     Examples
     --------
     >>> import leblanc as lb
@@ -55,26 +34,34 @@ class WhirlMap(Result):
     figure: ClassVar[str] = "leblanc.figures.whirl_map:map_figure"
     summary: ClassVar[str] = "leblanc.text.whirl_map:facts"
 
-    name: str
+    name: str  #: of the scene
     source: str
     assumed: tuple[str, ...]
     digest: str
-    speed: Array
-    volume: Array
+    speed: Array  #: spin speed Omega, rad/s, shape (n,)
+    volume: Array  #: liquid in all chambers together, m^3, shape (v,)
+    #: of the whirl that grows most, 1/s, 0 if it is below rounding, nan if not found, shape (v, n)
     growth: Array
-    whirl_speed: Array
-    in_range: Flags
+    whirl_speed: Array  #: of that whirl in the standing frame, rad/s, positive with the spin, shape (v, n)
+    in_range: Flags  #: the plane layer describes the liquid there, shape (v, n)
+    #: for each volume the bands of speed in which a whirl grows, rad/s; an end that is the first or last
+    #: speed is where the range ends
     edges: tuple[Bands, ...]
-    friction: str
+    friction: str  #: of the liquid, of the support, in words
     damping: str
-    scene_volume: float
+    scene_volume: float  #: of the scene as it stands, m^3 and as in `edges`
     scene_edges: Bands
-    notes: tuple[Note, ...]
+    notes: tuple[Note, ...]  #: limits of validity and findings
+    #: for each volume the bands of speed in which the growth is not known, between the nearest speeds where
+    #: it is, rad/s
     edges_not_known: tuple[Bands, ...] = ()
-    capacity: float = math.nan
+    capacity: float = math.nan  #: what the chambers that take liquid hold together, m^3
+    #: without liquid; of several the one at which the unbalance moves the chambers most, nan where there is
+    #: none, rad/s
     critical_speed_dry: float = math.nan
+    #: of limit cycles of the scene as it stands; None where they were not asked for
     branches: tuple[Branch, ...] | None = None
-    depth: float = math.nan
+    depth: float = math.nan  #: of the scene's deepest layer, m
 
     @property
     def not_known(self) -> int:

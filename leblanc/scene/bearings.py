@@ -47,19 +47,12 @@ class Rolls(Protocol):
 
 @dataclass(frozen=True)
 class CagedBearing:
-    """A bearing whose balls are given.
+    """A bearing whose balls are given."""
 
-    Parameters
-    ----------
-    name : by which results tell it
-    ball_diameter, pitch_diameter : of a ball, of the circle of the balls' centres, m
-    contact_angle : rad
-    """
-
-    name: str
-    ball_diameter: float
+    name: str  #: by which results tell it
+    ball_diameter: float  #: of a ball, of the circle of the balls' centres, m
     pitch_diameter: float
-    contact_angle: float
+    contact_angle: float  #: rad
 
 
 def caged(named: Sequence[tuple[str, Rolls]]) -> tuple[CagedBearing, ...]:

@@ -42,16 +42,10 @@ _SECTIONS = ("Chamber", "section", "area (cm²)", "farthest wall (mm)", "cells a
 
 @dataclass(frozen=True)
 class SceneInputs:
-    """What a scene says.
+    """What a scene says."""
 
-    Parameters
-    ----------
-    rows : single values
-    tables : of what there may be several of: chambers, supports, springs
-    """
-
-    rows: tuple[Row, ...]
-    tables: tuple[RowTable, ...]
+    rows: tuple[Row, ...]  #: single values
+    tables: tuple[RowTable, ...]  #: of what there may be several of: chambers, supports, springs
 
 
 def inputs_of(scene: Scene, optimise: Optimisation | None = None) -> SceneInputs:

@@ -15,18 +15,12 @@ _UNIT = re.compile(r"(.*?)(?: \((.*)\))?")
 
 @dataclass(frozen=True)
 class Value:
-    """One value as printed.
+    """One value as printed."""
 
-    Parameters
-    ----------
-    text : the value, with its unit unless a table's head has it
-    paths : its own in the scene, then those of values that it is worked out from; none for a label
-    assumed : no source gives it
-    """
-
-    text: str
+    text: str  #: the value, with its unit unless a table's head has it
+    #: its own in the scene, then those of values that it is worked out from; none for a label
     paths: tuple[str, ...] = ()
-    assumed: bool = False
+    assumed: bool = False  #: no source gives it
 
     @property
     def path(self) -> str:
@@ -63,16 +57,10 @@ class Row:
 
 @dataclass(frozen=True)
 class RowTable:
-    """Values of parts that there may be several of.
+    """Values of parts that there may be several of."""
 
-    Parameters
-    ----------
-    head : what a part is called, then a name for each column with its unit in brackets
-    rows : the number of each part, then its values
-    """
-
-    head: tuple[str, ...]
-    rows: tuple[tuple[Value, ...], ...]
+    head: tuple[str, ...]  #: what a part is called, then a name for each column with its unit in brackets
+    rows: tuple[tuple[Value, ...], ...]  #: the number of each part, then its values
 
     def single(self) -> Iterator[Row]:
         """Each value as a row of its own, with its unit."""

@@ -25,46 +25,32 @@ from solvers.whirl.growth import machines_growth
 
 @dataclass(frozen=True)
 class Answers:
-    """Outputs of `run` of n scenes at s speeds each, SI; all shapes (n, s) but those of the peaks, (n,).
+    """Outputs of `run` of n scenes at s speeds each, SI; all shapes (n, s) but those of the peaks, (n,)."""
 
-    Parameters
-    ----------
-    speed : spin speed, rad/s
-    amplitude, amplitude_dry : of the axis with and without liquid, m
-    phase : angle from the unbalance to the deflection, rad, negative where it lags
-    liquid_offset : distance of the liquid's centre of mass from the rotation axis, m
-    liquid_angle : angle from the unbalance to it, rad
-    growth, whirl_speed : of the whirl that grows most by itself, 1/s and rad/s
-    dry_patch, stable, in_range, converged : as in `solvers.synchronous.response.Response`; stable
-        against whirls as well
-    model : of the liquid, by name
-    error_estimate : of the model taken, relative, of amplitude and liquid the larger one; nan where unknown
-    peak_amplitude, peak_amplitude_dry : largest over the range of speeds, found between them as well, m; with
-        balls at the speeds themselves
-    amplitude_without, state, balanced : with balls, else None: amplitude without them, m, how they rest, and
-        whether the balanced state is stable
-    balanced_from : with balls, else None: speed from which on it is, rad/s, nan if at none, shape (n,)
-    """
-
-    speed: Array
-    amplitude: Array
+    speed: Array  #: spin speed, rad/s
+    amplitude: Array  #: of the axis with and without liquid, m
     amplitude_dry: Array
-    phase: Array
-    liquid_offset: Array
-    liquid_angle: Array
-    growth: Array
+    phase: Array  #: angle from the unbalance to the deflection, rad, negative where it lags
+    liquid_offset: Array  #: distance of the liquid's centre of mass from the rotation axis, m
+    liquid_angle: Array  #: angle from the unbalance to it, rad
+    growth: Array  #: of the whirl that grows most by itself, 1/s and rad/s
     whirl_speed: Array
-    dry_patch: Flags
+    dry_patch: Flags  #: as in `solvers.synchronous.response.Response`; stable against whirls as well
     stable: Flags
     in_range: Flags
     converged: Flags
-    model: NDArray[np.str_]
+    model: NDArray[np.str_]  #: of the liquid, by name
+    #: of the model taken, relative, of amplitude and liquid the larger one; nan where unknown
     error_estimate: Array
+    #: largest over the range of speeds, found between them as well, m; with balls at the speeds themselves
     peak_amplitude: Array
     peak_amplitude_dry: Array
+    #: with balls, else None: amplitude without them, m, how they rest, and whether the balanced state is
+    #: stable
     amplitude_without: Array | None = None
     state: NDArray[np.str_] | None = None
     balanced: Flags | None = None
+    #: with balls, else None: speed from which on it is, rad/s, nan if at none, shape (n,)
     balanced_from: Array | None = None
 
 

@@ -53,18 +53,11 @@ _ANGLES = ("phase", "liquid_angle")
 
 @dataclass(frozen=True)
 class Measurement:
-    """What was measured on a machine.
+    """What was measured on a machine."""
 
-    Parameters
-    ----------
-    over : "speed", "time", or "added" for liquid added to the first chamber
-    at : rad/s, s or m^3, rising, shape (n,)
-    columns : name and values of each quantity, SI, shape (n,)
-    """
-
-    over: str
-    at: Array
-    columns: tuple[tuple[str, Array], ...]
+    over: str  #: "speed", "time", or "added" for liquid added to the first chamber
+    at: Array  #: rad/s, s or m^3, rising, shape (n,)
+    columns: tuple[tuple[str, Array], ...]  #: name and values of each quantity, SI, shape (n,)
 
 
 def read_measured(path: str | PathLike[str], coordinates: Sequence[str], free: bool = False) -> Measurement:

@@ -46,19 +46,14 @@ _MOST_SEGMENTS = 1200
 class Resolution:
     """Mesh of the liquid.
 
-    Parameters
-    ----------
-    segments, layers : cells around and across, at least
-    order : 1 for linear elements, 2 for quadratic ones
-
     Raises
     ------
     InputError : a number out of its range
     """
 
-    segments: int = 96
+    segments: int = 96  #: cells around and across, at least
     layers: int = 6
-    order: int = 2
+    order: int = 2  #: 1 for linear elements, 2 for quadratic ones
 
     def __post_init__(self) -> None:
         if not 16 <= self.segments <= _MOST_SEGMENTS:
@@ -71,17 +66,12 @@ class Resolution:
 
 @dataclass(frozen=True)
 class SectionSource:
-    """File with the section of a chamber; its origin is the geometric axis.
+    """File with the section of a chamber; its origin is the geometric axis."""
 
-    Parameters
-    ----------
-    path : a mesh, or an outline
-    unit : length of the file's unit, m; None for the one that it names, of a mesh for 1 m
-    size : of the cells at walls of an outline, m; None for a hundredth of its largest extent
-    """
-
-    path: Path
+    path: Path  #: a mesh, or an outline
+    #: length of the file's unit, m; None for the one that it names, of a mesh for 1 m
     unit: float | None = None
+    #: of the cells at walls of an outline, m; None for a hundredth of its largest extent
     size: float | None = None
 
 

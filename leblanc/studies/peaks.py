@@ -36,17 +36,11 @@ _ASIDE = 3e-9  # relative distance of a speed that is taken for the resonance
 
 @dataclass(frozen=True)
 class Resonances:
-    """Where a machine may have its peak.
+    """Where a machine may have its peak."""
 
-    Parameters
-    ----------
-    speed, half_width : rad/s; the latter nan where another one shows the shape, shape (k,)
-    bound : what no amplitude exceeds, m; infinite where that is not known
-    """
-
-    speed: Array
+    speed: Array  #: rad/s; the latter nan where another one shows the shape, shape (k,)
     half_width: Array
-    bound: float = math.inf
+    bound: float = math.inf  #: what no amplitude exceeds, m; infinite where that is not known
 
 
 class Asked(Protocol):

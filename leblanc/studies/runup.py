@@ -198,21 +198,14 @@ Progress = Callable[[float], None] | None
 
 @dataclass(frozen=True)
 class RunupChoice:
-    """A run-up and the liquid model it took.
+    """A run-up and the liquid model it took."""
 
-    Parameters
-    ----------
-    history : of rotor and liquid
-    model : "long_wave" or "linear"
-    error : estimated error of the amplitude over its largest, by the model and by its steps; nan where one of
-        them is not known
-    reason : why that model, in words
-    """
-
-    history: RunupHistory
-    model: str
+    history: RunupHistory  #: of rotor and liquid
+    model: str  #: "long_wave" or "linear"
+    #: estimated error of the amplitude over its largest, by the model and by its steps; nan where one of them
+    #: is not known
     error: float
-    reason: str
+    reason: str  #: why that model, in words
 
 
 def chosen_run(

@@ -16,23 +16,14 @@ LITTLE = 0.2  # of the friction or weight at rest: a machine with less is near w
 
 @dataclass(frozen=True)
 class LoadRow:
-    """One line of the table.
+    """One line of the table."""
 
-    Parameters
-    ----------
-    label : what it is
-    size : its worst, with the unit
-    speed, time : where that is, rpm and s; no time over speed
-    remark : what it is beside
-    failed : it must not be
-    """
-
-    label: str
-    size: str
-    speed: str
+    label: str  #: what it is
+    size: str  #: its worst, with the unit
+    speed: str  #: where that is, rpm and s; no time over speed
     time: str
-    remark: str
-    failed: bool = False
+    remark: str  #: what it is beside
+    failed: bool = False  #: it must not be
 
 
 def load_rows(loads: MachineLoads) -> list[LoadRow]:

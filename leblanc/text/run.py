@@ -164,20 +164,13 @@ def largest_error(result: RunResult) -> str:
 
 @dataclass(frozen=True)
 class Comparison:
-    """With liquid, without, and their ratio, as printed.
+    """With liquid, without, and their ratio, as printed."""
 
-    Parameters
-    ----------
-    label : what is compared, with the unit in brackets
-    wet, dry, ratio : numbers
-    unit : of the first two
-    """
-
-    label: str
-    wet: str
+    label: str  #: what is compared, with the unit in brackets
+    wet: str  #: numbers
     dry: str
     ratio: str
-    unit: str = ""
+    unit: str = ""  #: of the first two
 
     @property
     def wet_text(self) -> str:
@@ -313,18 +306,11 @@ def _vibration(result: RunResult) -> list[tuple[str, str]]:
 
 @dataclass(frozen=True)
 class Limit:
-    """A check of the answer.
+    """A check of the answer."""
 
-    Parameters
-    ----------
-    label : what is checked
-    where : speeds that fail it
-    failed : some do
-    """
-
-    label: str
-    where: str
-    failed: bool
+    label: str  #: what is checked
+    where: str  #: speeds that fail it
+    failed: bool  #: some do
 
 
 def limits(result: RunResult) -> list[Limit]:

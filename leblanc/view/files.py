@@ -169,22 +169,13 @@ def _in_perspective(plot: Plotter) -> None:
 
 @dataclass(frozen=True)
 class Frames:
-    """Pictures of a machine, one for each position of the slider.
+    """Pictures of a machine, one for each position of the slider."""
 
-    Parameters
-    ----------
-    count : how many
-    first : which one is shown first
-    picture : draws one, with the scale common to all or fitted to each
-    values : what stands beside the slider for each
-    texts : what stands below it for each
-    """
-
-    count: int
-    first: int
-    picture: Callable[[int, bool], Picture]
-    values: tuple[str, ...]
-    texts: tuple[str, ...]
+    count: int  #: how many
+    first: int  #: which one is shown first
+    picture: Callable[[int, bool], Picture]  #: draws one, with the scale common to all or fitted to each
+    values: tuple[str, ...]  #: what stands beside the slider for each
+    texts: tuple[str, ...]  #: what stands below it for each
 
 
 def frames_of_speeds(

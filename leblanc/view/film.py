@@ -46,16 +46,10 @@ ROUND = 48  # frames of a period
 
 @dataclass(frozen=True)
 class Film:
-    """Pictures one after the other, all seen by the camera of the first.
+    """Pictures one after the other, all seen by the camera of the first."""
 
-    Parameters
-    ----------
-    count : how many
-    picture : draws one of them
-    """
-
-    count: int
-    picture: Callable[[int], Picture]
+    count: int  #: how many
+    picture: Callable[[int], Picture]  #: draws one of them
 
 
 def sweep_film(

@@ -17,22 +17,14 @@ ROUND = 181  # points of a circle
 
 @dataclass(frozen=True)
 class Piece:
-    """One thing in a picture.
+    """One thing in a picture."""
 
-    Parameters
-    ----------
-    name : what it is
-    points : mm, shape (n, 3)
-    cells : numbers of points of each face, shape (m, 3) or (m, 4), or along each line, shape (m, 2)
-    look : how it is drawn, by a name of `leblanc.view.picture.LOOKS`
-    ball : radius of a ball at each point, mm; 0 for none
-    """
-
-    name: str
-    points: Array
+    name: str  #: what it is
+    points: Array  #: mm, shape (n, 3)
+    #: numbers of points of each face, shape (m, 3) or (m, 4), or along each line, shape (m, 2)
     cells: Indices
-    look: str
-    ball: float = 0.0
+    look: str  #: how it is drawn, by a name of `leblanc.view.picture.LOOKS`
+    ball: float = 0.0  #: radius of a ball at each point, mm; 0 for none
 
 
 @dataclass(frozen=True)
@@ -45,47 +37,29 @@ class Label:
 
 @dataclass(frozen=True)
 class Inset:
-    """A small curve in the corner of each frame of a film, with a point where the film is.
+    """A small curve in the corner of each frame of a film, with a point where the film is."""
 
-    Parameters
-    ----------
-    across : what it runs over, rising, shape (n,)
-    curves : one over the other, each with its name, shape (n,)
-    at : where the point is
-    name : of what it runs over
-    """
-
-    across: Array
-    curves: tuple[tuple[str, Array], ...]
-    at: float
-    name: str
+    across: Array  #: what it runs over, rising, shape (n,)
+    curves: tuple[tuple[str, Array], ...]  #: one over the other, each with its name, shape (n,)
+    at: float  #: where the point is
+    name: str  #: of what it runs over
 
 
 @dataclass(frozen=True)
 class Picture:
-    """What is drawn.
+    """What is drawn."""
 
-    Parameters
-    ----------
-    pieces, labels : in the picture
-    title, state, caption : above, below that, and at the foot
-    lying : the axis is horizontal
-    long : it is longer than wide
-    frame : points that the camera keeps in sight, mm, shape (n, 3)
-    above : a standing machine is seen from high above, so that the layer's depth shows all round
-    inset : curve of a film
-    """
-
-    pieces: tuple[Piece, ...]
+    pieces: tuple[Piece, ...]  #: in the picture
     labels: tuple[Label, ...]
-    title: str
+    title: str  #: above, below that, and at the foot
     state: str
     caption: str
-    lying: bool
-    long: bool
-    frame: Array
+    lying: bool  #: the axis is horizontal
+    long: bool  #: it is longer than wide
+    frame: Array  #: points that the camera keeps in sight, mm, shape (n, 3)
+    #: a standing machine is seen from high above, so that the layer's depth shows all round
     above: bool = False
-    inset: Inset | None = None
+    inset: Inset | None = None  #: curve of a film
 
     def piece(self, name: str) -> Piece:
         """The piece of that name."""
@@ -94,27 +68,16 @@ class Picture:
 
 @dataclass(frozen=True)
 class Stage:
-    """What is fixed while a machine is shown at several instants.
+    """What is fixed while a machine is shown at several instants."""
 
-    Parameters
-    ----------
-    fills, places : chambers with their liquid; their middles along the axis, m
-    lying : the axis is horizontal
-    scale : of deflection and depth
-    swing : largest deflection as drawn, m
-    zero : what the zero mark on the drum is; empty to leave it out
-    gravity : show where it points
-    parts : what carries the chambers and holds them; None to show these alone
-    """
-
-    fills: tuple[Fill, ...]
+    fills: tuple[Fill, ...]  #: chambers with their liquid; their middles along the axis, m
     places: tuple[float, ...]
-    lying: bool
-    scale: Scale
-    swing: float
-    zero: str = "unbalance"
-    gravity: bool = True
-    parts: MachineParts | None = None
+    lying: bool  #: the axis is horizontal
+    scale: Scale  #: of deflection and depth
+    swing: float  #: largest deflection as drawn, m
+    zero: str = "unbalance"  #: what the zero mark on the drum is; empty to leave it out
+    gravity: bool = True  #: show where it points
+    parts: MachineParts | None = None  #: what carries the chambers and holds them; None to show these alone
 
     @property
     def radius(self) -> float:
@@ -148,24 +111,15 @@ class Stage:
 
 @dataclass(frozen=True)
 class Instant:
-    """A machine at one instant, seen from the drum unless it says otherwise.
+    """A machine at one instant, seen from the drum unless it says otherwise."""
 
-    Parameters
-    ----------
-    deflection : of each chamber, not yet scaled, m
-    lean : slope of the axis along itself, not yet scaled
-    bodies : liquid of each chamber as drawn, None where there is none
-    title, state, caption : texts
-    turn : of the drum from where its zero mark lies in a still, rad
-    """
-
-    deflection: tuple[complex, ...]
-    lean: complex
-    bodies: tuple[Liquid, ...]
-    title: str
+    deflection: tuple[complex, ...]  #: of each chamber, not yet scaled, m
+    lean: complex  #: slope of the axis along itself, not yet scaled
+    bodies: tuple[Liquid, ...]  #: liquid of each chamber as drawn, None where there is none
+    title: str  #: texts
     state: str
     caption: str
-    turn: float = 0.0
+    turn: float = 0.0  #: of the drum from where its zero mark lies in a still, rad
 
 
 def placed(stage: Stage, plane: Array | Complex, height: Array | float, along: float = 0.0) -> Array:

@@ -54,18 +54,11 @@ _ON_PLATE = 1e-6  # of a plate's length, that a face may be off it
 
 @dataclass(frozen=True)
 class Outline:
-    """Sides of a section, each as straight pieces with k points, from the geometric axis.
+    """Sides of a section, each as straight pieces with k points, from the geometric axis."""
 
-    Parameters
-    ----------
-    walls : complex, m, shape (n, k), with the section on the left
-    outwards : unit vectors out of the section at these points, complex, shape (n, k)
-    plates : both sides of baffles without thickness, each pair once, m, shape (m, k)
-    """
-
-    walls: Complex
-    outwards: Complex
-    plates: Complex
+    walls: Complex  #: complex, m, shape (n, k), with the section on the left
+    outwards: Complex  #: unit vectors out of the section at these points, complex, shape (n, k)
+    plates: Complex  #: both sides of baffles without thickness, each pair once, m, shape (m, k)
 
 
 def outline(section: Section) -> Outline:

@@ -36,22 +36,14 @@ VIEWS = ("oblique", "along the axis", "from the side")
 
 @dataclass(frozen=True)
 class Sight:
-    """A camera with parallel projection.
+    """A camera with parallel projection."""
 
-    Parameters
-    ----------
-    focus : what it points at, mm, shape (3,)
-    right, over, back : unit vectors to the right, upwards and towards the eye, shape (3,)
-    half : half the height of what it sees, mm
-    size : of the picture, pixels
-    """
-
-    focus: Array
-    right: Array
+    focus: Array  #: what it points at, mm, shape (3,)
+    right: Array  #: unit vectors to the right, upwards and towards the eye, shape (3,)
     over: Array
     back: Array
-    half: float
-    size: tuple[int, int]
+    half: float  #: half the height of what it sees, mm
+    size: tuple[int, int]  #: of the picture, pixels
 
     @property
     def scale(self) -> float:
@@ -82,15 +74,10 @@ class Sight:
 
 @dataclass(frozen=True)
 class Placed:
-    """A name in a picture.
+    """A name in a picture."""
 
-    Parameters
-    ----------
-    text : the name
-    box : left, lower, right and upper edge, pixels from the lower left corner
-    """
-
-    text: str
+    text: str  #: the name
+    #: left, lower, right and upper edge, pixels from the lower left corner
     box: tuple[float, float, float, float]
 
     @property
@@ -102,16 +89,10 @@ class Placed:
 
 @dataclass(frozen=True)
 class Layout:
-    """Camera and names of a picture, or of all pictures of a film.
+    """Camera and names of a picture, or of all pictures of a film."""
 
-    Parameters
-    ----------
-    sight : the camera
-    names : one for each label of the picture, in their order
-    """
-
-    sight: Sight
-    names: tuple[Placed, ...]
+    sight: Sight  #: the camera
+    names: tuple[Placed, ...]  #: one for each label of the picture, in their order
 
 
 def letters(size: tuple[int, int]) -> int:

@@ -33,22 +33,14 @@ _LEGENDRE = np.polynomial.legendre.leggauss(4)
 
 @dataclass(frozen=True, eq=False)
 class Body:
-    """A body of liquid with its free surface and the walls that it wets.
+    """A body of liquid with its free surface and the walls that it wets."""
 
-    Parameters
-    ----------
-    points : nodes, shape (N, 3), m: from the chamber's geometric axis, height above its floor
-    cells : tetrahedra, shape (M, 4), or (M, 10) with the nodes between 0-1, 1-2, 2-0, 0-3, 1-3, 2-3
-    surface : triangles on the free surface, seen from outside the liquid, shape (S, 3) or (S, 6)
-    wall : triangles on the walls, seen from outside the liquid, shape (W, 3) or (W, 6)
-    wall_part : number of the part of the walls in `WALL_PARTS`, shape (W,)
-    """
-
-    points: Array
+    points: Array  #: nodes, shape (N, 3), m: from the chamber's geometric axis, height above its floor
+    #: tetrahedra, shape (M, 4), or (M, 10) with the nodes between 0-1, 1-2, 2-0, 0-3, 1-3, 2-3
     cells: Indices
-    surface: Indices
-    wall: Indices
-    wall_part: Indices
+    surface: Indices  #: triangles on the free surface, seen from outside the liquid, shape (S, 3) or (S, 6)
+    wall: Indices  #: triangles on the walls, seen from outside the liquid, shape (W, 3) or (W, 6)
+    wall_part: Indices  #: number of the part of the walls in `WALL_PARTS`, shape (W,)
 
     @property
     def order(self) -> int:

@@ -89,22 +89,14 @@ _READ = ("LINE", "ARC", "CIRCLE", "ELLIPSE", "LWPOLYLINE", "POLYLINE", "SPLINE",
 
 @dataclass(frozen=True, eq=False)
 class Curve:
-    """One curve of a drawing.
+    """One curve of a drawing."""
 
-    Parameters
-    ----------
-    layer : where it was drawn
-    points : in the plane, shape (K, 2), in the drawing's unit: the two ends of a line; the start, a point
-        between and the end of a circular arc; the control points of a spline, which starts and ends on the
-        outer two
-    degree : of a spline; 1 for a line, 0 for an arc
-    knots, weights : of a spline; weights are empty if it is not rational
-    """
-
-    layer: str
+    layer: str  #: where it was drawn
+    #: in the plane, shape (K, 2), in the drawing's unit: the two ends of a line; the start, a point between
+    #: and the end of a circular arc; the control points of a spline, which starts and ends on the outer two
     points: Array
-    degree: int
-    knots: tuple[float, ...] = ()
+    degree: int  #: of a spline; 1 for a line, 0 for an arc
+    knots: tuple[float, ...] = ()  #: of a spline; weights are empty if it is not rational
     weights: tuple[float, ...] = ()
 
 

@@ -43,20 +43,12 @@ _REVERSED = {
 
 @dataclass(frozen=True)
 class FileContents:
-    """Points and cells of a mesh file.
+    """Points and cells of a mesh file."""
 
-    Parameters
-    ----------
-    points : shape (N, 2 or 3), in the file's unit
-    blocks : kind of cells and their nodes
-    groups : number of the physical group of each cell of each block, 0 for none
-    names : of physical groups by dimension and number
-    """
-
-    points: Array
-    blocks: list[tuple[str, NDArray[Any]]]
-    groups: list[Indices]
-    names: dict[tuple[int, int], str]
+    points: Array  #: shape (N, 2 or 3), in the file's unit
+    blocks: list[tuple[str, NDArray[Any]]]  #: kind of cells and their nodes
+    groups: list[Indices]  #: number of the physical group of each cell of each block, 0 for none
+    names: dict[tuple[int, int], str]  #: of physical groups by dimension and number
 
 
 def plane_cells(
@@ -153,18 +145,12 @@ def _in_plane(path: str | Path, points: Array) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class NamedSection:
-    """A section and the names that its walls have in the file.
+    """A section and the names that its walls have in the file."""
 
-    Parameters
-    ----------
-    section : the section
-    walls : sides of each named wall, shape (S, 2 or 3): start, end, node between, the section on their left
-    notes : what in the file was not kept, in words
-    """
-
-    section: Section
+    section: Section  #: the section
+    #: sides of each named wall, shape (S, 2 or 3): start, end, node between, the section on their left
     walls: Mapping[str, Indices]
-    notes: tuple[str, ...]
+    notes: tuple[str, ...]  #: what in the file was not kept, in words
 
 
 def name_walls(

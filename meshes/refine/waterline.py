@@ -41,22 +41,15 @@ _RAY = np.polynomial.legendre.leggauss(4)
 
 @dataclass(frozen=True, eq=False)
 class Arcs:
-    """Pieces of the triangles' edges along which the distance from the axis grows from one end to the other.
+    """Pieces of the triangles' edges along which the distance from the axis grows from end to end."""
 
-    Parameters
-    ----------
-    triangle : number of the triangle that each arc bounds, shape (A,)
-    curve : coefficients of x(t) = c0 + c1 t + c2 t^2 from the axis, shape (3, 2, A), m; t grows
-        counter-clockwise around the triangle
-    near, far : t at the two ends, shape (A,)
-    near_square, far_square : squared distance of the ends from the axis, shape (A,), m^2
-    """
-
-    triangle: Indices
+    triangle: Indices  #: number of the triangle that each arc bounds, shape (A,)
+    #: coefficients of x(t) = c0 + c1 t + c2 t^2 from the axis, shape (3, 2, A), m; t grows counter-clockwise
+    #: around the triangle
     curve: Array
-    near: Array
+    near: Array  #: t at the two ends, shape (A,)
     far: Array
-    near_square: Array
+    near_square: Array  #: squared distance of the ends from the axis, shape (A,), m^2
     far_square: Array
 
     def take(self, which: NDArray[np.bool_] | Indices) -> Arcs:

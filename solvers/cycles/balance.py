@@ -28,42 +28,26 @@ class NotCircularError(Exception):
 
 @dataclass(frozen=True)
 class Place:
-    """A layer of the machine, or several that are alike and move alike.
+    """A layer of the machine, or several that are alike and move alike."""
 
-    Parameters
-    ----------
-    fill : chamber and liquid of one of them
-    layer : as small whirls meet it
-    row : deflection of its axis for unit coordinates, complex, shape (p,)
-    full_mass, mass : of all of them, m_f of full cylinders and that of the liquid, kg
-    which : indices of them among the fills
-    """
-
-    fill: Fill
-    layer: Layer
-    row: Complex
-    full_mass: float
+    fill: Fill  #: chamber and liquid of one of them
+    layer: Layer  #: as small whirls meet it
+    row: Complex  #: deflection of its axis for unit coordinates, complex, shape (p,)
+    full_mass: float  #: of all of them, m_f of full cylinders and that of the liquid, kg
     mass: float
-    which: tuple[int, ...]
+    which: tuple[int, ...]  #: indices of them among the fills
 
 
 @dataclass(frozen=True)
 class Circular:
-    """[K - omega^2 M + i omega (C + Omega G)] c = omega^2 sum_j m_fj row_j^* G_j row_j c; p coordinates.
+    """[K - omega^2 M + i omega (C + Omega G)] c = omega^2 sum_j m_fj row_j^* G_j row_j c; p coordinates."""
 
-    Parameters
-    ----------
-    mass, damping, gyroscopic, stiffness : complex, shape (p, p)
-    places : of the layers
-    rows : deflection of every chamber's axis for unit coordinates, shape (chambers, p)
-    """
-
-    mass: Complex
+    mass: Complex  #: complex, shape (p, p)
     damping: Complex
     gyroscopic: Complex
     stiffness: Complex
-    places: tuple[Place, ...]
-    rows: Complex
+    places: tuple[Place, ...]  #: of the layers
+    rows: Complex  #: deflection of every chamber's axis for unit coordinates, shape (chambers, p)
 
     def dynamic_stiffness(self, whirl_speed: float, spin: float) -> Complex:
         """K - omega^2 M + i omega (C + Omega G), shape (p, p)."""

@@ -40,31 +40,18 @@ _ROUGH = 0.01  # of the mean area: change in a period at which a layer has settl
 
 @dataclass(frozen=True)
 class Cycle:
-    """A limit cycle; p coordinates, l places of layers, 2 n components of a layer's state.
+    """A limit cycle; p coordinates, l places of layers, 2 n components of a layer's state."""
 
-    Parameters
-    ----------
-    spin, whirl_speed : Omega and omega_w, rad/s
-    moved : the rotor's coordinates in the frame of the whirl, complex, shape (p,)
-    given : what drives each layer
-    force : G of each layer, complex, shape (l,)
-    turning : mean rotation of each layer relative to its drum, rad/s, shape (l,)
-    state : of each layer, the deflection of its axis pointing to the first cell, shape (l, 2 n)
-    derivatives : of each layer's map there
-    tangent : direction of the branch, all unknowns of `Follower`, those of the rotor of length 1
-    arc : length of the branch up to it
-    """
-
-    spin: float
+    spin: float  #: Omega and omega_w, rad/s
     whirl_speed: float
-    moved: Complex
-    given: tuple[Whirling, ...]
-    force: Complex
-    turning: Array
-    state: Array
-    derivatives: tuple[Derivatives, ...]
-    tangent: Array
-    arc: float
+    moved: Complex  #: the rotor's coordinates in the frame of the whirl, complex, shape (p,)
+    given: tuple[Whirling, ...]  #: what drives each layer
+    force: Complex  #: G of each layer, complex, shape (l,)
+    turning: Array  #: mean rotation of each layer relative to its drum, rad/s, shape (l,)
+    state: Array  #: of each layer, the deflection of its axis pointing to the first cell, shape (l, 2 n)
+    derivatives: tuple[Derivatives, ...]  #: of each layer's map there
+    tangent: Array  #: direction of the branch, all unknowns of `Follower`, those of the rotor of length 1
+    arc: float  #: length of the branch up to it
 
 
 @dataclass(frozen=True)

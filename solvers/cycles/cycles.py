@@ -52,34 +52,23 @@ class HeldWhirl(NamedTuple):
 
 @dataclass(frozen=True)
 class Branch:
-    """Limit cycles one after the other; k of them, c chambers.
+    """Limit cycles one after the other; k of them, c chambers."""
 
-    Parameters
-    ----------
-    speed, whirl_speed : Omega and omega_w, rad/s, shape (k,)
-    deflection : of each chamber's axis in the frame of the whirl, complex, m, shape (k, c)
-    lag : by which the liquid of each chamber turns more slowly than the drum, rad/s, nan where there is no
-        layer, shape (k, c)
-    growth : of the disturbance that grows most, 1/s, below 0 where the whirl is stable, shape (k,); where it
-        was not found that between its neighbours, nan where it was found nowhere
-    torque : that the drive has to supply on top, N m, shape (k,)
-    thinnest : least depth of a layer over its mean depth, shape (k,)
-    folds : indices of the whirls next to a fold, where the branch turns back in speed
-    fold_speed, fold_amplitude : there, by a parabola through three whirls, rad/s and m
-    reason : why it ends where it ends, at the first whirl and at the last one
-    """
-
-    speed: Array
+    speed: Array  #: Omega and omega_w, rad/s, shape (k,)
     whirl_speed: Array
-    deflection: Complex
+    deflection: Complex  #: of each chamber's axis in the frame of the whirl, complex, m, shape (k, c)
+    #: by which the liquid of each chamber turns more slowly than the drum, rad/s, nan where there is no
+    #: layer, shape (k, c)
     lag: Array
+    #: of the disturbance that grows most, 1/s, below 0 where the whirl is stable, shape (k,); where it was
+    #: not found that between its neighbours, nan where it was found nowhere
     growth: Array
-    torque: Array
-    thinnest: Array
-    folds: tuple[int, ...]
-    fold_speed: tuple[float, ...]
+    torque: Array  #: that the drive has to supply on top, N m, shape (k,)
+    thinnest: Array  #: least depth of a layer over its mean depth, shape (k,)
+    folds: tuple[int, ...]  #: indices of the whirls next to a fold, where the branch turns back in speed
+    fold_speed: tuple[float, ...]  #: there, by a parabola through three whirls, rad/s and m
     fold_amplitude: tuple[float, ...]
-    reason: tuple[str, str]
+    reason: tuple[str, str]  #: why it ends where it ends, at the first whirl and at the last one
 
     @property
     def amplitude(self) -> Array:
@@ -145,16 +134,10 @@ class Branch:
 
 @dataclass(frozen=True)
 class LimitCycles:
-    """All limit cycles that were found.
+    """All limit cycles that were found."""
 
-    Parameters
-    ----------
-    branches : each through its folds
-    reason : why there are none, or what is not among them; empty if nothing is to be said
-    """
-
-    branches: tuple[Branch, ...]
-    reason: str = ""
+    branches: tuple[Branch, ...]  #: each through its folds
+    reason: str = ""  #: why there are none, or what is not among them; empty if nothing is to be said
 
     def largest_stable(self, speed: float) -> float:
         """Amplitude of the largest stable whirl at a speed, m; 0 where there is none."""

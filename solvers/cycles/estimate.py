@@ -29,21 +29,13 @@ _BELOW, _ABOVE = 0.6, 1.5  # of the first and of the last speed, where edges of 
 
 @dataclass(frozen=True)
 class Estimate:
-    """A whirl by rule [theory: whirl, eq. 29].
+    """A whirl by rule [theory: whirl, eq. 29]."""
 
-    Parameters
-    ----------
-    spin, whirl_speed : Omega and omega_w, rad/s
-    moved : the rotor's coordinates, complex, shape (p,)
-    amplitude : largest deflection of a chamber with a layer, m
-    lag : by which the liquid turns more slowly than the drum, rad/s
-    """
-
-    spin: float
+    spin: float  #: Omega and omega_w, rad/s
     whirl_speed: float
-    moved: Complex
-    amplitude: float
-    lag: float
+    moved: Complex  #: the rotor's coordinates, complex, shape (p,)
+    amplitude: float  #: largest deflection of a chamber with a layer, m
+    lag: float  #: by which the liquid turns more slowly than the drum, rad/s
 
 
 def estimated_whirl(

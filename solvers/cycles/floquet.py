@@ -26,18 +26,11 @@ _SMALL = 1e-7  # of the mean area, in differences of the momentum
 
 @dataclass(frozen=True)
 class _Follows:
-    """A layer in the whirl's frame; 2 n components, lengths over R, times over 1/Omega.
+    """A layer in the whirl's frame; 2 n components, lengths over R, times over 1/Omega."""
 
-    Parameters
-    ----------
-    step : of a disturbance over the time of a cell, its volume left out, shape (2 n, 2 n)
-    push : by a body force along the deflection and ahead of it, shape (2 n, 2)
-    momentum : of the liquid relative to the axis, over its mass, along and ahead, shape (2, 2 n)
-    """
-
-    step: Array
-    push: Array
-    momentum: Array
+    step: Array  #: of a disturbance over the time of a cell, its volume left out, shape (2 n, 2 n)
+    push: Array  #: by a body force along the deflection and ahead of it, shape (2 n, 2)
+    momentum: Array  #: of the liquid relative to the axis, over its mass, along and ahead, shape (2, 2 n)
 
 
 def disturbance_growth(machine: Circular, waves: Sequence[StandingWave], cycle: Cycle) -> float | None:

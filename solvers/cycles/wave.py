@@ -68,20 +68,12 @@ class Answer(NamedTuple):
 
 @dataclass(frozen=True)
 class Derivatives:
-    """Of the map over the time of one cell at a state, the states having 2 n components.
+    """Of the map over the time of one cell at a state, the states having 2 n components."""
 
-    Parameters
-    ----------
-    state : of the state after it, shape (2 n, 2 n)
-    given : by ratio, size and drag, shape (2 n, 3)
-    force : of G by the state, shape (2 n,)
-    force_given : and by ratio, size and drag, shape (3,)
-    """
-
-    state: Array
-    given: Array
-    force: Complex
-    force_given: Complex
+    state: Array  #: of the state after it, shape (2 n, 2 n)
+    given: Array  #: by ratio, size and drag, shape (2 n, 3)
+    force: Complex  #: of G by the state, shape (2 n,)
+    force_given: Complex  #: and by ratio, size and drag, shape (3,)
 
 
 class StandingWave:

@@ -21,15 +21,10 @@ _SAME = 0.01
 
 @dataclass(frozen=True)
 class HeldTask:
-    """A motion to hold.
+    """A motion to hold."""
 
-    Parameters
-    ----------
-    begin : where it begins, at its speed
-    slowest : rate at which the slowest small motion dies or grows there, 1/s; 0 where it is not known
-    """
-
-    begin: Moment
+    begin: Moment  #: where it begins, at its speed
+    #: rate at which the slowest small motion dies or grows there, 1/s; 0 where it is not known
     slowest: float = 0.0
 
 
@@ -38,15 +33,10 @@ Runner = Callable[[Sequence[HeldTask]], Iterator[tuple[int, HeldState]]]
 
 @dataclass(frozen=True)
 class HeldBranches:
-    """States over n rising speeds.
+    """States over n rising speeds."""
 
-    Parameters
-    ----------
-    up : as a machine meets them whose speed rises slowly
-    down : as one meets them whose speed falls slowly; the same states where there is no hysteresis
-    """
-
-    up: tuple[HeldState, ...]
+    up: tuple[HeldState, ...]  #: as a machine meets them whose speed rises slowly
+    #: as one meets them whose speed falls slowly; the same states where there is no hysteresis
     down: tuple[HeldState, ...]
 
     @property

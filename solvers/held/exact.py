@@ -38,14 +38,9 @@ _BETWEEN = 4  # moments between two steps, at which the axis is told
 
 @dataclass
 class _Turning:
-    """What a watch may change: rows of y, of phi, of the coordinates and of their rates.
+    """What a watch may change: rows of y, of phi, of the coordinates and of their rates."""
 
-    Parameters
-    ----------
-    data : shape (2l + 2n, m)
-    """
-
-    data: Array
+    data: Array  #: shape (2l + 2n, m)
 
 
 def riding(machine: HeldMachine, spin: float) -> Flags:

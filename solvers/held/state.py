@@ -32,25 +32,18 @@ class HeldKind(StrEnum):
 class HoldNumerics:
     """How a state is held.
 
-    Parameters
-    ----------
-    cells : finite volumes round each wall, from 8; nodes of the surface of an exact wave, even, from 16
-    dispersion : add the finite depth's dispersion to the layers
-    courant : Courant number of the layers, above 0, at most 0.9
-    tolerance : change of the amplitude over its size at which it has settled
-    turns : of the drum, at most
-    solver : its name in py-pde; another than the compiled steps is slow, and an independent check
-
     Raises
     ------
     InputError : a value out of its range
     """
 
+    #: finite volumes round each wall, from 8; nodes of the surface of an exact wave, even, from 16
     cells: int = 128
-    dispersion: bool = False
-    courant: float = 0.8
-    tolerance: float = 2e-4
-    turns: int = 1024
+    dispersion: bool = False  #: add the finite depth's dispersion to the layers
+    courant: float = 0.8  #: Courant number of the layers, above 0, at most 0.9
+    tolerance: float = 2e-4  #: change of the amplitude over its size at which it has settled
+    turns: int = 1024  #: of the drum, at most
+    #: its name in py-pde; another than the compiled steps is slow, and an independent check
     solver: str = COUPLED
 
     def __post_init__(self) -> None:
@@ -66,24 +59,16 @@ class HoldNumerics:
 
 @dataclass(frozen=True)
 class Moment:
-    """Rotor and layers when the drum's zero mark lies along the first direction; n coordinates, l layers.
+    """Rotor and layers when the drum's zero mark lies along the first direction; n coordinates, l layers."""
 
-    Parameters
-    ----------
-    spin : Omega, rad/s
-    coordinates, rate : of the rotor, m or rad, and per second, shape (n,)
-    area, momentum : A, m^2, and q, m^4/s, of the layers' cells, shape (l, c)
-    layers : which chambers hold a layer
-    wave : y and phi of exact waves, lengths over R and times in 1/Omega, of which area and momentum are what
-        is seen, shape (l, 2m); none of others
-    """
-
-    spin: float
-    coordinates: Array
+    spin: float  #: Omega, rad/s
+    coordinates: Array  #: of the rotor, m or rad, and per second, shape (n,)
     rate: Array
-    area: Array
+    area: Array  #: A, m^2, and q, m^4/s, of the layers' cells, shape (l, c)
     momentum: Array
-    layers: Flags
+    layers: Flags  #: which chambers hold a layer
+    #: y and phi of exact waves, lengths over R and times in 1/Omega, of which area and momentum are what is
+    #: seen, shape (l, 2m); none of others
     wave: Array = field(default_factory=lambda: np.zeros((0, 0)))
 
     def at(self, spin: float) -> Moment:
@@ -103,57 +88,39 @@ class HeldState:
 
     Deflections are those of the first chamber's axis, or of the axis at position 0 without one, from where it
     rests without motion.
-
-    Parameters
-    ----------
-    spin : Omega, rad/s
-    kind : what it settles to
-    amplitude : mean over time of the axis' distance from where it rests, m
-    crest : mean over the turns of each turn's largest distance, m
-    least, largest : over time, m
-    coordinates : of the part that turns with the drum, q = Re(coordinates e^{i Omega t}), complex, shape (n,)
-    rest : mean of the coordinates, shape (n,)
-    liquid : mean of each layer's centre of mass from its chamber's axis, in the drum, complex, m, shape (l,)
-    ripple : largest distance of the centre of mass from that mean, m, shape (l,)
-    whirl_speed : strongest of the axis' frequencies that is not the spin's, standing frame, positive with the
-        spin, rad/s; nan where the motion repeats every turn
-    dry : the wall is dry somewhere, shape (l,)
-    captured : the liquid rides with the drum as a layer, shape (l,)
-    mean_rotation : of each layer relative to the drum at the end, rad/s, shape (l,)
-    mass_error : largest relative change of a layer's volume
-    change : of the amplitude that may still come, over its size
-    error : estimated, of mean and largest amplitude, over the latter, by another run with half the cells; nan
-        without that run
-    turns, steps : what it took
-    moment : where it ends, from which other speeds can go on
-    reason : why it did not settle, or empty
-    path : time, s, and coordinates at moments of the last turns, shape (m, 1 + n); m = 0 where not known
-    heat : mean power that supports, friction, baffles and bores turn into heat, W; nan where the solver does
-        not tell it
     """
 
-    spin: float
-    kind: HeldKind
-    amplitude: float
-    crest: float
-    least: float
+    spin: float  #: Omega, rad/s
+    kind: HeldKind  #: what it settles to
+    amplitude: float  #: mean over time of the axis' distance from where it rests, m
+    crest: float  #: mean over the turns of each turn's largest distance, m
+    least: float  #: over time, m
     largest: float
+    #: of the part that turns with the drum, q = Re(coordinates e^{i Omega t}), complex, shape (n,)
     coordinates: Complex
-    rest: Array
+    rest: Array  #: mean of the coordinates, shape (n,)
+    #: mean of each layer's centre of mass from its chamber's axis, in the drum, complex, m, shape (l,)
     liquid: Complex
-    ripple: Array
+    ripple: Array  #: largest distance of the centre of mass from that mean, m, shape (l,)
+    #: strongest of the axis' frequencies that is not the spin's, standing frame, positive with the spin,
+    #: rad/s; nan where the motion repeats every turn
     whirl_speed: float
-    dry: Flags
-    captured: Flags
-    mean_rotation: Array
-    mass_error: float
-    change: float
-    turns: int
+    dry: Flags  #: the wall is dry somewhere, shape (l,)
+    captured: Flags  #: the liquid rides with the drum as a layer, shape (l,)
+    mean_rotation: Array  #: of each layer relative to the drum at the end, rad/s, shape (l,)
+    mass_error: float  #: largest relative change of a layer's volume
+    change: float  #: of the amplitude that may still come, over its size
+    turns: int  #: what it took
     steps: int
-    moment: Moment
-    reason: str = ""
+    moment: Moment  #: where it ends, from which other speeds can go on
+    reason: str = ""  #: why it did not settle, or empty
+    #: estimated, of mean and largest amplitude, over the latter, by another run with half the cells; nan
+    #: without that run
     error: float = math.nan
+    #: time, s, and coordinates at moments of the last turns, shape (m, 1 + n); m = 0 where not known
     path: Array = field(default_factory=lambda: np.zeros((0, 1)))
+    #: mean power that supports, friction, baffles and bores turn into heat, W; nan where the solver does not
+    #: tell it
     heat: float = math.nan
 
     @property
@@ -164,20 +131,12 @@ class HeldState:
 
 @dataclass(frozen=True)
 class HeldMachine:
-    """What is held.
+    """What is held."""
 
-    Parameters
-    ----------
-    system : the dry rotor
-    fills : its chambers with their liquid
-    friction : on the walls; the laminar law takes the frequency of the slower free wave; exact waves take a
-        force on all the liquid that damps that wave as much
-    gravity : across the axis, m/s^2
-    exact : the layers are exact waves instead of long ones
-    """
-
-    system: RotorSystem
-    fills: tuple[Fill, ...]
+    system: RotorSystem  #: the dry rotor
+    fills: tuple[Fill, ...]  #: its chambers with their liquid
+    #: on the walls; the laminar law takes the frequency of the slower free wave; exact waves take a force on
+    #: all the liquid that damps that wave as much
     friction: Friction = NO_FRICTION
-    gravity: float = 0.0
-    exact: bool = False
+    gravity: float = 0.0  #: across the axis, m/s^2
+    exact: bool = False  #: the layers are exact waves instead of long ones

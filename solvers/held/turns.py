@@ -42,21 +42,14 @@ _MEANS = 5.0  # times the tolerance, by which their means may
 
 @dataclass
 class _Probe:
-    """An orbit that was guessed, while it is looked at whether it is stable.
+    """An orbit that was guessed, while it is looked at whether it is stable."""
 
-    Parameters
-    ----------
-    state : on it
-    end : from `Watch._seen`
-    rows, sizes, kind : what the watch knew of it
-    gaps : how far the motion is from it at the end of each turn since it was nudged
-    """
-
-    state: Array
-    end: Array
-    rows: list[Array]
+    state: Array  #: on it
+    end: Array  #: from `Watch._seen`
+    rows: list[Array]  #: what the watch knew of it
     sizes: list[tuple[float, float, float]]
     kind: HeldKind
+    #: how far the motion is from it at the end of each turn since it was nudged
     gaps: list[float] = field(default_factory=list)
 
 

@@ -61,16 +61,10 @@ def means(
 
 @dataclass(frozen=True)
 class Numerics:
-    """How the layer is resolved.
+    """How the layer is resolved."""
 
-    Parameters
-    ----------
-    cells : finite volumes round the wall, at least 8
-    dispersion : add the finite depth's dispersion [theory: long_wave, eq. 13]
-    """
-
-    cells: int = 256
-    dispersion: bool = False
+    cells: int = 256  #: finite volumes round the wall, at least 8
+    dispersion: bool = False  #: add the finite depth's dispersion [theory: long_wave, eq. 13]
 
     def __post_init__(self) -> None:
         if not 8 <= self.cells <= 65536:

@@ -53,22 +53,13 @@ def ramp(start: float, rate: float = 0.0) -> Spinning:
 
 @dataclass(frozen=True)
 class ExactLayer:
-    """A layer as the rotor knows it.
+    """A layer as the rotor knows it."""
 
-    Parameters
-    ----------
-    plane : displacement of its chamber's axis for unit coordinates, shape (2, n)
-    weight : rho h_c, kg/m^2
-    radius : R, m
-    layer : h_0/R
-    friction : k of a force -k u on all its liquid, u being the velocity in the drum, 1/s
-    """
-
-    plane: Array
-    weight: float
-    radius: float
-    layer: float
-    friction: float = 0.0
+    plane: Array  #: displacement of its chamber's axis for unit coordinates, shape (2, n)
+    weight: float  #: rho h_c, kg/m^2
+    radius: float  #: R, m
+    layer: float  #: h_0/R
+    friction: float = 0.0  #: k of a force -k u on all its liquid, u being the velocity in the drum, 1/s
 
     @property
     def mass(self) -> float:
@@ -78,37 +69,22 @@ class ExactLayer:
 
 @dataclass(frozen=True)
 class Parts:
-    """A state taken apart; n coordinates, l layers of m nodes.
+    """A state taken apart; n coordinates, l layers of m nodes."""
 
-    Parameters
-    ----------
-    place, rate : coordinates and their rates, shape (n,)
-    turned : angle of the frame in which each layer has no vorticity, and its speed, shape (l, 2)
-    waves : y and phi of each layer, shape (l, 2m)
-    """
-
-    place: Array
+    place: Array  #: coordinates and their rates, shape (n,)
     rate: Array
-    turned: Array
-    waves: Array
+    turned: Array  #: angle of the frame in which each layer has no vorticity, and its speed, shape (l, 2)
+    waves: Array  #: y and phi of each layer, shape (l, 2m)
 
 
 @dataclass(frozen=True)
 class Powers:
-    """What brings energy to rotor and layers, and what takes it, W [theory: potential, eq. 32].
+    """What brings energy to rotor and layers, and what takes it, W [theory: potential, eq. 32]."""
 
-    Parameters
-    ----------
-    unbalance : of the drive by way of the unbalance
-    gravity : across the axis, but for the weight that is at rest
-    drive : on the liquid, by its friction
-    support, friction : heat
-    """
-
-    unbalance: float
-    gravity: float
-    drive: float
-    support: float
+    unbalance: float  #: of the drive by way of the unbalance
+    gravity: float  #: across the axis, but for the weight that is at rest
+    drive: float  #: on the liquid, by its friction
+    support: float  #: heat
     friction: float
 
     @property
@@ -119,26 +95,15 @@ class Powers:
 
 @dataclass(frozen=True)
 class ExactMachine:
-    """A rotor with exact layers.
+    """A rotor with exact layers."""
 
-    Parameters
-    ----------
-    system : the rotor, with the mass of liquid that has no free surface
-    layers : any number
-    spin : of the drum over time
-    unit : spin at the time 0, rad/s; one over it is the waves' unit of time
-    gravity : across the axis, standing frame, complex, m/s^2
-    nodes : of each surface, even
-    damping : of the shortest waves, over the unit, see `solvers.potential.unsteady.rates`
-    """
-
-    system: RotorSystem
-    layers: tuple[ExactLayer, ...]
-    spin: Spinning
-    unit: float
-    gravity: complex
-    nodes: int
-    damping: float = 0.0
+    system: RotorSystem  #: the rotor, with the mass of liquid that has no free surface
+    layers: tuple[ExactLayer, ...]  #: any number
+    spin: Spinning  #: of the drum over time
+    unit: float  #: spin at the time 0, rad/s; one over it is the waves' unit of time
+    gravity: complex  #: across the axis, standing frame, complex, m/s^2
+    nodes: int  #: of each surface, even
+    damping: float = 0.0  #: of the shortest waves, over the unit, see `solvers.potential.unsteady.rates`
 
     def rest(self) -> Array:
         """No deflection, liquid at rest in the drum."""
@@ -258,27 +223,18 @@ class ExactMachine:
 
 @dataclass(frozen=True)
 class Course:
-    """Rotor and layers over a stretch of time, at m moments, the beginning left out.
+    """Rotor and layers over a stretch of time, at m moments, the beginning left out."""
 
-    Parameters
-    ----------
-    time : s, shape (m,)
-    place, rate : of the rotor, shape (m, n)
-    moment, momentum : V times each layer's centre of mass and the rate of that, in the layer's frame over R^3
-        and the unit, complex, shape (m, l)
-    state : at the end
-    heat : power of supports and friction, W, shape (m,)
-    ended : why it went no further
-    """
-
-    time: Array
-    place: Array
+    time: Array  #: s, shape (m,)
+    place: Array  #: of the rotor, shape (m, n)
     rate: Array
+    #: V times each layer's centre of mass and the rate of that, in the layer's frame over R^3 and the unit,
+    #: complex, shape (m, l)
     moment: Complex
     momentum: Complex
-    state: Array
-    heat: Array
-    ended: Ended
+    state: Array  #: at the end
+    heat: Array  #: power of supports and friction, W, shape (m,)
+    ended: Ended  #: why it went no further
 
 
 def coupled(

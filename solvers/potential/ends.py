@@ -34,20 +34,12 @@ class EndKind(StrEnum):
 
 @dataclass(frozen=True)
 class End:
-    """End of a branch of waves.
+    """End of a branch of waves."""
 
-    Parameters
-    ----------
-    kind : what it comes of
-    whirl : largest |w_0|/R of a wave that was found on it
-    froude : square of the largest local Froude number of that wave
-    crests : of the free wave that the whirl's speed is nearest to, but for that of one crest
-    """
-
-    kind: EndKind
-    whirl: float
-    froude: float
-    crests: int
+    kind: EndKind  #: what it comes of
+    whirl: float  #: largest |w_0|/R of a wave that was found on it
+    froude: float  #: square of the largest local Froude number of that wave
+    crests: int  #: of the free wave that the whirl's speed is nearest to, but for that of one crest
 
 
 def froude(wave: SteadyWave) -> Array:

@@ -35,33 +35,21 @@ _UNMOVED = 1e-9
 
 @dataclass(frozen=True)
 class PotentialHistory:
-    """Whirl periods of the exact wave, and what is known of it.
+    """Whirl periods of the exact wave, and what is known of it."""
 
-    Parameters
-    ----------
-    periods : means of the periods that it finished
-    state : what is known of the wave at the end
-    crest, trough : greatest and least depth so far over that of the layer at rest
-    crest_number : greatest speed of the liquid at a crest over that of the crest
-    tail : of the spectrum at the end
-    nodes : at the end
-    drift : greatest relative change of the volume
-    force_gap : greatest difference of the means by momentum and by pressure, over the largest force so far
-    energy_gap : greatest energy that force and friction do not account for, over what they have moved
-    turning_gap : of the angular momentum, the same
-    """
-
-    periods: LayerHistory
-    state: WaveState
-    crest: float
+    periods: LayerHistory  #: means of the periods that it finished
+    state: WaveState  #: what is known of the wave at the end
+    crest: float  #: greatest and least depth so far over that of the layer at rest
     trough: float
-    crest_number: float
-    tail: float
-    nodes: int
-    drift: float
+    crest_number: float  #: greatest speed of the liquid at a crest over that of the crest
+    tail: float  #: of the spectrum at the end
+    nodes: int  #: at the end
+    drift: float  #: greatest relative change of the volume
+    #: greatest difference of the means by momentum and by pressure, over the largest force so far
     force_gap: float
+    #: greatest energy that force and friction do not account for, over what they have moved
     energy_gap: float
-    turning_gap: float
+    turning_gap: float  #: of the angular momentum, the same
 
 
 def simulate(
@@ -211,20 +199,13 @@ class _Means:
     """Means over whirl periods, and how well momentum, energy and angular momentum balance.
 
     [theory: potential, eq. 20-22]
-
-    Parameters
-    ----------
-    whirl, push : what drives the layer
-    friction : k over Omega
-    weights : of the samples in a period, shape (m,); one more sample ends it
-    before : sample at the end of the last period
     """
 
-    whirl: Whirl
+    whirl: Whirl  #: what drives the layer
     push: Push
-    friction: float
-    weights: Array
-    before: _Sample
+    friction: float  #: k over Omega
+    weights: Array  #: of the samples in a period, shape (m,); one more sample ends it
+    before: _Sample  #: sample at the end of the last period
     force_gap: float = 0.0
     energy_gap: float = 0.0
     turning_gap: float = 0.0

@@ -54,23 +54,17 @@ class WaveState(StrEnum):
 
 @dataclass(frozen=True)
 class Steps:
-    """How a wave is taken through time.
+    """How a wave is taken through time."""
 
-    Parameters
-    ----------
-    nodes : all round the drum to begin with, even
-    most : nodes are doubled up to this many
-    damping : of the shortest waves that are kept, over Omega; falls with the eighth power of the wave number
-    friction : k of a small body force -k grad phi on the liquid, over Omega, in a drum that keeps its speed
-        [theory: potential, eq. 22]
-    breaking : crest number from which a crest that fills its spectrum is broken [theory: potential, eq. 23];
-        infinite to follow it for its shape until it overhangs, or its nodes lose volume
-    """
-
-    nodes: int = 128
-    most: int = 2048
+    nodes: int = 128  #: all round the drum to begin with, even
+    most: int = 2048  #: nodes are doubled up to this many
+    #: of the shortest waves that are kept, over Omega; falls with the eighth power of the wave number
     damping: float = 0.0
+    #: k of a small body force -k grad phi on the liquid, over Omega, in a drum that keeps its speed [theory:
+    #: potential, eq. 22]
     friction: float = 0.0
+    #: crest number from which a crest that fills its spectrum is broken [theory: potential, eq. 23]; infinite
+    #: to follow it for its shape until it overhangs, or its nodes lose volume
     breaking: float = BREAKING
 
     def __post_init__(self) -> None:
@@ -86,23 +80,14 @@ class Steps:
 
 @dataclass(frozen=True)
 class Watch:
-    """What a wave has come to.
+    """What a wave has come to."""
 
-    Parameters
-    ----------
-    crest, trough : greatest and least depth, over R
-    crest_number : speed of the liquid at the crest over that of the crest; 0 where the crest is low
-    slope : steepest slope of the surface, rad; beyond pi/2 it overhangs
-    drift : relative change of the volume
-    tail : largest coefficient in the last tenth of the spectrum over the largest
-    """
-
-    crest: float
+    crest: float  #: greatest and least depth, over R
     trough: float
-    crest_number: float
-    slope: float
-    drift: float
-    tail: float
+    crest_number: float  #: speed of the liquid at the crest over that of the crest; 0 where the crest is low
+    slope: float  #: steepest slope of the surface, rad; beyond pi/2 it overhangs
+    drift: float  #: relative change of the volume
+    tail: float  #: largest coefficient in the last tenth of the spectrum over the largest
 
     def since(self, before: Watch) -> Watch:
         """The extremes of before and now; the tail is that of now."""
@@ -118,22 +103,13 @@ class Watch:
 
 @dataclass(frozen=True)
 class Moment:
-    """A wave at a time.
+    """A wave at a time."""
 
-    Parameters
-    ----------
-    time : in 1/Omega
-    surface : the wave
-    state : what is known of it
-    extremes : since the beginning, up to the step that the moment is in
-    reason : why it is broken, or empty
-    """
-
-    time: float
-    surface: Surface
-    state: WaveState
-    extremes: Watch
-    reason: str = ""
+    time: float  #: in 1/Omega
+    surface: Surface  #: the wave
+    state: WaveState  #: what is known of it
+    extremes: Watch  #: since the beginning, up to the step that the moment is in
+    reason: str = ""  #: why it is broken, or empty
 
 
 def course(

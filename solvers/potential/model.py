@@ -55,18 +55,12 @@ _EPSILON = 1e-15
 
 @dataclass(frozen=True)
 class PotentialWave(LiquidWave):
-    """An exact wave; nan and empty where none was found.
+    """An exact wave; nan and empty where none was found."""
 
-    Parameters
-    ----------
-    branch : "one_crest", or "lee_waves" where shorter waves ride on it
-    nodes : steps from crest to trough that it was solved on; 0 where it has a closed form
-    largest : whirl at which waves of this speed end, or up to which they were found, m; nan where the wave
-        that was asked for was found
-    """
-
-    branch: str = ""
-    nodes: int = 0
+    branch: str = ""  #: "one_crest", or "lee_waves" where shorter waves ride on it
+    nodes: int = 0  #: steps from crest to trough that it was solved on; 0 where it has a closed form
+    #: whirl at which waves of this speed end, or up to which they were found, m; nan where the wave that was
+    #: asked for was found
     largest: float = math.nan
 
 

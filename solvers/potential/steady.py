@@ -57,26 +57,15 @@ class Branch(StrEnum):
 
 @dataclass(frozen=True)
 class SteadyWave:
-    """A wave of permanent form.
+    """A wave of permanent form."""
 
-    Parameters
-    ----------
-    at : nodes
-    surface : y = ln(R/r) at the nodes, shape (m,)
-    detuning : p^2
-    whirl : w_0/R, the drum's axis from the axis of spin, towards the crest where it is positive
-    layer : h_0/R of the layer at rest
-    residual : of the equations, over the depth; nan where the method found nothing
-    converged : whether it is rounding
-    """
-
-    at: Nodes
-    surface: Array
-    detuning: float
-    whirl: float
-    layer: float
-    residual: float
-    converged: bool
+    at: Nodes  #: nodes
+    surface: Array  #: y = ln(R/r) at the nodes, shape (m,)
+    detuning: float  #: p^2
+    whirl: float  #: w_0/R, the drum's axis from the axis of spin, towards the crest where it is positive
+    layer: float  #: h_0/R of the layer at rest
+    residual: float  #: of the equations, over the depth; nan where the method found nothing
+    converged: bool  #: whether it is rounding
 
     @property
     def crest(self) -> float:

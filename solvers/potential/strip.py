@@ -25,33 +25,19 @@ FEWEST = 8
 
 @dataclass(frozen=True)
 class Nodes:
-    """Half a wave of a strip, from crest to trough.
+    """Half a wave of a strip, from crest to trough."""
 
-    Parameters
-    ----------
-    u : along the strip, which is the angle where there is no wave, shape (m,)
-    mean : weights of a mean over the wave, shape (m,)
-    harmonics : half of the waves' coefficients from the values in xi, shape (m, m)
-    hilbert : |d/du| of an even function, shape (m, m)
-    slope : d/du of an even function, an odd one, shape (m, m)
-    conjugate : the odd function that goes with an even one in a deep strip, shape (m, m)
-    cosine, sine : of the first waves in u, shape (m, k)
-    taken : their coefficients from the values, shape (k, m)
-    crests : n
-    cluster : L
-    """
-
-    u: Array
-    mean: Array
-    harmonics: Array
-    hilbert: Array
-    slope: Array
-    conjugate: Array
-    cosine: Array
+    u: Array  #: along the strip, which is the angle where there is no wave, shape (m,)
+    mean: Array  #: weights of a mean over the wave, shape (m,)
+    harmonics: Array  #: half of the waves' coefficients from the values in xi, shape (m, m)
+    hilbert: Array  #: |d/du| of an even function, shape (m, m)
+    slope: Array  #: d/du of an even function, an odd one, shape (m, m)
+    conjugate: Array  #: the odd function that goes with an even one in a deep strip, shape (m, m)
+    cosine: Array  #: of the first waves in u, shape (m, k)
     sine: Array
-    taken: Array
-    crests: int
-    cluster: float
+    taken: Array  #: their coefficients from the values, shape (k, m)
+    crests: int  #: n
+    cluster: float  #: L
 
     def spectrum(self, values: Array) -> Array:
         """Coefficients of an even function in cosines of xi, shape (m,).
@@ -65,20 +51,12 @@ class Nodes:
 
 @dataclass(frozen=True)
 class Strip:
-    """Operators of a strip of depth K on values at its surface.
+    """Operators of a strip of depth K on values at its surface."""
 
-    Parameters
-    ----------
-    flux : k coth(kK) of an even function, none of its mean, shape (m, m)
-    flux_slope : its derivative by K
-    shift : coth(kK) of an even function as an odd one, shape (m, m)
-    shift_slope : its derivative by K
-    """
-
-    flux: Array
-    flux_slope: Array
-    shift: Array
-    shift_slope: Array
+    flux: Array  #: k coth(kK) of an even function, none of its mean, shape (m, m)
+    flux_slope: Array  #: its derivative by K
+    shift: Array  #: coth(kK) of an even function as an odd one, shape (m, m)
+    shift_slope: Array  #: its derivative by K
 
 
 @lru_cache(maxsize=8)

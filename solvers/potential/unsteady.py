@@ -34,16 +34,10 @@ Push = Callable[[float], complex]
 
 @dataclass(frozen=True)
 class Surface:
-    """A wave at a time.
+    """A wave at a time."""
 
-    Parameters
-    ----------
-    height : y = ln(R/r) at even u from 0, shape (n,)
-    potential : phi there, shape (n,)
-    """
-
-    height: Array
-    potential: Array
+    height: Array  #: y = ln(R/r) at even u from 0, shape (n,)
+    potential: Array  #: phi there, shape (n,)
 
     def __post_init__(self) -> None:
         n = self.height.size
@@ -58,46 +52,27 @@ class Surface:
 
 @dataclass(frozen=True)
 class Invariants:
-    """What a wave without a force keeps, and its first moments, per unit length and density.
+    """What a wave without a force keeps, and its first moments, per unit length and density."""
 
-    Parameters
-    ----------
-    volume, energy, angular_momentum : V, E and L in units of R^2, Omega^2 R^4 and Omega R^4
-    centre : V times the centre of mass, complex
-    momentum : P, the sum of the velocity, complex
-    kinetic : what of E is the motion's
-    turning : what of L is the motion's
-    rotation : mean over the liquid of its angular velocity, over Omega
-    """
-
-    volume: float
+    volume: float  #: V, E and L in units of R^2, Omega^2 R^4 and Omega R^4
     energy: float
     angular_momentum: float
-    centre: complex
-    momentum: complex
-    kinetic: float
-    turning: float
-    rotation: float
+    centre: complex  #: V times the centre of mass, complex
+    momentum: complex  #: P, the sum of the velocity, complex
+    kinetic: float  #: what of E is the motion's
+    turning: float  #: what of L is the motion's
+    rotation: float  #: mean over the liquid of its angular velocity, over Omega
 
 
 @dataclass(frozen=True)
 class Waves:
-    """Wave numbers of n even nodes; arrays but `angle` of shape (n/2 + 1,).
+    """Wave numbers of n even nodes; arrays but `angle` of shape (n/2 + 1,)."""
 
-    Parameters
-    ----------
-    k : wave numbers
-    odd : the same without the shortest, which has no sine on even nodes
-    angle : u of the nodes, shape (n,)
-    kept : how many of the waves rates keep
-    short : eighth power of k over the last that is kept
-    """
-
-    k: Array
-    odd: Array
-    angle: Array
-    kept: int
-    short: Array
+    k: Array  #: wave numbers
+    odd: Array  #: the same without the shortest, which has no sine on even nodes
+    angle: Array  #: u of the nodes, shape (n,)
+    kept: int  #: how many of the waves rates keep
+    short: Array  #: eighth power of k over the last that is kept
 
 
 @lru_cache(maxsize=16)
@@ -277,24 +252,14 @@ def _momentum(flow: _Flow) -> complex:
 
 @dataclass(frozen=True)
 class Answer:
-    """What a layer does under any force: its rates and its own force are straight lines of f.
+    """What a layer does under any force: its rates and its own force are straight lines of f."""
 
-    Parameters
-    ----------
-    still : rates without f, shape (2n,)
-    lever : rates of phi for f = 1 and f = i, shape (2, n)
-    force : on the drum by the pressure without f, complex
-    response : symmetric matrix that f adds to it with, shape (2, 2)
-    momentum : P, the liquid's in its frame, complex
-    moment : V times the centre of mass, complex
-    """
-
-    still: Array
-    lever: Array
-    force: complex
-    response: Array
-    momentum: complex
-    moment: complex
+    still: Array  #: rates without f, shape (2n,)
+    lever: Array  #: rates of phi for f = 1 and f = i, shape (2, n)
+    force: complex  #: on the drum by the pressure without f, complex
+    response: Array  #: symmetric matrix that f adds to it with, shape (2, 2)
+    momentum: complex  #: P, the liquid's in its frame, complex
+    moment: complex  #: V times the centre of mass, complex
 
     def rates(self, push: complex) -> Array:
         """Rates under a force f, shape (2n,).

@@ -26,22 +26,14 @@ _POINTS = 64
 
 @dataclass(frozen=True)
 class FamilyLaw:
-    """Standing waves of one family in a layer, over the deflection in mean depths.
+    """Standing waves of one family in a layer, over the deflection in mean depths."""
 
-    Parameters
-    ----------
-    reach : deflection up to which there is a wave that leaves the wall wet, at most 1
-    share : of the exact offset of the liquid's centre of mass, by deflection
-    height : largest change of the liquid area over its mean, and largest rise, by deflection, shape (k, 2)
-    deflection : of the waves found, from 0 to `reach`, shape (k,)
-    other : answer of the family left out over that of this one, by linear theory of long waves
-    """
-
-    reach: float
-    share: CubicSpline
+    reach: float  #: deflection up to which there is a wave that leaves the wall wet, at most 1
+    share: CubicSpline  #: of the exact offset of the liquid's centre of mass, by deflection
+    #: largest change of the liquid area over its mean, and largest rise, by deflection, shape (k, 2)
     height: Array
-    deflection: Array
-    other: float
+    deflection: Array  #: of the waves found, from 0 to `reach`, shape (k,)
+    other: float  #: answer of the family left out over that of this one, by linear theory of long waves
 
     def shares(self, deflection: Array) -> tuple[Array, Array]:
         """Share of the exact offset, and slope of the offset over that of the exact one.
@@ -119,27 +111,16 @@ def family_law(surface: float, dispersion: bool) -> FamilyLaw:
 
 @dataclass(frozen=True)
 class Standing:
-    """Waves that stand in n chambers in synchronous whirl; shapes (n,).
+    """Waves that stand in n chambers in synchronous whirl; shapes (n,)."""
 
-    Parameters
-    ----------
-    waves : there is a free surface; elsewhere the liquid goes with the drum
-    found : there is a wave, or no surface
-    share, slope : as from `FamilyLaw.shares`
-    change : largest change of the liquid area over its mean
-    deepest : greatest depth, m
-    other : answer of the family left out over that of this one
-    steepest : as of `FamilyLaw`
-    """
-
-    waves: Flags
-    found: Flags
-    share: Array
+    waves: Flags  #: there is a free surface; elsewhere the liquid goes with the drum
+    found: Flags  #: there is a wave, or no surface
+    share: Array  #: as from `FamilyLaw.shares`
     slope: Array
-    change: Array
-    deepest: Array
-    other: Array
-    steepest: Array
+    change: Array  #: largest change of the liquid area over its mean
+    deepest: Array  #: greatest depth, m
+    other: Array  #: answer of the family left out over that of this one
+    steepest: Array  #: as of `FamilyLaw`
 
 
 def standing(fills: Fills, deflection: Array, dispersion: bool) -> Standing:

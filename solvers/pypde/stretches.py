@@ -41,18 +41,11 @@ class Measured(Protocol[P]):
 
 @dataclass(frozen=True)
 class Stretches:
-    """Stretches of whirl periods, one behind the other.
+    """Stretches of whirl periods, one behind the other."""
 
-    Parameters
-    ----------
-    periods : whirl periods in each, shape (k,)
-    start : of the first one, s
-    period : of the whirl seen from the drum, s
-    """
-
-    periods: Sequence[int]
-    start: float
-    period: float
+    periods: Sequence[int]  #: whirl periods in each, shape (k,)
+    start: float  #: of the first one, s
+    period: float  #: of the whirl seen from the drum, s
 
     @property
     def ends(self) -> Array:

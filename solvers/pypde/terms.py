@@ -38,24 +38,17 @@ from solvers.slices import compiled
 class LongWaveTerms:
     """What acts on a layer [theory: long_wave, eq. 4].
 
-    Parameters
-    ----------
-    fill : chamber and liquid; the volume is that of the uniform layer
-    whirl : of the drum's axis, at a constant speed in space, and gravity; its spin is that at time 0
-    friction : on the wall; the laminar law takes the frequency of the whirl seen from the drum at time 0
-    dispersion : add the finite depth's dispersion [theory: long_wave, eq. 13]
-    spin_rate : rate of change of the spin, rad/s^2
-
     Raises
     ------
     InputError : a rate that is not finite
     """
 
-    fill: Fill
-    whirl: Whirl
+    fill: Fill  #: chamber and liquid; the volume is that of the uniform layer
+    whirl: Whirl  #: of the drum's axis, at a constant speed in space, and gravity; its spin is that at time 0
+    #: on the wall; the laminar law takes the frequency of the whirl seen from the drum at time 0
     friction: Friction = NO_FRICTION
-    dispersion: bool = False
-    spin_rate: float = 0.0
+    dispersion: bool = False  #: add the finite depth's dispersion [theory: long_wave, eq. 13]
+    spin_rate: float = 0.0  #: rate of change of the spin, rad/s^2
 
     def __post_init__(self) -> None:
         if not math.isfinite(self.spin_rate):

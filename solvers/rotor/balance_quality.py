@@ -100,16 +100,10 @@ def permissible_unbalance(grade: float, mass: float, speed: ArrayLike) -> Array:
 
 @dataclass(frozen=True)
 class TolerancePlane:
-    """A plane across the axis in which an unbalance is compared with its share of the permissible one.
+    """A plane across the axis in which an unbalance is compared with its share of the permissible one."""
 
-    Parameters
-    ----------
-    position : along the axis, m
-    mass : share of the rotor's mass, kg
-    """
-
-    position: float
-    mass: float
+    position: float  #: along the axis, m
+    mass: float  #: share of the rotor's mass, kg
 
 
 def tolerance_planes(rotor: Rotor) -> tuple[TolerancePlane, ...]:

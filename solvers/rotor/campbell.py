@@ -16,28 +16,16 @@ from solvers.rotor.vibration import modes, whirl_direction
 
 @dataclass(frozen=True)
 class Campbell:
-    """Modes over spin speed, each in its own column; s speeds, n modes, c crossings.
+    """Modes over spin speed, each in its own column; s speeds, n modes, c crossings."""
 
-    Parameters
-    ----------
-    spin : Omega, rising, rad/s, shape (s,)
-    frequency : damped natural frequencies, rad/s, 0 where overdamped, shape (s, n)
-    damping_ratio : shape (s, n)
-    direction : of the axis' whirl, -1 against the spin to 1 with it, shape (s, n)
-    crossing : speeds at which a natural frequency equals the spin, rising, rad/s, shape (c,)
-    crossing_mode : the column of each, shape (c,)
-    crossing_direction : direction of the whirl there, shape (c,)
-    converged : each crossing was found to rounding, shape (c,)
-    """
-
-    spin: Array
-    frequency: Array
-    damping_ratio: Array
-    direction: Array
-    crossing: Array
-    crossing_mode: Index
-    crossing_direction: Array
-    converged: NDArray[np.bool_]
+    spin: Array  #: Omega, rising, rad/s, shape (s,)
+    frequency: Array  #: damped natural frequencies, rad/s, 0 where overdamped, shape (s, n)
+    damping_ratio: Array  #: shape (s, n)
+    direction: Array  #: of the axis' whirl, -1 against the spin to 1 with it, shape (s, n)
+    crossing: Array  #: speeds at which a natural frequency equals the spin, rising, rad/s, shape (c,)
+    crossing_mode: Index  #: the column of each, shape (c,)
+    crossing_direction: Array  #: direction of the whirl there, shape (c,)
+    converged: NDArray[np.bool_]  #: each crossing was found to rounding, shape (c,)
 
 
 def campbell(system: RotorSystem, spin: ArrayLike) -> Campbell:

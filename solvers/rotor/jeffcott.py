@@ -18,22 +18,15 @@ from solvers.rotor.system import RotorSystem
 class Jeffcott:
     """Planar rotor [theory: rotor, eq. 1].
 
-    Parameters
-    ----------
-    mass : M, kg, without the liquid
-    stiffness : K, N/m
-    damping : C of the support, N s/m
-    unbalance : U0 = m e, kg m; its direction is the origin of all angles
-
     Raises
     ------
     InputError : mass or stiffness not positive, damping or unbalance negative
     """
 
-    mass: float
-    stiffness: float
-    damping: float
-    unbalance: float
+    mass: float  #: M, kg, without the liquid
+    stiffness: float  #: K, N/m
+    damping: float  #: C of the support, N s/m
+    unbalance: float  #: U0 = m e, kg m; its direction is the origin of all angles
 
     def __post_init__(self) -> None:
         require_positive("mass", self.mass)

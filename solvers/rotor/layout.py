@@ -20,22 +20,15 @@ _ROWS, _COLUMNS = np.array(PAIRS).T
 class Mounts:
     """Springs or dampers of m layouts with n mounts each.
 
-    Parameters
-    ----------
-    position : of each from the tub's centre of mass, m, shape (m, n, 3)
-    direction : unit vectors, shape (m, n, 3)
-    coefficient : along the direction, N/m or N s/m, shape (n,)
-    along_axes : along x, y, z, N/m or N s/m, shape (n, 3)
-
     Raises
     ------
     InputError : shapes that do not fit together
     """
 
-    position: Array
-    direction: Array
-    coefficient: Array
-    along_axes: Array
+    position: Array  #: of each from the tub's centre of mass, m, shape (m, n, 3)
+    direction: Array  #: unit vectors, shape (m, n, 3)
+    coefficient: Array  #: along the direction, N/m or N s/m, shape (n,)
+    along_axes: Array  #: along x, y, z, N/m or N s/m, shape (n, 3)
 
     def __post_init__(self) -> None:
         count = self.coefficient.size

@@ -22,12 +22,6 @@ _LEAST_COSINE = math.cos(math.radians(80.0))  # of contact angles that are looke
 class Bearing:
     """What the frequencies of a bearing depend on.
 
-    Parameters
-    ----------
-    balls : N_b, how many roll in one row
-    diameter_ratio : d/D, of a ball over the circle of the balls' centres, between 0 and 1
-    contact_angle : theta, rad, from 0 to below pi/2
-
     Raises
     ------
     InputError : a value out of its range
@@ -38,9 +32,9 @@ class Bearing:
     0.3848
     """
 
-    balls: int
-    diameter_ratio: float
-    contact_angle: float = 0.0
+    balls: int  #: N_b, how many roll in one row
+    diameter_ratio: float  #: d/D, of a ball over the circle of the balls' centres, between 0 and 1
+    contact_angle: float = 0.0  #: theta, rad, from 0 to below pi/2
 
     def __post_init__(self) -> None:
         if not (isinstance(self.balls, int) and 1 <= self.balls <= 1000):
@@ -86,25 +80,15 @@ def cage_slip(measured: float, theoretical: float) -> float:
 
 @dataclass(frozen=True)
 class BearingFit:
-    """A bearing whose frequencies are nearest to some that are given.
+    """A bearing whose frequencies are nearest to some that are given."""
 
-    Parameters
-    ----------
-    bearing : the best
-    projected_ratio : d cos(theta)/D
-    projected_ratio_std : its standard error, nan where no more is given than is sought
-    cosine, cosine_std : of the contact angle; nan where that was given or is 0, the end of its range
-    residual_rms : root mean square of computed over given less 1
-    next_balls, next_rms : the second best number of balls and its residual; 0 and nan where it was given
-    """
-
-    bearing: Bearing
-    projected_ratio: float
-    projected_ratio_std: float
-    cosine: float
+    bearing: Bearing  #: the best
+    projected_ratio: float  #: d cos(theta)/D
+    projected_ratio_std: float  #: its standard error, nan where no more is given than is sought
+    cosine: float  #: of the contact angle; nan where that was given or is 0, the end of its range
     cosine_std: float
-    residual_rms: float
-    next_balls: int
+    residual_rms: float  #: root mean square of computed over given less 1
+    next_balls: int  #: the second best number of balls and its residual; 0 and nan where it was given
     next_rms: float
 
 

@@ -57,22 +57,14 @@ def cage_speed(
 
 @dataclass(frozen=True)
 class Shed:
-    """A part of the unbalance that leaves with time, as water from laundry [theory: coupling, eq. 15].
+    """A part of the unbalance that leaves with time, as water from laundry [theory: coupling, eq. 15]."""
 
-    Parameters
-    ----------
-    unbalance : that leaves in the end, complex, shape (n,)
-    time_constant : s
-    above : spin speed from which it leaves, rad/s
-    mass : mass matrix of what leaves in the end, shape (n, n); None where its mass is not known
-    inertia : its moment of inertia about the spin axis, kg m^2
-    """
-
-    unbalance: Complex
-    time_constant: float
-    above: float
+    unbalance: Complex  #: that leaves in the end, complex, shape (n,)
+    time_constant: float  #: s
+    above: float  #: spin speed from which it leaves, rad/s
+    #: mass matrix of what leaves in the end, shape (n, n); None where its mass is not known
     mass: Array | None = None
-    inertia: float = 0.0
+    inertia: float = 0.0  #: its moment of inertia about the spin axis, kg m^2
 
 
 @dataclass(frozen=True)
@@ -83,28 +75,21 @@ class RotorSystem:
     complex numbers have their real parts along the first. n coordinates, all measured in the standing frame
     from the static equilibrium.
 
-    Parameters
-    ----------
-    coordinates : their names
-    mass, damping, gyroscopic, stiffness : M, C, G and K; G is for a spin of 1 rad/s, shape (n, n)
-    unbalance : U; what turns with the rotor acts with the force Omega^2 Re(U e^{i phi}), complex, shape (n,)
-    centre : in-plane displacement of the spin axis at position 0 for unit coordinates, shape (2, n)
-    lean : its change with the position along the axis, 1/m times `centre`, shape (2, n)
-    sheds : parts of the unbalance that leave in a run-up; whatever stands still has all of it
-
     Raises
     ------
     InputError : shapes that do not fit together, a mass matrix that is not positive definite
     """
 
-    coordinates: tuple[str, ...]
-    mass: Array
+    coordinates: tuple[str, ...]  #: their names
+    mass: Array  #: M, C, G and K; G is for a spin of 1 rad/s, shape (n, n)
     damping: Array
     gyroscopic: Array
     stiffness: Array
+    #: U; what turns with the rotor acts with the force Omega^2 Re(U e^{i phi}), complex, shape (n,)
     unbalance: Complex
-    centre: Array
-    lean: Array
+    centre: Array  #: in-plane displacement of the spin axis at position 0 for unit coordinates, shape (2, n)
+    lean: Array  #: its change with the position along the axis, 1/m times `centre`, shape (2, n)
+    #: parts of the unbalance that leave in a run-up; whatever stands still has all of it
     sheds: tuple[Shed, ...] = ()
 
     def __post_init__(self) -> None:

@@ -24,22 +24,15 @@ class Mount:
     It resists the velocity or displacement u of its point with -c d (d . u) along a direction d, and with
     -c_i u_i along the axes: the sum of both [theory: rotor, eq. 21].
 
-    Parameters
-    ----------
-    position : where it holds the tub, from the tub's centre of mass, m
-    coefficient : c, N/m or N s/m, along `direction`
-    direction : d, of any length but 0
-    along_axes : (c_x, c_y, c_z), N/m or N s/m
-
     Raises
     ------
     InputError : a value that is not finite, a negative coefficient, a direction of no length
     """
 
-    position: Vector
-    coefficient: float = 0.0
-    direction: Vector = (0.0, 0.0, 1.0)
-    along_axes: Vector = (0.0, 0.0, 0.0)
+    position: Vector  #: where it holds the tub, from the tub's centre of mass, m
+    coefficient: float = 0.0  #: c, N/m or N s/m, along `direction`
+    direction: Vector = (0.0, 0.0, 1.0)  #: d, of any length but 0
+    along_axes: Vector = (0.0, 0.0, 0.0)  #: (c_x, c_y, c_z), N/m or N s/m
 
     def __post_init__(self) -> None:
         for field in ("position", "direction"):
@@ -66,35 +59,24 @@ class Tub:
     The origin is the tub's centre of mass, the axes are its principal ones, and the drum spins about +y,
     which turns z into x.
 
-    Parameters
-    ----------
-    tub_mass, drum_mass : m_1 and m_2, kg
-    tub_inertia : (J_x, J_y, J_z) of the tub about its centre of mass, kg m^2
-    drum_polar_inertia : J_b of the drum about its axis, kg m^2
-    drum_transverse_inertia : J_a of the drum across its axis, about its own centre, kg m^2
-    springs, dampers : any number
-    unbalance : of the laundry, mass times its distance from the drum's axis, kg m
-    drum_position : centre of the drum (x_D, y_D, z_D), m; its axis runs through it along y
-    unbalance_position : y of the unbalance, m; that of the drum's centre if None
-    loads : further unbalances, their positions along y
-
     Raises
     ------
     InputError : a mass or inertia of the tub that is not positive, a negative one of the drum, a place that
         is not finite
     """
 
-    tub_mass: float
+    tub_mass: float  #: m_1 and m_2, kg
     drum_mass: float
-    tub_inertia: Vector
-    drum_polar_inertia: float
-    drum_transverse_inertia: float
-    springs: tuple[Mount, ...]
+    tub_inertia: Vector  #: (J_x, J_y, J_z) of the tub about its centre of mass, kg m^2
+    drum_polar_inertia: float  #: J_b of the drum about its axis, kg m^2
+    drum_transverse_inertia: float  #: J_a of the drum across its axis, about its own centre, kg m^2
+    springs: tuple[Mount, ...]  #: any number
     dampers: tuple[Mount, ...]
-    unbalance: float
+    unbalance: float  #: of the laundry, mass times its distance from the drum's axis, kg m
+    #: centre of the drum (x_D, y_D, z_D), m; its axis runs through it along y
     drum_position: Vector = (0.0, 0.0, 0.0)
-    unbalance_position: float | None = None
-    loads: tuple[PlaneUnbalance, ...] = ()
+    unbalance_position: float | None = None  #: y of the unbalance, m; that of the drum's centre if None
+    loads: tuple[PlaneUnbalance, ...] = ()  #: further unbalances, their positions along y
 
     def __post_init__(self) -> None:
         require_positive("tub_mass", self.tub_mass)

@@ -17,20 +17,14 @@ from solvers.rotor.system import RotorSystem
 class Support:
     """An isotropic support of the rotor's axis.
 
-    Parameters
-    ----------
-    position : along the axis from the rotor's centre of mass, m
-    stiffness : k, N/m, the same in all directions across the axis
-    damping : c, N s/m, likewise
-
     Raises
     ------
     InputError : a position that is not finite, a negative stiffness or damping
     """
 
-    position: float
-    stiffness: float
-    damping: float
+    position: float  #: along the axis from the rotor's centre of mass, m
+    stiffness: float  #: k, N/m, the same in all directions across the axis
+    damping: float  #: c, N s/m, likewise
 
     def __post_init__(self) -> None:
         _require_finite("position", self.position)
@@ -42,20 +36,14 @@ class Support:
 class PlaneUnbalance:
     """An unbalance in one plane across the axis.
 
-    Parameters
-    ----------
-    position : of the plane, along the axis from the rotor's centre of mass, m
-    size : mass times its distance from the axis, kg m
-    angle : fixed in the rotor, positive with the spin, rad
-
     Raises
     ------
     InputError : a position or angle that is not finite, a negative size
     """
 
-    position: float
-    size: float
-    angle: float = 0.0
+    position: float  #: of the plane, along the axis from the rotor's centre of mass, m
+    size: float  #: mass times its distance from the axis, kg m
+    angle: float = 0.0  #: fixed in the rotor, positive with the spin, rad
 
     def __post_init__(self) -> None:
         _require_finite("position", self.position)
@@ -69,24 +57,16 @@ class TwoPlane:
 
     The centre of mass sits at position 0; the spin about z turns x into y.
 
-    Parameters
-    ----------
-    mass : M, kg, without the liquid
-    transverse_inertia : A, about an axis through the centre of mass across the rotor's, kg m^2
-    polar_inertia : C, about the rotor's axis, kg m^2; at most 2 A, as for every body
-    supports : any number
-    unbalances : any number
-
     Raises
     ------
     InputError : a mass or transverse inertia that is not positive, a polar inertia out of its range
     """
 
-    mass: float
-    transverse_inertia: float
-    polar_inertia: float
-    supports: tuple[Support, ...]
-    unbalances: tuple[PlaneUnbalance, ...] = ()
+    mass: float  #: M, kg, without the liquid
+    transverse_inertia: float  #: A, about an axis through the centre of mass across the rotor's, kg m^2
+    polar_inertia: float  #: C, about the rotor's axis, kg m^2; at most 2 A, as for every body
+    supports: tuple[Support, ...]  #: any number
+    unbalances: tuple[PlaneUnbalance, ...] = ()  #: any number
 
     def __post_init__(self) -> None:
         require_positive("mass", self.mass)

@@ -14,19 +14,13 @@ from solvers.rotor.system import RotorSystem
 
 @dataclass(frozen=True)
 class Modes:
-    """Free vibration q = Re(shape e^{eigenvalue t}) at s spin speeds; n coordinates, n modes.
+    """Free vibration q = Re(shape e^{eigenvalue t}) at s spin speeds; n coordinates, n modes."""
 
-    Parameters
-    ----------
-    spin : Omega, rad/s, shape (s,)
-    eigenvalue : with imaginary parts of 0 or above, rising; of the two of an overdamped mode the slower one,
-        1/s, shape (s, n)
-    shape : largest component 1, shape (s, n coordinates, n modes)
-    """
-
-    spin: Array
+    spin: Array  #: Omega, rad/s, shape (s,)
+    #: with imaginary parts of 0 or above, rising; of the two of an overdamped mode the slower one, 1/s, shape
+    #: (s, n)
     eigenvalue: Complex
-    shape: Complex
+    shape: Complex  #: largest component 1, shape (s, n coordinates, n modes)
 
     @property
     def frequency(self) -> Array:
@@ -42,14 +36,9 @@ class Modes:
 
 @dataclass(frozen=True)
 class Orbit:
-    """Motion of the axis in one plane, forward e^{i Omega t} + backward e^{-i Omega t}.
+    """Motion of the axis in one plane, forward e^{i Omega t} + backward e^{-i Omega t}."""
 
-    Parameters
-    ----------
-    forward, backward : complex amplitudes, m, shape (...,)
-    """
-
-    forward: Complex
+    forward: Complex  #: complex amplitudes, m, shape (...,)
     backward: Complex
 
     @property

@@ -19,19 +19,14 @@ from solvers.runup.state import BALL
 class Balls:
     """The balls of some races at the start of a run-up; N balls in all, race by race.
 
-    Parameters
-    ----------
-    races : that hold them
-    places : angle of each in the standing frame, rad, N of them
-    shares : speed of each over the spin: 1 at rest in the drum, 0 at rest in space, N of them
-
     Raises
     ------
     InputError : another number of places or shares than balls, one that is not finite
     """
 
-    races: tuple[BallRace, ...] = ()
-    places: tuple[float, ...] = ()
+    races: tuple[BallRace, ...] = ()  #: that hold them
+    places: tuple[float, ...] = ()  #: angle of each in the standing frame, rad, N of them
+    #: speed of each over the spin: 1 at rest in the drum, 0 at rest in space, N of them
     shares: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:

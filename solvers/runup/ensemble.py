@@ -39,47 +39,28 @@ class EnsembleTask:
 
 @dataclass(frozen=True)
 class Member:
-    """What is kept of a run of an ensemble.
+    """What is kept of a run of an ensemble."""
 
-    Parameters
-    ----------
-    amplitude : modulus of the first deflection at the times that were reached, m, shape (j,)
-    largest : largest amplitude since the time before, m, shape (j,)
-    time : those times, s, shape (j,); None where they are those of all runs
-    ended : it came to its end; None where the number of times says so
-    """
-
-    amplitude: Array
-    largest: Array
-    time: Array | None = None
-    ended: bool | None = None
+    amplitude: Array  #: modulus of the first deflection at the times that were reached, m, shape (j,)
+    largest: Array  #: largest amplitude since the time before, m, shape (j,)
+    time: Array | None = None  #: those times, s, shape (j,); None where they are those of all runs
+    ended: bool | None = None  #: it came to its end; None where the number of times says so
 
 
 @dataclass(frozen=True)
 class Spread:
-    """The range of an ensemble over k times.
+    """The range of an ensemble over k times."""
 
-    Parameters
-    ----------
-    asked : runs that were wanted, the unchanged one among them
-    members : those of them that were made
-    lost : of those, how many did not come to their end
-    change : largest relative change of the unbalance
-    seed : of the changes
-    amplitude_min, amplitude_max, amplitude_median : over the members, of the modulus of the first deflection,
-        m, shape (k,); nan where none came so far
-    peaks : largest amplitude of every member, on the way back too, the unchanged run first, m,
-        shape (members,)
-    """
-
-    asked: int
-    members: int
-    lost: int
-    change: float
-    seed: int
+    asked: int  #: runs that were wanted, the unchanged one among them
+    members: int  #: those of them that were made
+    lost: int  #: of those, how many did not come to their end
+    change: float  #: largest relative change of the unbalance
+    seed: int  #: of the changes
+    #: over the members, of the modulus of the first deflection, m, shape (k,); nan where none came so far
     amplitude_min: Array
     amplitude_max: Array
     amplitude_median: Array
+    #: largest amplitude of every member, on the way back too, the unchanged run first, m, shape (members,)
     peaks: Array
 
     @property

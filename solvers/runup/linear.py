@@ -42,20 +42,12 @@ _LAGS = 129  # of the curves of smeared baffles
 
 @dataclass
 class LinearCoupled(CoupledRotor):
-    """A rotor with linear layers at one moment, a `solvers.runup.machine.RunupMachine`.
+    """A rotor with linear layers at one moment, a `solvers.runup.machine.RunupMachine`."""
 
-    Parameters
-    ----------
-    cells : the rotor turns in a step by a cell times the Courant number
-    machine : matrices, state and scratch of the steps
-    rows : above 0 where the steps are written down
-    kept : those written down since `followed` was asked last
-    """
-
-    cells: int
-    machine: LinearMachine
-    rows: int = 0
-    kept: list[Array] = field(default_factory=list)
+    cells: int  #: the rotor turns in a step by a cell times the Courant number
+    machine: LinearMachine  #: matrices, state and scratch of the steps
+    rows: int = 0  #: above 0 where the steps are written down
+    kept: list[Array] = field(default_factory=list)  #: those written down since `followed` was asked last
 
     @property
     def sloshing(self) -> slice:

@@ -45,32 +45,21 @@ _AGAIN = 1.2
 
 @dataclass
 class Coupled(CoupledRotor):
-    """A rotor with long-wave layers at one moment, a `solvers.runup.machine.RunupMachine`.
+    """A rotor with long-wave layers at one moment, a `solvers.runup.machine.RunupMachine`."""
 
-    Parameters
-    ----------
-    layers : properties of each chamber's layer, records LAYER, shape (l,)
-    tables : of the law of the wall, shape (l, m, 2)
-    area, momentum : of all layers, shape (l, c)
-    rolling : A e of the fluctuations behind bores of all layers, shape (l, c), or (l, 0) without them
-    active : which of them are layers now, shape (l,)
-    drags : of each pool, as in `Machine`, shape (l, 2, k)
-    balls : records BALL, shape (N,)
-    machine, state, room : of those
-    kept : steps written down since `followed` was asked last, rows of the state's trace
-    """
-
-    layers: Record
-    tables: Array
-    area: Array
+    layers: Record  #: properties of each chamber's layer, records LAYER, shape (l,)
+    tables: Array  #: of the law of the wall, shape (l, m, 2)
+    area: Array  #: of all layers, shape (l, c)
     momentum: Array
+    #: A e of the fluctuations behind bores of all layers, shape (l, c), or (l, 0) without them
     rolling: Array
-    active: Flags
-    drags: Array
-    balls: Record
-    machine: Machine
+    active: Flags  #: which of them are layers now, shape (l,)
+    drags: Array  #: of each pool, as in `Machine`, shape (l, 2, k)
+    balls: Record  #: records BALL, shape (N,)
+    machine: Machine  #: of those
     state: State
     room: Room
+    #: steps written down since `followed` was asked last, rows of the state's trace
     kept: list[Array] = field(default_factory=list)
 
     @property

@@ -28,23 +28,16 @@ from solvers.runup.programme import Programme, require_curve
 class Ramp:
     """Spin speed that rises at a rate, is held, and may fall again at the same rate.
 
-    Parameters
-    ----------
-    start, stop : rad/s
-    rate : rad/s^2
-    duration : of rise and hold together, s; a rise that takes longer is cut there
-    back : down to the start again afterwards
-
     Raises
     ------
     InputError : a value that is not positive, a stop that is not above the start
     """
 
-    start: float
+    start: float  #: rad/s
     stop: float
-    rate: float
-    duration: float
-    back: bool = False
+    rate: float  #: rad/s^2
+    duration: float  #: of rise and hold together, s; a rise that takes longer is cut there
+    back: bool = False  #: down to the start again afterwards
 
     def __post_init__(self) -> None:
         for name in ("start", "stop", "rate", "duration"):
@@ -68,23 +61,17 @@ class Ramp:
 class Motor:
     """A motor on the rotor's axis: the spin speed answers.
 
-    Parameters
-    ----------
-    start : spin speed at the beginning, rad/s
-    inertia : of rotor and motor about the axis, kg m^2
-    speeds, torques : points of the torque curve, rad/s ascending and N m; straight lines between them
-    duration : s
-
     Raises
     ------
     InputError : a value that is not positive, a curve of less than two points or not ascending
     """
 
-    start: float
-    inertia: float
+    start: float  #: spin speed at the beginning, rad/s
+    inertia: float  #: of rotor and motor about the axis, kg m^2
+    #: points of the torque curve, rad/s ascending and N m; straight lines between them
     speeds: tuple[float, ...]
     torques: tuple[float, ...]
-    duration: float
+    duration: float  #: s
 
     def __post_init__(self) -> None:
         for name in ("start", "inertia", "duration"):
@@ -112,25 +99,15 @@ class Handover(StrEnum):
 
 @dataclass(frozen=True)
 class Transfer:
-    """Liquid that became a layer, or fell to the bottom; what was handed over.
+    """Liquid that became a layer, or fell to the bottom; what was handed over."""
 
-    Parameters
-    ----------
-    chamber : its number
-    captured : it became a layer
-    time, speed : s and rad/s
-    angular_momentum : of the liquid about its chamber's axis before and after, N m s
-    energy : kinetic and elastic energy of rotor and liquid before and after, J
-    lifted : change of the liquid's potential energy, J
-    """
-
-    chamber: int
-    captured: bool
-    time: float
+    chamber: int  #: its number
+    captured: bool  #: it became a layer
+    time: float  #: s and rad/s
     speed: float
-    angular_momentum: tuple[float, float]
-    energy: tuple[float, float]
-    lifted: float
+    angular_momentum: tuple[float, float]  #: of the liquid about its chamber's axis before and after, N m s
+    energy: tuple[float, float]  #: kinetic and elastic energy of rotor and liquid before and after, J
+    lifted: float  #: change of the liquid's potential energy, J
 
     @property
     def lost(self) -> float:
@@ -140,55 +117,37 @@ class Transfer:
 
 @dataclass(frozen=True)
 class Reading:
-    """A moment of a run-up with n coordinates and l layers, as `solvers.runup.runup.RunupHistory` keeps it.
+    """A moment of a run-up, n coordinates and l layers, as `solvers.runup.runup.RunupHistory` keeps it."""
 
-    Parameters
-    ----------
-    time, speed, angle : s, rad/s, and rad by which the drum has turned
-    coordinates : of the rotor, shape (n,)
-    deflection : of each chamber's axis in the standing frame, complex, m, shape (l,); without a chamber, of
-        the axis at position 0, shape (1,)
-    largest : largest modulus of the first deflection at any step since the reading before, m
-    largest_speed, largest_time : where that was, rad/s and s
-    offset : of each layer's centre of mass from its chamber's axis, standing frame, complex, m, shape (l,)
-    captured : the layer rides with the drum, shape (l,)
-    depth_min, depth_max : of each layer, m, shape (l,); nan while it is not captured
-    mean_rotation : of each layer or pool relative to its drum, rad/s, shape (l,)
-    ball_angle : of each ball in the drum, from its zero mark, whole turns counted, rad, shape (N,)
-    ball_speed : of each ball in space, rad/s, shape (N,)
-    """
-
-    time: float
+    time: float  #: s, rad/s, and rad by which the drum has turned
     speed: float
     angle: float
-    coordinates: Array
+    coordinates: Array  #: of the rotor, shape (n,)
+    #: of each chamber's axis in the standing frame, complex, m, shape (l,); without a chamber, of the axis at
+    #: position 0, shape (1,)
     deflection: Complex
-    largest: float
-    largest_speed: float
+    largest: float  #: largest modulus of the first deflection at any step since the reading before, m
+    largest_speed: float  #: where that was, rad/s and s
     largest_time: float
+    #: of each layer's centre of mass from its chamber's axis, standing frame, complex, m, shape (l,)
     offset: Complex
-    captured: Flags
-    depth_min: Array
+    captured: Flags  #: the layer rides with the drum, shape (l,)
+    depth_min: Array  #: of each layer, m, shape (l,); nan while it is not captured
     depth_max: Array
-    mean_rotation: Array
+    mean_rotation: Array  #: of each layer or pool relative to its drum, rad/s, shape (l,)
+    #: of each ball in the drum, from its zero mark, whole turns counted, rad, shape (N,)
     ball_angle: Array = field(default_factory=lambda: np.zeros(0))
+    #: of each ball in space, rad/s, shape (N,)
     ball_speed: Array = field(default_factory=lambda: np.zeros(0))
 
 
 @dataclass(frozen=True)
 class LayerSnapshots:
-    """The layers cell by cell at f of a run-up's recorded times; l chambers, c cells.
+    """The layers cell by cell at f of a run-up's recorded times; l chambers, c cells."""
 
-    Parameters
-    ----------
-    sample : which of the history's times these are, ascending, shape (f,)
-    theta : angle of the cells' middles from the drum's zero mark, rad, shape (c,)
-    depth : of each layer, m, nan while the liquid is none, shape (f, l, c)
-    """
-
-    sample: Index
-    theta: Array
-    depth: Array
+    sample: Index  #: which of the history's times these are, ascending, shape (f,)
+    theta: Array  #: angle of the cells' middles from the drum's zero mark, rad, shape (c,)
+    depth: Array  #: of each layer, m, nan while the liquid is none, shape (f, l, c)
 
 
 class RunupMachine(Protocol):

@@ -25,20 +25,14 @@ WORKS = ("unbalance", "drive", "motor")
 
 @dataclass(frozen=True)
 class RotorPath:
-    """Coordinates of the rotor at m moments of a run-up with k samples.
+    """Coordinates of the rotor at m moments of a run-up with k samples."""
 
-    Parameters
-    ----------
-    time, angle : s, and rad by which the drum has turned, rising, shape (m,)
-    coordinates : from the static equilibrium, shape (m, n)
-    work : of the unbalance, of the drive on the liquid and of the motor up to each sample, J, shape (k, 3)
-    jumps : times at which liquid that is caught or falls changes velocities at once, s, rising, shape (j,)
-    """
-
-    time: Array
+    time: Array  #: s, and rad by which the drum has turned, rising, shape (m,)
     angle: Array
-    coordinates: Array
+    coordinates: Array  #: from the static equilibrium, shape (m, n)
+    #: of the unbalance, of the drive on the liquid and of the motor up to each sample, J, shape (k, 3)
     work: Array
+    #: times at which liquid that is caught or falls changes velocities at once, s, rising, shape (j,)
     jumps: Array = field(default_factory=lambda: np.zeros(0))
 
     def motion(self, time: Array) -> tuple[Array, Array, Array, Array]:
@@ -133,22 +127,15 @@ def apart(time: Array, angle: Array, frequency: float) -> Flags:
 
 @dataclass
 class Recorder:
-    """Keeps the path of a machine's rotor: of all steps those that are about evenly apart.
+    """Keeps the path of a machine's rotor: of all steps those that are about evenly apart."""
 
-    Parameters
-    ----------
-    frequency : fastest natural frequency, rad/s
-    coordinates : how many the rotor has
-    kept : time, angle and coordinates so far, arrays of shape (., 2 + n)
-    waiting : steps since then, of which one is kept as soon as all of its neighbours are known
-    work : works at each sample so far
-    """
-
-    frequency: float
-    coordinates: int
+    frequency: float  #: fastest natural frequency, rad/s
+    coordinates: int  #: how many the rotor has
+    #: time, angle and coordinates so far, arrays of shape (., 2 + n)
     kept: list[Array] = field(default_factory=list)
+    #: steps since then, of which one is kept as soon as all of its neighbours are known
     waiting: Array = field(default_factory=lambda: np.zeros((0, 0)))
-    work: list[list[float]] = field(default_factory=list)
+    work: list[list[float]] = field(default_factory=list)  #: works at each sample so far
 
     def begin(self, machine: RunupMachine) -> None:
         """Keep the moment in which the machine stands, and have it write down its steps."""

@@ -20,22 +20,17 @@ FLOOR = 0.005
 class Stage:
     """One part of a programme: a speed that is given, or a drum that turns freely.
 
-    Parameters
-    ----------
-    stop : speed at the end, rad/s; None where the time alone ends it
-    rate : at which a given speed changes, rad/s^2, without a sign; None where the time is given
-    duration : s; None where speed and rate give it; of a coast to a speed the longest time
-    free : the motor is off
-
     Raises
     ------
     InputError : a value out of its range, too few or too many of them
     """
 
-    stop: float | None = None
+    stop: float | None = None  #: speed at the end, rad/s; None where the time alone ends it
+    #: at which a given speed changes, rad/s^2, without a sign; None where the time is given
     rate: float | None = None
+    #: s; None where speed and rate give it; of a coast to a speed the longest time
     duration: float | None = None
-    free: bool = False
+    free: bool = False  #: the motor is off
 
     def __post_init__(self) -> None:
         if self.stop is not None:
@@ -85,29 +80,22 @@ def require_curve(speeds: tuple[float, ...], torques: tuple[float, ...]) -> None
 class Programme:
     """Stages one after the other, each from the speed that the one before has reached.
 
-    Parameters
-    ----------
-    start : speed at the beginning, rad/s; a drum at rest begins at the `floor`
-    stages : at least one
-    inertia : of drum and motor about the axis without the liquid, kg m^2; None where nothing coasts
-    drag_torque : of bearings and belt on a coasting drum, N m, the same at every speed
-    drag_rate : of what grows with the speed: alone it slows the drum without liquid at this rate, 1/s
-    motor : speeds, rad/s, ascending, and the largest torques of the motor there, N m, straight lines between
-        them; None for one that gives what the stages ask
-    limit : longest time of a stage whose speed the motor does not reach, s
-
     Raises
     ------
     InputError : a value out of its range, no stage, no speed above 0, a coast or a motor without inertia
     """
 
-    start: float
-    stages: tuple[Stage, ...]
+    start: float  #: speed at the beginning, rad/s; a drum at rest begins at the `floor`
+    stages: tuple[Stage, ...]  #: at least one
+    #: of drum and motor about the axis without the liquid, kg m^2; None where nothing coasts
     inertia: float | None = None
-    drag_torque: float = 0.0
+    drag_torque: float = 0.0  #: of bearings and belt on a coasting drum, N m, the same at every speed
+    #: of what grows with the speed: alone it slows the drum without liquid at this rate, 1/s
     drag_rate: float = 0.0
+    #: speeds, rad/s, ascending, and the largest torques of the motor there, N m, straight lines between them;
+    #: None for one that gives what the stages ask
     motor: tuple[tuple[float, ...], tuple[float, ...]] | None = None
-    limit: float = 600.0
+    limit: float = 600.0  #: longest time of a stage whose speed the motor does not reach, s
 
     def __post_init__(self) -> None:
         for name in ("start", "drag_torque", "drag_rate"):

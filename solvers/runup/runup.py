@@ -38,25 +38,16 @@ from solvers.slices import step_budget
 
 @dataclass(frozen=True)
 class RunupNumerics:
-    """How a run-up is resolved.
+    """How a run-up is resolved."""
 
-    Parameters
-    ----------
-    cells : finite volumes round each wall, from 8
-    samples : how many times are recorded, at least 2
-    dispersion : add the finite depth's dispersion to the layers [theory: long_wave, eq. 13]
-    enstrophy : the layers' bores carry fluctuations behind them [theory: long_wave, eq. 15]
-    courant : Courant number of the layers; the rotor turns by at most this share of a cell in a step
-    handover : how liquid at the bottom of a lying chamber becomes a layer
-    companion : run once more with half the cells, hence twice the steps, to estimate the error; from 16 cells
-    """
-
-    cells: int = 128
-    samples: int = 2000
-    dispersion: bool = False
-    enstrophy: bool = False
+    cells: int = 128  #: finite volumes round each wall, from 8
+    samples: int = 2000  #: how many times are recorded, at least 2
+    dispersion: bool = False  #: add the finite depth's dispersion to the layers [theory: long_wave, eq. 13]
+    enstrophy: bool = False  #: the layers' bores carry fluctuations behind them [theory: long_wave, eq. 15]
+    #: Courant number of the layers; the rotor turns by at most this share of a cell in a step
     courant: float = 0.8
-    handover: Handover = Handover.RIDING
+    handover: Handover = Handover.RIDING  #: how liquid at the bottom of a lying chamber becomes a layer
+    #: run once more with half the cells, hence twice the steps, to estimate the error; from 16 cells
     companion: bool = True
 
     def __post_init__(self) -> None:
@@ -70,31 +61,20 @@ class RunupNumerics:
 
 @dataclass(frozen=True)
 class EnergyAudit:
-    """Where the energy went, J [theory: coupling, eq. 9-10].
+    """Where the energy went, J [theory: coupling, eq. 9-10]."""
 
-    Parameters
-    ----------
-    unbalance, drive, gravity : work of the unbalance, of the drive on the liquid, of gravity on the liquid
-    captured : energy that capture and release of the liquid brought in, less what water that leaves takes
-    change : of the energy of rotor and liquid
-    support, friction : heat in the supports and by wall friction
-    bores : lost in bores and by the scheme
-    profile : missed by the assumed profile of the flow while the spin changes
-    motor : work of the motor, 0 for a given speed
-    baffles : lost at the baffles
-    """
-
-    unbalance: float
+    unbalance: float  #: work of the unbalance, of the drive on the liquid, of gravity on the liquid
     drive: float
     gravity: float
+    #: energy that capture and release of the liquid brought in, less what water that leaves takes
     captured: float
-    change: float
-    support: float
+    change: float  #: of the energy of rotor and liquid
+    support: float  #: heat in the supports and by wall friction
     friction: float
-    bores: float
-    profile: float
-    motor: float
-    baffles: float = 0.0
+    bores: float  #: lost in bores and by the scheme
+    profile: float  #: missed by the assumed profile of the flow while the spin changes
+    motor: float  #: work of the motor, 0 for a given speed
+    baffles: float = 0.0  #: lost at the baffles
 
     @property
     def dissipated(self) -> float:
@@ -124,80 +104,57 @@ class EnergyAudit:
 
 @dataclass(frozen=True)
 class RunupHistory:
-    """A run-up at k times with l layers. Angles are in the drum, from its zero mark, positive with the spin.
+    """A run-up at k times with l layers. Angles in the drum, from its zero mark, positive with the spin."""
 
-    Parameters
-    ----------
-    time, speed : s and rad/s, shape (k,)
-    angle : of rotation, rad, shape (k,)
-    coordinates : of the rotor, from the static equilibrium, shape (k, n)
-    deflection : of each chamber's axis in the standing frame, complex, m, shape (k, l); without a chamber, of
-        the axis at position 0, shape (k, 1)
-    largest : largest modulus of the first deflection at any step since the time before, m, shape (k,)
-    largest_speed, largest_time : where that was, rad/s and s, shape (k,)
-    offset : of each layer's centre of mass from its chamber's axis, standing frame, complex, m, shape (k, l)
-    captured : the layer rides with the drum, shape (k, l)
-    depth_min, depth_max : of each layer, m, shape (k, l); nan while it is not captured
-    mean_rotation : of each layer or swinging pool relative to its drum, rad/s, shape (k, l)
-    layer_mass : kg, shape (l,)
-    mass_error : largest relative change of a layer's volume
-    error_estimate : of the amplitude, relative to its largest: difference to the run with half the cells and
-        twice the steps; nan without that run
-    audit : of the energy
-    steps, layer_steps : of time, and of single layers within them
-    disagreement : largest relative difference left between the accelerations of rotor and layers
-    outcome : how it ended
-    reason : why it did not come to the end, and when; or empty
-    snapshots : of the layers, cell by cell, at the times asked for; None where none were
-    transfers : liquid that became a layer or fell, in the order of time
-    handover : how liquid at the bottom of a lying chamber becomes a layer
-    handover_estimate : of the amplitude, relative to its largest: what another sensible hand-over changes, by
-        the drum that takes the liquid along at once, of the largest value within a turn; nan without it
-    peak_gaps : of the largest amplitude of the run, m: what half the cells change of it, and what that
-        hand-over changes; nan without those runs
-    band : of the amplitude, m: what half the cells and that hand-over change of its largest value within a
-        turn about each time, shape (k,); None without those runs
-    stage : of its programme in which each time was reached, from 0, shape (k,)
-    limited : the motor gave less than its programme asked on the way to each time, shape (k,)
-    left : share that is left of each part of the unbalance that leaves, shape (k, s)
-    path : of the rotor all along; None where nobody asked for it
-    ball_angle : of each ball in the drum, from its zero mark, whole turns counted, rad, shape (k, N)
-    ball_speed : of each ball in space, rad/s, shape (k, N)
-    """
-
-    time: Array
+    time: Array  #: s and rad/s, shape (k,)
     speed: Array
-    angle: Array
-    coordinates: Array
+    angle: Array  #: of rotation, rad, shape (k,)
+    coordinates: Array  #: of the rotor, from the static equilibrium, shape (k, n)
+    #: of each chamber's axis in the standing frame, complex, m, shape (k, l); without a chamber, of the axis
+    #: at position 0, shape (k, 1)
     deflection: Complex
+    #: largest modulus of the first deflection at any step since the time before, m, shape (k,)
     largest: Array
-    largest_speed: Array
+    largest_speed: Array  #: where that was, rad/s and s, shape (k,)
     largest_time: Array
+    #: of each layer's centre of mass from its chamber's axis, standing frame, complex, m, shape (k, l)
     offset: Complex
-    captured: Flags
-    depth_min: Array
+    captured: Flags  #: the layer rides with the drum, shape (k, l)
+    depth_min: Array  #: of each layer, m, shape (k, l); nan while it is not captured
     depth_max: Array
-    mean_rotation: Array
-    layer_mass: Array
-    mass_error: float
+    mean_rotation: Array  #: of each layer or swinging pool relative to its drum, rad/s, shape (k, l)
+    layer_mass: Array  #: kg, shape (l,)
+    mass_error: float  #: largest relative change of a layer's volume
+    #: of the amplitude, relative to its largest: difference to the run with half the cells and twice the
+    #: steps; nan without that run
     error_estimate: float
-    audit: EnergyAudit
-    steps: int
+    audit: EnergyAudit  #: of the energy
+    steps: int  #: of time, and of single layers within them
     layer_steps: int
-    disagreement: float
-    outcome: Outcome
-    reason: str
+    disagreement: float  #: largest relative difference left between the accelerations of rotor and layers
+    outcome: Outcome  #: how it ended
+    reason: str  #: why it did not come to the end, and when; or empty
+    #: of the layers, cell by cell, at the times asked for; None where none were
     snapshots: LayerSnapshots | None = None
-    transfers: tuple[Transfer, ...] = ()
-    handover: Handover = Handover.RIDING
+    transfers: tuple[Transfer, ...] = ()  #: liquid that became a layer or fell, in the order of time
+    handover: Handover = Handover.RIDING  #: how liquid at the bottom of a lying chamber becomes a layer
+    #: of the amplitude, relative to its largest: what another sensible hand-over changes, by the drum that
+    #: takes the liquid along at once, of the largest value within a turn; nan without it
     handover_estimate: float = math.nan
+    #: of the largest amplitude of the run, m: what half the cells change of it, and what that hand-over
+    #: changes; nan without those runs
     peak_gaps: tuple[float, float] = (math.nan, math.nan)
+    #: of the amplitude, m: what half the cells and that hand-over change of its largest value within a turn
+    #: about each time, shape (k,); None without those runs
     band: Array | None = None
-    stage: Index | None = None
+    stage: Index | None = None  #: of its programme in which each time was reached, from 0, shape (k,)
+    #: the motor gave less than its programme asked on the way to each time, shape (k,)
     limited: Flags | None = None
-    left: Array | None = None
-    path: RotorPath | None = None
+    left: Array | None = None  #: share that is left of each part of the unbalance that leaves, shape (k, s)
+    path: RotorPath | None = None  #: of the rotor all along; None where nobody asked for it
+    #: of each ball in the drum, from its zero mark, whole turns counted, rad, shape (k, N)
     ball_angle: Array = field(default_factory=lambda: np.zeros((0, 0)))
+    #: of each ball in space, rad/s, shape (k, N)
     ball_speed: Array = field(default_factory=lambda: np.zeros((0, 0)))
 
     @property
@@ -448,20 +405,12 @@ MOST_LAG = 0.08
 
 @dataclass(frozen=True)
 class LinearRunError:
-    """What a linear run says of its own error.
+    """What a linear run says of its own error."""
 
-    Parameters
-    ----------
-    estimate : of the amplitude's largest error over its largest value; infinite where there is none
-    wave : largest rise of a surface over its layer's mean depth
-    lag : largest lag of a layer's rotation behind its drum over the spin
-    touches : a surface came to an inner wall
-    """
-
-    estimate: float
-    wave: float
-    lag: float
-    touches: bool
+    estimate: float  #: of the amplitude's largest error over its largest value; infinite where there is none
+    wave: float  #: largest rise of a surface over its layer's mean depth
+    lag: float  #: largest lag of a layer's rotation behind its drum over the spin
+    touches: bool  #: a surface came to an inner wall
 
 
 def largest_wave(tolerance: float) -> float:

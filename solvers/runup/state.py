@@ -359,31 +359,22 @@ def planes_of(system: RotorSystem, fills: Sequence[Fill]) -> Array:
 
 @dataclass
 class CoupledRotor(ABC):
-    """What every rotor with layers has, long waves or linear; see `solvers.runup.machine.RunupMachine`.
+    """What every rotor with layers has, long waves or linear; see `solvers.runup.machine.RunupMachine`."""
 
-    Parameters
-    ----------
-    system, fills : what it is made from
-    friction : of the liquid on its walls
-    handover : how liquid at the bottom becomes a layer
-    capture, pools : as of `Rest`, shape (l,)
-    lean, lean_rate : angle of each pool from the bottom, positive with the spin, rad, and its rate, (l,)
-    transfers : liquid that has become a layer or fallen so far
-    lost_mass, lost_inertia : mass matrix of what has left the drum, and its moment of inertia about the axis
-    position : of the plane that is read where there is no chamber, m
-    """
-
-    system: RotorSystem
+    system: RotorSystem  #: what it is made from
     fills: tuple[Fill, ...]
-    friction: Friction
-    handover: Handover
-    capture: Array
+    friction: Friction  #: of the liquid on its walls
+    handover: Handover  #: how liquid at the bottom becomes a layer
+    capture: Array  #: as of `Rest`, shape (l,)
     pools: tuple[Pool | None, ...]
-    lean: Array
+    lean: Array  #: angle of each pool from the bottom, positive with the spin, rad, and its rate, (l,)
     lean_rate: Array
+    #: liquid that has become a layer or fallen so far
     transfers: list[Transfer] = field(default_factory=list, init=False)
+    #: mass matrix of what has left the drum, and its moment of inertia about the axis
     lost_mass: Array | None = field(default=None, init=False)
     lost_inertia: float = field(default=0.0, init=False)
+    #: of the plane that is read where there is no chamber, m
     position: float = field(default=0.0, init=False)
 
     @cached_property

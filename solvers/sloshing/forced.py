@@ -26,23 +26,15 @@ _BACK = -0.99
 
 @dataclass(frozen=True)
 class ModeDamping:
-    """Decay of modes in laminar layers.
+    """Decay of modes in laminar layers."""
 
-    Parameters
-    ----------
-    rate : of the amplitude, with the Coriolis force in the layers on floor and lid, 1/s, shape (k,)
-    plain_rate : without it, as in the friction of the long waves, 1/s, shape (k,)
-    wall_rate : share of walls and baffles in either, 1/s, shape (k,)
-    edge_spread : how much `rate` changes if the flow round edges of baffles is cut off at half or at twice
-        the layer's thickness, the larger of both, over the rate, shape (k,); 0 without edges
-    thickness : of the layer on the walls, m, shape (k,)
-    """
-
-    rate: Array
-    plain_rate: Array
-    wall_rate: Array
+    rate: Array  #: of the amplitude, with the Coriolis force in the layers on floor and lid, 1/s, shape (k,)
+    plain_rate: Array  #: without it, as in the friction of the long waves, 1/s, shape (k,)
+    wall_rate: Array  #: share of walls and baffles in either, 1/s, shape (k,)
+    #: how much `rate` changes if the flow round edges of baffles is cut off at half or at twice the layer's
+    #: thickness, the larger of both, over the rate, shape (k,); 0 without edges
     edge_spread: Array
-    thickness: Array
+    thickness: Array  #: of the layer on the walls, m, shape (k,)
 
 
 def mode_damping(system: Condensed, modes: SloshingModes, viscosity: float, height: float) -> ModeDamping:
@@ -148,24 +140,16 @@ _UNSEEN = 1e-20  # squared moment of a mode over the largest
 
 @dataclass(frozen=True, eq=False)
 class ForcedResponse:
-    """Answer of the liquid at some whirl speeds; amplitudes in the plane's two directions.
+    """Answer of the liquid at some whirl speeds; amplitudes in the plane's two directions."""
 
-    Parameters
-    ----------
-    spin : Omega, rad/s
-    slip : s, rad/s, shape (...,)
-    tensor : force on the drum over rho h A f, A the area that the wall encloses, shape (..., 2, 2)
-    compliance : first moment of the displaced liquid over rho h f, m^2 s^2, shape (..., 2, 2)
-    force_ratio : G of a circular whirl w e^{i s t}: F = rho h A omega^2 (G w e^{i s t} + ...), shape (...,)
-    counter_ratio : of the circle that answers the other way round, ... + H conj(w) e^{-i s t}; 0 for three or
-        more equal sectors, shape (...,)
-    """
-
-    spin: float
-    slip: Array
-    tensor: Complex
-    compliance: Complex
+    spin: float  #: Omega, rad/s
+    slip: Array  #: s, rad/s, shape (...,)
+    tensor: Complex  #: force on the drum over rho h A f, A the area that the wall encloses, shape (..., 2, 2)
+    compliance: Complex  #: first moment of the displaced liquid over rho h f, m^2 s^2, shape (..., 2, 2)
+    #: G of a circular whirl w e^{i s t}: F = rho h A omega^2 (G w e^{i s t} + ...), shape (...,)
     force_ratio: Complex
+    #: of the circle that answers the other way round, ... + H conj(w) e^{-i s t}; 0 for three or more equal
+    #: sectors, shape (...,)
     counter_ratio: Complex
 
 

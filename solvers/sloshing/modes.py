@@ -31,52 +31,30 @@ _TIE = 1e-5
 
 @dataclass(frozen=True, eq=False)
 class Spectrum:
-    """Modes of a liquid at unit spin, of each pair the one above 0, the slowest ones or all.
+    """Modes of a liquid at unit spin, of each pair the one above 0, the slowest ones or all."""
 
-    Parameters
-    ----------
-    frequency : sigma/Omega, rising, shape (n,)
-    amplitude : eta in the condensed unknowns, eta* (B + sigma^2 K) eta = 1, mode by mode, shape (n, unknowns)
-    """
-
-    frequency: Array
+    frequency: Array  #: sigma/Omega, rising, shape (n,)
+    #: eta in the condensed unknowns, eta* (B + sigma^2 K) eta = 1, mode by mode, shape (n, unknowns)
     amplitude: Complex
 
 
 @dataclass(frozen=True, eq=False)
 class SloshingModes:
-    """Modes of the liquid, by rising size of the frequency; k modes, N nodes, S of them on the surface.
+    """Modes of the liquid, by rising size of the frequency; k modes, N nodes, S of them on the surface."""
 
-    Parameters
-    ----------
-    spin : Omega, rad/s
-    frequency : sigma relative to the drum, prograde positive, rad/s, shape (k,)
-    amplitude : displacement's stream function in the condensed unknowns, m^2, shape (k, n)
-    psi : stream function on the nodes for a largest displacement of 1 m, m^2/s, shape (k, N)
-    displacement : of the surface along the radius, largest 1, shape (k, S)
-    surface_nodes : nodes on the surface, shape (S,)
-    harmonics : of the displacement, e^{i n theta} for n = -32 ... 32, shape (k, 65)
-    crests : the n above 0 with the largest share, shape (k,)
-    travelling : from 0 for a standing oscillation to 1 for a wave that runs one way, shape (k,)
-    multiplicity : number of modes with that frequency, shape (k,)
-    residual : imbalance of each mode's energies, relative, shape (k,)
-    converged : whether all residuals are rounding
-    circulations : steady flows left out
-    """
-
-    spin: float
-    frequency: Array
-    amplitude: Complex
-    psi: Complex
-    displacement: Complex
-    surface_nodes: Indices
-    harmonics: Complex
-    crests: Indices
-    travelling: Array
-    multiplicity: Indices
-    residual: Array
-    converged: bool
-    circulations: int
+    spin: float  #: Omega, rad/s
+    frequency: Array  #: sigma relative to the drum, prograde positive, rad/s, shape (k,)
+    amplitude: Complex  #: displacement's stream function in the condensed unknowns, m^2, shape (k, n)
+    psi: Complex  #: stream function on the nodes for a largest displacement of 1 m, m^2/s, shape (k, N)
+    displacement: Complex  #: of the surface along the radius, largest 1, shape (k, S)
+    surface_nodes: Indices  #: nodes on the surface, shape (S,)
+    harmonics: Complex  #: of the displacement, e^{i n theta} for n = -32 ... 32, shape (k, 65)
+    crests: Indices  #: the n above 0 with the largest share, shape (k,)
+    travelling: Array  #: from 0 for a standing oscillation to 1 for a wave that runs one way, shape (k,)
+    multiplicity: Indices  #: number of modes with that frequency, shape (k,)
+    residual: Array  #: imbalance of each mode's energies, relative, shape (k,)
+    converged: bool  #: whether all residuals are rounding
+    circulations: int  #: steady flows left out
 
 
 def spectrum(system: LiquidSystem) -> Spectrum:

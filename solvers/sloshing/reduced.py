@@ -35,24 +35,14 @@ _DISTINCT = 1e-10  # of a new answer that must stand across the others
 
 @dataclass(frozen=True, eq=False)
 class ReducedLiquid:
-    """K eta'' + 2 Omega C eta' + Omega^2 B eta = -P^T f and Q = -rho P eta, in m motions.
+    """K eta'' + 2 Omega C eta' + Omega^2 B eta = -P^T f and Q = -rho P eta, in m motions."""
 
-    Parameters
-    ----------
-    inertia : K, the unit matrix, shape (m, m)
-    gyration : C, antisymmetric, shape (m, m)
-    surface : B, symmetric, positive definite, shape (m, m)
-    moment : P, shape (2, m), m
-    motions : what they are in the condensed unknowns, shape (n, m)
-    liquid_area, enclosed_area : as in `LiquidSystem`, m^2
-    """
-
-    inertia: Array
-    gyration: Array
-    surface: Array
-    moment: Array
-    motions: Array
-    liquid_area: float
+    inertia: Array  #: K, the unit matrix, shape (m, m)
+    gyration: Array  #: C, antisymmetric, shape (m, m)
+    surface: Array  #: B, symmetric, positive definite, shape (m, m)
+    moment: Array  #: P, shape (2, m), m
+    motions: Array  #: what they are in the condensed unknowns, shape (n, m)
+    liquid_area: float  #: as in `LiquidSystem`, m^2
     enclosed_area: float
 
     def compliance(self, slip_ratio: ArrayLike) -> Complex:
@@ -148,19 +138,12 @@ def spanned(vectors: Any, distinct: float = _DISTINCT) -> Any:
 
 @dataclass(frozen=True, eq=False)
 class SectionLayer:
-    """Liquid of one or several equal chambers in one plane.
+    """Liquid of one or several equal chambers in one plane."""
 
-    Parameters
-    ----------
-    density : rho h of all of them together, kg/m^2
-    liquid : its motions
-    rate : k of linear friction, 1/s
-    laminar : S of laminar friction, D = sqrt(lambda) S, shape (m, m), s^(-1/2) [theory: sections, eq. 5]
-    """
-
-    density: float
-    liquid: ReducedLiquid
-    rate: float
+    density: float  #: rho h of all of them together, kg/m^2
+    liquid: ReducedLiquid  #: its motions
+    rate: float  #: k of linear friction, 1/s
+    #: S of laminar friction, D = sqrt(lambda) S, shape (m, m), s^(-1/2) [theory: sections, eq. 5]
     laminar: Array
 
 

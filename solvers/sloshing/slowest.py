@@ -35,16 +35,10 @@ _SMALL = 1e-9  # part of a vector that must stand across the others
 
 @dataclass(frozen=True, eq=False)
 class SlowModes:
-    """The slowest modes of a liquid.
+    """The slowest modes of a liquid."""
 
-    Parameters
-    ----------
-    spectrum : at least as many as were asked for, and all as fast as the last of those
-    converged : all of them settled
-    """
-
-    spectrum: Spectrum
-    converged: bool
+    spectrum: Spectrum  #: at least as many as were asked for, and all as fast as the last of those
+    converged: bool  #: all of them settled
 
 
 def surface_solver(system: SurfaceSystem) -> Callable[[Any], Any]:

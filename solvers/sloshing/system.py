@@ -53,19 +53,12 @@ _CORNERS = {
 
 @dataclass(frozen=True, eq=False)
 class WallPoints:
-    """Quadrature points on the walls, both sides of a slit.
+    """Quadrature points on the walls, both sides of a slit."""
 
-    Parameters
-    ----------
-    points : where they are, shape (Q, 2), m
-    weights : length of wall each stands for, shape (Q,), m
-    along : unit tangent with the liquid on the left, shape (Q, 2)
-    slope : psi at the nodes to its derivative along the normal out of the liquid, shape (Q, N), 1/m
-    """
-
-    points: Array
-    weights: Array
-    along: Array
+    points: Array  #: where they are, shape (Q, 2), m
+    weights: Array  #: length of wall each stands for, shape (Q,), m
+    along: Array  #: unit tangent with the liquid on the left, shape (Q, 2)
+    #: psi at the nodes to its derivative along the normal out of the liquid, shape (Q, N), 1/m
     slope: csr_array
 
 
@@ -192,32 +185,20 @@ _CHUNK = 128  # columns solved for at once
 
 @dataclass(frozen=True, eq=False)
 class LiquidSystem:
-    """Liquid of a section condensed to its free surface; made by `condense`.
+    """Liquid of a section condensed to its free surface; made by `condense`."""
 
-    Parameters
-    ----------
-    section : the liquid at rest
-    inertia : K, symmetric, positive definite, shape (n, n), a pure number
-    gyration : C, antisymmetric, shape (n, n), a pure number
-    surface : B, symmetric, positive definite, shape (n, n), a pure number
-    moment : P, shape (2, n), m
-    liquid_area, enclosed_area : of the liquid, and with the dry middle, m^2
-    circulations : flows around closed free surfaces and free-standing walls that the condensation leaves out:
-        they are steady, and no force of the drum starts them
-    unknowns : stream function values that the mesh has, walls left out
-    interior : what gives the values on all nodes, see `on_nodes`
-    """
-
-    section: LiquidSection
-    inertia: Array
-    gyration: Array
-    surface: Array
-    moment: Array
-    liquid_area: float
+    section: LiquidSection  #: the liquid at rest
+    inertia: Array  #: K, symmetric, positive definite, shape (n, n), a pure number
+    gyration: Array  #: C, antisymmetric, shape (n, n), a pure number
+    surface: Array  #: B, symmetric, positive definite, shape (n, n), a pure number
+    moment: Array  #: P, shape (2, n), m
+    liquid_area: float  #: of the liquid, and with the dry middle, m^2
     enclosed_area: float
+    #: flows around closed free surfaces and free-standing walls that the condensation leaves out: they are
+    #: steady, and no force of the drum starts them
     circulations: int
-    unknowns: int
-    interior: Interior
+    unknowns: int  #: stream function values that the mesh has, walls left out
+    interior: Interior  #: what gives the values on all nodes, see `on_nodes`
 
     def on_nodes(self, amplitudes: Array | Complex) -> Complex:
         """Stream function on the nodes of the mesh.
@@ -265,35 +246,24 @@ class SurfaceSystem:
     """The same liquid without dense matrices; made by `surface_system`.
 
     Unknowns are the values on the surface and on walls that pierce it, of motions without circulation.
-
-    Parameters
-    ----------
-    section, liquid_area, enclosed_area, circulations, unknowns : as in `LiquidSystem`
-    gyration : C, sparse, shape (n, n)
-    rise, bend : D and W, sparse, B = D^T W D of differences along the sides, which cells of very unlike
-        width do not spoil by rounding, shape (r, n) and (r, r)
-    give : the inverse of W, sparse
-    whole : stiffness of the surface with the inside held, sparse, shape (n, n)
-    moment : P, shape (2, n), m
-    steady : 1 on each closed part of the surface, shape (n, p)
-    interior : what gives the values on all nodes
-    pieces : stretches of the surface that no path along it joins
     """
 
-    section: LiquidSection
-    gyration: csr_array
+    section: LiquidSection  #: as in `LiquidSystem`
+    gyration: csr_array  #: C, sparse, shape (n, n)
+    #: D and W, sparse, B = D^T W D of differences along the sides, which cells of very unlike width do not
+    #: spoil by rounding, shape (r, n) and (r, r)
     rise: csr_array
     bend: csr_array
-    give: csr_array
-    whole: csr_array
-    moment: Array
-    steady: Array
+    give: csr_array  #: the inverse of W, sparse
+    whole: csr_array  #: stiffness of the surface with the inside held, sparse, shape (n, n)
+    moment: Array  #: P, shape (2, n), m
+    steady: Array  #: 1 on each closed part of the surface, shape (n, p)
     liquid_area: float
     enclosed_area: float
     circulations: int
     unknowns: int
-    interior: Interior
-    pieces: int
+    interior: Interior  #: what gives the values on all nodes
+    pieces: int  #: stretches of the surface that no path along it joins
 
     def on_nodes(self, amplitudes: Array | Complex) -> Complex:
         """As `LiquidSystem.on_nodes`."""
@@ -321,23 +291,15 @@ class SurfaceSystem:
 
 @dataclass(frozen=True, eq=False)
 class Interior:
-    """Harmonic continuation from the condensed unknowns to the nodes.
+    """Harmonic continuation from the condensed unknowns to the nodes."""
 
-    Parameters
-    ----------
-    basis : columns span what the condensed unknowns mean on the surface, shape (surface unknowns, n); None if
-        they are the values there
-    factors : of the stiffness inside
-    coupling : stiffness between inside and surface
-    unknown : of each node, -1 where psi = 0, shape (N,)
-    place : of the unknowns in the vector of inside, then surface, shape (unknowns,)
-    """
-
+    #: columns span what the condensed unknowns mean on the surface, shape (surface unknowns, n); None if they
+    #: are the values there
     basis: Array | None
-    factors: Any
-    coupling: csr_array
-    unknown: Indices
-    place: Indices
+    factors: Any  #: of the stiffness inside
+    coupling: csr_array  #: stiffness between inside and surface
+    unknown: Indices  #: of each node, -1 where psi = 0, shape (N,)
+    place: Indices  #: of the unknowns in the vector of inside, then surface, shape (unknowns,)
 
     def on_nodes(self, amplitudes: Array | Complex) -> Complex:
         """Values on all nodes, shape (k, n) to (k, N)."""
@@ -421,34 +383,21 @@ def surface_system(section: LiquidSection) -> SurfaceSystem:
 
 @dataclass(frozen=True, eq=False)
 class _Parts:
-    """What both systems are made of; outside: unknowns of the surface, inside: the others.
+    """What both systems are made of; outside: unknowns of the surface, inside: the others."""
 
-    Parameters
-    ----------
-    unknown, count : of each node, -1 where psi = 0, and their number
-    outside : unknowns on the surface, shape (n,)
-    place : of the unknowns in the vector of inside, then surface
-    factors, coupling, whole : of the stiffness inside, None without any; between inside and surface; surface
-    gyration, surface : C and B on the surface
-    moment : P
-    steady : 1 on each closed part of the surface, shape (n, p)
-    pieces : stretches of the surface that no path along it joins
-    submerged : free-standing walls in the liquid
-    """
-
-    unknown: Indices
+    unknown: Indices  #: of each node, -1 where psi = 0, and their number
     count: int
-    outside: Indices
-    place: Indices
-    factors: Any
+    outside: Indices  #: unknowns on the surface, shape (n,)
+    place: Indices  #: of the unknowns in the vector of inside, then surface
+    factors: Any  #: of the stiffness inside, None without any; between inside and surface; surface
     coupling: csr_array
     whole: csr_array
-    gyration: csr_array
+    gyration: csr_array  #: C and B on the surface
     surface: csr_array
-    moment: Array
-    steady: Array
-    pieces: int
-    submerged: int
+    moment: Array  #: P
+    steady: Array  #: 1 on each closed part of the surface, shape (n, p)
+    pieces: int  #: stretches of the surface that no path along it joins
+    submerged: int  #: free-standing walls in the liquid
 
     def schur(self) -> Array:
         """The stiffness that the surface feels, shape (n, n)."""

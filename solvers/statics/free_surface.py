@@ -34,26 +34,17 @@ _DEGREE = {1: 6, 2: 14}
 
 @dataclass(frozen=True)
 class SurfaceSolution:
-    """The free surface of a given volume.
+    """The free surface of a given volume."""
 
-    Parameters
-    ----------
-    wetted_height : Z, height of the surface, not cut by the lid, where the section is farthest from the axis,
-        m; infinite without gravity
-    surface_constant : C of z = beta r^2 + C, m; minus infinity without gravity
-    dry_radius : distance from the axis at which the surface meets the floor, m; 0 if the floor is covered
-        there
-    moments : integrals over the liquid about the rotation axis and the floor
-    converged : whether the search ended within its tolerance
-    iterations : how many steps it took
-    """
-
+    #: Z, height of the surface, not cut by the lid, where the section is farthest from the axis, m; infinite
+    #: without gravity
     wetted_height: float
-    surface_constant: float
+    surface_constant: float  #: C of z = beta r^2 + C, m; minus infinity without gravity
+    #: distance from the axis at which the surface meets the floor, m; 0 if the floor is covered there
     dry_radius: float
-    moments: Moments
-    converged: bool
-    iterations: int
+    moments: Moments  #: integrals over the liquid about the rotation axis and the floor
+    converged: bool  #: whether the search ended within its tolerance
+    iterations: int  #: how many steps it took
 
 
 @dataclass(frozen=True, eq=False)

@@ -99,26 +99,16 @@ def same_shape(*values: ArrayLike) -> tuple[Array, ...]:
 
 @dataclass(frozen=True)
 class Equilibrium:
-    """The liquid's surface at a given volume, eccentricity and speed; all shapes (...,).
+    """The liquid's surface at a given volume, eccentricity and speed; all shapes (...,)."""
 
-    Parameters
-    ----------
-    chamber : the chamber, or one for each state
-    eccentricity : distance e of the rotation axis from the chamber's centre, m
-    steepness : beta R^2/h of the surface
-    wetted_height : Z over the chamber's height: unclamped surface height at the farthest wall point
-    nearest_depth : the same at the nearest wall point; below 0 it is dry there, above 1 wet to the lid
-    volume : liquid volume reached, m^3
-    converged : the volume was met to rounding
-    """
-
-    chamber: AnyChamber
-    eccentricity: Array
-    steepness: Array
-    wetted_height: Array
+    chamber: AnyChamber  #: the chamber, or one for each state
+    eccentricity: Array  #: distance e of the rotation axis from the chamber's centre, m
+    steepness: Array  #: beta R^2/h of the surface
+    wetted_height: Array  #: Z over the chamber's height: unclamped surface height at the farthest wall point
+    #: the same at the nearest wall point; below 0 it is dry there, above 1 wet to the lid
     nearest_depth: Array
-    volume: Array
-    converged: NDArray[np.bool_]
+    volume: Array  #: liquid volume reached, m^3
+    converged: NDArray[np.bool_]  #: the volume was met to rounding
 
     @property
     def dry_patch(self) -> NDArray[np.bool_]:

@@ -24,26 +24,15 @@ _STEPS = 2  # of Newton's method from the upright surface
 
 @dataclass(frozen=True)
 class Surfaces:
-    """The upright surfaces of n chambers, in the chambers' own units, shape (n,).
+    """The upright surfaces of n chambers, in the chambers' own units, shape (n,)."""
 
-    Parameters
-    ----------
-    radius : R, m
-    unit : of unbalances, rho R^3 h, kg m
-    filled : V/(pi R^2 h)
-    inner : (R_i/R)^2
-    steep : B = beta R^2/h
-    floor : squared radius of the surface where its paraboloid cuts the floor's plane, may be below 0
-    straight : deflection up to which the unbalance is the full mass times the deflection, over R
-    """
-
-    radius: Array
-    unit: Array
-    filled: Array
-    inner: Array
-    steep: Array
-    floor: Array
-    straight: Array
+    radius: Array  #: R, m
+    unit: Array  #: of unbalances, rho R^3 h, kg m
+    filled: Array  #: V/(pi R^2 h)
+    inner: Array  #: (R_i/R)^2
+    steep: Array  #: B = beta R^2/h
+    floor: Array  #: squared radius of the surface where its paraboloid cuts the floor's plane, may be below 0
+    straight: Array  #: deflection up to which the unbalance is the full mass times the deflection, over R
 
     def at(self, which: Index) -> Surfaces:
         """Those at some indices, shape (m,)."""

@@ -20,24 +20,17 @@ from solvers.statics.hydrostatics import equilibrium
 class Top:
     """A rigid body without liquid, with one fixed point on its axis.
 
-    Parameters
-    ----------
-    mass : kg
-    transverse_inertia, polar_inertia : across and along its axis, about its centre of mass, kg m^2
-    centre : height of the centre of mass above the fixed point, m
-    stiffness : of springs against a tilt about the fixed point, N m; 0 without any
-
     Raises
     ------
     InputError : a mass or transverse inertia that is not positive, a negative polar inertia or stiffness, a
         height that is not finite
     """
 
-    mass: float
-    transverse_inertia: float
+    mass: float  #: kg
+    transverse_inertia: float  #: across and along its axis, about its centre of mass, kg m^2
     polar_inertia: float
-    centre: float
-    stiffness: float = 0.0
+    centre: float  #: height of the centre of mass above the fixed point, m
+    stiffness: float = 0.0  #: of springs against a tilt about the fixed point, N m; 0 without any
 
     def __post_init__(self) -> None:
         require_positive("mass", self.mass)
@@ -50,16 +43,10 @@ class Top:
 
 @dataclass(frozen=True)
 class Margin:
-    """What keeps a body upright, second derivatives of its energy by the tilt; shapes (...,).
+    """What keeps a body upright, second derivatives of its energy by the tilt; shapes (...,)."""
 
-    Parameters
-    ----------
-    frozen : with the liquid frozen, springs included, N m
-    surface : what the free surfaces take from it, a of the source, N m
-    """
-
-    frozen: Array
-    surface: Array
+    frozen: Array  #: with the liquid frozen, springs included, N m
+    surface: Array  #: what the free surfaces take from it, a of the source, N m
 
     @property
     def left(self) -> Array:

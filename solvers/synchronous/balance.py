@@ -42,56 +42,32 @@ def backward_mass(fill: Fill) -> float:
 
 @dataclass(frozen=True)
 class Liquid:
-    """The liquid of c chambers at k states.
+    """The liquid of c chambers at k states."""
 
-    Parameters
-    ----------
-    unbalance : first moments about the rotation axis U_liq, kg m, shape (k, c)
-    slope : their derivatives with respect to the deflection, kg, shape (k, c)
-    dry_patch, in_range, converged : shape (k, c)
-    """
-
-    unbalance: Array
-    slope: Array
-    dry_patch: Flags
+    unbalance: Array  #: first moments about the rotation axis U_liq, kg m, shape (k, c)
+    slope: Array  #: their derivatives with respect to the deflection, kg, shape (k, c)
+    dry_patch: Flags  #: shape (k, c)
     in_range: Flags
     converged: Flags
 
 
 @dataclass(frozen=True)
 class Balance:
-    """Equations [theory: rotor, eq. 29] of n coordinates and c chambers at s pairs of volumes and a speed.
+    """Equations [theory: rotor, eq. 29] of n coordinates and c chambers at s pairs of volumes and a speed."""
 
-    Parameters
-    ----------
-    system : the dry rotor
-    speed : Omega, rad/s, shape (s,)
-    owner : which set of volumes each pair has, rising, shape (s,)
-    stiffness : dynamic stiffness with the liquid's answer to the backward part, shape (s, n, n)
-    force : Omega^2 U, shape (s, n)
-    plane : p = B^T (1, -i) of each chamber, shape (c, n)
-    fills : of each chamber those of all pairs, shape (s,); every one has liquid
-    backward_mass : with which each chamber resists the backward part, kg, shape (s, c)
-    added_mass : full mass of each chamber, kg, shape (s, c)
-    steepest : no smaller than the slope of all chambers' unbalance anywhere, kg, shape (s,)
-    limit : forward deflection up to which a chamber adds exactly its full mass, m, shape (s, c)
-    model : of the liquid
-    gravity : along the axis, m/s^2
-    """
-
-    system: RotorSystem
-    speed: Array
-    owner: Index
-    stiffness: Complex
-    force: Complex
-    plane: Complex
-    fills: tuple[Fills, ...]
-    backward_mass: Array
-    added_mass: Array
-    steepest: Array
-    limit: Array
-    model: LiquidModel
-    gravity: float
+    system: RotorSystem  #: the dry rotor
+    speed: Array  #: Omega, rad/s, shape (s,)
+    owner: Index  #: which set of volumes each pair has, rising, shape (s,)
+    stiffness: Complex  #: dynamic stiffness with the liquid's answer to the backward part, shape (s, n, n)
+    force: Complex  #: Omega^2 U, shape (s, n)
+    plane: Complex  #: p = B^T (1, -i) of each chamber, shape (c, n)
+    fills: tuple[Fills, ...]  #: of each chamber those of all pairs, shape (s,); every one has liquid
+    backward_mass: Array  #: with which each chamber resists the backward part, kg, shape (s, c)
+    added_mass: Array  #: full mass of each chamber, kg, shape (s, c)
+    steepest: Array  #: no smaller than the slope of all chambers' unbalance anywhere, kg, shape (s,)
+    limit: Array  #: forward deflection up to which a chamber adds exactly its full mass, m, shape (s, c)
+    model: LiquidModel  #: of the liquid
+    gravity: float  #: along the axis, m/s^2
 
     @property
     def mass(self) -> Array:

@@ -25,19 +25,13 @@ _AGREES = 1e-9  # of the liquid's share in the mass, between two rounds
 
 @dataclass(frozen=True)
 class WetStates:
-    """States with liquid; s speeds, b states, l chambers.
+    """States with liquid; s speeds, b states, l chambers."""
 
-    Parameters
-    ----------
-    states : of the balls
-    liquid : first moment of each chamber's liquid about the rotation axis, kg m, complex, in the drum, shape
-        (s, b, l); nan where there is no state
-    dry_patch : a wall is dry over its whole height somewhere, shape (s, b)
-    """
-
-    states: BallStates
+    states: BallStates  #: of the balls
+    #: first moment of each chamber's liquid about the rotation axis, kg m, complex, in the drum, shape (s, b,
+    #: l); nan where there is no state
     liquid: Complex
-    dry_patch: Flags
+    dry_patch: Flags  #: a wall is dry over its whole height somewhere, shape (s, b)
 
 
 def wet_states(

@@ -31,18 +31,11 @@ _LEAST = 2.0**-12  # shortest step over the way that is followed
 
 @dataclass(frozen=True)
 class Near:
-    """Solutions at the next speeds below and above each of s speeds.
+    """Solutions at the next speeds below and above each of s speeds."""
 
-    Parameters
-    ----------
-    speed : rad/s, shape (s, 2)
-    answer : coordinates, nan where there are fewer, shape (s, 2, k, n)
-    enough : no other solutions are looked for where these lead to one
-    """
-
-    speed: Array
-    answer: Complex
-    enough: bool = True
+    speed: Array  #: rad/s, shape (s, 2)
+    answer: Complex  #: coordinates, nan where there are fewer, shape (s, 2, k, n)
+    enough: bool = True  #: no other solutions are looked for where these lead to one
 
     def at(self, which: Index) -> Near:
         """Those of some speeds."""
@@ -51,20 +44,13 @@ class Near:
 
 @dataclass(frozen=True)
 class Solutions:
-    """Solutions of the balance at s speeds.
+    """Solutions of the balance at s speeds."""
 
-    Parameters
-    ----------
-    answer : coordinates, shape (k, n)
-    which : the speed each belongs to, shape (k,)
-    converged : a speed's solutions were found, shape (s,)
-    end : speed at which a solution that was followed from this one towards the next speed, or from there to
-        this one, ended in a fold; nan where none did, rad/s, shape (s,)
-    """
-
-    answer: Complex
-    which: Index
-    converged: Flags
+    answer: Complex  #: coordinates, shape (k, n)
+    which: Index  #: the speed each belongs to, shape (k,)
+    converged: Flags  #: a speed's solutions were found, shape (s,)
+    #: speed at which a solution that was followed from this one towards the next speed, or from there to this
+    #: one, ended in a fold; nan where none did, rad/s, shape (s,)
     end: Array
 
 
@@ -194,20 +180,12 @@ def _beside(balance: Balance, which: Index, some: Index, above: int) -> tuple[In
 
 @dataclass(frozen=True)
 class _Way:
-    """Solutions followed from other speeds.
+    """Solutions followed from other speeds."""
 
-    Parameters
-    ----------
-    answer : coordinates at the speed where they were to go, shape (k, n)
-    met : there is a solution, be it that of another branch, shape (k,)
-    arrived : it is the one that was followed; else its branch ends on the way, shape (k,)
-    speed : up to which it was followed, rad/s, shape (k,)
-    """
-
-    answer: Complex
-    met: Flags
-    arrived: Flags
-    speed: Array
+    answer: Complex  #: coordinates at the speed where they were to go, shape (k, n)
+    met: Flags  #: there is a solution, be it that of another branch, shape (k,)
+    arrived: Flags  #: it is the one that was followed; else its branch ends on the way, shape (k,)
+    speed: Array  #: up to which it was followed, rad/s, shape (k,)
 
 
 def _followed(balance: Balance, begin: Complex, start: Array, target: Index) -> _Way:

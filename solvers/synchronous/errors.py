@@ -64,17 +64,12 @@ class GravityError:
     Each of shape (n,).
 
     Infinite where there is no bound, nan where the liquid does not ride with the drum.
-
-    Parameters
-    ----------
-    amplitude, liquid : of the means over time of amplitude and of the liquid's offset, relative
-    ripple : by which the amplitude goes up and down about its mean, relative
-    liquid_ripple : by which the liquid's centre of mass goes round its mean in the drum, once a turn, m
     """
 
-    amplitude: Array
+    amplitude: Array  #: of the means over time of amplitude and of the liquid's offset, relative
     liquid: Array
-    ripple: Array
+    ripple: Array  #: by which the amplitude goes up and down about its mean, relative
+    #: by which the liquid's centre of mass goes round its mean in the drum, once a turn, m
     liquid_ripple: Array
 
     def at(self, part: slice) -> GravityError:
@@ -91,19 +86,12 @@ class GravityError:
 
 @dataclass(frozen=True)
 class LinearError:
-    """How far the linear law is from the exact one; shape (n,).
+    """How far the linear law is from the exact one; shape (n,)."""
 
-    Parameters
-    ----------
-    amplitude : bound of the amplitude's relative error; infinite where there is none
-    liquid : of the error of the liquid's unbalance, and so of its centre of mass
-    wet : no wall runs dry over its whole height
-    strain : linear deflection over the one at which the law bends, of the chamber that is nearest to it
-    """
-
-    amplitude: Array
-    liquid: Array
-    wet: Flags
+    amplitude: Array  #: bound of the amplitude's relative error; infinite where there is none
+    liquid: Array  #: of the error of the liquid's unbalance, and so of its centre of mass
+    wet: Flags  #: no wall runs dry over its whole height
+    #: linear deflection over the one at which the law bends, of the chamber that is nearest to it
     strain: Array
 
     @property
@@ -117,25 +105,15 @@ _ROUNDS = 6  # of the bound on the largest deflection
 
 @dataclass(frozen=True)
 class Enclosure:
-    """Where every synchronous deflection of planar machines lies, shape (n,).
+    """Where every synchronous deflection of planar machines lies, shape (n,)."""
 
-    Parameters
-    ----------
-    linear : the answer of the linear law, m, infinite at an undamped resonance
-    least, most : bounds of all the deflections under the exact law, m
-    straight : deflection up to which the law is the linear one, m
-    depth : of the shallowest layer, m
-    defect : bound of what the law is below the linear one up to `most`, kg m
-    added_mass : of all chambers, kg
-    """
-
-    linear: Array
-    least: Array
+    linear: Array  #: the answer of the linear law, m, infinite at an undamped resonance
+    least: Array  #: bounds of all the deflections under the exact law, m
     most: Array
-    straight: Array
-    depth: Array
-    defect: Array
-    added_mass: Array
+    straight: Array  #: deflection up to which the law is the linear one, m
+    depth: Array  #: of the shallowest layer, m
+    defect: Array  #: bound of what the law is below the linear one up to `most`, kg m
+    added_mass: Array  #: of all chambers, kg
 
     def error(self) -> LinearError:
         """Bounds of the relative errors [theory: model_error, eq. 15 and 16]."""
@@ -167,19 +145,12 @@ def _relative(value: Array, least: Array, most: Array, known: Flags) -> Array:
 
 @dataclass(frozen=True)
 class Laws:
-    """The chambers of n pairs of a machine and a speed.
+    """The chambers of n pairs of a machine and a speed."""
 
-    Parameters
-    ----------
-    fills, surfaces : of each chamber, at the pairs that have it
-    rows : those pairs
-    size : n
-    """
-
-    fills: tuple[Fills, ...]
+    fills: tuple[Fills, ...]  #: of each chamber, at the pairs that have it
     surfaces: tuple[Surfaces, ...]
-    rows: tuple[Index, ...]
-    size: int
+    rows: tuple[Index, ...]  #: those pairs
+    size: int  #: n
 
     def defect(self, deflection: Array) -> Array:
         """Sum of the bounds of what the laws are below the linear one, kg m, shape (n,)."""

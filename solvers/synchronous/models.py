@@ -303,16 +303,12 @@ class CellsAtRest(LiquidModel):
     what the cells hold, so that even with every cell wet the law is the straight line to rounding only if
     there are many cells. Gravity along the axis is left out.
 
-    Parameters
-    ----------
-    cells : round the wall, at least 8; the deflection points between two of them
-
     Raises
     ------
     InputError : fewer cells
     """
 
-    cells: int
+    cells: int  #: round the wall, at least 8; the deflection points between two of them
 
     def __post_init__(self) -> None:
         if not 8 <= self.cells <= 65536:
@@ -412,18 +408,13 @@ class ElementsAtRest(LiquidModel):
 
     The section has the area of its mesh, a little less than the circle's.
 
-    Parameters
-    ----------
-    segments : edges along the wall, 8 or more
-    order : 1 for straight edges, 2 for quadratic ones
-
     Raises
     ------
     InputError : fewer segments, another order
     """
 
-    segments: int
-    order: int = 1
+    segments: int  #: edges along the wall, 8 or more
+    order: int = 1  #: 1 for straight edges, 2 for quadratic ones
 
     def __post_init__(self) -> None:
         if self.segments < 8 or self.order not in (1, 2):

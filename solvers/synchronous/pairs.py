@@ -15,61 +15,39 @@ from solvers.rotor.jeffcott import PlanarMachine
 
 @dataclass(frozen=True)
 class LiquidState:
-    """All chambers of a machine together, shape (m,).
+    """All chambers of a machine together, shape (m,)."""
 
-    Parameters
-    ----------
-    unbalance : first moment of the liquid about the rotation axis, kg m
-    slope : its derivative with respect to the deflection, kg
-    dry_patch, in_range, converged : of any, all and all chambers with liquid
-    """
-
-    unbalance: Array
-    slope: Array
-    dry_patch: Flags
+    unbalance: Array  #: first moment of the liquid about the rotation axis, kg m
+    slope: Array  #: its derivative with respect to the deflection, kg
+    dry_patch: Flags  #: of any, all and all chambers with liquid
     in_range: Flags
     converged: Flags
 
 
 @dataclass(frozen=True)
 class Slot:
-    """One chamber of each pair that has one with liquid.
+    """One chamber of each pair that has one with liquid."""
 
-    Parameters
-    ----------
-    fills : of those pairs, shape (k,)
-    place : index into `fills` of each pair, -1 where it has no such chamber, shape (n,)
-    limit : deflection up to which the chamber adds its full mass, m; infinite where there is none, shape (n,)
-    """
-
-    fills: Fills
-    place: Index
+    fills: Fills  #: of those pairs, shape (k,)
+    place: Index  #: index into `fills` of each pair, -1 where it has no such chamber, shape (n,)
+    #: deflection up to which the chamber adds its full mass, m; infinite where there is none, shape (n,)
     limit: Array
 
 
 @dataclass(frozen=True)
 class Pairs:
-    """n pairs of a machine and a speed.
+    """n pairs of a machine and a speed."""
 
-    Parameters
-    ----------
-    mass, stiffness, damping, unbalance : M, K, C, U0 of the rotor, SI, shape (n,)
-    speed : spin speed Omega, rad/s, shape (n,)
-    gravity : along the axis, m/s^2, shape (n,)
-    model : of the liquid
-    slots : one for each chamber of the machine that has most
-    liquid_mass, added_mass, steepest, reach : sums over the chambers of the liquid's mass, of the mass that
-        it adds in a small whirl and at most, and of liquid mass times radius, shape (n,)
-    """
-
-    mass: Array
+    mass: Array  #: M, K, C, U0 of the rotor, SI, shape (n,)
     stiffness: Array
     damping: Array
     unbalance: Array
-    speed: Array
-    gravity: Array
-    model: LiquidModel
-    slots: tuple[Slot, ...]
+    speed: Array  #: spin speed Omega, rad/s, shape (n,)
+    gravity: Array  #: along the axis, m/s^2, shape (n,)
+    model: LiquidModel  #: of the liquid
+    slots: tuple[Slot, ...]  #: one for each chamber of the machine that has most
+    #: sums over the chambers of the liquid's mass, of the mass that it adds in a small whirl and at most, and
+    #: of liquid mass times radius, shape (n,)
     liquid_mass: Array
     added_mass: Array
     steepest: Array

@@ -37,16 +37,10 @@ _SHARED = 0.5  # half widths up to which a resonance takes another one's speed f
 
 @dataclass(frozen=True)
 class Peak:
-    """Largest amplitude over a range of speeds.
+    """Largest amplitude over a range of speeds."""
 
-    Parameters
-    ----------
-    speed : rad/s; nan where no amplitude is known
-    amplitude : m; infinite where it has no bound, nan where none is known
-    """
-
-    speed: float
-    amplitude: float
+    speed: float  #: rad/s; nan where no amplitude is known
+    amplitude: float  #: m; infinite where it has no bound, nan where none is known
 
     @property
     def bounded(self) -> bool:
@@ -61,16 +55,10 @@ class Peak:
 
 @dataclass(frozen=True)
 class Samples:
-    """Complex amplitudes of a machine over speed; the amplitude is the sum of the sizes of their parts.
+    """Complex amplitudes of a machine over speed; the amplitude is the sum of the sizes of their parts."""
 
-    Parameters
-    ----------
-    speed : rising, rad/s, shape (n,)
-    parts : m, nan or infinite where there is none, shape (n, p)
-    """
-
-    speed: Array
-    parts: Complex
+    speed: Array  #: rising, rad/s, shape (n,)
+    parts: Complex  #: m, nan or infinite where there is none, shape (n, p)
 
     @property
     def amplitude(self) -> Array:

@@ -27,18 +27,11 @@ _NEAR = 1e-4  # relative distance of the speeds between which the liquid's share
 
 @dataclass(frozen=True)
 class Tops:
-    """The largest deflection of planar machines over all speeds; shape (n,).
+    """The largest deflection of planar machines over all speeds; shape (n,)."""
 
-    Parameters
-    ----------
-    speed : rad/s; nan where there is none: nothing moves the rotor, or too much damps it
-    amplitude : m; infinite without damping
-    half_width : of the resonance, rad/s
-    """
-
-    speed: Array
-    amplitude: Array
-    half_width: Array
+    speed: Array  #: rad/s; nan where there is none: nothing moves the rotor, or too much damps it
+    amplitude: Array  #: m; infinite without damping
+    half_width: Array  #: of the resonance, rad/s
 
 
 def planar_tops(machines: Sequence[PlanarMachine], gravity: Array, model: LiquidModel) -> Tops:
@@ -157,22 +150,14 @@ class _Curve:
 
 @dataclass(frozen=True)
 class _Liquid:
-    """The liquid of all chambers of planar machines.
+    """The liquid of all chambers of planar machines."""
 
-    Parameters
-    ----------
-    fills : chambers with liquid, of all machines, shape (c,)
-    owner : the machine of each, shape (c,)
-    gravity, mass, added_mass : of each machine, shape (n,)
-    model : of the liquid
-    """
-
-    fills: Fills
-    owner: Index
-    gravity: Array
+    fills: Fills  #: chambers with liquid, of all machines, shape (c,)
+    owner: Index  #: the machine of each, shape (c,)
+    gravity: Array  #: of each machine, shape (n,)
     mass: Array
     added_mass: Array
-    model: LiquidModel
+    model: LiquidModel  #: of the liquid
 
     @classmethod
     def of(cls, machines: Sequence[PlanarMachine], gravity: Array, model: LiquidModel) -> _Liquid:

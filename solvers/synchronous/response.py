@@ -170,54 +170,38 @@ class Response:
     The axis goes round as forward e^{i Omega t} + backward e^{-i Omega t}; deflections without further word
     are the forward part. Angles are measured from the unbalance, or from angle 0 of several unbalances,
     positive with the spin; a lag is negative.
-
-    Parameters
-    ----------
-    speed : spin speed Omega, rad/s, shape (n,)
-    deflection : complex deflection w of the branch reported, m, shape (n,): of the stable ones the largest,
-        which is where a slow run-up of this hardening system arrives and the one to design for
-    deflection_dry : the same rotor without liquid, m, shape (n,)
-    liquid_offset : distance of the liquid's centre of mass from the rotation axis, m, shape (n,)
-    liquid_angle : angle from the unbalance to the liquid's centre of mass, rad, shape (n,)
-    dry_patch : the wall is dry somewhere in at least one chamber, shape (n,)
-    stable : the branch reported is stable against slow disturbances [theory: rotor, eq. 8 and 35], shape (n,)
-    model : name of the liquid model used, shape (n,)
-    in_range : the model holds there, shape (n,)
-    converged : every branch was found, shape (n,); with chambers in several planes, one was
-    branch_deflection : all branches by rising amplitude, m, shape (n, b), nan where there are fewer
-    branch_stable : their stability, shape (n, b)
-    backward, backward_dry : backward part of the branch reported, and without liquid, m, shape (n,)
-    branch_backward : of all branches, m, shape (n, b)
-    branch_coordinates : as coordinates, of all branches, nan where there are fewer, shape (n, b, m)
-    coordinates : complex amplitudes of the branch reported, q = Re(coordinates e^{i Omega t}), shape (n, m)
-    fold_speed : speed at which a branch ends between this speed and the next one, as far as that was found on
-        the way, else nan, rad/s, shape (n,); of chambers in several planes only
-    residual : what is left of the balance of forces over the largest of them, shape (n,)
-    position : along the axis of the plane whose motion is reported, m
-    over_time : mean over time of the distance of the axis from where it rests, of motions held in time, m,
-        else nan, shape (n,); empty where none was
     """
 
-    speed: Array
+    speed: Array  #: spin speed Omega, rad/s, shape (n,)
+    #: complex deflection w of the branch reported, m, shape (n,): of the stable ones the largest, which is
+    #: where a slow run-up of this hardening system arrives and the one to design for
     deflection: Complex
-    deflection_dry: Complex
-    liquid_offset: Array
-    liquid_angle: Array
-    dry_patch: Flags
+    deflection_dry: Complex  #: the same rotor without liquid, m, shape (n,)
+    liquid_offset: Array  #: distance of the liquid's centre of mass from the rotation axis, m, shape (n,)
+    liquid_angle: Array  #: angle from the unbalance to the liquid's centre of mass, rad, shape (n,)
+    dry_patch: Flags  #: the wall is dry somewhere in at least one chamber, shape (n,)
+    #: the branch reported is stable against slow disturbances [theory: rotor, eq. 8 and 35], shape (n,)
     stable: Flags
-    model: NDArray[np.str_]
-    in_range: Flags
-    converged: Flags
+    model: NDArray[np.str_]  #: name of the liquid model used, shape (n,)
+    in_range: Flags  #: the model holds there, shape (n,)
+    converged: Flags  #: every branch was found, shape (n,); with chambers in several planes, one was
+    #: all branches by rising amplitude, m, shape (n, b), nan where there are fewer
     branch_deflection: Complex
-    branch_stable: Flags
-    backward: Complex
+    branch_stable: Flags  #: their stability, shape (n, b)
+    backward: Complex  #: backward part of the branch reported, and without liquid, m, shape (n,)
     backward_dry: Complex
-    branch_backward: Complex
+    branch_backward: Complex  #: of all branches, m, shape (n, b)
+    #: as coordinates, of all branches, nan where there are fewer, shape (n, b, m)
     branch_coordinates: Complex
+    #: complex amplitudes of the branch reported, q = Re(coordinates e^{i Omega t}), shape (n, m)
     coordinates: Complex
+    #: speed at which a branch ends between this speed and the next one, as far as that was found on the way,
+    #: else nan, rad/s, shape (n,); of chambers in several planes only
     fold_speed: Array
-    residual: Array
-    position: float = 0.0
+    residual: Array  #: what is left of the balance of forces over the largest of them, shape (n,)
+    position: float = 0.0  #: along the axis of the plane whose motion is reported, m
+    #: mean over time of the distance of the axis from where it rests, of motions held in time, m, else nan,
+    #: shape (n,); empty where none was
     over_time: Array = field(default_factory=lambda: np.zeros(0))
 
     @property

@@ -28,26 +28,15 @@ from solvers.waves.stepper import Split, squared
 
 @dataclass(frozen=True)
 class WaveTerms:
-    """What acts on the waves of one family [theory: kdv, eq. 1].
+    """What acts on the waves of one family [theory: kdv, eq. 1]."""
 
-    Parameters
-    ----------
-    c : speed, steepening, dispersion
-    whitham : exact dispersion [theory: kdv, eq. 10] instead of the third derivative
-    viscosity : nu_b, rad^2/s, 0 or above
-    damping : gamma, 1/s, 0 or above
-    forcing : q, m^2/s, from `fluid.kdv.forcing`
-    whirl_speed : s, seen from the drum, rad/s
-    ramp : time over which the forcing grows, s
-    """
-
-    c: KdvCoefficients
-    whitham: bool = False
-    viscosity: float = 0.0
-    damping: float = 0.0
-    forcing: float = 0.0
-    whirl_speed: float = 0.0
-    ramp: float = 0.0
+    c: KdvCoefficients  #: speed, steepening, dispersion
+    whitham: bool = False  #: exact dispersion [theory: kdv, eq. 10] instead of the third derivative
+    viscosity: float = 0.0  #: nu_b, rad^2/s, 0 or above
+    damping: float = 0.0  #: gamma, 1/s, 0 or above
+    forcing: float = 0.0  #: q, m^2/s, from `fluid.kdv.forcing`
+    whirl_speed: float = 0.0  #: s, seen from the drum, rad/s
+    ramp: float = 0.0  #: time over which the forcing grows, s
 
     def __post_init__(self) -> None:
         require_not_negative("ramp", self.ramp)
@@ -101,22 +90,14 @@ _NO_MEAN = np.zeros(1, dtype=complex)
 
 @dataclass(frozen=True)
 class WaveProblem:
-    """Steady waves eta(xi), xi = theta - s t, of mean 0 [theory: kdv, eq. 18].
+    """Steady waves eta(xi), xi = theta - s t, of mean 0 [theory: kdv, eq. 18]."""
 
-    Parameters
-    ----------
-    frequency : omega(n) of free waves of vanishing height, rad/s, odd; takes n = 1, 2, ... as an array
-    steepening : alpha, rad/(s m^2), not 0
-    forcing : q, m^2/s; 0 for a free wave
-    decay : gamma, 1/s, 0 or above
-    diffusion : nu_b, rad^2/s, 0 or above
-    """
-
+    #: omega(n) of free waves of vanishing height, rad/s, odd; takes n = 1, 2, ... as an array
     frequency: Callable[[Array], Array]
-    steepening: float
-    forcing: float
-    decay: float = 0.0
-    diffusion: float = 0.0
+    steepening: float  #: alpha, rad/(s m^2), not 0
+    forcing: float  #: q, m^2/s; 0 for a free wave
+    decay: float = 0.0  #: gamma, 1/s, 0 or above
+    diffusion: float = 0.0  #: nu_b, rad^2/s, 0 or above
 
     def __post_init__(self) -> None:
         if not math.isfinite(self.steepening) or self.steepening == 0.0:

@@ -37,28 +37,16 @@ _SLOW = 0.2
 
 @dataclass(frozen=True)
 class SteadyWave:
-    """A steady wave, or how far the search for it came.
+    """A steady wave, or how far the search for it came."""
 
-    Parameters
-    ----------
-    problem : what it answers
-    speed : s, rad/s
-    modes : coefficients of e^{i n xi}, n = 1..M, of eta, m^2, shape (M,)
-    converged : the equations are met and the spectrum is resolved
-    reason : why not, in words; empty if converged
-    iterations : Newton steps in all
-    residual : of the equations, each mode over its coefficient, relative to the wave
-    tail : largest of the last eighth of the modes over the largest mode
-    """
-
-    problem: WaveProblem = field(repr=False)
-    speed: float
-    modes: Complex = field(repr=False)
-    converged: bool
-    reason: str
-    iterations: int
-    residual: float
-    tail: float
+    problem: WaveProblem = field(repr=False)  #: what it answers
+    speed: float  #: s, rad/s
+    modes: Complex = field(repr=False)  #: coefficients of e^{i n xi}, n = 1..M, of eta, m^2, shape (M,)
+    converged: bool  #: the equations are met and the spectrum is resolved
+    reason: str  #: why not, in words; empty if converged
+    iterations: int  #: Newton steps in all
+    residual: float  #: of the equations, each mode over its coefficient, relative to the wave
+    tail: float  #: largest of the last eighth of the modes over the largest mode
 
     def profile(self, points: int) -> Array:
         """Heights eta, m^2, at `points` equal steps of xi from 0, shape (points,); points above 2 M."""
@@ -273,25 +261,15 @@ class Path:
 
 @dataclass(frozen=True)
 class Pace:
-    """How a curve is followed.
+    """How a curve is followed."""
 
-    Parameters
-    ----------
-    longest, shortest : steps, in units of the scaled wave and parameter
-    tolerance : of each point's residual
-    tail : of each point's spectrum
-    most_modes : a curve whose waves need more ends
-    most_steps : limit of its points
-    most_work : limit of the work on dense blocks, the cube of the modes in each
-    """
-
-    longest: float
+    longest: float  #: steps, in units of the scaled wave and parameter
     shortest: float
-    tolerance: float
-    tail: float
-    most_modes: int
-    most_steps: int
-    most_work: float = math.inf
+    tolerance: float  #: of each point's residual
+    tail: float  #: of each point's spectrum
+    most_modes: int  #: a curve whose waves need more ends
+    most_steps: int  #: limit of its points
+    most_work: float = math.inf  #: limit of the work on dense blocks, the cube of the modes in each
 
 
 def march(make: Callable[[int], System], first: Array, target: float, pace: Pace) -> Path:

@@ -213,20 +213,13 @@ _FLAT = 1e-14
 
 @dataclass(frozen=True)
 class Branch:
-    """A curve of steady waves over the whirl speed, through its folds.
+    """A curve of steady waves over the whirl speed, through its folds."""
 
-    Parameters
-    ----------
-    waves : points in order along the curve
-    tangents : unit tangents of the curve there, scaled [Re v, Im v, p]
-    complete : the far end of the range was reached
-    reason : why not, in words; empty if complete
-    """
-
-    waves: tuple[SteadyWave, ...]
+    waves: tuple[SteadyWave, ...]  #: points in order along the curve
+    #: unit tangents of the curve there, scaled [Re v, Im v, p]
     tangents: tuple[Array, ...] = field(repr=False)
-    complete: bool
-    reason: str
+    complete: bool  #: the far end of the range was reached
+    reason: str  #: why not, in words; empty if complete
 
     @property
     def speeds(self) -> Array:
@@ -345,25 +338,17 @@ def growth(wave: SteadyWave) -> float:
 
 @dataclass(frozen=True)
 class Response:
-    """All steady waves found at each of a row of whirl speeds.
+    """All steady waves found at each of a row of whirl speeds."""
 
-    Parameters
-    ----------
-    speeds : s, rad/s, shape (k,)
-    waves : for each speed its answers, smallest first
-    growth : for each speed the growth rates of those, 1/s; empty unless asked for
-    branches : the curves followed: from the lowest speed and, where that one does not reach the other end by
-        itself, from the highest
-    complete : a curve reached from one end to the other, and each of its passages was solved
-    reason : why not, in words; empty if complete
-    """
-
-    speeds: Array
-    waves: tuple[tuple[SteadyWave, ...], ...]
+    speeds: Array  #: s, rad/s, shape (k,)
+    waves: tuple[tuple[SteadyWave, ...], ...]  #: for each speed its answers, smallest first
+    #: for each speed the growth rates of those, 1/s; empty unless asked for
     growth: tuple[tuple[float, ...], ...]
+    #: the curves followed: from the lowest speed and, where that one does not reach the other end by itself,
+    #: from the highest
     branches: tuple[Branch, ...]
-    complete: bool
-    reason: str
+    complete: bool  #: a curve reached from one end to the other, and each of its passages was solved
+    reason: str  #: why not, in words; empty if complete
 
 
 def respond(

@@ -25,17 +25,12 @@ _TERMS = 19
 
 @dataclass(frozen=True)
 class Method:
-    """A method of four stages.
+    """A method of four stages."""
 
-    Parameters
-    ----------
-    order : of the error over a fixed time in the length of the step
-    weights : takes z = L times the step, shape (modes,); returns a21, a31, a32, a41, a43, b1, b2, b4
-    lawson : whether N is followed along each mode's own motion, e^{-L t} N, instead of in a frame
-    """
-
-    order: int
+    order: int  #: of the error over a fixed time in the length of the step
+    #: takes z = L times the step, shape (modes,); returns a21, a31, a32, a41, a43, b1, b2, b4
     weights: Callable[[Complex], tuple[Complex, ...]]
+    #: whether N is followed along each mode's own motion, e^{-L t} N, instead of in a frame
     lawson: bool = False
 
 
@@ -181,18 +176,13 @@ _SAFETY, _SHRINK, _GROW = 0.8, 0.2, 5.0
 
 @dataclass(frozen=True, eq=False)
 class Split:
-    """An equation split into a linear part, which is solved exactly, and the rest.
+    """An equation split into a linear part, which is solved exactly, and the rest."""
 
-    Parameters
-    ----------
-    symbol : L of each mode 0 ... points // 2, 1/s, shape (points // 2 + 1,)
-    nonlinear : N, takes the field's spectrum and the time in s, returns the spectrum of N, both of that shape
-    frame : angular speed of the frame in which N is followed, rad/s; any value is right, one in which the
-        field changes slowly allows longer steps
-    """
-
-    symbol: Complex
+    symbol: Complex  #: L of each mode 0 ... points // 2, 1/s, shape (points // 2 + 1,)
+    #: N, takes the field's spectrum and the time in s, returns the spectrum of N, both of that shape
     nonlinear: Callable[[Complex, float], Complex]
+    #: angular speed of the frame in which N is followed, rad/s; any value is right, one in which the field
+    #: changes slowly allows longer steps
     frame: float = 0.0
 
 
@@ -205,20 +195,12 @@ class _Past(NamedTuple):
 
 @dataclass(frozen=True)
 class Control:
-    """How an adaptive run chooses its steps.
+    """How an adaptive run chooses its steps."""
 
-    Parameters
-    ----------
-    tolerance : error of one step over the field, both root mean squares, above 0
-    first : length of the first step, s, as a former run left it; None: found from N
-    shortest : steps below this fraction of the time span end the run
-    most : steps, accepted or not, after which the run ends
-    """
-
-    tolerance: float = 1e-6
-    first: float | None = None
-    shortest: float = 1e-12
-    most: int = 1_000_000
+    tolerance: float = 1e-6  #: error of one step over the field, both root mean squares, above 0
+    first: float | None = None  #: length of the first step, s, as a former run left it; None: found from N
+    shortest: float = 1e-12  #: steps below this fraction of the time span end the run
+    most: int = 1_000_000  #: steps, accepted or not, after which the run ends
 
     def __post_init__(self) -> None:
         require_positive("tolerance", self.tolerance)
@@ -228,27 +210,17 @@ class Control:
 
 @dataclass(frozen=True, eq=False)
 class Advance:
-    """Where a run ended and what it took.
+    """Where a run ended and what it took."""
 
-    Parameters
-    ----------
-    spectrum : of the field at `time`, shape (modes,); the last good one
-    time : s
-    status : "finished", or why it stopped before; "diverged" if the error of a step reached the field itself
-    steps, rejected : steps taken, and tried in vain
-    smallest_step : shortest step taken, s; infinite if none was
-    next_step : step length the control would try next, s
-    largest_error : of a step taken, estimated, over the field, both root mean squares
-    """
-
-    spectrum: Complex
-    time: float
+    spectrum: Complex  #: of the field at `time`, shape (modes,); the last good one
+    time: float  #: s
+    #: "finished", or why it stopped before; "diverged" if the error of a step reached the field itself
     status: Status
-    steps: int
+    steps: int  #: steps taken, and tried in vain
     rejected: int
-    smallest_step: float
-    next_step: float
-    largest_error: float
+    smallest_step: float  #: shortest step taken, s; infinite if none was
+    next_step: float  #: step length the control would try next, s
+    largest_error: float  #: of a step taken, estimated, over the field, both root mean squares
 
 
 def to_spectrum(values: Array) -> Complex:

@@ -30,19 +30,12 @@ Characteristic = Callable[[Complex, Index], Complex]
 
 @dataclass(frozen=True)
 class Region:
-    """Right of a line, without the cuts that end at two conjugate points and run from there to the left.
+    """Right of a line, without the cuts that end at two conjugate points and run from there to the left."""
 
-    Parameters
-    ----------
-    line : real part of the line, 1/s, shape (n,)
-    tip : imaginary part of the end of the upper cut, 0 or above, rad/s, shape (n,)
-    scale : a frequency of the problem, rad/s, above 0, shape (n,)
-    far : beyond which the function goes as its highest power but for some per cent, rad/s, shape (n,)
-    """
-
-    line: Array
-    tip: Array
-    scale: Array
+    line: Array  #: real part of the line, 1/s, shape (n,)
+    tip: Array  #: imaginary part of the end of the upper cut, 0 or above, rad/s, shape (n,)
+    scale: Array  #: a frequency of the problem, rad/s, above 0, shape (n,)
+    #: beyond which the function goes as its highest power but for some per cent, rad/s, shape (n,)
     far: Array
 
 

@@ -43,20 +43,12 @@ _AXES = np.array([[0.5, 0.5], [-0.5j, 0.5j]], dtype=complex)
 
 @dataclass(frozen=True, eq=False)
 class _Problem:
-    """The rotor with layers of laminar friction.
+    """The rotor with layers of laminar friction."""
 
-    Parameters
-    ----------
-    system : the dry rotor
-    layers : plane, m, and layer
-    weights : of each layer, how often the poles of its waves stand in the determinant
-    degree : of the determinant without its poles, far away
-    """
-
-    system: RotorSystem
-    layers: Sequence[Placed]
-    weights: Array
-    degree: int
+    system: RotorSystem  #: the dry rotor
+    layers: Sequence[Placed]  #: plane, m, and layer
+    weights: Array  #: of each layer, how often the poles of its waves stand in the determinant
+    degree: int  #: of the determinant without its poles, far away
 
 
 def laminar_modes(system: RotorSystem, layers: Sequence[Placed], speed: Array) -> SystemModes:
@@ -259,20 +251,14 @@ def _solve(matrix: Complex, right: Complex) -> Complex:
 
 @dataclass(frozen=True)
 class _Eliminated:
-    """T(lambda) q = 0 of the rotor with its layers eliminated, at k points.
+    """T(lambda) q = 0 of the rotor with its layers eliminated, at k points."""
 
-    Parameters
-    ----------
-    matrix, slope : T and dT/d lambda, shape (k, N, N)
-    waves, poles : log of the product of the layers' waves, which are the poles of det T, and its derivative,
-        shape (k,)
-    shares : offset of each layer over the deflection of its drum, along and against the spin, each (k,)
-    """
-
-    matrix: Complex
+    matrix: Complex  #: T and dT/d lambda, shape (k, N, N)
     slope: Complex
+    #: log of the product of the layers' waves, which are the poles of det T, and its derivative, shape (k,)
     waves: Complex
     poles: Complex
+    #: offset of each layer over the deflection of its drum, along and against the spin, each (k,)
     shares: tuple[list[Complex], list[Complex]]
 
 

@@ -28,21 +28,13 @@ _TINY = 1e-290
 
 @dataclass(frozen=True)
 class PlanarProblem:
-    """A rotor with layers at p points, each a machine of its own at its own spin; g layers.
+    """A rotor with layers at p points, each a machine of its own at its own spin; g layers."""
 
-    Parameters
-    ----------
-    mass : M with all liquid that has no free surface, kg, shape (p,)
-    stiffness, damping : K, N/m, and C, N s/m, shape (p,)
-    spin : Omega, rad/s, shape (p,), above 0
-    liquid, layer_tanh, rate, stokes : of each layer as in `fluid.whirl.Layer`, shape (g, p)
-    """
-
-    mass: Array
-    stiffness: Array
+    mass: Array  #: M with all liquid that has no free surface, kg, shape (p,)
+    stiffness: Array  #: K, N/m, and C, N s/m, shape (p,)
     damping: Array
-    spin: Array
-    liquid: Array
+    spin: Array  #: Omega, rad/s, shape (p,), above 0
+    liquid: Array  #: of each layer as in `fluid.whirl.Layer`, shape (g, p)
     layer_tanh: Array
     rate: Array
     stokes: Array
@@ -57,18 +49,12 @@ class PlanarProblem:
 
 @dataclass(frozen=True)
 class Modes:
-    """Whirl modes, m of them at p points.
+    """Whirl modes, m of them at p points."""
 
-    Parameters
-    ----------
-    slip : s = omega - Omega, rad/s, e^{i s t} in the drum; nan where a point has fewer modes, shape (m, p)
-    rounding : bound of what rounding has done to each, rad/s, shape (m, p)
-    converged : shape (p,)
-    """
-
+    #: s = omega - Omega, rad/s, e^{i s t} in the drum; nan where a point has fewer modes, shape (m, p)
     slip: Complex
-    rounding: Array
-    converged: Flags
+    rounding: Array  #: bound of what rounding has done to each, rad/s, shape (m, p)
+    converged: Flags  #: shape (p,)
 
 
 @dataclass(frozen=True)

@@ -43,19 +43,12 @@ _RESOLVED = 1e-11  # of the frequencies, below which growth is rounding
 
 @dataclass(frozen=True, eq=False)
 class DrumMatrices:
-    """M z'' + (C + sqrt(lambda) S) z' + K z = 0 at n speeds [theory: sections, eq. 3].
+    """M z'' + (C + sqrt(lambda) S) z' + K z = 0 at n speeds [theory: sections, eq. 3]."""
 
-    Parameters
-    ----------
-    mass : symmetric, positive definite, shape (N, N)
-    damping, stiffness : shape (n, N, N)
-    laminar : S, symmetric, shape (N, N)
-    """
-
-    mass: Array
-    damping: Array
+    mass: Array  #: symmetric, positive definite, shape (N, N)
+    damping: Array  #: shape (n, N, N)
     stiffness: Array
-    laminar: Array
+    laminar: Array  #: S, symmetric, shape (N, N)
 
 
 def drum_matrices(rotor: Jeffcott, layers: Sequence[SectionLayer], speed: Array) -> DrumMatrices:
@@ -143,26 +136,18 @@ def roots(matrices: CoupledMatrices) -> Complex:
 
 @dataclass(frozen=True, eq=False)
 class MostGrowing:
-    """What the search for the modes that grow most starts from.
+    """What the search for the modes that grow most starts from."""
 
-    Parameters
-    ----------
-    started : lambda with friction at the frequency of slow waves, `_SLOW` of the spin, shape (n, m)
-    slip : frequency of each over the drum, rad/s, 0 or above, shape (n, m)
-    circles : displacements that tell the sense of a whirl, in pairs across the axis, shape (2 c, N)
-    terms : T(lambda) and its derivative, shape (k, N, N), at points, (k,), of the speeds they belong to, (k,)
-    every : all lambda at some of the speeds, nan in place of some, shape (k, m) from (k,)
-    tip : imaginary part of the end of the cut of T, rad/s, shape (n,)
-    fastest : rate beyond which the masses alone count, 1/s, shape (n,)
-    """
-
+    #: lambda with friction at the frequency of slow waves, `_SLOW` of the spin, shape (n, m)
     started: Complex
-    slip: Array
-    circles: Array
+    slip: Array  #: frequency of each over the drum, rad/s, 0 or above, shape (n, m)
+    circles: Array  #: displacements that tell the sense of a whirl, in pairs across the axis, shape (2 c, N)
+    #: T(lambda) and its derivative, shape (k, N, N), at points, (k,), of the speeds they belong to, (k,)
     terms: Callable[[Complex, Index], tuple[Complex, Complex]]
+    #: all lambda at some of the speeds, nan in place of some, shape (k, m) from (k,)
     every: Callable[[Index], Complex]
-    tip: Array
-    fastest: Array
+    tip: Array  #: imaginary part of the end of the cut of T, rad/s, shape (n,)
+    fastest: Array  #: rate beyond which the masses alone count, 1/s, shape (n,)
 
 
 def most_growing(search: MostGrowing, speed: Array) -> SystemModes:
@@ -292,23 +277,15 @@ class CircleLayer:
 
     q'' + 2 Omega C q' + Omega^2 B q = p* a and Q = -rho h p q, both in the drum's frame, all x + i y
     [theory: sections, eq. 9].
-
-    Parameters
-    ----------
-    density : rho h, kg/m^2
-    liquid_area : m^2
-    gyration, surface, laminar : C, B and S, shape (m, m)
-    moment : p, shape (m,), m
-    rate : k of linear friction, 1/s
     """
 
-    density: float
-    liquid_area: float
-    gyration: Complex
+    density: float  #: rho h, kg/m^2
+    liquid_area: float  #: m^2
+    gyration: Complex  #: C, B and S, shape (m, m)
     surface: Complex
     laminar: Complex
-    moment: Complex
-    rate: float
+    moment: Complex  #: p, shape (m,), m
+    rate: float  #: k of linear friction, 1/s
 
 
 def circle_layer(layer: SectionLayer) -> CircleLayer:
@@ -371,20 +348,13 @@ def _require_alike(liquid: ReducedLiquid, circle: CircleLayer) -> None:
 
 @dataclass(frozen=True, eq=False)
 class StandingMatrices:
-    """M z'' + C z' + K z = 0 at n speeds, and laminar friction beside it.
+    """M z'' + C z' + K z = 0 at n speeds, and laminar friction beside it."""
 
-    Parameters
-    ----------
-    mass, damping, stiffness : shape (N, N), (n, N, N), (n, N, N)
-    laminar : S, shape (N, N)
-    quarter : multiplies the liquid's complex coordinates by i, shape (N, N)
-    """
-
-    mass: Array
+    mass: Array  #: shape (N, N), (n, N, N), (n, N, N)
     damping: Array
     stiffness: Array
-    laminar: Array
-    quarter: Array
+    laminar: Array  #: S, shape (N, N)
+    quarter: Array  #: multiplies the liquid's complex coordinates by i, shape (N, N)
 
 
 def standing_matrices(system: RotorSystem, layers: Sequence[Placed], speed: Array) -> StandingMatrices:

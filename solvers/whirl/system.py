@@ -20,16 +20,10 @@ _EPS = float(np.finfo(float).eps)
 
 @dataclass(frozen=True)
 class CoupledMatrices:
-    """M z'' + C z' + K z = 0 at n spin speeds, z the rotor's coordinates and (dx, dy) of each layer.
+    """M z'' + C z' + K z = 0 at n spin speeds, z the rotor's coordinates and (dx, dy) of each layer."""
 
-    Parameters
-    ----------
-    mass : symmetric, positive definite, shape (N, N)
-    damping, stiffness : with gyroscopic and circulatory parts, shape (n, N, N)
-    """
-
-    mass: Array
-    damping: Array
+    mass: Array  #: symmetric, positive definite, shape (N, N)
+    damping: Array  #: with gyroscopic and circulatory parts, shape (n, N, N)
     stiffness: Array
 
     def at(self, which: Index) -> CoupledMatrices:
@@ -69,22 +63,15 @@ def coupled_matrices(
 
 @dataclass(frozen=True)
 class SystemModes:
-    """Modes of a rotor with layers at n spin speeds.
+    """Modes of a rotor with layers at n spin speeds."""
 
-    Parameters
-    ----------
-    root : lambda, 1/s, m of them and with each its conjugate, shape (n, m)
-    sense : 1 where the larger of the two circles that make up the whirl goes round as e^{i Im(lambda) t}, -1
-        where it goes the other way, shape (n, m)
-    rounding : how far rounding may have moved each, 1/s, shape (n, m)
-    found : False where the iteration did not settle, shape (n, m)
-    complete : no mode is missing that grows more than the one of those found that grows most, shape (n,)
-    """
-
-    root: Complex
+    root: Complex  #: lambda, 1/s, m of them and with each its conjugate, shape (n, m)
+    #: 1 where the larger of the two circles that make up the whirl goes round as e^{i Im(lambda) t}, -1 where
+    #: it goes the other way, shape (n, m)
     sense: Array
-    rounding: Array
-    found: Flags
+    rounding: Array  #: how far rounding may have moved each, 1/s, shape (n, m)
+    found: Flags  #: False where the iteration did not settle, shape (n, m)
+    #: no mode is missing that grows more than the one of those found that grows most, shape (n,)
     complete: Flags
 
     def widened(self, width: int, gone: float) -> SystemModes:

@@ -29,20 +29,12 @@ _SWEEP_CELLS, _SWEEP_PERIODS = 64, 3
 
 @dataclass(frozen=True)
 class Growth:
-    """Cost over a number.
+    """Cost over a number."""
 
-    Parameters
-    ----------
-    name : of the model
-    over : what the number counts
-    counts : shape (k,)
-    seconds : best of some repeats, s, shape (k,)
-    """
-
-    name: str
-    over: str
-    counts: list[int]
-    seconds: list[float]
+    name: str  #: of the model
+    over: str  #: what the number counts
+    counts: list[int]  #: shape (k,)
+    seconds: list[float]  #: best of some repeats, s, shape (k,)
 
 
 def best(run: Callable[[], object], repeats: int = 3, enough: float = 2.0) -> float:

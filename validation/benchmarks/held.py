@@ -31,19 +31,12 @@ SCENES = ("horizontal_rig", "washing_machine", "tub", "two_plane_rig", "runup", 
 
 @dataclass(frozen=True)
 class Cost:
-    """Processor time of the motions of a scene, s.
+    """Processor time of the motions of a scene, s."""
 
-    Parameters
-    ----------
-    scene : its name
-    foretold, taken : by each speed on its own, shape (n,)
-    carried : by motions carried from speed to speed, which nothing foretells
-    """
-
-    scene: str
-    foretold: Array
+    scene: str  #: its name
+    foretold: Array  #: by each speed on its own, shape (n,)
     taken: Array
-    carried: float
+    carried: float  #: by motions carried from speed to speed, which nothing foretells
 
     @property
     def line(self) -> str:

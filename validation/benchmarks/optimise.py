@@ -19,20 +19,13 @@ OBJECTIVES = ("working_speed", "peak", "mean", "least_mass")
 
 @dataclass(frozen=True)
 class Cost:
-    """One search.
+    """One search."""
 
-    Parameters
-    ----------
-    scene, chambers, objective : of the optimisation
-    seconds : of processor time
-    judged : sets of volumes
-    """
-
-    scene: str
+    scene: str  #: of the optimisation
     chambers: int
     objective: str
-    seconds: float
-    judged: int
+    seconds: float  #: of processor time
+    judged: int  #: sets of volumes
 
 
 def measured(name: str, objective: str) -> Cost:

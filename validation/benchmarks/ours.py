@@ -35,14 +35,9 @@ FRICTION = 1.0  # 1/s, linear
 
 @dataclass(frozen=True)
 class LayerProblem:
-    """A layer from rest under a whirl at its resonance, a bore after some periods; friction lets it settle.
+    """A layer from rest under a whirl at its resonance, a bore after some periods, settled by friction."""
 
-    Parameters
-    ----------
-    periods : whirl periods, seen from the drum
-    """
-
-    periods: int
+    periods: int  #: whirl periods, seen from the drum
 
     @property
     def whirl(self) -> Whirl:

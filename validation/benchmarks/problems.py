@@ -75,17 +75,11 @@ class SteadyProblem:
 
     eta_t + (lambda0 - s) eta_xi + alpha eta eta_xi + delta eta_xixixi
         = nu_b eta_xixi - gamma eta - q sin(xi)                            [theory: kdv, eq. 1]
-
-    Parameters
-    ----------
-    c : the family
-    speed : s, rad/s
-    waves : forcing, decay, diffusion
     """
 
-    c: KdvCoefficients
-    speed: float
-    waves: WaveProblem
+    c: KdvCoefficients  #: the family
+    speed: float  #: s, rad/s
+    waves: WaveProblem  #: forcing, decay, diffusion
 
     @property
     def drift(self) -> float:
@@ -180,18 +174,11 @@ def settling_time(
 
 @dataclass(frozen=True)
 class TravellingProblem:
-    """A free wave of permanent form that runs for some turns in the frame of long waves.
+    """A free wave of permanent form that runs for some turns in the frame of long waves."""
 
-    Parameters
-    ----------
-    c : the family
-    wave : exact
-    time : s
-    """
-
-    c: KdvCoefficients
-    wave: TravellingWave
-    time: float
+    c: KdvCoefficients  #: the family
+    wave: TravellingWave  #: exact
+    time: float  #: s
 
     def start(self, theta: Array) -> Array:
         """Field at time 0 at the given angles, m^2."""

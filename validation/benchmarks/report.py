@@ -76,24 +76,14 @@ def _with_nan(row: dict[str, Any]) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class Section:
-    """One problem and everybody's samples.
+    """One problem and everybody's samples."""
 
-    Parameters
-    ----------
-    name : stem of its figure
-    title : what was solved
-    error : what the error is
-    samples : of all codes
-    missing : codes that are not installed
-    target : error at which the codes are compared
-    """
-
-    name: str
-    title: str
-    error: str
-    samples: tuple[Sample, ...]
-    missing: tuple[str, ...]
-    target: float
+    name: str  #: stem of its figure
+    title: str  #: what was solved
+    error: str  #: what the error is
+    samples: tuple[Sample, ...]  #: of all codes
+    missing: tuple[str, ...]  #: codes that are not installed
+    target: float  #: error at which the codes are compared
 
 
 def markdown(section: Section, ours: str) -> str:
@@ -292,27 +282,16 @@ _TURNS, _QUICK_TURNS = 10.0, 1.0
 
 @dataclass(frozen=True)
 class Results:
-    """One run of the benchmarks.
+    """One run of the benchmarks."""
 
-    Parameters
-    ----------
-    versions : of the codes, "not installed" where one is missing
-    sections : problems with everybody's samples
-    over_cells, over_speeds : growth of the cost
-    curve : time of the response at 201 speeds, s
-    curve_complete : whether it was followed from end to end
-    first : times of the first calls, s
-    remarks : ratios and checks in words
-    """
-
-    versions: dict[str, str]
-    sections: list[Section]
-    over_cells: list[growth.Growth]
+    versions: dict[str, str]  #: of the codes, "not installed" where one is missing
+    sections: list[Section]  #: problems with everybody's samples
+    over_cells: list[growth.Growth]  #: growth of the cost
     over_speeds: list[growth.Growth]
-    curve: float
-    curve_complete: bool
-    first: dict[str, float]
-    remarks: list[str]
+    curve: float  #: time of the response at 201 speeds, s
+    curve_complete: bool  #: whether it was followed from end to end
+    first: dict[str, float]  #: times of the first calls, s
+    remarks: list[str]  #: ratios and checks in words
 
 
 def collect(peers: tuple[str, ...], quick: bool, repeats: int) -> Results:

@@ -79,20 +79,13 @@ class BareLayer:
 
 @dataclass(frozen=True)
 class Road:
-    """Cost of a layer over whirl periods, by py-pde and without it.
+    """Cost of a layer over whirl periods, by py-pde and without it."""
 
-    Parameters
-    ----------
-    cells, periods : of the layer and of its way
-    bare, road : least processor times of the kernel called period by period and of py-pde's `solve`, s
-    overhead : share by which the second takes longer; noise only adds to a time
-    """
-
-    cells: int
+    cells: int  #: of the layer and of its way
     periods: int
-    bare: float
+    bare: float  #: least processor times of the kernel called period by period and of py-pde's `solve`, s
     road: float
-    overhead: float
+    overhead: float  #: share by which the second takes longer; noise only adds to a time
 
 
 def measure(periods: int = PERIODS, cells: int = CELLS, repeats: int = REPEATS) -> Road:

@@ -33,22 +33,13 @@ seed = 11
 
 @dataclass(frozen=True)
 class Cost:
-    """Of one sweep.
+    """Of one sweep."""
 
-    Parameters
-    ----------
-    workers : local processes; 0 for none but this
-    samples : answered
-    seconds : by the clock
-    processor : seconds of all processes together
-    memory : largest of any process, and of this one, bytes
-    """
-
-    workers: int
-    samples: int
-    seconds: float
-    processor: float
-    memory: tuple[int, int]
+    workers: int  #: local processes; 0 for none but this
+    samples: int  #: answered
+    seconds: float  #: by the clock
+    processor: float  #: seconds of all processes together
+    memory: tuple[int, int]  #: largest of any process, and of this one, bytes
 
 
 def one_speed_study(folder: Path, samples: int) -> Sweep:

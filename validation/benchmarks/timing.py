@@ -20,45 +20,28 @@ _LONG = 20.0
 
 @dataclass(frozen=True)
 class Contestant:
-    """One code with one setting on one problem.
+    """One code with one setting on one problem."""
 
-    Parameters
-    ----------
-    code : its name
-    setting : method, resolution, step
-    prepare : builds everything that is built once and compiled; returns what sets the state back and returns
-        the run to be timed
-    size : points or cells; 0 where there is no such number
-    """
-
-    code: str
-    setting: str
+    code: str  #: its name
+    setting: str  #: method, resolution, step
+    #: builds everything that is built once and compiled; returns what sets the state back and returns the run
+    #: to be timed
     prepare: Callable[[], Callable[[], Go]]
-    size: int = 0
+    size: int = 0  #: points or cells; 0 where there is no such number
 
 
 @dataclass(frozen=True)
 class Sample:
-    """What one contestant reached.
+    """What one contestant reached."""
 
-    Parameters
-    ----------
-    code, setting, size : as in `Contestant`
-    seconds : best of the repeats, s
-    error : of the answer, relative; nan where the run failed
-    first : time of building, compiling and the first run, s
-    repeats : how many were timed
-    note : why there is no answer, in words; empty if there is one
-    """
-
-    code: str
+    code: str  #: as in `Contestant`
     setting: str
     size: int
-    seconds: float
-    error: float
-    first: float
-    repeats: int
-    note: str = ""
+    seconds: float  #: best of the repeats, s
+    error: float  #: of the answer, relative; nan where the run failed
+    first: float  #: time of building, compiling and the first run, s
+    repeats: int  #: how many were timed
+    note: str = ""  #: why there is no answer, in words; empty if there is one
 
 
 def version(package: str) -> str | None:

@@ -14,73 +14,44 @@ KEPT = Path(__file__).parent / "results.json"
 
 @dataclass(frozen=True)
 class Ending:
-    """The exact wave under a whirl as fast as the backward free wave, grown over 0.9 whirl periods.
+    """The exact wave under a whirl as fast as the backward free wave, grown over 0.9 whirl periods."""
 
-    Parameters
-    ----------
-    depth : h_0/R
-    whirl : w_0/h_0
-    periods : whirl periods until it broke, or that it was followed
-    state : what was known of it then
-    reason : why it is broken, or empty
-    crest : greatest depth over h_0
-    crest_number : greatest speed of the liquid at a crest over that of the crest
-    slope : steepest, deg
-    nodes : at the end
-    """
-
-    depth: float
-    whirl: float
-    periods: float
-    state: str
-    reason: str
-    crest: float
-    crest_number: float
-    slope: float
-    nodes: int
+    depth: float  #: h_0/R
+    whirl: float  #: w_0/h_0
+    periods: float  #: whirl periods until it broke, or that it was followed
+    state: str  #: what was known of it then
+    reason: str  #: why it is broken, or empty
+    crest: float  #: greatest depth over h_0
+    crest_number: float  #: greatest speed of the liquid at a crest over that of the crest
+    slope: float  #: steepest, deg
+    nodes: int  #: at the end
 
 
 @dataclass(frozen=True)
 class Highest:
-    """The highest free wave of one crest at a depth.
+    """The highest free wave of one crest at a depth."""
 
-    Parameters
-    ----------
-    depth : h_0/R
-    crest : its depth over h_0, continued to a crest at which the liquid stands still, seen from the wave
-    last : crest of the last wave that was found, over h_0
-    speed : of the liquid at that crest seen from the wave, over |s| R
-    slip : s/Omega of that wave running backward
-    """
-
-    depth: float
+    depth: float  #: h_0/R
+    #: its depth over h_0, continued to a crest at which the liquid stands still, seen from the wave
     crest: float
-    last: float
-    speed: float
-    slip: float
+    last: float  #: crest of the last wave that was found, over h_0
+    speed: float  #: of the liquid at that crest seen from the wave, over |s| R
+    slip: float  #: s/Omega of that wave running backward
 
 
 @dataclass(frozen=True)
 class Beside:
-    """Long waves beside the exact one until it breaks, at one depth and whirl.
+    """Long waves beside the exact one until it breaks, at one depth and whirl."""
 
-    Parameters
-    ----------
-    depth, whirl : h_0/R, w_0/h_0
-    dispersion : of the long waves
-    force : of each whirl period that the exact wave finished, how far off the mean force is, relative
-    time : of the crests, whirl periods
-    exact, crest : greatest depth over h_0 then, of the exact wave and of the long one
-    front : whirl periods until a front stands in the long wave; None: there is none until then
-    """
-
-    depth: float
+    depth: float  #: h_0/R, w_0/h_0
     whirl: float
-    dispersion: bool
+    dispersion: bool  #: of the long waves
+    #: of each whirl period that the exact wave finished, how far off the mean force is, relative
     force: tuple[float, ...]
-    time: tuple[float, ...]
-    exact: tuple[float, ...]
+    time: tuple[float, ...]  #: of the crests, whirl periods
+    exact: tuple[float, ...]  #: greatest depth over h_0 then, of the exact wave and of the long one
     crest: tuple[float, ...]
+    #: whirl periods until a front stands in the long wave; None: there is none until then
     front: float | None
 
 

@@ -39,35 +39,20 @@ _PLACES = 6  # decimals of a depth over R, which no picture shows
 
 @dataclass(frozen=True)
 class Crest:
-    """A wave with its highest crest at a moment.
+    """A wave with its highest crest at a moment."""
 
-    Parameters
-    ----------
-    most : nodes that it may have
-    time : of the moment
-    nodes : that it has
-    state, reason : what is known of it, and why it is broken
-    crest : greatest depth over h_0
-    crest_number : speed of the liquid at the crest over that of the crest
-    slope : steepest, deg
-    drift : relative change of the volume
-    tail : of the spectrum
-    place : angle of the crest in the drum, rad
-    depth : over R at `angles` from the crest
-    """
-
-    most: int
-    time: float
-    nodes: int
-    state: str
+    most: int  #: nodes that it may have
+    time: float  #: of the moment
+    nodes: int  #: that it has
+    state: str  #: what is known of it, and why it is broken
     reason: str
-    crest: float
-    crest_number: float
-    slope: float
-    drift: float
-    tail: float
-    place: float
-    depth: tuple[float, ...]
+    crest: float  #: greatest depth over h_0
+    crest_number: float  #: speed of the liquid at the crest over that of the crest
+    slope: float  #: steepest, deg
+    drift: float  #: relative change of the volume
+    tail: float  #: of the spectrum
+    place: float  #: angle of the crest in the drum, rad
+    depth: tuple[float, ...]  #: over R at `angles` from the crest
 
 
 def angles() -> Array:

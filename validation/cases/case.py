@@ -19,22 +19,17 @@ _FACTOR = 2.0
 class Effect:
     """How large an effect is by the source, and how large computed.
 
-    Parameters
-    ----------
-    quantity : what its size is measured by, with its unit
-    measured, computed : sizes; of one sign where they are alike
-    without : the value that there would be without the effect, where the sizes are what it leaves of that:
-        the changes from it are compared as well; None where the sizes are the effect itself
-
     Examples
     --------
     >>> Effect("peak over that without liquid", 0.11, 0.94, without=1.0).alike
     False
     """
 
-    quantity: str
-    measured: float
+    quantity: str  #: what its size is measured by, with its unit
+    measured: float  #: sizes; of one sign where they are alike
     computed: float
+    #: the value that there would be without the effect, where the sizes are what it leaves of that: the
+    #: changes from it are compared as well; None where the sizes are the effect itself
     without: float | None = None
 
     @property
@@ -67,34 +62,23 @@ def shape_verdict(same: bool, effect: Effect | None = None) -> Verdict:
 class Case:
     """A published claim beside the computed one.
 
-    Parameters
-    ----------
-    name : group and name, `errata/dr-eq-18`
-    source : key of the source and the place in it
-    quantity : what is compared, with its unit and the input it was taken at
-    printed : the source's value, or its statement in words
-    computed : the package's value, or its statement in words
-    difference : of the printed from the computed value, relative to the latter; or in words
-    verdict : `agrees`; `erratum`: the source is wrong and the derived value is shown; `trend`: only the shape
-        can be compared and is the same, its effect as large within a factor of two; `differs`
-    note : what a reader must know to judge
-    effect : how large it is, where the source gives its size
-
     Raises
     ------
     InputError : an unknown verdict, a number that is not finite, a `trend` whose effect is off by more than a
         factor of two, or is not told though the source prints a number or nothing
     """
 
-    name: str
-    source: str
-    quantity: str
-    printed: Value
-    computed: Value
-    difference: Value
+    name: str  #: group and name, `errata/dr-eq-18`
+    source: str  #: key of the source and the place in it
+    quantity: str  #: what is compared, with its unit and the input it was taken at
+    printed: Value  #: the source's value, or its statement in words
+    computed: Value  #: the package's value, or its statement in words
+    difference: Value  #: of the printed from the computed value, relative to the latter; or in words
+    #: `agrees`; `erratum`: the source is wrong and the derived value is shown; `trend`: only the shape can be
+    #: compared and is the same, its effect as large within a factor of two; `differs`
     verdict: Verdict
-    note: str = ""
-    effect: Effect | None = None
+    note: str = ""  #: what a reader must know to judge
+    effect: Effect | None = None  #: how large it is, where the source gives its size
 
     def __post_init__(self) -> None:
         if self.verdict not in get_args(Verdict):

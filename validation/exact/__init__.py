@@ -24,24 +24,16 @@ MODELS = ("linear", "long_wave", "dispersion", "kdv", "kdv_twin", "whitham", "wh
 
 @dataclass(frozen=True)
 class Cases:
-    """Answers of all models to some whirls; all shapes (n,).
+    """Answers of all models to some whirls; all shapes (n,)."""
 
-    Parameters
-    ----------
-    layer, ratio, whirl : h_0/R, p/p_1, w_0/h_0
-    exact : G of the exact wave; nan where no smooth one was found
-    crest, trough, ripple : of that wave: depths over h_0, and lee waves over its height
-    models : G by each model, nan where it has no smooth wave
-    """
-
-    layer: Array
+    layer: Array  #: h_0/R, p/p_1, w_0/h_0
     ratio: Array
     whirl: Array
-    exact: Array
-    crest: Array
+    exact: Array  #: G of the exact wave; nan where no smooth one was found
+    crest: Array  #: of that wave: depths over h_0, and lee waves over its height
     trough: Array
     ripple: Array
-    models: Mapping[str, Array]
+    models: Mapping[str, Array]  #: G by each model, nan where it has no smooth wave
 
     @property
     def smooth(self) -> Flags:
@@ -60,65 +52,38 @@ class Cases:
 
 @dataclass(frozen=True)
 class Ends:
-    """Where waves of whirls that grow from nothing end; all shapes (n,).
+    """Where waves of whirls that grow from nothing end; all shapes (n,)."""
 
-    Parameters
-    ----------
-    layer, ratio : h_0/R, p/p_1
-    whirl : largest w_0/h_0 of a smooth exact wave
-    fold : there the branch turns back
-    choked : largest w_0/h_0 of a smooth long wave without dispersion
-    """
-
-    layer: Array
+    layer: Array  #: h_0/R, p/p_1
     ratio: Array
-    whirl: Array
-    fold: Flags
-    choked: Array
+    whirl: Array  #: largest w_0/h_0 of a smooth exact wave
+    fold: Flags  #: there the branch turns back
+    choked: Array  #: largest w_0/h_0 of a smooth long wave without dispersion
 
 
 @dataclass(frozen=True)
 class Marched:
-    """Long waves through time beside the steady ones; all shapes (n,).
+    """Long waves through time beside the steady ones; all shapes (n,)."""
 
-    Parameters
-    ----------
-    layer, speed, whirl : h_0/R, whirl speed over the spin, w_0/h_0
-    dispersion : with it
-    cells : round the wall
-    force : G through time, its real part
-    steady : G by the steady equations
-    converged : it settled
-    """
-
-    layer: Array
+    layer: Array  #: h_0/R, whirl speed over the spin, w_0/h_0
     speed: Array
     whirl: Array
-    dispersion: Flags
-    cells: Array
-    force: Array
-    steady: Array
-    converged: Flags
+    dispersion: Flags  #: with it
+    cells: Array  #: round the wall
+    force: Array  #: G through time, its real part
+    steady: Array  #: G by the steady equations
+    converged: Flags  #: it settled
 
 
 @dataclass(frozen=True)
 class Measured:
-    """All that is kept.
+    """All that is kept."""
 
-    Parameters
-    ----------
-    maps : on a grid of depths, detunings and whirls
-    drawn : by chance, none of which a constant was fitted to
-    ends : of branches
-    marched : long waves through time
-    seconds : that the measurement took
-    """
-
-    maps: Cases
-    drawn: Cases
-    ends: Ends
-    marched: Marched
-    seconds: float
+    maps: Cases  #: on a grid of depths, detunings and whirls
+    drawn: Cases  #: by chance, none of which a constant was fitted to
+    ends: Ends  #: of branches
+    marched: Marched  #: long waves through time
+    seconds: float  #: that the measurement took
 
 
 def kept() -> Measured:

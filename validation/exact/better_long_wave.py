@@ -45,48 +45,28 @@ _COURANT = 0.8
 
 @dataclass(frozen=True)
 class Case:
-    """A whirl, the exact force and the relative errors of the models.
+    """A whirl, the exact force and the relative errors of the models."""
 
-    Parameters
-    ----------
-    layer : h_0/R
-    detuning : p over that of the small free wave
-    share : whirl over that of the fold
-    whirl : w_0/h_0
-    exact : G
-    single : whether the exact wave has no shorter ones in its lee
-    errors : of G by model, None where it has no smooth steady wave
-    """
-
-    layer: float
-    detuning: float
-    share: float
-    whirl: float
-    exact: float
-    single: bool
-    errors: dict[str, float | None]
+    layer: float  #: h_0/R
+    detuning: float  #: p over that of the small free wave
+    share: float  #: whirl over that of the fold
+    whirl: float  #: w_0/h_0
+    exact: float  #: G
+    single: bool  #: whether the exact wave has no shorter ones in its lee
+    errors: dict[str, float | None]  #: of G by model, None where it has no smooth steady wave
 
 
 @dataclass(frozen=True)
 class Marched:
-    """What the cells add: the steady wave of a model's own equations, put into the finite volumes.
+    """What the cells add: the steady wave of a model's own equations, put into the finite volumes."""
 
-    Parameters
-    ----------
-    layer, detuning, share : as of `Case`
-    model : HYDROSTATIC or DISPERSION
-    equations : relative error of G of the model's own steady wave
-    cells : of the ring
-    errors : of the mean of G over some whirl periods beside that steady wave, by cells
-    """
-
-    layer: float
+    layer: float  #: as of `Case`
     detuning: float
     share: float
-    model: str
-    equations: float
-    cells: tuple[int, ...]
-    errors: tuple[float, ...]
+    model: str  #: HYDROSTATIC or DISPERSION
+    equations: float  #: relative error of G of the model's own steady wave
+    cells: tuple[int, ...]  #: of the ring
+    errors: tuple[float, ...]  #: of the mean of G over some whirl periods beside that steady wave, by cells
 
 
 def fold(layer: float, detuning: float) -> float:

@@ -46,39 +46,23 @@ class Model(StrEnum):
 
 @dataclass(frozen=True)
 class HalfRing:
-    """Nodes from the deflection to the point opposite; derivatives of even and of odd functions.
+    """Nodes from the deflection to the point opposite; derivatives of even and of odd functions."""
 
-    Parameters
-    ----------
-    cosine : of the nodes' angles, shape (m + 1,)
-    of_even, of_odd : d/dtheta from values at the nodes, shape (m + 1, m + 1)
-    mean : weights, shape (m + 1,)
-    cosines : coefficients of an even function, shape (m + 1, m + 1)
-    sines : those of an odd function, of no meaning in their first and last row
-    """
-
-    cosine: Array
-    of_even: Array
+    cosine: Array  #: of the nodes' angles, shape (m + 1,)
+    of_even: Array  #: d/dtheta from values at the nodes, shape (m + 1, m + 1)
     of_odd: Array
-    mean: Array
-    cosines: Array
-    sines: Array
+    mean: Array  #: weights, shape (m + 1,)
+    cosines: Array  #: coefficients of an even function, shape (m + 1, m + 1)
+    sines: Array  #: those of an odd function, of no meaning in their first and last row
 
 
 @dataclass(frozen=True)
 class Wave:
-    """A steady wave of a model.
+    """A steady wave of a model."""
 
-    Parameters
-    ----------
-    area : A at the nodes, shape (m + 1,)
-    flux : what the mass flux through the whirl's frame has beside A, over s
-    whirl : w_0
-    """
-
-    area: Array
-    flux: float
-    whirl: float
+    area: Array  #: A at the nodes, shape (m + 1,)
+    flux: float  #: what the mass flux through the whirl's frame has beside A, over s
+    whirl: float  #: w_0
 
     @property
     def velocity(self) -> Array:

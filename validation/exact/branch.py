@@ -28,35 +28,22 @@ WIDEST, _NARROWEST = 0.5, 1e-4
 
 @dataclass(frozen=True)
 class Held:
-    """The exact wave at one whirl.
+    """The exact wave at one whirl."""
 
-    Parameters
-    ----------
-    whirl : w_0/h_0
-    force_ratio : G
-    crest, trough : depth over h_0
-    ripple : what rises between crest and trough, where it should fall, over the height; 0 without lee waves
-    """
-
-    whirl: float
-    force_ratio: float
-    crest: float
+    whirl: float  #: w_0/h_0
+    force_ratio: float  #: G
+    crest: float  #: depth over h_0
     trough: float
+    #: what rises between crest and trough, where it should fall, over the height; 0 without lee waves
     ripple: float
 
 
 @dataclass(frozen=True)
 class End:
-    """The largest whirl of a branch that was reached.
+    """The largest whirl of a branch that was reached."""
 
-    Parameters
-    ----------
-    whirl : w_0/h_0
-    fold : there it turns back; elsewhere no smooth wave was found any more
-    """
-
-    whirl: float
-    fold: bool
+    whirl: float  #: w_0/h_0
+    fold: bool  #: there it turns back; elsewhere no smooth wave was found any more
 
 
 def detuning(layer: float, ratio: float) -> float:

@@ -20,17 +20,11 @@ RESOLVED = 1e-6
 
 @dataclass(frozen=True)
 class Chosen:
-    """The models that auto took for some whirls; all shapes (n,).
+    """The models that auto took for some whirls; all shapes (n,)."""
 
-    Parameters
-    ----------
-    model : its name
-    told : its own estimate of its error; nan of long waves, which were not asked
-    error : distance of its G from the exact one over the larger of |G| and 1; nan where one is missing
-    """
-
-    model: NDArray[np.str_]
-    told: Array
+    model: NDArray[np.str_]  #: its name
+    told: Array  #: its own estimate of its error; nan of long waves, which were not asked
+    #: distance of its G from the exact one over the larger of |G| and 1; nan where one is missing
     error: Array
 
     @property

@@ -29,22 +29,13 @@ _CHOKED, _CORNER = 33, 1e-3
 
 @dataclass(frozen=True)
 class SteadyLongWave:
-    """A long wave of permanent form, even about the deflection.
+    """A long wave of permanent form, even about the deflection."""
 
-    Parameters
-    ----------
-    angle : from the deflection, 0 to pi, rad, shape (n,)
-    area : liquid per radian, over R^2, shape (n,)
-    whirl : w_0/R
-    tail : of its spectrum, the last tenth over the largest
-    converged : it meets its equations
-    """
-
-    angle: Array
-    area: Array
-    whirl: float
-    tail: float
-    converged: bool
+    angle: Array  #: from the deflection, 0 to pi, rad, shape (n,)
+    area: Array  #: liquid per radian, over R^2, shape (n,)
+    whirl: float  #: w_0/R
+    tail: float  #: of its spectrum, the last tenth over the largest
+    converged: bool  #: it meets its equations
 
     @property
     def smooth(self) -> bool:
@@ -208,23 +199,14 @@ def _newton(problem: _Problem, state: Array) -> Array | None:
 
 @dataclass(frozen=True)
 class _Even:
-    """Even nodes from 0 to pi, and functions even or odd about both ends.
+    """Even nodes from 0 to pi, and functions even or odd about both ends."""
 
-    Parameters
-    ----------
-    angle : of the nodes, rad, shape (n,)
-    mean : weights of the mean, shape (n,)
-    coefficients : cosines of an even function, shape (n, n)
-    slope, odd_slope : derivative of an even function, of an odd one, shape (n, n)
-    integral : of an odd function, with mean 0, shape (n, n)
-    """
-
-    angle: Array
-    mean: Array
-    coefficients: Array
-    slope: Array
+    angle: Array  #: of the nodes, rad, shape (n,)
+    mean: Array  #: weights of the mean, shape (n,)
+    coefficients: Array  #: cosines of an even function, shape (n, n)
+    slope: Array  #: derivative of an even function, of an odd one, shape (n, n)
     odd_slope: Array
-    integral: Array
+    integral: Array  #: of an odd function, with mean 0, shape (n, n)
 
 
 @cache

@@ -18,55 +18,33 @@ KEPT = Path(__file__).parent / "results.json"
 
 @dataclass(frozen=True)
 class Onset:
-    """How a whirl begins on the way up.
+    """How a whirl begins on the way up."""
 
-    Parameters
-    ----------
-    layer, mass_ratio : h_0/R, mu
-    speed : Omega/omega_n at which it does; nan where none does
-    shift : change of the circle's Omega/omega_n over (W/h_0)^2; positive where it begins softly
-    """
-
-    layer: float
+    layer: float  #: h_0/R, mu
     mass_ratio: float
-    speed: float
-    shift: float
+    speed: float  #: Omega/omega_n at which it does; nan where none does
+    shift: float  #: change of the circle's Omega/omega_n over (W/h_0)^2; positive where it begins softly
 
 
 @dataclass(frozen=True)
 class Way:
-    """Circles of growing whirls from an onset, as far as they were found.
+    """Circles of growing whirls from an onset, as far as they were found."""
 
-    Parameters
-    ----------
-    layer, mass_ratio : h_0/R, mu
-    circles : the onset first
-    """
-
-    layer: float
+    layer: float  #: h_0/R, mu
     mass_ratio: float
-    circles: tuple[Circle, ...]
+    circles: tuple[Circle, ...]  #: the onset first
 
 
 @dataclass(frozen=True)
 class Kept:
-    """All that is kept.
+    """All that is kept."""
 
-    Parameters
-    ----------
-    damping, friction : zeta and k/omega_n of onsets and ways
-    onsets : over depth and mass ratio
-    ways : of some machines
-    settled : in time, from a small push at a speed of a way
-    grown : in time, until the wave ends
-    """
-
-    damping: float
+    damping: float  #: zeta and k/omega_n of onsets and ways
     friction: float
-    onsets: tuple[Onset, ...]
-    ways: tuple[Way, ...]
-    settled: tuple[Grown, ...]
-    grown: tuple[Grown, ...]
+    onsets: tuple[Onset, ...]  #: over depth and mass ratio
+    ways: tuple[Way, ...]  #: of some machines
+    settled: tuple[Grown, ...]  #: in time, from a small push at a speed of a way
+    grown: tuple[Grown, ...]  #: in time, until the wave ends
 
 
 def kept() -> Kept:

@@ -29,40 +29,23 @@ CASES = (
 
 @dataclass(frozen=True)
 class Told:
-    """What one model tells of a speed.
+    """What one model tells of a speed."""
 
-    Parameters
-    ----------
-    state : how it moves
-    reason : why it has not settled, or empty
-    amplitude : mean over time, m; none of a motion that broke off
-    turns : turns that it was held
-    seconds : of one core
-    estimate : of them, by `solvers.held.cost`
-    """
-
-    state: str
-    reason: str
-    amplitude: float | None
-    turns: int
-    seconds: float
-    estimate: float
+    state: str  #: how it moves
+    reason: str  #: why it has not settled, or empty
+    amplitude: float | None  #: mean over time, m; none of a motion that broke off
+    turns: int  #: turns that it was held
+    seconds: float  #: of one core
+    estimate: float  #: of them, by `solvers.held.cost`
 
 
 @dataclass(frozen=True)
 class Pair:
-    """Both models at a speed.
+    """Both models at a speed."""
 
-    Parameters
-    ----------
-    example : scene
-    rpm : speed
-    exact, long : what they tell
-    """
-
-    example: str
-    rpm: float
-    exact: Told
+    example: str  #: scene
+    rpm: float  #: speed
+    exact: Told  #: what they tell
     long: Told
 
     @property

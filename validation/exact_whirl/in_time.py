@@ -25,52 +25,29 @@ _STEP = 1e-8
 
 @dataclass(frozen=True)
 class Setting:
-    """A machine with one layer on round supports.
+    """A machine with one layer on round supports."""
 
-    Parameters
-    ----------
-    layer : h_0/R
-    mass_ratio : mu, liquid of a full drum over the rotor's mass
-    speed : Omega/omega_n
-    damping : zeta of the support
-    friction : k/omega_n of the body force on the liquid
-    waves : damping of the shortest waves, over the spin
-    """
-
-    layer: float
-    mass_ratio: float
-    speed: float
-    damping: float = 0.0
-    friction: float = 0.0
-    waves: float = 0.0
+    layer: float  #: h_0/R
+    mass_ratio: float  #: mu, liquid of a full drum over the rotor's mass
+    speed: float  #: Omega/omega_n
+    damping: float = 0.0  #: zeta of the support
+    friction: float = 0.0  #: k/omega_n of the body force on the liquid
+    waves: float = 0.0  #: damping of the shortest waves, over the spin
 
 
 @dataclass(frozen=True)
 class Grown:
-    """What became of a push.
+    """What became of a push."""
 
-    Parameters
-    ----------
-    setting : the machine
-    nodes : at the end
-    ended : "done", "broke", "nodes" or "dried"
-    time : of the looks, over 1/omega_n
-    whirl : deflection at them over h_0
-    last : deflection at the end over h_0
-    crest : depth there over h_0
-    slope : steepest there, deg
-    crest_number : B there
-    """
-
-    setting: Setting
-    nodes: int
-    ended: str
-    time: tuple[float, ...]
-    whirl: tuple[float, ...]
-    last: float
-    crest: float
-    slope: float
-    crest_number: float
+    setting: Setting  #: the machine
+    nodes: int  #: at the end
+    ended: str  #: "done", "broke", "nodes" or "dried"
+    time: tuple[float, ...]  #: of the looks, over 1/omega_n
+    whirl: tuple[float, ...]  #: deflection at them over h_0
+    last: float  #: deflection at the end over h_0
+    crest: float  #: depth there over h_0
+    slope: float  #: steepest there, deg
+    crest_number: float  #: B there
 
 
 def machine_of(setting: Setting, nodes: int) -> ExactMachine:

@@ -31,24 +31,14 @@ _SLOWEST, _FASTEST, _APART = 0.2, 4.0, 0.002
 
 @dataclass(frozen=True)
 class LaggingWave:
-    """A wave that stands in the frame of its whirl.
+    """A wave that stands in the frame of its whirl."""
 
-    Parameters
-    ----------
-    surface : y = ln(R/r) at even u, shape (m,)
-    potential : phi over s there, shape (m,)
-    whirl : w_0/R, along the angle 0
-    force_ratio : G, complex
-    tail : of the spectrum, the last tenth over the largest
-    converged : it meets its equations
-    """
-
-    surface: Array
-    potential: Array
-    whirl: float
-    force_ratio: complex
-    tail: float
-    converged: bool
+    surface: Array  #: y = ln(R/r) at even u, shape (m,)
+    potential: Array  #: phi over s there, shape (m,)
+    whirl: float  #: w_0/R, along the angle 0
+    force_ratio: complex  #: G, complex
+    tail: float  #: of the spectrum, the last tenth over the largest
+    converged: bool  #: it meets its equations
 
 
 def lagging_wave(
@@ -145,20 +135,12 @@ def _force_ratio(y: Array, layer: float, whirl: float) -> complex:
 
 @dataclass(frozen=True)
 class Circle:
-    """A circle of a rotor on round supports with the wave it holds.
+    """A circle of a rotor on round supports with the wave it holds."""
 
-    Parameters
-    ----------
-    whirl : W/h_0
-    speed : Omega/omega_n
-    whirl_speed : omega_w/omega_n
-    crest : depth there over h_0
-    """
-
-    whirl: float
-    speed: float
-    whirl_speed: float
-    crest: float
+    whirl: float  #: W/h_0
+    speed: float  #: Omega/omega_n
+    whirl_speed: float  #: omega_w/omega_n
+    crest: float  #: depth there over h_0
 
 
 def small_whirl(

@@ -59,18 +59,11 @@ _BEGINNING = 0.5  # s, in which Python starts: nothing of this package hears a s
 
 @dataclass(frozen=True)
 class Ending:
-    """How a command ended.
+    """How a command ended."""
 
-    Parameters
-    ----------
-    code : of its process
-    said : on stderr
-    waited : from the signal to the end, s
-    """
-
-    code: int
-    said: str
-    waited: float
+    code: int  #: of its process
+    said: str  #: on stderr
+    waited: float  #: from the signal to the end, s
 
 
 def start(command: str, folder: Path, most: int | None = None) -> subprocess.Popen[str]:

@@ -50,16 +50,10 @@ HELD = {"jeffcott": 500, "two_plane": 400, "tub": 400}  # machines drawn to be h
 
 @dataclass(frozen=True)
 class Coverage:
-    """Errors and their estimates, shape (n,).
+    """Errors and their estimates, shape (n,)."""
 
-    Parameters
-    ----------
-    true : relative error against the better model
-    estimate : of it, infinite where there is none
-    """
-
-    true: Array
-    estimate: Array
+    true: Array  #: relative error against the better model
+    estimate: Array  #: of it, infinite where there is none
 
     @property
     def covered(self) -> float:
@@ -120,19 +114,12 @@ def _random_fill(rng: np.random.Generator, radius: float) -> Fill:
 
 @dataclass(frozen=True)
 class LinearSample:
-    """Random machines answered by both models, shape (n,).
+    """Random machines answered by both models, shape (n,)."""
 
-    Parameters
-    ----------
-    linear, exact : responses by linear theory and by the exact equilibrium
-    error : its estimate
-    amplitude, liquid : errors and estimates of the amplitude and of the liquid's offset
-    """
-
-    linear: Response
+    linear: Response  #: responses by linear theory and by the exact equilibrium
     exact: Response
-    error: LinearError
-    amplitude: Coverage
+    error: LinearError  #: its estimate
+    amplitude: Coverage  #: errors and estimates of the amplitude and of the liquid's offset
     liquid: Coverage
 
 
@@ -185,22 +172,14 @@ def gravity_sample(seed: int, count: int, weakest: float = 4.0, cells: int = 64)
 
 @dataclass(frozen=True)
 class HeldSample:
-    """Lying machines held in time with and without gravity, each with its estimate.
+    """Lying machines held in time with and without gravity, each with its estimate."""
 
-    Parameters
-    ----------
-    amplitude, liquid : means of the amplitude and of the liquid's offset
-    ripple, liquid_ripple : by which both go up and down about their means
-    strength : gravity over the centrifugal acceleration at the surface of each machine, shape (n,)
-    thrown : gravity throws the machine into a limit cycle, shape (n,)
-    """
-
-    amplitude: Coverage
+    amplitude: Coverage  #: means of the amplitude and of the liquid's offset
     liquid: Coverage
-    ripple: Coverage
+    ripple: Coverage  #: by which both go up and down about their means
     liquid_ripple: Coverage
-    strength: Array
-    thrown: Flags
+    strength: Array  #: gravity over the centrifugal acceleration at the surface of each machine, shape (n,)
+    thrown: Flags  #: gravity throws the machine into a limit cycle, shape (n,)
 
 
 def held_sample(seed: int, count: int, cells: int = 48, kind: str = "jeffcott") -> HeldSample:

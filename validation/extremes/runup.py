@@ -27,31 +27,18 @@ _FRICTION = Friction(FrictionLaw.LINEAR, 3.0)
 
 @dataclass(frozen=True)
 class RunupExtreme:
-    """One machine on one ramp.
+    """One machine on one ramp."""
 
-    Parameters
-    ----------
-    name : what is extreme in it
-    stiffness, damping : over those of the ordinary machine
-    unbalance : kg m
-    share : of each chamber that is filled
-    chambers : how many, of 40 mm height together
-    friction : on the walls
-    gravity : across the axis, m/s^2
-    ramp : of the spin
-    cells : of each layer
-    """
-
-    name: str
-    stiffness: float = 1.0
+    name: str  #: what is extreme in it
+    stiffness: float = 1.0  #: over those of the ordinary machine
     damping: float = 1.0
-    unbalance: float = 0.1
-    share: float = 5e-4 / _CHAMBER.capacity
-    chambers: int = 1
-    friction: Friction = _FRICTION
-    gravity: float = 0.0
-    ramp: Ramp = _RAMP
-    cells: int = 64
+    unbalance: float = 0.1  #: kg m
+    share: float = 5e-4 / _CHAMBER.capacity  #: of each chamber that is filled
+    chambers: int = 1  #: how many, of 40 mm height together
+    friction: Friction = _FRICTION  #: on the walls
+    gravity: float = 0.0  #: across the axis, m/s^2
+    ramp: Ramp = _RAMP  #: of the spin
+    cells: int = 64  #: of each layer
 
 
 def runup_extremes() -> Iterator[RunupExtreme]:

@@ -27,56 +27,31 @@ _RADIUS, _HEIGHT = 0.15, 0.01
 
 @dataclass(frozen=True)
 class Extreme:
-    """One layer under one whirl.
+    """One layer under one whirl."""
 
-    Parameters
-    ----------
-    name : what is extreme in it
-    model : `long_wave` or `kdv`
-    depth : h0/R
-    spin : Omega, rad/s
-    viscosity : m^2/s; with it the laminar wall layer's friction
-    amplitude : w0/h0
-    ratio : whirl speed over spin speed
-    points : cells, or points of the profile
-    dispersion : the exact one for `kdv`, the added one for `long_wave`
-    periods : whirl periods of the long waves, from rest, with a ramp of 20/Omega
-    """
-
-    name: str
-    model: str
-    depth: float = 0.1
-    spin: float = 40.0
-    viscosity: float = 1e-6
-    amplitude: float = 0.05
-    ratio: float = 0.7643970164
-    points: int = 128
-    dispersion: bool = False
-    periods: int = 3
+    name: str  #: what is extreme in it
+    model: str  #: `long_wave` or `kdv`
+    depth: float = 0.1  #: h0/R
+    spin: float = 40.0  #: Omega, rad/s
+    viscosity: float = 1e-6  #: m^2/s; with it the laminar wall layer's friction
+    amplitude: float = 0.05  #: w0/h0
+    ratio: float = 0.7643970164  #: whirl speed over spin speed
+    points: int = 128  #: cells, or points of the profile
+    dispersion: bool = False  #: the exact one for `kdv`, the added one for `long_wave`
+    periods: int = 3  #: whirl periods of the long waves, from rest, with a ramp of 20/Omega
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """What came of it.
+    """What came of it."""
 
-    Parameters
-    ----------
-    converged : an answer was reached
-    in_range : the model says it holds there
-    finite : every number of the answer is one
-    mass_error : relative change of the liquid's volume
-    least_depth : over h0
-    force : modulus of the last force ratio; nan without an answer
-    says : what the answer says of itself
-    """
-
-    converged: bool
-    in_range: bool
-    finite: bool
-    mass_error: float
-    least_depth: float
-    force: float
-    says: str
+    converged: bool  #: an answer was reached
+    in_range: bool  #: the model says it holds there
+    finite: bool  #: every number of the answer is one
+    mass_error: float  #: relative change of the liquid's volume
+    least_depth: float  #: over h0
+    force: float  #: modulus of the last force ratio; nan without an answer
+    says: str  #: what the answer says of itself
 
 
 def extremes(model: str) -> Iterator[Extreme]:

@@ -16,27 +16,17 @@ KEPT = Path(__file__).parent / "results.json"
 
 @dataclass(frozen=True)
 class ModelRow:
-    """One model on one scene.
+    """One model on one scene."""
 
-    Parameters
-    ----------
-    model : its name in a scene
-    cells : round each wall, of waves held in time; None elsewhere
-    error : largest relative distance from the best answer over the speeds, of the amplitude and the offset of
-        the liquid's centre of mass the larger; nan of the best answer itself
-    estimate : largest error that the model tells of itself; nan where it has none
-    time : processor time of the whole answer over the number of speeds, s
-    lost : speeds at which it has no answer
-    in_range : part of the speeds
-    """
-
-    model: str
-    cells: int | None
+    model: str  #: its name in a scene
+    cells: int | None  #: round each wall, of waves held in time; None elsewhere
+    #: largest relative distance from the best answer over the speeds, of the amplitude and the offset of the
+    #: liquid's centre of mass the larger; nan of the best answer itself
     error: float
-    estimate: float
-    time: float
-    lost: int
-    in_range: float
+    estimate: float  #: largest error that the model tells of itself; nan where it has none
+    time: float  #: processor time of the whole answer over the number of speeds, s
+    lost: int  #: speeds at which it has no answer
+    in_range: float  #: part of the speeds
 
     @property
     def name(self) -> str:
@@ -46,22 +36,13 @@ class ModelRow:
 
 @dataclass(frozen=True)
 class ModelTable:
-    """All models on one scene.
+    """All models on one scene."""
 
-    Parameters
-    ----------
-    scene : stem of the example
-    about : the speeds and what the best answer is, in words
-    speeds : how many
-    best_error : own error of the best answer
-    rows : the models
-    """
-
-    scene: str
-    about: str
-    speeds: int
-    best_error: float
-    rows: tuple[ModelRow, ...]
+    scene: str  #: stem of the example
+    about: str  #: the speeds and what the best answer is, in words
+    speeds: int  #: how many
+    best_error: float  #: own error of the best answer
+    rows: tuple[ModelRow, ...]  #: the models
 
 
 def kept() -> tuple[ModelTable, ...]:

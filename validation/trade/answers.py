@@ -37,21 +37,16 @@ DISPERSION, HELD, SMALL = "dispersion", "held", "small waves"
 
 @dataclass(frozen=True)
 class Case:
-    """One model at one resolution.
+    """One model at one resolution."""
 
-    Parameters
-    ----------
-    question : "response" or "runup", or of a layer alone "long waves" or "one family"
-    model : "auto" (the scene's default), "linear", "statics", "long_wave", "kdv", "fem"; of an exciter
-        "formulas" or "integration"
-    resolution : cells round a wall, edges along a wall, steps in a turn; None where there is none
-    variant : "dispersion", "held" (in time until the motion settles), "order 1" or "order 2", "small waves"
-        (of compartments), or empty; of a layer alone its solver, as py-pde names it
-    """
-
-    question: str
+    question: str  #: "response" or "runup", or of a layer alone "long waves" or "one family"
+    #: "auto" (the scene's default), "linear", "statics", "long_wave", "kdv", "fem"; of an exciter "formulas"
+    #: or "integration"
     model: str
+    #: cells round a wall, edges along a wall, steps in a turn; None where there is none
     resolution: int | None = None
+    #: "dispersion", "held" (in time until the motion settles), "order 1" or "order 2", "small waves" (of
+    #: compartments), or empty; of a layer alone its solver, as py-pde names it
     variant: str = ""
 
     @property
@@ -68,24 +63,16 @@ class Case:
 
 @dataclass(frozen=True)
 class Answer:
-    """What a case answers.
+    """What a case answers."""
 
-    Parameters
-    ----------
-    values : amplitudes over speed or over time, m, shape (k,)
-    in_range : the model says of itself that it holds there
-    reason : why there is no answer, or empty
-    used : models that answered
-    ripple : half of what the amplitude swings over, m, shape (k,); None where it is not asked for
-    estimate : largest error that the answer tells of itself, relative: of a layer alone that of its waves
-        beside the exact one, without friction; nan where it tells none
-    """
-
-    values: Array
-    in_range: bool
-    reason: str
-    used: tuple[str, ...]
+    values: Array  #: amplitudes over speed or over time, m, shape (k,)
+    in_range: bool  #: the model says of itself that it holds there
+    reason: str  #: why there is no answer, or empty
+    used: tuple[str, ...]  #: models that answered
+    #: half of what the amplitude swings over, m, shape (k,); None where it is not asked for
     ripple: Array | None = None
+    #: largest error that the answer tells of itself, relative: of a layer alone that of its waves beside the
+    #: exact one, without friction; nan where it tells none
     estimate: float = math.nan
 
 
@@ -107,22 +94,13 @@ def at_speeds(scene: Scene, speed: Array) -> SceneAt:
 
 @dataclass(frozen=True)
 class Steady:
-    """A synchronous response at the speeds of a scene, shape (n,).
+    """A synchronous response at the speeds of a scene, shape (n,)."""
 
-    Parameters
-    ----------
-    amplitude : m
-    ripple : half of what the distance of the axis swings over, its orbit being an ellipse, m
-    dry : the wall is dry somewhere
-    good : in range, and found
-    used : models that answered
-    """
-
-    amplitude: Array
-    ripple: Array
-    dry: Flags
-    good: Flags
-    used: tuple[str, ...]
+    amplitude: Array  #: m
+    ripple: Array  #: half of what the distance of the axis swings over, its orbit being an ellipse, m
+    dry: Flags  #: the wall is dry somewhere
+    good: Flags  #: in range, and found
+    used: tuple[str, ...]  #: models that answered
 
 
 def steady(scene: Scene, models: LiquidModel | Sequence[LiquidModel]) -> Steady:

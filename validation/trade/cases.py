@@ -54,24 +54,15 @@ _EXCITED = (0.25, 0.9)  # of the exciter's critical speed, between which its spe
 
 @dataclass(frozen=True)
 class Question:
-    """What every case answers.
+    """What every case answers."""
 
-    Parameters
-    ----------
-    name : as of `Case.question`
-    scene : cut to the question
-    about : what is asked, and what was cut, in words
-    cases : in the order of the table; the first is the default
-    reference : the best of them
-    ladder : the reference and coarser ones, finest first, whose differences give its own error; alone
-        if it is exact
-    """
-
-    name: str
-    scene: Scene
-    about: str
-    cases: tuple[Case, ...]
-    reference: Case
+    name: str  #: as of `Case.question`
+    scene: Scene  #: cut to the question
+    about: str  #: what is asked, and what was cut, in words
+    cases: tuple[Case, ...]  #: in the order of the table; the first is the default
+    reference: Case  #: the best of them
+    #: the reference and coarser ones, finest first, whose differences give its own error; alone if it is
+    #: exact
     ladder: tuple[Case, ...]
 
 

@@ -19,67 +19,43 @@ _LEAST_ORDER = 0.25  # of convergence; what converges slower is not extrapolated
 
 @dataclass(frozen=True)
 class Run:
-    """What one case answered and took.
+    """What one case answered and took."""
 
-    Parameters
-    ----------
-    answer : to the question
-    times : CPU times, s
-    first : CPU time of the first piece with imports and compilation, s
-    memory : beyond that of a process with everything loaded, bytes
-    """
-
-    answer: Answer
-    times: tuple[float, ...]
-    first: float
-    memory: int
+    answer: Answer  #: to the question
+    times: tuple[float, ...]  #: CPU times, s
+    first: float  #: CPU time of the first piece with imports and compilation, s
+    memory: int  #: beyond that of a process with everything loaded, bytes
 
 
 @dataclass(frozen=True)
 class Row:
-    """One case beside the others.
+    """One case beside the others."""
 
-    Parameters
-    ----------
-    question, model, resolution, variant : of the case
-    used : models that answered
-    error, peak_error : relative to the best answer, of the whole and of the largest amplitude; nan without an
-        answer
-    resolved : the error is larger than the reference's own
-    time : least CPU time, s
-    spread : of the times, the middle one less the least over the least; that of the worst other row where
-        only one was taken
-    repeats : how many were timed
-    first, memory : see `Run`
-    in_range : the model says of itself that it holds there
-    selectable : a scene can name it
-    note : why there is no answer, or empty
-    estimate : largest error that the answer tells of itself, relative; nan where it tells none
-    ripple_error : of the ripple, over the best answer's amplitude; nan where it is not asked for
-    on_front : no other row dominates it
-    default, recommended : what the scene's default gives; what is advised for its tolerance
-    """
-
-    question: str
+    question: str  #: of the case
     model: str
     resolution: int | None
     variant: str
-    used: tuple[str, ...]
+    used: tuple[str, ...]  #: models that answered
+    #: relative to the best answer, of the whole and of the largest amplitude; nan without an answer
     error: float
     peak_error: float
-    resolved: bool
-    time: float
+    resolved: bool  #: the error is larger than the reference's own
+    time: float  #: least CPU time, s
+    #: of the times, the middle one less the least over the least; that of the worst other row where only one
+    #: was taken
     spread: float
-    repeats: int
-    first: float
+    repeats: int  #: how many were timed
+    first: float  #: see `Run`
     memory: int
-    in_range: bool
-    selectable: bool
-    note: str
+    in_range: bool  #: the model says of itself that it holds there
+    selectable: bool  #: a scene can name it
+    note: str  #: why there is no answer, or empty
+    #: largest error that the answer tells of itself, relative; nan where it tells none
     estimate: float = math.nan
+    #: of the ripple, over the best answer's amplitude; nan where it is not asked for
     ripple_error: float = math.nan
-    on_front: bool = False
-    default: bool = False
+    on_front: bool = False  #: no other row dominates it
+    default: bool = False  #: what the scene's default gives; what is advised for its tolerance
     recommended: bool = False
 
     @property
@@ -90,29 +66,19 @@ class Row:
 
 @dataclass(frozen=True)
 class Comparison:
-    """The rows of one question.
+    """The rows of one question."""
 
-    Parameters
-    ----------
-    question, about : name; what is asked, in words
-    reference : label of the best case
-    reference_error : relative, its own
-    order : of its convergence, nan where it is exact or does not converge
-    rows : one for each case, the default first
-    dominated_by : labels of the rows that dominate the default
-    overhead : time of the default over that of the row that took the same model and resolution, less 1; nan
-        if there is none
-    ripple : largest ripple of the best answer, over its amplitude; nan where it is not asked for
-    """
-
-    question: str
+    question: str  #: name; what is asked, in words
     about: str
-    reference: str
-    reference_error: float
-    order: float
-    rows: tuple[Row, ...]
-    dominated_by: tuple[str, ...]
+    reference: str  #: label of the best case
+    reference_error: float  #: relative, its own
+    order: float  #: of its convergence, nan where it is exact or does not converge
+    rows: tuple[Row, ...]  #: one for each case, the default first
+    dominated_by: tuple[str, ...]  #: labels of the rows that dominate the default
+    #: time of the default over that of the row that took the same model and resolution, less 1; nan if there
+    #: is none
     overhead: float
+    #: largest ripple of the best answer, over its amplitude; nan where it is not asked for
     ripple: float = math.nan
 
     @property

@@ -32,21 +32,14 @@ _SHORT = 0.02  # s; shorter runs are timed several at once
 
 @dataclass(frozen=True)
 class TradeRecord:
-    """What `trade` found.
+    """What `trade` found."""
 
-    Parameters
-    ----------
-    name, source, assumed, digest : of the scene
-    tolerance : relative error that it allows
-    comparisons : one for each question
-    """
-
-    name: str
+    name: str  #: of the scene
     source: str
     assumed: tuple[str, ...]
     digest: str
-    tolerance: float
-    comparisons: tuple[Comparison, ...]
+    tolerance: float  #: relative error that it allows
+    comparisons: tuple[Comparison, ...]  #: one for each question
 
 
 def trade_scene(

@@ -27,67 +27,44 @@ _MOST_WINDOWS = 3
 
 @dataclass(frozen=True)
 class HeldCurves:
-    """Motions held in time in the units of figures, by rising speed; n speeds, c chambers.
+    """Motions held in time in the units of figures, by rising speed; n speeds, c chambers."""
 
-    Parameters
-    ----------
-    rpm : of all speeds asked for, shape (n,)
-    cycle : amplitude of limit cycles on average, mm, nan elsewhere, shape (n,)
-    whirl : speed of their whirl in space, rpm, nan elsewhere, shape (n,)
-    down : amplitude on the way down where it differs, and at the neighbours, mm, nan elsewhere, shape (n,)
-    layer, swing : distance of each layer's mean centre of mass from its chamber's axis, and by how much the
-        centre leaves that mean, mm, nan where the layer was not held, shape (n, c)
-    """
-
-    rpm: Array
-    cycle: Array
-    whirl: Array
+    rpm: Array  #: of all speeds asked for, shape (n,)
+    cycle: Array  #: amplitude of limit cycles on average, mm, nan elsewhere, shape (n,)
+    whirl: Array  #: speed of their whirl in space, rpm, nan elsewhere, shape (n,)
+    #: amplitude on the way down where it differs, and at the neighbours, mm, nan elsewhere, shape (n,)
     down: Array
+    #: distance of each layer's mean centre of mass from its chamber's axis, and by how much the centre leaves
+    #: that mean, mm, nan where the layer was not held, shape (n, c)
     layer: Array
     swing: Array
 
 
 @dataclass(frozen=True)
 class Curves:
-    """One study in the units of its figures, by rising speed; p points, b branches.
+    """One study in the units of its figures, by rising speed; p points, b branches."""
 
-    Parameters
-    ----------
-    rpm : spin speed, shape (p,)
-    limits : of the speed axis, rpm
-    amplitude, amplitude_dry, offset : mm, shape (p,)
-    angle, phase, phase_dry : degrees in (-270, 90], nan where nothing has a direction, shape (p,)
-    stable : of the branch reported, shape (p,)
-    cycling : a limit cycle is reported, shape (p,)
-    least, largest : amplitude over time, mm, nan where no motion was held, shape (p,)
-    branches : amplitudes of all branches, mm, shape (p, b)
-    branch_stable : shape (p, b)
-    chain : number of the continuous curve that each branch belongs to, -1 where there is none, shape (p, b)
-    reported : chain of the branch reported, -1 if it is none of them, shape (p,)
-    dry_patch, out_of_range, not_converged : spans of speed, rpm
-    held : motions held in time; None where none was
-    """
-
-    rpm: Array
-    limits: Span
-    amplitude: Array
+    rpm: Array  #: spin speed, shape (p,)
+    limits: Span  #: of the speed axis, rpm
+    amplitude: Array  #: mm, shape (p,)
     amplitude_dry: Array
     offset: Array
-    angle: Array
+    angle: Array  #: degrees in (-270, 90], nan where nothing has a direction, shape (p,)
     phase: Array
     phase_dry: Array
-    stable: Flags
-    cycling: Flags
-    least: Array
+    stable: Flags  #: of the branch reported, shape (p,)
+    cycling: Flags  #: a limit cycle is reported, shape (p,)
+    least: Array  #: amplitude over time, mm, nan where no motion was held, shape (p,)
     largest: Array
-    branches: Array
-    branch_stable: Flags
+    branches: Array  #: amplitudes of all branches, mm, shape (p, b)
+    branch_stable: Flags  #: shape (p, b)
+    #: number of the continuous curve that each branch belongs to, -1 where there is none, shape (p, b)
     chain: Index
-    reported: Index
-    dry_patch: list[Span]
+    reported: Index  #: chain of the branch reported, -1 if it is none of them, shape (p,)
+    dry_patch: list[Span]  #: spans of speed, rpm
     out_of_range: list[Span]
     not_converged: list[Span]
-    held: HeldCurves | None = None
+    held: HeldCurves | None = None  #: motions held in time; None where none was
 
 
 def lag_degrees(angle: Array, size: Array) -> Array:

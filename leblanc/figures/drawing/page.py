@@ -54,16 +54,10 @@ class Frame:
 
 @dataclass(frozen=True)
 class Caption:
-    """Text below a figure.
+    """Text below a figure."""
 
-    Parameters
-    ----------
-    shown : what the figure shows
-    origin : scene, model and assumed values behind it, which a report says elsewhere
-    """
-
-    shown: str
-    origin: str = ""
+    shown: str  #: what the figure shows
+    origin: str = ""  #: scene, model and assumed values behind it, which a report says elsewhere
 
     def __str__(self) -> str:
         return f"{self.shown} {self.origin}".strip()
@@ -86,21 +80,13 @@ class Figure(matplotlib.figure.Figure):
 
 @dataclass(frozen=True)
 class FigureFiles:
-    """One figure on disk.
+    """One figure on disk."""
 
-    Parameters
-    ----------
-    name : stem of its files
-    title : what it shows
-    png, svg : its files
-    caption, alt, drawn : as of `Figure`
-    """
-
-    name: str
-    title: str
-    png: Path
+    name: str  #: stem of its files
+    title: str  #: what it shows
+    png: Path  #: its files
     svg: Path
-    caption: Caption = field(default=Caption(""))
+    caption: Caption = field(default=Caption(""))  #: as of `Figure`
     alt: str = ""
     drawn: tuple[float, float] | None = None
 

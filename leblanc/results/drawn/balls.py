@@ -12,35 +12,20 @@ from meshes.arrays import Array, Complex
 
 @dataclass(frozen=True)
 class BallView:
-    """A machine with balls at some speeds; s speeds, c chambers, N balls. All in the drum frame.
+    """A machine with balls at some speeds; s speeds, c chambers, N balls. All in the drum frame."""
 
-    Parameters
-    ----------
-    result : what `run` says of them
-    fills, places : chambers with liquid, then a ring without any for each race; their middles, m
-    moved : some are drawn apart although the scene gives them one plane
-    races : with their balls
-    deflection : of the axis at each of them, m, nan where no state was found, shape (s, c)
-    lean : slope of the axis along itself, rad, shape (s,)
-    angle : of each ball as drawn, rad, shape (s, N)
-    apart : balls that would cover one another are drawn side by side, shape (s,)
-    scale : of the deflection and the depth of liquid
-    bodies : liquid of each chamber at each speed
-    parts : drum, housing, springs and dampers
-    """
-
-    result: BallsResult
-    fills: tuple[Fill, ...]
+    result: BallsResult  #: what `run` says of them
+    fills: tuple[Fill, ...]  #: chambers with liquid, then a ring without any for each race; their middles, m
     places: tuple[float, ...]
-    moved: bool
-    races: tuple[DrawnRace, ...]
-    deflection: Complex
-    lean: Complex
-    angle: Array
-    apart: tuple[bool, ...]
-    scale: Scale
-    bodies: tuple[tuple[Liquid, ...], ...]
-    parts: MachineParts
+    moved: bool  #: some are drawn apart although the scene gives them one plane
+    races: tuple[DrawnRace, ...]  #: with their balls
+    deflection: Complex  #: of the axis at each of them, m, nan where no state was found, shape (s, c)
+    lean: Complex  #: slope of the axis along itself, rad, shape (s,)
+    angle: Array  #: of each ball as drawn, rad, shape (s, N)
+    apart: tuple[bool, ...]  #: balls that would cover one another are drawn side by side, shape (s,)
+    scale: Scale  #: of the deflection and the depth of liquid
+    bodies: tuple[tuple[Liquid, ...], ...]  #: liquid of each chamber at each speed
+    parts: MachineParts  #: drum, housing, springs and dampers
 
     def to_json(self) -> dict[str, object]:
         """What `leblanc view --json` prints of a machine with balls, SI; angles as `run` has them."""

@@ -31,17 +31,11 @@ FAR = 1e4  # of the radius: a circle as large as this stands for the level surfa
 
 @dataclass(frozen=True)
 class Scale:
-    """Factors that a picture applies; walls are to scale.
+    """Factors that a picture applies; walls are to scale."""
 
-    Parameters
-    ----------
-    deflection : of the axis
-    depth : of the mean layer; 1 draws as much liquid as there is
-    asked : factor of the deflection that the user gave, if walls leave no room for it; None otherwise
-    """
-
-    deflection: float = 1.0
-    depth: float = 1.0
+    deflection: float = 1.0  #: of the axis
+    depth: float = 1.0  #: of the mean layer; 1 draws as much liquid as there is
+    #: factor of the deflection that the user gave, if walls leave no room for it; None otherwise
     asked: float | None = None
 
     def in_words(self) -> str:
@@ -159,20 +153,13 @@ class LiquidShape:
 
     In a half-plane the liquid lies between the chamber's floor, its outer wall and the free surface, which
     runs from the floor or the inner wall outwards to the outer wall or the lid.
-
-    Parameters
-    ----------
-    centre : of the half-planes, m from the axis at rest
-    angle : of each, rising over less than a turn, rad, shape (n,)
-    inner, outer : distances of the walls from the centre, m, shape (n,); an inner wall of no size is 0
-    radius, height : of the free surface, distance from the centre and above the floor, m, shape (n, k)
     """
 
-    centre: complex
-    angle: Array
-    inner: Array
+    centre: complex  #: of the half-planes, m from the axis at rest
+    angle: Array  #: of each, rising over less than a turn, rad, shape (n,)
+    inner: Array  #: distances of the walls from the centre, m, shape (n,); an inner wall of no size is 0
     outer: Array
-    radius: Array
+    radius: Array  #: of the free surface, distance from the centre and above the floor, m, shape (n, k)
     height: Array
 
     @property
@@ -236,16 +223,10 @@ def _volume(points: Array, quads: Indices) -> float:
 
 @dataclass(frozen=True)
 class LiquidBodies:
-    """Bodies of liquid that cannot mix, in one chamber.
+    """Bodies of liquid that cannot mix, in one chamber."""
 
-    Parameters
-    ----------
-    centre : of the chamber, m from the axis at rest
-    bodies : in coordinates of the chamber
-    """
-
-    centre: complex
-    bodies: tuple[Body, ...]
+    centre: complex  #: of the chamber, m from the axis at rest
+    bodies: tuple[Body, ...]  #: in coordinates of the chamber
 
     def volume(self) -> float:
         """Of all of them, m^3."""
@@ -260,108 +241,63 @@ class Strut:
     """A spring or damper between the machine and the ground, both places along and across the axis.
 
     Across the axis, complex: gravity points along -i where the axis lies.
-
-    Parameters
-    ----------
-    kind : "spring", "damper", or "bush" where one acts in all directions
-    axial, across : where it holds the machine, m
-    along, aside : unit vector from there to the ground, its parts along and across the axis
-    length : as drawn, m
     """
 
-    kind: str
-    axial: float
+    kind: str  #: "spring", "damper", or "bush" where one acts in all directions
+    axial: float  #: where it holds the machine, m
     across: complex
-    along: float
+    along: float  #: unit vector from there to the ground, its parts along and across the axis
     aside: complex
-    length: float
+    length: float  #: as drawn, m
 
 
 @dataclass(frozen=True)
 class Shell:
-    """A drum, tub or ring round the axis.
+    """A drum, tub or ring round the axis."""
 
-    Parameters
-    ----------
-    radius : m
-    low, high : its ends along the axis, m
-    """
-
-    radius: float
-    low: float
+    radius: float  #: m
+    low: float  #: its ends along the axis, m
     high: float
 
 
 @dataclass(frozen=True)
 class Spot:
-    """A place that a scene names: a foot of its cabinet, or a point.
+    """A place that a scene names: a foot of its cabinet, or a point."""
 
-    Parameters
-    ----------
-    name : of a point; empty for a foot
-    axial, across : m, as of `Strut`
-    turns : it goes round with the drum
-    """
-
-    name: str
-    axial: float
+    name: str  #: of a point; empty for a foot
+    axial: float  #: m, as of `Strut`
     across: complex
-    turns: bool = False
+    turns: bool = False  #: it goes round with the drum
 
 
 @dataclass(frozen=True)
 class MachineParts:
-    """What carries the chambers and what holds the machine, as drawn.
+    """What carries the chambers and what holds the machine, as drawn."""
 
-    Parameters
-    ----------
-    drum : carries the chambers and turns with them
-    hollow : a drum with room inside; else a disc with its chambers
-    housing : round the drum, does not turn; None where there is none
-    shaft : its pieces along the axis, m
-    bearings : places along the axis, m
-    struts : springs and dampers
-    sketched : what the scene does not say of them, a sentence for the caption; empty if it says all
-    feet : of its cabinet, in their order round it
-    points : that the scene names
-    """
-
-    drum: Shell
-    hollow: bool
-    housing: Shell | None
-    shaft: tuple[Shell, ...]
-    bearings: tuple[float, ...]
-    struts: tuple[Strut, ...]
-    sketched: str
-    feet: tuple[Spot, ...] = ()
-    points: tuple[Spot, ...] = ()
+    drum: Shell  #: carries the chambers and turns with them
+    hollow: bool  #: a drum with room inside; else a disc with its chambers
+    housing: Shell | None  #: round the drum, does not turn; None where there is none
+    shaft: tuple[Shell, ...]  #: its pieces along the axis, m
+    bearings: tuple[float, ...]  #: places along the axis, m
+    struts: tuple[Strut, ...]  #: springs and dampers
+    sketched: str  #: what the scene does not say of them, a sentence for the caption; empty if it says all
+    feet: tuple[Spot, ...] = ()  #: of its cabinet, in their order round it
+    points: tuple[Spot, ...] = ()  #: that the scene names
 
 
 @dataclass(frozen=True)
 class MachineMotion:
-    """A machine at some speeds; s speeds, c chambers. Angles count from the unbalance, in the drum frame.
+    """A machine at some speeds; s speeds, c chambers. Angles count from the unbalance, in the drum frame."""
 
-    Parameters
-    ----------
-    response : what `run` says of them
-    fills : the chambers with their liquid
-    places : middle of each chamber along the axis as it is drawn, m
-    moved : some of them are drawn apart although the scene gives them one plane
-    gravity : along the axis, m/s^2
-    deflection : of the axis at each chamber, m, nan where none was found, shape (s, c); shape (s, 1) without
-        chambers
-    lean : slope of the axis along itself, rad, shape (s,)
-    parts : drum, housing, springs and dampers
-    """
-
-    response: RunResult
-    fills: tuple[Fill, ...]
-    places: tuple[float, ...]
-    moved: bool
-    gravity: float
+    response: RunResult  #: what `run` says of them
+    fills: tuple[Fill, ...]  #: the chambers with their liquid
+    places: tuple[float, ...]  #: middle of each chamber along the axis as it is drawn, m
+    moved: bool  #: some of them are drawn apart although the scene gives them one plane
+    gravity: float  #: along the axis, m/s^2
+    #: of the axis at each chamber, m, nan where none was found, shape (s, c); shape (s, 1) without chambers
     deflection: Complex
-    lean: Complex
-    parts: MachineParts
+    lean: Complex  #: slope of the axis along itself, rad, shape (s,)
+    parts: MachineParts  #: drum, housing, springs and dampers
 
     @property
     def speed(self) -> Array:
@@ -376,35 +312,21 @@ class MachineMotion:
 
 @dataclass(frozen=True)
 class DrawnLiquid:
-    """Liquid of c chambers at one speed, in equilibrium with the deflection as it is drawn.
+    """Liquid of c chambers at one speed, in equilibrium with the deflection as it is drawn."""
 
-    Parameters
-    ----------
-    scale : of deflection and depth
-    bodies : the liquid, one for each chamber
-    volume : as drawn, m^3, one for each chamber
-    dry, drawn_dry : the wall of each chamber is dry in part, in truth and as drawn
-    """
-
-    scale: Scale
-    bodies: tuple[Liquid, ...]
-    volume: tuple[float, ...]
-    dry: tuple[bool, ...]
+    scale: Scale  #: of deflection and depth
+    bodies: tuple[Liquid, ...]  #: the liquid, one for each chamber
+    volume: tuple[float, ...]  #: as drawn, m^3, one for each chamber
+    dry: tuple[bool, ...]  #: the wall of each chamber is dry in part, in truth and as drawn
     drawn_dry: tuple[bool, ...]
 
 
 @dataclass(frozen=True)
 class MachineView:
-    """A machine at one speed and its liquid as drawn.
+    """A machine at one speed and its liquid as drawn."""
 
-    Parameters
-    ----------
-    motion : the machine; its last speed is drawn
-    liquid : as drawn there
-    """
-
-    motion: MachineMotion
-    liquid: DrawnLiquid
+    motion: MachineMotion  #: the machine; its last speed is drawn
+    liquid: DrawnLiquid  #: as drawn there
 
     def to_json(self) -> dict[str, object]:
         """What `leblanc view --json` prints of a machine, SI."""
@@ -423,93 +345,53 @@ class MachineView:
 
 @dataclass(frozen=True)
 class DrawnRace:
-    """A race as it is drawn: a ring as wide as its balls.
+    """A race as it is drawn: a ring as wide as its balls."""
 
-    Parameters
-    ----------
-    ring : its number among the chambers drawn
-    radius : of the circle of the balls' centres, m
-    ball : radius of a ball, m
-    assumed : the scene does not say how large the balls are
-    balls : numbers of its balls among those of all races, the first and the one behind the last
-    """
-
-    ring: int
-    radius: float
-    ball: float
-    assumed: bool
+    ring: int  #: its number among the chambers drawn
+    radius: float  #: of the circle of the balls' centres, m
+    ball: float  #: radius of a ball, m
+    assumed: bool  #: the scene does not say how large the balls are
+    #: numbers of its balls among those of all races, the first and the one behind the last
     balls: tuple[int, int]
 
 
 @dataclass(frozen=True)
 class RunupView:
-    """A run-up frame by frame with its layers as they are drawn; f frames.
+    """A run-up frame by frame with its layers as they are drawn; f frames."""
 
-    Parameters
-    ----------
-    result : the run-up
-    frames : times, deflections and layers
-    fills, places : chambers with their liquid; their middles along the axis, m
-    scale : common to all frames
-    bodies : liquid of each chamber in each frame
-    turn : of the drum in each frame as drawn, rad, shape (f,)
-    slower : how many times slower than in truth it turns
-    parts : drum, housing, springs and dampers
-    races : with balls, whose rings stand behind the chambers with liquid
-    balls : angle of each ball in the drum in each frame, rad, shape (f, N)
-    """
-
-    result: RunupResult
-    frames: RunupFrames
-    fills: tuple[Fill, ...]
+    result: RunupResult  #: the run-up
+    frames: RunupFrames  #: times, deflections and layers
+    fills: tuple[Fill, ...]  #: chambers with their liquid; their middles along the axis, m
     places: tuple[float, ...]
-    scale: Scale
-    bodies: tuple[tuple[Liquid, ...], ...]
-    turn: Array
-    slower: float
-    parts: MachineParts
-    races: tuple[DrawnRace, ...] = ()
+    scale: Scale  #: common to all frames
+    bodies: tuple[tuple[Liquid, ...], ...]  #: liquid of each chamber in each frame
+    turn: Array  #: of the drum in each frame as drawn, rad, shape (f,)
+    slower: float  #: how many times slower than in truth it turns
+    parts: MachineParts  #: drum, housing, springs and dampers
+    races: tuple[DrawnRace, ...] = ()  #: with balls, whose rings stand behind the chambers with liquid
+    #: angle of each ball in the drum in each frame, rad, shape (f, N)
     balls: Array = field(default_factory=lambda: np.zeros((0, 0)))
 
 
 @dataclass(frozen=True)
 class ModeView:
-    """One oscillation of the liquid in a spinning chamber, m(t) = Re(mode e^{-i sigma t}).
+    """One oscillation of the liquid in a spinning chamber, m(t) = Re(mode e^{-i sigma t})."""
 
-    Parameters
-    ----------
-    name : of the scene
-    lying : the axis is horizontal
-    gravity : across the axis, left out of the mode, m/s^2
-    number : from 1, by rising size of the frequency
-    frequency : sigma seen from the drum, with the spin positive, rad/s
-    crests : around the drum
-    angle : of the rays, rising, rad, shape (n,); two at a baffle
-    displacement : of the surface along the radius, its largest size 1, shape (n,)
-    lift : largest displacement as drawn, m; the true one is any small number
-    depth_factor : of the layer's depth as drawn
-    fill : the chamber with its liquid
-    speed : of the spin, rad/s
-    converged : of the solver
-    section : the liquid at rest between walls of its own shape, and
-    section_displacement : of each of its nodes; None between circular walls
-    """
-
-    name: str
-    lying: bool
-    gravity: float
-    number: int
-    frequency: float
-    crests: int
-    angle: Array
-    displacement: Complex
-    lift: float
-    depth_factor: float
-    fill: Fill
-    speed: float
-    converged: bool
-    section: LiquidSection | None = None
-    section_displacement: Complex | None = None
+    name: str  #: of the scene
+    lying: bool  #: the axis is horizontal
+    gravity: float  #: across the axis, left out of the mode, m/s^2
+    number: int  #: from 1, by rising size of the frequency
+    frequency: float  #: sigma seen from the drum, with the spin positive, rad/s
+    crests: int  #: around the drum
+    angle: Array  #: of the rays, rising, rad, shape (n,); two at a baffle
+    displacement: Complex  #: of the surface along the radius, its largest size 1, shape (n,)
+    lift: float  #: largest displacement as drawn, m; the true one is any small number
+    depth_factor: float  #: of the layer's depth as drawn
+    fill: Fill  #: the chamber with its liquid
+    speed: float  #: of the spin, rad/s
+    converged: bool  #: of the solver
+    section: LiquidSection | None = None  #: the liquid at rest between walls of its own shape, and
+    section_displacement: Complex | None = None  #: of each of its nodes; None between circular walls
 
     def to_json(self) -> dict[str, object]:
         """What `leblanc view --mode --json` prints, SI."""
@@ -523,28 +405,17 @@ class ModeView:
 
 @dataclass(frozen=True)
 class TableView:
-    """A vibrating table with balls at the moment when balls and unbalance both point along the vibration.
+    """A vibrating table with balls at the moment when balls and unbalance both point along the vibration."""
 
-    Parameters
-    ----------
-    name : of the scene
-    speed : of the shaft, rad/s
-    stuck_speed : of the balls that stick together, rad/s
-    slow, fast : vibration of the platform by the balls and by the unbalance, m
-    track_radius : of the balls' track, m
-    balls, kind : how many, and "ball" or "roller"
-    factor : of the vibration as drawn
-    """
-
-    name: str
-    speed: float
-    stuck_speed: float
-    slow: float
+    name: str  #: of the scene
+    speed: float  #: of the shaft, rad/s
+    stuck_speed: float  #: of the balls that stick together, rad/s
+    slow: float  #: vibration of the platform by the balls and by the unbalance, m
     fast: float
-    track_radius: float
-    balls: int
+    track_radius: float  #: of the balls' track, m
+    balls: int  #: how many, and "ball" or "roller"
     kind: str
-    factor: float
+    factor: float  #: of the vibration as drawn
 
     def to_json(self) -> dict[str, object]:
         """What `leblanc view --json` prints of a table, SI."""

@@ -9,38 +9,22 @@ from meshes.arrays import Array
 
 @dataclass(frozen=True)
 class MagneticView:
-    """A rotor in its two bearings; k instants.
+    """A rotor in its two bearings; k instants."""
 
-    Parameters
-    ----------
-    name : of the scene
-    assumed : some of its values are
-    lying : the axis is horizontal
-    controller : that holds the rotor
-    trial : the path is that of the trial in time; else an orbit by the unbalances alone
-    time, speed : of the instants, s and rad/s, shape (k,)
-    displacement : along first x, first y, second x, second y of the bearings, m, shape (k, 4)
-    gap : m
-    planes : of the bearings along the axis, m
-    radius, length : of the rotor, m
-    sketched : the scene does not say how wide and long it is
-    gap_factor, path_factor : by which the gap and the path are drawn larger
-    """
-
-    name: str
-    assumed: bool
-    lying: bool
-    controller: str
-    trial: bool
-    time: Array
+    name: str  #: of the scene
+    assumed: bool  #: some of its values are
+    lying: bool  #: the axis is horizontal
+    controller: str  #: that holds the rotor
+    trial: bool  #: the path is that of the trial in time; else an orbit by the unbalances alone
+    time: Array  #: of the instants, s and rad/s, shape (k,)
     speed: Array
-    displacement: Array
-    gap: float
-    planes: tuple[float, float]
-    radius: float
+    displacement: Array  #: along first x, first y, second x, second y of the bearings, m, shape (k, 4)
+    gap: float  #: m
+    planes: tuple[float, float]  #: of the bearings along the axis, m
+    radius: float  #: of the rotor, m
     length: float
-    sketched: bool
-    gap_factor: float
+    sketched: bool  #: the scene does not say how wide and long it is
+    gap_factor: float  #: by which the gap and the path are drawn larger
     path_factor: float
 
     def to_json(self) -> dict[str, object]:

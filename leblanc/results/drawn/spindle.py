@@ -9,36 +9,23 @@ from meshes.arrays import Array
 
 @dataclass(frozen=True)
 class DrawnSection:
-    """A round piece of a beam.
+    """A round piece of a beam."""
 
-    Parameters
-    ----------
-    start, end : along the machine, m
-    diameter, bore : m
-    """
-
-    start: float
+    start: float  #: along the machine, m
     end: float
-    diameter: float
+    diameter: float  #: m
     bore: float
 
 
 @dataclass(frozen=True)
 class DrawnBeam:
-    """A beam.
+    """A beam."""
 
-    Parameters
-    ----------
-    name : of it
-    sections : from its first station on
-    level : 0 on the axis of the first beam; 1 and more stand beside it, as their bore has no room for it
-    place, deflection : along the machine, m, and what the natural motion has there, the largest of all 1
-    """
-
-    name: str
-    sections: tuple[DrawnSection, ...]
+    name: str  #: of it
+    sections: tuple[DrawnSection, ...]  #: from its first station on
+    #: 0 on the axis of the first beam; 1 and more stand beside it, as their bore has no room for it
     level: int
-    place: Array
+    place: Array  #: along the machine, m, and what the natural motion has there, the largest of all 1
     deflection: Array
 
     @property
@@ -49,76 +36,46 @@ class DrawnBeam:
 
 @dataclass(frozen=True)
 class DrawnMass:
-    """A body on a beam, as a disc of steel with its mass and its inertia.
+    """A body on a beam, as a disc of steel with its mass and its inertia."""
 
-    Parameters
-    ----------
-    beam : its number
-    place : along the machine, m
-    radius, thickness : of the disc, m
-    """
-
-    beam: int
-    place: float
-    radius: float
+    beam: int  #: its number
+    place: float  #: along the machine, m
+    radius: float  #: of the disc, m
     thickness: float
 
 
 @dataclass(frozen=True)
 class DrawnJoint:
-    """A spring between two beams, or to the ground.
+    """A spring between two beams, or to the ground."""
 
-    Parameters
-    ----------
-    first, second : numbers of the beams; None for the ground
-    place : along the machine, m
-    """
-
-    first: int
+    first: int  #: numbers of the beams; None for the ground
     second: int | None
-    place: float
+    place: float  #: along the machine, m
 
 
 @dataclass(frozen=True)
 class DrawnStation:
-    """A station with a part in the answer.
+    """A station with a part in the answer."""
 
-    Parameters
-    ----------
-    name : what happens there
-    beam : its number
-    place : along the machine, m
-    """
-
-    name: str
-    beam: int
-    place: float
+    name: str  #: what happens there
+    beam: int  #: its number
+    place: float  #: along the machine, m
 
 
 @dataclass(frozen=True)
 class SpindleView:
-    """A spindle unit in one of its natural motions.
+    """A spindle unit in one of its natural motions."""
 
-    Parameters
-    ----------
-    name : of the scene
-    assumed : some of its values are
-    number, count : which natural motion of the band, from 1, and how many there are
-    frequency : rad/s
-    beams, masses, joints, stations : as drawn
-    factor : largest deflection as drawn, m; the true one is any small number
-    """
-
-    name: str
-    assumed: bool
-    number: int
+    name: str  #: of the scene
+    assumed: bool  #: some of its values are
+    number: int  #: which natural motion of the band, from 1, and how many there are
     count: int
-    frequency: float
-    beams: tuple[DrawnBeam, ...]
+    frequency: float  #: rad/s
+    beams: tuple[DrawnBeam, ...]  #: as drawn
     masses: tuple[DrawnMass, ...]
     joints: tuple[DrawnJoint, ...]
     stations: tuple[DrawnStation, ...]
-    factor: float
+    factor: float  #: largest deflection as drawn, m; the true one is any small number
 
     def to_json(self) -> dict[str, object]:
         """What `leblanc view --json` prints of a spindle unit, SI."""

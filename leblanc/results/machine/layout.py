@@ -18,19 +18,12 @@ Vector = tuple[float, ...]
 
 @dataclass(frozen=True)
 class MountPlace:
-    """A spring or damper before and after.
+    """A spring or damper before and after."""
 
-    Parameters
-    ----------
-    name : "spring 1" and so on, in the order of the scene
-    position, position_before : from the tub's centre of mass, m
-    direction, direction_before : of length 1; None where it acts along x, y and z
-    """
-
-    name: str
-    position: Vector
+    name: str  #: "spring 1" and so on, in the order of the scene
+    position: Vector  #: from the tub's centre of mass, m
     position_before: Vector
-    direction: Vector | None
+    direction: Vector | None  #: of length 1; None where it acts along x, y and z
     direction_before: Vector | None
 
 
@@ -40,23 +33,6 @@ class LayoutResult(Result):
 
     Arrays have the scene's own layout first and the best one second; couplings are in the order of
     `solvers.rotor.layout.PAIRS`.
-
-    Parameters
-    ----------
-    name : of the scene
-    measure : "couplings" or "separation"
-    band : running speeds, rad/s
-    value, baseline : what is made least, of the best layout and of the scene's own
-    constraints : by name
-    sag_before : of the scene's own layout, m
-    mounts : springs, then dampers
-    couplings : of "stiffness" and "damping" about the centre of mass, each -1 to 1, shape (2, 15)
-    mass_couplings : of the mass matrix, which no mount changes, shape (15,)
-    frequency : natural frequencies at rest without damping, rising, rad/s, shape (2, 6)
-    origin : centre of mass of tub and drum from that of the tub, m, shape (3,)
-    mirrored : springs and dampers are alike on both sides of x = 0, and stay so
-    evaluations : layouts judged
-    source, assumed, digest : of the scene
 
     Examples
     --------
@@ -69,21 +45,22 @@ class LayoutResult(Result):
     figure: ClassVar[str] = "leblanc.figures.machine:layout_figure"
     summary: ClassVar[str] = "leblanc.text.layout:facts"
 
-    name: str
-    measure: str
-    band: tuple[float, float] | None
-    value: float
+    name: str  #: of the scene
+    measure: str  #: "couplings" or "separation"
+    band: tuple[float, float] | None  #: running speeds, rad/s
+    value: float  #: what is made least, of the best layout and of the scene's own
     baseline: float
-    constraints: dict[str, ConstraintValue]
-    sag_before: float
-    mounts: tuple[MountPlace, ...]
+    constraints: dict[str, ConstraintValue]  #: by name
+    sag_before: float  #: of the scene's own layout, m
+    mounts: tuple[MountPlace, ...]  #: springs, then dampers
+    #: of "stiffness" and "damping" about the centre of mass, each -1 to 1, shape (2, 15)
     couplings: dict[str, Array]
-    mass_couplings: Array
-    frequency: Array
-    origin: Array
-    mirrored: bool
-    evaluations: int
-    source: str = ""
+    mass_couplings: Array  #: of the mass matrix, which no mount changes, shape (15,)
+    frequency: Array  #: natural frequencies at rest without damping, rising, rad/s, shape (2, 6)
+    origin: Array  #: centre of mass of tub and drum from that of the tub, m, shape (3,)
+    mirrored: bool  #: springs and dampers are alike on both sides of x = 0, and stay so
+    evaluations: int  #: layouts judged
+    source: str = ""  #: of the scene
     assumed: tuple[str, ...] = ()
     digest: str = ""
 

@@ -16,18 +16,11 @@ from solvers.rotor.loads.turn import Extremes
 
 @dataclass(frozen=True)
 class Worst:
-    """The worst of one quantity and where it is.
+    """The worst of one quantity and where it is."""
 
-    Parameters
-    ----------
-    value : SI
-    speed : spin speed, rad/s
-    time : s; nan over speed
-    """
-
-    value: float
-    speed: float
-    time: float
+    value: float  #: SI
+    speed: float  #: spin speed, rad/s
+    time: float  #: s; nan over speed
 
     def to_json(self) -> dict[str, float | None]:
         """Plain values; no time over speed."""
@@ -39,40 +32,24 @@ class Worst:
 
 @dataclass(frozen=True)
 class MachineLoads:
-    """What a machine is judged by at k speeds, or in k intervals of time; f feet, h holders, p points.
+    """What a machine is judged by at k speeds, or in k intervals of time; f feet, h holders, p points."""
 
-    Parameters
-    ----------
-    speed : spin speed, rad/s, shape (k,)
-    time, angle : s, and rad by which the drum has turned, shape (k,); empty over speed
-    worst : of each turn or interval
-    rest : force under each foot at rest, N, shape (f,)
-    friction : coefficient of the feet; nan without a cabinet
-    holders, bearings, points : their names
-    gaps : of the points, m, nan where none is given, shape (p,)
-    torque, power : of the drive on the shaft, N m and W, shape (k,)
-    orbit : semi-axes of each point's ellipse, m, shape (2, k, p); over time (2, 0, p)
-    asked : which of the k are speeds of the scene, shape (n,)
-    impulse : of each hand-over of liquid on each bearing, N s, shape (j, b)
-    jumps : time of each, s, shape (j,)
-    """
-
-    speed: Array
-    time: Array
+    speed: Array  #: spin speed, rad/s, shape (k,)
+    time: Array  #: s, and rad by which the drum has turned, shape (k,); empty over speed
     angle: Array
-    worst: Extremes
-    rest: Array
-    friction: float
-    holders: tuple[str, ...]
+    worst: Extremes  #: of each turn or interval
+    rest: Array  #: force under each foot at rest, N, shape (f,)
+    friction: float  #: coefficient of the feet; nan without a cabinet
+    holders: tuple[str, ...]  #: their names
     bearings: tuple[str, ...]
     points: tuple[str, ...]
-    gaps: Array
-    torque: Array
+    gaps: Array  #: of the points, m, nan where none is given, shape (p,)
+    torque: Array  #: of the drive on the shaft, N m and W, shape (k,)
     power: Array
-    orbit: Array
-    asked: Index
-    impulse: Array
-    jumps: Array
+    orbit: Array  #: semi-axes of each point's ellipse, m, shape (2, k, p); over time (2, 0, p)
+    asked: Index  #: which of the k are speeds of the scene, shape (n,)
+    impulse: Array  #: of each hand-over of liquid on each bearing, N s, shape (j, b)
+    jumps: Array  #: time of each, s, shape (j,)
 
     @property
     def stands(self) -> bool:

@@ -24,75 +24,44 @@ MARGINS = ("gain_up", "gain_down", "phase_margin", "delay_margin", "sensitivity"
 
 @dataclass(frozen=True)
 class LoadAnswer:
-    """What one load does, by the linear loop.
+    """What one load does, by the linear loop."""
 
-    Parameters
-    ----------
-    name : as in the scene, or gravity
-    frequency : rad/s; nan of a constant load
-    peak : largest deflection in a bearing after it comes on, m; nan of a harmonic load
-    settled : deflection in the end, of a harmonic load its amplitude, m
-    current : control current in the end, of a harmonic load its amplitude, A
-    """
-
-    name: str
-    frequency: float
-    peak: float
-    settled: float
-    current: float
+    name: str  #: as in the scene, or gravity
+    frequency: float  #: rad/s; nan of a constant load
+    peak: float  #: largest deflection in a bearing after it comes on, m; nan of a harmonic load
+    settled: float  #: deflection in the end, of a harmonic load its amplitude, m
+    current: float  #: control current in the end, of a harmonic load its amplitude, A
 
 
 @dataclass(frozen=True)
 class Followed:
-    """A trial in time.
+    """A trial in time."""
 
-    Parameters
-    ----------
-    motion : all of it
-    settled : time from which the rotor stays within the band until the next load comes on, s; inf if never
-    after_loads : largest deflection in a bearing from the first later load on, m; nan without one
-    left : largest deflection in a bearing in the last tenth, m
-    most_current : largest control current, A
-    """
-
-    motion: Motion
+    motion: Motion  #: all of it
+    #: time from which the rotor stays within the band until the next load comes on, s; inf if never
     settled: float
-    after_loads: float
-    left: float
-    most_current: float
+    after_loads: float  #: largest deflection in a bearing from the first later load on, m; nan without one
+    left: float  #: largest deflection in a bearing in the last tenth, m
+    most_current: float  #: largest control current, A
 
 
 @dataclass(frozen=True)
 class Controlled:
-    """One controller; n speeds, p poles.
+    """One controller; n speeds, p poles."""
 
-    Parameters
-    ----------
-    name : `synergetic` or `pid`
-    poles : of the closed loop, the slowest first, 1/s, shape (n, p)
-    gain_up, gain_down : largest and smallest factor of the loop gain, shape (n,)
-    phase_margin : rad, shape (n,)
-    delay_margin : s, shape (n,)
-    sensitivity : largest, shape (n,); all margins are nan where the loop is not stable
-    unbalance : complex deflection along x of the first bearing, of the unbalances alone, m, shape (n,)
-    amplitude : largest deflection in a bearing, of the unbalances alone, m, shape (n,)
-    current : amplitude of the control current, of the unbalances alone, A, shape (n,)
-    loads : what each load does
-    trial : in time; None where the scene has none
-    """
-
-    name: str
-    poles: Complex
-    gain_up: Array
+    name: str  #: `synergetic` or `pid`
+    poles: Complex  #: of the closed loop, the slowest first, 1/s, shape (n, p)
+    gain_up: Array  #: largest and smallest factor of the loop gain, shape (n,)
     gain_down: Array
-    phase_margin: Array
-    delay_margin: Array
-    sensitivity: Array
+    phase_margin: Array  #: rad, shape (n,)
+    delay_margin: Array  #: s, shape (n,)
+    sensitivity: Array  #: largest, shape (n,); all margins are nan where the loop is not stable
+    #: complex deflection along x of the first bearing, of the unbalances alone, m, shape (n,)
     unbalance: Complex
-    amplitude: Array
-    current: Array
-    loads: tuple[LoadAnswer, ...]
-    trial: Followed | None
+    amplitude: Array  #: largest deflection in a bearing, of the unbalances alone, m, shape (n,)
+    current: Array  #: amplitude of the control current, of the unbalances alone, A, shape (n,)
+    loads: tuple[LoadAnswer, ...]  #: what each load does
+    trial: Followed | None  #: in time; None where the scene has none
 
     @property
     def stable(self) -> Flags:
@@ -132,19 +101,6 @@ class Controlled:
 class MagneticResult(Result):
     """Answer over speed; n speeds.
 
-    Parameters
-    ----------
-    name : of the scene
-    assumed : values that it assumes
-    machine : the rotor
-    numbers : its dimensionless numbers
-    speed : rad/s, shape (n,)
-    controllers : at least one
-    loads : from outside, gravity among them where it lies across the axis
-    load_speed : at which the loads are answered, rad/s
-    band : about the centre within which the rotor has settled, m
-    source, digest : of the scene
-
     Examples
     --------
     >>> import leblanc as lb
@@ -157,16 +113,16 @@ class MagneticResult(Result):
     figure: ClassVar[str] = "leblanc.figures.magnetic.control:magnetic_figure"
     summary: ClassVar[str] = "leblanc.text.magnetic:facts"
 
-    name: str
-    assumed: tuple[str, ...]
-    machine: MagneticRotor
-    numbers: Dimensionless
-    speed: Array
-    controllers: tuple[Controlled, ...]
-    loads: tuple[Load, ...]
-    load_speed: float
-    band: float
-    source: str = ""
+    name: str  #: of the scene
+    assumed: tuple[str, ...]  #: values that it assumes
+    machine: MagneticRotor  #: the rotor
+    numbers: Dimensionless  #: its dimensionless numbers
+    speed: Array  #: rad/s, shape (n,)
+    controllers: tuple[Controlled, ...]  #: at least one
+    loads: tuple[Load, ...]  #: from outside, gravity among them where it lies across the axis
+    load_speed: float  #: at which the loads are answered, rad/s
+    band: float  #: about the centre within which the rotor has settled, m
+    source: str = ""  #: of the scene
     digest: str = ""
 
     @property

@@ -19,19 +19,6 @@ if TYPE_CHECKING:
 class MagneticExplanation(Result):
     """What a rotor in magnetic bearings is in numbers, without any motion in time; k controllers, n places.
 
-    Parameters
-    ----------
-    name : of the scene
-    numbers : dimensionless
-    current_stiffness, position_stiffness : of one pair of magnets in the centre, N/A and N/m
-    growth : of a deflection without control at the last speed, 1/s
-    holds : largest constant force in the centre along one axis, N
-    reach : largest deflection along an axis from which the currents can bring the rotor home, m
-    fastest : decay of the fastest pole with each controller at the last speed, 1/s, by name
-    place : deflections along an axis, m, shape (n,)
-    force : outwards of both bearings and the motor, at the largest current home, none, out, N, shape (3, n)
-    source, assumed, digest : of the scene
-
     Examples
     --------
     >>> import leblanc as lb
@@ -43,17 +30,19 @@ class MagneticExplanation(Result):
     figure: ClassVar[str] = "leblanc.figures.magnetic.force:force_figure"
     summary: ClassVar[str] = "leblanc.text.magnetic:explanation_facts"
 
-    name: str
-    numbers: Dimensionless
-    current_stiffness: float
+    name: str  #: of the scene
+    numbers: Dimensionless  #: dimensionless
+    current_stiffness: float  #: of one pair of magnets in the centre, N/A and N/m
     position_stiffness: float
-    growth: float
-    holds: float
-    reach: float
+    growth: float  #: of a deflection without control at the last speed, 1/s
+    holds: float  #: largest constant force in the centre along one axis, N
+    reach: float  #: largest deflection along an axis from which the currents can bring the rotor home, m
+    #: decay of the fastest pole with each controller at the last speed, 1/s, by name
     fastest: dict[str, float]
-    place: Array
+    place: Array  #: deflections along an axis, m, shape (n,)
+    #: outwards of both bearings and the motor, at the largest current home, none, out, N, shape (3, n)
     force: Array
-    source: str = ""
+    source: str = ""  #: of the scene
     assumed: tuple[str, ...] = ()
     digest: str = ""
 

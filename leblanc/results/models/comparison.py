@@ -51,20 +51,12 @@ def _held_counts(answers: tuple[ModelAnswer, ...]) -> dict[str, Variable]:
 
 @dataclass(frozen=True)
 class ModelAnswer:
-    """What one liquid model says of a scene.
+    """What one liquid model says of a scene."""
 
-    Parameters
-    ----------
-    model : its name, as a scene has it
-    reason : why it does not answer; empty where it does
-    cpu_time : processor time that the answer took, s; None where there is none
-    result : the answer; None where there is none
-    """
-
-    model: str
-    reason: str
-    cpu_time: float | None
-    result: RunResult | None
+    model: str  #: its name, as a scene has it
+    reason: str  #: why it does not answer; empty where it does
+    cpu_time: float | None  #: processor time that the answer took, s; None where there is none
+    result: RunResult | None  #: the answer; None where there is none
 
     @property
     def answered(self) -> bool:
@@ -106,11 +98,6 @@ class Comparison(Result):
 
     The reference of all differences is the last model that answers: name the models by rising exactness.
 
-    Parameters
-    ----------
-    name, source, assumed, digest : of the scene as it was given
-    answers : one for each model, in the order given
-
     Raises
     ------
     InputError : no model answers
@@ -126,11 +113,11 @@ class Comparison(Result):
     figure: ClassVar[str] = "leblanc.figures.comparison:comparison_figure"
     summary: ClassVar[str] = "leblanc.text.explanation:comparison_facts"
 
-    name: str
+    name: str  #: of the scene as it was given
     source: str
     assumed: tuple[str, ...]
     digest: str
-    answers: tuple[ModelAnswer, ...]
+    answers: tuple[ModelAnswer, ...]  #: one for each model, in the order given
 
     def __post_init__(self) -> None:
         if not any(answer.answered for answer in self.answers):

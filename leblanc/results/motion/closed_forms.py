@@ -16,25 +16,16 @@ from solvers.rotor.balls.two_plane_balance import Balancing
 
 @dataclass(frozen=True)
 class Upright:
-    """Whether a rotor with its liquid stands upright about a ball joint [theory: statics, eq. 20-21].
+    """Whether a rotor with its liquid stands upright about a ball joint [theory: statics, eq. 20-21]."""
 
-    Parameters
-    ----------
-    speed : spin speed, rad/s, shape (n,)
-    dry : second variation of the energy without liquid, N m, shape (n,)
-    frozen : the same with the liquid frozen, N m, shape (n,)
-    surface : what the free surfaces take from it, N m, shape (n,)
-    limits : speeds of the scene's range at which the upright rotation turns from stable to unstable or back,
-        rad/s
-    fill_limits : shares of all volumes at which it does at the last speed; 1 is the scene, from the least
-        film up to where the first chamber is full
-    """
-
-    speed: Array
-    dry: Array
-    frozen: Array
-    surface: Array
+    speed: Array  #: spin speed, rad/s, shape (n,)
+    dry: Array  #: second variation of the energy without liquid, N m, shape (n,)
+    frozen: Array  #: the same with the liquid frozen, N m, shape (n,)
+    surface: Array  #: what the free surfaces take from it, N m, shape (n,)
+    #: speeds of the scene's range at which the upright rotation turns from stable to unstable or back, rad/s
     limits: tuple[float, ...]
+    #: shares of all volumes at which it does at the last speed; 1 is the scene, from the least film up to
+    #: where the first chamber is full
     fill_limits: tuple[float, ...]
 
     @property
@@ -63,26 +54,19 @@ class Upright:
 
 @dataclass(frozen=True)
 class VectorModel:
-    """Angles of the vector model at the speeds of a planar answer [theory: rotor, eq. 9-14].
+    """Angles of the vector model at the speeds of a planar answer [theory: rotor, eq. 9-14]."""
 
-    Parameters
-    ----------
-    lag : delta of the deflection behind the total unbalance, rad, shape (n,)
-    ratio : k = unbalance of the rotor over that of the liquid, shape (n,); nan where no liquid is off axis
-    angle : from the liquid to the unbalance, of the solved answer, rad, shape (n,)
-    balance_angle : alpha_0 by the balance of angles for this k, of two the one nearer to `angle`, rad, shape
-        (n,); nan where no angle balances
-    printed_angle : alpha_0 by the source's formula, whose cosine lost a factor 1/k [DR18, eq. 25], rad, shape
-        (n,); nan where it is not real
-    unbalance_left : lambda_0, total unbalance over the rotor's, shape (n,)
-    """
-
-    lag: Array
+    lag: Array  #: delta of the deflection behind the total unbalance, rad, shape (n,)
+    #: k = unbalance of the rotor over that of the liquid, shape (n,); nan where no liquid is off axis
     ratio: Array
-    angle: Array
+    angle: Array  #: from the liquid to the unbalance, of the solved answer, rad, shape (n,)
+    #: alpha_0 by the balance of angles for this k, of two the one nearer to `angle`, rad, shape (n,); nan
+    #: where no angle balances
     balance_angle: Array
+    #: alpha_0 by the source's formula, whose cosine lost a factor 1/k [DR18, eq. 25], rad, shape (n,); nan
+    #: where it is not real
     printed_angle: Array
-    unbalance_left: Array
+    unbalance_left: Array  #: lambda_0, total unbalance over the rotor's, shape (n,)
 
     @property
     def difference(self) -> float:
@@ -114,38 +98,24 @@ class VectorModel:
 
 @dataclass(frozen=True)
 class Cage:
-    """Speed of a bearing's cage without slip [theory: rotor, eq. 32].
+    """Speed of a bearing's cage without slip [theory: rotor, eq. 32]."""
 
-    Parameters
-    ----------
-    name : of the bearing
-    speed : rad/s, shape (n,)
-    printed : half the shaft's, as the source has it for balls without contact angle [DR18, eq. 10], rad/s,
-        shape (n,); nan with a contact angle
-    """
-
-    name: str
-    speed: Array
+    name: str  #: of the bearing
+    speed: Array  #: rad/s, shape (n,)
+    #: half the shaft's, as the source has it for balls without contact angle [DR18, eq. 10], rad/s, shape
+    #: (n,); nan with a contact angle
     printed: Array
 
 
 @dataclass(frozen=True)
 class ClosedForms:
-    """What closed forms say of a scene; None or empty where it lacks what they need.
+    """What closed forms say of a scene; None or empty where it lacks what they need."""
 
-    Parameters
-    ----------
-    upright : of a vertical rotor with a ball joint
-    vector : of a planar rotor's answer
-    balancing : conditions of balancing in two planes
-    cages : of the bearings whose balls are given
-    lacking : what the scene lacks for those that its kind of machine could have, a sentence each
-    """
-
-    upright: Upright | None = None
-    vector: VectorModel | None = None
-    balancing: Balancing | None = None
-    cages: tuple[Cage, ...] = ()
+    upright: Upright | None = None  #: of a vertical rotor with a ball joint
+    vector: VectorModel | None = None  #: of a planar rotor's answer
+    balancing: Balancing | None = None  #: conditions of balancing in two planes
+    cages: tuple[Cage, ...] = ()  #: of the bearings whose balls are given
+    #: what the scene lacks for those that its kind of machine could have, a sentence each
     lacking: tuple[str, ...] = ()
 
     @property

@@ -108,23 +108,16 @@ def cycle_arrays(branches: Sequence[Branch]) -> dict[str, Variable]:
 
 @dataclass(frozen=True)
 class LargeWhirl:
-    """How large the self-excited whirl becomes that comes on top of the response to the unbalance.
+    """How large the self-excited whirl becomes that comes on top of the response to the unbalance."""
 
-    Parameters
-    ----------
-    branches : of limit cycles, without unbalance
-    amplitude : of the first chamber's axis in the largest stable whirl, m, 0 where there is none, nan where a
-        small whirl grows and none was found that it grows to, shape (n,)
-    whirl_speed : of that whirl in space, rad/s, nan where there is none, shape (n,)
-    kicked : a small whirl does not grow there: a kick starts this one or a run-up carries it, shape (n,)
-    reason : why there are none, or what is not among them; empty if nothing is to be said
-    """
-
-    branches: tuple[Branch, ...]
+    branches: tuple[Branch, ...]  #: of limit cycles, without unbalance
+    #: of the first chamber's axis in the largest stable whirl, m, 0 where there is none, nan where a small
+    #: whirl grows and none was found that it grows to, shape (n,)
     amplitude: Array
-    whirl_speed: Array
+    whirl_speed: Array  #: of that whirl in space, rad/s, nan where there is none, shape (n,)
+    #: a small whirl does not grow there: a kick starts this one or a run-up carries it, shape (n,)
     kicked: Flags
-    reason: str = ""
+    reason: str = ""  #: why there are none, or what is not among them; empty if nothing is to be said
 
     @property
     def cycles(self) -> list[dict[str, Any]]:

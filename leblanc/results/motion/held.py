@@ -23,40 +23,28 @@ class Held:
     """What rotor and waves do at the speeds at which they were held in time until they settled.
 
     n speeds, c chambers. At the other speeds numbers are nan and states are "steady".
-
-    Parameters
-    ----------
-    at : where that was done, shape (n,)
-    state : one of `MOTIONS`, as met while the speed rises, shape (n,)
-    least, largest : distance of the axis from where it rests, over time, m, shape (n,)
-    whirl_speed : of the whirl that goes round beside the spin, in space, nan without one, rad/s, shape (n,)
-    liquid : mean of each layer's centre of mass from its chamber's axis, in the drum, m, shape (n, c)
-    ripple : largest distance of it from that mean, m, shape (n, c)
-    error : estimated from half the cells, over the largest distance, shape (n,)
-    state_down, amplitude_down : while the speed falls, m, shape (n,)
-    cells : round each wall
-    reason : why the motion has not settled, else empty, shape (n,); no entry where that is not known
-    solver : that held them, by its name in py-pde
-    model : of the liquid, one of `HELD_MODELS`
-    wave_error : estimated from smooth waves under the whirl of a limit cycle, how far long waves are off the
-        exact ones, relative; nan where there is no whirl or no estimate, shape (n,); no entry where that is
-        not known
     """
 
-    at: Flags
-    state: NDArray[np.str_]
-    least: Array
+    at: Flags  #: where that was done, shape (n,)
+    state: NDArray[np.str_]  #: one of `MOTIONS`, as met while the speed rises, shape (n,)
+    least: Array  #: distance of the axis from where it rests, over time, m, shape (n,)
     largest: Array
+    #: of the whirl that goes round beside the spin, in space, nan without one, rad/s, shape (n,)
     whirl_speed: Array
+    #: mean of each layer's centre of mass from its chamber's axis, in the drum, m, shape (n, c)
     liquid: Complex
-    ripple: Array
-    error: Array
-    state_down: NDArray[np.str_]
+    ripple: Array  #: largest distance of it from that mean, m, shape (n, c)
+    error: Array  #: estimated from half the cells, over the largest distance, shape (n,)
+    state_down: NDArray[np.str_]  #: while the speed falls, m, shape (n,)
     amplitude_down: Array
-    cells: int
+    cells: int  #: round each wall
+    #: why the motion has not settled, else empty, shape (n,); no entry where that is not known
     reason: NDArray[np.str_] = field(default_factory=lambda: np.zeros(0, dtype="U1"))
-    solver: str = COUPLED
-    model: str = "long_wave"
+    solver: str = COUPLED  #: that held them, by its name in py-pde
+    model: str = "long_wave"  #: of the liquid, one of `HELD_MODELS`
+    #: estimated from smooth waves under the whirl of a limit cycle, how far long waves are off the exact
+    #: ones, relative; nan where there is no whirl or no estimate, shape (n,); no entry where that is not
+    #: known
     wave_error: Array = field(default_factory=lambda: np.zeros(0))
 
     @property

@@ -18,31 +18,19 @@ _STEADY = 1e-9  # relative change of the speed that is none
 
 @dataclass(frozen=True)
 class Passage:
-    """A step of a programme as it went.
+    """A step of a programme as it went."""
 
-    Parameters
-    ----------
-    step : its number, from 1
-    text : as a person writes it
-    way : "up", "hold" or "down"
-    begin, end : s
-    speed_begin, speed_end : rad/s
-    amplitude : largest deflection of the axis in it, m
-    speed, time : where that was, rad/s and s
-    amplitude_dry : the largest without liquid, m; nan where that was not run
-    """
-
-    step: int
-    text: str
-    way: str
-    begin: float
+    step: int  #: its number, from 1
+    text: str  #: as a person writes it
+    way: str  #: "up", "hold" or "down"
+    begin: float  #: s
     end: float
-    speed_begin: float
+    speed_begin: float  #: rad/s
     speed_end: float
-    amplitude: float
-    speed: float
+    amplitude: float  #: largest deflection of the axis in it, m
+    speed: float  #: where that was, rad/s and s
     time: float
-    amplitude_dry: float
+    amplitude_dry: float  #: the largest without liquid, m; nan where that was not run
 
 
 def passages_of(history: RunupHistory, dry: RunupHistory | None, texts: Sequence[str]) -> tuple[Passage, ...]:

@@ -15,25 +15,16 @@ from meshes.arrays import Array, Flags
 
 @dataclass(frozen=True)
 class SelfExcited:
-    """Whirl that grows by itself from the even layer, in linear theory.
+    """Whirl that grows by itself from the even layer, in linear theory."""
 
-    Parameters
-    ----------
-    growth : of the whirl that grows most, 1/s, nan where it was not found, shape (n,)
-    whirl_speed : of that whirl in the standing frame, rad/s, shape (n,)
-    bands : of speed in which some whirl grows, rad/s; the ends of the range of speeds count as edges
-    friction : of the liquid, in words
-    not_known : bands of speed in which the modes were not found, between the nearest speeds where they were,
-        rad/s
-    large : how large the whirl becomes; None where that was not asked for
-    """
-
-    growth: Array
-    whirl_speed: Array
+    growth: Array  #: of the whirl that grows most, 1/s, nan where it was not found, shape (n,)
+    whirl_speed: Array  #: of that whirl in the standing frame, rad/s, shape (n,)
+    #: of speed in which some whirl grows, rad/s; the ends of the range of speeds count as edges
     bands: tuple[tuple[float, float], ...]
-    friction: str
+    friction: str  #: of the liquid, in words
+    #: bands of speed in which the modes were not found, between the nearest speeds where they were, rad/s
     not_known: tuple[tuple[float, float], ...] = ()
-    large: LargeWhirl | None = None
+    large: LargeWhirl | None = None  #: how large the whirl becomes; None where that was not asked for
 
     def leaves_stable(self, stable: Flags) -> Flags:
         """Stable against slow disturbances, and no whirl grows; what is not known is not stable, shape (n,).

@@ -16,18 +16,11 @@ from solvers.rotor.campbell import Campbell
 
 @dataclass(frozen=True)
 class RestMode:
-    """Free vibration of the dry rotor at rest.
+    """Free vibration of the dry rotor at rest."""
 
-    Parameters
-    ----------
-    frequency : damped, rad/s; 0 where overdamped
-    damping_ratio : 1 where overdamped
-    moves : what moves most, in words
-    """
-
-    frequency: float
-    damping_ratio: float
-    moves: str
+    frequency: float  #: damped, rad/s; 0 where overdamped
+    damping_ratio: float  #: 1 where overdamped
+    moves: str  #: what moves most, in words
 
 
 @dataclass(frozen=True)
@@ -36,30 +29,20 @@ class Motion:
 
     The axis goes round as forward e^{i Omega t} + backward e^{-i Omega t}; the deflections of the response
     are the forward part. s speeds, b branches, c chambers.
-
-    Parameters
-    ----------
-    position : along the axis of the plane reported, m
-    backward, backward_dry : m, shape (s,)
-    branch_backward : m, shape (s, b)
-    chamber_forward : at each chamber, m, shape (s, c)
-    modes : of the dry rotor at rest, by rising frequency
-    campbell : natural frequencies of the dry rotor over its speed
-    critical_speeds_dry, critical_speeds_wet : undamped, each with the direction of its whirl, -1 to 1
-    zero : what angles count from, in words
-    refined_forward : as chamber_forward, at the refined speeds; none if empty, shape (r, c)
     """
 
-    position: float
-    backward: NDArray[np.complex128]
+    position: float  #: along the axis of the plane reported, m
+    backward: NDArray[np.complex128]  #: m, shape (s,)
     backward_dry: NDArray[np.complex128]
-    branch_backward: NDArray[np.complex128]
-    chamber_forward: NDArray[np.complex128]
-    modes: tuple[RestMode, ...]
-    campbell: Campbell
+    branch_backward: NDArray[np.complex128]  #: m, shape (s, b)
+    chamber_forward: NDArray[np.complex128]  #: at each chamber, m, shape (s, c)
+    modes: tuple[RestMode, ...]  #: of the dry rotor at rest, by rising frequency
+    campbell: Campbell  #: natural frequencies of the dry rotor over its speed
+    #: undamped, each with the direction of its whirl, -1 to 1
     critical_speeds_dry: tuple[tuple[float, float], ...]
     critical_speeds_wet: tuple[tuple[float, float], ...]
-    zero: str
+    zero: str  #: what angles count from, in words
+    #: as chamber_forward, at the refined speeds; none if empty, shape (r, c)
     refined_forward: Complex = field(default_factory=lambda: np.zeros((0, 0), dtype=complex))
 
     @property

@@ -14,40 +14,24 @@ from meshes.arrays import Array, Complex
 
 @dataclass(frozen=True)
 class RaceOfBalls:
-    """A race with its balls, all alike.
+    """A race with its balls, all alike."""
 
-    Parameters
-    ----------
-    count : of its balls
-    moment : mass of one ball, less that of the liquid it displaces, times the radius of its path, kg m
-    plane : position along the axis, m
-    radius : of the path of the balls' centres, m
-    diameter : of the balls, m; None where the scene does not say it
-    """
-
-    count: int
+    count: int  #: of its balls
+    #: mass of one ball, less that of the liquid it displaces, times the radius of its path, kg m
     moment: float
-    plane: float
-    radius: float
-    diameter: float | None = None
+    plane: float  #: position along the axis, m
+    radius: float  #: of the path of the balls' centres, m
+    diameter: float | None = None  #: of the balls, m; None where the scene does not say it
 
 
 @dataclass(frozen=True)
 class GravityOnBalls:
-    """What gravity across the axis does to N balls that rest in a drum, at s speeds [theory: races, eq. 11].
+    """What gravity across the axis does to N balls at rest in a drum, at s speeds [theory: races, eq. 11]."""
 
-    Parameters
-    ----------
-    share : gravity over the centrifugal acceleration of the balls that have least of it, shape (s,)
-    ball_swing : amplitude of each ball's angle about its place, once a turn, rad, shape (s, N)
-    amplitude : by which the axis is shaken with twice the spin, m, shape (s,)
-    power : that the drag of the races takes so, W, shape (s,)
-    """
-
-    share: Array
-    ball_swing: Array
-    amplitude: Array
-    power: Array
+    share: Array  #: gravity over the centrifugal acceleration of the balls that have least of it, shape (s,)
+    ball_swing: Array  #: amplitude of each ball's angle about its place, once a turn, rad, shape (s, N)
+    amplitude: Array  #: by which the axis is shaken with twice the spin, m, shape (s,)
+    power: Array  #: that the drag of the races takes so, W, shape (s,)
 
     def to_json(self) -> dict[str, Any]:
         """Plain values over the speeds, SI."""

@@ -18,48 +18,20 @@ from solvers.rotor.balls.charts import NONE
 
 @dataclass(frozen=True)
 class Curve:
-    """A curve on which roots stand on the imaginary axis; k points.
+    """A curve on which roots stand on the imaginary axis; k points."""
 
-    Parameters
-    ----------
-    kind : "hopf", a pair of roots, or "zero", one root at 0
-    speed, value : of its points, rad/s and SI, shape (k,); the last one of a curve that leaves lies outside
-    frequency : of the pair as seen from the rotor, rad/s, shape (k,)
-    ends : of its first and its last point: "left" the chart, "closed", "nowhere", as the state ends there,
-        "lost", as no further point is found, or "long", with too many points
-    """
-
-    kind: str
-    speed: Array
+    kind: str  #: "hopf", a pair of roots, or "zero", one root at 0
+    speed: Array  #: of its points, rad/s and SI, shape (k,); the last one of a curve that leaves lies outside
     value: Array
-    frequency: Array
+    frequency: Array  #: of the pair as seen from the rotor, rad/s, shape (k,)
+    #: of its first and its last point: "left" the chart, "closed", "nowhere", as the state ends there,
+    #: "lost", as no further point is found, or "long", with too many points
     ends: tuple[str, str]
 
 
 @dataclass(frozen=True)
 class BallChart(Result):
     """Stability of a state of the balls; s speeds, v values of another number of the scene.
-
-    Parameters
-    ----------
-    name, source, assumed, digest : of the scene
-    axis : "horizontal" or "vertical"
-    state : of the balls, "balanced", "heavy" or "light": together on that side
-    paths : of the numbers of the scene that are varied; the first one takes the values, the others go along
-    dimension : of these numbers
-    log : the values are spaced evenly in their logarithm
-    speed : spin speed, rad/s, shape (s,)
-    value : of the number, SI, shape (v,)
-    growing : roots with a positive real part, -1 where the state does not exist, shape (v, s)
-    growth : of the small motion that grows most, 1/s, nan where the state does not exist, shape (v, s)
-    edges : curves on which the number of growing roots changes
-    bounds : values between which the balanced state begins or ends to exist, SI; empty for another state
-    scene_value : what the scene has there, SI; nan where it says nothing
-    scene_growth : with the scene as it stands, 1/s, shape (s,)
-    scene_bands : speeds between which the state is stable then, rad/s; an end that is the first or the last
-        speed is where the range ends
-    capacity : largest unbalance that the balls of each race hold in the scene as it stands, kg m
-    notes : limits of validity and findings
 
     Examples
     --------
@@ -72,26 +44,32 @@ class BallChart(Result):
     figure: ClassVar[str] = "leblanc.figures.races.chart:chart_figure"
     summary: ClassVar[str] = "leblanc.text.races.chart:facts"
 
-    name: str
+    name: str  #: of the scene
     source: str
     assumed: tuple[str, ...]
     digest: str
-    axis: str
-    state: str
+    axis: str  #: "horizontal" or "vertical"
+    state: str  #: of the balls, "balanced", "heavy" or "light": together on that side
+    #: of the numbers of the scene that are varied; the first one takes the values, the others go along
     paths: tuple[str, ...]
-    dimension: Dimension
-    log: bool
-    speed: Array
-    value: Array
-    growing: Indices
+    dimension: Dimension  #: of these numbers
+    log: bool  #: the values are spaced evenly in their logarithm
+    speed: Array  #: spin speed, rad/s, shape (s,)
+    value: Array  #: of the number, SI, shape (v,)
+    growing: Indices  #: roots with a positive real part, -1 where the state does not exist, shape (v, s)
+    #: of the small motion that grows most, 1/s, nan where the state does not exist, shape (v, s)
     growth: Array
-    edges: tuple[Curve, ...]
+    edges: tuple[Curve, ...]  #: curves on which the number of growing roots changes
+    #: values between which the balanced state begins or ends to exist, SI; empty for another state
     bounds: tuple[float, ...]
-    scene_value: float
-    scene_growth: Array
+    scene_value: float  #: what the scene has there, SI; nan where it says nothing
+    scene_growth: Array  #: with the scene as it stands, 1/s, shape (s,)
+    #: speeds between which the state is stable then, rad/s; an end that is the first or the last speed is
+    #: where the range ends
     scene_bands: tuple[tuple[float, float], ...]
+    #: largest unbalance that the balls of each race hold in the scene as it stands, kg m
     capacity: tuple[float, ...]
-    notes: tuple[Note, ...]
+    notes: tuple[Note, ...]  #: limits of validity and findings
 
     @property
     def stable(self) -> Flags:

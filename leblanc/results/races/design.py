@@ -18,94 +18,43 @@ from meshes.arrays import Array
 
 @dataclass(frozen=True)
 class DesignRange:
-    """A value that was searched.
+    """A value that was searched."""
 
-    Parameters
-    ----------
-    path : in the scene
-    low, high : least and most, SI
-    unit : SI
-    """
-
-    path: str
-    low: float
+    path: str  #: in the scene
+    low: float  #: least and most, SI
     high: float
-    unit: str
+    unit: str  #: SI
 
 
 @dataclass(frozen=True)
 class DesignedRace:
-    """A race with the balls found, or with those of the scene.
+    """A race with the balls found, or with those of the scene."""
 
-    Parameters
-    ----------
-    count : of the balls
-    mass : of one ball, kg
-    diameter : of the balls, m; None where the scene does not say it
-    drag : force on a ball over its speed in the drum, N s/m
-    radius : of the circle of the balls' centres, m
-    plane : along the axis, m
-    capacity : largest unbalance that the balls hold, kg m
-    sized_by : "mass" or "diameter", as a scene gives the size of a ball
-    """
-
-    count: int
-    mass: float
-    diameter: float | None
-    drag: float
-    radius: float
-    plane: float
-    capacity: float
-    sized_by: str
+    count: int  #: of the balls
+    mass: float  #: of one ball, kg
+    diameter: float | None  #: of the balls, m; None where the scene does not say it
+    drag: float  #: force on a ball over its speed in the drum, N s/m
+    radius: float  #: of the circle of the balls' centres, m
+    plane: float  #: along the axis, m
+    capacity: float  #: largest unbalance that the balls hold, kg m
+    sized_by: str  #: "mass" or "diameter", as a scene gives the size of a ball
 
 
 @dataclass(frozen=True)
 class TriedDesigns:
-    """All designs that were judged, m of them with v values each.
+    """All designs that were judged, m of them with v values each."""
 
-    Parameters
-    ----------
-    values : in the order of the ranges, SI, shape (m, v)
-    count : balls in all races together, shape (m,)
-    mass : of all balls, kg, shape (m,)
-    vibration : amplitude, m, infinite where no state is stable, shape (m,)
-    growth : of small motions, 1/s, shape (m,)
-    excess : by how much a constraint is exceeded, relative, 0 or below if none is, shape (m,)
-    """
-
-    values: Array
-    count: Array
-    mass: Array
-    vibration: Array
-    growth: Array
-    excess: Array
+    values: Array  #: in the order of the ranges, SI, shape (m, v)
+    count: Array  #: balls in all races together, shape (m,)
+    mass: Array  #: of all balls, kg, shape (m,)
+    vibration: Array  #: amplitude, m, infinite where no state is stable, shape (m,)
+    growth: Array  #: of small motions, 1/s, shape (m,)
+    excess: Array  #: by how much a constraint is exceeded, relative, 0 or below if none is, shape (m,)
 
 
 @dataclass(frozen=True)
 class BallDesignResult(Result):
     """The best balls of a scene's races [theory: races, eq. 13-15].
-
-    Parameters
-    ----------
-    name, source, assumed, digest : of the scene
-    objective : working_speed, peak, mean, least_mass or robust
-    meaning : of the amplitude, in words
-    working_speed : rad/s
-    ranges : what was searched
-    races, races_before : with the best balls, and with those of the scene
-    value : of the objective, m, or kg for least_mass
-    vibration, vibration_before, vibration_without : amplitude with the best balls, with the scene's, and
-        without, m; infinite where no state is stable
-    mass_before : of the scene's balls, kg
-    growth, growth_before : of small motions at the speeds that are looked at, the largest, 1/s
-    constraints : by name
-    unbalances : conditions of the rotor, size of each unbalance, kg m, shape (n, u)
-    evaluations : designs judged
-    tried : all of them
-    volume : of liquid in each chamber, which stays, m^3
-    response : what `run` says of the best balls
-    interrupted : from the keyboard; the best of what was tried until then
-    notes : of the search
 
     Examples
     --------
@@ -118,31 +67,32 @@ class BallDesignResult(Result):
     figure: ClassVar[str] = "leblanc.figures.races.design:design_figure"
     summary: ClassVar[str] = "leblanc.text.races.design:facts"
 
-    name: str
+    name: str  #: of the scene
     source: str
     assumed: tuple[str, ...]
     digest: str
-    objective: str
-    meaning: str
-    working_speed: float
-    ranges: tuple[DesignRange, ...]
-    races: tuple[DesignedRace, ...]
+    objective: str  #: working_speed, peak, mean, least_mass or robust
+    meaning: str  #: of the amplitude, in words
+    working_speed: float  #: rad/s
+    ranges: tuple[DesignRange, ...]  #: what was searched
+    races: tuple[DesignedRace, ...]  #: with the best balls, and with those of the scene
     races_before: tuple[DesignedRace, ...]
-    value: float
+    value: float  #: of the objective, m, or kg for least_mass
+    #: amplitude with the best balls, with the scene's, and without, m; infinite where no state is stable
     vibration: float
     vibration_before: float
     vibration_without: float
-    mass_before: float
-    growth: float
+    mass_before: float  #: of the scene's balls, kg
+    growth: float  #: of small motions at the speeds that are looked at, the largest, 1/s
     growth_before: float
-    constraints: dict[str, ConstraintValue]
-    unbalances: Array
-    evaluations: int
-    tried: TriedDesigns
-    volume: Array
-    response: BallsResult
-    interrupted: bool
-    notes: tuple[Note, ...] = field(default_factory=tuple)
+    constraints: dict[str, ConstraintValue]  #: by name
+    unbalances: Array  #: conditions of the rotor, size of each unbalance, kg m, shape (n, u)
+    evaluations: int  #: designs judged
+    tried: TriedDesigns  #: all of them
+    volume: Array  #: of liquid in each chamber, which stays, m^3
+    response: BallsResult  #: what `run` says of the best balls
+    interrupted: bool  #: from the keyboard; the best of what was tried until then
+    notes: tuple[Note, ...] = field(default_factory=tuple)  #: of the search
 
     @property
     def unit(self) -> str:

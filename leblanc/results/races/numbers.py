@@ -19,51 +19,26 @@ from solvers.rotor.balls.two_plane_balance import Balancing
 
 @dataclass(frozen=True)
 class RaceNumbers:
-    """One race with its balls in numbers.
+    """One race with its balls in numbers."""
 
-    Parameters
-    ----------
-    count : of the balls
-    mass : of one ball, kg
-    plane : along the axis, m
-    capacity : largest unbalance that the balls hold, kg m
-    share : unbalance that they must hold where the rotor is balanced, kg m; nan where no shares of the races
-        balance it
-    crowding : share of the way round that the balls take side by side, 0 where their diameter is not known
-    fade_time : in which the speed of a free ball against its drum falls to 1/e, s, infinite without drag
-    drag : dimensionless, over a ball's mass, rolling share and the critical speed
-    sticking : deflection below which balls that resist to rolling stay where they are, m
-    """
-
-    count: int
-    mass: float
-    plane: float
-    capacity: float
+    count: int  #: of the balls
+    mass: float  #: of one ball, kg
+    plane: float  #: along the axis, m
+    capacity: float  #: largest unbalance that the balls hold, kg m
+    #: unbalance that they must hold where the rotor is balanced, kg m; nan where no shares of the races
+    #: balance it
     share: float
+    #: share of the way round that the balls take side by side, 0 where their diameter is not known
     crowding: float
+    #: in which the speed of a free ball against its drum falls to 1/e, s, infinite without drag
     fade_time: float
-    drag: float
-    sticking: float
+    drag: float  #: dimensionless, over a ball's mass, rolling share and the critical speed
+    sticking: float  #: deflection below which balls that resist to rolling stay where they are, m
 
 
 @dataclass(frozen=True)
 class BallExplanation(Result):
     """A scene with balls in numbers; s speeds.
-
-    Parameters
-    ----------
-    machine : the same scene without its balls
-    races : in their order
-    unbalance : of the rotor, all of its sizes together, kg m
-    ball_mass : of all balls, kg
-    can_balance : the balls can take all unbalance away
-    reason : why not, or that they can, in words
-    balanced_from : speed from which on the balanced state is stable, rad/s, nan if at none of the scene's
-    speed : at which it was looked at, rad/s, shape (s,)
-    growth : of small motions about the balanced state, 1/s, nan where there is none, shape (s,)
-    balancing : conditions of balancing in two planes; None where the rotor or its races have none
-    single_plane : condition of balancing in the plane of the only race, shape (s,); None elsewhere
-    lacking : what is not told, a sentence each
 
     Examples
     --------
@@ -76,18 +51,21 @@ class BallExplanation(Result):
     figure: ClassVar[str] = "leblanc.figures.races.numbers:numbers_figure"
     summary: ClassVar[str] = "leblanc.text.races.numbers:facts"
 
-    machine: Explanation
-    races: tuple[RaceNumbers, ...]
-    unbalance: float
-    ball_mass: float
-    can_balance: bool
-    reason: str
+    machine: Explanation  #: the same scene without its balls
+    races: tuple[RaceNumbers, ...]  #: in their order
+    unbalance: float  #: of the rotor, all of its sizes together, kg m
+    ball_mass: float  #: of all balls, kg
+    can_balance: bool  #: the balls can take all unbalance away
+    reason: str  #: why not, or that they can, in words
+    #: speed from which on the balanced state is stable, rad/s, nan if at none of the scene's
     balanced_from: float
-    speed: Array
-    growth: Array
+    speed: Array  #: at which it was looked at, rad/s, shape (s,)
+    growth: Array  #: of small motions about the balanced state, 1/s, nan where there is none, shape (s,)
+    #: conditions of balancing in two planes; None where the rotor or its races have none
     balancing: Balancing | None
+    #: condition of balancing in the plane of the only race, shape (s,); None elsewhere
     single_plane: Flags | None
-    lacking: tuple[str, ...]
+    lacking: tuple[str, ...]  #: what is not told, a sentence each
 
     @property
     def name(self) -> str:

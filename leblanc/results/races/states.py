@@ -45,36 +45,6 @@ def reported_state(states: BallStates, sizes: Array) -> Index:
 class BallsResult(Result):
     """States of rotor, balls and liquid; s speeds, at most b states at each, N balls.
 
-    Parameters
-    ----------
-    name, source, assumed, digest : of the scene
-    inputs : label, value with its unit, field path
-    kind, axis : of the rotor; "horizontal" or "vertical"
-    races : that hold the balls
-    position : along the axis of the plane whose motion is reported, m
-    states : all that were found at each speed
-    forward, backward : parts of the orbit there, m, shape (s, b), nan where there are fewer states
-    deflection_without : forward part of the rotor without balls, with its liquid, m, shape (s,)
-    amplitude_without : its amplitude, m, shape (s,)
-    amplitude_dry : amplitude without balls and without liquid, m, shape (s,)
-    liquid : first moment of all liquid about the rotation axis, kg m, in the drum, shape (s, b)
-    liquid_mass : kg
-    dry : a wall is dry over its whole height somewhere, shape (s, b)
-    capacity : largest unbalance that the balls of each race hold, kg m
-    can_balance : the balls can take all unbalance away
-    sticking : deflection in the plane of each race below which its balls stay where they are, m
-    notes : limits of validity and findings
-    loads : forces and clearances of the state reported where it is stable; None where the scene asks for none
-    closed_forms : what the sources' closed forms say of the rotor
-    liquid_model : name of the liquid's model; empty without liquid
-    error_estimate : estimated relative error of the state reported by that model, of amplitude and liquid the
-        larger one, the balls held where they are, shape (s,); None without liquid
-    in_range : gravity across the axis leaves liquid and balls on their walls, shape (s,); None where it does
-        not act
-    capture_speed : above which a ring of liquid stands against it, rad/s; None where it does not act
-    gravity : what it does to the balls; None where it does not act
-    tolerance : relative error that the scene allows
-
     Examples
     --------
     >>> import leblanc as lb
@@ -86,36 +56,43 @@ class BallsResult(Result):
     figure: ClassVar[str] = "leblanc.figures.races.balls:balls_figure"
     summary: ClassVar[str] = "leblanc.text.races.balls:facts"
 
-    name: str
+    name: str  #: of the scene
     source: str
     assumed: tuple[str, ...]
     digest: str
-    inputs: tuple[tuple[str, str, str], ...]
-    kind: str
+    inputs: tuple[tuple[str, str, str], ...]  #: label, value with its unit, field path
+    kind: str  #: of the rotor; "horizontal" or "vertical"
     axis: str
-    races: tuple[RaceOfBalls, ...]
-    position: float
-    states: BallStates
-    forward: Complex
+    races: tuple[RaceOfBalls, ...]  #: that hold the balls
+    position: float  #: along the axis of the plane whose motion is reported, m
+    states: BallStates  #: all that were found at each speed
+    forward: Complex  #: parts of the orbit there, m, shape (s, b), nan where there are fewer states
     backward: Complex
-    deflection_without: Complex
-    amplitude_without: Array
-    amplitude_dry: Array
-    liquid: Complex
-    liquid_mass: float
-    dry: Flags
-    capacity: tuple[float, ...]
-    can_balance: bool
+    deflection_without: Complex  #: forward part of the rotor without balls, with its liquid, m, shape (s,)
+    amplitude_without: Array  #: its amplitude, m, shape (s,)
+    amplitude_dry: Array  #: amplitude without balls and without liquid, m, shape (s,)
+    liquid: Complex  #: first moment of all liquid about the rotation axis, kg m, in the drum, shape (s, b)
+    liquid_mass: float  #: kg
+    dry: Flags  #: a wall is dry over its whole height somewhere, shape (s, b)
+    capacity: tuple[float, ...]  #: largest unbalance that the balls of each race hold, kg m
+    can_balance: bool  #: the balls can take all unbalance away
+    #: deflection in the plane of each race below which its balls stay where they are, m
     sticking: tuple[float, ...]
-    notes: tuple[Note, ...]
+    notes: tuple[Note, ...]  #: limits of validity and findings
+    #: forces and clearances of the state reported where it is stable; None where the scene asks for none
     loads: MachineLoads | None = None
+    #: what the sources' closed forms say of the rotor
     closed_forms: ClosedForms = field(default_factory=ClosedForms)
-    liquid_model: str = ""
+    liquid_model: str = ""  #: name of the liquid's model; empty without liquid
+    #: estimated relative error of the state reported by that model, of amplitude and liquid the larger one,
+    #: the balls held where they are, shape (s,); None without liquid
     error_estimate: Array | None = None
+    #: gravity across the axis leaves liquid and balls on their walls, shape (s,); None where it does not act
     in_range: Flags | None = None
+    #: above which a ring of liquid stands against it, rad/s; None where it does not act
     capture_speed: float | None = None
-    gravity: GravityOnBalls | None = None
-    tolerance: float | None = None
+    gravity: GravityOnBalls | None = None  #: what it does to the balls; None where it does not act
+    tolerance: float | None = None  #: relative error that the scene allows
 
     balancing = carried("closed_forms.balancing")
     cage_speed = carried("closed_forms.cage_speed")

@@ -18,16 +18,6 @@ if TYPE_CHECKING:
 class BearingResult(Result):
     """Frequencies of a bearing at one speed of its shaft, the outer ring at rest.
 
-    Parameters
-    ----------
-    bearing : number of balls, ratio of diameters, contact angle
-    speed : of the shaft, rad/s
-    orders : frequencies over that of the shaft, by name
-    given : orders to which the bearing was fitted, by name; none where its dimensions were given
-    fit : how it was fitted; None where its dimensions were given
-    cage_measured : speed of the cage as measured, rad/s; None if it is not given
-    slip : share by which the cage is behind rolling; None without a measured speed
-
     Examples
     --------
     >>> import leblanc as lb
@@ -39,13 +29,14 @@ class BearingResult(Result):
     figure: ClassVar[str] = "leblanc.figures.spindles.bearing:bearing_figure"
     summary: ClassVar[str] = "leblanc.text.spindles.bearing:rows"
 
-    bearing: Bearing
-    speed: float
-    orders: dict[str, float]
+    bearing: Bearing  #: number of balls, ratio of diameters, contact angle
+    speed: float  #: of the shaft, rad/s
+    orders: dict[str, float]  #: frequencies over that of the shaft, by name
+    #: orders to which the bearing was fitted, by name; none where its dimensions were given
     given: dict[str, float]
-    fit: BearingFit | None
-    cage_measured: float | None
-    slip: float | None
+    fit: BearingFit | None  #: how it was fitted; None where its dimensions were given
+    cage_measured: float | None  #: speed of the cage as measured, rad/s; None if it is not given
+    slip: float | None  #: share by which the cage is behind rolling; None without a measured speed
 
     @property
     def ftf(self) -> float:

@@ -19,47 +19,19 @@ RECIPROCITY, WAYS = 1e-9, 1e-6  # relative differences up to which two ways to o
 
 @dataclass(frozen=True)
 class NaturalMode:
-    """A natural motion without damping, and the damped answer to the force at its frequency.
+    """A natural motion without damping, and the damped answer to the force at its frequency."""
 
-    Parameters
-    ----------
-    frequency : rad/s
-    along : of each beam places from its first station, m, and deflections, the largest of all being 1
-    stations : deflection at each station, in the order of the result's names
-    measured, wanted : compliances at that frequency, m/N
-    """
-
-    frequency: float
+    frequency: float  #: rad/s
+    #: of each beam places from its first station, m, and deflections, the largest of all being 1
     along: tuple[tuple[Array, Array], ...]
-    stations: Array
-    measured: complex
+    stations: Array  #: deflection at each station, in the order of the result's names
+    measured: complex  #: compliances at that frequency, m/N
     wanted: complex
 
 
 @dataclass(frozen=True)
 class SpindleResult(Result):
     """Answer to a unit harmonic force over its frequency; n frequencies, k natural ones, s stations.
-
-    Parameters
-    ----------
-    name : of the scene
-    assumed : values that it assumes
-    theory : of the beams
-    driven_at, measured_at, wanted_at : stations of the force, of the measurement, of what is asked for
-    beams : names of the beams
-    stations : names of all stations, shape (s,)
-    places : of the first station of each beam along the machine, m
-    frequency : of the force, rad/s, shape (n,)
-    driven, measured, wanted : displacement over the force at the three stations, m/N, shape (n,)
-    modes : natural motions between the first and the last frequency
-    reciprocity : largest relative difference of a compliance from that with force and motion exchanged
-    ways_apart : largest relative difference of the way by reactions in the joints from the exact assembly;
-        nan where no joint is between two beams
-    least_dissipation : smallest -Im of the compliance at the force over its size; not below 0 where joints
-        only take energy
-    source, digest : of the scene
-    rotation : of the spindle, rad/s; None where the scene does not say it
-    cages : of the joints whose balls are given, at that speed
 
     Examples
     --------
@@ -72,27 +44,31 @@ class SpindleResult(Result):
     figure: ClassVar[str] = "leblanc.figures.spindles.unit:compliance_figure"
     summary: ClassVar[str] = "leblanc.text.spindles.unit:facts"
 
-    name: str
-    assumed: tuple[str, ...]
-    theory: str
-    driven_at: str
+    name: str  #: of the scene
+    assumed: tuple[str, ...]  #: values that it assumes
+    theory: str  #: of the beams
+    driven_at: str  #: stations of the force, of the measurement, of what is asked for
     measured_at: str
     wanted_at: str
-    beams: tuple[str, ...]
-    stations: tuple[str, ...]
-    places: tuple[float, ...]
-    frequency: Array
-    driven: Complex
+    beams: tuple[str, ...]  #: names of the beams
+    stations: tuple[str, ...]  #: names of all stations, shape (s,)
+    places: tuple[float, ...]  #: of the first station of each beam along the machine, m
+    frequency: Array  #: of the force, rad/s, shape (n,)
+    driven: Complex  #: displacement over the force at the three stations, m/N, shape (n,)
     measured: Complex
     wanted: Complex
-    modes: tuple[NaturalMode, ...]
+    modes: tuple[NaturalMode, ...]  #: natural motions between the first and the last frequency
+    #: largest relative difference of a compliance from that with force and motion exchanged
     reciprocity: float
+    #: largest relative difference of the way by reactions in the joints from the exact assembly; nan where no
+    #: joint is between two beams
     ways_apart: float
+    #: smallest -Im of the compliance at the force over its size; not below 0 where joints only take energy
     least_dissipation: float
-    source: str = ""
+    source: str = ""  #: of the scene
     digest: str = ""
-    rotation: float | None = None
-    cages: tuple[Cage, ...] = ()
+    rotation: float | None = None  #: of the spindle, rad/s; None where the scene does not say it
+    cages: tuple[Cage, ...] = ()  #: of the joints whose balls are given, at that speed
 
     @property
     def cage_speed(self) -> dict[str, float]:

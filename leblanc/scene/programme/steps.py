@@ -28,19 +28,13 @@ _TO = re.compile(r"to\b\s*(?P<speed>.*?)\s*\b(?P<how>in|at)\b\s*(?P<what>.*)", r
 
 @dataclass(frozen=True)
 class Step:
-    """One line of a programme, in SI units.
+    """One line of a programme, in SI units."""
 
-    Parameters
-    ----------
-    kind : "to" a speed, "hold" the speed, or "coast" without a motor
-    speed : at its end, rad/s; None for a hold and for a coast of a given time
-    rate : at which it changes, rad/s^2, without a sign; None where a time is given, or none
-    time : how long it lasts, s; None where speed and rate give it, and for a coast to a speed
-    """
-
-    kind: Literal["to", "hold", "coast"]
-    speed: float | None = None
+    kind: Literal["to", "hold", "coast"]  #: "to" a speed, "hold" the speed, or "coast" without a motor
+    speed: float | None = None  #: at its end, rad/s; None for a hold and for a coast of a given time
+    #: at which it changes, rad/s^2, without a sign; None where a time is given, or none
     rate: float | None = None
+    #: how long it lasts, s; None where speed and rate give it, and for a coast to a speed
     time: float | None = None
 
     def written(self) -> str:

@@ -25,18 +25,12 @@ _STEP = re.compile(r'"(?:[^"\\]|\\.)*"|[^.]+')  # of the path of a field
 
 @dataclass
 class Place:
-    """Where a key stands, and the keys below it.
+    """Where a key stands, and the keys below it."""
 
-    Parameters
-    ----------
-    line : counted from 1; 0 for the file
-    below : by key; entries of a list by their numbers as text
-    entries : a list of tables, of which the last one is being read
-    """
-
-    line: int
+    line: int  #: counted from 1; 0 for the file
+    #: by key; entries of a list by their numbers as text
     below: dict[str, Place] = field(default_factory=dict)
-    entries: bool = False
+    entries: bool = False  #: a list of tables, of which the last one is being read
 
     def at(self, key: str, line: int) -> Place:
         """The place of a key below, made where it is new.

@@ -23,22 +23,13 @@ _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
 
 @dataclass(frozen=True)
 class SceneFault:
-    """One thing that is wrong with a scene.
+    """One thing that is wrong with a scene."""
 
-    Parameters
-    ----------
-    file : name of the file
-    field : path of the field, as in "chambers.0.volume"; empty if the file as a whole is wrong
-    value : the value as it is shown to the user; None if there is none
-    allowed : what the value must be, in words that follow "must be"
-    line : of the field in the file, counted from 1; None where it is not known
-    """
-
-    file: str
-    field: str
-    value: str | None
-    allowed: str
-    line: int | None = None
+    file: str  #: name of the file
+    field: str  #: path of the field, as in "chambers.0.volume"; empty if the file as a whole is wrong
+    value: str | None  #: the value as it is shown to the user; None if there is none
+    allowed: str  #: what the value must be, in words that follow "must be"
+    line: int | None = None  #: of the field in the file, counted from 1; None where it is not known
 
     def __str__(self) -> str:
         line = "" if self.line is None else f":{self.line}"

@@ -30,18 +30,12 @@ class Quantity:
     """A number with a unit, within bounds.
 
     The bounds are far outside anything that is built; they keep squares and products finite.
-
-    Parameters
-    ----------
-    dimension : what it measures
-    low, high : bounds in SI units, both allowed
-    or_zero : zero is allowed as well
     """
 
-    dimension: Dimension
-    low: float
+    dimension: Dimension  #: what it measures
+    low: float  #: bounds in SI units, both allowed
     high: float
-    or_zero: bool = False
+    or_zero: bool = False  #: zero is allowed as well
 
     @property
     def allowed(self) -> str:

@@ -13,19 +13,13 @@ from solvers.synchronous.response import Response
 
 @dataclass(frozen=True)
 class Holding:
-    """How waves are held in time.
+    """How waves are held in time."""
 
-    Parameters
-    ----------
-    workers : processes; 0 or 1 for this one alone
-    folder : where states are kept, so that a run that was broken off goes on; None keeps none
-    fresh : do not take what is kept there
-    solver : its name in py-pde; another than the compiled steps is slow, and an independent check
-    """
-
-    workers: int = 0
+    workers: int = 0  #: processes; 0 or 1 for this one alone
+    #: where states are kept, so that a run that was broken off goes on; None keeps none
     folder: Path | None = None
-    fresh: bool = False
+    fresh: bool = False  #: do not take what is kept there
+    #: its name in py-pde; another than the compiled steps is slow, and an independent check
     solver: str = COUPLED
 
 
@@ -39,17 +33,9 @@ def cores() -> int:
 
 @dataclass(frozen=True)
 class Began:
-    """The steady answer with which held states begin; n speeds.
+    """The steady answer with which held states begin; n speeds."""
 
-    Parameters
-    ----------
-    answer : at the speeds asked for
-    refined : between them
-    growth : of the whirl that grows most, 1/s, shape (n,)
-    at : at which speeds the wave is to be held, shape (n,)
-    """
-
-    answer: Response
-    refined: Response
-    growth: Array
-    at: Flags
+    answer: Response  #: at the speeds asked for
+    refined: Response  #: between them
+    growth: Array  #: of the whirl that grows most, 1/s, shape (n,)
+    at: Flags  #: at which speeds the wave is to be held, shape (n,)

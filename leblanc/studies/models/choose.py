@@ -39,25 +39,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Prepared:
-    """A machine as solvers take it; every step of a study takes the same one.
+    """A machine as solvers take it; every step of a study takes the same one."""
 
-    Parameters
-    ----------
-    scene : the machine
-    rotor : without liquid
-    system : its equations of motion
-    speed : spin speeds, rad/s, shape (n,)
-    axial_gravity, across_gravity : along and across the axis, m/s^2
-    friction : of the liquid
-    """
-
-    scene: Scene
-    rotor: Jeffcott | TwoPlane | Tub
-    system: RotorSystem
-    speed: Array
-    axial_gravity: float
+    scene: Scene  #: the machine
+    rotor: Jeffcott | TwoPlane | Tub  #: without liquid
+    system: RotorSystem  #: its equations of motion
+    speed: Array  #: spin speeds, rad/s, shape (n,)
+    axial_gravity: float  #: along and across the axis, m/s^2
     across_gravity: float
-    friction: Friction
+    friction: Friction  #: of the liquid
 
     @property
     def planar(self) -> Jeffcott:

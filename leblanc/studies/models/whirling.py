@@ -40,22 +40,15 @@ _WORDS = {
 class AutoWave:
     """Stands for the model of a layer until its whirl is known.
 
-    Parameters
-    ----------
-    friction : on the wall
-    cells : of the model that is taken, as `wave_model` has them
-    dispersion : for long waves, whether or not they need it
-    tolerance : error of the force that is allowed, relative
-
     Raises
     ------
     InputError : a tolerance out of its range
     """
 
-    friction: Friction = NO_FRICTION
-    cells: int | None = None
-    dispersion: bool = False
-    tolerance: float = TOLERANCE
+    friction: Friction = NO_FRICTION  #: on the wall
+    cells: int | None = None  #: of the model that is taken, as `wave_model` has them
+    dispersion: bool = False  #: for long waves, whether or not they need it
+    tolerance: float = TOLERANCE  #: error of the force that is allowed, relative
 
     def __post_init__(self) -> None:
         if not 1e-12 <= self.tolerance <= 1.0:
@@ -64,20 +57,12 @@ class AutoWave:
 
 @dataclass(frozen=True)
 class WaveChoice:
-    """The model that answers.
+    """The model that answers."""
 
-    Parameters
-    ----------
-    model : of the liquid
-    reason : why, in words; empty where it was asked for
-    wave : its answer, where it was asked to see whether it serves
-    notes : what the answer has to say of the choice
-    """
-
-    model: WaveModel
-    reason: str = ""
-    wave: LiquidWave | None = None
-    notes: tuple[Note, ...] = ()
+    model: WaveModel  #: of the liquid
+    reason: str = ""  #: why, in words; empty where it was asked for
+    wave: LiquidWave | None = None  #: its answer, where it was asked to see whether it serves
+    notes: tuple[Note, ...] = ()  #: what the answer has to say of the choice
 
 
 Model = TypeVar("Model", bound=WaveModel)

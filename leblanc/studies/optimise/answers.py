@@ -31,19 +31,13 @@ FEW = 24  # speeds from which the peak of a rotor that tilts is refined
 
 @dataclass(frozen=True)
 class FillAnswers:
-    """Amplitude and liquid at pairs of volumes and speed, shape (m,).
+    """Amplitude and liquid at pairs of volumes and speed, shape (m,)."""
 
-    Parameters
-    ----------
-    amplitude : m; infinite where it has no bound or was not found
-    dry_patch : 1 where the wall is dry somewhere, else 0
-    reach : largest share of the way from a wall to its chamber's inner edge that the liquid reaches; 0
-        without such edges, and of a clear ring, whose liquid comes farther than that of compartments
-        [theory: optimum, eq. 12]
-    """
-
-    amplitude: Array
-    dry_patch: Array
+    amplitude: Array  #: m; infinite where it has no bound or was not found
+    dry_patch: Array  #: 1 where the wall is dry somewhere, else 0
+    #: largest share of the way from a wall to its chamber's inner edge that the liquid reaches; 0 without
+    #: such edges, and of a clear ring, whose liquid comes farther than that of compartments [theory: optimum,
+    #: eq. 12]
     reach: Array
 
 

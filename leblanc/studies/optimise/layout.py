@@ -55,26 +55,15 @@ class Variable(NamedTuple):
 
 @dataclass(frozen=True)
 class Suspension:
-    """A tub's mounts as a search moves them.
+    """A tub's mounts as a search moves them."""
 
-    Parameters
-    ----------
-    rotor : as it is
-    every : springs and dampers as one layout, springs first
-    springs : how many springs
-    variables : what is searched
-    mirrored : the mounts are alike on both sides of x = 0, and stay so
-    origin : centre of mass of tub and drum from that of the tub, m, shape (3,)
-    weight : of tub and drum, N, shape (3,)
-    """
-
-    rotor: Tub
-    every: Mounts
-    springs: int
-    variables: tuple[Variable, ...]
-    mirrored: bool
-    origin: Array
-    weight: Array
+    rotor: Tub  #: as it is
+    every: Mounts  #: springs and dampers as one layout, springs first
+    springs: int  #: how many springs
+    variables: tuple[Variable, ...]  #: what is searched
+    mirrored: bool  #: the mounts are alike on both sides of x = 0, and stay so
+    origin: Array  #: centre of mass of tub and drum from that of the tub, m, shape (3,)
+    weight: Array  #: of tub and drum, N, shape (3,)
 
     @property
     def mass(self) -> Array:

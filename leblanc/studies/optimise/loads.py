@@ -140,16 +140,10 @@ class LoadsOver:
 
 @dataclass(frozen=True)
 class Load:
-    """One of the loads of a machine: a `leblanc.studies.optimise.objectives.Vibration`.
+    """One of the loads of a machine: a `leblanc.studies.optimise.objectives.Vibration`."""
 
-    Parameters
-    ----------
-    over : all of its loads
-    name : as for `LoadsOver.of`
-    """
-
-    over: LoadsOver
-    name: str
+    over: LoadsOver  #: all of its loads
+    name: str  #: as for `LoadsOver.of`
 
     def exact(self, volumes: Array) -> Array:
         """The load with m sets of volumes, m^3, shape (m, c); shape (m,)."""

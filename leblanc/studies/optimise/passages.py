@@ -15,35 +15,21 @@ from meshes.arrays import Array
 
 @dataclass(frozen=True)
 class WorstLoads:
-    """The worst loads of a machine over a range of speeds, or over a run-up.
+    """The worst loads of a machine over a range of speeds, or over a run-up."""
 
-    Parameters
-    ----------
-    floor_force : largest under a foot, N; nan without a cabinet
-    walking, slip : least margins against walking and slipping; nan without a cabinet
-    clearance : least of each point, m, nan without a gap, shape (p,)
-    motor_torque : largest of the drive, N m
-    """
-
-    floor_force: float
-    walking: float
+    floor_force: float  #: largest under a foot, N; nan without a cabinet
+    walking: float  #: least margins against walking and slipping; nan without a cabinet
     slip: float
-    clearance: Array
-    motor_torque: float
+    clearance: Array  #: least of each point, m, nan without a gap, shape (p,)
+    motor_torque: float  #: largest of the drive, N m
 
 
 @dataclass(frozen=True)
 class Passage:
-    """What a run-up is judged by.
+    """What a run-up is judged by."""
 
-    Parameters
-    ----------
-    amplitude : largest, m; infinite for a run that did not come to its end
-    loads : None where nobody asks, or the run did not come to its end
-    """
-
-    amplitude: float
-    loads: WorstLoads | None
+    amplitude: float  #: largest, m; infinite for a run that did not come to its end
+    loads: WorstLoads | None  #: None where nobody asks, or the run did not come to its end
 
 
 class Passages:

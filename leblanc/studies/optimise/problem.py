@@ -67,25 +67,15 @@ _SLACK = 1.01  # default limit of the vibration over the least that is possible
 
 @dataclass(frozen=True)
 class Evaluator:
-    """Evaluates sets of volumes: a vibration, or their mass, and constraints.
+    """Evaluates sets of volumes: a vibration, or their mass, and constraints."""
 
-    Parameters
-    ----------
-    vibration : to be small
-    density : of each chamber's liquid, kg/m^3, shape (c,)
-    constraints : to keep to
-    by_mass : the liquid's mass is to be small; the vibration is then one of the constraints
-    estimated : the vibration is an estimate, by an emulator
-    sized : load that is to be small in place of the vibration
-    runs : run-ups in time by which vibration, loads or both are judged; None where none are
-    """
-
-    vibration: Vibration
-    density: Array
-    constraints: tuple[Constraint, ...]
-    by_mass: bool = False
-    estimated: bool = False
-    sized: Load | None = None
+    vibration: Vibration  #: to be small
+    density: Array  #: of each chamber's liquid, kg/m^3, shape (c,)
+    constraints: tuple[Constraint, ...]  #: to keep to
+    by_mass: bool = False  #: the liquid's mass is to be small; the vibration is then one of the constraints
+    estimated: bool = False  #: the vibration is an estimate, by an emulator
+    sized: Load | None = None  #: load that is to be small in place of the vibration
+    #: run-ups in time by which vibration, loads or both are judged; None where none are
     runs: Passages | None = None
 
     @property
@@ -133,24 +123,14 @@ class Evaluator:
 
 @dataclass(frozen=True)
 class Problem:
-    """What an optimisation is after.
+    """What an optimisation is after."""
 
-    Parameters
-    ----------
-    evaluate : objective and constraints at sets of volumes
-    meaning : what the value is, in words
-    working_speed : rad/s
-    speeds : that matter most, rad/s
-    costly : one answer takes tens of milliseconds and more
-    notes : what was assumed
-    """
-
-    evaluate: Evaluator
-    meaning: str
-    working_speed: float
-    speeds: tuple[float, ...]
-    costly: bool
-    notes: tuple[Note, ...] = ()
+    evaluate: Evaluator  #: objective and constraints at sets of volumes
+    meaning: str  #: what the value is, in words
+    working_speed: float  #: rad/s
+    speeds: tuple[float, ...]  #: that matter most, rad/s
+    costly: bool  #: one answer takes tens of milliseconds and more
+    notes: tuple[Note, ...] = ()  #: what was assumed
 
 
 def working_speed(scene: Scene, task: Optimisation) -> float:

@@ -28,31 +28,19 @@ DOUBLE = (0.5, 2.0)  # default range of unbalances over the scene's
 
 @dataclass(frozen=True)
 class OperatingCondition:
-    """One of the conditions a machine must cope with.
+    """One of the conditions a machine must cope with."""
 
-    Parameters
-    ----------
-    unbalance : size of each of the rotor's unbalances, kg m
-    temperature : K; None for that at which the scene's values hold
-    """
-
-    unbalance: tuple[float, ...]
-    temperature: float | None
+    unbalance: tuple[float, ...]  #: size of each of the rotor's unbalances, kg m
+    temperature: float | None  #: K; None for that at which the scene's values hold
 
 
 @dataclass(frozen=True)
 class UnbalanceRange:
-    """Sizes of a rotor's unbalances between least and most.
+    """Sizes of a rotor's unbalances between least and most."""
 
-    Parameters
-    ----------
-    least, most : of each unbalance, kg m
-    together : all grow by one factor; else each is anywhere in its range
-    """
-
-    least: tuple[float, ...]
+    least: tuple[float, ...]  #: of each unbalance, kg m
     most: tuple[float, ...]
-    together: bool
+    together: bool  #: all grow by one factor; else each is anywhere in its range
 
     @property
     def ways(self) -> int:

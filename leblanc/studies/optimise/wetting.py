@@ -98,28 +98,17 @@ def optimal_volume_by_search(
 
 @dataclass(frozen=True)
 class WettedWalls:
-    """The least volumes that wet the walls at a deflection; one for each chamber.
+    """The least volumes that wet the walls at a deflection; one for each chamber."""
 
-    Parameters
-    ----------
-    deflection, speed : given, m and rad/s
-    volumes : found by the search, m^3
-    closed_form : beside them
-    unbalance, mass : of the liquid, kg m and kg
-    dry_wall : whether any wall is dry over its whole height
-    evaluations : how many volumes the search evaluated
-    notes : how near search and closed form are
-    """
-
-    deflection: float
+    deflection: float  #: given, m and rad/s
     speed: float
-    volumes: tuple[float, ...]
-    closed_form: tuple[WettingVolumes, ...]
-    unbalance: float
+    volumes: tuple[float, ...]  #: found by the search, m^3
+    closed_form: tuple[WettingVolumes, ...]  #: beside them
+    unbalance: float  #: of the liquid, kg m and kg
     mass: float
-    dry_wall: ConstraintValue
-    evaluations: int
-    notes: tuple[Note, ...]
+    dry_wall: ConstraintValue  #: whether any wall is dry over its whole height
+    evaluations: int  #: how many volumes the search evaluated
+    notes: tuple[Note, ...]  #: how near search and closed form are
 
 
 def wet_walls(scene: Scene, deflection: float, speed: float) -> WettedWalls:

@@ -51,20 +51,12 @@ _KEPT = 4096  # machines
 
 @dataclass(frozen=True)
 class _Varied:
-    """Numbers of a scene that vary together.
+    """Numbers of a scene that vary together."""
 
-    Parameters
-    ----------
-    paths : of them, the first one leads
-    rule : of the first
-    own : what the scene has there, SI, nan where it says nothing
-    shares : of each over the first
-    """
-
-    paths: tuple[str, ...]
-    rule: Quantity
-    own: float
-    shares: tuple[float, ...]
+    paths: tuple[str, ...]  #: of them, the first one leads
+    rule: Quantity  #: of the first
+    own: float  #: what the scene has there, SI, nan where it says nothing
+    shares: tuple[float, ...]  #: of each over the first
 
 
 def chart_scene(

@@ -25,27 +25,18 @@ MODELS = ("statics", "linear")  # of liquid at rest in the drum, with which stat
 
 @dataclass(frozen=True)
 class WorstStates:
-    """The worst stable state at each of s speeds; n coordinates.
+    """The worst stable state at each of s speeds; n coordinates."""
 
-    Parameters
-    ----------
-    speed : rad/s, shape (s,)
-    amplitude : of the axis in the plane where it is largest, of those of all chambers, m, shape (s,); where
-        no state is stable what all balls on the heavy side would make of it
-    stable : small motions do not grow, shape (s,)
-    growth : of small motions, 1/s, infinite where no state was found, shape (s,)
-    balanced : the balanced state is stable, whichever is the worst, shape (s,)
-    balanced_growth : of small motions about the balanced state, 1/s, nan where there is none, shape (s,)
-    coordinates : complex amplitudes of the rotor, shape (s, n)
-    """
-
-    speed: Array
+    speed: Array  #: rad/s, shape (s,)
+    #: of the axis in the plane where it is largest, of those of all chambers, m, shape (s,); where no state
+    #: is stable what all balls on the heavy side would make of it
     amplitude: Array
-    stable: Flags
-    growth: Array
-    balanced: Flags
+    stable: Flags  #: small motions do not grow, shape (s,)
+    growth: Array  #: of small motions, 1/s, infinite where no state was found, shape (s,)
+    balanced: Flags  #: the balanced state is stable, whichever is the worst, shape (s,)
+    #: of small motions about the balanced state, 1/s, nan where there is none, shape (s,)
     balanced_growth: Array
-    coordinates: Complex
+    coordinates: Complex  #: complex amplitudes of the rotor, shape (s, n)
 
 
 def planes_of(scene: Scene) -> tuple[float, ...]:

@@ -36,24 +36,15 @@ NUMBER, FLAG, TEXT = "float64", "int8", "str"
 
 @dataclass(frozen=True)
 class Output:
-    """One variable of the store.
+    """One variable of the store."""
 
-    Parameters
-    ----------
-    name : of the variable
-    kind : "float64"; "int8", -1 where there is no answer; "str"
-    over_speed : one value at each speed, not one in all
-    units, long_name, text : as CF asks, and what more there is to say
-    meanings : names of the values of a flag, from -1 on
-    """
-
-    name: str
-    kind: str
-    over_speed: bool
-    units: str
+    name: str  #: of the variable
+    kind: str  #: "float64"; "int8", -1 where there is no answer; "str"
+    over_speed: bool  #: one value at each speed, not one in all
+    units: str  #: as CF asks, and what more there is to say
     long_name: str
     text: str = ""
-    meanings: tuple[str, ...] = ()
+    meanings: tuple[str, ...] = ()  #: names of the values of a flag, from -1 on
 
 
 _LAG = "from the unbalance, positive with the spin, a lag is negative"
@@ -280,40 +271,23 @@ Values = dict[str, NDArray[Any]]
 
 @dataclass(frozen=True)
 class Block:
-    """Samples to be answered together.
+    """Samples to be answered together."""
 
-    Parameters
-    ----------
-    number : of the block
-    table : content of the scene file that they are made from
-    paths : keys along the path of each varied field
-    rows : values of each sample at those paths
-    """
-
-    number: int
-    table: Mapping[str, Any]
-    paths: tuple[Keys, ...]
-    rows: tuple[tuple[Any, ...], ...]
+    number: int  #: of the block
+    table: Mapping[str, Any]  #: content of the scene file that they are made from
+    paths: tuple[Keys, ...]  #: keys along the path of each varied field
+    rows: tuple[tuple[Any, ...], ...]  #: values of each sample at those paths
 
 
 @dataclass(frozen=True)
 class BlockAnswer:
-    """What came of a block.
+    """What came of a block."""
 
-    Parameters
-    ----------
-    number : of the block
-    values : of each output, one row for each sample
-    status : DONE, FAILED or NOT_CONVERGED, shape (samples,)
-    reason : why not done, empty where done
-    versions : of the packages that the numbers come from
-    """
-
-    number: int
-    values: Values
-    status: NDArray[np.int8]
-    reason: tuple[str, ...]
-    versions: Mapping[str, str]
+    number: int  #: of the block
+    values: Values  #: of each output, one row for each sample
+    status: NDArray[np.int8]  #: DONE, FAILED or NOT_CONVERGED, shape (samples,)
+    reason: tuple[str, ...]  #: why not done, empty where done
+    versions: Mapping[str, str]  #: of the packages that the numbers come from
 
 
 def answer_block(block: Block) -> BlockAnswer:

@@ -33,30 +33,18 @@ _WIDE = 30.0  # ratio of the ends of a range from which the logarithm of the val
 
 @dataclass(frozen=True)
 class Emulator:
-    """An output as a function of varied values.
+    """An output as a function of varied values."""
 
-    Parameters
-    ----------
-    fields : names of the values
-    low, high : ranges of the samples it has learned from, shape (d,)
-    wide : values that are taken by their logarithm, shape (d,)
-    positive : the output is emulated by its logarithm
-    centre, scale : of what is emulated
-    process : fitted
-    settled : the search for the correlation lengths has come to an end, for it and all folds
-    error : cross-validated
-    """
-
-    fields: tuple[str, ...]
-    low: Array
+    fields: tuple[str, ...]  #: names of the values
+    low: Array  #: ranges of the samples it has learned from, shape (d,)
     high: Array
-    wide: Flags
-    positive: bool
-    centre: float
+    wide: Flags  #: values that are taken by their logarithm, shape (d,)
+    positive: bool  #: the output is emulated by its logarithm
+    centre: float  #: of what is emulated
     scale: float
-    process: Any
-    settled: bool
-    error: EmulatorError
+    process: Any  #: fitted
+    settled: bool  #: the search for the correlation lengths has come to an end, for it and all folds
+    error: EmulatorError  #: cross-validated
 
     def predict(self, values: ArrayLike) -> tuple[Array, Array]:
         """Output and its standard deviation.

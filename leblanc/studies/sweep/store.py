@@ -44,23 +44,14 @@ _CHECKSUMS, _SEAL = "checksums", "checksum"
 
 @dataclass(frozen=True)
 class Store:
-    """A store on disk, open for reading and writing.
+    """A store on disk, open for reading and writing."""
 
-    Parameters
-    ----------
-    path : its folder
-    group : of zarr
-    arrays : of the group by name
-    samples : in all
-    block : samples of a block, which are those of a chunk
-    pending : numbers of the blocks that are not finished, or of which a file is missing
-    """
-
-    path: Path
-    group: Any
-    arrays: Mapping[str, Any]
-    samples: int
-    block: int
+    path: Path  #: its folder
+    group: Any  #: of zarr
+    arrays: Mapping[str, Any]  #: of the group by name
+    samples: int  #: in all
+    block: int  #: samples of a block, which are those of a chunk
+    #: numbers of the blocks that are not finished, or of which a file is missing
     pending: tuple[int, ...] = ()
 
     def bounds(self, number: int) -> tuple[int, int]:

@@ -77,14 +77,9 @@ class LogNormal:
 
 @dataclass(frozen=True)
 class Choice:
-    """One of a few values, each as likely.
+    """One of a few values, each as likely."""
 
-    Parameters
-    ----------
-    options : as a scene writes them; a quantity in SI
-    """
-
-    options: tuple[Any, ...]
+    options: tuple[Any, ...]  #: as a scene writes them; a quantity in SI
 
     @property
     def categorical(self) -> bool:
@@ -290,18 +285,11 @@ _MOST_PERMUTED = 50_000_000  # numbers of a Latin hypercube, which is made as a 
 
 @dataclass(frozen=True)
 class VariedField:
-    """A field of the scene and the values it takes.
+    """A field of the scene and the values it takes."""
 
-    Parameters
-    ----------
-    path : of the field, as in "chambers.0.volume"
-    unit : SI unit of its values; "1" where they have none
-    distribution : of the values
-    """
-
-    path: str
-    unit: str
-    distribution: Distribution
+    path: str  #: of the field, as in "chambers.0.volume"
+    unit: str  #: SI unit of its values; "1" where they have none
+    distribution: Distribution  #: of the values
 
     @property
     def keys(self) -> Keys:
@@ -322,28 +310,16 @@ class VariedField:
 
 @dataclass(frozen=True)
 class Sweep:
-    """Many scenes that differ in a few values.
+    """Many scenes that differ in a few values."""
 
-    Parameters
-    ----------
-    name : of the study file, without its ending
-    scene_path : of the scene they are made from
-    table : content of that file
-    scene : that scene
-    method : of sampling
-    points : of the design: samples, but for a "saltelli" design, which has some for each point
-    seed : of the samples
-    fields : what varies
-    """
-
-    name: str
-    scene_path: str
-    table: Mapping[str, Any]
-    scene: Scene
-    method: str
-    points: int
-    seed: int
-    fields: tuple[VariedField, ...]
+    name: str  #: of the study file, without its ending
+    scene_path: str  #: of the scene they are made from
+    table: Mapping[str, Any]  #: content of that file
+    scene: Scene  #: that scene
+    method: str  #: of sampling
+    points: int  #: of the design: samples, but for a "saltelli" design, which has some for each point
+    seed: int  #: of the samples
+    fields: tuple[VariedField, ...]  #: what varies
 
     @property
     def samples(self) -> int:

@@ -21,30 +21,23 @@ MOST_STEPS = 100_000_000  # about ten minutes
 class BallRace:
     """A circular race around the rotor's axis with balls that roll in it.
 
-    Parameters
-    ----------
-    position : along the axis, m
-    radius : R of the balls' centres, m
-    masses : m of each ball, kg
-    drag : of the race on one ball over its speed in it, N s/m
-    rolling : kappa, inertia of a ball on its way over that of its sliding mass, 7/5 for a ball that rolls
-    resistance : f, what a ball resists to rolling over the force with which it presses on the race; a ball
-        that is at rest in the rotor stays until it is pulled harder. Only run-ups know it
-    carried, driven : s and d, torque on a ball and on the rotor by a change of the spin over m R^2 times that
-        change, 0 for a ball that slides [theory: races, eq. 1]; a constant spin does not feel them
-
     Raises
     ------
     InputError : a radius or mass that is not positive, no ball, a negative drag, resistance or share, kappa
         below 1
     """
 
-    position: float
-    radius: float
-    masses: tuple[float, ...]
-    drag: float
+    position: float  #: along the axis, m
+    radius: float  #: R of the balls' centres, m
+    masses: tuple[float, ...]  #: m of each ball, kg
+    drag: float  #: of the race on one ball over its speed in it, N s/m
+    #: kappa, inertia of a ball on its way over that of its sliding mass, 7/5 for a ball that rolls
     rolling: float = 7.0 / 5.0
+    #: f, what a ball resists to rolling over the force with which it presses on the race; a ball that is at
+    #: rest in the rotor stays until it is pulled harder. Only run-ups know it
     resistance: float = 0.0
+    #: s and d, torque on a ball and on the rotor by a change of the spin over m R^2 times that change, 0 for
+    #: a ball that slides [theory: races, eq. 1]; a constant spin does not feel them
     carried: float = 0.0
     driven: float = 0.0
 
@@ -65,26 +58,15 @@ class BallRace:
 
 @dataclass(frozen=True)
 class BalancedRun:
-    """Motion of a rotor with ball balancers at constant spin; s samples, n coordinates, N balls in all.
+    """Motion of a rotor with ball balancers at constant spin; s samples, n coordinates, N balls in all."""
 
-    Parameters
-    ----------
-    time : s, shape (s,)
-    coordinates : q, m or rad, shape (s, n)
-    ball_angle : of each ball in the standing frame, race by race, rad, shape (s, N)
-    ball_speed : rad/s, shape (s, N)
-    energy_error : gap of the energy audit over the largest of its parts [theory: balls, eq. 20]
-    converged : every number is finite and the audit closes to a thousandth
-    speed : Omega, rad/s
-    """
-
-    time: Array
-    coordinates: Array
-    ball_angle: Array
-    ball_speed: Array
-    energy_error: float
-    converged: bool
-    speed: float
+    time: Array  #: s, shape (s,)
+    coordinates: Array  #: q, m or rad, shape (s, n)
+    ball_angle: Array  #: of each ball in the standing frame, race by race, rad, shape (s, N)
+    ball_speed: Array  #: rad/s, shape (s, N)
+    energy_error: float  #: gap of the energy audit over the largest of its parts [theory: balls, eq. 20]
+    converged: bool  #: every number is finite and the audit closes to a thousandth
+    speed: float  #: Omega, rad/s
 
     def deflection(self, system: RotorSystem, position: float) -> Complex:
         """Complex deflection of the axis at a position in the frame that turns with the rotor, m, shape (s,).

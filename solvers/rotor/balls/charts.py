@@ -32,18 +32,11 @@ _STILL = 1e-6  # of the spin: a root slower than that is real
 
 @dataclass(frozen=True)
 class Machine:
-    """A rotor with balls that turns at a speed.
+    """A rotor with balls that turns at a speed."""
 
-    Parameters
-    ----------
-    system : any rotor
-    races : one or more
-    speed : Omega, rad/s
-    """
-
-    system: RotorSystem
-    races: tuple[BallRace, ...]
-    speed: float
+    system: RotorSystem  #: any rotor
+    races: tuple[BallRace, ...]  #: one or more
+    speed: float  #: Omega, rad/s
 
 
 Family = Callable[[float, float], Machine]  # the machine that belongs to a point of the chart
@@ -58,60 +51,39 @@ class Crossing(Enum):
 
 @dataclass(frozen=True)
 class Edge:
-    """A curve on which a root stands on the imaginary axis; k points.
+    """A curve on which a root stands on the imaginary axis; k points."""
 
-    Parameters
-    ----------
-    kind : a pair of roots, or one at 0
-    first, second : the two parameters, shape (k,)
-    frequency : of the pair as seen from the rotor, rad/s, shape (k,). Where the supports differ it may be the
-        spin itself: a single multiplier is then at -1
-    ends : why it ends, at its first and at its last point
-    """
-
-    kind: Crossing
-    first: Array
+    kind: Crossing  #: a pair of roots, or one at 0
+    first: Array  #: the two parameters, shape (k,)
     second: Array
+    #: of the pair as seen from the rotor, rad/s, shape (k,). Where the supports differ it may be the spin
+    #: itself: a single multiplier is then at -1
     frequency: Array
-    ends: tuple[End, End]
+    ends: tuple[End, End]  #: why it ends, at its first and at its last point
 
 
 @dataclass(frozen=True)
 class Chart:
-    """Stability over two parameters; a values of the first, b of the second.
+    """Stability over two parameters; a values of the first, b of the second."""
 
-    Parameters
-    ----------
-    first, second : rising values, shape (a,) and (b,)
-    growing : number of roots with a positive real part, neutral directions left out; `NONE` where the state
-        does not exist, shape (a, b)
-    growth : largest real part, 1/s; nan where the state does not exist, shape (a, b)
-    edges : curves on which the number of growing roots changes, or on which the state meets another and ends
-    """
-
-    first: Array
+    first: Array  #: rising values, shape (a,) and (b,)
     second: Array
+    #: number of roots with a positive real part, neutral directions left out; `NONE` where the state does not
+    #: exist, shape (a, b)
     growing: Indices
-    growth: Array
+    growth: Array  #: largest real part, 1/s; nan where the state does not exist, shape (a, b)
+    #: curves on which the number of growing roots changes, or on which the state meets another and ends
     edges: tuple[Edge, ...]
 
 
 @dataclass(frozen=True)
 class Rest:
-    """Balls at rest in a rotor.
+    """Balls at rest in a rotor."""
 
-    Parameters
-    ----------
-    machine : rotor and balls
-    speed : Omega, rad/s
-    places : of the balls in the rotor, rad, shape (N,)
-    coordinates : complex amplitudes of the rotor, shape (n,); None where it is balanced
-    """
-
-    machine: RotorWithBalls
-    speed: float
-    places: Array
-    coordinates: Complex | None
+    machine: RotorWithBalls  #: rotor and balls
+    speed: float  #: Omega, rad/s
+    places: Array  #: of the balls in the rotor, rad, shape (N,)
+    coordinates: Complex | None  #: complex amplitudes of the rotor, shape (n,); None where it is balanced
 
     def motions(self, steps: int | None = None) -> Linearised | HalfTurn:
         """Small motions about it, without neutral directions.

@@ -37,17 +37,12 @@ class Linearised:
     """M z'' + C z' + K z = 0 for z = (p, psi) in the turning frame [theory: balls, eq. 32-34].
 
     n coordinates of the rotor, N balls.
-
-    Parameters
-    ----------
-    mass, damping, stiffness : M, C, K, shape (n + N, n + N)
-    neutral : directions of the balls, orthonormal, along which nothing changes, shape (N, d)
     """
 
-    mass: Array
+    mass: Array  #: M, C, K, shape (n + N, n + N)
     damping: Array
     stiffness: Array
-    neutral: Array
+    neutral: Array  #: directions of the balls, orthonormal, along which nothing changes, shape (N, d)
     settled = True
 
     def matrix(self) -> Array:
@@ -85,22 +80,13 @@ class Linearised:
 
 @dataclass(frozen=True)
 class HalfTurn:
-    """What half a turn makes of small motions, the rotor's part reversed [theory: balls, eq. 36].
+    """What half a turn makes of small motions, the rotor's part reversed [theory: balls, eq. 36]."""
 
-    Parameters
-    ----------
-    map : P Phi of (z without the neutral directions, z'), z = (q, psi), shape (2 (n + N) - d,) twice
-    neutral : directions of the balls, orthonormal, along which nothing changes, shape (N, d)
-    speed : Omega, rad/s
-    steps : of the Magnus method
-    settled : twice the steps hardly change the largest growth
-    """
-
-    map: Array
-    neutral: Array
-    speed: float
-    steps: int
-    settled: bool = True
+    map: Array  #: P Phi of (z without the neutral directions, z'), z = (q, psi), shape (2 (n + N) - d,) twice
+    neutral: Array  #: directions of the balls, orthonormal, along which nothing changes, shape (N, d)
+    speed: float  #: Omega, rad/s
+    steps: int  #: of the Magnus method
+    settled: bool = True  #: twice the steps hardly change the largest growth
 
     def roots(self) -> Complex:
         """Characteristic exponents, log(multiplier) over the time of half a turn, 1/s, the largest first."""
@@ -131,25 +117,17 @@ def _over_spin(matrix: Array, moving: int, speed: float) -> Array:
 
 @dataclass(frozen=True)
 class Stability:
-    """What becomes of small disturbances of a balanced rotor.
+    """What becomes of small disturbances of a balanced rotor."""
 
-    Parameters
-    ----------
-    growth : of the disturbance that grows most, 1/s; below 0 they all die out
-    frequency : at which it turns or swings as seen from the rotor, rad/s; known up to twice the spin where
-        the supports are not the same in every direction
-    neutral : directions of the balls along which the rotor stays balanced, orthonormal, shape (N, d)
-    places : of the balls, rad, shape (N,)
-    roots : characteristic roots, or characteristic exponents of the half turn, 1/s, shape (2 (n + N) - d,)
-    settled : False where the steps of the half turn did not suffice for the growth
-    """
-
-    growth: float
+    growth: float  #: of the disturbance that grows most, 1/s; below 0 they all die out
+    #: at which it turns or swings as seen from the rotor, rad/s; known up to twice the spin where the
+    #: supports are not the same in every direction
     frequency: float
-    neutral: Array
-    places: Array
+    neutral: Array  #: directions of the balls along which the rotor stays balanced, orthonormal, shape (N, d)
+    places: Array  #: of the balls, rad, shape (N,)
+    #: characteristic roots, or characteristic exponents of the half turn, 1/s, shape (2 (n + N) - d,)
     roots: Complex
-    settled: bool = True
+    settled: bool = True  #: False where the steps of the half turn did not suffice for the growth
 
     @property
     def stable(self) -> bool:

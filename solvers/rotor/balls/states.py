@@ -73,16 +73,10 @@ def turning(system: RotorSystem) -> Array | None:
 
 @dataclass(frozen=True)
 class RotorWithBalls:
-    """A linear rotor, with the liquid's share in its matrices, and balls in races; N balls, n coordinates.
+    """A linear rotor, with the liquid's share in its matrices, and balls in races; N balls, n coordinates."""
 
-    Parameters
-    ----------
-    system : the rotor without balls
-    races : that hold them, one or more
-    """
-
-    system: RotorSystem
-    races: tuple[BallRace, ...]
+    system: RotorSystem  #: the rotor without balls
+    races: tuple[BallRace, ...]  #: that hold them, one or more
 
     @cached_property
     def _arrays(self) -> tuple[Array, Array]:

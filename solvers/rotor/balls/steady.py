@@ -35,22 +35,14 @@ class BallKind(IntEnum):
 
 @dataclass(frozen=True)
 class BallStates:
-    """States in which the balls rest in the drum: s speeds, at most b states at each, N balls, n coordinates.
+    """States of balls at rest in the drum: s speeds, at most b states at each, N balls, n coordinates."""
 
-    Parameters
-    ----------
-    speed : Omega, rad/s, shape (s,)
-    kind : BallKind, NONE where there are fewer, shape (s, b)
-    places : angle of each ball in the drum, from its zero mark, rad, shape (s, b, N)
-    coordinates : complex amplitudes, q = Re(coordinates e^{i Omega t}), shape (s, b, n)
-    growth : largest real part of the roots of small motions, 1/s, below 0 where they fade; nan where the map
-        of half a turn did not settle, which does not count as stable, shape (s, b)
-    """
-
-    speed: Array
-    kind: Index
-    places: Array
-    coordinates: Complex
+    speed: Array  #: Omega, rad/s, shape (s,)
+    kind: Index  #: BallKind, NONE where there are fewer, shape (s, b)
+    places: Array  #: angle of each ball in the drum, from its zero mark, rad, shape (s, b, N)
+    coordinates: Complex  #: complex amplitudes, q = Re(coordinates e^{i Omega t}), shape (s, b, n)
+    #: largest real part of the roots of small motions, 1/s, below 0 where they fade; nan where the map of
+    #: half a turn did not settle, which does not count as stable, shape (s, b)
     growth: Array
 
     @property

@@ -15,15 +15,11 @@ from solvers.rotor.system import RotorSystem
 
 @dataclass(frozen=True)
 class Swing:
-    """Small swings of N balls by gravity, and what they do to a rotor of n coordinates.
+    """Small swings of N balls by gravity, and what they do to a rotor of n coordinates."""
 
-    Parameters
-    ----------
-    balls : complex amplitude of each ball's angle in the drum, psi + Re(balls e^{i Omega t}), rad, shape (N,)
-    coordinates : complex amplitudes of the rotor at twice the spin, Re(coordinates e^{2 i Omega t}), (n,)
-    """
-
+    #: complex amplitude of each ball's angle in the drum, psi + Re(balls e^{i Omega t}), rad, shape (N,)
     balls: Complex
+    #: complex amplitudes of the rotor at twice the spin, Re(coordinates e^{2 i Omega t}), (n,)
     coordinates: Complex
 
 

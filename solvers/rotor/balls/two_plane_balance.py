@@ -21,23 +21,18 @@ from solvers.rotor.two_plane import TwoPlane
 class RigidRotor:
     """A rigid rotor on two isotropic supports, as its balancing sees it [theory: balls, section 3].
 
-    Parameters
-    ----------
-    mass : of the whole system with its balancers, kg
-    inertia : A, B, C: about two axes fixed in the rotor and across its own, and about its own, through the
-        centre of mass, kg m^2
-    stiffness : of the supports, two or more, N/m
-    position : of each along the axis from the centre of mass, m; l1 and -l2 of the source
-
     Raises
     ------
     InputError : mass or transverse inertia not positive, polar inertia or a stiffness negative, an inertia
         larger than the other two together, supports that leave a motion free
     """
 
-    mass: float
+    mass: float  #: of the whole system with its balancers, kg
+    #: A, B, C: about two axes fixed in the rotor and across its own, and about its own, through the centre of
+    #: mass, kg m^2
     inertia: tuple[float, float, float]
-    stiffness: tuple[float, ...]
+    stiffness: tuple[float, ...]  #: of the supports, two or more, N/m
+    #: of each along the axis from the centre of mass, m; l1 and -l2 of the source
     position: tuple[float, ...]
 
     def __post_init__(self) -> None:
@@ -65,44 +60,26 @@ class RigidRotor:
 
 @dataclass(frozen=True)
 class Condition:
-    """One of the conditions, over speed.
+    """One of the conditions, over speed."""
 
-    Parameters
-    ----------
-    name : the condition, as written
-    value : what must be above 0, shape (n,)
-    satisfied : whether it is, shape (n,)
-    above : speed above which it holds, rad/s; infinite if at none
-    """
-
-    name: str
-    value: Array
-    satisfied: Flags
-    above: float
+    name: str  #: the condition, as written
+    value: Array  #: what must be above 0, shape (n,)
+    satisfied: Flags  #: whether it is, shape (n,)
+    above: float  #: speed above which it holds, rad/s; infinite if at none
 
 
 @dataclass(frozen=True)
 class Balancing:
-    """Answer of `dynamic_balancing`.
+    """Answer of `dynamic_balancing`."""
 
-    Parameters
-    ----------
-    speed : rad/s, shape (n,)
-    possible : whether balancing occurs, shape (n,)
-    conditions : each of them, in the order of the source
-    above : speed above which all hold, rad/s; infinite if at none
-    resonances : resonance speeds of the rotor without damping, ascending, rad/s
-    long : both transverse inertias exceed the polar one
-    growth : largest real part of the roots of rotor and balls about the balanced state, 1/s, shape (n,);
-        None where no balls were given
-    """
-
-    speed: Array
-    possible: Flags
-    conditions: tuple[Condition, ...]
-    above: float
-    resonances: tuple[float, ...]
-    long: bool
+    speed: Array  #: rad/s, shape (n,)
+    possible: Flags  #: whether balancing occurs, shape (n,)
+    conditions: tuple[Condition, ...]  #: each of them, in the order of the source
+    above: float  #: speed above which all hold, rad/s; infinite if at none
+    resonances: tuple[float, ...]  #: resonance speeds of the rotor without damping, ascending, rad/s
+    long: bool  #: both transverse inertias exceed the polar one
+    #: largest real part of the roots of rotor and balls about the balanced state, 1/s, shape (n,); None where
+    #: no balls were given
     growth: Array | None = None
 
     @property

@@ -50,26 +50,17 @@ def rolling_inertia(kind: str, mass: float = 1.0, radius: float = 1.0, own_inert
 class Dimensionless:
     """The machine in its own units: 1/(natural frequency) and N m R/(whole mass) [theory: balls, eq. 5].
 
-    Parameters
-    ----------
-    smallness : eps = N m/(kappa M), share of the balls in the whole mass over their rolling inertia
-    drag : b, drag of the race over that share and the natural frequency
-    unbalance : delta, of the shaft over that of all balls together
-    damping : h, damping ratio of the platform
-    gravity : sigma, static deflection over the unit of length
-    incline : alpha, of the platform's line to the vertical, rad
-
     Raises
     ------
     InputError : a value that is not finite, smallness not between 0 and 1, a negative drag or damping
     """
 
-    smallness: float
-    drag: float
-    unbalance: float
-    damping: float
-    gravity: float = 0.0
-    incline: float = 0.0
+    smallness: float  #: eps = N m/(kappa M), share of the balls in the whole mass over their rolling inertia
+    drag: float  #: b, drag of the race over that share and the natural frequency
+    unbalance: float  #: delta, of the shaft over that of all balls together
+    damping: float  #: h, damping ratio of the platform
+    gravity: float = 0.0  #: sigma, static deflection over the unit of length
+    incline: float = 0.0  #: alpha, of the platform's line to the vertical, rad
 
     def __post_init__(self) -> None:
         if not 0.0 < self.smallness < 1.0:
@@ -88,32 +79,21 @@ class Dimensionless:
 class Exciter:
     """A platform on springs, a shaft with an unbalance on it, balls free in a race around the shaft.
 
-    Parameters
-    ----------
-    platform_mass : of all that moves with the platform, its load and the unbalance too, without the balls, kg
-    stiffness : of the supports k, N/m
-    damping : of the supports, N s/m
-    unbalance : mu P of the shaft, kg m
-    ball_count : N, 1 or more
-    ball_mass : m of one, kg
-    rolling : kappa, see `rolling_inertia`
-    track_radius : R of the balls' centres, m
-    ball_damping : drag of the race on one ball over its speed in it, N s/m
-
     Raises
     ------
     InputError : masses, stiffness or radius not positive, kappa below 1, damping or unbalance negative
     """
 
+    #: of all that moves with the platform, its load and the unbalance too, without the balls, kg
     platform_mass: float
-    stiffness: float
-    damping: float
-    unbalance: float
-    ball_count: int
-    ball_mass: float
-    rolling: float
-    track_radius: float
-    ball_damping: float
+    stiffness: float  #: of the supports k, N/m
+    damping: float  #: of the supports, N s/m
+    unbalance: float  #: mu P of the shaft, kg m
+    ball_count: int  #: N, 1 or more
+    ball_mass: float  #: m of one, kg
+    rolling: float  #: kappa, see `rolling_inertia`
+    track_radius: float  #: R of the balls' centres, m
+    ball_damping: float  #: drag of the race on one ball over its speed in it, N s/m
 
     def __post_init__(self) -> None:
         for name in ("platform_mass", "stiffness", "ball_mass", "track_radius", "ball_damping"):
@@ -234,18 +214,11 @@ def platform_motion(
 
 @dataclass(frozen=True)
 class CharacteristicSpeeds:
-    """Shaft speeds over the natural frequency where the stuck speeds change [theory: balls, eq. 12-14].
+    """Shaft speeds over the natural frequency where the stuck speeds change [theory: balls, eq. 12-14]."""
 
-    Parameters
-    ----------
-    second_pair : n1, from where there are three stuck speeds; nan if there is one at every speed
-    through_resonance : n2, where the slowest stuck speed is the natural frequency
-    merger : n3, up to where there are three stuck speeds; nan as n1
-    """
-
-    second_pair: float
-    through_resonance: float
-    merger: float
+    second_pair: float  #: n1, from where there are three stuck speeds; nan if there is one at every speed
+    through_resonance: float  #: n2, where the slowest stuck speed is the natural frequency
+    merger: float  #: n3, up to where there are three stuck speeds; nan as n1
 
 
 def lag_number(machine: Dimensionless, together: float = 1.0) -> float:

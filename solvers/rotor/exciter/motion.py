@@ -66,20 +66,16 @@ _TOLD = 5.0
 class Start:
     """How the motion begins [theory: balls, section 1].
 
-    Parameters
-    ----------
-    kind : `released`: platform at rest, balls on their way at the natural frequency;
-        `regime`: platform and balls already in the dual-frequency motion; `rest`: all at rest, the shaft at
-        its full speed
-    separation : angle over which the balls are spread evenly, rad; the first in line with the unbalance, the
-        others ahead of it
-
     Raises
     ------
     InputError : an unknown kind, a negative separation
     """
 
+    #: `released`: platform at rest, balls on their way at the natural frequency; `regime`: platform and balls
+    #: already in the dual-frequency motion; `rest`: all at rest, the shaft at its full speed
     kind: str = "released"
+    #: angle over which the balls are spread evenly, rad; the first in line with the unbalance, the others
+    #: ahead of it
     separation: float = 0.3
 
     def __post_init__(self) -> None:
@@ -90,48 +86,33 @@ class Start:
 
 @dataclass(frozen=True)
 class Motion:
-    """What a time integration shows, in the machine's own units; b blocks of time, N balls.
+    """What a time integration shows, in the machine's own units; b blocks of time, N balls."""
 
-    Parameters
-    ----------
-    speed : n of the shaft
-    block_time : middle of each block, shape (b,)
-    ball_speed : mean speed of each ball in each block, shape (b, N)
-    spread : largest angle between the first and another ball in each block, rad, shape (b,)
-    stuck_speed : mean speed of the balls over the last quarter; of the last block if they broke away
-    slow, fast : amplitudes of the platform with the balls and with the shaft over the last quarter; nan where
-        the balls have broken away, or part from the shaft by less than five turns in that time
-    holds : the dual-frequency motion holds: in the last quarter the balls keep within 5 % of the slowest
-        stuck speed and within half a radian of one another
-    converged : every number is finite
-    """
-
-    speed: float
-    block_time: Array
-    ball_speed: Array
-    spread: Array
-    stuck_speed: float
+    speed: float  #: n of the shaft
+    block_time: Array  #: middle of each block, shape (b,)
+    ball_speed: Array  #: mean speed of each ball in each block, shape (b, N)
+    spread: Array  #: largest angle between the first and another ball in each block, rad, shape (b,)
+    stuck_speed: float  #: mean speed of the balls over the last quarter; of the last block if they broke away
+    #: amplitudes of the platform with the balls and with the shaft over the last quarter; nan where the balls
+    #: have broken away, or part from the shaft by less than five turns in that time
     slow: float
     fast: float
+    #: the dual-frequency motion holds: in the last quarter the balls keep within 5 % of the slowest stuck
+    #: speed and within half a radian of one another
     holds: bool
-    converged: bool
+    converged: bool  #: every number is finite
 
 
 @dataclass(frozen=True)
 class CriticalSpeed:
-    """Bracket of the shaft speed at which the dual-frequency motion is first lost.
+    """Bracket of the shaft speed at which the dual-frequency motion is first lost."""
 
-    Parameters
-    ----------
-    holds : n at which it still holds, the result; n1, unproved, if it is lost at the next speed already
-    lost : n at which it is lost, at most the width asked for above; the merger of the stuck speeds if it
-        holds as long as these exist
-    runs : time integrations spent
-    """
-
+    #: n at which it still holds, the result; n1, unproved, if it is lost at the next speed already
     holds: float
+    #: n at which it is lost, at most the width asked for above; the merger of the stuck speeds if it holds as
+    #: long as these exist
     lost: float
-    runs: int
+    runs: int  #: time integrations spent
 
 
 def integrate(
@@ -237,20 +218,13 @@ def placed_state(machine: Dimensionless, speed: float, ball_speed: ArrayLike, ba
 
 @dataclass(frozen=True)
 class Trace:
-    """Motion after transients have died out, in the machine's own units; s samples, N balls.
+    """Motion after transients have died out, in the machine's own units; s samples, N balls."""
 
-    Parameters
-    ----------
-    time : from the start of the motion, shape (s,)
-    position, velocity, acceleration : v, v' and v'' of the platform, shape (s,)
-    ball_angle, ball_speed : of each ball, shape (s, N)
-    """
-
-    time: Array
-    position: Array
+    time: Array  #: from the start of the motion, shape (s,)
+    position: Array  #: v, v' and v'' of the platform, shape (s,)
     velocity: Array
     acceleration: Array
-    ball_angle: Array
+    ball_angle: Array  #: of each ball, shape (s, N)
     ball_speed: Array
 
 

@@ -47,30 +47,19 @@ class Kind(StrEnum):
 
 @dataclass(frozen=True)
 class Regime:
-    """The last quarter of a motion, in the machine's own units; N balls.
+    """The last quarter of a motion, in the machine's own units; N balls."""
 
-    Parameters
-    ----------
-    kind : `balanced`: all balls with the shaft, the platform at less than a fiftieth of what the unbalance
-        alone makes; `with the shaft`: all of them, not balanced; `stuck`: all at the resonance; `part stuck`:
-        some there, the others with the shaft; `third speed`: at least one between resonance and shaft;
-        `chaotic`: a disturbance grows over both quarters of the second half; `unsettled`: mean speeds still
-        change
-    places : of each ball by its mean speed
-    ball_speed : mean speed of each ball, shape (N,)
-    growth : mean rate of growth of a disturbance: the largest exponent of Lyapunov
-    vibration : root mean square of the platform's position
-    chaos : time up to which a disturbance grew as it does in chaos, 0 if it never did
-    motion : as followed
-    """
-
+    #: `balanced`: all balls with the shaft, the platform at less than a fiftieth of what the unbalance alone
+    #: makes; `with the shaft`: all of them, not balanced; `stuck`: all at the resonance; `part stuck`: some
+    #: there, the others with the shaft; `third speed`: at least one between resonance and shaft; `chaotic`: a
+    #: disturbance grows over both quarters of the second half; `unsettled`: mean speeds still change
     kind: Kind
-    places: tuple[Place, ...]
-    ball_speed: Array
-    growth: float
-    vibration: float
-    chaos: float
-    motion: Followed
+    places: tuple[Place, ...]  #: of each ball by its mean speed
+    ball_speed: Array  #: mean speed of each ball, shape (N,)
+    growth: float  #: mean rate of growth of a disturbance: the largest exponent of Lyapunov
+    vibration: float  #: root mean square of the platform's position
+    chaos: float  #: time up to which a disturbance grew as it does in chaos, 0 if it never did
+    motion: Followed  #: as followed
 
 
 def decay_time(machine: Dimensionless) -> float:

@@ -15,17 +15,11 @@ from meshes.errors import InputError, require_positive
 
 @dataclass(frozen=True)
 class Lines:
-    """Lines of a spectrum by size; l lines.
+    """Lines of a spectrum by size; l lines."""
 
-    Parameters
-    ----------
-    frequency : angular, shape (l,)
-    amplitude : shape (l,)
-    resolution : angular frequency of one turn in the whole time: lines closer than four of it are one
-    """
-
-    frequency: Array
-    amplitude: Array
+    frequency: Array  #: angular, shape (l,)
+    amplitude: Array  #: shape (l,)
+    #: angular frequency of one turn in the whole time: lines closer than four of it are one
     resolution: float
 
 

@@ -21,26 +21,16 @@ _jit: Any = njit(cache=True, error_model="numpy", nogil=True)
 
 @dataclass(frozen=True)
 class Followed:
-    """A motion and the growth of a disturbance along it, in the machine's own units; b blocks, N balls.
+    """A motion and the growth of a disturbance along it, in the machine's own units; b blocks, N balls."""
 
-    Parameters
-    ----------
-    state : at the end: platform's position and velocity, angles and speeds of the balls, shape (2 + 2 N,)
-    time : at the end
-    ball_speed : mean speed of each ball in each block, shape (b, N)
-    growth : mean rate of growth of the disturbance in each block, shape (b,)
-    power : mean square of the platform's position in each block, shape (b,)
-    samples : positions of the platform at equal times over the last blocks, shape (s,)
-    sample_time : between two of them
-    """
-
+    #: at the end: platform's position and velocity, angles and speeds of the balls, shape (2 + 2 N,)
     state: Array
-    time: float
-    ball_speed: Array
-    growth: Array
-    power: Array
-    samples: Array
-    sample_time: float
+    time: float  #: at the end
+    ball_speed: Array  #: mean speed of each ball in each block, shape (b, N)
+    growth: Array  #: mean rate of growth of the disturbance in each block, shape (b,)
+    power: Array  #: mean square of the platform's position in each block, shape (b,)
+    samples: Array  #: positions of the platform at equal times over the last blocks, shape (s,)
+    sample_time: float  #: between two of them
 
 
 def tangent_rates(time: float, pair: Array, numbers: Array, out: Array) -> None:

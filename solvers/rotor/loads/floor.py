@@ -23,22 +23,15 @@ _ALIKE = 1e-9  # of the largest force at rest: what rounding may make of equal o
 class Cabinet:
     """A rigid cabinet that stands on a level floor.
 
-    Parameters
-    ----------
-    mass : without the rotor, kg
-    centre : its centre of mass, in the rotor's coordinates at rest, m
-    feet : where the feet touch the floor, at least three, shape (f, 3), m
-    friction : coefficient between feet and floor
-
     Raises
     ------
     InputError : a value out of its range
     """
 
-    mass: float
-    centre: Vector
-    feet: tuple[Vector, ...]
-    friction: float
+    mass: float  #: without the rotor, kg
+    centre: Vector  #: its centre of mass, in the rotor's coordinates at rest, m
+    feet: tuple[Vector, ...]  #: where the feet touch the floor, at least three, shape (f, 3), m
+    friction: float  #: coefficient between feet and floor
 
     def __post_init__(self) -> None:
         require_not_negative("cabinet.mass", self.mass)
@@ -49,34 +42,20 @@ class Cabinet:
 
 @dataclass(frozen=True)
 class FloorForce:
-    """What the floor does to f feet.
+    """What the floor does to f feet."""
 
-    Parameters
-    ----------
-    vertical : upwards, below 0 where the floor would have to pull, N, shape (..., f)
-    across : along the floor, as far as friction allows it, N, shape (..., f)
-    push : the whole force along the floor, N, shape (...)
-    """
-
-    vertical: Array
-    across: Array
-    push: Array
+    vertical: Array  #: upwards, below 0 where the floor would have to pull, N, shape (..., f)
+    across: Array  #: along the floor, as far as friction allows it, N, shape (..., f)
+    push: Array  #: the whole force along the floor, N, shape (...)
 
 
 @dataclass(frozen=True)
 class Margins:
-    """How far a machine is from walking: 1 at rest, 0 where it begins [theory: loads, eq. 9-11].
+    """How far a machine is from walking: 1 at rest, 0 where it begins [theory: loads, eq. 9-11]."""
 
-    Parameters
-    ----------
-    lift_off : least vertical force under a foot over what it is at rest, shape (...)
-    slip : friction that the whole machine has left, over all that it has at rest, shape (...)
-    foot : friction that each foot has left, over all that it has at rest, shape (..., f)
-    """
-
-    lift_off: Array
-    slip: Array
-    foot: Array
+    lift_off: Array  #: least vertical force under a foot over what it is at rest, shape (...)
+    slip: Array  #: friction that the whole machine has left, over all that it has at rest, shape (...)
+    foot: Array  #: friction that each foot has left, over all that it has at rest, shape (..., f)
 
     @property
     def walking(self) -> Array:

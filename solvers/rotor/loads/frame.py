@@ -20,22 +20,14 @@ AnyRotor = Jeffcott | TwoPlane | Tub
 
 @dataclass(frozen=True)
 class Frame:
-    """Directions of a rotor with n coordinates.
+    """Directions of a rotor with n coordinates."""
 
-    Parameters
-    ----------
-    body : shift along and turn about x, y, z of the body for unit coordinates, shape (6, n)
-    along : number of the direction along the spin axis, 0 for x
-    across : numbers of the two directions across it; the spin turns the first into the second
-    up : number of the direction against gravity
-    axis : (x, y, z) of a point of the spin axis, m
-    """
-
-    body: Array
-    along: int
+    body: Array  #: shift along and turn about x, y, z of the body for unit coordinates, shape (6, n)
+    along: int  #: number of the direction along the spin axis, 0 for x
+    #: numbers of the two directions across it; the spin turns the first into the second
     across: tuple[int, int]
-    up: int
-    axis: Vector
+    up: int  #: number of the direction against gravity
+    axis: Vector  #: (x, y, z) of a point of the spin axis, m
 
     def moving(self, position: Vector) -> Array:
         """Displacement of a point of the body for unit coordinates [theory: loads, eq. 1].
@@ -80,18 +72,11 @@ def frame_of(rotor: AnyRotor, vertical: bool = False) -> Frame:
 
 @dataclass(frozen=True)
 class Holder:
-    """A spring, a damper or a support between the rotor and its cabinet.
+    """A spring, a damper or a support between the rotor and its cabinet."""
 
-    Parameters
-    ----------
-    name : for reports, such as "spring 1"
-    position : where it holds the rotor, m
-    stiffness, damping : force over displacement and over velocity, shape (3, 3), N/m and N s/m
-    """
-
-    name: str
-    position: Vector
-    stiffness: Array
+    name: str  #: for reports, such as "spring 1"
+    position: Vector  #: where it holds the rotor, m
+    stiffness: Array  #: force over displacement and over velocity, shape (3, 3), N/m and N s/m
     damping: Array
 
 
@@ -138,18 +123,11 @@ def tensor(mount: Mount) -> Array:
 
 @dataclass(frozen=True)
 class Weight:
-    """A mass at its place at rest.
+    """A mass at its place at rest."""
 
-    Parameters
-    ----------
-    mass : kg
-    position : m
-    turns : it hangs on the drum, not on the tub
-    """
-
-    mass: float
-    position: Vector
-    turns: bool = True
+    mass: float  #: kg
+    position: Vector  #: m
+    turns: bool = True  #: it hangs on the drum, not on the tub
 
 
 def weights_of(

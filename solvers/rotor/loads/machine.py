@@ -26,75 +26,48 @@ from solvers.rotor.tub import Tub, Vector
 
 @dataclass(frozen=True)
 class Point:
-    """A named point whose motion counts.
+    """A named point whose motion counts."""
 
-    Parameters
-    ----------
-    name : for reports
-    position : (x, y, z) at rest, m
-    on : "tub", which does not spin; "drum", which does; or "axis"
-    gap : to the housing, m; None where nobody asks for the clearance
-    direction : in which the gap is; all across the axis if None
-    """
-
-    name: str
-    position: Vector
-    on: str = "axis"
-    gap: float | None = None
-    direction: Vector | None = None
+    name: str  #: for reports
+    position: Vector  #: (x, y, z) at rest, m
+    on: str = "axis"  #: "tub", which does not spin; "drum", which does; or "axis"
+    gap: float | None = None  #: to the housing, m; None where nobody asks for the clearance
+    direction: Vector | None = None  #: in which the gap is; all across the axis if None
 
 
 @dataclass(frozen=True)
 class Loads:
-    """Forces and clearances at moments, shape (...).
+    """Forces and clearances at moments, shape (...)."""
 
-    Parameters
-    ----------
-    holder : size of the force in each spring, damper or support, N, shape (..., h)
-    bearing : of the force across the axis in each bearing, N, shape (..., b)
-    moved : distance of each point from where it rests, m, shape (..., p); of a point on the drum from where
-        it would be on its circle
-    clearance : what is left of each point's gap, below 0 where it touches, m, nan without a gap, (..., p)
-    floor : None without a cabinet
-    margins : against walking; None without a cabinet
-    """
-
-    holder: Array
-    bearing: Array
+    holder: Array  #: size of the force in each spring, damper or support, N, shape (..., h)
+    bearing: Array  #: of the force across the axis in each bearing, N, shape (..., b)
+    #: distance of each point from where it rests, m, shape (..., p); of a point on the drum from where it
+    #: would be on its circle
     moved: Array
+    #: what is left of each point's gap, below 0 where it touches, m, nan without a gap, (..., p)
     clearance: Array
-    floor: FloorForce | None
-    margins: Margins | None
+    floor: FloorForce | None  #: None without a cabinet
+    margins: Margins | None  #: against walking; None without a cabinet
 
 
 @dataclass(frozen=True)
 class LoadedMachine:
     """A rotor with what holds it, where it stands and what is asked of it.
 
-    Parameters
-    ----------
-    rotor : dry
-    fills : its chambers with their liquid
-    gravity : m/s^2
-    vertical : gravity acts along the axis
-    cabinet : None where it is not known
-    points : whose motion counts
-    bearings : places of two along the axis of a tub's drum, m; None where they are not known
-    races : with balls, whose weight hangs on the drum
-
     Raises
     ------
     InputError : a cabinet that does not stand, bearings of a rotor without a tub
     """
 
-    rotor: AnyRotor
-    fills: tuple[Fill, ...] = ()
-    gravity: float = 9.81
-    vertical: bool = False
-    cabinet: Cabinet | None = None
-    points: tuple[Point, ...] = ()
+    rotor: AnyRotor  #: dry
+    fills: tuple[Fill, ...] = ()  #: its chambers with their liquid
+    gravity: float = 9.81  #: m/s^2
+    vertical: bool = False  #: gravity acts along the axis
+    cabinet: Cabinet | None = None  #: None where it is not known
+    points: tuple[Point, ...] = ()  #: whose motion counts
+    #: places of two along the axis of a tub's drum, m; None where they are not known
     bearings: tuple[float, float] | None = None
-    races: tuple[BallRace, ...] = ()
+    races: tuple[BallRace, ...] = ()  #: with balls, whose weight hangs on the drum
 
     def __post_init__(self) -> None:
         tub = isinstance(self.rotor, Tub)

@@ -21,25 +21,15 @@ LEAST = ("clearance", "floor_force_least", "lift_off", "slip", "walking")
 
 @dataclass(frozen=True)
 class Extremes:
-    """The worst of each of k turns or intervals; f feet, h holders, b bearings, p points.
+    """The worst of each of k turns or intervals; f feet, h holders, b bearings, p points."""
 
-    Parameters
-    ----------
-    holder : largest size of the force in each spring, damper or support, N, shape (k, h)
-    bearing : in each bearing across the axis, N, shape (k, b)
-    moved : largest distance of each point from where it rests, m, shape (k, p)
-    clearance : least of each point, nan without a gap, m, shape (k, p)
-    floor_force, floor_force_least : of each foot, N, shape (k, f)
-    lift_off, slip, walking : least margins, shape (k,); nan without a cabinet
-    """
-
-    holder: Array
-    bearing: Array
-    moved: Array
-    clearance: Array
-    floor_force: Array
+    holder: Array  #: largest size of the force in each spring, damper or support, N, shape (k, h)
+    bearing: Array  #: in each bearing across the axis, N, shape (k, b)
+    moved: Array  #: largest distance of each point from where it rests, m, shape (k, p)
+    clearance: Array  #: least of each point, nan without a gap, m, shape (k, p)
+    floor_force: Array  #: of each foot, N, shape (k, f)
     floor_force_least: Array
-    lift_off: Array
+    lift_off: Array  #: least margins, shape (k,); nan without a cabinet
     slip: Array
     walking: Array
 

@@ -16,21 +16,13 @@ from solvers.rotor.magnetic.machine import MagneticRotor
 
 @dataclass(frozen=True)
 class Gains:
-    """A controller about the centre: i = -(place q + rate q' + memory s), s' = from_place q + from_memory s.
+    """Controller about the centre: i = -(place q + rate q' + memory s), s' = from_place q + from_memory s."""
 
-    Parameters
-    ----------
-    place, rate : currents for unit coordinates and rates, A, shape (4, 4)
-    memory : currents for a unit state of the controller, A, shape (4, k)
-    from_place : shape (k, 4)
-    from_memory : shape (k, k)
-    """
-
-    place: Array
+    place: Array  #: currents for unit coordinates and rates, A, shape (4, 4)
     rate: Array
-    memory: Array
-    from_place: Array
-    from_memory: Array
+    memory: Array  #: currents for a unit state of the controller, A, shape (4, k)
+    from_place: Array  #: shape (k, 4)
+    from_memory: Array  #: shape (k, k)
 
 
 class Controller(Protocol):
@@ -81,24 +73,16 @@ class Synergetic:
 
     It knows the rotor: the forces of magnets, motor, fluid and gyroscopic terms are worked out and taken off.
 
-    Parameters
-    ----------
-    model : the rotor that it knows
-    manifold_time : T_1 to T_4, s
-    goal_time : T_5 to T_8, s
-    weight : h_1 to h_4, of the estimated disturbance beside the deflection, s^2
-    rate, tilt_rate : mu_1, mu_2 and mu_3, mu_4, by which a deflection and a lean raise the estimate, 1/s^3
-
     Raises
     ------
     InputError : a value that is not positive
     """
 
-    model: MagneticRotor
-    manifold_time: float
-    goal_time: float
-    weight: float
-    rate: float
+    model: MagneticRotor  #: the rotor that it knows
+    manifold_time: float  #: T_1 to T_4, s
+    goal_time: float  #: T_5 to T_8, s
+    weight: float  #: h_1 to h_4, of the estimated disturbance beside the deflection, s^2
+    rate: float  #: mu_1, mu_2 and mu_3, mu_4, by which a deflection and a lean raise the estimate, 1/s^3
     tilt_rate: float
 
     def __post_init__(self) -> None:
@@ -193,24 +177,16 @@ class Synergetic:
 class Pid:
     """PID control of each axis of each bearing by itself, its derivative filtered [theory: magnetic, eq. 18].
 
-    Parameters
-    ----------
-    model : the rotor, of which it knows the gap, the bias current and the force constant
-    proportional : P, N/m
-    integral : I, N/(m s)
-    derivative : D, N s/m
-    cutoff : of the filter of the derivative, rad/s
-
     Raises
     ------
     InputError : a proportional part or a cut-off that is not positive, another part that is negative
     """
 
-    model: MagneticRotor
-    proportional: float
-    integral: float
-    derivative: float
-    cutoff: float
+    model: MagneticRotor  #: the rotor, of which it knows the gap, the bias current and the force constant
+    proportional: float  #: P, N/m
+    integral: float  #: I, N/(m s)
+    derivative: float  #: D, N s/m
+    cutoff: float  #: of the filter of the derivative, rad/s
 
     def __post_init__(self) -> None:
         require_positive("proportional", self.proportional)

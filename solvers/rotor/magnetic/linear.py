@@ -24,21 +24,13 @@ class Loop:
 
     s holds the four coordinates, their rates, the controller's state and, where coils take time, the four
     currents.
-
-    Parameters
-    ----------
-    speed : Omega, rad/s
-    free : A, without what the controller wants, shape (p, p)
-    drive : B, by a unit of wanted currents, shape (p, 4)
-    feedback : K, so that the wanted currents are -K s, shape (4, p)
-    machine : the rotor
     """
 
-    speed: float
-    free: Array
-    drive: Array
-    feedback: Array
-    machine: MagneticRotor
+    speed: float  #: Omega, rad/s
+    free: Array  #: A, without what the controller wants, shape (p, p)
+    drive: Array  #: B, by a unit of wanted currents, shape (p, 4)
+    feedback: Array  #: K, so that the wanted currents are -K s, shape (4, p)
+    machine: MagneticRotor  #: the rotor
 
     def closed(self, factor: complex = 1.0) -> Complex:
         """Matrix of the closed loop, shape (p, p).
@@ -161,24 +153,14 @@ def closed_loop(machine: MagneticRotor, controller: Controller, speed: float) ->
 
 @dataclass(frozen=True)
 class Margins:
-    """How far a stable loop is from instability, all four currents alike [theory: magnetic, eq. 20-21].
+    """How far a stable loop is from instability, all four currents alike [theory: magnetic, eq. 20-21]."""
 
-    Parameters
-    ----------
-    gain_up : largest factor of the loop gain, inf if none harms up to 10^4
-    gain_down : smallest factor, 0 if none harms down to 10^-4
-    phase : largest lag or lead at every frequency, rad
-    delay : largest delay, s
-    sensitivity : largest singular value of (1 + L)^-1 over frequency
-    worst : frequency of that, rad/s
-    """
-
-    gain_up: float
-    gain_down: float
-    phase: float
-    delay: float
-    sensitivity: float
-    worst: float
+    gain_up: float  #: largest factor of the loop gain, inf if none harms up to 10^4
+    gain_down: float  #: smallest factor, 0 if none harms down to 10^-4
+    phase: float  #: largest lag or lead at every frequency, rad
+    delay: float  #: largest delay, s
+    sensitivity: float  #: largest singular value of (1 + L)^-1 over frequency
+    worst: float  #: frequency of that, rad/s
 
 
 def margins(loop: Loop) -> Margins:

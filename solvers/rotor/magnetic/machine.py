@@ -19,23 +19,17 @@ AXES = ("first x", "first y", "second x", "second y")  # of the bearings, in the
 class Magnets:
     """Two opposite electromagnets on each of two axes, in each of two bearings [theory: magnetic, eq. 4].
 
-    Parameters
-    ----------
-    gap : delta, between the rotor in the centre and each magnet, m
-    force_constant : k_A, N m^2/A^2
-    bias_current : i_0 of every coil, A
-    most_current : largest control current, A; the bias current, with which one of two coils is off, if None
-    bandwidth : of the coils with their amplifiers, rad/s; coils that follow at once if None
-
     Raises
     ------
     InputError : a value that is not positive, a control current above the bias current
     """
 
-    gap: float
-    force_constant: float
-    bias_current: float
+    gap: float  #: delta, between the rotor in the centre and each magnet, m
+    force_constant: float  #: k_A, N m^2/A^2
+    bias_current: float  #: i_0 of every coil, A
+    #: largest control current, A; the bias current, with which one of two coils is off, if None
     most_current: float | None = None
+    #: of the coils with their amplifiers, rad/s; coils that follow at once if None
     bandwidth: float | None = None
 
     def __post_init__(self) -> None:
@@ -124,34 +118,22 @@ class Magnets:
 class MagneticRotor:
     """A rigid rotor between two bearings; x, y, alpha, beta of its centre [theory: magnetic, eq. 1].
 
-    Parameters
-    ----------
-    mass : m, kg
-    transverse_inertia, polar_inertia : I_x and I_z, kg m^2; I_z at most 2 I_x
-    eccentricity : e of the centre of mass, m
-    inertia_tilt : gamma of the principal axis to the rotor's axis, rad
-    first, second : places of the bearings along the axis, m, the first one lower
-    magnets : of each bearing
-    motor_stiffness : c_m, by which the motor pulls the rotor outwards, N/m
-    motor_length : l_m, over which it does so evenly, m
-    drag : moment of the fluid over the rate of turning, N m s
-
     Raises
     ------
     InputError : a value out of its range
     """
 
-    mass: float
-    transverse_inertia: float
+    mass: float  #: m, kg
+    transverse_inertia: float  #: I_x and I_z, kg m^2; I_z at most 2 I_x
     polar_inertia: float
-    eccentricity: float
-    inertia_tilt: float
-    first: float
+    eccentricity: float  #: e of the centre of mass, m
+    inertia_tilt: float  #: gamma of the principal axis to the rotor's axis, rad
+    first: float  #: places of the bearings along the axis, m, the first one lower
     second: float
-    magnets: Magnets
-    motor_stiffness: float = 0.0
-    motor_length: float = 0.0
-    drag: float = 0.0
+    magnets: Magnets  #: of each bearing
+    motor_stiffness: float = 0.0  #: c_m, by which the motor pulls the rotor outwards, N/m
+    motor_length: float = 0.0  #: l_m, over which it does so evenly, m
+    drag: float = 0.0  #: moment of the fluid over the rate of turning, N m s
 
     def __post_init__(self) -> None:
         for name in ("mass", "transverse_inertia", "polar_inertia"):
@@ -266,23 +248,15 @@ class MagneticRotor:
 
 @dataclass(frozen=True)
 class Dimensionless:
-    """Numbers that rotors of this kind are compared by [theory: magnetic, eq. 10] [BG18, eq. 41].
+    """Numbers that rotors of this kind are compared by [theory: magnetic, eq. 10] [BG18, eq. 41]."""
 
-    Parameters
-    ----------
-    gyroscopic : Pi_1 = I_z/I_x
-    slenderness : Pi_2 = m l^2/I_x, l the distance of the bearings
-    drag : Pi_H
-    magnets : Pi_K (i_0/S_i)^2, force constant times the square of the bias current over c_m delta^3; nan
-        without a motor
-    time : S_t = sqrt(m/c_m), s; nan without a motor
-    """
-
-    gyroscopic: float
-    slenderness: float
-    drag: float
+    gyroscopic: float  #: Pi_1 = I_z/I_x
+    slenderness: float  #: Pi_2 = m l^2/I_x, l the distance of the bearings
+    drag: float  #: Pi_H
+    #: Pi_K (i_0/S_i)^2, force constant times the square of the bias current over c_m delta^3; nan without a
+    #: motor
     magnets: float
-    time: float
+    time: float  #: S_t = sqrt(m/c_m), s; nan without a motor
 
 
 def dimensionless(machine: MagneticRotor, length: float | None = None) -> Dimensionless:

@@ -33,19 +33,14 @@ class Ending(StrEnum):
 class SpeedLaw:
     """Omega = mean + amplitude sin(frequency t) [theory: magnetic, eq. 24] [BG18, section 2].
 
-    Parameters
-    ----------
-    mean, amplitude : rad/s, the amplitude at most the mean
-    frequency : of the pulsation, rad/s
-
     Raises
     ------
     InputError : a negative value, an amplitude above the mean
     """
 
-    mean: float
+    mean: float  #: rad/s, the amplitude at most the mean
     amplitude: float = 0.0
-    frequency: float = 0.0
+    frequency: float = 0.0  #: of the pulsation, rad/s
 
     def __post_init__(self) -> None:
         for name in ("mean", "amplitude", "frequency"):
@@ -75,22 +70,15 @@ class SpeedLaw:
 class Load:
     """A load on the rotor, constant or harmonic, from some time on [theory: magnetic, eq. 2] [BG18, eq. 37].
 
-    Parameters
-    ----------
-    force : along x and y, N
-    moment : about x and y, N m
-    frequency : p of force and moment times sin(p (t - start)), rad/s; constant if None
-    start : s
-
     Raises
     ------
     InputError : a value that is not finite, a frequency that is not positive
     """
 
-    force: tuple[float, float]
-    moment: tuple[float, float] = (0.0, 0.0)
-    frequency: float | None = None
-    start: float = 0.0
+    force: tuple[float, float]  #: along x and y, N
+    moment: tuple[float, float] = (0.0, 0.0)  #: about x and y, N m
+    frequency: float | None = None  #: p of force and moment times sin(p (t - start)), rad/s; constant if None
+    start: float = 0.0  #: s
 
     def __post_init__(self) -> None:
         if not all(map(math.isfinite, (*self.force, *self.moment, self.start))):
@@ -112,29 +100,17 @@ class Load:
 
 @dataclass(frozen=True)
 class Motion:
-    """A motion through time; n times.
+    """A motion through time; n times."""
 
-    Parameters
-    ----------
-    time : s, shape (n,)
-    speed : of the rotor, rad/s, shape (n,)
-    place, rate : coordinates and their rates, m, rad and per second, shape (n, 4)
-    memory : state of the controller, shape (n, k)
-    displacement : along first x, first y, second x, second y of the bearings, m, shape (n, 4)
-    current : control currents that flow, A, shape (n, 4)
-    ending : how it ended
-    evaluations : of the equations of motion
-    """
-
-    time: Array
-    speed: Array
-    place: Array
+    time: Array  #: s, shape (n,)
+    speed: Array  #: of the rotor, rad/s, shape (n,)
+    place: Array  #: coordinates and their rates, m, rad and per second, shape (n, 4)
     rate: Array
-    memory: Array
-    displacement: Array
-    current: Array
-    ending: Ending
-    evaluations: int
+    memory: Array  #: state of the controller, shape (n, k)
+    displacement: Array  #: along first x, first y, second x, second y of the bearings, m, shape (n, 4)
+    current: Array  #: control currents that flow, A, shape (n, 4)
+    ending: Ending  #: how it ended
+    evaluations: int  #: of the equations of motion
 
     @property
     def distance(self) -> Array:

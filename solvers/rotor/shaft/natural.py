@@ -23,18 +23,12 @@ _ENOUGH = 1e-13  # relative width of a bracket; the eigenvalues are known no bet
 
 @dataclass(frozen=True)
 class Mode:
-    """A natural motion without damping.
+    """A natural motion without damping."""
 
-    Parameters
-    ----------
-    frequency : rad/s
-    along : for each beam places from its first station, m, and deflections, the largest of all being 1
-    stations : deflection at the stations of each beam
-    """
-
-    frequency: float
+    frequency: float  #: rad/s
+    #: for each beam places from its first station, m, and deflections, the largest of all being 1
     along: tuple[tuple[Array, Array], ...]
-    stations: tuple[Array, ...]
+    stations: tuple[Array, ...]  #: deflection at the stations of each beam
 
 
 def count_below(structure: Structure, frequency: Array, spin: float = 0.0) -> Index:

@@ -21,25 +21,17 @@ _SERIES, _TERMS = 1.0, 12  # up to this size of its argument a function is summe
 class Section:
     """A uniform piece of a beam [theory: spindle, eq. 1-2].
 
-    Parameters
-    ----------
-    length : m
-    bending_stiffness : E I, N m^2
-    mass : of a unit of length, kg/m
-    rotary_inertia : rho I of a unit of length across the axis, kg m; 0 leaves it out
-    shear_flexibility : 1/(kappa G A), 1/N; 0 leaves shear out
-    polar_inertia : of a unit of length about the axis, kg m, of what spins; 0 for what does not
-
     Raises
     ------
     InputError : a value out of its range
     """
 
-    length: float
-    bending_stiffness: float
-    mass: float
-    rotary_inertia: float = 0.0
-    shear_flexibility: float = 0.0
+    length: float  #: m
+    bending_stiffness: float  #: E I, N m^2
+    mass: float  #: of a unit of length, kg/m
+    rotary_inertia: float = 0.0  #: rho I of a unit of length across the axis, kg m; 0 leaves it out
+    shear_flexibility: float = 0.0  #: 1/(kappa G A), 1/N; 0 leaves shear out
+    #: of a unit of length about the axis, kg m, of what spins; 0 for what does not
     polar_inertia: float = 0.0
 
     def __post_init__(self) -> None:

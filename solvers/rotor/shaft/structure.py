@@ -21,38 +21,23 @@ _BLOCK = 2**22  # numbers of the matrices that are held at once
 
 @dataclass(frozen=True)
 class PointMass:
-    """A body at a station.
+    """A body at a station."""
 
-    Parameters
-    ----------
-    station : where
-    mass : kg
-    inertia : across the axis, kg m^2
-    polar_inertia : about the axis, kg m^2, of what spins; 0 for what does not
-    """
-
-    station: Station
-    mass: float
-    inertia: float = 0.0
-    polar_inertia: float = 0.0
+    station: Station  #: where
+    mass: float  #: kg
+    inertia: float = 0.0  #: across the axis, kg m^2
+    polar_inertia: float = 0.0  #: about the axis, kg m^2, of what spins; 0 for what does not
 
 
 @dataclass(frozen=True)
 class Joint:
-    """A spring with a damper between two stations, or between a station and the ground.
+    """A spring with a damper between two stations, or between a station and the ground."""
 
-    Parameters
-    ----------
-    first, second : what it joins; the ground where the second is None
-    stiffness, damping : across the axis, N/m and N s/m
-    angular_stiffness, angular_damping : N m and N m s
-    """
-
-    first: Station
+    first: Station  #: what it joins; the ground where the second is None
     second: Station | None
-    stiffness: float
+    stiffness: float  #: across the axis, N/m and N s/m
     damping: float = 0.0
-    angular_stiffness: float = 0.0
+    angular_stiffness: float = 0.0  #: N m and N m s
     angular_damping: float = 0.0
 
     def dynamic(self, frequency: Array, damped: bool = True) -> tuple[Complex, Complex]:
@@ -73,11 +58,6 @@ class Joint:
 class Structure:
     """Beams with what sits on them and what joins them.
 
-    Parameters
-    ----------
-    beams : sections of each beam from its first station on
-    masses, joints : at stations
-
     Raises
     ------
     InputError : a beam without a section, a station that is not there, a negative mass or spring, a joint of
@@ -93,8 +73,8 @@ class Structure:
     '1.584e-06 m/N'
     """
 
-    beams: tuple[tuple[Section, ...], ...]
-    masses: tuple[PointMass, ...] = ()
+    beams: tuple[tuple[Section, ...], ...]  #: sections of each beam from its first station on
+    masses: tuple[PointMass, ...] = ()  #: at stations
     joints: tuple[Joint, ...] = ()
 
     def __post_init__(self) -> None:
@@ -123,28 +103,17 @@ class Structure:
 
 @dataclass(frozen=True)
 class Coordinate:
-    """One motion of a station, and the force or the moment along it.
+    """One motion of a station, and the force or the moment along it."""
 
-    Parameters
-    ----------
-    station : where
-    slope : the slope and the moment; else the deflection and the force
-    """
-
-    station: Station
-    slope: bool = False
+    station: Station  #: where
+    slope: bool = False  #: the slope and the moment; else the deflection and the force
 
 
 @dataclass(frozen=True)
 class Nodes:
-    """Where the pieces of all sections meet, numbered along one beam after the other.
+    """Where the pieces of all sections meet, numbered along one beam after the other."""
 
-    Parameters
-    ----------
-    pieces : of how many equal pieces each section of each beam is made
-    """
-
-    pieces: tuple[tuple[int, ...], ...]
+    pieces: tuple[tuple[int, ...], ...]  #: of how many equal pieces each section of each beam is made
 
     @property
     def starts(self) -> tuple[int, ...]:

@@ -19,17 +19,11 @@ from solvers.rotor.shaft.structure import Coordinate, Station, Structure
 
 @dataclass(frozen=True)
 class Connection:
-    """One spring of a joint between two beams, the reaction in which is unknown.
+    """One spring of a joint between two beams, the reaction in which is unknown."""
 
-    Parameters
-    ----------
-    first, second : coordinates on which the reaction acts, on the second with the other sign
-    flexibility : 1/(k + i omega c), shape (n,)
-    """
-
-    first: Coordinate
+    first: Coordinate  #: coordinates on which the reaction acts, on the second with the other sign
     second: Coordinate
-    flexibility: Complex
+    flexibility: Complex  #: 1/(k + i omega c), shape (n,)
 
 
 def connections(structure: Structure, frequency: Array) -> list[Connection]:
@@ -158,20 +152,13 @@ def free_compliances(structure: Structure, beam: int, frequency: Array, spin: fl
 
 @dataclass(frozen=True)
 class Substructures:
-    """The dynamic compliance matrix and what follows from it [theory: spindle, eq. 12-13].
+    """The dynamic compliance matrix and what follows from it [theory: spindle, eq. 12-13]."""
 
-    Parameters
-    ----------
-    matrix : of the connections, shape (n, c, c)
-    load : free motion of the second end of each connection from the first under the unit force, (n, c)
-    reactions : in the connections, shape (n, c)
-    motions : of each beam, deflection and slope of its stations, shape (n, m, 2) each
-    """
-
-    matrix: Complex
+    matrix: Complex  #: of the connections, shape (n, c, c)
+    #: free motion of the second end of each connection from the first under the unit force, (n, c)
     load: Complex
-    reactions: Complex
-    motions: tuple[Complex, ...]
+    reactions: Complex  #: in the connections, shape (n, c)
+    motions: tuple[Complex, ...]  #: of each beam, deflection and slope of its stations, shape (n, m, 2) each
 
 
 def substructures(

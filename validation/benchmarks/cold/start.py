@@ -48,21 +48,13 @@ for name in sys.stdin.read().split():
 
 @dataclass(frozen=True)
 class ColdStart:
-    """What one command costs from a cold start; processor time, s.
+    """What one command costs from a cold start; processor time, s."""
 
-    Parameters
-    ----------
-    arguments : behind `leblanc`
-    total : of the command
-    libraries : of importing the modules of libraries that it ends with, Python's own start included
-    modules : how many modules of each library that is
-    notes : call of the command function, "import", "physics" or "work", library: share of the command's time
-    """
-
-    arguments: tuple[str, ...]
-    total: float
-    libraries: float
-    modules: dict[str, int]
+    arguments: tuple[str, ...]  #: behind `leblanc`
+    total: float  #: of the command
+    libraries: float  #: of importing the modules of libraries that it ends with, Python's own start included
+    modules: dict[str, int]  #: how many modules of each library that is
+    #: call of the command function, "import", "physics" or "work", library: share of the command's time
     notes: dict[tuple[str, str, str], float]
 
     @property

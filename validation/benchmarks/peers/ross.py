@@ -32,29 +32,19 @@ def _speeds() -> Array:
 
 @dataclass(frozen=True)
 class RotorProblem:
-    """Discs on the ends of a shaft, each end in an isotropic support; the unbalance sits on the first disc.
+    """Discs on the ends of a shaft, both ends in isotropic supports; the unbalance sits on the first disc."""
 
-    Parameters
-    ----------
-    mass : of the discs, kg
-    transverse, polar : inertias of the discs, kg m^2
-    stiffness, damping : of the supports, N/m and N s/m
-    length, diameter, density, modulus : of the shaft, m, m, kg/m^3, Pa
-    unbalance : kg m
-    speed : rad/s, shape (n,)
-    """
-
-    mass: tuple[float, float] = (6.0, 4.0)
-    transverse: tuple[float, float] = (0.02, 0.01)
+    mass: tuple[float, float] = (6.0, 4.0)  #: of the discs, kg
+    transverse: tuple[float, float] = (0.02, 0.01)  #: inertias of the discs, kg m^2
     polar: tuple[float, float] = (0.035, 0.018)
-    stiffness: tuple[float, float] = (2e5, 3e5)
+    stiffness: tuple[float, float] = (2e5, 3e5)  #: of the supports, N/m and N s/m
     damping: tuple[float, float] = (200.0, 250.0)
-    length: float = 0.3
+    length: float = 0.3  #: of the shaft, m, m, kg/m^3, Pa
     diameter: float = 0.1
     density: float = 78.0
     modulus: float = 2e14
-    unbalance: float = 1e-4
-    speed: Array = field(default_factory=_speeds)
+    unbalance: float = 1e-4  #: kg m
+    speed: Array = field(default_factory=_speeds)  #: rad/s, shape (n,)
 
     def rigid(self) -> TwoPlane:
         """The rotor with a rigid shaft."""

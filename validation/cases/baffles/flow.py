@@ -30,20 +30,12 @@ _KNOWN = "the reference itself is known to 0.005 at first and 15 % of the lag la
 
 @dataclass(frozen=True)
 class Lagging:
-    """A layer that lags behind its drum; k steps.
+    """A layer that lags behind its drum; k steps."""
 
-    Parameters
-    ----------
-    time : s, shape (k,)
-    lag : of its angular momentum, as a share of the spin, shape (k,)
-    torque : of the baffles on the liquid, N m per metre, shape (k,)
-    mass_error : relative change of the liquid's volume
-    """
-
-    time: Array
-    lag: Array
-    torque: Array
-    mass_error: float
+    time: Array  #: s, shape (k,)
+    lag: Array  #: of its angular momentum, as a share of the spin, shape (k,)
+    torque: Array  #: of the baffles on the liquid, N m per metre, shape (k,)
+    mass_error: float  #: relative change of the liquid's volume
 
     def at(self, time: Array) -> Array:
         """The lag at some times, shape of `time`."""

@@ -31,21 +31,13 @@ _CELLS = 32  # round each wall in time; 64 change the largest deflection by 1 % 
 
 @dataclass(frozen=True)
 class Gain:
-    """Deflections with liquid over those without.
+    """Deflections with liquid over those without."""
 
-    Parameters
-    ----------
-    at_speed : at the nominal speed, 90 rad/s
-    peak : the largest at any constant speed, stable or not
-    run_up : the largest of a run-up at 4 rad/s^2
-    added : full mass of all rings over that of the rotor
-    most : largest unbalance that the liquid can have about the geometric axis, kg m: all of it at the walls
-    """
-
-    at_speed: float
-    peak: float
-    run_up: float
-    added: float
+    at_speed: float  #: at the nominal speed, 90 rad/s
+    peak: float  #: the largest at any constant speed, stable or not
+    run_up: float  #: the largest of a run-up at 4 rad/s^2
+    added: float  #: full mass of all rings over that of the rotor
+    #: largest unbalance that the liquid can have about the geometric axis, kg m: all of it at the walls
     most: float
 
 

@@ -35,18 +35,11 @@ _PLACES = [(row, column) for row in range(1, 7) for column in range(row, 7)]
 
 @dataclass(frozen=True)
 class TubMatrices:
-    """Matrices at rest as sympy expressions, rows and columns in the order of the coordinates.
+    """Matrices at rest as sympy expressions, rows and columns in the order of the coordinates."""
 
-    Parameters
-    ----------
-    mass : of the drum's unbalanced mass m_2 at (x_D, y_D, z_D) and its inertias J_a, J_b
-    gyroscopic : of the same, spinning at omega
-    stiffness : of one spring (c_x, c_y, c_z) at (x, y, z)
-    """
-
-    mass: Any
-    gyroscopic: Any
-    stiffness: Any
+    mass: Any  #: of the drum's unbalanced mass m_2 at (x_D, y_D, z_D) and its inertias J_a, J_b
+    gyroscopic: Any  #: of the same, spinning at omega
+    stiffness: Any  #: of one spring (c_x, c_y, c_z) at (x, y, z)
 
 
 def tub_matrices() -> TubMatrices:
@@ -185,21 +178,13 @@ def _order_cases(matrices: TubMatrices) -> list[Case]:
 
 @dataclass(frozen=True)
 class _Term:
-    """A term of the equations below eq. 7 with another letter than the spring's energy has.
+    """A term of the equations below eq. 7 with another letter than the spring's energy has."""
 
-    Parameters
-    ----------
-    row, column : of the coordinate whose equation it is, and of the one that it multiplies, from 0
-    printed : coefficient as printed, of one spring or damper
-    damping : it multiplies the rate, with the dampers' h in the place of the springs' c
-    rate : printed with a rate where the coordinate itself belongs
-    """
-
-    row: int
+    row: int  #: of the coordinate whose equation it is, and of the one that it multiplies, from 0
     column: int
-    printed: str
-    damping: bool = False
-    rate: bool = False
+    printed: str  #: coefficient as printed, of one spring or damper
+    damping: bool = False  #: it multiplies the rate, with the dampers' h in the place of the springs' c
+    rate: bool = False  #: printed with a rate where the coordinate itself belongs
 
 
 _NAMES = ("x", "y", "z", "alpha", "beta", "gamma")

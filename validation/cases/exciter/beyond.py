@@ -79,20 +79,13 @@ def start_state(machine: Dimensionless, speed: float, start: str) -> Array:
 
 @dataclass(frozen=True)
 class Three:
-    """A motion with three frequencies and the lines of its platform.
+    """A motion with three frequencies and the lines of its platform."""
 
-    Parameters
-    ----------
-    regime : of the two balls
-    lines : of the platform
-    made_of : of each line the integers that make it of the two balls' speeds and the shaft's; None if none do
-    made_of_two : the same of the resonance's ball and the shaft
-    """
-
-    regime: Regime
-    lines: Lines
+    regime: Regime  #: of the two balls
+    lines: Lines  #: of the platform
+    #: of each line the integers that make it of the two balls' speeds and the shaft's; None if none do
     made_of: tuple[tuple[int, ...] | None, ...]
-    made_of_two: tuple[tuple[int, ...] | None, ...]
+    made_of_two: tuple[tuple[int, ...] | None, ...]  #: the same of the resonance's ball and the shaft
 
 
 @cache

@@ -69,20 +69,12 @@ _SLACK = 0.03  # relative: a step against the trend up to this is the width of t
 
 @dataclass(frozen=True)
 class Traces:
-    """Figure 3: the motion, its lowest order, and their difference.
+    """Figure 3: the motion, its lowest order, and their difference."""
 
-    Parameters
-    ----------
-    motion : as integrated
-    turns : of the balls since the first sample, shape (s,)
-    lowest : v, v', v'' to lowest order, the balls' phase fitted, shape (3, s)
-    gap : largest difference of each over the largest of the motion, shape (3,)
-    """
-
-    motion: Trace
-    turns: Array
-    lowest: Array
-    gap: Array
+    motion: Trace  #: as integrated
+    turns: Array  #: of the balls since the first sample, shape (s,)
+    lowest: Array  #: v, v', v'' to lowest order, the balls' phase fitted, shape (3, s)
+    gap: Array  #: largest difference of each over the largest of the motion, shape (3,)
 
 
 @cache

@@ -20,18 +20,11 @@ FALLS = 0.999  # a passage of the last fill over the first above which no cleara
 
 @dataclass(frozen=True)
 class Contact:
-    """Shaking at the resonance over the first fill, fitted to the last: n pairs of a draw and a clearance.
+    """Shaking at the resonance over the first fill, fitted to the last: n pairs of a draw and a clearance."""
 
-    Parameters
-    ----------
-    shaking : shape (n, f)
-    draw : number of the draw, shape (n,)
-    clearance : over the deflection with the first fill, shape (n,)
-    """
-
-    shaking: Array
-    draw: Index
-    clearance: Array
+    shaking: Array  #: shape (n, f)
+    draw: Index  #: number of the draw, shape (n,)
+    clearance: Array  #: over the deflection with the first fill, shape (n,)
 
     def within(self, seen: Array, factor: float) -> float:
         """Share of the pairs that meet all fills between the fitted ones within a factor.

@@ -34,16 +34,10 @@ _STEPS = 60  # of the search from the nearest draw
 
 @dataclass(frozen=True)
 class Answers:
-    """What all draws answer: d draws of v values, f fills.
+    """What all draws answer: d draws of v values, f fills."""
 
-    Parameters
-    ----------
-    values : shape (d, v), in the order of `RANGES`
-    passage, speed, cruise : as in `machine.Answer`, shape (d, f)
-    """
-
-    values: Array
-    passage: Array
+    values: Array  #: shape (d, v), in the order of `RANGES`
+    passage: Array  #: as in `machine.Answer`, shape (d, f)
     speed: Array
     cruise: Array
 
@@ -172,20 +166,13 @@ def search(answers: Answers) -> Array:
 
 @dataclass(frozen=True)
 class Fitted:
-    """The machine with the values that the two fills ask for.
+    """The machine with the values that the two fills ask for."""
 
-    Parameters
-    ----------
-    answers : of its values alone, d = 1
-    down : largest shaking of a coast through the resonance over that of the sprint, first fill
-    fine : passage of each fill with `FINE` cells over that with the scene's, shape (f,)
-    weaker : passage of the last fill over the largest of the first fill with a motor that is weaker in that
-        run alone, of some draws, shape (`_WEAK_DRAWS`,)
-    """
-
-    answers: Answers
-    down: float
-    fine: Array
+    answers: Answers  #: of its values alone, d = 1
+    down: float  #: largest shaking of a coast through the resonance over that of the sprint, first fill
+    fine: Array  #: passage of each fill with `FINE` cells over that with the scene's, shape (f,)
+    #: passage of the last fill over the largest of the first fill with a motor that is weaker in that run
+    #: alone, of some draws, shape (`_WEAK_DRAWS`,)
     weaker: Array
 
 

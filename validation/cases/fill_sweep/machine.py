@@ -39,25 +39,17 @@ PASSED = 1.4 * 2.0 * math.pi * 4.3
 class Values:
     """What no one has measured on the machine.
 
-    Parameters
-    ----------
-    unbalance : of the load, kg m
-    damping_ratio : of the suspension
-    torque : of the motor up to 570 rpm, N m
-    ring : volume of the whole ring, m^3
-    loss : coefficient of each baffle
-
     Examples
     --------
     >>> round(Values(0.2, 0.1, 7.0, 7e-4, 5.0).before * 1e6)
     275
     """
 
-    unbalance: float
-    damping_ratio: float
-    torque: float
-    ring: float
-    loss: float
+    unbalance: float  #: of the load, kg m
+    damping_ratio: float  #: of the suspension
+    torque: float  #: of the motor up to 570 rpm, N m
+    ring: float  #: volume of the whole ring, m^3
+    loss: float  #: coefficient of each baffle
 
     @property
     def before(self) -> float:
@@ -131,18 +123,11 @@ def shaking(history: RunupHistory) -> Array:
 
 @dataclass(frozen=True)
 class Answer:
-    """What is compared of one fill.
+    """What is compared of one fill."""
 
-    Parameters
-    ----------
-    passage : largest shaking up to where the resonance lies behind, m rad^2/s^2
-    speed : of the drum when the motor goes off, rad/s
-    cruise : amplitude at the highest speed, m
-    """
-
-    passage: float
-    speed: float
-    cruise: float
+    passage: float  #: largest shaking up to where the resonance lies behind, m rad^2/s^2
+    speed: float  #: of the drum when the motor goes off, rad/s
+    cruise: float  #: amplitude at the highest speed, m
 
 
 def answer(values: Values, added: float, cells: int | None = None) -> Answer:

@@ -41,26 +41,17 @@ GIVEN = (
 
 @dataclass(frozen=True)
 class Point:
-    """What one run-up came to.
+    """What one run-up came to."""
 
-    Parameters
-    ----------
-    volume, friction : of water, m^3, and rate of the linear law, 1/s
-    peak, peak_speed : largest amplitude, m, and the speed there, rad/s
-    end, last : mean amplitude over the last second, and the very last one, m
-    closure, error : of the energy balance; of the amplitude, nan if it was not estimated
-    converged : the run came to its end
-    """
-
-    volume: float
+    volume: float  #: of water, m^3, and rate of the linear law, 1/s
     friction: float
-    peak: float
+    peak: float  #: largest amplitude, m, and the speed there, rad/s
     peak_speed: float
-    end: float
+    end: float  #: mean amplitude over the last second, and the very last one, m
     last: float
-    closure: float
+    closure: float  #: of the energy balance; of the amplitude, nan if it was not estimated
     error: float
-    converged: bool
+    converged: bool  #: the run came to its end
 
 
 def run(volume: float, friction: float, cells: int = 128, check: bool = False) -> Point:

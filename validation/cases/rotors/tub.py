@@ -27,26 +27,18 @@ FARTHEST = 0.09  # m, of the drum's centre of mass along the axis
 
 @dataclass(frozen=True)
 class Assumed:
-    """What DG21 does not give, in SI units.
+    """What DG21 does not give, in SI units."""
 
-    Parameters
-    ----------
-    tub_inertia : of a shell of 230 mm radius and 300 mm length with a counterweight
-    drum_polar_inertia, drum_transverse_inertia : of a shell of 185 mm radius and 190 mm length with laundry
-    spring_place, damper_place : x across and z up, each mirrored in x, at y = 0
-    lateral : stiffness of a spring across itself: its tension, 308 N, over its length, 250 mm
-    bush : sideways stiffness of a damper's rubber bushes
-    friction : damping of the bushes in all directions
-    """
-
+    #: of a shell of 230 mm radius and 300 mm length with a counterweight
     tub_inertia: Vector = (1.3, 1.5, 1.3)
-    drum_polar_inertia: float = 0.32
+    drum_polar_inertia: float = 0.32  #: of a shell of 185 mm radius and 190 mm length with laundry
     drum_transverse_inertia: float = 0.20
-    spring_place: tuple[float, float] = (0.2, 0.2)
+    spring_place: tuple[float, float] = (0.2, 0.2)  #: x across and z up, each mirrored in x, at y = 0
     damper_place: tuple[float, float] = (0.12, -0.22)
+    #: stiffness of a spring across itself: its tension, 308 N, over its length, 250 mm
     lateral: float = 1200.0
-    bush: float = 500.0
-    friction: float = 20.0
+    bush: float = 500.0  #: sideways stiffness of a damper's rubber bushes
+    friction: float = 20.0  #: damping of the bushes in all directions
 
 
 def suspended_tub(

@@ -24,16 +24,10 @@ from validation.cases.two_plane.machine import BALLS, LONG, RACES, SCATTERED, SH
 
 @dataclass(frozen=True)
 class Balanced:
-    """What balancers in two planes made of a rotor.
+    """What balancers in two planes made of a rotor."""
 
-    Parameters
-    ----------
-    left : largest deflection at the supports in the end, over that without balancers
-    converged : the integration is sound
-    """
-
-    left: float
-    converged: bool
+    left: float  #: largest deflection at the supports in the end, over that without balancers
+    converged: bool  #: the integration is sound
 
 
 def cases() -> list[Case]:

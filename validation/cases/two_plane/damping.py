@@ -44,18 +44,11 @@ _POWERS, _LEAST, _LONGEST = 0.5, 0.3, 4.0
 
 @dataclass(frozen=True)
 class Side:
-    """A motion in time on one side of an edge.
+    """A motion in time on one side of an edge."""
 
-    Parameters
-    ----------
-    speed : rad/s
-    root : real part of the root that grows most, 1/s
-    seen : rate at which the disturbance grew in time, 1/s
-    """
-
-    speed: float
-    root: float
-    seen: float
+    speed: float  #: rad/s
+    root: float  #: real part of the root that grows most, 1/s
+    seen: float  #: rate at which the disturbance grew in time, 1/s
 
 
 def damped(rotor: TwoPlane, damping: float) -> TwoPlane:

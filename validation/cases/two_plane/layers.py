@@ -31,18 +31,11 @@ _HOLD = 6.0  # s
 
 @dataclass(frozen=True)
 class Layered:
-    """What two layers made of a rotor's deflections.
+    """What two layers made of a rotor's deflections."""
 
-    Parameters
-    ----------
-    left : deflection at each chamber with liquid over that without, shape (2,)
-    unsteady : what still moves, over the deflection
-    possible : the conditions let the rotor be balanced in two planes
-    """
-
-    left: Array
-    unsteady: float
-    possible: bool
+    left: Array  #: deflection at each chamber with liquid over that without, shape (2,)
+    unsteady: float  #: what still moves, over the deflection
+    possible: bool  #: the conditions let the rotor be balanced in two planes
 
 
 def layers_in_time(rotor: TwoPlane, speed: float, cells: int = 64) -> Layered:

@@ -32,18 +32,11 @@ _PRINTED: dict[str, Any] = {"color": "black", "linestyle": (0, (1, 1)), "linewid
 
 @dataclass(frozen=True)
 class Comparison:
-    """The printed regression beside time integrations.
+    """The printed regression beside time integrations."""
 
-    Parameters
-    ----------
-    values : eps, b, delta, h of each machine, shape (m, 4)
-    computed : critical speed by time integration, shape (m,)
-    printed : by the regression, shape (m,)
-    """
-
-    values: Array
-    computed: Array
-    printed: Array
+    values: Array  #: eps, b, delta, h of each machine, shape (m, 4)
+    computed: Array  #: critical speed by time integration, shape (m,)
+    printed: Array  #: by the regression, shape (m,)
 
     @property
     def error(self) -> Array:

@@ -22,26 +22,16 @@ COUNTS, SHARES = (1, 2, 3, 4, 6, 8), (0.25, 0.5, 0.75, 1.0)
 
 @dataclass(frozen=True)
 class BaffleRow:
-    """Slowest waves against and with the spin that push the drum, for one set of baffles.
+    """Slowest waves against and with the spin that push the drum, for one set of baffles."""
 
-    Parameters
-    ----------
-    count : baffles
-    share : of the layer's depth that they take
-    against, along : frequencies relative to the drum, rad/s; the same where the slowest stands
-    damping_against, damping_along : decay rates in water, 1/s
-    synchronous : force ratio of a synchronous whirl
-    error : largest relative error of the frequencies, estimated
-    """
-
-    count: int
-    share: float
-    against: float
+    count: int  #: baffles
+    share: float  #: of the layer's depth that they take
+    against: float  #: frequencies relative to the drum, rad/s; the same where the slowest stands
     along: float
-    damping_against: float
+    damping_against: float  #: decay rates in water, 1/s
     damping_along: float
-    synchronous: float
-    error: float
+    synchronous: float  #: force ratio of a synchronous whirl
+    error: float  #: largest relative error of the frequencies, estimated
 
 
 def baffle_row(

@@ -33,22 +33,14 @@ DEPTHS = (0.5, 0.75, 0.9, 1.0)
 
 @dataclass(frozen=True)
 class Line:
-    """Whirl with one set of baffles.
+    """Whirl with one set of baffles."""
 
-    Parameters
-    ----------
-    count : baffles; 0 for a clear ring
-    depth : of the layer that they stand in, from the wall; 1 through the surface
-    growth : largest over the speeds, over the natural frequency without liquid
-    bands : in which a whirl grows without damping, speed over that frequency
-    damped : the same with a damping ratio of 0.05 and laminar friction
-    """
-
-    count: int
-    depth: float
-    growth: float
+    count: int  #: baffles; 0 for a clear ring
+    depth: float  #: of the layer that they stand in, from the wall; 1 through the surface
+    growth: float  #: largest over the speeds, over the natural frequency without liquid
+    #: in which a whirl grows without damping, speed over that frequency
     bands: tuple[tuple[float, float], ...]
-    damped: tuple[tuple[float, float], ...]
+    damped: tuple[tuple[float, float], ...]  #: the same with a damping ratio of 0.05 and laminar friction
 
 
 def with_baffles(fill: Fill, count: int, depth: float) -> Fill:

@@ -30,20 +30,12 @@ _LOOKS: dict[str, dict[str, Any]] = {
 
 @dataclass(frozen=True)
 class Coils:
-    """A loop with coils that take time; n bandwidths.
+    """A loop with coils that take time; n bandwidths."""
 
-    Parameters
-    ----------
-    bandwidth : Hz, shape (n,)
-    sensitivity : largest, nan where the loop is not stable, shape (n,)
-    damping : least damping ratio of all poles, below 0 where the loop is not stable, shape (n,)
-    delay : delay margin, s, nan where the loop is not stable, shape (n,)
-    """
-
-    bandwidth: Array
-    sensitivity: Array
-    damping: Array
-    delay: Array
+    bandwidth: Array  #: Hz, shape (n,)
+    sensitivity: Array  #: largest, nan where the loop is not stable, shape (n,)
+    damping: Array  #: least damping ratio of all poles, below 0 where the loop is not stable, shape (n,)
+    delay: Array  #: delay margin, s, nan where the loop is not stable, shape (n,)
 
 
 def controllers() -> tuple[Controller, ...]:

@@ -39,31 +39,21 @@ _DASHES = ((0, (1, 1)), (0, (4, 1, 1, 1)), (0, (3, 1.5)), (0, (6, 2)), (0, (8, 1
 
 @dataclass(frozen=True)
 class Lag:
-    """A run-up of the rig and what it lacks of the steady response; k samples.
+    """A run-up of the rig and what it lacks of the steady response; k samples."""
 
-    Parameters
-    ----------
-    rate : of the ramp, rad/s^2
-    speed : rad/s, shape (k,)
-    angle : of the liquid behind the unbalance, means over turns, within half a turn of the steady one, rad,
-        shape (k,)
-    error, beyond : largest distance of the deflection from the steady one, over the largest steady one: up
-        through the resonance, and above it
-    angle_error : largest error of the liquid's angle up through the resonance, rad
-    angles : of the liquid behind the unbalance at the speeds of the measurements, rad, shape (6,)
-    closure : of the energy balance
-    converged : the run came to its end
-    """
-
-    rate: float
-    speed: Array
+    rate: float  #: of the ramp, rad/s^2
+    speed: Array  #: rad/s, shape (k,)
+    #: of the liquid behind the unbalance, means over turns, within half a turn of the steady one, rad, shape
+    #: (k,)
     angle: Array
+    #: largest distance of the deflection from the steady one, over the largest steady one: up through the
+    #: resonance, and above it
     error: float
     beyond: float
-    angle_error: float
-    angles: Array
-    closure: float
-    converged: bool
+    angle_error: float  #: largest error of the liquid's angle up through the resonance, rad
+    angles: Array  #: of the liquid behind the unbalance at the speeds of the measurements, rad, shape (6,)
+    closure: float  #: of the energy balance
+    converged: bool  #: the run came to its end
 
 
 def steady(speed: Array, damping_ratio: float) -> tuple[Complex, Array]:

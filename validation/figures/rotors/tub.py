@@ -27,24 +27,14 @@ _ASSUMED = (
 
 @dataclass(frozen=True)
 class Plot:
-    """One figure.
+    """One figure."""
 
-    Parameters
-    ----------
-    name : stem of its file
-    title : what it shows
-    coordinate : of the tub's centre of mass
-    label : of the axis
-    lines : label and machine of each line
-    top : largest speed, rpm
-    """
-
-    name: str
-    title: str
-    coordinate: str
-    label: str
-    lines: Sequence[tuple[str, Tub]]
-    top: float = 300.0
+    name: str  #: stem of its file
+    title: str  #: what it shows
+    coordinate: str  #: of the tub's centre of mass
+    label: str  #: of the axis
+    lines: Sequence[tuple[str, Tub]]  #: label and machine of each line
+    top: float = 300.0  #: largest speed, rpm
 
 
 def plots() -> tuple[Plot, ...]:

@@ -97,40 +97,23 @@ class Limit(NamedTuple):
 
 @dataclass(frozen=True)
 class BallProblem:
-    """A search for balls.
+    """A search for balls."""
 
-    Parameters
-    ----------
-    scene, task : the machine and what its balls are chosen for
-    variables : what is searched
-    meaning : of the amplitude, in words
-    working_speed : rad/s
-    speeds, weights : over which the amplitude is taken; empty weights for the largest, rad/s
-    growth_at : speeds at which small motions must fade, rad/s
-    clear_at : speeds at which the clearance holds, rad/s
-    unbalances : conditions: size of each of the rotor's unbalances, kg m
-    in_time : the amplitude is the largest of the run-up in time
-    bare : the amplitude without balls, m
-    limits : by name
-    mass_scale : kg
-    notes : what was assumed
-    """
-
-    scene: Scene
+    scene: Scene  #: the machine and what its balls are chosen for
     task: Optimisation
-    variables: tuple[Variable, ...]
-    meaning: str
-    working_speed: float
-    speeds: Array
+    variables: tuple[Variable, ...]  #: what is searched
+    meaning: str  #: of the amplitude, in words
+    working_speed: float  #: rad/s
+    speeds: Array  #: over which the amplitude is taken; empty weights for the largest, rad/s
     weights: Array
-    growth_at: Array
-    clear_at: Array
-    unbalances: tuple[tuple[float, ...], ...]
-    in_time: bool
-    bare: float
-    limits: dict[str, Limit]
-    mass_scale: float
-    notes: tuple[Note, ...] = ()
+    growth_at: Array  #: speeds at which small motions must fade, rad/s
+    clear_at: Array  #: speeds at which the clearance holds, rad/s
+    unbalances: tuple[tuple[float, ...], ...]  #: conditions: size of each of the rotor's unbalances, kg m
+    in_time: bool  #: the amplitude is the largest of the run-up in time
+    bare: float  #: the amplitude without balls, m
+    limits: dict[str, Limit]  #: by name
+    mass_scale: float  #: kg
+    notes: tuple[Note, ...] = ()  #: what was assumed
 
     @property
     def by_mass(self) -> bool:

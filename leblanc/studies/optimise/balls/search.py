@@ -54,18 +54,12 @@ _EDGE = 1e-3  # of a range: its end
 
 @dataclass
 class _Tried:
-    """All designs judged, each once, by processes that share them.
+    """All designs judged, each once, by processes that share them."""
 
-    Parameters
-    ----------
-    problem : the search
-    each : calls a function with every one of some points, as `map` does
-    progress : told of designs judged, and the share of the search done
-    """
-
-    problem: BallProblem
+    problem: BallProblem  #: the search
+    #: calls a function with every one of some points, as `map` does
     each: Callable[[Callable[[Array], Verdict], Iterable[Array]], Iterable[Verdict]]
-    progress: Progress | None = None
+    progress: Progress | None = None  #: told of designs judged, and the share of the search done
     share: float = 0.0
     known: dict[bytes, Verdict] = field(default_factory=dict)
     points: list[Array] = field(default_factory=list)
