@@ -79,6 +79,65 @@ def motor_torque(curve, spin):
 
 
 @_jit
+def resisted(curve, weight, aim):
+    """Where x + weight T(x) = aim, T by straight lines between the points of a curve; the slope of T there.
+
+    So a torque at the middle of a step is taken there and not before it.
+    """
+    low, high = 0, curve.shape[1] - 1
+    if aim <= curve[0, 0] + weight * curve[1, 0]:
+        return aim - weight * curve[1, 0], 0.0
+    if aim > curve[0, high] + weight * curve[1, high]:
+        return aim - weight * curve[1, high], 0.0
+    while high - low > 1:
+        middle = (low + high) // 2
+        if curve[0, middle] + weight * curve[1, middle] < aim:
+            low = middle
+        else:
+            high = middle
+    slope = (curve[1, high] - curve[1, low]) / (curve[0, high] - curve[0, low])
+    return curve[0, low] + (aim - curve[0, low] - weight * curve[1, low]) / (1.0 + weight * slope), slope
+
+
+@_jit
+def dragged(curve, inertia, slip, freely, dt):
+    """Impulse of the drag on what slips past its walls, and how much of other torques it lets through.
+
+    The drag is that of the mean slip, and can at most stop the slip: neither its heat is ever below zero nor
+    does it turn the slip round [theory: pool, eq. 13].
+
+    Parameters
+    ----------
+    curve : slip, rising from 0, and torque
+    inertia : of what slips
+    slip, freely : at the beginning, and at the end if there were no drag
+    dt : time step
+    """
+    both = 0.5 * (slip + freely)
+    mean, slope = resisted(curve, 0.5 * dt / inertia, abs(both))
+    mean = np.copysign(mean, both)
+    if slip * freely > 0.0 and (2.0 * mean - slip) * slip <= 0.0:
+        return inertia * freely, 0.0
+    return 2.0 * inertia * (both - mean), 1.0 / (1.0 + 0.5 * dt * slope / inertia)
+
+
+@_jit
+def driven(curve, shaft, load, dt):
+    """Spin at the end of a step under the motor's torque at the middle, however steep its curve.
+
+    Parameters
+    ----------
+    curve : the motor's
+    shaft : record SHAFT
+    load : impulse of the torque of liquid and whirl on the drum
+    dt : time step
+    """
+    weight = 0.5 / shaft.inertia
+    middle, _ = resisted(curve, -dt * weight, shaft.spin - load * weight)
+    return 2.0 * middle - shaft.spin
+
+
+@_jit
 def relative_momentum(measures, layer, spin, cosine, sine, out):
     """Momentum of a layer relative to its axis, in the standing frame [theory: coupling, eq. 3]."""
     scale = layer.weight * layer.radius**3
@@ -314,13 +373,15 @@ def layer_step(
 # A step is done once two estimates of the mean accelerations differ by this, relative to the largest. Where
 # the drying edge of a layer makes them jump, the guess follows by halves after a few rounds; after the last
 # the step is shortened, and a short one may pass with what is left. Momentum is handed over all the same.
-_AGREED, _PASSABLE, _STRAIGHT, _ROUNDS, _SHORT = 1e-6, 1e-2, 5, 12, 1.0 / 32.0
+AGREED, _PASSABLE, _STRAIGHT, _ROUNDS, _SHORT = 1e-6, 1e-2, 5, 12, 1.0 / 32.0
 # Steps this short that do not agree end the run: a layer on its way through the axis.
-_SHORTEST = 1.0 / 1024.0
+SHORTEST = 1.0 / 1024.0
 # Share of the spin by which a ball that sticks may creep.
 _CREEP = 1e-5
 # Steps shortened by more than this no longer follow what the layers do.
 _LEAST = 1e-6
+# Of the time in which a pool swings by a radian; steps of twice that time would throw it up.
+_SWING = 0.25
 
 
 @_unwrapped
@@ -331,15 +392,11 @@ def _move_pools(machine, state, room, dt):
         pool, own, drag = machine.pools[j], first + j, machine.drags[j]
         x, y = machine.gravity[0] - room.guess[own, 0], machine.gravity[1] - room.guess[own, 1]
         angle, rate = room.lean[j], room.lean_rate[j]
-        middle, turned = rate, angle
-        for _ in range(2):
-            # First to the middle, by the rate at the beginning; then the whole way by the middle's.
-            past = spin - middle
-            torque = np.copysign(motor_torque(drag, abs(past)), past)
-            faster = (x * np.sin(turned) - y * np.cos(turned)) / pool.length + torque / pool.inertia
-            turned, middle = angle + 0.5 * dt * rate, rate + 0.5 * dt * faster
-        state.lean[j], state.lean_rate[j] = angle + dt * (rate + 0.5 * dt * faster), rate + dt * faster
-        room.drag[j] = dt * torque
+        turned = angle + 0.5 * dt * rate
+        fallen = dt * (x * np.sin(turned) - y * np.cos(turned)) / pool.length
+        room.drag[j], given = dragged(drag, pool.inertia, spin - rate, spin - rate - fallen, dt)
+        faster = fallen + room.drag[j] / pool.inertia
+        state.lean[j], state.lean_rate[j] = angle + dt * (rate + 0.5 * faster), rate + faster
         moving = pool.mass * pool.arm
         room.before[own, 0], room.before[own, 1] = (
             moving * rate * np.sin(angle),
@@ -347,7 +404,7 @@ def _move_pools(machine, state, room, dt):
         )
         last, rate = state.lean[j], state.lean_rate[j]
         room.after[own, 0], room.after[own, 1] = moving * rate * np.sin(last), -moving * rate * np.cos(last)
-        cosine, sine, share = np.cos(turned), np.sin(turned), moving / pool.length
+        cosine, sine, share = np.cos(turned), np.sin(turned), given * moving / pool.length
         room.inertia[own, 0] = share * sine * sine
         room.inertia[own, 1] = -share * sine * cosine
         room.inertia[own, 2] = share * cosine * cosine
@@ -580,10 +637,7 @@ def _spin_after(machine, state, room, dt):
     for j in range(machine.balls.shape[0]):
         rate, change = state.roll_rate[j], room.roll[j]
         load += ball_turned(machine.balls[j], room.held[j], rate, change, room.spins, dt)
-    after = spin
-    for _ in range(4):
-        after = spin + (dt * motor_torque(machine.curve, 0.5 * (spin + after)) - load) / shaft.inertia
-    return after
+    return driven(machine.curve, shaft, load, dt)
 
 
 @_unwrapped
@@ -645,9 +699,10 @@ def _couple(machine, state, room, dt):
         left = gap / max(size, 1e-300)
         after = _spin_after(machine, state, room, dt)
         if after <= 0.0:
-            return Outcome.STOPPED, fastest, left
+            # A long step turns the drum round where a shorter one slows it down.
+            return (Outcome.TOO_LONG if state.pace[0].share > SHORTEST else Outcome.STOPPED), fastest, left
         left = max(left, abs(after - room.spins[1]) / spin)
-        if left <= _AGREED:
+        if left <= AGREED:
             # Steps that change a free spin by less than that must change it all the same.
             room.spins[1] = after
             return Outcome.DONE, fastest, left
@@ -705,6 +760,16 @@ def watch(plane, place, shaft, crest):
         crest.amplitude, crest.speed, crest.time = amplitude, shaft.spin, shaft.time
 
 
+@_jit
+def swing_time(pools, gravity):
+    """Longest step that follows the pools' swinging, s."""
+    longest = np.inf
+    for j in range(pools.shape[0]):
+        if pools[j].mass > 0.0:
+            longest = min(longest, _SWING * np.sqrt(pools[j].length / abs(gravity[0])))
+    return longest
+
+
 @_unwrapped
 def _keep(state, room, row):
     """Write down a moment: time, angle, coordinates, and the first moment of each layer over R^3."""
@@ -737,6 +802,7 @@ def advance(machine, state, room, stop, courant, most, resumed):
     """
     shaft, pace, sums = state.shaft[0], state.pace[0], state.sums[0]
     cell, taken = 2.0 * np.pi / machine.angles.shape[1], 0
+    longest = swing_time(machine.pools, machine.gravity)
     if not resumed:
         for j in range(room.begin.shape[0]):
             measure(
@@ -749,7 +815,7 @@ def advance(machine, state, room, stop, courant, most, resumed):
             return Outcome.RAN_OUT, taken
         taken += 1
         left = stop - shaft.time
-        dt = pace.share * courant * cell / max(1.1 * pace.fastest, shaft.spin)
+        dt = pace.share * min(courant * cell / max(1.1 * pace.fastest, shaft.spin), longest)
         # The last two steps share what is left, so that none is a sliver.
         if dt >= left:
             dt = left
@@ -764,7 +830,7 @@ def advance(machine, state, room, stop, courant, most, resumed):
         status, fastest, gap = _couple(machine, state, room, dt)
         if status == Outcome.NOT_COUPLED and pace.share <= _SHORT and gap <= _PASSABLE:
             status = Outcome.DONE
-        if status == Outcome.TOO_LONG or (status == Outcome.NOT_COUPLED and pace.share > _SHORTEST):
+        if status == Outcome.TOO_LONG or (status == Outcome.NOT_COUPLED and pace.share > SHORTEST):
             copy(room.area, state.area)
             copy(room.momentum, state.momentum)
             copy(room.rolling, state.rolling)

@@ -15,7 +15,19 @@ from meshes.arrays import Array
 from solvers.layer.drag import mean_rate
 from solvers.layer.finite_volume import COMPILED
 from solvers.layer.records import Outcome, Record, floats
-from solvers.runup.kernel import add_ball, ball_turned, motor_torque, solve, tally_ball, watch
+from solvers.runup.kernel import (
+    AGREED,
+    SHORTEST,
+    add_ball,
+    ball_turned,
+    dragged,
+    driven,
+    motor_torque,
+    solve,
+    swing_time,
+    tally_ball,
+    watch,
+)
 
 _jit: Any = njit(**COMPILED)
 
@@ -123,14 +135,13 @@ def _swing(m, j, spin, dt):
     if pool.mass == 0.0:
         return
     x, y = m.gravity[0], m.gravity[1]
-    # The middle of the step as it would be with the axis held.
     angle, rate = m.place[row], m.rate[row]
-    torque = _drag(m, j, spin - rate)
-    faster = (x * np.sin(angle) - y * np.cos(angle)) / pool.length + torque / pool.inertia
-    angle, rate = angle + 0.5 * dt * rate, rate + 0.5 * dt * faster
-    cosine, sine, moving = np.cos(angle), np.sin(angle), pool.mass * pool.arm
-    m.left[row, row] = pool.inertia
-    m.change[row] = dt * (moving * (x * sine - y * cosine) + _drag(m, j, spin - rate))
+    turned, held = angle + 0.5 * dt * rate, _hold(m, j, spin, dt)
+    cosine, sine, moving = np.cos(turned), np.sin(turned), pool.mass * pool.arm
+    m.left[row, row] = pool.inertia + 0.5 * dt * held
+    m.change[row] = dt * (moving * (x * sine - y * cosine) + held * (spin - rate))
+    # The rate in the middle of the step as it would be with the axis held.
+    rate += 0.5 * m.change[row] / m.left[row, row]
     for i in range(n):
         along = moving * (b[0, i] * sine - b[1, i] * cosine)
         m.left[row, i] = along
@@ -139,9 +150,17 @@ def _swing(m, j, spin, dt):
 
 
 @_jit
-def _drag(m, j, past):
-    """Torque of the walls on a pool."""
-    return np.copysign(motor_torque(m.drags[j], abs(past)), past)
+def _hold(m, j, spin, dt):
+    """Torque of the walls on a pool over its mean slip, from that slip with the axis held, N m s.
+
+    In proportion to the mean slip it has no heat below zero, whatever the axis does [theory: pool, eq. 13].
+    """
+    pool, row = m.pools[j], m.unbalance.size + 2 * j
+    turned, slip = m.place[row] + 0.5 * dt * m.rate[row], spin - m.rate[row]
+    fallen = dt * (m.gravity[0] * np.sin(turned) - m.gravity[1] * np.cos(turned)) / pool.length
+    impulse, _ = dragged(m.drags[j], pool.inertia, slip, slip - fallen, dt)
+    mean = slip - 0.5 * (fallen + impulse / pool.inertia)
+    return impulse / (dt * mean) if mean != 0.0 else 0.0
 
 
 @_jit
@@ -187,11 +206,13 @@ def plate_drag(curve, spin, lag):
 
 @_jit
 def _mean_drag(m, j, spin, dt):
-    """Rates of walls and of baffles on a layer as a whole, at the middle of the step."""
+    """Rates of walls and of baffles on a layer at the middle of the step: at most they stop its lag."""
     lag = abs(spin - m.carried[j])
     first = _wall_drag(m, j, spin, lag) + plate_drag(m.plates[j], spin, lag)
     lag /= 1.0 + 0.5 * dt * first
-    return _wall_drag(m, j, spin, lag), plate_drag(m.plates[j], spin, lag)
+    wall, plates = _wall_drag(m, j, spin, lag), plate_drag(m.plates[j], spin, lag)
+    most = 1.0 / max(1.0, 0.5 * dt * (wall + plates))
+    return most * wall, most * plates
 
 
 @_jit
@@ -218,7 +239,7 @@ def _tally(m, spin, spins, dt):
         if m.active[j] == 0.0 and m.pools[j].mass > 0.0:
             swing = m.rate[row] + 0.5 * m.change[row]
             turned, moving = m.place[row] + 0.5 * dt * m.rate[row], m.pools[j].mass * m.pools[j].arm
-            torque = _drag(m, j, spin - swing)
+            torque = _hold(m, j, spin, dt) * (spin - swing)
             sums.drive += dt * spin * torque
             sums.friction += dt * (spin - swing) * torque
             x, y = m.gravity[0] * np.sin(turned), m.gravity[1] * np.cos(turned)
@@ -262,9 +283,10 @@ def advance_linear(m, stop, angle_step, most):
 
     Returns
     -------
-    Outcome.DONE, RAN_OUT, or STOPPED where the motor stands
+    Outcome.DONE, RAN_OUT, STOPPED where the motor stands, or NOT_COUPLED where its load grows without bound
     """
-    n, spins, taken, shaft = m.unbalance.size, (0.0, 0.0), 0, m.shaft[0]
+    n, spins, taken, shaft, share = m.unbalance.size, (0.0, 0.0), 0, m.shaft[0], 1.0
+    longest = swing_time(m.pools, m.gravity)
     balls = n + 2 * m.layers.shape[0]
     while shaft.time < stop:
         before = shaft.spin
@@ -274,7 +296,7 @@ def advance_linear(m, stop, angle_step, most):
             return Outcome.RAN_OUT
         taken += 1
         left = stop - shaft.time
-        dt = min(angle_step / before, left)
+        dt = min(share * min(angle_step / before, longest), left)
         if left > dt > 0.5 * left:
             dt = 0.5 * left
         after = before + (shaft.rate * dt if m.curve.shape[1] == 0 else 0.0)
@@ -304,14 +326,20 @@ def advance_linear(m, stop, angle_step, most):
                     gained = _carry(m, j, spin, spins, dt) - m.carried[j]
                     load += m.layers[j].inertia * gained * m.active[j]
                     if m.active[j] == 0.0 and m.pools[j].mass > 0.0:
-                        load += dt * _drag(m, j, spin - m.rate[n + 2 * j])
+                        row = n + 2 * j
+                        slip = spin - m.rate[row] - 0.5 * m.change[row]
+                        load += dt * _hold(m, j, spin, dt) * slip
                 for j in range(m.balls.shape[0]):
                     rate, change = m.rate[balls + j], m.change[balls + j]
                     load += ball_turned(m.balls[j], m.held[j], rate, change, spins, dt)
-                after = before + (dt * motor_torque(m.curve, spin) - load) / shaft.inertia
-                if after <= 0.0:
-                    return Outcome.STOPPED
-        spin = 0.5 * (before + spins[1])
+                after = driven(m.curve, shaft, load, dt)
+        if after <= 0.0 or abs(after - spins[1]) > AGREED * before:
+            # A long step turns the drum round where a shorter one slows it down.
+            if share <= SHORTEST:
+                return Outcome.STOPPED if after <= 0.0 else Outcome.NOT_COUPLED
+            share *= 0.5
+            continue
+        share = min(1.0, 1.5 * share)
         _tally(m, spin, spins, dt)
         for j in range(m.layers.shape[0]):
             m.carried[j] = _carry(m, j, spin, spins, dt)

@@ -318,7 +318,8 @@ def test_gyroscope() -> None:
     "layer.radius**4 * room.gains[j].torque",
     "layer.radius**3 * room.gains[j].torque",
 )
-@kills("solvers.runup.kernel:_spin_after", "0.5 * (spin + after)) - load", "0.5 * (spin + after)) + load")
+@kills("solvers.runup.kernel:driven", "shaft.spin - load * weight", "shaft.spin + load * weight")
+@kills("solvers.runup.kernel:resisted", "(1.0 + weight * slope)", "(1.0 - weight * slope)")
 @kills("solvers.runup.kernel:_tally", "sums.motor += dt * spin", "sums.motor += dt")
 def test_motor() -> None:
     """The motor's torque goes into the spin, less what the unbalance and the liquid take."""
