@@ -317,6 +317,7 @@ def test_the_hatch_leaves_the_colours() -> None:
         assert key.get_edgecolor()[3] <= 0.5
 
 
+@pytest.mark.slow  # the same verdicts are compared by `make net`
 def test_validation_agrees() -> None:
     from validation.cases.rotors.whirl import cases
 
