@@ -122,4 +122,4 @@ def _finish(result: RunupResult, scene: Path) -> None:
         raise KeyboardInterrupt
     if not result.converged:
         raise NotConverged([f"{scene}: {result.reason}; what was reached is written"])
-    say(f"{result.name}: {result.steps} steps done, energy closed to {result.energy.closure:.1e}")
+    say(f"{result.name}: {result.steps} steps done, energy closed to {result.energy_error:.1e}")

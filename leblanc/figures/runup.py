@@ -198,7 +198,7 @@ def _shade(axes: Axes, result: RunupResult, limits: tuple[float, float]) -> None
     for i, (left, right) in enumerate(spans(speed[order], ~result.in_range[order], limits)):
         label = "_" if i else "model out of range"
         axes.axvspan(left, right, color=SHADE, linewidth=0, zorder=0, label=label)
-    for i, (left, right) in enumerate(result.bands):
+    for i, (left, right) in enumerate(result.bands or ()):
         label = "_" if i else "self-excited whirl (linear theory)"
         look = {"facecolor": WHIRL, "alpha": 0.35, "hatch": "///", "edgecolor": "0.55", "linewidth": 0.0}
         axes.axvspan(left * RPM, right * RPM, zorder=0.5, label=label, **look)
@@ -314,9 +314,10 @@ def _mark_time(axes: Axes, result: RunupResult) -> None:
     for i, passage in enumerate(part for part in result.passages if part.text.startswith("coast")):
         label, look = "_" if i else "motor off", {"facecolor": WHIRL, "alpha": 0.25, "linewidth": 0}
         axes.axvspan(passage.begin, passage.end, zorder=0.2, label=label, **look)
-    for k, _, caught in result.captures:
-        label, dashes = ("liquid captured", (0, (8, 3))) if caught else ("liquid falls back", (0, (2, 2)))
-        axes.axvline(time[k], color="0.3", linewidth=0.9, linestyle=dashes, label=label, zorder=1)
+    for each in result.transfers:
+        dashes = (0, (8, 3)) if each.captured else (0, (2, 2))
+        label = "liquid captured" if each.captured else "liquid falls back"
+        axes.axvline(each.time, color="0.3", linewidth=0.9, linestyle=dashes, label=label, zorder=1)
 
 
 def _draw_speed(axes: Axes, result: RunupResult) -> None:

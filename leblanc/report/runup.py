@@ -154,9 +154,10 @@ def energy(result: RunupResult) -> Table:
 
 def checks(result: RunupResult) -> Table:
     """Where the run is not what it seems, each with the times or the size, those marked."""
-    reason = "no" if result.converged else one_line(result.reason)
+    history, faults = result.history, "; ".join(result.faults)
     found = [
-        ("Stopped before its end", reason, not result.converged),
+        ("Stopped before its end", one_line(history.reason) or "no", not history.converged),
+        ("What no machine does", one_line(faults) or "no", bool(faults)),
         ("Liquid model out of range", times(result.time, ~result.in_range), bool((~result.in_range).any())),
     ]
     for k, chamber in enumerate(result.chambers):
@@ -167,7 +168,7 @@ def checks(result: RunupResult) -> Table:
         found.append((f"{name} not carried round", times(result.time, loose), bool(loose.any())))
         dry = ~loose & (np.nan_to_num(result.depth_min[:, k], nan=math.inf) <= DRY * depth)
         found.append((f"{name} leaves a wall dry", times(result.time, dry), bool(dry.any())))
-    bands = rpm_bands(result.bands)
+    bands = "not examined" if result.bands is None else rpm_bands(result.bands)
     rough = not result.error_estimate <= ERROR
     return table(
         "",
@@ -179,7 +180,7 @@ def checks(result: RunupResult) -> Table:
                 f"Error above {number(100.0 * ERROR)} % or unknown",
                 Cell(_share(result.error_estimate) if rough else "no", warning=rough),
             ),
-            _size(f"Energy lost above {number(100.0 * CLOSURE)} %", result.energy.closure, CLOSURE),
+            _size(f"Energy lost above {number(100.0 * CLOSURE)} %", result.energy_error, CLOSURE),
             _size(f"Mass changed above {number(100.0 * MASS_CHANGE)} %", result.mass_error, MASS_CHANGE),
         ],
     )
@@ -195,11 +196,11 @@ def events(result: RunupResult) -> Table:
     """When liquid began and ceased to ride with the drum."""
     rows = [
         (
-            number(float(result.time[k])),
-            number(float(result.speed[k]) * RPM),
-            f"chamber {j + 1}: {'captured' if caught else 'falls back'}",
+            number(each.time),
+            number(each.speed * RPM),
+            f"chamber {each.chamber + 1}: {'captured' if each.captured else 'falls back'}",
         )
-        for k, j, caught in result.captures
+        for each in result.transfers
     ]
     return table("", ("Time (s)", "speed (rpm)", "liquid"), rows[:12])
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, fields
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +20,7 @@ from leblanc.results.netcdf import NamedArrays, flags, variable
 from leblanc.results.notes.response import plane_words
 from leblanc.results.races.balls import RaceOfBalls, ball_moment, in_race
 from leblanc.results.response import phase
-from leblanc.units import friction_words
+from leblanc.units import LENGTH, friction_words, with_unit
 from meshes.arrays import Array, Complex, Flags
 from solvers.layer.records import Outcome
 from solvers.runup.ensemble import Spread
@@ -30,21 +31,6 @@ from solvers.synchronous.response import Response
 Values = NDArray[Any]
 Bands = tuple[tuple[float, float], ...]
 _FEWEST = 8  # samples in a mean over turns
-
-
-class Capture(NamedTuple):
-    """A layer begins or ceases to ride with its drum.
-
-    Parameters
-    ----------
-    sample : index of the first one after it
-    chamber : index
-    captured : it begins
-    """
-
-    sample: int
-    chamber: int
-    captured: bool
 
 
 @dataclass(frozen=True)
@@ -104,8 +90,9 @@ class RunupResult(Loaded, Result):
     in_range: Flags  #: the layer describes the liquid at that time, shape (k,)
     #: synchronous response at the speeds passed, of a Jeffcott rotor; None for others
     steady: Response | None
-    #: of speed in which some whirl grows by itself, rad/s, an end of the range counting as an edge
-    bands: Bands
+    #: of speed in which some whirl grows by itself, rad/s, an end of the range counting as an edge; None
+    #: where they were not looked for
+    bands: Bands | None
     chambers: tuple[FilledChamber, ...]  #: one for each chamber; its position along the axis, m
     planes: tuple[float, ...]
     notes: tuple[Note, ...]  #: limits of validity and findings
@@ -132,13 +119,23 @@ class RunupResult(Loaded, Result):
 
     @property
     def converged(self) -> bool:
-        """It came to its end."""
-        return self.history.converged
+        """It came to its end, its energy closes, and no axis left its chamber."""
+        return self.history.converged and not self.faults
 
     @property
     def reason(self) -> str:
-        """Why, when and at what speed it stopped before its end; empty if it did not."""
-        return self.history.reason
+        """Why, when and at what speed it stopped before its end, or cannot be believed; empty if neither."""
+        return "; ".join((*filter(None, [self.history.reason]), *self.faults))
+
+    @property
+    def faults(self) -> tuple[str, ...]:
+        """What no machine does, term by term: energy, heat, and a deflection beyond a chamber's radius."""
+        return run_faults(self.history, self.chambers)
+
+    @property
+    def energy_error(self) -> float:
+        """What the energy balance leaves over its scale: `energy.closure`."""
+        return self.energy.closure
 
     @property
     def time(self) -> Array:
@@ -311,13 +308,6 @@ class RunupResult(Loaded, Result):
         return falling(self.history, self.passages, self.turning)
 
     @property
-    def captures(self) -> tuple[Capture, ...]:
-        """When layers began and ceased to ride with their drums, in order of time."""
-        row, column = np.nonzero(np.diff(self.captured.astype(np.int8), axis=0))
-        pairs = zip(row.tolist(), column.tolist(), strict=True)
-        return tuple(Capture(k + 1, j, bool(self.captured[k + 1, j])) for k, j in pairs)
-
-    @property
     def liquid_offset(self) -> Array:
         """Distance of the liquid's centre of mass from the rotation axis, m, shape (k,)."""
         return np.asarray(np.abs(self.liquid_position))
@@ -443,7 +433,7 @@ class RunupResult(Loaded, Result):
         over += ["depth_max", "depth_min", "mean_rotation", "lag", "amplitude_error"]
         over += ["peak", "peak_error", "peak_dry", "end"]
         over += ["peak_back"] if self.turns_back else []
-        rest = ["error_estimate", "handover_estimate", "converged", "reason"]
+        rest = ["error_estimate", "handover_estimate", "energy_error", "converged", "reason"]
         rest += ["steps", "cells", "model", "model_reason"]
         own = ("model_error", "name", "digest", "assumed", "bands", *(("ensemble",) if self.spread else ()))
         return {name: getattr(self, name) for name in (*over, *rest, *own)} | {
@@ -499,6 +489,7 @@ class RunupResult(Loaded, Result):
             **({} if self.bore == "none" else {"bore": self.bore}),
             "energy": json.dumps(self._energy()),
             "mass_error": self.mass_error,
+            "energy_error": self.energy_error,
             "error_estimate": self.error_estimate,
             "handover_estimate": self.handover_estimate,
             "steps": np.int64(self.steps),
@@ -592,6 +583,20 @@ def _ball_columns(result: RunupResult, drum: str) -> dict[str, Any]:
         "ball_unbalance": variable(over, size, "kg m", "unbalance of all balls together"),
         "ball_unbalance_angle": variable(over, angle, "rad", f"angle of that unbalance {drum}"),
     }
+
+
+def run_faults(history: RunupHistory, chambers: Sequence[FilledChamber]) -> tuple[str, ...]:
+    """What no machine does, term by term: energy, heat, and a deflection beyond a chamber's radius."""
+    beyond, crest = [], float(history.largest.max())
+    for k, chamber in enumerate(chambers):
+        # The steps between the samples are known of the first chamber.
+        size = max(float(np.abs(history.deflection[:, k]).max()), crest * (k == 0))
+        if not size <= chamber.radius:
+            wall = f"its radius of {with_unit(chamber.radius, LENGTH)}"
+            beyond.append(
+                f"the axis of chamber {k + 1} is deflected by {with_unit(size, LENGTH)}, beyond {wall}"
+            )
+    return (*history.audit.faults, *beyond)
 
 
 def turn_mean(values: Complex, angle: Array) -> Complex:

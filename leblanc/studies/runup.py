@@ -19,7 +19,7 @@ from leblanc.results.motion.passages import passages_of
 from leblanc.results.notes import runup as notes
 from leblanc.results.notes.baffles import smeared_baffles
 from leblanc.results.notes.runup import RunupCode
-from leblanc.results.runup import Bands, RunupFrames, RunupResult
+from leblanc.results.runup import Bands, RunupFrames, RunupResult, run_faults
 from leblanc.scene.inputs import runup_rows
 from leblanc.scene.scene import JeffcottRotor, Runup, Scene, dry_rotor, jeffcott, require_clear
 from leblanc.studies.drives import drive_of as drive_of  # asked for with a run-up
@@ -500,7 +500,7 @@ def dry_run(
 
 
 def _notes(
-    scene: Scene, taken: RunupChoice, steady: Response | None, bands: Bands, spread: Spread | None
+    scene: Scene, taken: RunupChoice, steady: Response | None, bands: Bands | None, spread: Spread | None
 ) -> list[Note]:
     """What happened and how far it can be trusted."""
     h = taken.history
@@ -510,11 +510,13 @@ def _notes(
         notes.numerical_error(h.error_estimate),
         notes.handover_error(h.handover_estimate),
         None if spread is None else notes.rounding(spread, h),
+        notes.no_machine(run_faults(h, tuple(_chamber(fill) for fill in scene.fills))),
         notes.energy_left(h.audit.closure),
         notes.largest_amplitude(h, steady),
         *notes.captures(h.transfers, h.handover),
         *_never_caught(scene, h),
-        notes.self_excited_on_the_way(bands, scene.model.friction, whirl_on_the_way(scene, bands)),
+        None if bands is not None or scene.balls else notes.whirl_beside_baffles(),
+        notes.self_excited_on_the_way(bands or (), scene.model.friction, whirl_on_the_way(scene, bands)),
     ]
     return [note for note in found if note is not None]
 
@@ -546,17 +548,19 @@ def steady_response(scene: Scene, speed: Array) -> Response | None:
     )
 
 
-def whirl_bands(scene: Scene, speed: Array) -> Bands:
-    """Bands of the speeds passed in which some whirl grows by itself, rad/s; none with baffles or balls."""
+def whirl_bands(scene: Scene, speed: Array) -> Bands | None:
+    """Bands of the speeds passed in which some whirl grows by itself, rad/s; None with baffles or balls."""
     from solvers.whirl.edges import unstable_bands
 
     passed = _passed(speed, BAND_SPEEDS)
-    if not scene.fills or scene.balls or passed.size == 0 or any(fill.uneven for fill in scene.fills):
+    if not scene.fills or passed.size == 0:
         return ()
+    if scene.balls or any(fill.uneven for fill in scene.fills):
+        return None
     return unstable_bands(dry_rotor(scene), [scene.fills], passed, scene.model.friction)[0]
 
 
-def whirl_on_the_way(scene: Scene, bands: Bands) -> tuple[float, float] | None:
+def whirl_on_the_way(scene: Scene, bands: Bands | None) -> tuple[float, float] | None:
     """Estimated amplitude of the largest whirl that grows by itself, m, and its spin speed, rad/s.
 
     None where nothing grows, nothing bounds it, or it is no circle, as with gravity across the axis.

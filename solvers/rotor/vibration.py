@@ -11,6 +11,8 @@ from meshes.arrays import Array, Complex
 from meshes.errors import InputError
 from solvers.rotor.system import RotorSystem
 
+_ROUNDING = 1e-14  # of the fastest eigenvalue, that another's real part is known to
+
 
 @dataclass(frozen=True)
 class Modes:
@@ -29,9 +31,13 @@ class Modes:
 
     @property
     def damping_ratio(self) -> Array:
-        """-Re/|eigenvalue|, 1 where overdamped, 0 for a body without support, shape (s, n)."""
+        """-Re/|eigenvalue|, 1 where overdamped, 0 for a body without support, shape (s, n).
+
+        A real part that rounding alone may have left is none.
+        """
         size = np.abs(self.eigenvalue)
-        return -np.divide(self.eigenvalue.real, size, out=np.zeros(size.shape), where=size > 0.0)
+        known = np.abs(self.eigenvalue.real) > _ROUNDING * size.max(axis=1, keepdims=True, initial=0.0)
+        return np.divide(-self.eigenvalue.real, size, out=np.zeros(size.shape), where=known)
 
 
 @dataclass(frozen=True)

@@ -59,6 +59,16 @@ class RunupNumerics:
             raise InputError("courant", self.courant, "above 0, at most 0.9")
 
 
+# Of the scale: what the balance may leave, and how far below zero rounding may put a heat.
+OPEN, COLD = 0.05, 1e-6
+HEATS = {
+    "support": "the supports",
+    "friction": "wall friction",
+    "bores": "bores",
+    "baffles": "baffles",
+}
+
+
 @dataclass(frozen=True)
 class EnergyAudit:
     """Where the energy went, J [theory: coupling, eq. 9-10]."""
@@ -83,8 +93,8 @@ class EnergyAudit:
 
     @property
     def scale(self) -> float:
-        """The larger of the unbalance's work and all that was dissipated, J."""
-        return max(abs(self.unbalance), self.dissipated)
+        """The largest of the works of unbalance, drive and motor and of all that was dissipated, J."""
+        return max(abs(self.unbalance), abs(self.drive), abs(self.motor), self.dissipated)
 
     @property
     def remainder(self) -> float:
@@ -94,12 +104,25 @@ class EnergyAudit:
 
     @property
     def closure(self) -> float:
-        """The remainder over the larger of the unbalance's work and all that was dissipated.
-
-        What it takes to spin the liquid up as a whole does not count.
-        """
+        """The remainder over the scale: 0 where nothing moves, infinite where a term is no number."""
+        if not math.isfinite(self.remainder):
+            return math.inf
         work = self.scale
         return abs(self.remainder) / work if work > 0.0 else 0.0
+
+    @property
+    def faults(self) -> tuple[str, ...]:
+        """What no machine does: energy that is not accounted for, heat below zero; each with its term."""
+        found = [
+            f"the heat of {text} is {heat:.3g} J, below zero"
+            for name, text in HEATS.items()
+            if (heat := getattr(self, name)) < -COLD * self.scale
+        ]
+        if self.closure > OPEN:
+            found.append(
+                f"the energy balance leaves {self.remainder:.3g} J, {self.closure:.1%} of its largest term"
+            )
+        return tuple(found)
 
 
 @dataclass(frozen=True)

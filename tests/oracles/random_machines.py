@@ -250,3 +250,71 @@ def _fill(table: Table, rng: np.random.Generator) -> None:
             "liquid": {"density": even(500.0, 13000.0), "viscosity": even(1e-8, 1e-2)},
         }
     table["speeds"] = {"start": even(1.0, 30.0), "stop": even(100.0, 2000.0), "count": 20}
+
+
+def lying_drum(seed: int) -> Table:
+    """A lying drum with 0 to 12 baffles of any height that starts from rest or slowly, with its way.
+
+    Of a size that is built, on supports that its unbalance moves by some per cent of its radius.
+    """
+    rng = np.random.default_rng(seed)
+    even = _even(rng)
+    radius = even(0.03, 0.4)
+    inner = radius * float(rng.uniform(0.5, 0.9)) if rng.random() < 0.4 else 0.0
+    height = radius * even(0.1, 1.0)
+    volume = math.pi * (radius**2 - inner**2) * height * even(0.005, 0.7)
+    density = even(600.0, 3000.0)
+    chamber = {
+        "radius": radius,
+        "inner_radius": inner,
+        "height": height,
+        "volume": volume,
+        "liquid": {"density": density, "viscosity": even(1e-7, 1e-3)},
+    }
+    count = int(rng.integers(0, 13))
+    if count:
+        chamber["baffles"] = {"count": count, "tip_radius": float(rng.uniform(inner, radius))}
+        if rng.random() < 0.2:
+            tip = chamber["baffles"]["tip_radius"]
+            chamber["baffles"]["wall_gap"] = (radius - tip) * float(rng.uniform(0.1, 0.9))
+    slow = math.sqrt(9.81 / radius)
+    top, mass = slow * even(1.5, 12.0), density * volume * even(0.5, 100.0)
+    rotor = {
+        "kind": "jeffcott",
+        "mass": mass,
+        "stiffness": mass * (top * even(0.1, 3.0)) ** 2,
+        "unbalance": mass * radius * even(1e-4, 1e-2),
+        "axis": "horizontal",
+    }
+    rotor["damping"] = 2.0 * math.sqrt(rotor["stiffness"] * mass) * even(0.03, 0.5)
+    laws = ["none", "stokes", "wall", {"linear": slow * even(1e-3, 1e2)}, {"quadratic": even(1e-4, 1.0)}]
+    time = even(2.0, 20.0) / slow
+    found = {
+        "name": f"lying drum {seed}",
+        "gravity": 9.81,
+        "rotor": rotor,
+        "chambers": [chamber],
+        "speeds": {"start": 0.5 * top, "stop": top, "count": 3},
+        "model": {"liquid": "auto", "friction": laws[int(rng.integers(len(laws)))]},
+    }
+    how = {"cells": 48, "samples": 200, "capture": str(rng.choice(["carried", "drum"]))}
+    how |= {"dispersion": bool(rng.random() < 0.2), "bore": str(rng.choice(["none", "enstrophy"]))}
+    if rng.random() < 0.3:
+        start = slow * float(rng.uniform(0.05, 0.95))
+        way = {"start": start, "stop": top, "rate": (top - start) / time, "duration": 1.2 * time}
+        return found | {"runup": way | how | {"back": bool(rng.random() < 0.3)}}
+    low = top * float(rng.uniform(0.0, 0.8))
+    steps = [f"to {top} rad/s in {time} s", f"hold {0.2 * time} s"]
+    ends = [
+        [f"to {low} rad/s in {0.5 * time} s", f"to {top} rad/s in {0.5 * time} s"],
+        [f"to 0 rad/s in {0.7 * time} s"],
+        [f"coast {0.5 * time} s"],
+        ["coast to 0 rad/s"],
+        [],
+    ]
+    steps += ends[int(rng.integers(len(ends)))]
+    inertia = mass * radius**2 * even(0.1, 1.0)
+    drag = {"drag_torque": inertia * top / time * even(0.01, 10.0), "coast_limit": 2.0 * time}
+    if rng.random() < 0.5:
+        drag["drag_rate"] = even(0.1, 1e3) / time
+    return found | {"programme": {"start": 0.0, "steps": steps, "inertia": inertia} | drag | how}

@@ -66,6 +66,8 @@ class RunupCode(NoteCode):
     LOADS = "loads"
     BALLS_AS_POINTS = "balls_as_points"
     WHIRL_BESIDE_BALLS = "whirl_beside_balls"
+    WHIRL_BESIDE_BAFFLES = "whirl_beside_baffles"
+    NO_MACHINE = "no_machine"
     BALLS_RUN = "balls_run"
 
 
@@ -253,6 +255,21 @@ def whirl_beside_balls() -> Note:
     """Whirls that the liquid excites are only in the run itself."""
     text = "Bands of self-excited whirl are not looked for beside balls; the run itself has such whirls."
     return Note(RunupCode.WHIRL_BESIDE_BALLS, {}, text)
+
+
+def whirl_beside_baffles() -> Note:
+    """Bands of whirl are not part of a run-up beside baffles."""
+    text = (
+        "Bands of self-excited whirl are not examined here beside baffles: `leblanc run` and `leblanc map` "
+        "do; the run itself has such whirls."
+    )
+    return Note(RunupCode.WHIRL_BESIDE_BAFFLES, {}, text)
+
+
+def no_machine(faults: Sequence[str]) -> Note | None:
+    """What a run did that no machine does; None for a sound one."""
+    text = f"Not to be believed: {'; '.join(faults)}."
+    return Note(RunupCode.NO_MACHINE, {"faults": list(faults)}, text) if faults else None
 
 
 def balls_run(behind: float, speed: float) -> Note:

@@ -20,6 +20,7 @@ from fluid.liquid import known_liquid
 from leblanc.cli.runup import runup
 from leblanc.figures import films as film_figures
 from leblanc.figures import runup as figures
+from leblanc.report import runup as report
 from leblanc.results.drawn.machine import film_factor, half_angle
 from leblanc.results.netcdf import write_netcdf
 from leblanc.results.notes.runup import RunupCode
@@ -40,7 +41,7 @@ from leblanc.units import LENGTH, with_unit
 from meshes.chamber import Chamber
 from meshes.errors import InputError
 from solvers.layer.records import Outcome
-from solvers.runup.machine import Motor, Ramp
+from solvers.runup.machine import Motor, Ramp, Transfer
 from solvers.runup.runup import EnergyAudit, RunupHistory, run_up
 from tests.mutants import kills
 from tests.oracles.data_files import assert_read_back
@@ -583,11 +584,40 @@ def test_a_run_that_stops_keeps_the_times_of_the_run_without_liquid(record: Runu
 
 
 def test_capture_is_marked_over_time() -> None:
+    """In figure and report at the time of the event itself, which need not be that of a sample."""
     caught = np.ones((50, 1), dtype=bool)
     caught[:10] = caught[-5:] = False
-    record = made_up(history_of(50, 1, captured=caught))
-    names = labels(figures.time_figure(record))
-    assert {"liquid captured", "liquid falls back", "model out of range"} <= set(names)
+    events = [Transfer(0, True, 0.2011, 90.0, (0.0, 0.0), (0.0, 0.0), 0.0)]
+    events.append(Transfer(0, False, 0.9011, 80.0, (0.0, 0.0), (0.0, 0.0), 0.0))
+    record = made_up(history_of(50, 1, captured=caught, transfers=tuple(events)))
+    figure = figures.time_figure(record)
+    assert {"liquid captured", "liquid falls back", "model out of range"} <= set(labels(figure))
+    lines = [line for axes in figure.axes for line in axes.lines if str(line.get_label()).startswith("liq")]
+    assert {float(line.get_xdata()[0]) for line in lines} >= {0.2011, 0.9011}
+    assert "0.2011" in str(report.events(record)) and "0.9011" in str(report.events(record))
+
+
+def test_what_no_machine_does_is_no_answer() -> None:
+    """A balance that does not close, a heat below zero, a deflection beyond the wall: each by its term."""
+    sound = made_up(history_of(20, 1))
+    assert sound.converged and sound.reason == "" and sound.energy_error == sound.energy.closure == 0.0
+    audit = sound.history.audit
+    radius = sound.chambers[0].radius
+    # Of a scale of 1 J: 0.06 are left; what friction would give is accounted for.
+    for change, word in (
+        ({"audit": replace(audit, change=0.44)}, "balance leaves 0.06 J"),
+        ({"audit": replace(audit, change=math.nan)}, "balance leaves nan"),
+        ({"audit": replace(audit, friction=-2e-6, change=0.500002)}, "heat of wall friction is -2e-06 J"),
+        ({"audit": replace(audit, baffles=-2e-6, change=0.500002)}, "heat of baffles is -2e-06 J"),
+        ({"largest": np.full(20, 1.01 * radius)}, "axis of chamber 1"),
+        ({"deflection": np.full((20, 1), 1.01j * radius)}, "axis of chamber 1"),
+    ):
+        found = made_up(history_of(20, 1, **change))
+        assert not found.converged and word in found.reason, change
+        told = found.to_json()
+        assert told["converged"] is False and told["energy_error"] == told["energy"]["closure"]
+    for change in ({"audit": replace(audit, change=0.46)}, {"largest": np.full(20, 0.99 * radius)}):
+        assert made_up(history_of(20, 1, **change)).converged
 
 
 def made_up(history: RunupHistory, machine: Scene | None = None) -> RunupResult:
