@@ -19,7 +19,7 @@ class BallView:
     places: tuple[float, ...]
     moved: bool  #: some are drawn apart although the scene gives them one plane
     races: tuple[DrawnRace, ...]  #: with their balls
-    deflection: Complex  #: of the axis at each of them, m, nan where no state was found, shape (s, c)
+    deflection: Complex  #: of the axis at each of them, m, 0 where no state was found, shape (s, c)
     lean: Complex  #: slope of the axis along itself, rad, shape (s,)
     angle: Array  #: of each ball as drawn, rad, shape (s, N)
     apart: tuple[bool, ...]  #: balls that would cover one another are drawn side by side, shape (s,)

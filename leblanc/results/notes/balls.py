@@ -114,17 +114,18 @@ def liquid_in_step(model: str) -> Note:
     return Note(BallCode.LIQUID_IN_STEP, {"model": model}, text)
 
 
-def runs_on(first: float, last: float) -> Note:
+def runs_on(first: float, last: float, found: bool) -> Note:
     """Speeds at which balls find no rest.
 
     Parameters
     ----------
     first, last : of them, rad/s
+    found : there are states, none of which is stable
     """
+    told = "What is reported there is the state that small motions leave most slowly; a" if found else "A"
     text = (
         f"{over_rpm(first, last).capitalize()} no state in which all balls rest is stable: they "
-        "run in their races. What is told there is the state that small motions leave most slowly; a run-up "
-        "shows the motion itself."
+        f"run in their races. {told} run-up shows the motion itself."
     )
     return Note(BallCode.RUNS_ON, {"first": first, "last": last}, text)
 

@@ -166,7 +166,7 @@ def _run_notes(
     found = [notes.capacity(answer.can_balance, sum(answer.capacity)), notes.points()]
     if answer.unstable.any():
         first, last = answer.speed[answer.unstable][[0, -1]].tolist()
-        found.append(notes.runs_on(first, last))
+        found.append(notes.runs_on(first, last, bool(answer.converged[answer.unstable].any())))
     if any(answer.sticking):
         found.append(notes.sticks(max(answer.sticking)))
     if answer.gravity is not None:

@@ -146,7 +146,8 @@ def ball_view(
     result, rings = run_balls(scene), ringed(scene)
     places, moved = places_of(rings)
     rows, chosen = np.arange(result.speed.size), np.maximum(result.chosen, 0)
-    coordinates = result.states.coordinates[rows, chosen]
+    # Without a state the machine is drawn where it rests.
+    coordinates = np.where(result.converged[:, None], result.states.coordinates[rows, chosen], 0.0)
     system, fills = dry_rotor(scene).system(), rings.fills
     deflection = np.stack([orbit(system, coordinates, fill.chamber.plane).forward for fill in fills], axis=1)
     lean = np.zeros(rows.size, dtype=complex)

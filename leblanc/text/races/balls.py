@@ -8,7 +8,7 @@ import numpy as np
 
 from leblanc.results.notes.response import plane_words
 from leblanc.results.races.states import BallsResult
-from leblanc.text.numbers import ranges
+from leblanc.text.numbers import NOT_FOUND, ranges
 from leblanc.text.run import Limit
 from leblanc.units import LENGTH, UNBALANCE, in_rpm, number, with_unit
 
@@ -22,8 +22,6 @@ def answer(result: BallsResult) -> str:
     ----------
     result : the answer
     """
-    most = int(np.argmax(np.where(result.stable, result.amplitude, -1.0)))
-    peak = f"{with_unit(float(result.amplitude[most]), LENGTH)} at {in_rpm(float(result.speed[most]))}"
     bare = int(np.argmax(np.where(np.isfinite(result.amplitude_without), result.amplitude_without, -1.0)))
     without = (
         f"{with_unit(float(result.amplitude_without[bare]), LENGTH)} at {in_rpm(float(result.speed[bare]))}"
@@ -31,6 +29,12 @@ def answer(result: BallsResult) -> str:
     first = "The balls balance the rotor at none of these speeds"
     if math.isfinite(result.balanced_from):
         first = f"From {in_rpm(result.balanced_from)} on the balls balance the rotor"
+    if not result.stable.any():
+        found = result.converged.any()
+        nothing = "no state is stable" if found else "no state of balls at rest was found"
+        return f"{first}: {nothing}; without balls the largest amplitude is {without}."
+    most = int(np.argmax(np.where(result.stable, result.amplitude, -1.0)))
+    peak = f"{with_unit(float(result.amplitude[most]), LENGTH)} at {in_rpm(float(result.speed[most]))}"
     return f"{first}; the largest amplitude of a stable state is {peak}, without balls {without}."
 
 
@@ -43,14 +47,18 @@ def facts(result: BallsResult) -> list[tuple[str, str]]:
     """
     last = in_rpm(float(result.speed[-1]))
     held = ", ".join(with_unit(size, UNBALANCE) for size in result.capacity)
+    known = bool(result.converged[-1])
     places = ", ".join(number(math.degrees(angle)) for angle in result.ball_angle[-1])
     rows = [
         ("Unbalance that the balls of each race hold", held),
         ("Balanced state stable at", ranges(result.speed, result.balanced)),
-        (f"Balls at {last}", f"{result.state[-1]}, at {places} deg"),
+        (f"Balls at {last}", f"{result.state[-1]}, at {places} deg" if known else NOT_FOUND),
         (f"Amplitude at {last}", with_unit(float(result.amplitude[-1]), LENGTH)),
         (f"Without balls at {last}", with_unit(float(result.amplitude_without[-1]), LENGTH)),
-        (f"Growth of small motions at {last}", f"{number(float(result.growth[-1]))} 1/s"),
+        (
+            f"Growth of small motions at {last}",
+            f"{number(float(result.growth[-1]))} 1/s" if known else NOT_FOUND,
+        ),
     ]
     if result.kind != "jeffcott":
         rows.append(("Amplitudes", plane_words(result.position, chambers=True)))

@@ -162,7 +162,8 @@ def collected(
         found = _different(machine, matrices, candidates)
         whole = machine if added is None else machine.carrying(added[i])
         rows.append([(*state[:3], growth(whole, float(speed[i]), *state[1:])) for state in found])
-    most = max((len(row) for row in rows), default=0)
+    # A place for a state even where there is none at any speed: every reader finds it empty.
+    most = max([1, *map(len, rows)])
     n, count = len(machine.system.coordinates), machine.moment.size
     kind = np.zeros((speed.size, most), dtype=np.intp)
     where, rates = np.full((speed.size, most, count), np.nan), np.full((speed.size, most), np.nan)

@@ -199,3 +199,36 @@ def test_a_race_for_each_ball_does_as_one_race() -> None:
     assert two.can_balance and two.balanced_from == one.balanced_from
     np.testing.assert_allclose(two.amplitude, one.amplitude, atol=1e-12)
     np.testing.assert_allclose(two.growth, one.growth, rtol=1e-7, atol=1e-9 * scene.speeds.stop)
+
+
+# One ball heavier than the unbalance next to the resonance of 63 rad/s: nowhere is it drawn to rest.
+NO_STATE = """
+name = "no state"
+rotor = {{ kind="jeffcott", mass = 10, stiffness = 4e4, damping = 100, unbalance = 5e-5, axis = "vertical" }}
+chambers = [{{ kind = "balls", radius = 0.1, count = 1, mass = 0.05, drag = 0.1 }}]
+speeds = {{ start = 80.0, stop = {stop}, count = {count} }}
+"""
+
+
+@pytest.mark.parametrize(("count", "stop"), [(1, 80.0), (3, 90.0)])
+def test_commands_say_in_words_that_there_is_no_state(
+    count: int, stop: float, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A rotor with a ball at none of whose speeds the ball can rest."""
+    path = tmp_path / "none.toml"
+    path.write_text(NO_STATE.format(count=count, stop=stop))
+    result = lb.run(lb.load_scene(path))
+    assert isinstance(result, BallsResult)
+    assert not result.converged.any() and set(result.state) == {"none"}
+    assert np.isnan(result.growth).all() and np.isnan(result.amplitude).all()
+    for command in (["run"], ["explain"], ["view", "--screenshot", str(tmp_path / "none.png")]):
+        arguments = [command[0], str(path), *command[1:]]
+        arguments += ["--out", str(tmp_path / "out")] if command[0] == "run" else []
+        assert main(arguments) == (3 if command[0] == "run" else 0)
+        said = "".join(capsys.readouterr())
+        assert "Traceback" not in said
+        if command[0] == "run":
+            assert "no state of balls at rest was found; without balls" in said
+            assert "not found deg" not in said and "is reported there" not in said
+        elif command[0] == "view":
+            assert "no state found" in said and "of its size" not in said
