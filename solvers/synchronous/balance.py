@@ -8,7 +8,7 @@ it takes finite elements, which is all that the synchronous answer takes from sl
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -126,6 +126,38 @@ class Balance:
                 for flag, found in zip(flags, (law.dry_patch, law.in_range, law.converged), strict=True):
                     flag[rows, j] = found
         return Liquid(unbalance, slope, *flags)
+
+    def told(self, which: Index, answer: Complex) -> Liquid:
+        """Law of each chamber at solutions, the flags asked of the model whatever its law is.
+
+        A straight line says nothing of where it ends. What moves the surface most over a turn counts: the
+        forward part, and the wave of the backward one [theory: rotor, eq. 28].
+
+        Parameters
+        ----------
+        which : of the pairs, shape (k,)
+        answer : coordinates, shape (k, n)
+        """
+        forward, backward = np.abs(self.forward(answer)), 0.5 * np.abs(answer @ self.plane.T)
+        law = self.liquid(which, forward)
+        dry, in_range = law.dry_patch.copy(), law.in_range.copy()
+        along = np.full(which.size, self.gravity)
+        for j, fills in enumerate(self.fills):
+            own = fills.at(which)
+            moved = forward[:, j] + _backward_displacement(own) * backward[:, j]
+            found = self.model.answer(own, Whirls.synchronous(self.speed[which], moved, along))
+            dry[:, j], in_range[:, j] = found.dry_patch, found.in_range
+        return replace(law, dry_patch=dry, in_range=in_range)
+
+
+def _backward_displacement(fills: Fills) -> Array:
+    """Displacement of the surface in a backward whirl over its amplitude, shape (n,).
+
+    Of a clear ring, (kappa - 1)/(1 + 7 kappa) [theory: waves, eq. 4].
+    """
+    outer = np.square(fills.chamber.radius)
+    film = fills.depth * (2.0 * fills.chamber.radius - fills.depth)
+    return np.asarray(film / (8.0 * outer - film))
 
 
 def harmonic_balance(

@@ -87,6 +87,7 @@ def wet_critical_speeds(
 
 
 _ALIKE = 1e-6  # relative; amplitudes nearer than that are equally large
+_TRACE = 1e-6  # of the added mass, which parts equal modes and moves no other
 _FREE = 1e-9  # loss factor below which a mode counts as undamped, share below which it counts as not driven
 
 
@@ -96,7 +97,7 @@ def main_critical_speeds(
     dry: tuple[Array, Complex],
     wet: tuple[Array, Complex],
 ) -> tuple[float, float]:
-    """Of the critical speeds without and with liquid those at which the unbalance moves the chambers most.
+    """Critical speed at which the unbalance moves the dry machine most, and that of the same mode with liquid.
 
     The largest amplitude at any chamber counts, or at position 0 without chambers, by linear theory with the
     dampers; without bound where the unbalance drives a mode that has none. Of equal ones it is the lowest
@@ -113,25 +114,57 @@ def main_critical_speeds(
     -------
     rad/s, without and with liquid; nan where there is none
     """
+    speed, shape = dry
+    if speed.size == 0:
+        return float("nan"), float("nan")
+    shape = _parted(system, fills, shape)
     planes = sorted({fill.chamber.plane for fill in fills}) or [0.0]
-    chosen = []
-    for (speed, shape), liquid in ((dry, ()), (wet, fills)):
-        if speed.size == 0:
-            chosen.append(float("nan"))
-            continue
-        answer = unbalance_response(system, speed)
-        if liquid:
-            answer = response(system, liquid, speed, 0.0, LINEAR).coordinates
-        size = np.max([orbit(system, answer, plane).amplitude for plane in planes], axis=0)
-        lossless, driven = _undamped(system, speed, shape)
-        size = np.where(lossless, np.where(driven, np.inf, 0.0), size)
-        largest = size.max()
-        chosen.append(float(speed[np.argmax(size >= largest * (1.0 - _ALIKE))]))
-    return chosen[0], chosen[1]
+    answer = unbalance_response(system, speed)
+    size = np.max([orbit(system, answer, plane).amplitude for plane in planes], axis=0)
+    lossless, push = _undamped(system, speed, shape)
+    size = np.where(lossless, np.where(push > _FREE**2, np.inf, 0.0), size)
+    first = int(np.argmax(size >= size.max() * (1.0 - _ALIKE)))
+    # Of modes at one and the same speed the one that the unbalance drives.
+    same = np.flatnonzero(np.abs(speed - speed[first]) <= _ALIKE * speed[first])
+    main = int(same[np.argmax(push[same])])
+    return float(speed[main]), float(_with_liquid(system, shape, wet)[main])
 
 
-def _undamped(system: RotorSystem, speed: Array, shape: Complex) -> tuple[Flags, Flags]:
-    """Which modes have no damping, and which the unbalance drives, shape (k,)."""
+def _parted(system: RotorSystem, fills: Sequence[Fill], shape: Complex) -> Complex:
+    """Shapes of the dry modes, those at one and the same speed parted as a trace of the liquid parts them."""
+    wet = [fill for fill in fills if fill.volume > 0.0]
+    if not wet:
+        return shape
+    trace = critical_speeds(system, _TRACE * _added_mass(system, wet, None, 0.0, LINEAR))[1]
+    return trace if trace.shape == shape.shape else shape
+
+
+def _with_liquid(system: RotorSystem, dry: Complex, wet: tuple[Array, Complex]) -> Array:
+    """Critical speed with liquid of each dry mode, rad/s, nan where it has none, shape (k,).
+
+    Modes are alike by the squared cosine between their shapes in the metric of the dry mass; of all ways to
+    pair them one to one it is the one with the largest sum [theory: rotor, eq. 39].
+
+    Parameters
+    ----------
+    dry : shapes, shape (k, n)
+    wet : critical speeds, rad/s, shape (m,), and shapes, (m, n)
+    """
+    from scipy.optimize import linear_sum_assignment
+
+    speed, shape = wet
+    unit = [
+        x / np.sqrt(np.einsum("ki,ij,kj->k", x.conj(), system.mass, x).real)[:, None] for x in (dry, shape)
+    ]
+    alike = np.square(np.abs(unit[0].conj() @ system.mass @ unit[1].T))
+    row, column = linear_sum_assignment(alike, maximize=True)
+    found = np.full(len(dry), np.nan)
+    found[row] = speed[column]
+    return found
+
+
+def _undamped(system: RotorSystem, speed: Array, shape: Complex) -> tuple[Flags, Array]:
+    """Which modes have no damping, and the share of the unbalance's push that drives each, shape (k,)."""
 
     def form(matrix: Array) -> Array:
         return np.asarray(np.einsum("ki,ij,kj->k", shape.conj(), matrix, shape).real)
@@ -140,7 +173,8 @@ def _undamped(system: RotorSystem, speed: Array, shape: Complex) -> tuple[Flags,
     push = np.square(np.abs(shape.conj() @ system.unbalance))
     most = float((system.unbalance.conj() @ np.linalg.solve(system.mass, system.unbalance)).real)
     lossless = form(system.damping) <= _FREE * speed * energy
-    return np.asarray(lossless), np.asarray(push > _FREE**2 * energy * most)
+    share = np.divide(push, energy * most, out=np.zeros(push.shape), where=energy * most > 0.0)
+    return np.asarray(lossless), np.asarray(share)
 
 
 def _added_mass(
@@ -427,7 +461,7 @@ def answered_by(
     terms = harmonic_balance(system, [fills], owner, known.speed[found], gravity, model)
     answer, met = newton(terms, known.coordinates[found], np.arange(found.size))
     motion, forward = orbit(system, answer, known.position), terms.forward(answer)
-    law = terms.liquid(np.arange(found.size), np.abs(forward))
+    law = terms.told(np.arange(found.size), answer)
     offset, angle = _centre_of_mass(terms, forward, law)
 
     def placed(values: NDArray[_Value], name: str) -> NDArray[_Value]:
@@ -495,7 +529,7 @@ def _of_balance(system: RotorSystem, terms: Balance, position: float, near: Near
     bounded = np.isfinite(size[chosen])
     q = np.where(bounded[:, None], answer[chosen], 0.0)
     forward = terms.forward(q)
-    law = terms.liquid(which[chosen], np.abs(forward))
+    law = terms.told(which[chosen], q)
     offset, angle = _centre_of_mass(terms, forward, law)
     dry = orbit(system, unbalance_response(system, terms.speed), position)
     deflection = motion.forward[chosen]

@@ -13,15 +13,18 @@ from hypothesis import strategies as st
 
 from fluid.fill import Fill
 from fluid.liquid import Liquid
-from fluid.waves import offset_ratio
+from fluid.waves import displacement_ratio, offset_ratio
 from leblanc.studies.models.liquid import synchronous_model
 from meshes.arrays import Array
-from meshes.chamber import Chamber
+from meshes.chamber import Baffles, Chamber
 from meshes.errors import InputError
+from solvers.liquid_model import LiquidModel
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import Rotor, RotorSystem
+from solvers.rotor.tub import Mount, Tub
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
 from solvers.rotor.vibration import critical_speeds, orbit, unbalance_response
+from solvers.sloshing.model import SmallWaves
 from solvers.statics.hydrostatics import equilibrium
 from solvers.synchronous.balance import backward_mass, harmonic_balance
 from solvers.synchronous.coupled import one_plane, several_planes, stable_solutions
@@ -81,6 +84,88 @@ def test_planar_rotor() -> None:
         np.testing.assert_array_equal(other.dry_patch, one.dry_patch)
         np.testing.assert_array_equal(other.branch_stable, one.branch_stable)
         assert np.abs(found.backward).max() < 1e-14 and found.residual.max() < 1e-12
+
+
+def in_one_plane(rotor: Jeffcott) -> list[Rotor]:
+    """A planar rotor as one in two planes and as a tub, whose chambers sit in the plane of the mass."""
+    k, c = rotor.stiffness, rotor.damping
+    supports = tuple(Support(z, 0.5 * k, 0.5 * c) for z in (-0.2, 0.2))
+    arms = ((0.0, 0.0, 0.0), (0.3, 0.2, 0.0), (-0.3, -0.2, 0.0))
+    springs = tuple(Mount(place, along_axes=(k / 3.0, 1e4, k / 3.0)) for place in arms)
+    dampers = tuple(Mount(place, along_axes=(c / 3.0, 1e2, c / 3.0)) for place in arms)
+    m = rotor.mass
+    masses = {"tub_mass": 0.7 * m, "drum_mass": 0.3 * m, "tub_inertia": (1.0, 1.1, 1.2)}
+    return [
+        TwoPlane(m, 1.0, 0.2, supports, (PlaneUnbalance(0.0, rotor.unbalance),)),
+        Tub(
+            **masses, drum_polar_inertia=0.2, drum_transverse_inertia=0.3, springs=springs, dampers=dampers,
+            unbalance=rotor.unbalance, unbalance_position=0.0,
+        ),
+    ]  # fmt: skip
+
+
+@kills(
+    "solvers.synchronous.balance:Balance.told",
+    "= found.dry_patch, found.in_range",
+    "= dry[:, j], in_range[:, j]",
+)
+@pytest.mark.parametrize("model", [LINEAR, SmallWaves(24)], ids=lambda model: model.name)
+def test_range_on_every_rotor(model: LiquidModel) -> None:
+    """Random machines in one plane, of three kinds of rotor and beside baffles: one range and one dry wall.
+
+    Linear theory leaves its range where the deflection is the depth of the layer.
+    """
+    rng, seen = np.random.default_rng(5), np.zeros(2, dtype=int)
+    for _ in range(30):
+        mass, k = rng.uniform(4.0, 12.0), rng.uniform(1e4, 5e4)
+        rotor = Jeffcott(
+            mass, k, rng.uniform(0.05, 0.5) * math.sqrt(k * mass), 10.0 ** rng.uniform(-4.0, -2.0)
+        )
+        chamber = Chamber(0.1, 0.05, baffles=Baffles(3, 0.095) if rng.random() < 0.5 else None)
+        wet = [Fill(chamber, WATER, 10.0 ** rng.uniform(-7.0, -4.3))]
+        speed = math.sqrt(k / mass) * np.sort(rng.uniform(0.3, 3.0, 5))
+        one = response(rotor, wet, speed, 0.0, model)
+        for other in in_one_plane(rotor):
+            found = response(other, wet, speed, 0.0, model)
+            np.testing.assert_allclose(found.deflection, one.deflection, rtol=1e-8)
+            np.testing.assert_array_equal(found.dry_patch, one.dry_patch)
+            np.testing.assert_array_equal(found.in_range, one.in_range)
+        beyond = np.abs(one.deflection) >= wet[0].depth
+        np.testing.assert_array_equal(one.dry_patch, beyond)
+        np.testing.assert_array_equal(one.in_range, ~beyond)
+        seen += np.array([beyond.sum(), (~beyond).sum()])
+    assert np.all(seen > 20)
+
+
+@kills("solvers.synchronous.balance:Balance.told", "_backward_displacement(own) * backward", "0.0 * backward")
+@kills("solvers.synchronous.balance:_backward_displacement", "8.0 * outer", "18.0 * outer")
+def test_range_in_an_ellipse() -> None:
+    """Unlike springs: what counts is the surface's largest rise over a turn, of both circles together.
+
+    That of the backward one is computed here as a whirl of its own, and the least depth all round over a
+    turn is looked for on a grid of angles and instants.
+    """
+    system = tub(0.2).system()
+    wet = [Fill(Chamber(0.2, 0.05, plane=0.05), WATER, 3e-3)]
+    speed = np.array([12.0, 14.0, 16.0, 18.0, 20.0, 26.0, 34.0])
+    whole, part = response(system, wet, speed, 0.0, LINEAR), []
+    assert not whole.dry_patch.any()
+    forward, backward = (np.abs(x[:, 0]) for x in at_chambers(system, whole, wet))
+    kappa = (0.2 / wet[0].surface_radius) ** 2
+    angle, turn = np.meshgrid(np.linspace(0.0, 2 * np.pi, 721), np.linspace(0.0, np.pi, 361))
+    for one, other in zip(forward, backward, strict=True):
+        counter = float(displacement_ratio(kappa, -1.0)) * other
+        # In the drum the backward circle turns at -2 Omega.
+        part.append(np.max(one * np.cos(angle) - counter * np.cos(angle + 2.0 * turn)))
+    rise = np.array(part)
+    assert np.any(rise > 1.001 * forward)  # the ellipse matters somewhere
+    # The linear answer grows in proportion to the unbalance: just below and just above the depth. The grid
+    # finds a maximum to 1 - cos(half a degree) = 4e-5.
+    for k in range(speed.size):
+        for share, dry in ((0.999, False), (1.001, True)):
+            scaled = replace(system, unbalance=system.unbalance * share * wet[0].depth / rise[k])
+            found = response(scaled, wet, speed[k : k + 1], 0.0, LINEAR)
+            assert bool(found.dry_patch[0]) is dry and bool(found.in_range[0]) is not dry
 
 
 def with_discs(system: RotorSystem, discs: list[tuple[float, float]]) -> RotorSystem:
