@@ -177,6 +177,10 @@ SUMS = floats(
 )
 
 
+# Those of them that are works and heats, J.
+WORKS = ("unbalance", "drive", "gravity", "support", "friction", "bores", "baffles", "profile", "motor")
+
+
 class Machine(NamedTuple):
     """Rotor and layers; n coordinates, l layers, c cells.
 
