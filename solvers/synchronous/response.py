@@ -97,7 +97,7 @@ def main_critical_speeds(
     dry: tuple[Array, Complex],
     wet: tuple[Array, Complex],
 ) -> tuple[float, float]:
-    """Critical speed at which the unbalance moves the dry machine most, and that of the same mode with liquid.
+    """Critical speed at which the unbalance moves the dry rotor most, and that of the same mode with liquid.
 
     The largest amplitude at any chamber counts, or at position 0 without chambers, by linear theory with the
     dampers; without bound where the unbalance drives a mode that has none. Of equal ones it is the lowest

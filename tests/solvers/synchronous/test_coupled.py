@@ -116,7 +116,7 @@ def test_range_on_every_rotor(model: LiquidModel) -> None:
     Linear theory leaves its range where the deflection is the depth of the layer.
     """
     rng, seen = np.random.default_rng(5), np.zeros(2, dtype=int)
-    for _ in range(30):
+    for _ in range(16):
         mass, k = rng.uniform(4.0, 12.0), rng.uniform(1e4, 5e4)
         rotor = Jeffcott(
             mass, k, rng.uniform(0.05, 0.5) * math.sqrt(k * mass), 10.0 ** rng.uniform(-4.0, -2.0)
@@ -134,7 +134,7 @@ def test_range_on_every_rotor(model: LiquidModel) -> None:
         np.testing.assert_array_equal(one.dry_patch, beyond)
         np.testing.assert_array_equal(one.in_range, ~beyond)
         seen += np.array([beyond.sum(), (~beyond).sum()])
-    assert np.all(seen > 20)
+    assert np.all(seen > 15)
 
 
 @kills("solvers.synchronous.balance:Balance.told", "_backward_displacement(own) * backward", "0.0 * backward")
