@@ -12,6 +12,9 @@ from meshes.errors import InputError
 from solvers.rotor.system import RotorSystem
 
 
+_UNDAMPED = 1e-12  # damping ratio that is rounding of an eigenvalue
+
+
 @dataclass(frozen=True)
 class Modes:
     """Free vibration q = Re(shape e^{eigenvalue t}) at s spin speeds; n coordinates, n modes."""
@@ -31,7 +34,8 @@ class Modes:
     def damping_ratio(self) -> Array:
         """-Re/|eigenvalue|, 1 where overdamped, 0 for a body without support, shape (s, n)."""
         size = np.abs(self.eigenvalue)
-        return -np.divide(self.eigenvalue.real, size, out=np.zeros(size.shape), where=size > 0.0)
+        ratio = np.divide(self.eigenvalue.real, size, out=np.zeros(size.shape), where=size > 0.0)
+        return np.where(np.abs(ratio) > _UNDAMPED, -ratio, 0.0)
 
 
 @dataclass(frozen=True)
@@ -83,6 +87,30 @@ def modes(system: RotorSystem, spin: ArrayLike = 0.0, *, damped: bool = True) ->
     shape = np.take_along_axis(vector[:, :n] / scale[:, None], order[:, None, :], axis=2)
     largest = np.take_along_axis(shape, np.abs(shape * scale[:, None]).argmax(axis=1)[:, None, :], axis=1)
     return Modes(omega, np.asarray(eigenvalue, dtype=complex), np.asarray(shape / largest, dtype=complex))
+
+
+FREE = 1e-9  # square of a natural frequency over the largest one, below which nothing holds the motion
+_STILL = 1e-6  # of the axis' largest motion, that is rounding
+
+
+def free_motions(system: RotorSystem) -> Array:
+    """Shapes of motions that nothing holds, of unit kinetic energy, shape (n, k)."""
+    from scipy.linalg import eigh
+
+    square, shapes = eigh(system.stiffness, system.mass)
+    loose = square < FREE * square.max() if square.max() > 0.0 else np.ones(square.size, dtype=bool)
+    return np.asarray(shapes[:, loose])
+
+
+def axis_is_free(system: RotorSystem) -> bool:
+    """A motion that nothing holds moves the spin axis sideways: unbalance and liquid drive it."""
+    from scipy.linalg import eigh
+
+    every, free = eigh(system.stiffness, system.mass)[1], free_motions(system)
+    return any(
+        np.linalg.norm(part @ free) > _STILL * np.linalg.norm(part @ every)
+        for part in (system.centre, system.lean)
+    )
 
 
 def _without_rounding(value: Complex) -> Complex:
