@@ -36,6 +36,8 @@ def validate(
     for result in found:
         print(f"{result.name}  [{result.source}]  {result.verdict.upper()}")
         print(f"    {result.quantity}")
+        if result.origin.kind != "printed":
+            print(f"    the value called printed is from: {result.origin}")
         print(f"    printed {_shown(result.printed)} | computed {_shown(result.computed)}")
         print(f"    difference {_shown(result.difference)}" + (f"; {result.note}" if result.note else ""))
         if (effect := result.effect) is not None:

@@ -91,6 +91,7 @@ def case_table(cases: Sequence[Case]) -> Table:
     rows = []
     for case in cases:
         what = f"{case.quantity}\n[{case.source}; case {case.name.partition('/')[2]}]"
+        what += "" if case.origin.kind == "printed" else f"\nvalue called printed: {case.origin}"
         what += f"\n{case.note}" if case.note else ""
         if (effect := case.effect) is not None:
             what += f"\n{effect.quantity}: {effect.measured:.3g}, computed {effect.computed:.3g}"
