@@ -11,7 +11,6 @@ from meshes.arrays import Array, Complex
 from meshes.errors import InputError
 from solvers.rotor.system import RotorSystem
 
-
 _UNDAMPED = 1e-12  # damping ratio that is rounding of an eigenvalue
 
 
