@@ -157,7 +157,7 @@ def checks(result: RunupResult) -> Table:
     history, faults = result.history, "; ".join(result.faults)
     found = [
         ("Stopped before its end", one_line(history.reason) or "no", not history.converged),
-        ("What no machine does", one_line(faults) or "no", bool(faults)),
+        ("Energy or deflection not physical", one_line(faults) or "no", bool(faults)),
         ("Liquid model out of range", times(result.time, ~result.in_range), bool((~result.in_range).any())),
     ]
     for k, chamber in enumerate(result.chambers):
@@ -168,14 +168,14 @@ def checks(result: RunupResult) -> Table:
         found.append((f"{name} not carried round", times(result.time, loose), bool(loose.any())))
         dry = ~loose & (np.nan_to_num(result.depth_min[:, k], nan=math.inf) <= DRY * depth)
         found.append((f"{name} leaves a wall dry", times(result.time, dry), bool(dry.any())))
-    bands = "not examined" if result.bands is None else rpm_bands(result.bands)
+    bands = "not examined" if result.bands is None else rpm_bands(result.bands) or "none"
     rough = not result.error_estimate <= ERROR
     return table(
         "",
         ("Limits of the answer", ""),
         [(label, Cell(text, warning=bad)) for label, text, bad in found]
         + [
-            ("Self-excited whirl, linear theory", Cell(bands or "none", warning=bool(bands))),
+            ("Self-excited whirl, linear theory", Cell(bands, warning=bool(result.bands))),
             (
                 f"Error above {number(100.0 * ERROR)} % or unknown",
                 Cell(_share(result.error_estimate) if rough else "no", warning=rough),

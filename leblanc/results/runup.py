@@ -124,12 +124,12 @@ class RunupResult(Loaded, Result):
 
     @property
     def reason(self) -> str:
-        """Why, when and at what speed it stopped before its end, or cannot be believed; empty if neither."""
+        """Why, when and at what speed it stopped before its end, or is not physical; empty if neither."""
         return "; ".join((*filter(None, [self.history.reason]), *self.faults))
 
     @property
     def faults(self) -> tuple[str, ...]:
-        """What no machine does, term by term: energy, heat, and a deflection beyond a chamber's radius."""
+        """Violations term by term: energy balance, heat below zero, deflection beyond a chamber's radius."""
         return run_faults(self.history, self.chambers)
 
     @property
@@ -586,7 +586,7 @@ def _ball_columns(result: RunupResult, drum: str) -> dict[str, Any]:
 
 
 def run_faults(history: RunupHistory, chambers: Sequence[FilledChamber]) -> tuple[str, ...]:
-    """What no machine does, term by term: energy, heat, and a deflection beyond a chamber's radius."""
+    """Violations term by term: energy balance, heat below zero, deflection beyond a chamber's radius."""
     beyond, crest = [], float(history.largest.max())
     for k, chamber in enumerate(chambers):
         # The steps between the samples are known of the first chamber.

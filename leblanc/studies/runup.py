@@ -510,7 +510,7 @@ def _notes(
         notes.numerical_error(h.error_estimate),
         notes.handover_error(h.handover_estimate),
         None if spread is None else notes.rounding(spread, h),
-        notes.no_machine(run_faults(h, tuple(_chamber(fill) for fill in scene.fills))),
+        notes.not_physical(run_faults(h, tuple(_chamber(fill) for fill in scene.fills))),
         notes.energy_left(h.audit.closure),
         notes.largest_amplitude(h, steady),
         *notes.captures(h.transfers, h.handover),

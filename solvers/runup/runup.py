@@ -112,7 +112,7 @@ class EnergyAudit:
 
     @property
     def faults(self) -> tuple[str, ...]:
-        """What no machine does: energy that is not accounted for, heat below zero; each with its term."""
+        """Violations of the energy balance: energy unaccounted for, heat below zero; each with its term."""
         found = [
             f"the heat of {text} is {heat:.3g} J, below zero"
             for name, text in HEATS.items()

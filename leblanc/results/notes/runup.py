@@ -67,7 +67,7 @@ class RunupCode(NoteCode):
     BALLS_AS_POINTS = "balls_as_points"
     WHIRL_BESIDE_BALLS = "whirl_beside_balls"
     WHIRL_BESIDE_BAFFLES = "whirl_beside_baffles"
-    NO_MACHINE = "no_machine"
+    NOT_PHYSICAL = "not_physical"
     BALLS_RUN = "balls_run"
 
 
@@ -266,10 +266,10 @@ def whirl_beside_baffles() -> Note:
     return Note(RunupCode.WHIRL_BESIDE_BAFFLES, {}, text)
 
 
-def no_machine(faults: Sequence[str]) -> Note | None:
-    """What a run did that no machine does; None for a sound one."""
-    text = f"Not to be believed: {'; '.join(faults)}."
-    return Note(RunupCode.NO_MACHINE, {"faults": list(faults)}, text) if faults else None
+def not_physical(faults: Sequence[str]) -> Note | None:
+    """Violations of the energy balance or of the chamber's walls; None for a sound run."""
+    text = f"Not physical: {'; '.join(faults)}."
+    return Note(RunupCode.NOT_PHYSICAL, {"faults": list(faults)}, text) if faults else None
 
 
 def balls_run(behind: float, speed: float) -> Note:

@@ -17,6 +17,7 @@ from scipy.integrate import solve_ivp
 import leblanc.studies.runup as runup_module
 from fluid.fill import Fill
 from fluid.liquid import known_liquid
+from leblanc.cli import main
 from leblanc.cli.runup import runup
 from leblanc.figures import films as film_figures
 from leblanc.figures import runup as figures
@@ -597,7 +598,10 @@ def test_capture_is_marked_over_time() -> None:
     assert "0.2011" in str(report.events(record)) and "0.9011" in str(report.events(record))
 
 
-def test_what_no_machine_does_is_no_answer() -> None:
+@kills("solvers.runup.runup:EnergyAudit.faults", "self.closure > OPEN", "self.closure > 2.0 * OPEN")
+@kills("solvers.runup.runup:EnergyAudit.faults", "< -COLD", "< -2.0 * COLD")
+@kills("leblanc.results.runup:run_faults", "not size <= chamber.radius", "size > 1.1 * chamber.radius")
+def test_what_is_not_physical_is_no_answer() -> None:
     """A balance that does not close, a heat below zero, a deflection beyond the wall: each by its term."""
     sound = made_up(history_of(20, 1))
     assert sound.converged and sound.reason == "" and sound.energy_error == sound.energy.closure == 0.0
@@ -607,7 +611,10 @@ def test_what_no_machine_does_is_no_answer() -> None:
     for change, word in (
         ({"audit": replace(audit, change=0.44)}, "balance leaves 0.06 J"),
         ({"audit": replace(audit, change=math.nan)}, "balance leaves nan"),
-        ({"audit": replace(audit, friction=-2e-6, change=0.500002)}, "heat of wall friction is -2e-06 J"),
+        (
+            {"audit": replace(audit, friction=-1.5e-6, change=0.5000015)},
+            "heat of wall friction is -1.5e-06 J",
+        ),
         ({"audit": replace(audit, baffles=-2e-6, change=0.500002)}, "heat of baffles is -2e-06 J"),
         ({"largest": np.full(20, 1.01 * radius)}, "axis of chamber 1"),
         ({"deflection": np.full((20, 1), 1.01j * radius)}, "axis of chamber 1"),
@@ -618,6 +625,61 @@ def test_what_no_machine_does_is_no_answer() -> None:
         assert told["converged"] is False and told["energy_error"] == told["energy"]["closure"]
     for change in ({"audit": replace(audit, change=0.46)}, {"largest": np.full(20, 0.99 * radius)}):
         assert made_up(history_of(20, 1, **change)).converged
+
+
+@pytest.mark.parametrize("start", [1.0, 5.0])
+@pytest.mark.parametrize(("count", "tip"), [(2, 0.19), (4, 0.15), (8, 0.17), (12, 0.12)])
+def test_baffles_that_lift_a_pool_from_rest(start: float, count: int, tip: float) -> None:
+    """Below sqrt(g/R) = 7 rad/s there is no annular layer yet: its drag brakes the pool and gives no energy.
+
+    An explicit step of that drag overshoots: six of these broke off, their balance open 1e5 times and more.
+    """
+    found = runup_scene(baffled(count, tip, start), check=False)
+    assert found.converged and found.captured[-1].all()
+    # Bores and baffles lose energy by the scheme's own error, which falls with the cells (1e-3 with 64).
+    assert found.energy_error < 0.01
+    for heat in ("support", "friction", "bores", "baffles"):
+        assert getattr(found.energy, heat) >= -1e-6 * found.energy.scale
+
+
+def baffled(count: int, tip: float, start: float) -> Scene:
+    """Half a litre of water in a lying drum with baffles."""
+    rotor = {"mass": 40.0, "stiffness": 64000.0, "damping": 400.0, "unbalance": 0.05}
+    chamber = {"radius": 0.2, "height": 0.05, "volume": 5e-4, "liquid": "water"}
+    ramp = {"start": start, "stop": 60.0, "rate": 40.0, "duration": 1.6, "cells": 48, "samples": 80}
+    return scene_from_table(
+        {
+            "name": "lying",
+            "rotor": {"kind": "jeffcott", "axis": "horizontal"} | rotor,
+            "chambers": [chamber | {"baffles": {"count": count, "tip_radius": tip}}],
+            "speeds": {"start": 5.0, "stop": 60.0, "count": 3},
+            "runup": ramp,
+        },
+        "lying",
+    )
+
+
+def test_a_deflection_beyond_the_wall_ends_with_3(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Saved, the term named, the JSON printed as well."""
+    scene = tmp_path / "wide.toml"
+    scene.write_text(
+        """
+        name = "wide"
+        rotor = { kind = "jeffcott", axis = "vertical", mass = 1, stiffness = 900, damping = 1, unbalance = 1}
+        chambers = [{ radius = 0.02, height = 0.02, volume = 1e-6, liquid = "water" }]
+        speeds = { start = 20.0, stop = 40.0, count = 3 }
+        model = { liquid = "linear" }
+        runup = { start = 20.0, stop = 40.0, rate = 40.0, duration = 0.6, cells = 16 }
+        """
+    )
+    command = ["runup", str(scene), "--no-check", "--json", "--out", str(tmp_path / "out")]
+    assert main(command) == 3
+    printed = capsys.readouterr()
+    answer = json.loads(printed.out)
+    assert answer["converged"] is False and "beyond its radius of 20 mm" in answer["reason"]
+    assert answer["energy_error"] == answer["energy"]["closure"] < 0.05
+    assert "beyond its radius of 20 mm" in printed.err
+    assert (tmp_path / "out" / "runup.nc").exists()
 
 
 def made_up(history: RunupHistory, machine: Scene | None = None) -> RunupResult:

@@ -16,6 +16,7 @@ from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import RotorSystem
 from solvers.rotor.two_plane import Support, TwoPlane
 from solvers.rotor.vibration import (
+    Modes,
     critical_speeds,
     dynamic_stiffness,
     modes,
@@ -84,6 +85,17 @@ def test_one_oscillator(zeta: float, frequency: float) -> None:
         np.testing.assert_allclose(found.frequency[0], damped, rtol=1e-8, atol=1e-9 * frequency)
         np.testing.assert_allclose(-found.eigenvalue[0].real, slow, rtol=1e-8, atol=1e-9 * frequency)
         np.testing.assert_allclose(found.damping_ratio, min(zeta, 1.0), rtol=1e-8, atol=1e-12)
+
+
+@kills("solvers.rotor.vibration:Modes.damping_ratio", "> _ROUNDING * size", "> 0.0 * size")
+def test_no_damping_is_no_damping() -> None:
+    """Real parts that rounding leaves are none, and have no sign; damping a thousand times that is kept."""
+    size = np.array([[50.0, 100.0]])
+    for real, ratio in ((3e-15, 0.0), (-3e-15, 0.0), (1e-11, -1e-11 / 50.0), (-1e-11, 1e-11 / 50.0)):
+        found = Modes(np.zeros(1), 1j * size + np.array([real, -5.0]), np.zeros((1, 2, 2), complex))
+        assert found.damping_ratio[0, 0] == pytest.approx(ratio, rel=1e-9, abs=0.0)
+        assert ratio != 0.0 or not np.signbit(found.damping_ratio[0, 0])
+        assert found.damping_ratio[0, 1] == pytest.approx(0.05, rel=2e-3)
 
 
 def test_equal_overdamped_modes_and_free_bodies() -> None:

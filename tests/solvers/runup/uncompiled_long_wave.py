@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -20,6 +21,7 @@ from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import RotorSystem
 from solvers.runup import kernel as coupled_layer
 from solvers.runup import kernel as coupled_parts
+from solvers.runup.kernel import driven
 from solvers.runup.long_wave import Coupled, couple
 from solvers.runup.state import GAINS, LAYER, MEASURES
 from tests.mutants import kills
@@ -319,7 +321,6 @@ def test_gyroscope() -> None:
     "layer.radius**3 * room.gains[j].torque",
 )
 @kills("solvers.runup.kernel:driven", "shaft.spin - load * weight", "shaft.spin + load * weight")
-@kills("solvers.runup.kernel:resisted", "(1.0 + weight * slope)", "(1.0 - weight * slope)")
 @kills("solvers.runup.kernel:_tally", "sums.motor += dt * spin", "sums.motor += dt")
 def test_motor() -> None:
     """The motor's torque goes into the spin, less what the unbalance and the liquid take."""
@@ -458,3 +459,21 @@ def test_energy_of_a_full_gap() -> None:
     # The scheme takes a part of what changes, 32 cells and the doubled signal speeds of the gap.
     assert abs(after - pressed) > 1e-6
     assert abs(gains.loss) < 0.3 * abs(after - pressed)
+
+
+@kills("solvers.runup.kernel:resisted", "(1.0 + weight * slope)", "(1.0 - weight * slope)")
+@kills("solvers.runup.kernel:driven", "2.0 * middle - shaft.spin", "middle")
+def test_a_steep_motor_does_not_run_away() -> None:
+    """Torque falling with the spin takes (1 - x)/(1 + x) of the distance to its load, x = -T' dt/(2 J)."""
+    for x in (1e-3, 0.5, 3.0, 1e6):
+        # T = k (40 - spin), a load of 2 N m: it settles at 40 - 2/k.
+        inertia, dt = 0.05, 1e-3
+        k = 2.0 * x * inertia / dt
+        curve, shaft = (
+            np.array([[0.0, 80.0], [40.0 * k, -40.0 * k]]),
+            SimpleNamespace(inertia=inertia, spin=39.0),
+        )
+        rest = 40.0 - 2.0 / k
+        left = driven(curve, shaft, 2.0 * dt, dt) - rest
+        assert left == pytest.approx((1.0 - x) / (1.0 + x) * (39.0 - rest), abs=1e-9)
+        assert abs(left) <= abs(39.0 - rest)
