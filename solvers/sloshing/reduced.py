@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from fluid.fill import Fill
 from fluid.friction.laws import Friction, layer_thickness
-from fluid.whirl import is_full, plane_layer, slower_slip
+from fluid.whirl import is_full, plane_layer, steady_rate
 from meshes.arrays import Array, Complex
 from meshes.baffles import Baffles
 from meshes.chamber import Chamber
@@ -145,6 +145,8 @@ class SectionLayer:
     rate: float  #: k of linear friction, 1/s
     #: S of laminar friction, D = sqrt(lambda) S, shape (m, m), s^(-1/2) [theory: sections, eq. 5]
     laminar: Array
+    #: drag of floor and lid over sqrt(Omega), shape (m, m), s^(-1/2) [theory: sections, eq. 5]
+    plates: Array
 
 
 def section_layer(fill: Fill, friction: Friction) -> SectionLayer | None:
@@ -163,20 +165,20 @@ def section_layer(fill: Fill, friction: Friction) -> SectionLayer | None:
     density = fill.liquid.density * chamber.height
     plain = plane_layer(_clear(fill), friction)
     assert plain is not None
+    steady = steady_rate(plain, 1.0) - plain.rate
+
+    def plates(liquid: ReducedLiquid) -> Array:
+        # On a ring C is -i T: two motions in circles are one complex number.
+        return np.asarray(steady.real * liquid.inertia - steady.imag / plain.layer_tanh * liquid.gyration)
+
     if not fill.uneven:
         liquid = clear_ring(chamber.radius, fill.surface_radius)
-        return SectionLayer(density, liquid, plain.rate, plain.stokes * liquid.inertia)
+        return SectionLayer(density, liquid, plain.rate, plain.stokes * liquid.inertia, plates(liquid))
     # Of a fluid layer of that thickness at the edges of baffles.
     cut = float(layer_thickness(fill.liquid.viscosity, _SLIP)) if stokes else 0.0
     liquid, drag = _of_section(fill, cut) if chamber.baffles is None else _of_baffles(fill, cut)
-    laminar = np.zeros_like(drag)
-    if stokes:
-        # Walls and baffles; then floor and lid, which drag on all of the liquid.
-        film = fill.volume / (math.pi * chamber.height) / _clear(fill).chamber.radius ** 2
-        slip = slower_slip(film / (2.0 - film))
-        plates = friction.lid(1.0, chamber.height, slip, 1.0) * liquid.inertia
-        laminar = math.sqrt(fill.liquid.viscosity) * (drag + plates)
-    return SectionLayer(density, liquid, plain.rate, laminar)
+    laminar = math.sqrt(fill.liquid.viscosity) * drag if stokes else np.zeros_like(drag)
+    return SectionLayer(density, liquid, plain.rate, laminar, plates(liquid))
 
 
 def _clear(fill: Fill) -> Fill:

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from fluid.fill import Fill
 from fluid.friction.laws import NO_FRICTION, Friction
-from fluid.whirl import Layer, is_full, plane_layer
+from fluid.whirl import Layer, is_full, plane_layer, steady_rate
 from meshes.arrays import Array, Complex, Index
 from meshes.errors import InputError
 from solvers.rotor.jeffcott import Jeffcott, PlanarMachine
@@ -216,9 +216,11 @@ def machines_growth(
         layers = np.array(
             [[(x.mass, x.layer_tanh, x.rate, x.stokes) for x in tables[i][1]] for i in own]
         ).reshape(own.size, kind[0], 4)[place]
+        plates = np.array([[steady_rate(x, 1.0) - x.rate for x in tables[i][1]] for i in own], dtype=complex)
         stiffness, damping = support[own[place]].T
-        columns = (layers[:, :, k].T for k in range(4))
-        problem = PlanarProblem(mass, stiffness, damping, speed[here], *columns)
+        liquid, tanh, rate, stokes = (layers[:, :, k].T for k in range(4))
+        rate = rate + plates.reshape(own.size, kind[0])[place].T * np.sqrt(speed[here])
+        problem = PlanarProblem(mass, stiffness, damping, speed[here], liquid, tanh, rate, stokes)
         modes = planar_modes(problem)
         found = dominant(modes.slip + problem.spin, modes.rounding, problem.spin)
         for table, values in zip((growth, whirl_speed), found, strict=True):
@@ -263,7 +265,7 @@ def planar_layers(mass: float, fills: Sequence[Fill], friction: Friction) -> tup
 def _alike(first: Layer, second: Layer) -> bool:
     return all(
         abs(getattr(first, name) - getattr(second, name)) <= _ALIKE * abs(getattr(first, name))
-        for name in ("layer_tanh", "rate", "stokes")
+        for name in ("layer_tanh", "rate", "stokes", "lids")
     )
 
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fluid.whirl import Layer, stokes_rate
+from fluid.whirl import Layer, steady_rate, stokes_rate
 from meshes.arrays import Array, Complex, Index
 from solvers.rotor.system import RotorSystem
 from solvers.whirl.count import Characteristic, Region, missed_modes
@@ -159,9 +159,9 @@ def _with_waves(modes: SystemModes, waves: Sequence[Complex], speed: Array) -> S
 
 def _groups(system: RotorSystem, layers: Sequence[Placed]) -> list[tuple[list[int], int]]:
     """Equal layers, and in how many independent ways they move with the rotor."""
-    found: dict[tuple[float, float, float], list[int]] = {}
+    found: dict[tuple[float, ...], list[int]] = {}
     for j, (_, layer) in enumerate(layers):
-        found.setdefault((layer.layer_tanh, layer.rate, layer.stokes), []).append(j)
+        found.setdefault((layer.layer_tanh, layer.rate, layer.stokes, layer.lids), []).append(j)
     ranks = []
     for members in found.values():
         along = np.array([_CIRCLES[0] @ system.at(layers[j][0]) for j in members])
@@ -174,7 +174,7 @@ def _layer_waves(layer: Layer, speed: Array) -> Complex:
 
     Zeros of E in p = sqrt(i s/Omega) with a positive real part [theory: whirl, eq. 13].
     """
-    t, rate = layer.layer_tanh, layer.rate / speed
+    t, rate = layer.layer_tanh, steady_rate(layer, speed) / speed
     companion = np.zeros((speed.size, 4, 4), dtype=complex)
     companion[:, 1:, :3] = np.eye(3)
     # p^4 + stokes p^3 + (k - 2 i T) p^2 + T = 0.
@@ -270,22 +270,23 @@ def _eliminate(problem: _Problem, root: Complex, spin: Array) -> _Eliminated:
     problem : the rotor with its layers
     root, spin : lambda, 1/s, and Omega, rad/s, shape (k,)
     """
-    system = problem.system
-    at, rate = root[:, None, None], spin[:, None, None]
-    damping = system.damping + rate * system.gyroscopic
+    system, at = problem.system, root[:, None, None]
+    damping = system.damping + spin[:, None, None] * system.gyroscopic
     matrix = at * (at * system.mass + damping) + system.stiffness
     slope = 2.0 * at * system.mass + damping
     waves, poles = np.zeros_like(root), np.zeros_like(root)
     shares: tuple[list[Complex], list[Complex]] = ([], [])
     for (plane, layer), weight in zip(problem.layers, problem.weights, strict=True):
-        t, place = layer.layer_tanh, system.at(plane)
+        t, place, steady = layer.layer_tanh, system.at(plane), steady_rate(layer, spin)
         for side, sense in enumerate((1.0, -1.0)):
             shape = np.outer(place.T @ _AXES[:, side], _CIRCLES[side] @ place)
             turned = root - 1j * sense * spin
             friction = stokes_rate(layer.stokes, -1j * turned)
+            # The circle against the spin at lambda is that along it at its conjugate.
+            rate = steady if side == 0 else steady.conj()
             # W, in the slip, where films keep their digits, and its slope; W d = -(1 - T)/2 lambda^2 w.
-            wave = turned * (turned - 2j * sense * t * spin + layer.rate + friction) + t * np.square(spin)
-            bend = 2.0 * turned - 2j * sense * t * spin + layer.rate + 1.5 * friction
+            wave = turned * (turned - 2j * sense * t * spin + rate + friction) + t * np.square(spin)
+            bend = 2.0 * turned - 2j * sense * t * spin + rate + 1.5 * friction
             wave = np.where(wave == 0.0, _EPS * np.square(spin), wave)
             share = 0.5 * (1.0 - t) * np.square(root) / wave
             force = layer.mass * np.square(root) * (1.0 - share)

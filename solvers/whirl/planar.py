@@ -36,7 +36,7 @@ class PlanarProblem:
     spin: Array  #: Omega, rad/s, shape (p,), above 0
     liquid: Array  #: of each layer as in `fluid.whirl.Layer`, shape (g, p)
     layer_tanh: Array
-    rate: Array
+    rate: Complex  #: friction of every mode alike, `fluid.whirl.steady_rate`
     stokes: Array
 
     def part(self, which: slice | Flags | NDArray[np.intp]) -> PlanarProblem:

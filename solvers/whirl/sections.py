@@ -70,6 +70,7 @@ def drum_matrices(rotor: Jeffcott, layers: Sequence[SectionLayer], speed: Array)
 
     inertia, gyration, surface = parts("inertia"), parts("gyration"), parts("surface")
     rate = scipy.linalg.block_diag(*(layer.density * layer.rate * layer.liquid.inertia for layer in layers))
+    plates = scipy.linalg.block_diag(np.zeros((2, 2)), *(layer.density * layer.plates for layer in layers))
     laminar = scipy.linalg.block_diag(np.zeros((2, 2)), *(layer.density * layer.laminar for layer in layers))
     spin = speed[:, None, None]
     mass = np.block([[heavy * np.eye(2), pull], [pull.T, inertia]])
@@ -82,7 +83,7 @@ def drum_matrices(rotor: Jeffcott, layers: Sequence[SectionLayer], speed: Array)
     turned[:2, :2] = rotor.damping * _TURN
     return DrumMatrices(
         mass=mass,
-        damping=2.0 * spin * twist + steady,
+        damping=2.0 * spin * twist + steady + np.sqrt(spin) * plates,
         stiffness=np.square(spin) * spread + spin * turned + support,
         laminar=laminar,
     )
@@ -281,9 +282,10 @@ class CircleLayer:
 
     density: float  #: rho h, kg/m^2
     liquid_area: float  #: m^2
-    gyration: Complex  #: C, B and S, shape (m, m)
+    gyration: Complex  #: C, B, S and the drag of floor and lid over sqrt(Omega), shape (m, m)
     surface: Complex
     laminar: Complex
+    plates: Complex
     moment: Complex  #: p, shape (m,), m
     rate: float  #: k of linear friction, 1/s
 
@@ -320,6 +322,7 @@ def circle_layer(layer: SectionLayer) -> CircleLayer:
         gyration=seen(liquid.gyration),
         surface=seen(liquid.surface),
         laminar=seen(layer.laminar),
+        plates=seen(layer.plates),
         moment=np.sqrt(2.0) * (liquid.moment[0] @ basis),
         rate=layer.rate,
     )
@@ -385,11 +388,9 @@ def standing_matrices(system: RotorSystem, layers: Sequence[Placed], speed: Arra
         mass[:count, own], mass[own, :count], mass[own, own] = pull, pull.T, unit
         # d/dt - i Omega takes the place of d/dt in what the liquid does in the drum.
         twist, spread = circle.density * _real(circle.gyration), circle.density * _real(circle.surface)
-        damping[:, own, own] = 2.0 * spin * (twist - circle.density * turn) + circle.rate * unit
-        stiffness[:, own, own] = (
-            np.square(spin) * (spread - unit - 2.0 * turn @ twist)
-            - circle.rate * circle.density * spin * turn
-        )
+        drag = circle.rate * unit + np.sqrt(spin) * circle.density * _real(circle.plates)
+        damping[:, own, own] = 2.0 * spin * (twist - circle.density * turn) + drag
+        stiffness[:, own, own] = np.square(spin) * (spread - unit - 2.0 * turn @ twist) - spin * turn @ drag
         laminar[own, own], quarter[own, own] = circle.density * _real(circle.laminar), turn
     return StandingMatrices(mass, damping, stiffness, laminar, quarter)
 

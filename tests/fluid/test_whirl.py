@@ -15,17 +15,25 @@ from fluid.friction.laws import Friction, stokes_coefficient
 from fluid.liquid import Liquid
 from fluid.waves import force_ratio, free_wave_frequencies, offset_ratio
 from fluid.whirl import (
+    Layer,
     covering_speed,
     damped_waves,
     force_with_friction,
     is_full,
+    layer_rate,
     neutral_stiffness,
     offset_with_friction,
     plane_layer,
+    steady_rate,
     stokes_rate,
+    wall_share,
     wave_function,
 )
 from meshes.chamber import Chamber
+from meshes.rings.quadrilaterals import ring
+from solvers.sloshing.forced import mode_damping
+from solvers.sloshing.modes import sloshing_modes
+from solvers.sloshing.system import condense
 from tests.fluid.test_waves import POINTS, layer_system
 from tests.mutants import kills
 
@@ -120,11 +128,12 @@ def test_force_is_newtons_law(kappa: float, ratio: float, growth: float, rate: f
 
 
 @kills("fluid.whirl:plane_layer", "0.5 * film", "1.0 * film")
-@kills("fluid.friction.laws:Friction.lid", "2.0 * radius / height", "1.0 * radius / height")
 @kills("fluid.whirl:plane_layer", "math.sqrt(fill.liquid.viscosity)", "fill.liquid.viscosity")
 @kills("fluid.whirl:plane_layer", "film / (2.0 - film)", "film / (2.0 + film)")
+@kills("fluid.whirl:wall_share", "crests * (1.0", "(1.0")
+@kills("fluid.whirl:wall_share", "(1.0 + layer_tanh) / layer_tanh", "(1.0 - layer_tanh) / layer_tanh")
 def test_laws() -> None:
-    """Torque of the shear over the angular momentum of the liquid, law by law [theory: long_wave]."""
+    """Linear: torque of the shear over the angular momentum. Laminar: heat at the wall over the energy."""
     chamber = Chamber(RADIUS, 0.02)
     for share in (1e-9, 0.1, 0.6):
         fill = Fill(chamber, WATER, share * chamber.capacity)
@@ -137,15 +146,54 @@ def test_laws() -> None:
         assert layer.mass == pytest.approx(1000.0 * fill.volume)
         layer = plane_layer(fill, Friction("stokes"))
         assert layer is not None and layer.rate == 0.0
+        assert layer.lids == pytest.approx(2.0 * 1e-3 / chamber.height, rel=1e-12)
         for slip in (7.0, -7.0):
-            k = float(stokes_coefficient(1e-6, slip)) * (1.0 / depth + 2.0 / chamber.height)
+            k = float(stokes_coefficient(1e-6, slip)) * 4.0 * RADIUS * a**2 / (RADIUS**4 - a**4)
             drag = complex(stokes_rate(layer.stokes, slip))
-            assert drag.real == pytest.approx(2.0 * RADIUS / (RADIUS + a) * k, rel=1e-9)
+            # The difference of fourth powers keeps seven digits of a film of 1e-9.
+            assert drag.real == pytest.approx(k, rel=1e-6)
             # Inertia: -i k s has the real part k_i s, of the sign of s^2.
             assert drag.imag == pytest.approx(math.copysign(drag.real, slip), rel=1e-12)
+        for n in (1, 2, 3):
+            # u_r and u_theta go as r^(n - 1) -+ R^(2 n)/r^(n + 1).
+            r = a + (RADIUS - a) * (0.5 + 0.5 * np.polynomial.legendre.leggauss(40)[0])
+            weight = 0.5 * (RADIUS - a) * np.polynomial.legendre.leggauss(40)[1]
+            inner, outer = (r / RADIUS) ** (n - 1), (RADIUS / r) ** (n + 1)
+            energy = weight @ ((np.square(inner - outer) + np.square(inner + outer)) * r)
+            t_n = math.tanh(n * math.log(RADIUS / a))
+            assert wall_share(t_n, n) == pytest.approx(4.0 * RADIUS**2 / energy, rel=1e-6)
     for law in (Friction(), Friction("quadratic", 0.3)):
         layer = plane_layer(fill, law)
-        assert layer is not None and layer.rate == layer.stokes == 0.0
+        assert layer is not None and layer.rate == layer.stokes == layer.lids == 0.0
+
+
+@kills("fluid.whirl:layer_rate", "layer.lids * plate_rate", "2.0 * layer.lids * plate_rate")
+@kills("fluid.whirl:plate_rate", "0.5 * (1.0 - t) * along", "0.5 * (1.0 + t) * along")
+@kills("fluid.whirl:plate_rate", "0.5 * (1.0 + t) * against", "0.5 * (1.0 - t) * against")
+@kills("fluid.whirl:plate_rate", "twice = np.asarray(slip", "twice = -np.asarray(slip")
+@kills("fluid.whirl:steady_rate", "-slower_slip", "slower_slip")
+def test_decay_is_that_of_the_modes() -> None:
+    """Waves of a ring by elements with the Coriolis force in floor and lid, to first order in the friction."""
+    height = 0.02
+    for a in (0.135, 0.09):
+        system = condense(ring(RADIUS, a, 64, 4))
+        modes = sloshing_modes(system, SPIN, 4)
+        found = mode_damping(system, modes, 1e-6, height)
+        for frequency, rate in zip(modes.frequency.tolist(), found.rate.tolist(), strict=True):
+            waves = {n: free_wave_frequencies(n, math.log(RADIUS / a), SPIN) for n in (1, 2)}
+            n, s = min(
+                ((n, float(s)) for n in waves for s in waves[n]), key=lambda wave: abs(wave[1] - frequency)
+            )
+            if abs(s - frequency) > 1e-4 * SPIN:
+                continue  # of more crests
+            t = math.tanh(n * math.log(RADIUS / a))
+            layer = Layer(1.0, t, 0.0, 1e-3 / RADIUS * wall_share(t, n), 2e-3 / height)
+            k = complex(layer_rate(layer, SPIN, s)).real
+            # (s - i g)^2 - ... = i k s; four quadratic elements across have the wall's slope to 1e-3.
+            assert k * s / (2.0 * (s - t * SPIN)) == pytest.approx(rate, rel=2e-3)
+            if n == 1 and s < 0.0:
+                steady = complex(steady_rate(layer, SPIN) + stokes_rate(layer.stokes, s))
+                assert steady.real == pytest.approx(k, rel=1e-12)
 
 
 @kills("fluid.whirl:stokes_rate", "np.sqrt(1j * np.asarray(slip", "np.sqrt(-1j * np.asarray(slip")
