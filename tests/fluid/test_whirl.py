@@ -173,7 +173,7 @@ def test_laws() -> None:
 @kills("fluid.whirl:plate_rate", "twice = np.asarray(slip", "twice = -np.asarray(slip")
 @kills("fluid.whirl:steady_rate", "-slower_slip", "slower_slip")
 def test_decay_is_that_of_the_modes() -> None:
-    """Waves of a ring by elements with the Coriolis force in floor and lid, to first order in the friction."""
+    """Waves of a ring by elements with the Coriolis force on floor and lid, to first order in friction."""
     height = 0.02
     for a in (0.135, 0.09):
         system = condense(ring(RADIUS, a, 64, 4))
