@@ -109,9 +109,9 @@ def no_exact_wave(reason: str) -> Note:
 def two_grids(gap: float) -> Note:
     """The whirl is larger than smooth waves follow: the error is that between two grids."""
     text = (
-        "the whirl is larger than any that a smooth steady wave follows: the wave is as steep as the cells "
+        "without friction no smooth steady wave follows so large a whirl: this one is as steep as the cells "
     )
-    text += f"let it be, and the force on half as many cells differs by {percent(gap)}"
+    text += f"let it be, and the force on half as many differs by {percent(gap)}"
     return Note(LayerCode.TWO_GRIDS, {"gap": gap}, text)
 
 
@@ -196,7 +196,7 @@ class LayerResult(Result):
     in_range: bool  #: the model holds; `validity` and `notes` say why not
     mean_rotation: float  #: of the liquid relative to the drum, rad/s
     wall_time: float  #: s
-    #: angle from the deflection, rad, and depth of the layer there, m, shape (k,); nan where no wave was found
+    #: angle from the deflection, rad, and depth of the layer there, m, nan if no wave was found, shape (k,)
     theta: Array
     depth: Array
     notes: tuple[Note, ...]  #: what the model leaves out here

@@ -97,11 +97,13 @@ def answer_layer(
         choice = choose_wave(model, fill, whirl) if isinstance(model, AutoWave) else WaveChoice(model)
         wave = choice.wave or watched(_with_baffles(choice.model, fill), progress).wave(fill, whirl)
     taken, model = time.perf_counter() - begin, choice.model
-    notes, surface = (*wave_notes(wave), *_beyond_waves(fill, whirl, wave)), fill.surface_radius
+    grids, apart = _both_grids(wave)
+    notes = (*wave_notes(wave), *_beyond_waves(fill, whirl, wave), *(grids if apart else ()))
+    surface = fill.surface_radius
     in_range = not notes
     if in_range and wave.answer.dry_patch[0]:
         notes = (dry_wall(),)
-    notes = (*notes, *choice.notes, *_both_grids(wave), *_friction_notes(model, fill, whirl))
+    notes = (*notes, *choice.notes, *(() if apart else grids), *_friction_notes(model, fill, whirl))
     if isinstance(model, LongWave):
         notes = (*notes, *smeared_baffles([fill], model.numerics.cells))
     exact = _exact(wave) if isinstance(wave, PotentialWave) else None
@@ -133,9 +135,12 @@ def _driven(whirl: Whirl) -> Whirl:
     return replace(whirl, speed=whirl.spin) if whirl.gravity and whirl.amplitude == 0.0 else whirl
 
 
-def _both_grids(wave: LiquidWave) -> tuple[Note, ...]:
-    """How far two grids differ, where the wave is as steep as they let it be."""
-    return (two_grids(wave.numbers[_GRIDS]),) if _GRIDS in wave.numbers else ()
+def _both_grids(wave: LiquidWave) -> tuple[tuple[Note, ...], bool]:
+    """How far two grids differ, where the wave is as steep as they let it be, and whether that is too far."""
+    if _GRIDS not in wave.numbers:
+        return (), False
+    gap = wave.numbers[_GRIDS]
+    return (two_grids(gap),), _GRIDS in wave.ranges and gap > wave.ranges[_GRIDS][1]
 
 
 def _friction_notes(model: WaveModel, fill: Fill, whirl: Whirl) -> tuple[Note, ...]:
@@ -249,7 +254,7 @@ def wave_notes(wave: LiquidWave) -> tuple[Note, ...]:
     clear = wave.answer.limits.get("inner_wall")
     return (
         *([no_answer(wave.reason)] if wave.reason else []),
-        *out_of_range(tuple(n for n in judge(wave.numbers, wave.ranges) if n.name != _SMOOTH)),
+        *out_of_range(tuple(n for n in judge(wave.numbers, wave.ranges) if n.name not in (_SMOOTH, _GRIDS))),
         *([against_whirl(wave.counter)] if wave.counter > _ONE_WAY else []),
         *([] if clear is None or clear[0] else [inner_wall()]),
     )

@@ -116,8 +116,7 @@ class LongWave(WaveModel):
         fill, whirl : chamber and liquid, and its whirl
         history : from `solvers.pypde.settle`
         steady : it was followed until it no longer changed, so that it counts where smooth waves end
-        grid_gap : difference of the force on half as many cells, over the larger of it and 1; nan where it was
-            not asked
+        grid_gap : difference of the force on half as many cells, over the larger of it and 1; nan: not asked
         """
         chamber, answered = fill.chamber, history.force_ratio.size > 0
         none = complex(math.nan, math.nan)

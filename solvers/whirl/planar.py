@@ -42,8 +42,14 @@ class PlanarProblem:
     def part(self, which: slice | Flags | NDArray[np.intp]) -> PlanarProblem:
         """The same at some of the points."""
         return PlanarProblem(
-            *(x[which] for x in (self.mass, self.stiffness, self.damping, self.spin)),
-            *(x[:, which] for x in (self.liquid, self.layer_tanh, self.rate, self.stokes)),
+            self.mass[which],
+            self.stiffness[which],
+            self.damping[which],
+            self.spin[which],
+            self.liquid[:, which],
+            self.layer_tanh[:, which],
+            self.rate[:, which],
+            self.stokes[:, which],
         )
 
 
