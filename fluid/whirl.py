@@ -81,9 +81,18 @@ def plate_rate(layer_tanh: ArrayLike, spin: ArrayLike, slip: ArrayLike) -> Compl
     spin : Omega, rad/s, shape (...,)
     slip : s, rad/s, complex, shape (...,)
     """
+    return plate_terms(layer_tanh, spin, slip)[0]
+
+
+def plate_terms(layer_tanh: ArrayLike, spin: ArrayLike, slip: ArrayLike) -> tuple[Complex, Complex]:
+    """`plate_rate` and its derivative with respect to the slip."""
     s, t, twice = np.asarray(slip, dtype=complex), np.asarray(layer_tanh), 2.0 * np.asarray(spin)
     along, against = np.sqrt(1j * (s + twice)), np.sqrt(1j * (s - twice))
-    return np.asarray(0.5 * (1.0 - t) * along + 0.5 * (1.0 + t) * against)
+    # At the end of a cut the root is 0 and its slope without end: the other alone counts.
+    inverse = (np.divide(1.0, x, out=np.zeros_like(x), where=x != 0.0) for x in (along, against))
+    first, second = 0.5 * (1.0 - t), 0.5 * (1.0 + t)
+    slope = 0.5j * sum(share * x for share, x in zip((first, second), inverse, strict=True))
+    return np.asarray(first * along + second * against), np.asarray(slope)
 
 
 def layer_rate(layer: Layer, spin: ArrayLike, slip: ArrayLike) -> Complex:
@@ -99,10 +108,9 @@ def layer_rate(layer: Layer, spin: ArrayLike, slip: ArrayLike) -> Complex:
 
 
 def steady_rate(layer: Layer, spin: ArrayLike) -> Complex:
-    """What of the friction of whirl modes does not depend on their frequency, 1/s, shape of the spin.
+    """Friction that does not depend on the frequency, from which the search for modes starts, 1/s.
 
-    Linear friction, and floor and lid as they drag on the slower free wave, next to which whirls grow: their
-    layers under slips from -Omega to Omega are nearly those of the Coriolis force alone.
+    Linear friction, and floor and lid as they drag on the slower free wave, next to which whirls grow.
 
     Parameters
     ----------

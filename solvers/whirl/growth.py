@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from fluid.fill import Fill
 from fluid.friction.laws import NO_FRICTION, Friction
-from fluid.whirl import Layer, is_full, plane_layer, steady_rate
+from fluid.whirl import Layer, is_full, plane_layer
 from meshes.arrays import Array, Complex, Index
 from meshes.errors import InputError
 from solvers.rotor.jeffcott import Jeffcott, PlanarMachine
@@ -214,13 +214,11 @@ def machines_growth(
         place = index[owner[here]]
         mass = np.array([tables[i][0] for i in own])[place]
         layers = np.array(
-            [[(x.mass, x.layer_tanh, x.rate, x.stokes) for x in tables[i][1]] for i in own]
-        ).reshape(own.size, kind[0], 4)[place]
-        plates = np.array([[steady_rate(x, 1.0) - x.rate for x in tables[i][1]] for i in own], dtype=complex)
+            [[(x.mass, x.layer_tanh, x.rate, x.stokes, x.lids) for x in tables[i][1]] for i in own]
+        ).reshape(own.size, kind[0], 5)[place]
         stiffness, damping = support[own[place]].T
-        liquid, tanh, rate, stokes = (layers[:, :, k].T for k in range(4))
-        rate = rate + plates.reshape(own.size, kind[0])[place].T * np.sqrt(speed[here])
-        problem = PlanarProblem(mass, stiffness, damping, speed[here], liquid, tanh, rate, stokes)
+        columns = (layers[:, :, k].T for k in range(5))
+        problem = PlanarProblem(mass, stiffness, damping, speed[here], *columns)
         modes = planar_modes(problem)
         found = dominant(modes.slip + problem.spin, modes.rounding, problem.spin)
         for table, values in zip((growth, whirl_speed), found, strict=True):

@@ -9,7 +9,7 @@ each. In both frames the modes that grow most are followed with laminar friction
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -43,12 +43,12 @@ _RESOLVED = 1e-11  # of the frequencies, below which growth is rounding
 
 @dataclass(frozen=True, eq=False)
 class DrumMatrices:
-    """M z'' + (C + sqrt(lambda) S) z' + K z = 0 at n speeds [theory: sections, eq. 3]."""
+    """M z'' + (C + D(lambda)) z' + K z = 0 at n speeds [theory: sections, eq. 3]."""
 
     mass: Array  #: symmetric, positive definite, shape (N, N)
     damping: Array  #: shape (n, N, N)
     stiffness: Array
-    laminar: Array  #: S, symmetric, shape (N, N)
+    laminar: Array  #: of `SectionLayer`, times the density, shape (3, N, N)
 
 
 def drum_matrices(rotor: Jeffcott, layers: Sequence[SectionLayer], speed: Array) -> DrumMatrices:
@@ -70,8 +70,10 @@ def drum_matrices(rotor: Jeffcott, layers: Sequence[SectionLayer], speed: Array)
 
     inertia, gyration, surface = parts("inertia"), parts("gyration"), parts("surface")
     rate = scipy.linalg.block_diag(*(layer.density * layer.rate * layer.liquid.inertia for layer in layers))
-    plates = scipy.linalg.block_diag(np.zeros((2, 2)), *(layer.density * layer.plates for layer in layers))
-    laminar = scipy.linalg.block_diag(np.zeros((2, 2)), *(layer.density * layer.laminar for layer in layers))
+    laminar = [
+        scipy.linalg.block_diag(np.zeros((2, 2)), *(layer.density * layer.laminar[k] for layer in layers))
+        for k in range(3)
+    ]
     spin = speed[:, None, None]
     mass = np.block([[heavy * np.eye(2), pull], [pull.T, inertia]])
     twist = np.block([[heavy * _TURN, _TURN @ pull], [pull.T @ _TURN, gyration]])
@@ -83,10 +85,24 @@ def drum_matrices(rotor: Jeffcott, layers: Sequence[SectionLayer], speed: Array)
     turned[:2, :2] = rotor.damping * _TURN
     return DrumMatrices(
         mass=mass,
-        damping=2.0 * spin * twist + steady + np.sqrt(spin) * plates,
+        damping=2.0 * spin * twist + steady,
         stiffness=np.square(spin) * spread + spin * turned + support,
-        laminar=laminar,
+        laminar=np.array(laminar),
     )
+
+
+def _shears(rate: Complex, spin: Array) -> tuple[Complex, Complex]:
+    """lambda times what `SectionLayer.laminar` is multiplied by in D(lambda), and its slope, shape (3, k).
+
+    Floor and lid drag with sqrt(lambda +- 2 i Omega) on the circles of the flow, of both roots the one whose
+    layer dies out away from the wall [theory: sections, eq. 5].
+    """
+    wall, along, against = (np.sqrt(rate + turn * spin) for turn in (0.0, 2j, -2j))
+    # Half of what is left of lambda over the root, 0 at the end of a cut.
+    steep = [0.5 * rate * np.divide(1.0, x, out=np.zeros_like(x), where=x != 0.0) for x in (along, against)]
+    factors = np.stack([wall, 0.5 * (along + against), -0.5j * (along - against)])
+    bends = np.stack([0.5 * wall, 0.5 * (steep[0] + steep[1]), -0.5j * (steep[0] - steep[1])])
+    return factors * rate, factors + bends
 
 
 def drum_modes(rotor: Jeffcott, layers: Sequence[SectionLayer], speed: Array) -> SystemModes:
@@ -104,25 +120,27 @@ def drum_modes(rotor: Jeffcott, layers: Sequence[SectionLayer], speed: Array) ->
     circles = _circles(layers)
     if not np.any(system.laminar):
         return linear_modes(CoupledMatrices(system.mass, system.damping, system.stiffness), circles)
-    first = system.damping + np.sqrt(0.5 * _SLOW * speed)[:, None, None] * system.laminar
-    started = roots(CoupledMatrices(system.mass, first, system.stiffness))
-    plain = CoupledMatrices(system.mass, system.damping, system.stiffness)
+    walls, plates = system.laminar[0], system.damping + _of_plates(system.laminar, speed)
+    plain = CoupledMatrices(system.mass, plates, system.stiffness)
+    started = roots(replace(plain, damping=plates + np.sqrt(0.5 * _SLOW * speed)[:, None, None] * walls))
 
     def terms(root: Complex, owner: Index) -> tuple[Complex, Complex]:
         at, damping = root[:, None, None], system.damping[owner]
-        # Of both roots the one whose layer dies out away from the wall.
-        drag = np.sqrt(at) * system.laminar
-        matrix = at * (at * system.mass + damping + drag) + system.stiffness[owner]
-        return matrix, 2.0 * at * system.mass + damping + 1.5 * drag
+        shear, change = (np.tensordot(x.T, system.laminar, 1) for x in _shears(root, speed[owner]))
+        matrix = at * (at * system.mass + damping) + system.stiffness[owner] + shear
+        return matrix, 2.0 * at * system.mass + damping + change
 
     def every(owner: Index) -> Complex:
-        return drum_roots(plain.at(owner), system.laminar, speed[owner])
+        return drum_roots(plain.at(owner), walls, speed[owner])
 
     fastest = _fastest(started, system.mass, system.laminar)
-    slip = np.abs(started.imag)
-    return most_growing(
-        MostGrowing(started, slip, circles, terms, every, np.zeros(speed.shape), fastest), speed
-    )
+    slip, tips = np.abs(started.imag), np.outer(speed, [0.0, 2.0])
+    return most_growing(MostGrowing(started, slip, circles, terms, every, tips, fastest), speed)
+
+
+def _of_plates(laminar: Array, speed: Array) -> Array:
+    """Drag of floor and lid on slow motions, which the Coriolis force alone decides, shape (n, N, N)."""
+    return np.asarray(np.sqrt(speed)[:, None, None] * (laminar[1] + laminar[2]))
 
 
 def roots(matrices: CoupledMatrices) -> Complex:
@@ -147,7 +165,7 @@ class MostGrowing:
     terms: Callable[[Complex, Index], tuple[Complex, Complex]]
     #: all lambda at some of the speeds, nan in place of some, shape (k, m) from (k,)
     every: Callable[[Index], Complex]
-    tip: Array  #: imaginary part of the end of the cut of T, rad/s, shape (n,)
+    tips: Array  #: imaginary parts of the ends of the cuts of T, rad/s, shape (n, 2)
     fastest: Array  #: rate beyond which the masses alone count, 1/s, shape (n,)
 
 
@@ -197,7 +215,7 @@ def _told(search: MostGrowing, starts: tuple[Complex, Complex], at: Index, speed
     spin = speed[at]
     rate = np.where(found, root.real, -np.inf).max(axis=1)
     told = np.isfinite(rate)
-    region = Region(np.where(told, rate, 0.0) - _SHARE * spin, search.tip[at], spin, search.fastest[at])
+    region = Region(np.where(told, rate, 0.0) - _SHARE * spin, search.tips[at], spin, search.fastest[at])
 
     def determinant(points: Complex, owner: Index) -> Complex:
         unit, size = np.linalg.slogdet(search.terms(points, at[owner])[0])
@@ -216,7 +234,7 @@ def _told(search: MostGrowing, starts: tuple[Complex, Complex], at: Index, speed
 
 def _fastest(started: Complex, mass: Array, laminar: Array) -> Array:
     """Rate of the fastest mode, and where the drag equals the inertia, 1/s, shape (n,)."""
-    drag = float(np.abs(np.linalg.eigvals(np.linalg.solve(mass, laminar))).max())
+    drag = float(np.abs(np.linalg.eigvals(np.linalg.solve(mass, laminar[0] + laminar[1]))).max())
     return np.asarray(np.maximum(np.abs(started).max(axis=1), drag**2))
 
 
@@ -282,10 +300,9 @@ class CircleLayer:
 
     density: float  #: rho h, kg/m^2
     liquid_area: float  #: m^2
-    gyration: Complex  #: C, B, S and the drag of floor and lid over sqrt(Omega), shape (m, m)
+    gyration: Complex  #: C, B, shape (m, m), and what `SectionLayer.laminar` is, (3, m, m)
     surface: Complex
     laminar: Complex
-    plates: Complex
     moment: Complex  #: p, shape (m,), m
     rate: float  #: k of linear friction, 1/s
 
@@ -322,7 +339,6 @@ def circle_layer(layer: SectionLayer) -> CircleLayer:
         gyration=seen(liquid.gyration),
         surface=seen(liquid.surface),
         laminar=seen(layer.laminar),
-        plates=seen(layer.plates),
         moment=np.sqrt(2.0) * (liquid.moment[0] @ basis),
         rate=layer.rate,
     )
@@ -356,7 +372,7 @@ class StandingMatrices:
     mass: Array  #: shape (N, N), (n, N, N), (n, N, N)
     damping: Array
     stiffness: Array
-    laminar: Array  #: S, shape (N, N)
+    laminar: Array  #: of `CircleLayer`, times the density, shape (3, N, N)
     quarter: Array  #: multiplies the liquid's complex coordinates by i, shape (N, N)
 
 
@@ -372,7 +388,8 @@ def standing_matrices(system: RotorSystem, layers: Sequence[Placed], speed: Arra
     count, spin = len(system.coordinates), speed[:, None, None]
     circles = [(plane, circle_layer(layer)) for plane, layer in layers]
     size = count + 2 * sum(len(circle.moment) for _, circle in circles)
-    mass, laminar, quarter = np.zeros((3, size, size))
+    mass, quarter = np.zeros((2, size, size))
+    laminar = np.zeros((3, size, size))
     damping, stiffness = np.zeros((2, speed.size, size, size))
     mass[:count, :count] = system.mass
     damping[:, :count, :count] = system.damping + spin * system.gyroscopic
@@ -388,10 +405,13 @@ def standing_matrices(system: RotorSystem, layers: Sequence[Placed], speed: Arra
         mass[:count, own], mass[own, :count], mass[own, own] = pull, pull.T, unit
         # d/dt - i Omega takes the place of d/dt in what the liquid does in the drum.
         twist, spread = circle.density * _real(circle.gyration), circle.density * _real(circle.surface)
-        drag = circle.rate * unit + np.sqrt(spin) * circle.density * _real(circle.plates)
-        damping[:, own, own] = 2.0 * spin * (twist - circle.density * turn) + drag
-        stiffness[:, own, own] = np.square(spin) * (spread - unit - 2.0 * turn @ twist) - spin * turn @ drag
-        laminar[own, own], quarter[own, own] = circle.density * _real(circle.laminar), turn
+        damping[:, own, own] = 2.0 * spin * (twist - circle.density * turn) + circle.rate * unit
+        stiffness[:, own, own] = (
+            np.square(spin) * (spread - unit - 2.0 * turn @ twist)
+            - circle.rate * circle.density * spin * turn
+        )
+        laminar[:, own, own] = circle.density * np.array([_real(part) for part in circle.laminar])
+        quarter[own, own] = turn
     return StandingMatrices(mass, damping, stiffness, laminar, quarter)
 
 
@@ -410,37 +430,39 @@ def standing_modes(system: RotorSystem, layers: Sequence[Placed], speed: Array) 
     circles = np.concatenate([rows, own])
     if not np.any(found.laminar):
         return linear_modes(CoupledMatrices(found.mass, found.damping, found.stiffness), circles)
-    drag = np.sqrt(0.5 * _SLOW * speed)[:, None, None] * found.laminar
-    slipping = -speed[:, None, None] * found.quarter @ drag
-    started = roots(CoupledMatrices(found.mass, found.damping + drag, found.stiffness + slipping))
+    plates = _of_plates(found.laminar, speed)
+    plain, started = (
+        CoupledMatrices(
+            found.mass,
+            found.damping + drag,
+            found.stiffness - speed[:, None, None] * found.quarter @ drag,
+        )
+        for drag in (plates, plates + np.sqrt(0.5 * _SLOW * speed)[:, None, None] * found.laminar[0])
+    )
     # Of the two circles of a mode the one with the spin, which slips less.
-    slip = np.abs(np.abs(started.imag) - speed[:, None])
+    start = roots(started)
+    slip = np.abs(np.abs(start.imag) - speed[:, None])
     turned = found.quarter @ found.laminar
-    plain = CoupledMatrices(found.mass, found.damping, found.stiffness)
 
     def terms(root: Complex, owner: Index) -> tuple[Complex, Complex]:
         at, damping = root[:, None, None], found.damping[owner]
         # Either sense of circle slips by its own frequency over the drum.
-        power, slope = [], []
-        for way in (-1j, 1j):
-            slip = at + way * speed[owner][:, None, None]
-            root_slip = np.sqrt(slip)
-            power.append(slip * root_slip)
-            slope.append(1.5 * root_slip)
-        mean, half = (
-            (0.5 * (pair[0] + pair[1]) for pair in (power, slope)),
-            (-0.5j * (pair[0] - pair[1]) for pair in (power, slope)),
+        spin = speed[owner]
+        ways = [_shears(root + way * spin, spin) for way in (-1j, 1j)]
+        shear, change = (
+            np.tensordot(0.5 * (one + other).T, found.laminar, 1)
+            + np.tensordot(-0.5j * (one - other).T, turned, 1)
+            for one, other in zip(*ways, strict=True)
         )
-        shear, change = (u * found.laminar + v * turned for u, v in zip(mean, half, strict=True))
         matrix = at * (at * found.mass + damping) + found.stiffness[owner] + shear
         return matrix, 2.0 * at * found.mass + damping + change
 
     def every(owner: Index) -> Complex:
-        drags = 0.5 * np.stack([found.laminar - 1j * turned, found.laminar + 1j * turned])
+        drags = 0.5 * np.stack([found.laminar[0] - 1j * turned[0], found.laminar[0] + 1j * turned[0]])
         return standing_roots(plain.at(owner), np.asarray(drags, dtype=complex), speed[owner])
 
-    fastest = _fastest(started, found.mass, found.laminar)
-    return most_growing(MostGrowing(started, slip, circles, terms, every, speed, fastest), speed)
+    fastest, tips = _fastest(start, found.mass, found.laminar), np.outer(speed, [1.0, 3.0])
+    return most_growing(MostGrowing(start, slip, circles, terms, every, tips, fastest), speed)
 
 
 def _real(matrix: Any) -> Array:

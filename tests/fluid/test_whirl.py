@@ -24,6 +24,8 @@ from fluid.whirl import (
     neutral_stiffness,
     offset_with_friction,
     plane_layer,
+    plate_rate,
+    plate_terms,
     steady_rate,
     stokes_rate,
     wall_share,
@@ -168,9 +170,7 @@ def test_laws() -> None:
 
 
 @kills("fluid.whirl:layer_rate", "layer.lids * plate_rate", "2.0 * layer.lids * plate_rate")
-@kills("fluid.whirl:plate_rate", "0.5 * (1.0 - t) * along", "0.5 * (1.0 + t) * along")
-@kills("fluid.whirl:plate_rate", "0.5 * (1.0 + t) * against", "0.5 * (1.0 - t) * against")
-@kills("fluid.whirl:plate_rate", "twice = np.asarray(slip", "twice = -np.asarray(slip")
+@kills("fluid.whirl:plate_terms", "first * along + second * against", "second * along + first * against")
 @kills("fluid.whirl:steady_rate", "-slower_slip", "slower_slip")
 def test_decay_is_that_of_the_modes() -> None:
     """Waves of a ring by elements with the Coriolis force on floor and lid, to first order in friction."""
@@ -196,25 +196,61 @@ def test_decay_is_that_of_the_modes() -> None:
                 assert steady.real == pytest.approx(k, rel=1e-12)
 
 
+@kills("fluid.whirl:plate_terms", "0.5 * (1.0 - t), 0.5 * (1.0 + t)", "0.5 * (1.0 - t), 0.5")
+@kills("fluid.whirl:plate_terms", "first * along + second * against", "second * along + first * against")
+@kills("fluid.whirl:plate_terms", "np.sqrt(1j * (s + twice))", "np.sqrt(1j * s)")
+def test_floor_and_lid() -> None:
+    """Offset with a drag of its own on each circle of the flow, against the equations of motion."""
+    lids, momentum = 0.7, slice(0, 2 * POINTS)
+    for a in (0.135, 0.1, 0.05):
+        for whirl in (30.0, -25.0, 190.0, 52.0 - 4.0j, -60.0 - 2.0j):
+            slip = whirl - SPIN
+            static, inertia, forcing = dragged(a, 0.0)
+            # u + i v as e^{i s t} and its mirror image feel the Coriolis force with and against their turn.
+            along, against = (lids * np.sqrt(1j * (slip + turn)) for turn in (2.0 * SPIN, -2.0 * SPIN))
+            turned = np.kron([[0.0, 0.5j], [-0.5j, 0.0]], np.eye(POINTS))
+            drag = 0.5 * (along + against) * np.eye(2 * POINTS) + (along - against) * turned
+            static[momentum, momentum] += inertia[momentum, momentum].diagonal()[:, None] * drag
+            answer = np.linalg.solve(static + 1j * slip * inertia, whirl**2 * forcing)
+            wanted = -answer[-1] / ((RADIUS / a) ** 2 - 1.0)
+            rate = layer_rate(Layer(1.0, tanh_of(a), 0.0, 0.0, lids), SPIN, slip)
+            found = offset_with_friction(tanh_of(a), SPIN, whirl, rate)
+            np.testing.assert_allclose(found, wanted, rtol=1e-7)
+
+
+def test_slope_of_floor_and_lid() -> None:
+    """Against a central difference, of second order in the step; at the end of a cut it is finite."""
+    for t, slip in ((0.1, 30.0 - 2.0j), (0.7, -95.0 + 4.0j)):
+        ends = [plate_rate(t, SPIN, slip + side * 1e-3) for side in (1.0, -1.0)]
+        slope = complex(plate_terms(t, SPIN, slip)[1])
+        assert slope == pytest.approx(complex(ends[0] - ends[1]) / 2e-3, rel=1e-7)
+    assert np.isfinite(plate_terms(0.1, SPIN, np.array([2.0 * SPIN, -2.0 * SPIN]))[1]).all()
+
+
 @kills("fluid.whirl:stokes_rate", "np.sqrt(1j * np.asarray(slip", "np.sqrt(-1j * np.asarray(slip")
 def test_wall_layer() -> None:
-    """Shear of a growing oscillation on a wall: u_t = nu u_yy + U_t on a fine grid."""
-    nu, points = 1e-3, 6000
-    for slip in (3.0 - 0.4j, -2.0 - 0.1j, 1.0 + 0.3j):
-        thick = math.sqrt(nu / abs(slip))
+    """Shear of a growing oscillation on a wall: u_t + 2 i Omega u = nu u_yy + ... on a fine grid.
+
+    Along the wall without the Coriolis force, on floor and lid as u + i v with it.
+    """
+    nu, points, spin = 1e-3, 6000, 0.7
+    pairs = [(s, turn) for s in (3.0 - 0.4j, -2.0 - 0.1j, 1.0 + 0.3j) for turn in (0.0, 2.0 * spin)]
+    for slip, turn in pairs:
+        thick = math.sqrt(nu / abs(slip + turn))
         y = np.linspace(0.0, 40.0 * thick, points)
         step = y[1]
         # Velocity relative to the outer flow, -U on the wall.
         band = np.zeros((3, points), dtype=complex)
         band[0, 2:] = band[2, :-2] = nu / step**2
-        band[1, 1:-1] = -2.0 * nu / step**2 - 1j * slip
+        band[1, 1:-1] = -2.0 * nu / step**2 - 1j * (slip + turn)
         band[1, [0, -1]] = 1.0
         right = np.zeros(points, dtype=complex)
         right[0] = -1.0
         u = linalg.solve_banded((1, 1), band, right)
         shear = nu * (-1.5 * u[0] + 2.0 * u[1] - 0.5 * u[2]) / step
         # Second order: (step/thickness)^2 of some 4e-5.
-        assert complex(stokes_rate(math.sqrt(nu), slip)) == pytest.approx(shear, rel=1e-4)
+        drag = math.sqrt(nu) * plate_rate(-1.0, spin, slip) if turn else stokes_rate(math.sqrt(nu), slip)
+        assert complex(drag) == pytest.approx(shear, rel=1e-4)
 
 
 @kills("fluid.whirl:neutral_stiffness", "total + own * (1.0 + offset", "total + own * (1.0 - offset")
