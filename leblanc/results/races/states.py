@@ -19,6 +19,7 @@ from leblanc.results.races.balls import GravityOnBalls, RaceOfBalls, ball_moment
 from meshes.arrays import Array, Complex, Flags, Index
 from solvers.rotor.balls.steady import BallKind, BallStates
 
+_EQUAL = 1e-7  # relative; of amplitudes, and of growth over the spin
 STATE_NAMES: Mapping[int, str] = {kind: kind.name.lower() for kind in BallKind}
 
 
@@ -34,9 +35,12 @@ def reported_state(states: BallStates, sizes: Array) -> Index:
     """
     if states.kind.shape[1] == 0:
         return np.full(states.speed.shape, -1)
-    largest = np.argmax(np.where(states.stable, sizes, -1.0), axis=1)
+    stable = np.where(states.stable, sizes, -1.0)
+    # Of amplitudes that are equal the first: rounding does not choose.
+    largest = np.argmax(stable >= stable.max(axis=1, keepdims=True) * (1.0 - _EQUAL), axis=1)
     growth = np.where(states.kind > 0, np.nan_to_num(states.growth, nan=np.inf), np.inf)
-    least = np.argmin(growth, axis=1)
+    slack = _EQUAL * states.speed[:, None]
+    least = np.argmax(growth <= growth.min(axis=1, keepdims=True) + slack, axis=1)
     found = np.where(states.stable.any(axis=1), largest, least)
     return np.where((states.kind > 0).any(axis=1), found, -1)
 
