@@ -60,6 +60,9 @@ def facts(result: BallsResult) -> list[tuple[str, str]]:
             f"{number(float(result.growth[-1]))} 1/s" if known else NOT_FOUND,
         ),
     ]
+    if result.growth_range is not None and result.family_dimension[-1] > 0:
+        least, largest = map(float, result.growth_range[-1])
+        rows.append((f"Growth over the family at {last}", f"{number(least)} to {number(largest)} 1/s"))
     if result.kind != "jeffcott":
         rows.append(("Amplitudes", plane_words(result.position, chambers=True)))
     if any(result.sticking):
@@ -81,6 +84,7 @@ def limits(result: BallsResult) -> list[Limit]:
     checks = [
         ("No state found", ~result.converged),
         ("No state is stable", result.unstable & result.converged),
+        ("Stable only elsewhere in the family", result.elsewhere),
         ("Several states are stable, the largest is told", several),
         ("More amplitude than without balls", result.amplitude > result.amplitude_without),
     ]

@@ -21,7 +21,7 @@ _LED, _STARTS = 5, 5  # starts by intent, and irregular ones
 _ALIKE = 1e-5  # of the balls' unbalance: states nearer than that are one
 _BALANCED = 1e-9  # of what the balls all together do: counts as none
 _STILL = 1e-7  # of the bare rotor's amplitudes: counts as none
-_GROWS = 1e-9  # of the spin
+GROWS = 1e-9  # of the spin
 _EQUAL = 1e-7  # relative: amplitudes of states that differ by less are one, and their order that of the starts
 _NEUTRAL = 1e-9  # slope of a pull over the largest pull: balls that creep neither come nor go
 _TOGETHER = (1, 2)  # starts with all balls together
@@ -55,7 +55,7 @@ class BallStates:
     @property
     def stable(self) -> Flags:
         """Small motions fade or stay, shape (s, b)."""
-        return np.asarray((self.kind != BallKind.NONE) & (self.growth <= _GROWS * self.speed[:, None]))
+        return np.asarray((self.kind != BallKind.NONE) & (self.growth <= GROWS * self.speed[:, None]))
 
 
 def starts_of(counts: Sequence[int]) -> Array:
