@@ -94,9 +94,7 @@ def wet_states(
         # The mean of two rounds in a row: a wall that dries makes them overshoot.
         mass[going] = 0.5 * (mass[going] + found)
         each[going] = machine.compliance(many[going], _added(system, wet, mass[going]))
-        places[going], rests[going] = machine.settle(
-            each[going], places[going], joined=joined[going]
-        )
+        places[going], rests[going] = machine.settle(each[going], places[going], joined=joined[going])
     agrees = np.ones(many.size, dtype=bool)
     agrees[going] = False
     shape = spin.size, len(starts)

@@ -31,7 +31,11 @@ def answer(result: BallsResult) -> str:
         first = f"From {in_rpm(result.balanced_from)} on the balls balance the rotor"
     if not result.stable.any():
         found = result.converged.any()
-        nothing = "no state is stable" if found else "no state of balls at rest was found"
+        nothing = (
+            "no state that creeping balls come to is stable"
+            if found
+            else "no state of balls at rest was found"
+        )
         return f"{first}: {nothing}; without balls the largest amplitude is {without}."
     most = int(np.argmax(np.where(result.stable, result.amplitude, -1.0)))
     peak = f"{with_unit(float(result.amplitude[most]), LENGTH)} at {in_rpm(float(result.speed[most]))}"

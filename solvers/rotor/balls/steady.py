@@ -22,7 +22,9 @@ _ALIKE = 1e-5  # of the balls' unbalance: states nearer than that are one
 _BALANCED = 1e-9  # of what the balls all together do: counts as none
 _STILL = 1e-7  # of the bare rotor's amplitudes: counts as none
 GROWS = 1e-9  # of the spin
-_EQUAL = 1e-7  # relative: amplitudes of states that differ by less are one, and their order that of the starts
+_EQUAL = (
+    1e-7  # relative: amplitudes of states that differ by less are one, and their order that of the starts
+)
 _NEUTRAL = 1e-9  # slope of a pull over the largest pull: balls that creep neither come nor go
 _TOGETHER = (1, 2)  # starts with all balls together
 
@@ -68,9 +70,10 @@ def starts_of(counts: Sequence[int]) -> Array:
     counts : of balls in each race
     """
     even = np.concatenate([2.0 * np.pi * np.arange(count) / count for count in counts])
-    order = np.concatenate([np.arange(count) for count in counts])
-    uneven = even + 0.3 * np.sin(order + 1.0)
-    near = 0.15 * np.sin(2.0 * order + 1.0)
+    # Counted over all races: two balls of one plane that begin at one angle would part by rounding alone.
+    every = np.arange(even.size)
+    uneven = even + 0.3 * np.sin(every + 1.0)
+    near = 0.15 * np.sin(2.0 * every + 1.0)
     zero = np.zeros(even.size)
     some = np.random.default_rng(0).uniform(0.0, 2.0 * np.pi, (_STARTS, even.size))
     return np.array([uneven, zero, zero + np.pi, near, near + np.pi, *some])
@@ -275,9 +278,7 @@ def _means(machine: RotorWithBalls, places: Array, coordinates: Complex, still: 
     return np.hstack([np.add.reduceat(turn**k, first, axis=1) / counts * ~still[first] for k in (1, 2)])
 
 
-def _different(
-    machine: RotorWithBalls, compliance: Complex, places: Array, starts: Index
-) -> list[_Found]:
+def _different(machine: RotorWithBalls, compliance: Complex, places: Array, starts: Index) -> list[_Found]:
     """Each state or family once, the smallest deflection first, equal ones in the order of their starts."""
     coordinates = machine.coordinates(compliance, places)
     size, still = np.abs(machine.forward(coordinates)).max(axis=1), machine.at_rest(compliance, places)
