@@ -83,8 +83,8 @@ class BallsResult(Result):
     #: deflection in the plane of each race below which its balls stay where they are, m
     sticking: tuple[float, ...]
     notes: tuple[Note, ...]  #: limits of validity and findings
-    #: least and largest growth of small motions over the members of the reported state's family, 1/s, twice its
-    #: own growth where it is the only member, shape (s, 2); None where it was not asked for
+    #: least and largest growth of small motions over the members of the reported state's family, 1/s, twice
+    #: its own growth where it is the only member, shape (s, 2); None where it was not asked for
     growth_range: Array | None = None
     #: forces and clearances of the state reported where it is stable; None where the scene asks for none
     loads: MachineLoads | None = None
@@ -166,7 +166,7 @@ class BallsResult(Result):
 
     @property
     def family_dimension(self) -> Index:
-        """Directions along which the state reported can move and stays one, -1 without a state, shape (s,)."""
+        """Dimension of the family of the state reported, 0 of a single one, -1 without one, shape (s,)."""
         return self._of_chosen(self.states.dimension, -1)
 
     @property

@@ -49,8 +49,8 @@ class BallStates:
     #: largest real part of the roots of small motions, 1/s, below 0 where they fade; nan where the map of
     #: half a turn did not settle, which does not count as stable, shape (s, b)
     growth: Array
-    #: directions along which a state can move and stays one: of a family `places` and `growth` are those of the
-    #: member that creeping balls come to [theory: races, eq. 16-17], shape (s, b)
+    #: directions along which a state can move and stays one: of a family `places` and `growth` are those of
+    #: the member that creeping balls come to [theory: races, eq. 16-17], shape (s, b)
     dimension: Index
     still: Flags  #: balls in whose plane the axis does not move, shape (s, b, N)
 
