@@ -177,7 +177,8 @@ def covered() -> Note:
 def free_balls() -> Note:
     """Which motions of the balls do not count."""
     text = (
-        "Balls that the balance does not need may move freely without unbalancing the rotor: no instability."
+        "Balls that the balance does not need may move freely without unbalancing the rotor: no instability. "
+        "Where they can stand in many ways growth is that of an even share; `leblanc run` has its range."
     )
     return Note(BallCode.FREE, {}, text)
 

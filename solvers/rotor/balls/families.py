@@ -190,12 +190,13 @@ def _best_two(rates: Array, alike: Array) -> Index:
     for sense in (-1.0, 1.0):
         score = np.where(np.isfinite(rates), sense * rates, -np.inf)
         for _ in range(2):
-            pick = np.argmax(score >= score.max(axis=1, keepdims=True) - alike, axis=1)
+            pick: Index = np.argmax(score >= score.max(axis=1, keepdims=True) - alike, axis=1)
             picks.append(pick)
             left = score.copy()
             left[np.arange(len(left)), pick] = -np.inf
             # With a single member left both begin there.
-            score = np.where(np.isfinite(left).any(axis=1)[:, None], left, score)
+            some = np.asarray(np.isfinite(left).any(axis=1))
+            score = np.where(some[:, None], left, score)
     return np.stack(picks, axis=1)
 
 
@@ -209,6 +210,7 @@ class _Reduced:
         first = members[0]
         machine, system, still = first.machine, first.machine.system, first.still
         self.count, turn = len(system.coordinates), turning(system)
+        assert turn is not None  # the supports are alike
         speed = np.array([member.speed for member in members])[:, None, None]
         mass = np.array([member.machine.mass for member in members])
         damping = system.damping + speed * system.gyroscopic
@@ -287,10 +289,11 @@ def _as_two(angles: Array) -> Complex:
     """
     turn = np.exp(1j * angles)
     if turn.shape[-1] <= 2:
-        return turn
+        return np.asarray(turn)
     x, y = turn.real, turn.imag
     first, second, mixed = (x * x).sum(-1), (y * y).sum(-1), (x * y).sum(-1)
     # Of a 2 by 2 matrix: (G + g)/sqrt(tr G + 2 g), g^2 = det G.
     root = np.sqrt(np.maximum(first * second - mixed**2, 0.0))
     size = np.sqrt(first + second + 2.0 * root)
-    return np.stack((first + root + 1j * mixed, mixed + 1j * (second + root)), axis=-1) / size[..., None]
+    both = np.stack((first + root + 1j * mixed, mixed + 1j * (second + root)), axis=-1)
+    return np.asarray(both / size[..., None])

@@ -300,7 +300,7 @@ def family_dimension(machine: RotorWithBalls, places: ArrayLike, still: Flags) -
     places : of the balls, rad, shape (N,)
     still : balls in whose plane the axis does not move, shape (N,)
     """
-    return neutral_directions(machine, places, still).shape[1] + int(turns_freely(machine, still))
+    return int(neutral_directions(machine, places, still).shape[1] + turns_freely(machine, still))
 
 
 def _directions(machine: RotorWithBalls, angles: Array) -> tuple[Array, Array]:

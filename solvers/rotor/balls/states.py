@@ -285,24 +285,23 @@ class RotorWithBalls:
         -------
         Places, shape (p, N), and whether the balls rest there, shape (p,)
         """
-        answers, unit = self._scaled_answers(compliance), np.eye(places.shape[1])
-        found, length = places.astype(float).copy(), np.full(places.shape[0], 0.1)
+        bare, each = self._scaled_answers(compliance)
+        found, length, unit = places.astype(float), np.full(places.shape[0], 0.1), np.eye(places.shape[1])
         going, share = np.arange(places.shape[0]), 1.0 / (2.0 + math.sqrt(2.0))
         for _ in range(_CREEPS):
-            own, at, h = tuple(part[going] for part in answers), found[going], length[going, None]
-            pull, slope = _pulls(*own, at)
+            at, h = found[going], length[going, None]
+            pull, slope = _pulls(bare[going], each[going], at)
             busy = np.abs(pull).max(axis=1) > _RESTS
             if not busy.all():
                 going = going[busy]
                 if not going.size:
                     break
-                own, at, h = tuple(part[busy] for part in own), at[busy], h[busy]
-                pull, slope = pull[busy], slope[busy]
-            inverse = np.linalg.inv(unit - share * h[:, :, None] * slope)
+                at, h, pull, slope = at[busy], h[busy], pull[busy], slope[busy]
+            inverse = np.asarray(np.linalg.inv(unit - share * h[:, :, None] * slope), dtype=float)
             first = _times(inverse, pull)
-            middle = _pulls(*own, at + 0.5 * h * first)[0]
+            middle = _pulls(bare[going], each[going], at + 0.5 * h * first)[0]
             second = _times(inverse, middle - first) + first
-            ahead = _pulls(*own, at + h * second)[0]
+            ahead = _pulls(bare[going], each[going], at + h * second)[0]
             third = ahead - (6.0 + math.sqrt(2.0)) * (second - middle) - 2.0 * (first - pull)
             error = h[:, 0] / 6.0 * np.abs(first - 2.0 * second + _times(inverse, third)).max(axis=1)
             kept = error <= _LOCAL
@@ -310,9 +309,9 @@ class RotorWithBalls:
             factor = 0.8 * np.cbrt(_LOCAL / np.maximum(error, 1e-12 * _LOCAL))
             length[going] = np.minimum(length[going] * np.clip(factor, 0.2, 5.0), 1e6)
         for _ in range(3):
-            pull, slope = _pulls(*answers, found)
-            found -= _times(np.linalg.pinv(slope, rcond=_RANK), pull)
-        rests = np.abs(_pulls(*answers, found)[0]).max(axis=1) <= 1e3 * _RESTS
+            pull, slope = _pulls(bare, each, found)
+            found -= _times(np.asarray(np.linalg.pinv(slope, rcond=_RANK)), pull)
+        rests = np.abs(_pulls(bare, each, found)[0]).max(axis=1) <= 1e3 * _RESTS
         return found, np.asarray(rests)
 
     def nearest(self, compliance: Complex, places: ArrayLike) -> Array | None:

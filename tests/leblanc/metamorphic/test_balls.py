@@ -16,7 +16,7 @@ from tests.oracles.random_balls import machine_with_balls, nudged_balls
 # The machines of a slow run.
 COUNT, FIRST = int(os.environ.get("METAMORPHIC_COUNT", "200")), int(os.environ.get("METAMORPHIC_FIRST", "0"))
 SIZE = 1e-10
-# What an answer may move by: a thousand times the change, of its own scale (the spin, the bare amplitude, a turn).
+# What an answer may move by: a thousand times the change, of its scale (spin, bare amplitude, a turn).
 ALLOWED = 1e3 * SIZE
 # A machine next to a fold, or to roots that meet, is sensitive to its inputs: there as much as a change a
 # thousand times as large does. A jump by chance is as large for both, and larger than the next.
