@@ -46,6 +46,10 @@ def grade_words(quality: float) -> str:
 _CIRCLE = 1e-9  # of the deflection, that the part against the spin may have in a circle
 SCALARS = ("liquid_mass", "critical_speed_dry", "critical_speed_wet", "capture_speed")
 STABILITY = ("not_known", "unstable", "stable")
+# What there is none of without a chamber: an empty list for scripts, no variable in the data file.
+OF_LIQUID = ("liquid_offset", "liquid_angle", "dry_patch", "model", "error_estimate", "critical_speeds_wet")
+OF_LIQUID += ("chamber_deflection", "chamber_real", "chamber_imag", "critical_speed_wet", "capture_speed")
+OF_LIQUID += ("carried_from",)
 STATES = ("dry_patch", "stable", "model", "in_range", "converged")  # over speed
 
 
@@ -152,6 +156,11 @@ class RunResult(Loaded, Result):
             expected = (count, *branches[1:]) if each.name.startswith("branch_") else (count,)
             if shape != expected:
                 raise InputError(f"response.{each.name}", shape, f"of shape {expected}")
+
+    @property
+    def chamberless(self) -> bool:
+        """The machine has no chamber: it is the one without liquid."""
+        return not self.chambers
 
     @property
     def amplitude(self) -> Array:
@@ -351,14 +360,14 @@ class RunResult(Loaded, Result):
 
         Lists run over speed, with None (null) where nothing was found; `branches` has one list for each
         speed, of as many deflections as there are branches. The amplitude of a peak is None where it has no
-        bound; `refined` has speeds of its own.
+        bound; `refined` has speeds of its own. Without a chamber lists of the liquid are empty.
         """
         r = self.response
         present = ~np.isnan(r.branch_deflection)
         ends = np.cumsum(np.count_nonzero(present, axis=1)).tolist()
         rows = [slice(start, stop) for start, stop in pairwise([0, *ends])]
         branches, branch_stable = finite(r.branch_deflection[present]), r.branch_stable[present].tolist()
-        return {
+        found = {
             "speed": finite(r.speed),
             "amplitude": finite(self.amplitude),
             "amplitude_min": finite(self.amplitude_min),
@@ -388,6 +397,8 @@ class RunResult(Loaded, Result):
             **({} if self.loads is None else self.loads.to_json()),
             **({} if self.closed_forms is None else self.closed_forms.to_json()),
         }
+        empty = {name: [] if isinstance(found[name], list) else None for name in OF_LIQUID if name in found}
+        return found | empty if self.chamberless else found
 
     def named_arrays(self) -> NamedArrays:
         """Arrays over the dimensions `speed` and `branch`; units, names and descriptions in the attributes.
@@ -399,11 +410,14 @@ class RunResult(Loaded, Result):
         rank = np.arange(self.response.branch_deflection.shape[1], dtype=np.int32)
         own = {
             "inputs": "\n".join(one_line("{}: {} [{}]".format(*entry)) for entry in self.inputs),
-            "model": ", ".join(self.models_used),
+            **({} if self.chamberless else {"model": ", ".join(self.models_used)}),
             "axis": self.axis,
         }
+        columns = _variables(self)
+        if self.chamberless:
+            columns = {name: column for name, column in columns.items() if name not in OF_LIQUID}
         return NamedArrays(
-            _variables(self),
+            columns,
             coords={
                 "speed": var(("speed",), self.speed, "rad s-1", "spin speed", "of the rotor about its axis"),
                 **_refined_speeds(self.refined),

@@ -70,6 +70,7 @@ def prepare(scene: Scene) -> Prepared:
     InputError : the scene is that of an exciter, or has balls
     """
     require_no_balls(scene, "this; `leblanc run` and `leblanc runup` answer with balls")
+    scene = scene.as_read()
     rotor = dry_rotor(scene)
     return Prepared(
         scene=scene,
@@ -446,7 +447,7 @@ def runup_outlook(scene: Scene) -> str:
     scene : the machine; nothing is said of one without a run-up or a programme
     """
     liquid, tolerance = scene.model.liquid, scene.model.tolerance
-    if scene.speed_plan is None:
+    if scene.speed_plan is None or not scene.chambers:
         return ""
     from solvers.runup.runup import largest_wave
 
