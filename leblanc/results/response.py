@@ -47,9 +47,11 @@ _CIRCLE = 1e-9  # of the deflection, that the part against the spin may have in 
 SCALARS = ("liquid_mass", "critical_speed_dry", "critical_speed_wet", "capture_speed")
 STABILITY = ("not_known", "unstable", "stable")
 # What there is none of without a chamber: an empty list for scripts, no variable in the data file.
-OF_LIQUID = ("liquid_offset", "liquid_angle", "dry_patch", "model", "error_estimate", "critical_speeds_wet")
-OF_LIQUID += ("chamber_deflection", "chamber_real", "chamber_imag", "critical_speed_wet", "capture_speed")
-OF_LIQUID += ("carried_from",)
+OF_LIQUID = (
+    *("liquid_offset", "liquid_angle", "dry_patch", "model", "error_estimate", "critical_speeds_wet"),
+    *("chamber_deflection", "chamber_real", "chamber_imag", "critical_speed_wet", "capture_speed"),
+    "carried_from",
+)
 STATES = ("dry_patch", "stable", "model", "in_range", "converged")  # over speed
 
 
@@ -367,7 +369,7 @@ class RunResult(Loaded, Result):
         ends = np.cumsum(np.count_nonzero(present, axis=1)).tolist()
         rows = [slice(start, stop) for start, stop in pairwise([0, *ends])]
         branches, branch_stable = finite(r.branch_deflection[present]), r.branch_stable[present].tolist()
-        found = {
+        found: dict[str, Any] = {
             "speed": finite(r.speed),
             "amplitude": finite(self.amplitude),
             "amplitude_min": finite(self.amplitude_min),
@@ -397,8 +399,10 @@ class RunResult(Loaded, Result):
             **({} if self.loads is None else self.loads.to_json()),
             **({} if self.closed_forms is None else self.closed_forms.to_json()),
         }
-        empty = {name: [] if isinstance(found[name], list) else None for name in OF_LIQUID if name in found}
-        return found | empty if self.chamberless else found
+        if self.chamberless:
+            of_liquid = found.keys() & OF_LIQUID
+            found |= {name: [] if isinstance(found[name], list) else None for name in of_liquid}
+        return found
 
     def named_arrays(self) -> NamedArrays:
         """Arrays over the dimensions `speed` and `branch`; units, names and descriptions in the attributes.

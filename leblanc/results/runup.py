@@ -31,8 +31,10 @@ from solvers.synchronous.response import Response
 Values = NDArray[Any]
 Bands = tuple[tuple[float, float], ...]
 # What there is none of without a chamber: an empty list for scripts, no variable in the data file.
-OF_LIQUID = ("liquid_offset", "liquid_angle", "liquid_offset_mean", "liquid_angle_mean", "captured")
-OF_LIQUID += ("depth_max", "depth_min", "mean_rotation", "lag")
+OF_LIQUID = (
+    *("liquid_offset", "liquid_angle", "liquid_offset_mean", "liquid_angle_mean", "captured"),
+    *("depth_max", "depth_min", "mean_rotation", "lag"),
+)
 _FEWEST = 8  # samples in a mean over turns
 
 

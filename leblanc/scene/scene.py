@@ -212,7 +212,7 @@ class Scene(Part):
     )
     rotor: AnyRotor = Field(discriminator="kind", description="the machine without its liquid")
     chambers: Annotated[tuple[AnyChamber, ...], entries(0, MAX_CHAMBERS, "tables headed [[chambers]]")] = (
-        Field((), description="each with its liquid or its balls; without one nothing reads [model]")
+        Field((), description="each with its liquid or its balls; without chambers [model] has no effect")
     )
     cabinet: Cabinet | None = Field(
         None, description="that stands on the floor around the rotor; forces under its feet are told if given"
