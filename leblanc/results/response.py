@@ -46,6 +46,12 @@ def grade_words(quality: float) -> str:
 _CIRCLE = 1e-9  # of the deflection, that the part against the spin may have in a circle
 SCALARS = ("liquid_mass", "critical_speed_dry", "critical_speed_wet", "capture_speed")
 STABILITY = ("not_known", "unstable", "stable")
+# What there is none of without a chamber: an empty list for scripts, no variable in the data file.
+OF_LIQUID = (
+    *("liquid_offset", "liquid_angle", "dry_patch", "model", "error_estimate", "critical_speeds_wet"),
+    *("chamber_deflection", "chamber_real", "chamber_imag", "critical_speed_wet", "capture_speed"),
+    "carried_from",
+)
 STATES = ("dry_patch", "stable", "model", "in_range", "converged")  # over speed
 
 
@@ -152,6 +158,11 @@ class RunResult(Loaded, Result):
             expected = (count, *branches[1:]) if each.name.startswith("branch_") else (count,)
             if shape != expected:
                 raise InputError(f"response.{each.name}", shape, f"of shape {expected}")
+
+    @property
+    def chamberless(self) -> bool:
+        """The machine has no chamber: it is the one without liquid."""
+        return not self.chambers
 
     @property
     def amplitude(self) -> Array:
@@ -353,14 +364,14 @@ class RunResult(Loaded, Result):
         Lists run over speed, with None (null) where nothing was found; `branches` has one list for each
         speed, of as many deflections as there are branches. The amplitude of a peak is None where it has no
         bound. `refined` has speeds of its own; `curve` has those of both, so that its largest amplitude in
-        range is the peak.
+        range is the peak. Without a chamber lists of the liquid are empty.
         """
         r = self.response
         present = ~np.isnan(r.branch_deflection)
         ends = np.cumsum(np.count_nonzero(present, axis=1)).tolist()
         rows = [slice(start, stop) for start, stop in pairwise([0, *ends])]
         branches, branch_stable = finite(r.branch_deflection[present]), r.branch_stable[present].tolist()
-        return {
+        found: dict[str, Any] = {
             "speed": finite(r.speed),
             "amplitude": finite(self.amplitude),
             "amplitude_min": finite(self.amplitude_min),
@@ -390,6 +401,10 @@ class RunResult(Loaded, Result):
             **({} if self.loads is None else self.loads.to_json()),
             **({} if self.closed_forms is None else self.closed_forms.to_json()),
         }
+        if self.chamberless:
+            of_liquid = found.keys() & OF_LIQUID
+            found |= {name: [] if isinstance(found[name], list) else None for name in of_liquid}
+        return found
 
     def named_arrays(self) -> NamedArrays:
         """Arrays over the dimensions `speed`, `curve_speed` and `branch`; units and names in the attributes.
@@ -403,11 +418,14 @@ class RunResult(Loaded, Result):
         rank = np.arange(self.response.branch_deflection.shape[1], dtype=np.int32)
         own = {
             "inputs": "\n".join(one_line("{}: {} [{}]".format(*entry)) for entry in self.inputs),
-            "model": ", ".join(self.models_used),
+            **({} if self.chamberless else {"model": ", ".join(self.models_used)}),
             "axis": self.axis,
         }
+        columns = _variables(self)
+        if self.chamberless:
+            columns = {name: column for name, column in columns.items() if name not in OF_LIQUID}
         return NamedArrays(
-            _variables(self),
+            columns,
             coords={
                 "speed": var(("speed",), self.speed, "rad s-1", "spin speed", "of the rotor about its axis"),
                 **_further_speeds(self),

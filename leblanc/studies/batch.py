@@ -83,6 +83,8 @@ def answer_scenes(scenes: Sequence[Scene]) -> Answers:
     counts = {scene.speeds.count for scene in scenes}
     if len(counts) != 1:
         raise InputError("scenes", sorted(counts), "at least one, all with one number of speeds")
+    if not all(scene.chambers for scene in scenes):
+        return _joined([_bare(scene) for scene in scenes])
     if any(scene.balls for scene in scenes):
         return _joined([_with_balls(scene) for scene in scenes])
     planar = [k for k, scene in enumerate(scenes) if isinstance(scene.rotor, JeffcottRotor)]
@@ -101,6 +103,17 @@ def _joined(parts: Sequence[Answers], order: Index | None = None) -> Answers:
             continue
         found[name] = np.concatenate(each) if order is None else np.concatenate(each)[order]
     return Answers(**found)
+
+
+def _bare(scene: Scene) -> Answers:
+    """Answers of one scene; without chambers nothing is told of a liquid."""
+    found = answer_scenes([scene]) if scene.chambers else _single(scene)
+    if scene.chambers:
+        return found
+    unknown = dict.fromkeys(
+        ("liquid_offset", "liquid_angle", "error_estimate"), np.full(found.speed.shape, np.nan)
+    )
+    return replace(found, **unknown, model=np.full(found.speed.shape, "none"))
 
 
 def _with_balls(scene: Scene) -> Answers:

@@ -90,6 +90,7 @@ def explain_scene(scene: Scene) -> Explanation:
     ------
     InputError : the scene names a liquid model that does not know its chambers
     """
+    scene = scene.as_read()
     machine = prepare(scene, free=True)
     gravity, (choice,) = machine.axial_gravity, choose_all([machine])
     growth = asynchronous_growth(machine.rotor, scene.fills, machine.speed, machine.friction)[0]
@@ -122,8 +123,8 @@ def explain_scene(scene: Scene) -> Explanation:
         speed_ratio=(ends[0] / bare.critical_speed, ends[1] / bare.critical_speed),
         captured_from=choice.captured_from,
         layers=tuple(layers),
-        models=model_spans(choice, machine.speed),
-        estimates=speed_estimates(choice, machine.speed),
+        models=model_spans(choice, machine.speed) if scene.fills else (),
+        estimates=speed_estimates(choice, machine.speed) if scene.fills else (),
         tolerance=choice.tolerance,
         modes=bare.modes,
         runup=runup_outlook(scene),

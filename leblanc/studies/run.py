@@ -220,6 +220,7 @@ def run_scene(
     >>> result.speed.size
     201
     """
+    scene = scene.as_read()
     if holding.solver != COUPLED and not may_hold(scene):
         raise InputError(
             "solver", holding.solver, "left out: the scene has no motion held in time ([model] held)"
@@ -290,7 +291,7 @@ def run_scene(
         motion=motion,
         whirl=whirl,
         error_estimate=choice.error,
-        models=model_spans(choice, machine.speed),
+        models=model_spans(choice, machine.speed) if scene.fills else (),
         tolerance=choice.tolerance,
         refined=refined,
         axial_gravity=machine.axial_gravity,
@@ -352,7 +353,9 @@ def _notes(
 ) -> tuple[Note, ...]:
     """Limits of validity and findings."""
     cost = held_cost(machine, choice, whirl.growth)
-    found = [notes.liquid_models(choice), notes.tolerance_missed(choice, machine.speed, cost)]
+    found = [notes.tolerance_missed(choice, machine.speed, cost)]
+    if machine.scene.fills:
+        found.insert(0, notes.liquid_models(choice))
     if any(sheds is not None for sheds in sheds_of(machine.scene.rotor)):
         found.append(notes.unbalance_leaves(left_in_the_end(machine.scene.rotor)))
     if choice.captured_from is not None:
@@ -361,10 +364,10 @@ def _notes(
     found.append(notes.one_family(answer))
     if held is not None:
         found += [*notes.held_motions(held, answer.speed), *smeared_baffles(machine.scene.fills, held.cells)]
+    chambers = bool(machine.scene.fills)
     if motion is None:
-        found.append(notes.slow_disturbances(held))
+        found.append(notes.slow_disturbances(held) if chambers else None)
     else:
-        chambers = bool(machine.scene.fills)
         found.append(notes.plane(motion.position, motion.zero, chambers, held is not None))
         found.append(_against_spin(answer, motion, held) if chambers else None)
     found.append(notes.self_excited(whirl))

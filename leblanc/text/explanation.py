@@ -30,10 +30,11 @@ REFUSED = "does not answer"
 
 def machine_rows(answer: Explanation) -> Rows:
     """The rotor as a whole; label and text."""
-    dry, wet = in_rpm(answer.critical_speed_dry), in_rpm(answer.critical_speed_wet)
+    dry, wet = (in_rpm(speed) for speed in (answer.critical_speed_dry, answer.critical_speed_wet))
+    beside = f", {wet} with it at small deflections" if answer.layers else ""
     first, last = answer.speed_ratio
     rows = [
-        ("critical speed", f"{dry} without liquid, {wet} with it at small deflections"),
+        ("critical speed", f"{dry} without liquid{beside}"),
         ("damping ratio", f"{answer.damping_ratio:.4g}"),
         ("speeds", f"{first:.3g} to {last:.3g} times the dry critical speed"),
     ]

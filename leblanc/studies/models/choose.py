@@ -78,6 +78,7 @@ def prepare(scene: Scene, free: bool = False) -> Prepared:
     require_no_balls(scene, "this; `leblanc run` and `leblanc runup` answer with balls")
     if not free:
         require_supported(scene)
+    scene = scene.as_read()
     rotor = dry_rotor(scene)
     return Prepared(
         scene=scene,
@@ -454,7 +455,7 @@ def runup_outlook(scene: Scene) -> str:
     scene : the machine; nothing is said of one without a run-up or a programme
     """
     liquid, tolerance = scene.model.liquid, scene.model.tolerance
-    if scene.speed_plan is None:
+    if scene.speed_plan is None or not scene.chambers:
         return ""
     from solvers.runup.runup import largest_wave
 
