@@ -185,15 +185,16 @@ class RunResult(Loaded, Result):
 
     @property
     def peak(self) -> dict[str, float]:
-        """Largest amplitude over the whole range of speeds and where it is, m and rad/s.
+        """Largest amplitude over the range of speeds and where it is, m and rad/s.
 
-        The amplitude is infinite where it has no bound; both are nan where nothing was found.
+        Of the speeds at which the answer holds: found and in the range of its model; of all where it holds at
+        none. The amplitude is infinite where it has no bound; both are nan where nothing was found.
         """
-        return asdict(highest(self.curve.speed, self.curve.amplitude))
+        return asdict(self.curve.peak)
 
     @property
     def peak_dry(self) -> dict[str, float]:
-        """The same of the rotor without liquid."""
+        """The same of the rotor without liquid, which is known at every speed."""
         return asdict(highest(self.curve.speed, self.curve.amplitude_dry))
 
     @property

@@ -309,7 +309,10 @@ def _loads(
     every = by_speed([answer, refined])
     order = np.argsort(np.concatenate((answer.speed, refined.speed)), kind="stable")
     asked = np.argsort(order, kind="stable")[: answer.speed.size]
-    return loads_over_speed(machine, scene.model.friction, every.speed, every.coordinates, asked, held)
+    friction = scene.model.friction
+    return loads_over_speed(
+        machine, friction, every.speed, every.coordinates, asked, held, counts=every.holds
+    )
 
 
 def _balance(machine: Prepared, answer: Response) -> dict[str, Array]:
@@ -353,6 +356,7 @@ def _notes(
         found.append(notes.unbalance_leaves(left_in_the_end(machine.scene.rotor)))
     if choice.captured_from is not None:
         found.append(notes.not_carried(choice.captured_from, carried_from(machine.scene)))
+    found.append(notes.left_out(by_speed([answer, refined]), choice.captured_from))
     found.append(notes.one_family(answer))
     if held is not None:
         found += [*notes.held_motions(held, answer.speed), *smeared_baffles(machine.scene.fills, held.cells)]

@@ -40,7 +40,7 @@ def answer(result: RunResult) -> str:
         size = f"{final} with the liquid{_aside(result, -1)}"
         bare = _UNBOUNDED if last.dry == _INFINITE else last.dry_text
         return f"At {speed} the amplitude{where} {size} and {bare} without."
-    highest = largest(result.curve.amplitude)
+    highest = result.curve.top
     assert highest is not None
     at_last = f"it {final}{_aside(result, -1)} instead of {last.dry_text}"
     if last.dry == _INFINITE:
@@ -194,7 +194,7 @@ def comparisons(result: RunResult) -> list[Comparison]:
     result : the response
     """
     r = result.curve
-    wet, dry = largest(r.amplitude), largest(r.amplitude_dry)
+    wet, dry = r.top, largest(r.amplitude_dry)
     at_wet, at_dry = (NOT_FOUND if i is None else number(r.speed[i] * RPM) for i in (wet, dry))
     found = [
         _compared("Largest amplitude", result, wet, dry),
@@ -449,7 +449,7 @@ def remarks(result: RunResult) -> list[str]:
     result : the response
     """
     r, found = result.curve, []
-    highest = largest(r.amplitude)
+    highest = r.top
     if highest is None:
         found.append("No answer was found at any speed.")
     elif np.isinf(r.amplitude[highest]):

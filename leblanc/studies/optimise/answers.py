@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from leblanc.scene.scene import JeffcottRotor, Scene, Speeds, dry_rotor, jeffcott
-from leblanc.studies.models.choose import axial_gravity, is_cut, models_at, prepare
+from leblanc.studies.models.choose import axial_gravity, captured_speed, is_cut, models_at, prepare
 from leblanc.studies.models.liquid import synchronous_model
 from leblanc.studies.peaks import responses_between, wet_resonances
 from meshes.arrays import Array, Flags
@@ -92,26 +92,41 @@ class FilledMachine:
         return FillAnswers(*found.T)
 
     def peaks(self, volumes: Array, speeds: Speeds) -> Array:
-        """Largest amplitudes over a range of speeds, found between them as well, m, shape (m,).
+        """Largest amplitudes over the speeds of a range with an annular layer, found between them as well.
 
         Parameters
         ----------
         volumes : of the chambers, m^3, shape (m, c)
         speeds : the range; how many there are does not matter
+
+        Returns
+        -------
+        m, shape (m,)
         """
-        rows, span = np.ascontiguousarray(volumes), (speeds.start, speeds.stop)
-        keys = [(row.tobytes(), *span) for row in rows]
+        rows = np.ascontiguousarray(volumes)
+        keys = [(row.tobytes(), speeds.start, speeds.stop) for row in rows]
         fresh = list(
             {key: k for k, key in reversed(list(enumerate(keys))) if key not in self._peaks}.values()
         )
         fresh.sort()
         if fresh:
             found = self._planar_peaks if self.planar else self._other_peaks
-            for k, size in zip(fresh, found(rows[fresh], *span).tolist(), strict=True):
+            begin = np.array([self._begin(row, speeds) for row in rows[fresh]])
+            for k, size in zip(fresh, found(rows[fresh], begin, speeds.stop).tolist(), strict=True):
                 self._peaks[keys[k]] = math.inf if math.isnan(size) else size
         return np.array([self._peaks[key] for key in keys])
 
-    def _planar_peaks(self, volumes: Array, start: float, stop: float) -> Array:
+    def _begin(self, volumes: Array, speeds: Speeds) -> float:
+        """First speed of a range that counts, rad/s: below it gravity leaves no annular layer.
+
+        All of a range below it counts, for lack of a better answer.
+        """
+        stands = captured_speed(with_volumes(self.scene, volumes))
+        if stands is None or stands >= speeds.stop:
+            return speeds.start
+        return max(speeds.start, math.nextafter(stands, math.inf))
+
+    def _planar_peaks(self, volumes: Array, start: Array, stop: float) -> Array:
         """The top of each resonance curve; where it lies outside the range, an end of the range."""
         rotor, gravity = jeffcott(self.scene), np.full(volumes.shape[0], axial_gravity(self.scene))
         scenes = [with_volumes(self.scene, row) for row in volumes]
@@ -124,20 +139,20 @@ class FilledMachine:
             speed[own], found[own] = tops.speed, tops.amplitude
         outside = np.flatnonzero(~((speed >= start) & (speed <= stop)))
         if outside.size:
-            ends = np.tile([start, stop], outside.size)
+            ends = np.column_stack([start, np.full(start.size, stop)])[outside].ravel()
             found[outside] = (
                 self.at(np.repeat(volumes[outside], 2, axis=0), ends).amplitude.reshape(-1, 2).max(1)
             )
         return found
 
-    def _other_peaks(self, volumes: Array, start: float, stop: float) -> Array:
+    def _other_peaks(self, volumes: Array, start: Array, stop: float) -> Array:
         """The same of rotors that tilt, each refined from a few speeds and those of its resonances."""
-        few = np.linspace(start, stop, FEW) if stop > start else np.array([start])
         machines = []
-        for row in volumes:
+        for row, begin in zip(volumes, start.tolist(), strict=True):
+            few = np.linspace(begin, stop, FEW) if stop > begin else np.array([begin])
             machine = prepare(with_volumes(self.scene, row))
             near = wet_resonances(machine)
-            own = seeds(near.speed, near.half_width, start, stop, few, whole=False)
+            own = seeds(near.speed, near.half_width, begin, stop, few, whole=False)
             machines.append(replace(machine, speed=np.union1d(few, own)))
         names = np.concatenate([names for names, _ in models_at(machines)])
         models = [synchronous_model(name) for name in names.tolist()]
