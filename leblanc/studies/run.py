@@ -16,7 +16,7 @@ from leblanc.results.motion.held import HELD_MODELS, Held
 from leblanc.results.motion.self_excited import SelfExcited
 from leblanc.results.motion.tilting import Motion, RestMode
 from leblanc.results.notes import response as notes
-from leblanc.results.notes.baffles import smeared_baffles
+from leblanc.results.notes.baffles import compartment_notes, smeared_baffles
 from leblanc.results.response import RunResult
 from leblanc.scene.inputs import input_rows
 from leblanc.scene.scene import Scene, TubRotor
@@ -373,7 +373,7 @@ def _notes(
         first, last = answer.speed[several][[0, -1]].tolist()
         found.append(notes.several_answers(first, last, stable=motion is None))
     found.append(_endless(by_speed([answer, refined])))
-    found += _walls(machine, answer, motion)
+    found += [*compartment_notes(machine.scene.fills), *_walls(machine, answer, motion)]
     found += [*_meshes(machine.scene), *doubts(machine.scene)]
     return tuple(note for note in found if note is not None)
 

@@ -30,7 +30,7 @@ from leblanc.studies.machine import loaded_machine, loads_over_time
 from leblanc.studies.models.choose import across_gravity as across_gravity  # of a run-up, asked for with it
 from leblanc.studies.models.choose import axial_gravity, captured_speed, is_cut, prepare, ruled_out_linear
 from leblanc.studies.models.liquid import RUNUP_MODELS, runup_model
-from leblanc.studies.models.validity import doubts
+from leblanc.studies.models.validity import doubts, require_supported
 from leblanc.studies.peaks import responses_between
 from leblanc.studies.races.balls import races_shown, started_balls
 from meshes.arrays import Array, Flags
@@ -230,8 +230,9 @@ def chosen_run(
 
     Raises
     ------
-    InputError : the scene names a model that does not go through time
+    InputError : the scene names a model that does not go through time, or its axis is free to move
     """
+    require_supported(scene)
     model, tolerance = liquid_model(scene), scene.model.tolerance
     system, friction = rotor_in_time(scene), scene.model.friction
 

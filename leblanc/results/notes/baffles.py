@@ -1,11 +1,12 @@
-"""Notes of baffles in layers that go through time."""
+"""Notes of baffles: in layers that go through time, and where they close compartments."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
-from fluid.fill import Fill
-from leblanc.results.base import Note, NoteCode
+from fluid.fill import Fill, compartment_share
+from leblanc.results.base import Note, NoteCode, percent
+from leblanc.units import LENGTH, with_unit
 from solvers.layer.places import is_smeared
 
 
@@ -13,6 +14,36 @@ class BaffleCode(NoteCode):
     """What the notes of baffles say."""
 
     SMEARED_BAFFLES = "smeared_baffles"
+    CLOSED_COMPARTMENTS = "closed_compartments"
+
+
+def closed_compartments(fill: Fill) -> str:
+    """What closed compartments do to the balance, in a sentence; empty where the liquid passes the baffles.
+
+    Theory: sections, eq. 8.
+    """
+    baffles, chamber = fill.chamber.baffles, fill.chamber
+    if baffles is None or fill.compartments < 2:
+        return ""
+    high, left = chamber.radius - baffles.tip_radius, 1.0 - compartment_share(fill.compartments)
+    return (
+        f"baffles of {with_unit(high, LENGTH)} are higher than the layer of {with_unit(fill.depth, LENGTH)} and "
+        f"close {baffles.count} compartments: the liquid cannot gather on one side and balances about "
+        f"{percent(left)} of what it does in a clear ring"
+    )
+
+
+def compartment_notes(fills: Sequence[Fill]) -> list[Note]:
+    """Which chambers hardly balance because their baffles close compartments."""
+    return [
+        Note(
+            BaffleCode.CLOSED_COMPARTMENTS,
+            {"chamber": k, "count": fill.compartments, "depth": fill.depth},
+            f"Chamber {k + 1}: {said}. Lower baffles or more liquid let it pass.",
+        )
+        for k, fill in enumerate(fills)
+        if (said := closed_compartments(fill))
+    ]
 
 
 def smeared_baffles(fills: Sequence[Fill], cells: int | None) -> list[Note]:

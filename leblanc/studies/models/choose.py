@@ -20,6 +20,7 @@ from leblanc.results.choice import Choice, HeldCost
 from leblanc.results.motion.held import HELD_MODELS
 from leblanc.scene.scene import Scene, dry_rotor, require_no_balls
 from leblanc.studies.models.liquid import RUNUP_MODELS, synchronous_model
+from leblanc.studies.models.validity import require_supported
 from meshes.arrays import Array, Flags
 from meshes.chamber_section import rest_offset, surface_is_whole
 from meshes.errors import InputError
@@ -62,14 +63,21 @@ class Prepared:
         return self.rotor
 
 
-def prepare(scene: Scene) -> Prepared:
+def prepare(scene: Scene, free: bool = False) -> Prepared:
     """The scene's machine as solvers take it.
+
+    Parameters
+    ----------
+    scene : the machine
+    free : its axis may be free to move
 
     Raises
     ------
-    InputError : the scene is that of an exciter, or has balls
+    InputError : the scene is that of an exciter, or has balls; its axis is free to move and may not be
     """
     require_no_balls(scene, "this; `leblanc run` and `leblanc runup` answer with balls")
+    if not free:
+        require_supported(scene)
     rotor = dry_rotor(scene)
     return Prepared(
         scene=scene,

@@ -10,6 +10,7 @@ import numpy as np
 from leblanc.scene.scene import JeffcottRotor, Scene, Speeds, dry_rotor, jeffcott
 from leblanc.studies.models.choose import axial_gravity, captured_speed, is_cut, models_at, prepare
 from leblanc.studies.models.liquid import synchronous_model
+from leblanc.studies.models.validity import require_supported
 from leblanc.studies.peaks import responses_between, wet_resonances
 from meshes.arrays import Array, Flags
 from solvers.rotor.vibration import orbit
@@ -50,6 +51,7 @@ class FilledMachine:
     """
 
     def __init__(self, scene: Scene) -> None:
+        require_supported(scene)
         # One model for all volumes: a change of model within its tolerance would look like a better volume.
         liquid = "statics" if scene.model.liquid == "auto" else scene.model.liquid
         model = scene.model.altered(liquid=liquid)
