@@ -27,8 +27,8 @@ def closed_compartments(fill: Fill) -> str:
         return ""
     high, left = chamber.radius - baffles.tip_radius, 1.0 - compartment_share(fill.compartments)
     return (
-        f"baffles of {with_unit(high, LENGTH)} are higher than the layer of {with_unit(fill.depth, LENGTH)} and "
-        f"close {baffles.count} compartments: the liquid cannot gather on one side and balances about "
+        f"baffles of {with_unit(high, LENGTH)} are higher than the layer of {with_unit(fill.depth, LENGTH)} "
+        f"and close {baffles.count} compartments: the liquid cannot gather on one side and balances about "
         f"{percent(left)} of what it does in a clear ring"
     )
 

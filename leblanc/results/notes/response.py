@@ -236,7 +236,8 @@ def held_motions(held: Held, speed: Array) -> list[Note]:
     size = f"estimated error at most {percent(worst)}" if not np.isnan(error).all() else "error not estimated"
     text = (
         f"Rotor and {waves} held in time at {count} of {speed.size} speeds, {held.cells} {parts} round each "
-        f"wall, {size}."
+        f"wall, {size}. Their largest amplitude is one of the speeds held, among them the peaks of the "
+        "steady answer and without liquid."
     )
     if held.model == "potential":
         text += (

@@ -175,7 +175,8 @@ def require_supported(scene: Scene) -> None:
         return
     field, cure = _CURES[rotor.kind]
     ways = _free_ways(rotor.machine().system())
-    raise InputError(field, f"free to move {ways}", f"{cure}: an axis that moves freely has no amplitude")
+    allowed = f"{cure}: nothing holds the machine {ways}, and an axis that moves freely has no amplitude"
+    raise InputError(field, f"free {ways}", allowed)
 
 
 def _chambers(scene: Scene) -> Iterator[Note]:

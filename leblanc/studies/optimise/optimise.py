@@ -17,6 +17,7 @@ from fluid.whirl import is_full
 from leblanc.results import optimum
 from leblanc.results.base import ConstraintValue, Note
 from leblanc.results.choice import ModelSpan
+from leblanc.results.notes.baffles import compartment_notes
 from leblanc.results.optimum import (
     CandidateChamber,
     Candidates,
