@@ -237,7 +237,8 @@ def run_scene(
     else:
         answer, motion, (dry, wet) = motion_response(machine, choice)
     progress("peaks between the speeds")
-    (refined,) = responses_between([machine], [answer], drawn=True)
+    in_range_too = replace(answer, in_range=answer.in_range & choice.in_range)
+    (refined,) = responses_between([machine], [in_range_too], drawn=True)
     if by_elements(scene):
         progress("finite elements")
         choice, answer, refined = element_answers(machine, choice, answer, refined)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from fluid.fill import Fill, compartment_share
+from fluid.fill import Fill
 from leblanc.results.base import Note, NoteCode, percent
 from leblanc.units import LENGTH, with_unit
 from solvers.layer.places import is_smeared
@@ -25,25 +25,27 @@ def closed_compartments(fill: Fill) -> str:
     baffles, chamber = fill.chamber.baffles, fill.chamber
     if baffles is None or fill.compartments < 2:
         return ""
-    high, left = chamber.radius - baffles.tip_radius, 1.0 - compartment_share(fill.compartments)
+    high, left = chamber.radius - baffles.tip_radius, fill.added_mass / fill.full_mass
     return (
         f"baffles of {with_unit(high, LENGTH)} are higher than the layer of {with_unit(fill.depth, LENGTH)} "
-        f"and close {baffles.count} compartments: the liquid cannot gather on one side and balances about "
-        f"{percent(left)} of what it does in a clear ring"
+        f"and close {baffles.count} compartments: the liquid cannot gather on one side, its balancing mass is "
+        f"{percent(left)} of that in a clear ring"
     )
 
 
 def compartment_notes(fills: Sequence[Fill]) -> list[Note]:
-    """Which chambers hardly balance because their baffles close compartments."""
-    return [
-        Note(
-            BaffleCode.CLOSED_COMPARTMENTS,
-            {"chamber": k, "count": fill.compartments, "depth": fill.depth},
-            f"Chamber {k + 1}: {said}. Lower baffles or more liquid let it pass.",
-        )
-        for k, fill in enumerate(fills)
-        if (said := closed_compartments(fill))
-    ]
+    """Which chambers hardly balance because their baffles close compartments, equal ones in one sentence."""
+    alike: dict[str, list[int]] = {}
+    for k, fill in enumerate(fills):
+        if said := closed_compartments(fill):
+            alike.setdefault(said, []).append(k)
+    found = []
+    for said, own in alike.items():
+        names = f"Chamber{'s' if own[1:] else ''} {' and '.join(str(k + 1) for k in own)}"
+        data = {"chambers": tuple(own), "count": fills[own[0]].compartments, "depth": fills[own[0]].depth}
+        text = f"{names}: {said}. Lower baffles or more liquid let it pass."
+        found.append(Note(BaffleCode.CLOSED_COMPARTMENTS, data, text))
+    return found
 
 
 def smeared_baffles(fills: Sequence[Fill], cells: int | None) -> list[Note]:

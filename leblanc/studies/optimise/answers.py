@@ -7,8 +7,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from fluid.waves import capture_speed
 from leblanc.scene.scene import JeffcottRotor, Scene, Speeds, dry_rotor, jeffcott
-from leblanc.studies.models.choose import axial_gravity, captured_speed, is_cut, models_at, prepare
+from leblanc.studies.models.choose import axial_gravity, is_cut, models_at, prepare
 from leblanc.studies.models.liquid import synchronous_model
 from leblanc.studies.models.validity import require_supported
 from leblanc.studies.peaks import responses_between, wet_resonances
@@ -94,7 +95,7 @@ class FilledMachine:
         return FillAnswers(*found.T)
 
     def peaks(self, volumes: Array, speeds: Speeds) -> Array:
-        """Largest amplitudes over the speeds of a range with an annular layer, found between them as well.
+        """Largest amplitudes over the speeds of a range at which annular layers exist, at any of them.
 
         Parameters
         ----------
@@ -113,22 +114,24 @@ class FilledMachine:
         fresh.sort()
         if fresh:
             found = self._planar_peaks if self.planar else self._other_peaks
-            begin = np.array([self._begin(row, speeds) for row in rows[fresh]])
+            begin = self.first_speed(speeds)
             for k, size in zip(fresh, found(rows[fresh], begin, speeds.stop).tolist(), strict=True):
                 self._peaks[keys[k]] = math.inf if math.isnan(size) else size
         return np.array([self._peaks[key] for key in keys])
 
-    def _begin(self, volumes: Array, speeds: Speeds) -> float:
-        """First speed of a range that counts, rad/s: below it gravity leaves no annular layer.
+    def first_speed(self, speeds: Speeds) -> float:
+        """First speed of a range that counts, rad/s: below it gravity leaves no annular layer, however thin.
 
+        One for all volumes, none included: a peak must not look lower because more of the range is left out.
         All of a range below it counts, for lack of a better answer.
         """
-        stands = captured_speed(with_volumes(self.scene, volumes))
-        if stands is None or stands >= speeds.stop:
+        if self.scene.rotor.axis == "vertical" or self.scene.gravity == 0.0 or not self.scene.fills:
             return speeds.start
-        return max(speeds.start, math.nextafter(stands, math.inf))
+        walls = [fill.chamber.radius for fill in self.scene.fills]
+        stands = max(float(capture_speed(radius, self.scene.gravity)) for radius in walls)
+        return speeds.start if stands >= speeds.stop else max(speeds.start, math.nextafter(stands, math.inf))
 
-    def _planar_peaks(self, volumes: Array, start: Array, stop: float) -> Array:
+    def _planar_peaks(self, volumes: Array, start: float, stop: float) -> Array:
         """The top of each resonance curve; where it lies outside the range, an end of the range."""
         rotor, gravity = jeffcott(self.scene), np.full(volumes.shape[0], axial_gravity(self.scene))
         scenes = [with_volumes(self.scene, row) for row in volumes]
@@ -141,20 +144,20 @@ class FilledMachine:
             speed[own], found[own] = tops.speed, tops.amplitude
         outside = np.flatnonzero(~((speed >= start) & (speed <= stop)))
         if outside.size:
-            ends = np.column_stack([start, np.full(start.size, stop)])[outside].ravel()
+            ends = np.tile([start, stop], outside.size)
             found[outside] = (
                 self.at(np.repeat(volumes[outside], 2, axis=0), ends).amplitude.reshape(-1, 2).max(1)
             )
         return found
 
-    def _other_peaks(self, volumes: Array, start: Array, stop: float) -> Array:
+    def _other_peaks(self, volumes: Array, start: float, stop: float) -> Array:
         """The same of rotors that tilt, each refined from a few speeds and those of its resonances."""
+        few = np.linspace(start, stop, FEW) if stop > start else np.array([start])
         machines = []
-        for row, begin in zip(volumes, start.tolist(), strict=True):
-            few = np.linspace(begin, stop, FEW) if stop > begin else np.array([begin])
+        for row in volumes:
             machine = prepare(with_volumes(self.scene, row))
             near = wet_resonances(machine)
-            own = seeds(near.speed, near.half_width, begin, stop, few, whole=False)
+            own = seeds(near.speed, near.half_width, start, stop, few, whole=False)
             machines.append(replace(machine, speed=np.union1d(few, own)))
         names = np.concatenate([names for names, _ in models_at(machines)])
         models = [synchronous_model(name) for name in names.tolist()]
