@@ -105,7 +105,7 @@ def _joined(parts: Sequence[Answers], order: Index | None = None) -> Answers:
 
 def _with_balls(scene: Scene) -> Answers:
     """Answers of one scene with balls as `run` gives them: the state reported at each speed."""
-    result = run_balls(scene)
+    result = run_balls(scene, families=False)
     over = [field.name for field in fields(Answers) if not field.name.startswith("peak_")]
     known = {name: getattr(result, name, None) for name in over[:-1]}
     nothing, inside = np.full(result.speed.shape, np.nan), np.ones(result.speed.shape, dtype=bool)

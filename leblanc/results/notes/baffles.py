@@ -26,9 +26,10 @@ def closed_compartments(fill: Fill) -> str:
     if baffles is None or fill.compartments < 2:
         return ""
     high, left = chamber.radius - baffles.tip_radius, fill.added_mass / fill.full_mass
+    deep = with_unit(fill.depth, LENGTH)
     return (
-        f"baffles of {with_unit(high, LENGTH)} are higher than the layer of {with_unit(fill.depth, LENGTH)} "
-        f"and close {baffles.count} compartments: the liquid cannot gather on one side, its balancing mass is "
+        f"baffles of {with_unit(high, LENGTH)} are higher than the layer of {deep} and close {baffles.count} "
+        "compartments: the liquid cannot gather on one side, its balancing mass is "
         f"{percent(left)} of that in a clear ring"
     )
 

@@ -102,7 +102,7 @@ def test_compartments_add_less_mass() -> None:
 @kills("leblanc.results.notes.baffles:closed_compartments", "fill.added_mass / fill.full_mass", "0.5")
 @kills("leblanc.results.notes.baffles:closed_compartments", "fill.compartments < 2", "fill.compartments > 2")
 def test_compartments_that_hardly_balance_are_told() -> None:
-    """One sentence in `run` and `explain` for equal chambers; none where the liquid passes.
+    """One sentence in `run`, `explain` and `optimise` for equal chambers; none where the liquid passes.
 
     The balancing mass is pi h R^2 for a layer that leaves the wall wet, less the surface a^2 whose shift each
     sector of four takes back: the integral of cos^2 of its mean over the circle.
@@ -112,16 +112,15 @@ def test_compartments_that_hardly_balance_are_told() -> None:
     surface = 0.01 - CHAMBER["volume"] / (math.pi * CHAMBER["height"])  # its radius squared
     left = 1.0 - surface / 0.01 * 2.0 * float(np.mean(np.cos(angle).mean(axis=1) ** 2))
     chamber = CHAMBER | {"baffles": {"count": 4, "tip_radius": 0.05}}
-    share = percent(left)
     own = scene_from_table(
         BASE | {"chambers": [chamber, chamber]} | {"speeds": BASE["speeds"] | {"count": 3}}
     )
-    (note,) = (note for note in run_scene(own).notes if note.code == BaffleCode.CLOSED_COMPARTMENTS)
+    found = [note for note in run_scene(own).notes if note.code == BaffleCode.CLOSED_COMPARTMENTS]
+    assert len(found) == 1
+    note = found[0]
     assert note.text.startswith("Chambers 1 and 2: baffles of 50 mm are higher than the layer of 10.05 mm")
-    assert (
-        f"and close 4 compartments: the liquid cannot gather on one side, its balancing mass is {share} of"
-        in (note.text)
-    )
+    assert "close 4 compartments: the liquid cannot gather on one side" in note.text
+    assert f"its balancing mass is {percent(left)} of that in a clear ring" in note.text
     assert all(note.text[18:100] in layer.walls for layer in explain_scene(own).layers)
     passes = chamber | {"baffles": {"count": 4, "tip_radius": 0.095}}
     low = scene_from_table(BASE | {"chambers": [passes]} | {"speeds": BASE["speeds"] | {"count": 3}})
