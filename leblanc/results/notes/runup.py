@@ -34,8 +34,8 @@ if TYPE_CHECKING:
 CLOSURE = 1e-3  # of the work: what the energy balance may leave
 SETTLED = 1e-6  # of the largest amplitude: what rounding may change without being spoken of
 ERROR = 0.02  # of the largest amplitude: an error estimate to speak of
-# Round a wall: 32 change the peaks of front loaders, 0.2 to 1.4 l in each ring, by up to 7 % beside 128, and 64 by
-# up to 4 %.
+# Round a wall: on front loaders with 0.2 to 1.4 l in each ring 32 cells change the largest amplitude by up to
+# 7 % beside 128 cells, 64 by up to 4 %.
 ENOUGH_CELLS = 64
 
 
@@ -175,8 +175,8 @@ def numerical_error(error: float, cells: int | None = None) -> Note | None:
         if cells is not None and cells < ENOUGH_CELLS:
             text = (
                 f"Too coarse: the error of the amplitude was not estimated, and {cells} cells round a wall "
-                "hardly follow liquid from the pool at the bottom to the annular layer. More of them may change "
-                f"the largest amplitude by a tenth: take {ENOUGH_CELLS}, or the check with half the cells."
+                "hardly follow liquid from the pool at the bottom to the annular layer. More of them may "
+                f"change the largest amplitude by a tenth: take {ENOUGH_CELLS}, or the check."
             )
             return Note(RunupCode.TOO_COARSE, {"cells": cells, "enough": ENOUGH_CELLS}, text)
         return Note(RunupCode.ERROR_UNKNOWN, {}, "The error of the amplitude was not estimated.")

@@ -80,16 +80,16 @@ def test_console_chamber_figure_and_view_show_one_amplitude(name: str) -> None:
     assert chamber_state(result, result.curve.speed.size - 1).startswith(f"amplitude {size} at chamber 1,")
     assert view_state(motion, last, [False] * len(scene.chambers))[0] == f"amplitude {place}: {size}"
     assert place in text.answer(result) and place in text.alts(result)["amplitude"]
-    assert dict(text.summary(result))["Amplitudes"] == place
+    assert dict(text.summary(result))["Amplitudes"] == f"zero to peak, {place}"
     figure = result.plot()
-    assert figure.axes[0].get_ylabel() == "Amplitude at chamber 1 (mm)"
+    assert figure.axes[0].get_ylabel() == "Amplitude at chamber 1 (mm 0-p)"
     assert place in figure.caption.shown
 
 
 def test_a_rotor_in_one_plane_has_no_plane_to_name() -> None:
     result = lb.run(lb.example("centrifuge").replace({"speeds.count": 5}))
     assert text.amplitude_place(result) == "" and "plane" not in text.answer(result)
-    assert result.plot().axes[0].get_ylabel() == "Amplitude (mm)"
+    assert result.plot().axes[0].get_ylabel() == "Amplitude (mm 0-p)"
 
 
 LAYER = [
@@ -149,7 +149,7 @@ def test_small_and_large_machines_are_in_their_units(
     """A hundredth of the unbalance moves a hundredth: micrometres in table, figure and report alike."""
     words = run(capsys, "centrifuge", tmp_path, 'unbalance = "1.5 kg*mm"', 'unbalance = "150 kg*mm"')
     assert "Largest amplitude (um" in words
-    assert "Amplitude (um)" in (tmp_path / "amplitude.svg").read_text(encoding="utf-8")
+    assert "Amplitude (um 0-p)" in (tmp_path / "amplitude.svg").read_text(encoding="utf-8")
     page = (tmp_path / "summary.html").read_text(encoding="utf-8")
     assert "Largest amplitude (um" in page and not re.search(r"\b0\.0\d+ mm", page)
 
