@@ -102,7 +102,7 @@ def variable(dims: tuple[str, ...], values: Any, units: str, long_name: str, tex
     text : description, if there is more to say
     """
     if units == "m" and "amplitude" in long_name + text and ZERO_TO_PEAK not in text:
-        text = f"{text}, {ZERO_TO_PEAK}" if text else ZERO_TO_PEAK
+        text = f"{ZERO_TO_PEAK}, {text}" if text else ZERO_TO_PEAK
     said = {"description": text} if text else {}
     return Variable(dims, np.asarray(values), {"units": units, "long_name": long_name} | said)
 
