@@ -63,6 +63,7 @@ def run(
     from leblanc.results.notes.response import RunCode
     from leblanc.text.closed_forms import closed_form_rows
     from leblanc.text.machine import load_table
+    from leblanc.text.numbers import amplitude_sentence
     from leblanc.text.run import amplitude_place, comparison_table, limit_rows, unanswered
 
     write_netcdf(result.named_arrays(), folder / "response.nc")
@@ -79,8 +80,7 @@ def run(
     else:
         heads, rows = comparison_table(result)
         print_table(rows, heads, right=True)
-        if place := amplitude_place(result):
-            print(f"Amplitudes are those {place}.")
+        print(amplitude_sentence(amplitude_place(result)))
         for note in result.notes:
             if note.code in (RunCode.LEFT_OUT, BaffleCode.CLOSED_COMPARTMENTS):
                 print(note.text)

@@ -41,7 +41,7 @@ from leblanc.figures.machine import machine_figure
 from leblanc.results.notes.response import plane_label
 from leblanc.results.response import RunResult
 from leblanc.text.run import alts, amplitude_place
-from leblanc.units import MM, RPM, in_rpm
+from leblanc.units import MM, MM_PEAK, RPM, in_rpm
 from meshes.arrays import Array, Flags
 
 Draw = Callable[[Any, Curves, RunResult], None]
@@ -229,7 +229,9 @@ def draw_amplitude(axes: Axes, curves: Curves, result: RunResult) -> None:
         axes.plot(*unstable, **thin, linestyle=UNSTABLE, label="other branches, unstable")
     value_axis(axes, room_below(curves), lines, curves.branches.ravel())
     background(axes, curves, result, [curves.amplitude, curves.amplitude_dry])
-    axes.set_ylabel(f"Amplitude{'' if result.motion is None else plane_label(bool(result.chambers))} (mm)")
+    axes.set_ylabel(
+        f"Amplitude{'' if result.motion is None else plane_label(bool(result.chambers))} ({MM_PEAK})"
+    )
 
 
 def _draw_held(axes: Axes, curves: Curves, held: HeldCurves) -> list[tuple[Array, Array]]:

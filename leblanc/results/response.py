@@ -521,11 +521,12 @@ def _further_speeds(result: RunResult) -> dict[str, Variable]:
 
 def _peak_variables(result: RunResult) -> dict[str, Variable]:
     """Largest amplitudes over the range of speeds, and the amplitudes that were looked at for them."""
-    found, whole = {}, "largest amplitude over the whole range of speeds"
-    for name, peak, liquid in (("peak", result.peak, ""), ("peak_dry", result.peak_dry, ", without liquid")):
+    found, most = {}, "largest amplitude over the"
+    holds, every = f"{most} speeds at which the answer holds", f"{most} whole range of speeds, without liquid"
+    for name, peak, whole in (("peak", result.peak, holds), ("peak_dry", result.peak_dry, every)):
         speed, size = (np.array(peak[key], dtype=np.float64) for key in ("speed", "amplitude"))
-        found[f"{name}_speed"] = var((), speed, "rad s-1", "speed of the peak", f"of the {whole}{liquid}")
-        found[f"{name}_amplitude"] = var((), size, "m", "peak", f"{whole}{liquid}")
+        found[f"{name}_speed"] = var((), speed, "rad s-1", "speed of the peak", f"of the {whole}")
+        found[f"{name}_amplitude"] = var((), size, "m", "peak", whole)
     if result.refined is not None:
         over, text = ("refined_speed",), "at the refined speeds"
         wet, dry = result.refined.amplitude, result.refined.amplitude_dry

@@ -20,7 +20,7 @@ from leblanc.results.netcdf import NamedArrays, flags, variable
 from leblanc.results.notes.response import plane_words
 from leblanc.results.races.balls import RaceOfBalls, ball_moment, in_race
 from leblanc.results.response import phase
-from leblanc.units import LENGTH, friction_words, with_unit
+from leblanc.units import LENGTH, ZERO_TO_PEAK, friction_words, with_unit
 from meshes.arrays import Array, Complex, Flags
 from solvers.layer.records import Outcome
 from solvers.runup.ensemble import Spread
@@ -547,12 +547,16 @@ def _columns(result: RunupResult) -> dict[str, Any]:
         "chamber": variable(("chamber",), np.arange(1, count + 1, dtype=np.int32), "1", "chamber"),
         "speed": variable(over, h.speed, "rad s-1", "spin speed"),
         "angle": variable(over, h.angle, "rad", "angle of rotation"),
-        "amplitude": variable(over, h.amplitude, "m", "deflection of the first chamber's axis, modulus"),
+        "amplitude": variable(
+            over, h.amplitude, "m", "deflection of the first chamber's axis, modulus", ZERO_TO_PEAK
+        ),
         "amplitude_error": variable(
             over, result.amplitude_error, "m", "error of the amplitude by cells, steps and hand-over"
         ),
         "speed_dry": variable(over, result.speed_dry, "rad s-1", "spin speed without liquid"),
-        "amplitude_dry": variable(over, result.amplitude_dry, "m", "that modulus without liquid"),
+        "amplitude_dry": variable(
+            over, result.amplitude_dry, "m", "that modulus without liquid", ZERO_TO_PEAK
+        ),
         "phase": variable(over, result.phase, "rad", f"angle of that deflection {drum}"),
         "liquid_offset": variable(over, np.abs(h.liquid_position), "m", here),
         "liquid_angle": variable(over, np.angle(h.liquid_position), "rad", f"angle of that place {drum}"),

@@ -369,7 +369,7 @@ def runup_scene(
         chambers=tuple(_chamber(fill) for fill in scene.fills),
         planes=tuple(fill.chamber.plane for fill in scene.fills) or (_position(scene),),
         notes=(
-            *_notes(scene, taken, steady, bands, spread),
+            *_notes(scene, taken, steady, bands, spread, numerics.cells),
             *programme_notes(scene, history, drive, passages),
             *([] if left is None else [notes.unbalance_left(float(left[-1]))]),
             *limits,
@@ -508,14 +508,20 @@ def dry_run(
 
 
 def _notes(
-    scene: Scene, taken: RunupChoice, steady: Response | None, bands: Bands | None, spread: Spread | None
+    scene: Scene,
+    taken: RunupChoice,
+    steady: Response | None,
+    bands: Bands | None,
+    spread: Spread | None,
+    cells: int,
 ) -> list[Note]:
     """What happened and how far it can be trusted."""
     h = taken.history
+    pools = taken.model == "long_wave" and across_gravity(scene) > 0.0 and bool(scene.fills)
     found = [
         notes.liquid_model(taken.model, taken.reason) if scene.chambers else None,
         None if h.converged else notes.stopped(h.reason),
-        notes.numerical_error(h.error_estimate),
+        notes.numerical_error(h.error_estimate, cells if pools else None),
         notes.handover_error(h.handover_estimate),
         None if spread is None else notes.rounding(spread, h),
         notes.not_physical(run_faults(h, tuple(_chamber(fill) for fill in scene.fills))),

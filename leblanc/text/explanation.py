@@ -17,7 +17,18 @@ from leblanc.results.models.comparison import Comparison, ModelAnswer
 from leblanc.results.motion.tilting import RestMode
 from leblanc.text.numbers import NOT_FOUND, number
 from leblanc.text.run import amplitude_place, error_words, speeds_words
-from leblanc.units import LENGTH, RPM, TORQUE, VOLUME, Unit, in_rpm, over_rpm, unit_for, with_unit
+from leblanc.units import (
+    LENGTH,
+    RPM,
+    TORQUE,
+    VOLUME,
+    ZERO_TO_PEAK,
+    Unit,
+    in_rpm,
+    over_rpm,
+    unit_for,
+    with_unit,
+)
 from meshes.arrays import Array
 
 Rows = list[tuple[str, str]]
@@ -230,7 +241,7 @@ def comparison_head(found: Comparison) -> tuple[str, ...]:
     found : the comparison
     """
     place = next((amplitude_place(result) for result in found.results.values()), "")
-    amplitude = f"largest amplitude{f' {place}' if place else ''} ({_unit(found).name})"
+    amplitude = f"largest amplitude{f' {place}' if place else ''}, {ZERO_TO_PEAK} ({_unit(found).name})"
     held = ("held states",) if _any_held(found) else ()
     return (
         "model",

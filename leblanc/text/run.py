@@ -13,7 +13,7 @@ from leblanc.results.choice import ModelSpan
 from leblanc.results.motion.held import HELD_MODELS, Held
 from leblanc.results.notes.response import plane_words
 from leblanc.results.response import RunResult, grade_words
-from leblanc.text.numbers import NOT_FOUND, number, ranges
+from leblanc.text.numbers import NOT_FOUND, amplitudes_are, number, ranges
 from leblanc.units import LENGTH, MASS, RPM, VOLUME, in_rpm, over_rpm, rpm_bands, unit_for, with_unit
 from meshes.arrays import Array, Flags
 
@@ -572,9 +572,8 @@ def summary(result: RunResult) -> list[tuple[str, str]]:
     """
     both = ((row.label, f"{row.wet} with liquid, {row.dry} without") for row in comparisons(result))
     rows = [(row.label, row.wet) for row in comparisons(result)] if result.chamberless else list(both)
-    place = amplitude_place(result)
-    plane = [("Amplitudes", place)] if place else []
-    return [("Scene", one_line(result.name)), *plane, *rows, *facts(result)]
+    plane = amplitudes_are(amplitude_place(result))
+    return [("Scene", one_line(result.name)), plane, *rows, *facts(result)]
 
 
 # What the model does, and what it takes for granted.

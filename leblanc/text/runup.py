@@ -10,6 +10,7 @@ from leblanc.results.base import percent
 from leblanc.results.notes.runup import SETTLED
 from leblanc.results.response import peak
 from leblanc.results.runup import Moment, RunupResult
+from leblanc.text.numbers import amplitudes_are
 from leblanc.units import LENGTH, TIME, UNBALANCE, in_rpm, number, with_unit
 
 
@@ -204,10 +205,9 @@ def largest_dry(result: RunupResult) -> str:
 def summary(result: RunupResult) -> list[tuple[str, str]]:
     """The main numbers of a run-up, as labels and values."""
 
-    plane = [("Amplitudes", result.plane)] if result.plane else []
     told = describe_model(result.model, result.cells, result.dispersion, result.bore)
     return [
-        *plane,
+        amplitudes_are(result.plane),
         *answer_rows(result),
         *ball_rows(result),
         *passage_rows(result),

@@ -8,7 +8,7 @@ import numpy as np
 
 from leblanc.results.notes.response import plane_words
 from leblanc.results.races.states import BallsResult
-from leblanc.text.numbers import NOT_FOUND, ranges
+from leblanc.text.numbers import NOT_FOUND, amplitudes_are, ranges
 from leblanc.text.run import Limit
 from leblanc.units import LENGTH, UNBALANCE, in_rpm, number, with_unit
 
@@ -67,8 +67,8 @@ def facts(result: BallsResult) -> list[tuple[str, str]]:
     if result.growth_range is not None and result.family_dimension[-1] > 0:
         least, largest = map(float, result.growth_range[-1])
         rows.append((f"Growth over the family at {last}", f"{number(least)} to {number(largest)} 1/s"))
-    if result.kind != "jeffcott":
-        rows.append(("Amplitudes", plane_words(result.position, chambers=True)))
+    tilts = result.kind != "jeffcott"
+    rows.append(amplitudes_are(plane_words(result.position, chambers=True) if tilts else ""))
     if any(result.sticking):
         rows.append(("Balls stay below a deflection of", with_unit(max(result.sticking), LENGTH)))
     return rows

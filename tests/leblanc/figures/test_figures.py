@@ -40,7 +40,7 @@ def test_amplitude_in_mm_over_rpm():
     record = rig()
     figure = figures.amplitude_figure(record)
     (axes,) = figure.axes
-    assert (axes.get_xlabel(), axes.get_ylabel()) == ("Speed (rpm)", "Amplitude (mm)")
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("Speed (rpm)", "Amplitude (mm 0-p)")
     assert axes.child_axes[0].get_xlabel() == "Speed (rad/s)"
     np.testing.assert_allclose(axes.get_xlim(), (100.0, 2000.0), rtol=1e-12)
     wet, dry = line(figure, "with liquid"), line(figure, "without liquid")

@@ -311,6 +311,20 @@ def test_one_curve_contains_its_peaks() -> None:
         assert set(found.to_json()["speed"]) <= set(curve["speed"])
 
 
+@kills("leblanc.studies.held.held:_between", "in (wet, refined.amplitude_dry)", "in (wet,)")
+def test_a_dry_machine_has_one_peak_however_its_liquid_is_held() -> None:
+    """Held in time or not, the peak without liquid is one number; with liquid it is looked at there too."""
+    own = lb.example("two_plane_rig").replace({"speeds.start": "400 rpm", "speeds.stop": "1200 rpm"})
+    own = own.replace({"speeds.count": 6, "model.cells": 16, "model.friction": {"linear": 20.0}})
+    steady, held = (run_scene(own.replace({"model.held": way})) for way in ("never", "always"))
+    assert held.held is not None and held.held.at.all() and held.refined is not None
+    assert held.peak_dry == steady.peak_dry and held.peak_dry["amplitude"] > held.amplitude_dry.max()
+    # The held wave at the speed of the steady peak is as high as that peak, to what 16 cells are off.
+    assert held.peak["speed"] in held.refined.speed and held.peak["amplitude"] > held.amplitude.max()
+    assert held.peak["amplitude"] == pytest.approx(steady.peak["amplitude"], rel=0.02)
+    assert any("one of the speeds held" in note.text for note in held.notes)
+
+
 def test_a_peak_of_the_optimiser_does_not_fall_because_less_of_it_counts() -> None:
     """Its range begins where the thinnest layer can be: the same for every volume, none and full included."""
     own = lb.example("horizontal_rig").replace(LYING["horizontal_rig"])
