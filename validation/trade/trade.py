@@ -17,8 +17,8 @@ import numpy as np
 from leblanc.results.base import one_line
 from leblanc.scene.scene import Scene, require_clear
 from validation.trade.answers import Answer, Case, answer, taste
-from validation.trade.cases import Question, questions
-from validation.trade.judge import Comparison, Run, compare, errors
+from validation.trade.cases import Question, finer, questions
+from validation.trade.judge import Comparison, Run, compare, decided, errors
 
 Progress = Callable[[str, float], object]
 
@@ -28,6 +28,9 @@ REPEATS = 5
 _LONG, _LONGER = 0.3, 1.5
 _FEW = 1
 _SHORT = 0.02  # s; shorter runs are timed several at once
+# CPU seconds that a finer reference may take, and with short ladders; times its cost goes up by at most where
+# its cells are twice as many.
+_MOST, _MOST_QUICK, _GROWTH = 60.0, 20.0, 4.0
 
 
 @dataclass(frozen=True)
@@ -73,10 +76,37 @@ def trade_scene(
             tell(text, (k + share) / len(cases))
 
         runs = measure(question, repeats, said)
-        found.append(compare(question, runs, tolerance))
+        found.append(refine(question, runs, tolerance, _MOST_QUICK if quick else _MOST, said))
     return TradeRecord(
         one_line(scene.name), scene.source, scene.assumed, scene.digest, tolerance, tuple(found)
     )
+
+
+def refine(
+    question: Question, runs: dict[Case, Run], tolerance: float, most: float, progress: Progress
+) -> Comparison:
+    """The comparison with its reference refined until it decides what to take, or costs too much.
+
+    Parameters
+    ----------
+    question : with its cases
+    runs : of each
+    tolerance : relative error that is allowed
+    most : CPU time of a reference, s
+    progress : is called with what runs and the share that is done
+    """
+    found = compare(question, runs, tolerance)
+    while not decided(found, tolerance):
+        better = finer(question)
+        if better is None or _GROWTH * min(runs[question.reference].times) > most:
+            break
+        progress(f"{question.name}: {better.reference.label}", 1.0)
+        run = alone(question.scene, better.reference)
+        if run.answer.reason:
+            break
+        question, runs = better, runs | {better.reference: run}
+        found = compare(question, runs, tolerance)
+    return found
 
 
 def error_table(question: Question, cases: Iterable[Case]) -> dict[str, tuple[float, float]]:
