@@ -14,6 +14,9 @@ from validation.trade.cases import Question
 _ROUNDING = 1e-12  # relative error of what is called exact
 # Least difference of times that counts, relative: the same computation under two names was within 2.5 %.
 _REPRODUCED = 0.03
+# Less than the default's cost by this factor is worth a change; cells times steps that take as long as what
+# is made besides the steps: a tenth of a second.
+_WORTH, _BESIDES = 2.0, 1e6
 _LEAST_ORDER = 0.25  # of convergence; what converges slower is not extrapolated
 # An order beyond the second may be chance on three meshes; the factor is that of the grid convergence index.
 _MOST_ORDER, _SAFETY = 2.0, 1.25
@@ -56,6 +59,7 @@ class Row:
     estimate: float = math.nan
     #: of the ripple, over the best answer's amplitude; nan where it is not asked for
     ripple_error: float = math.nan
+    work: float = 0.0  #: of the answer
     on_front: bool = False  #: no other row dominates it
     default: bool = False  #: what the scene's default gives; what is advised for its tolerance
     recommended: bool = False
@@ -132,6 +136,7 @@ def compare(question: Question, runs: Mapping[Case, Run], tolerance: float) -> C
                 note=run.answer.reason or _other_physics(question, case),
                 estimate=run.answer.estimate,
                 ripple_error=_ripple_error(run.answer, best),
+                work=run.answer.work,
             )
         )
     found = _judged(question, rows, own, order, tolerance)
@@ -269,13 +274,24 @@ def advisable(rows: Sequence[Row], reference: str) -> list[int]:
     ]
 
 
+def effort(row: Row, default: Row) -> tuple[bool, float]:
+    """What a row costs, to be compared with others: counted and not timed, so that an advice is no chance.
+
+    The cells that steps advance, and what is made besides; closed forms cost nothing beside that. Of a layer
+    alone the solvers of py-pde, whose steps are not counted, come after our own.
+    """
+    foreign = row.question in (WAVES, FAMILY) and row.variant != default.variant
+    return foreign, row.work + _BESIDES if row.work > 0.0 else 0.0
+
+
 def recommend(rows: Sequence[Row], own: float, tolerance: float, reference: str) -> int:
     """Index of the row that is advised; -1 where it cannot be decided.
 
     A row is within the tolerance where its error and the reference's own one together are, and beyond it
-    where its error less the reference's is. Advised is the cheapest within, the default if that is as cheap;
-    where all are beyond, the most accurate, of equals the cheapest. Where the reference's own error is larger
-    than the tolerance, or no row is within and one may be, nothing is decided.
+    where its error less the reference's is. Advised is the cheapest within by `effort`, but the default if it
+    is within and not twice as dear; where all are beyond, the most accurate, of equals the cheapest. Nothing
+    is decided where the reference's own error is larger than the tolerance, where no row is within and one
+    may be, and where the reference alone is within.
 
     Parameters
     ----------
@@ -290,28 +306,29 @@ def recommend(rows: Sequence[Row], own: float, tolerance: float, reference: str)
     chosen = [k for k in known if rows[k].error + own <= tolerance]
     if not chosen:
         least = min(rows[k].error for k in known)
-        if least - own <= tolerance:
+        if least - own <= tolerance or any(row.label == reference and row.selectable for row in rows):
             return -1
         chosen = [k for k in known if rows[k].error <= least + own]
-    best = min(chosen, key=lambda k: rows[k].time)
-    noise = _noise(rows[best], rows[0])
-    return 0 if 0 in chosen and rows[0].time <= rows[best].time + noise else best
+    best = min(chosen, key=lambda k: effort(rows[k], rows[0]))
+    return 0 if 0 in chosen and not _cheaper(rows[best], rows[0], rows[0]) else best
+
+
+def _cheaper(row: Row, other: Row, default: Row) -> bool:
+    """Whether a row costs so much less than another that this is worth a change."""
+    (foreign, work), (alien, most) = effort(row, default), effort(other, default)
+    return foreign < alien or (foreign == alien and _WORTH * work < most)
 
 
 def decided(comparison: Comparison, tolerance: float) -> bool:
     """Whether a finer reference could change no advice.
 
-    It could where nothing is advised, where a cheaper row than the advised one may be within the tolerance,
-    and where nothing is within but the reference itself may come to be, beside a finer one.
+    It could where nothing is advised, and where a cheaper row than the advised one may be within as well.
     """
     advised, own = comparison.recommended, comparison.reference_error
     if advised is None:
         return False
-    rows = comparison.rows
-    if advised.error > tolerance:
-        return not next(row for row in rows if row.label == comparison.reference).selectable
-    known = [rows[k] for k in advisable(rows, comparison.reference)]
+    known = [comparison.rows[k] for k in advisable(comparison.rows, comparison.reference)]
     return not any(
-        tolerance - own < row.error <= tolerance + own and row.time + _noise(row, advised) < advised.time
+        tolerance - own < row.error <= tolerance + own and _cheaper(row, advised, comparison.default)
         for row in known
     )

@@ -132,13 +132,22 @@ def _undecided(comparison: Comparison, tolerance: float, kept: str) -> str:
         return f"nothing has answered; {kept}"
     default, own = comparison.default, comparison.reference_error
     best = next(row for row in comparison.rows if row.label == comparison.reference)
-    gap = f"the default is {error_words(default, comparison)} away from it"
     size = _share(own) if math.isfinite(own) else "an unknown amount"
     off = f"the reference, {best.label}, is itself off by {size}"
-    if own > tolerance:
+    if not own <= tolerance:
         off += f", more than {_share(tolerance)}"
+    elif default.error - own <= tolerance:
+        off += f", too much to tell whether the default is within {_share(tolerance)}"
+    else:
+        off += f", and nothing else is known to be within {_share(tolerance)}"
+    gap = (
+        f"the default is {_share(default.error)} away from it"
+        if default.resolved
+        else "no farther is the default"
+    )
+    gap = "the default has no answer" if math.isnan(default.error) else gap
     cost = f"the default takes {_time(default.time)}, the reference {_time(best.time)}"
-    return f"cannot decide at this cost: {kept}: {off}, and {gap}; {cost}"
+    return f"cannot decide at this cost: {kept}: {off}; {gap}; {cost}"
 
 
 def error_words(row: Row, comparison: Comparison) -> str:

@@ -28,9 +28,9 @@ REPEATS = 5
 _LONG, _LONGER = 0.3, 1.5
 _FEW = 1
 _SHORT = 0.02  # s; shorter runs are timed several at once
-# CPU seconds that a finer reference may take, and with short ladders; times its cost goes up by at most where
-# its cells are twice as many.
-_MOST, _MOST_QUICK, _GROWTH = 60.0, 20.0, 4.0
+# Cells times steps of a finer reference at most, and with short ladders; by how much they go up where its
+# cells are twice as many. Counted, so that no clock decides; some 60 and 20 s.
+_MOST, _MOST_QUICK, _GROWTH = 6e8, 2e8, 4.0
 
 
 @dataclass(frozen=True)
@@ -92,18 +92,18 @@ def refine(
     question : with its cases
     runs : of each
     tolerance : relative error that is allowed
-    most : CPU time of a reference, s
+    most : work of a reference, as of an `Answer`
     progress : is called with what runs and the share that is done
     """
     found = compare(question, runs, tolerance)
     while not decided(found, tolerance):
         better = finer(question)
-        if better is None or _GROWTH * min(runs[question.reference].times) > most:
+        if better is None or _GROWTH * runs[question.reference].answer.work > most:
             break
         progress(f"{question.name}: {better.reference.label}", 1.0)
         run = alone(question.scene, better.reference)
-        if run.answer.reason:
-            break
+        if run.answer.reason or runs[question.reference].answer.in_range > run.answer.in_range:
+            break  # a finer mesh on which the layer falls is no better answer
         question, runs = better, runs | {better.reference: run}
         found = compare(question, runs, tolerance)
     return found
@@ -172,7 +172,7 @@ def alone(scene: Scene, case: Case) -> Run:
     read = json.loads(done.stdout)
     found = Answer(
         np.array(read["values"]), read["in_range"], read["reason"], tuple(read["used"]),
-        None if read["ripple"] is None else np.array(read["ripple"]), read["estimate"],
+        None if read["ripple"] is None else np.array(read["ripple"]), read["estimate"], read["work"],
     )  # fmt: skip
     return Run(found, (read["time"],), read["first"], read["memory"])
 
