@@ -59,6 +59,8 @@ def run(
     from leblanc.report.page import about, command_line
     from leblanc.report.run import write_run_report
     from leblanc.results.netcdf import write_netcdf
+    from leblanc.results.notes.baffles import BaffleCode
+    from leblanc.results.notes.response import RunCode
     from leblanc.text.closed_forms import closed_form_rows
     from leblanc.text.machine import load_table
     from leblanc.text.run import amplitude_place, comparisons, limit_rows, unanswered
@@ -79,6 +81,9 @@ def run(
         print_table(rows, ("", "with liquid", "without", "ratio"), right=True)
         if place := amplitude_place(result):
             print(f"Amplitudes are those {place}.")
+        for note in result.notes:
+            if note.code in (RunCode.LEFT_OUT, BaffleCode.CLOSED_COMPARTMENTS):
+                print(note.text)
         if result.loads is not None:
             head, lines = load_table(result.loads)
             print()

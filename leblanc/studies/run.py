@@ -16,7 +16,7 @@ from leblanc.results.motion.held import HELD_MODELS, Held
 from leblanc.results.motion.self_excited import SelfExcited
 from leblanc.results.motion.tilting import Motion, RestMode
 from leblanc.results.notes import response as notes
-from leblanc.results.notes.baffles import smeared_baffles
+from leblanc.results.notes.baffles import compartment_notes, smeared_baffles
 from leblanc.results.response import RunResult
 from leblanc.scene.inputs import input_rows
 from leblanc.scene.scene import Scene, TubRotor
@@ -237,7 +237,8 @@ def run_scene(
     else:
         answer, motion, (dry, wet) = motion_response(machine, choice)
     progress("peaks between the speeds")
-    (refined,) = responses_between([machine], [answer], drawn=True)
+    in_range_too = replace(answer, in_range=answer.in_range & choice.in_range)
+    (refined,) = responses_between([machine], [in_range_too], drawn=True)
     if by_elements(scene):
         progress("finite elements")
         choice, answer, refined = element_answers(machine, choice, answer, refined)
@@ -309,7 +310,10 @@ def _loads(
     every = by_speed([answer, refined])
     order = np.argsort(np.concatenate((answer.speed, refined.speed)), kind="stable")
     asked = np.argsort(order, kind="stable")[: answer.speed.size]
-    return loads_over_speed(machine, scene.model.friction, every.speed, every.coordinates, asked, held)
+    friction = scene.model.friction
+    return loads_over_speed(
+        machine, friction, every.speed, every.coordinates, asked, held, counts=every.holds
+    )
 
 
 def _balance(machine: Prepared, answer: Response) -> dict[str, Array]:
@@ -353,6 +357,7 @@ def _notes(
         found.append(notes.unbalance_leaves(left_in_the_end(machine.scene.rotor)))
     if choice.captured_from is not None:
         found.append(notes.not_carried(choice.captured_from, carried_from(machine.scene)))
+    found.append(notes.left_out(by_speed([answer, refined]), choice.captured_from))
     found.append(notes.one_family(answer))
     if held is not None:
         found += [*notes.held_motions(held, answer.speed), *smeared_baffles(machine.scene.fills, held.cells)]
@@ -369,7 +374,7 @@ def _notes(
         first, last = answer.speed[several][[0, -1]].tolist()
         found.append(notes.several_answers(first, last, stable=motion is None))
     found.append(_endless(by_speed([answer, refined])))
-    found += _walls(machine, answer, motion)
+    found += [*compartment_notes(machine.scene.fills), *_walls(machine, answer, motion)]
     found += [*_meshes(machine.scene), *doubts(machine.scene)]
     return tuple(note for note in found if note is not None)
 

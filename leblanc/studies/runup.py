@@ -28,9 +28,9 @@ from leblanc.studies.drives import planned as planned
 from leblanc.studies.drives import programme_notes, rotor_in_time, unbalance_left
 from leblanc.studies.machine import loaded_machine, loads_over_time
 from leblanc.studies.models.choose import across_gravity as across_gravity  # of a run-up, asked for with it
-from leblanc.studies.models.choose import axial_gravity, is_cut, prepare, ruled_out_linear
+from leblanc.studies.models.choose import axial_gravity, captured_speed, is_cut, prepare, ruled_out_linear
 from leblanc.studies.models.liquid import RUNUP_MODELS, runup_model
-from leblanc.studies.models.validity import doubts
+from leblanc.studies.models.validity import doubts, require_supported
 from leblanc.studies.peaks import responses_between
 from leblanc.studies.races.balls import races_shown, started_balls
 from meshes.arrays import Array, Flags
@@ -230,8 +230,9 @@ def chosen_run(
 
     Raises
     ------
-    InputError : the scene names a model that does not go through time
+    InputError : the scene names a model that does not go through time, or its axis is free to move
     """
+    require_supported(scene)
     model, tolerance = liquid_model(scene), scene.model.tolerance
     system, friction = rotor_in_time(scene), scene.model.friction
 
@@ -536,10 +537,13 @@ def _never_caught(scene: Scene, history: RunupHistory) -> Iterator[Note]:
 def steady_response(scene: Scene, speed: Array) -> Response | None:
     """Synchronous response over the speeds that were passed, refined where it is largest.
 
-    None unless the rotor is a Jeffcott rotor without balls.
+    None unless the rotor is a Jeffcott rotor without balls that passes speeds with an annular layer.
     """
     passed = _passed(speed, STEADY_SPEEDS)
     if not isinstance(scene.rotor, JeffcottRotor) or passed.size == 0 or is_cut(scene) or scene.balls:
+        return None
+    stands = captured_speed(scene)  # below, no annular layer has a steady response
+    if stands is not None and not (passed := passed[passed > stands]).size:
         return None
     answer = response(jeffcott(scene), scene.fills, passed, axial_gravity(scene))
     exact = scene.altered(model=scene.model.altered(liquid="statics"))

@@ -37,6 +37,12 @@ def machine_rows(answer: Explanation) -> Rows:
         ("damping ratio", f"{answer.damping_ratio:.4g}"),
         ("speeds", f"{first:.3g} to {last:.3g} times the dry critical speed"),
     ]
+    if math.isnan(answer.critical_speed_dry):
+        free = [mode.moves for mode in answer.modes if mode.frequency == 0.0]
+        rows = [
+            ("free to move", f"{len(free)} motions that nothing holds: {', '.join(free)}"),
+            ("critical speed", "none is given: the axis moves freely, and `leblanc run` refuses the machine"),
+        ]
     if answer.captured_from is not None:
         captured = f"above {in_rpm(answer.captured_from)} a ring of liquid stands against gravity"
         rows.append(("captured", captured))

@@ -40,7 +40,7 @@ def answer(result: RunResult) -> str:
         size = f"{final} with the liquid{_aside(result, -1)}"
         bare = _UNBOUNDED if last.dry == _INFINITE else last.dry_text
         return f"At {speed} the amplitude{where} {size} and {bare} without."
-    highest = largest(result.curve.amplitude)
+    highest = result.curve.top
     assert highest is not None
     at_last = f"it {final}{_aside(result, -1)} instead of {last.dry_text}"
     if last.dry == _INFINITE:
@@ -48,11 +48,20 @@ def answer(result: RunResult) -> str:
     if last.wet == NOT_FOUND:
         at_last = f"no answer was found with the liquid; without it is {last.dry_text}"
     at_highest = f"at {at.wet} rpm with the liquid{_aside(result, highest)}"
-    first = f"The largest amplitude{where} is {most.wet_text}{_on_average(result, highest)} {at_highest}"
+    held = _where_it_holds(result)
+    first = (
+        f"The largest amplitude{where}{held} is {most.wet_text}{_on_average(result, highest)} {at_highest}"
+    )
     if most.wet == _INFINITE:
         first = f"The amplitude{where} {_UNBOUNDED} {at_highest}"
     bare = f"it {_UNBOUNDED}" if most.dry == _INFINITE else most.dry_text
     return f"{first} and {bare} at {at.dry} rpm without; at {speed} {at_last}."
+
+
+def _where_it_holds(result: RunResult) -> str:
+    """Said of a largest amplitude that others exceed at speeds at which the answer does not hold."""
+    curve = result.curve
+    return " where the answer holds" if np.any(curve.amplitude > curve.peak.amplitude) else ""
 
 
 _INFINITE, _UNBOUNDED = "infinite", "grows without bound"
@@ -194,7 +203,7 @@ def comparisons(result: RunResult) -> list[Comparison]:
     result : the response
     """
     r = result.curve
-    wet, dry = largest(r.amplitude), largest(r.amplitude_dry)
+    wet, dry = r.top, largest(r.amplitude_dry)
     at_wet, at_dry = (NOT_FOUND if i is None else number(r.speed[i] * RPM) for i in (wet, dry))
     found = [
         _compared("Largest amplitude", result, wet, dry),
@@ -449,7 +458,7 @@ def remarks(result: RunResult) -> list[str]:
     result : the response
     """
     r, found = result.curve, []
-    highest = largest(r.amplitude)
+    highest = r.top
     if highest is None:
         found.append("No answer was found at any speed.")
     elif np.isinf(r.amplitude[highest]):
@@ -477,14 +486,15 @@ def alts(result: RunResult) -> dict[str, str]:
     values = dict(facts(result))
     centre = next(value for label, value in values.items() if label.startswith("Its centre"))
     return {
-        "amplitude": f"Curves of the amplitude{where} over speed: largest {most.wet_text} at {at.wet} "
-        f"rpm with liquid, {most.dry_text} at {at.dry} rpm without.{_held_alt(result)}{_on_top_alt(result)}",
+        "amplitude": f"Curves of the amplitude{where} over speed: largest{_where_it_holds(result)} "
+        f"{most.wet_text} at {at.wet} rpm with liquid, {most.dry_text} at {at.dry} rpm without."
+        f"{_held_alt(result)}{_on_top_alt(result)}",
         "liquid": "Curves of the distance and the angle of the liquid's centre of mass over speed; at the "
         f"last speed: {centre}.{_swing_alt(result)}",
         "phase": "Curves of the angle from the unbalance to the deflection over speed, with and without "
         "liquid.",
-        "chamber": "Drawing of each chamber with its liquid, seen along the axis, at the largest deflection, "
-        f"{most.wet_text}, and at the last speed, {last.wet_text}.",
+        "chamber": "Drawing of each chamber with its liquid, seen along the axis, at the largest deflection"
+        f"{_where_it_holds(result)}, {most.wet_text}, and at the last speed, {last.wet_text}.",
         "campbell": "Curves of the natural frequencies without liquid over speed.",
     }
 
