@@ -37,6 +37,7 @@ if TYPE_CHECKING:
 
 # Of the mass that a clear ring adds at rest, by the usual cells: 7e-8 at most, whatever the depth.
 REST_ERROR = 1e-7
+_FILM = 1e-6  # of the radius: a film that no mesh resolves, of the closed form's added mass
 _MOST_CELLS = 600  # around; the matrices of the free surface are dense
 _ACROSS = 6
 
@@ -84,7 +85,7 @@ class SmallWaves(WaveModel):
     def _added_mass(self, fill: Fill) -> float:
         """Of one fill; liquid without a free surface goes with its chamber."""
         chamber, inner = fill.chamber, fill.surface_radius
-        if is_full(fill) or inner <= 0.0:
+        if is_full(fill) or inner <= 0.0 or inner > (1.0 - _FILM) * chamber.radius:
             return fill.added_mass
         if chamber.section is not None:
             area = _section_at_rest(chamber.section, inner)

@@ -173,7 +173,11 @@ def _lognormal(given: Any, rule: Any) -> LogNormal:
 
 def _choice(given: Any, rule: Any) -> Choice:
     options = Entries(1, MAX_CHOICES, f"values, each {rule.allowed}")(given)
-    checked = [rule(option) for option in options]
+    try:
+        checked = [rule(option) for option in options]
+    except ValidationError as error:
+        first = faults_of(error, "", getattr(rule, "table", Part))[0]
+        raise Refused(f"a list of values, the {first.field} of each {first.allowed}") from error
     return Choice(tuple(checked) if isinstance(rule, Quantity) else tuple(options))
 
 
