@@ -37,7 +37,7 @@ def drawn(path: Path, hide: str, place: str, radius: float) -> None:
     document.saveas(path)
 
 
-@pytest.mark.parametrize(("hide", "place"), product(HIDE, ("space", "block", "layer 0")))
+@pytest.mark.parametrize(("hide", "place"), list(product(HIDE, ("space", "block", "layer 0"))))
 def test_what_is_not_plotted_is_no_wall(hide: str, place: str, tmp_path: Path) -> None:
     for radius in (1.0, 5.0):
         drawn(tmp_path / "a.dxf", hide, place, radius)
