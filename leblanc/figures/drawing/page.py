@@ -145,7 +145,7 @@ def save_png(figure: Figure, directory: Path, name: str, title: str) -> Path:
 
 def number(value: float, _position: float | None = None) -> str:
     """Tick label without an offset or a common factor elsewhere on the axis."""
-    return f"{value:.10g}".replace("-", "\N{MINUS SIGN}")
+    return f"{value + 0.0:.10g}".replace("-", "\N{MINUS SIGN}")
 
 
 _PLOTTED = {"mm": LENGTH, "ml": VOLUME, "g": MASS}  # units in which figures draw, as they end a label
