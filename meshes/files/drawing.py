@@ -204,10 +204,6 @@ def _pieces(path: str | Path, entity: Any) -> Iterator[tuple[Any, int, Any, Any]
     elif kind == "CIRCLE":
         yield from _arcs(entity, 0.0, 360.0, 3)
     else:
-        if kind == "SPLINE" and not len(entity.control_points):
-            raise InputError(
-                "path", str(path), "a drawing whose splines have control points; one has fit points alone"
-            )
         for spline in _splines(entity):
             if not spline.is_clamped:
                 raise InputError("path", str(path), "a drawing whose splines end on their control points")

@@ -8,7 +8,6 @@ from pathlib import Path
 import ezdxf
 import pytest
 
-from meshes.errors import InputError
 from meshes.files.drawing import read_drawing
 
 HIDE = ("off", "frozen", "not plotting", "invisible", "Defpoints")
@@ -83,11 +82,3 @@ def test_a_file_without_a_header_says_no_unit(tmp_path: Path) -> None:
     text = "0\nSECTION\n2\nENTITIES\n0\nCIRCLE\n8\n0\n10\n0.0\n20\n0.0\n40\n1.0\n0\nENDSEC\n0\nEOF\n"
     (tmp_path / "a.dxf").write_text(text)
     assert read_drawing(tmp_path / "a.dxf")[1] is None
-
-
-def test_a_spline_of_fit_points_alone_is_refused(tmp_path: Path) -> None:
-    document = ezdxf.new("R2010", units=4)
-    document.modelspace().add_spline([(0, 0), (1, 0), (1, 1)])
-    document.saveas(tmp_path / "a.dxf")
-    with pytest.raises(InputError, match="fit points alone"):
-        read_drawing(tmp_path / "a.dxf")
