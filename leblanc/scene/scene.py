@@ -517,9 +517,9 @@ def require_chambers(scene: Scene, what: str) -> None:
 
     Raises
     ------
-    InputError : the scene has none
+    InputError : the scene has none, and is not of a kind that never has
     """
-    if not scene.chambers:
+    if not scene.chambers and not isinstance(scene.rotor, WITHOUT_CHAMBERS):
         raise InputError("chambers", "none", f"at least one for {what}")
 
 

@@ -91,7 +91,7 @@ def modes(system: RotorSystem, spin: ArrayLike = 0.0, *, damped: bool = True) ->
     return Modes(omega, np.asarray(eigenvalue, dtype=complex), np.asarray(shape / largest, dtype=complex))
 
 
-FREE = 1e-9  # square of a natural frequency over the largest one, below which nothing holds the motion
+FREE = 1e-13  # square of a natural frequency over the largest one: rounding, so that nothing holds the motion
 _STILL = 1e-6  # of the axis' largest motion, that is rounding
 
 

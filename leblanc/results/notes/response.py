@@ -129,7 +129,7 @@ def not_carried(stands: float, carried: float | None = None) -> Note:
     data: dict[str, Any] = {"below": stands}
     text = (
         f"A ring of liquid can stand from {in_rpm(stands)} on: below, gravity across the axis keeps the "
-        "liquid from riding with the drum, and the answer is out of range: it does not count for the largest."
+        "liquid from riding with the drum: out of range, and it does not count."
     )
     if carried is not None:
         data["carried_from"] = carried if math.isfinite(carried) else None
