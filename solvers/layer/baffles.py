@@ -122,6 +122,12 @@ def resistance(depth, row):
 
 
 @_jit
+def shut(area, row):
+    """Whether a baffle lets nothing pass of a layer of this area."""
+    return resistance(_depth(area), row) < 0.0
+
+
+@_jit
 def _side(area, q, share, way, spin, full, slot, bed, other):
     """One side of a face: velocity, head, half the waves' speed over L, that speed, and how much is left.
 
