@@ -117,7 +117,7 @@ def resistance(depth, row):
     share = _share(depth, row[TIP], row[GAP])
     if share <= _CLOSED:
         return -1.0
-    lost = (1.0 / (_contraction(share) * share) - 1.0) / depth
+    lost = (1.0 / (_contraction(share) * share) - 1.0) / max(depth, 1e-12)
     return 0.5 * lost * lost
 
 

@@ -485,7 +485,7 @@ def _faces(pull_face, plates, spin, full, slot, bent, work, rolling):
         i = int(plates[k, FACE])
         if i >= 0 and shut(max(wide[i + 1], wide[i + 2]), plates[k]):
             bed[i] = pull_face[i]
-            bed[n] = pull_face[0] if i == 0 else bed[n]
+            bed[n] = bed[0]
     for k in range(2):
         # First the cell after each face, then the one before it.
         cells, row, way = slice(2 - k, m + 2 - k), _AFTER + k * _ROWS, 2.0 * k - 1.0

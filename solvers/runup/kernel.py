@@ -301,9 +301,7 @@ def _half_friction(area, q, spin, layer, drags, dt, inside, spare, gains):
         if layer.law == WALL:
             add_velocity(area, q, pushed)
     slot = inside.slot * spin * spin
-    torque, heat, before, after = _rub(
-        area, q, held, velocity, log, kept, pushed, spin, inside.full, slot
-    )
+    torque, heat, before, after = _rub(area, q, held, velocity, log, kept, pushed, spin, inside.full, slot)
     gains.torque += torque * step
     gains.heat += heat * step
     return before * step, after * step
@@ -474,7 +472,8 @@ def _measure_layers(machine, state, room):
     for j in range(machine.layers.shape[0]):
         layer = machine.layers[j]
         # Their steps have left the profiles at the end.
-        measure_profile(state.area[j], state.momentum[j], spins[1], machine.angles, room.spare[j], room.end[j])
+        area, q = state.area[j], state.momentum[j]
+        measure_profile(area, q, spins[1], machine.angles, room.spare[j], room.end[j])
         relative_momentum(room.begin[j], layer, spins[0], turn[0], turn[1], room.before[j])
         relative_momentum(room.end[j], layer, spins[1], turn[2], turn[3], room.after[j])
         flow_inertia(room.begin[j], layer, cosine / size, sine / size, room.inertia[j])
