@@ -187,11 +187,11 @@ def _layer_waves(layer: Layer, speed: Array) -> Complex:
     p = np.linalg.eigvals(companion)
     row, column = np.nonzero(p.real > 0.0)
     spin, own = speed[row], p[row, column]
-    rate, stokes, lids = layer.rate / spin, layer.stokes / np.sqrt(spin), layer.lids / np.sqrt(spin)
-    step = np.zeros_like(own)
+    linear, stokes, lids = layer.rate / spin, layer.stokes / np.sqrt(spin), layer.lids / np.sqrt(spin)
+    step: Complex = np.zeros_like(own)
     for _ in range(_OWN):
         plates, rise = plate_terms(t, 1.0, -1j * np.square(own))
-        steady = rate + lids * plates - 2j * t
+        steady = linear + lids * plates - 2j * t
         wave = np.square(own) * (np.square(own) + stokes * own + steady) + t
         slope = own * (4.0 * np.square(own) + 3.0 * stokes * own + 2.0 * steady)
         step = wave / (slope - 2j * lids * rise * own**3)

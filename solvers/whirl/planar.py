@@ -321,7 +321,7 @@ def _aberth(scaled: _Scaled, x: Complex, modes: Flags | None = None) -> tuple[Co
     return found, converged
 
 
-def _part(scaled: _Scaled, keep: Flags) -> _Scaled:
+def _part(scaled: _Scaled, keep: Flags | NDArray[np.intp]) -> _Scaled:
     return _Scaled(
         stiffness=scaled.stiffness[keep],
         damping=scaled.damping[keep],
