@@ -11,14 +11,16 @@ from numpy.typing import ArrayLike
 from fluid.fill import Fill
 from fluid.friction.laws import NO_FRICTION, Friction
 from fluid.whirl import Layer, neutral_stiffness
-from meshes.arrays import Array, Index
+from meshes.arrays import Array, Flags, Index
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import Rotor
 from solvers.whirl.growth import growth_at, planar_layers
+from solvers.whirl.looks import looks
 
 Bands = tuple[tuple[float, float], ...]
 
 _WIDTH = 1e-10  # relative, of the bracket an edge is left in
+_BESIDE = 1e-8  # relative, of speeds at an edge
 _NEAR = 1e-3  # of a bracket: how closely the secant's zero is looked at
 _STEPS = 60
 _MOST_SEEDED = 8  # layers; polynomials of more are too steep to have their zeros found
@@ -48,16 +50,33 @@ def unstable_bands(
     Next to a speed at which the growth is not known a band ends at the last one at which it is
     """
     grid = np.asarray(speed, dtype=float)
-    row, points = np.repeat(np.arange(len(rows)), grid.size), np.tile(grid, len(rows))
-    known = growth_at(rotor, rows, row, points, friction)[0] if growth is None else growth.ravel()
-    seeds = [_seeds(rotor, fills, float(grid[0]), float(grid[-1])) for fills in rows]
-    more = np.repeat(np.arange(len(rows)), [own.size for own in seeds])
-    between = np.concatenate([*seeds, np.empty(0)])
-    added = growth_at(rotor, rows, more, between, friction)[0]
-    row, points = np.concatenate([row, more]), np.concatenate([points, between])
-    rate = np.concatenate([known, added])
+    row, points, rate = looks(rotor, rows, float(grid[0]), float(grid[-1]), friction)
+    found = _bands(rotor, rows, row, points, rate, friction)
+    if growth is None:
+        return found
+    # Speeds asked for of which the bands say otherwise are looked from as well.
+    own = np.repeat(np.arange(len(rows)), grid.size), np.tile(grid, len(rows)), np.asarray(growth).ravel()
+    other = np.concatenate([_contradicts(bands, grid, g) for bands, g in zip(found, growth, strict=True)])
+    if not other.any():
+        return found
+    row, points, rate = (np.concatenate([x, y[other]]) for x, y in zip((row, points, rate), own, strict=True))
     order = np.lexsort((points, row))
-    row, points, rate = row[order], points[order], rate[order]
+    return _bands(rotor, rows, row[order], points[order], rate[order], friction)
+
+
+def _contradicts(bands: Bands, speed: Array, growth: Array) -> Flags:
+    """Speeds inside bands at which nothing grows and outside at which something does, shape (n,)."""
+    inside, edge = np.zeros(speed.shape, dtype=bool), np.zeros(speed.shape, dtype=bool)
+    for low, high in bands:
+        inside |= (speed >= low) & (speed <= high)
+        edge |= np.minimum(np.abs(speed - low), np.abs(speed - high)) <= _BESIDE * speed
+    return np.asarray(~edge & ~np.isnan(growth) & (inside != (growth > 0.0)))
+
+
+def _bands(
+    rotor: Rotor, rows: Sequence[Sequence[Fill]], row: Index, points: Array, rate: Array, friction: Friction
+) -> tuple[Bands, ...]:
+    """Bands between points by rising row and speed at which the growth is known, their edges refined."""
     grows, known_there = rate > 0.0, ~np.isnan(rate)
     # Where growth begins, after a point, and where it ceases, likewise; the ends of the rows count.
     inner = row[1:] == row[:-1]

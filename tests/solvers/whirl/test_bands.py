@@ -1,0 +1,81 @@
+"""No band of self-excited whirl is lost between two speeds, on any rotor."""
+
+from __future__ import annotations
+
+import math
+import os
+
+import numpy as np
+import pytest
+
+from fluid.fill import Fill
+from fluid.friction.laws import NO_FRICTION, Friction
+from fluid.liquid import known_liquid
+from meshes.chamber import Baffles, Chamber
+from solvers.rotor.jeffcott import Jeffcott
+from solvers.rotor.system import Rotor
+from solvers.rotor.tub import Mount, Tub
+from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
+from solvers.whirl.edges import undamped_edges, unstable_bands
+from solvers.whirl.growth import asynchronous_growth, planar_layers
+
+WATER = known_liquid("water")
+Machine = tuple[Rotor, list[Fill], Friction, float, float]
+
+
+def drawn(seed: int) -> Machine:
+    """A rotor of some kind with liquid in one or two chambers, a law of friction and a range of speeds.
+
+    Every third without damping of the supports, every second without friction, every eighth with baffles.
+    """
+    rng = np.random.default_rng([31, seed])
+    kind = ("jeffcott", "two_plane", "two_plane", "tub")[seed % 4]
+    mass, natural = 10.0 ** rng.uniform(0.5, 1.7), 10.0 ** rng.uniform(1.3, 2.3)
+    stiff = mass * natural**2
+    ratio = 0.0 if rng.random() < 0.33 else 10.0 ** rng.uniform(-3.0, -0.7)
+    damping = 2.0 * ratio * mass * natural
+    radius = rng.uniform(0.05, 0.2)
+    baffles = Baffles(int(rng.integers(3, 6)), radius * rng.uniform(0.93, 0.99)) if rng.random() < 0.125 else None
+    fills = []
+    for _ in range(int(rng.integers(1, 3))):
+        height, depth = radius * rng.uniform(0.2, 0.8), radius * 10.0 ** rng.uniform(-1.7, -0.5)
+        chamber = Chamber(radius, height, plane=radius * rng.uniform(-2.0, 2.0), baffles=baffles)
+        fills.append(Fill(chamber, WATER, math.pi * height * (radius**2 - (radius - depth) ** 2)))
+    if kind == "jeffcott":
+        rotor: Rotor = Jeffcott(mass, stiff, damping, 1e-3)
+    elif kind == "two_plane":
+        across = mass * radius**2 * rng.uniform(0.3, 3.0)
+        share = rng.uniform(0.3, 0.7)
+        places = (-radius * rng.uniform(0.5, 2.5), radius * rng.uniform(0.5, 2.5))
+        supports = tuple(
+            Support(z, part * stiff, part * damping) for z, part in zip(places, (share, 1 - share), strict=True)
+        )
+        polar = across * rng.uniform(0.1, 1.5)
+        rotor = TwoPlane(mass, across, polar, supports, (PlaneUnbalance(0.0, 1e-3),))
+    else:
+        inertia = mass * radius**2 * rng.uniform(0.5, 2.0, 3)
+        springs, dampers = [], []
+        for _ in range(4):
+            place = tuple(radius * rng.uniform(-1.5, 1.5, 3))
+            springs.append(Mount(place, along_axes=tuple(0.25 * stiff * rng.uniform(0.3, 1.0, 3))))
+            dampers.append(Mount(place, along_axes=tuple(0.25 * damping * rng.uniform(0.3, 1.0, 3))))
+        rotor = Tub(
+            0.7 * mass, 0.3 * mass, (inertia[0], inertia[1], inertia[2]), 0.3 * inertia[1], 0.2 * inertia[0],
+            tuple(springs), tuple(dampers), 1e-3,
+        )  # fmt: skip
+    law = [NO_FRICTION, NO_FRICTION, Friction("linear", 10.0 ** rng.uniform(-2.0, 0.7)), Friction("stokes")]
+    return rotor, fills, law[int(rng.integers(0, 4))], 0.3 * natural, 6.0 * natural
+
+
+def contradictions(seed: int, speeds: int) -> list[float]:
+    """Speeds at which a whirl grows outside all bands or fades inside one, the edges themselves left out."""
+    rotor, fills, friction, first, last = drawn(seed)
+    asked = np.linspace(first, last, speeds)
+    growth = asynchronous_growth(rotor, fills, asked, friction)[0]
+    (bands,) = unstable_bands(rotor, [fills], asked[[0, -1]], friction)
+    inside = np.zeros(speeds, dtype=bool)
+    edge = np.isnan(growth)
+    for low, high in bands:
+        inside |= (asked >= low) & (asked <= high)
+        edge |= np.minimum(np.abs(asked - low), np.abs(asked - high)) <= 1e-7 * asked
+    return asked[~edge & (inside != (growth > 0.0))].tolist()
