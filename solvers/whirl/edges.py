@@ -12,9 +12,8 @@ from fluid.fill import Fill
 from fluid.friction.laws import NO_FRICTION, Friction
 from fluid.whirl import Layer, neutral_stiffness
 from meshes.arrays import Array, Flags, Index
-from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import Rotor
-from solvers.whirl.growth import growth_at, planar_layers
+from solvers.whirl.growth import growth_at
 from solvers.whirl.looks import looks
 
 Bands = tuple[tuple[float, float], ...]
@@ -23,7 +22,6 @@ _WIDTH = 1e-10  # relative, of the bracket an edge is left in
 _BESIDE = 1e-8  # relative, of speeds at an edge
 _NEAR = 1e-3  # of a bracket: how closely the secant's zero is looked at
 _STEPS = 60
-_MOST_SEEDED = 8  # layers; polynomials of more are too steep to have their zeros found
 
 
 def unstable_bands(
@@ -35,8 +33,8 @@ def unstable_bands(
 ) -> tuple[Bands, ...]:
     """Bands of speed in which some whirl grows, their edges refined.
 
-    Looked at are the speeds given and, so that no narrow band is lost between them, the edges and the middle
-    of each band of the same rotor without any damping, if it is a Jeffcott rotor.
+    Looked at are speeds of its own choice between the first and the last of those given, so that no band is
+    lost between two of these and none depends on their number [theory: whirl, eq. 32 and 33].
 
     Parameters
     ----------
@@ -163,18 +161,6 @@ def _refine(
         low[:, active] = points[beyond - 1, at], rates[beyond - 1, at]
         high[:, active] = points[beyond, at], rates[beyond, at]
     return np.asarray(0.5 * (low[0] + high[0]))
-
-
-def _seeds(rotor: Rotor, fills: Sequence[Fill], first: float, last: float) -> Array:
-    """Edges without damping and the middles between neighbours, inside the range."""
-    if not isinstance(rotor, Jeffcott):
-        return np.empty(0)
-    mass, layers = planar_layers(rotor.mass, fills, NO_FRICTION)
-    if not 0 < len(layers) <= _MOST_SEEDED:
-        return np.empty(0)
-    edges = undamped_edges(mass, rotor.stiffness, layers)
-    speeds = np.concatenate([edges, 0.5 * (edges[1:] + edges[:-1])])
-    return np.unique(speeds[(speeds > first) & (speeds < last)])
 
 
 def undamped_edges(mass: float, stiffness: float, layers: Sequence[Layer]) -> Array:

@@ -19,17 +19,18 @@ from fluid.whirl import plane_layer
 from meshes.arrays import Array, Complex, Flags, Index
 from solvers.rotor.system import Rotor, RotorSystem
 from solvers.rotor.vibration import critical_speeds
-from solvers.whirl.growth import modes_at
+from solvers.whirl.growth import growth_at, modes_at
 
 _APART = 0.08  # first distance of speeds, relative
 _FEWEST = 9
-_BESIDE = 1e-6  # relative, of the second speed by which slopes are found
+_BESIDE = 1e-7  # relative, of the second speed by which slopes are found
 _FOLLOWED = 0.02  # of the change of the spin: how far a mode may be from where its slopes lead
 _LEAP = 0.05  # of the spin: a mode does not go so far over that second speed
 _HALVINGS = 7
 _NARROW, _AT_EDGE = 1e-6, 0.01  # relative width of intervals that are not split further, at edges
 _FLOOR = 1e-10  # of the spin: growth that is not looked for
 _DAMPED = 0.1  # of the spin: decay beyond which a mode is not followed
+_SLOW = 1.1  # of the spin: frequency up to which it is
 _STEPS = 6  # towards a meeting
 _MET = 1e-10  # of the spin: how near a meeting is gone to
 
@@ -121,14 +122,16 @@ def _looked(
     """Modes and growth at points, and slopes by a second speed close by."""
     size = speed.size
     both, spins = np.concatenate([row, row]), np.concatenate([speed, speed * (1.0 + _BESIDE)])
-    roots, growth = modes_at(rotor, rows, both, spins, friction)
-    root, beside = roots[:size], roots[size:]
+    roots, rates = modes_at(rotor, rows, both, spins, friction)
+    root, beside, growth = roots[:size], roots[size:], rates[:size]
+    unsure = np.flatnonzero(np.isnan(growth))
+    growth[unsure] = growth_at(rotor, rows, row[unsure], speed[unsure], friction)[0]
     gap = np.where(np.isnan(root)[:, :, None] | np.isnan(beside)[:, None, :], np.inf, 1.0)
     gap = np.where(np.isinf(gap), np.inf, np.abs(beside[:, None, :] - root[:, :, None]))
-    nearest = np.argmin(gap, axis=2)
+    nearest = _pairing(gap)
     change = np.take_along_axis(beside, nearest, axis=1) - root
     change = np.where(np.abs(change) <= _LEAP * speed[:, None], change, complex(np.nan, np.nan))
-    return Looks(row, speed, growth[:size], root, change / (_BESIDE * speed[:, None]))
+    return Looks(row, speed, growth, root, change / (_BESIDE * speed[:, None]))
 
 
 def _joined(parts: Sequence[Looks]) -> Looks:
@@ -163,14 +166,26 @@ def _follow(low: Looks, high: Looks) -> _Followed:
     led = low.root[:, :, None] + 0.5 * width * (low.slope[:, :, None] + high.slope[:, None, :])
     off = np.abs(high.root[:, None, :] - led)
     off = np.where(np.isnan(off), np.inf, off)
-    there = np.argmin(off, axis=2)
-    back = np.take_along_axis(np.argmin(off, axis=1), there, axis=1)
+    there = _pairing(off)
     near = np.take_along_axis(off, there[:, :, None], axis=2)[:, :, 0] <= _FOLLOWED * width[:, :, 0]
     end, comes = (np.take_along_axis(part, there, axis=1) for part in (high.root, high.slope))
-    sure = near & (back == np.arange(low.root.shape[1]))
     rate = np.where(np.isnan(low.root), -np.inf, low.root.real)
-    counts = rate > -_DAMPED * low.speed[:, None]
-    return _Followed(low.root, low.slope, end, comes, sure, counts)
+    spin = low.speed[:, None]
+    counts = (rate > -_DAMPED * spin) & (np.abs(low.root.imag) < _SLOW * spin)
+    return _Followed(low.root, low.slope, end, comes, near, counts)
+
+
+def _pairing(off: Array) -> Index:
+    """For each of m places one of m others, nearest pairs first, from distances of shape (k, m, m); (k, m)."""
+    count, places = off.shape[0], off.shape[1]
+    left, there = off.copy(), np.zeros(off.shape[:2], dtype=np.intp)
+    every = np.arange(count)
+    for _ in range(places):
+        one, other = np.divmod(np.argmin(left.reshape(count, -1), axis=1), places)
+        free = np.isfinite(left[every, one, other])
+        there[every[free], one[free]] = other[free]
+        left[every, one], left[every, :, other] = np.inf, np.inf
+    return there
 
 
 def _unsure(low: Looks, high: Looks) -> tuple[Flags, Array]:

@@ -218,7 +218,6 @@ def test_edge_steps() -> None:
     assert len(looks) - 1 <= 7
 
 
-@kills("solvers.whirl.edges:_seeds", "np.concatenate([edges, 0.5 * (", "np.concatenate([0.1 * edges, 0.1 * (")
 def test_thin_film() -> None:
     """The band of a film, off the grid here, lies between the critical speeds with and without added mass."""
     speeds = np.linspace(30.0, 400.0, 20)
