@@ -115,7 +115,7 @@ def growth_at(
 
 
 def system_modes(
-    rotor: Rotor, fills: Sequence[Fill], speed: Array, friction: Friction = NO_FRICTION, slow: bool = False
+    rotor: Rotor, fills: Sequence[Fill], speed: Array, friction: Friction = NO_FRICTION
 ) -> SystemModes:
     """All whirl modes of any rotor with its fills [theory: whirl, eq. 7].
 
@@ -123,7 +123,6 @@ def system_modes(
     ----------
     rotor, fills, friction : as for `asynchronous_growth`
     speed : rad/s, shape (n,)
-    slow : with laminar friction beside baffles the slow ones, as by `solvers.whirl.sections.slow_modes`
     """
     heavy = rotor.system()
     for fill in fills:
@@ -132,8 +131,7 @@ def system_modes(
             heavy = replace(heavy, mass=heavy.mass + fill.mass * at.T @ at)
     if any(fill.uneven for fill in fills):
         cut = [(fill.chamber.plane, section_layer(fill, friction)) for fill in fills]
-        placed = [(plane, layer) for plane, layer in cut if layer is not None]
-        return standing_modes(heavy, placed, speed, slow)
+        return standing_modes(heavy, [(plane, layer) for plane, layer in cut if layer is not None], speed)
     found = [(fill.chamber.plane, plane_layer(fill, friction)) for fill in fills]
     layers = [(plane, layer) for plane, layer in found if layer is not None]
     _require_few(len(layers))
@@ -206,23 +204,18 @@ def machines_growth(
 
 
 def _planar_parts(
-    machines: Sequence[PlanarMachine],
-    frictions: Sequence[Friction],
-    owner: Index,
-    speed: Array,
-    slow: bool = False,
+    machines: Sequence[PlanarMachine], frictions: Sequence[Friction], owner: Index, speed: Array
 ) -> Iterator[tuple[Index, SystemModes | Modes]]:
-    """Points of planar machines with as many modes each, and those modes; parameters as for `machines_growth`.
+    """Points of planar machines with as many modes each, and those modes; arguments of `machines_growth`.
 
-    With laminar friction beside baffles those that grow most, or the slow ones; where baffles stand in the
-    liquid it is in the frame of the drum [theory: sections, eq. 3].
+    In the frame of the drum where baffles stand in the liquid [theory: sections, eq. 3].
     """
     uneven = np.array([any(fill.uneven for fill in fills) for _, fills in machines], dtype=bool)
     for i in np.intersect1d(np.flatnonzero(uneven), owner).tolist():
         here = np.flatnonzero(owner == i)
         rotor, fills = machines[i]
         solid, parted = section_layers(fills, frictions[i])
-        yield here, drum_modes(replace(rotor, mass=rotor.mass + solid), parted, speed[here], slow)
+        yield here, drum_modes(replace(rotor, mass=rotor.mass + solid), parted, speed[here])
     tables = [
         planar_layers(rotor.mass, fills, friction)
         for (rotor, fills), friction in zip(machines, frictions, strict=True)
@@ -261,14 +254,14 @@ def modes_at(
     -------
     root : growth + i frequency, 1/s, each mode once, in a frame in which modes that are coupled meet where
         they are alike; 0 for a growth that is rounding, nan where a point has fewer modes, shape (n, m)
-    growth : as from `growth_at`, nan where modes were not counted, shape (n,)
+    growth : as from `growth_at`, shape (n,)
     """
     parts: Iterable[tuple[Index, SystemModes | Modes]]
     if isinstance(rotor, Jeffcott):
-        parts = _planar_parts([(rotor, fills) for fills in rows], [friction] * len(rows), row, speed, True)
+        parts = _planar_parts([(rotor, fills) for fills in rows], [friction] * len(rows), row, speed)
     else:
         own = ((np.flatnonzero(row == k), rows[k]) for k in np.unique(row).tolist())
-        parts = ((here, system_modes(rotor, fills, speed[here], friction, True)) for here, fills in own)
+        parts = ((here, system_modes(rotor, fills, speed[here], friction)) for here, fills in own)
     growth, seen = np.full(speed.size, np.nan), []
     for here, found in parts:
         if isinstance(found, SystemModes):

@@ -3,7 +3,8 @@
 A mode changes fast only where another meets it. So modes and their slopes over the spin are taken at a few
 speeds, whatever speeds a user asks for, and each interval is looked at until its modes are followed from end
 to end, until no growth can have risen above zero or fallen below it inside, and until every meeting of two
-modes has been gone to [theory: whirl, eq. 32 and 33].
+modes has been gone to [theory: whirl, eq. 32 and 33]. Beside baffles with laminar friction the first speeds
+alone serve.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ from solvers.whirl.growth import growth_at, modes_at
 
 _APART = 0.08  # first distance of speeds, relative
 _FEWEST = 9
-_BESIDE = 1e-7  # relative, of the second speed by which slopes are found
+_BESIDE = 1e-6  # relative, of the second speed by which slopes are found
 _FOLLOWED = 0.02  # of the change of the spin: how far a mode may be from where its slopes lead
 _LEAP = 0.05  # of the spin: a mode does not go so far over that second speed
 _HALVINGS = 7
@@ -69,7 +70,11 @@ def looks(
         return _looked(rotor, rows, row, speed, friction)
 
     own = [_first_speeds(rotor.system(), fills, first, last) for fills in rows]
-    seen = at(np.repeat(np.arange(len(rows)), [part.size for part in own]), np.concatenate(own))
+    row, speed = np.repeat(np.arange(len(rows)), [part.size for part in own]), np.concatenate(own)
+    if friction.law.laminar and any(fill.uneven for fills in rows for fill in fills):
+        # Only the modes that grow most are known there, and those come and go: what cannot be followed.
+        return row, speed, growth_at(rotor, rows, row, speed, friction)[0]
+    seen = at(row, speed)
     inside = seen.row[1:] == seen.row[:-1]
     low, high = seen.at(np.flatnonzero(inside)), seen.at(np.flatnonzero(inside) + 1)
     found, meetings = [seen], []
@@ -85,13 +90,15 @@ def looks(
     else:
         meetings.append(_meetings(low, high))
     found += _gone_to(at, [np.concatenate(part) for part in zip(*meetings, strict=True)])
-    row, speed, growth = (np.concatenate([getattr(part, n) for part in found]) for n in ("row", "speed", "growth"))
+    row, speed, growth = (
+        np.concatenate([getattr(part, n) for part in found]) for n in ("row", "speed", "growth")
+    )
     order = np.lexsort((speed, row))
     return row[order], speed[order], growth[order]
 
 
 def _first_speeds(system: RotorSystem, fills: Sequence[Fill], first: float, last: float) -> Array:
-    """Ends of the range, speeds between at even ratios, and those where a wave meets a mode of the rotor.
+    """Ends of the range, speeds between at even ratios, and those where a wave meets a rotor's mode.
 
     A wave of a clear ring goes round at c = 1 + T -+ sqrt(T^2 + T) times the spin, seen from outside. It meets
     a mode, of the rotor alone or with the liquid's mass, at a critical speed of a rotor of the mass c^2 M and
@@ -124,8 +131,6 @@ def _looked(
     both, spins = np.concatenate([row, row]), np.concatenate([speed, speed * (1.0 + _BESIDE)])
     roots, rates = modes_at(rotor, rows, both, spins, friction)
     root, beside, growth = roots[:size], roots[size:], rates[:size]
-    unsure = np.flatnonzero(np.isnan(growth))
-    growth[unsure] = growth_at(rotor, rows, row[unsure], speed[unsure], friction)[0]
     gap = np.where(np.isnan(root)[:, :, None] | np.isnan(beside)[:, None, :], np.inf, 1.0)
     gap = np.where(np.isinf(gap), np.inf, np.abs(beside[:, None, :] - root[:, :, None]))
     nearest = _pairing(gap)
@@ -176,7 +181,7 @@ def _follow(low: Looks, high: Looks) -> _Followed:
 
 
 def _pairing(off: Array) -> Index:
-    """For each of m places one of m others, nearest pairs first, from distances of shape (k, m, m); (k, m)."""
+    """For each of m places one of m others, nearest first, by distances of shape (k, m, m); shape (k, m)."""
     count, places = off.shape[0], off.shape[1]
     left, there = off.copy(), np.zeros(off.shape[:2], dtype=np.intp)
     every = np.arange(count)
@@ -210,7 +215,12 @@ def _unsure(low: Looks, high: Looks) -> tuple[Flags, Array]:
     if pairs is not None:
         gap, reach = pairs
         beyond, least = _tangents(*gap, width[:, None])
-        twice = (gap[0] * gap[1] > 0.0) & (least * gap[0] < 0.0) & (gap[2] * gap[0] < 0.0) & (gap[3] * gap[0] > 0.0)
+        twice = (
+            (gap[0] * gap[1] > 0.0)
+            & (least * gap[0] < 0.0)
+            & (gap[2] * gap[0] < 0.0)
+            & (gap[3] * gap[0] > 0.0)
+        )
         near = beyond, twice & (reach < width[:, None] * np.abs(gap[2] - gap[3]))
     wanted = np.concatenate([rises | falls, near[1]], axis=1)
     places = np.concatenate([at, near[0]], axis=1)
@@ -230,7 +240,7 @@ def _tangents(first: Array, last: Array, rise: Array, fall: Array, width: Array)
 
 
 def _pairs(modes: _Followed) -> tuple[tuple[Array, Array, Array, Array], Array] | None:
-    """Distances in frequency of all pairs of modes: both ends, both slopes; and what they would have to overcome.
+    """Distances in frequency of all pairs of modes: both ends, both slopes; and the decay to be overcome.
 
     Two modes that decay at the rates a and b can make each other grow only if their coupling is stronger than
     sqrt(a b). Coupling as wide as the interval is seen without going there.
@@ -261,9 +271,7 @@ def _meetings(low: Looks, high: Looks) -> tuple[Array, ...]:
     where, which = np.nonzero(crossed)
     at = first[where, which] / (first - last)[where, which]
     one, other = (part[which] for part in np.triu_indices(modes.start.shape[1], 1))
-    root = sum(
-        (1.0 - at) * modes.start[where, own] + at * modes.end[where, own] for own in (one, other)
-    )
+    root = sum((1.0 - at) * modes.start[where, own] + at * modes.end[where, own] for own in (one, other))
     speed = low.speed[where] + at * width[where, 0]
     return low.row[where], speed, low.speed[where], high.speed[where], np.asarray(0.5 * root)
 
@@ -280,7 +288,12 @@ def _gone_to(at: Callable[[Index, Array], Looks], meetings: Sequence[Array]) -> 
         if row.size == 0:
             break
         here = at(row, speed)
-        found.append(here)
+        # At a meeting that is no band, rounding makes one of no width.
+        found.append(
+            replace(
+                here, growth=np.where(here.growth > _FLOOR * speed, here.growth, np.minimum(here.growth, 0.0))
+            )
+        )
         off = np.abs(here.root - root[:, None])
         two = np.argsort(np.where(np.isnan(off), np.inf, off), axis=1)[:, :2]
         pair, slope = (np.take_along_axis(part, two, axis=1) for part in (here.root, here.slope))

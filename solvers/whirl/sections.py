@@ -25,7 +25,6 @@ from solvers.whirl.sheets import drum_roots, standing_roots
 from solvers.whirl.system import CoupledMatrices, SystemModes, linear_modes
 
 Placed = tuple[float, SectionLayer]
-Terms = Callable[[Complex, Index], tuple[Complex, Complex]]
 
 _TURN = np.array([[0.0, -1.0], [1.0, 0.0]])  # a quarter turn with the spin: multiplies by i
 _ALIKE = 1e-3  # of the answer, that may go in the other sense: what an uneven mesh makes of even walls
@@ -40,7 +39,6 @@ _ASIDE = 1e-4  # of the spin: how far left of that the others start at least
 _SAME = 1e-9  # of the spin: modes as near as that are one
 _GONE = -1e300  # lambda of a mode that there is not, 1/s
 _BLOCK = 64  # points whose matrices fit the processor's cache
-_SLOWEST, _DAMPED = 1.3, 0.3  # of the spin: frequency and decay up to which modes count as slow
 _RESOLVED = 1e-11  # of the frequencies, below which growth is rounding
 
 
@@ -91,15 +89,12 @@ def drum_matrices(rotor: Jeffcott, layers: Sequence[SectionLayer], speed: Array)
     )
 
 
-def drum_modes(
-    rotor: Jeffcott, layers: Sequence[SectionLayer], speed: Array, slow: bool = False
-) -> SystemModes:
+def drum_modes(rotor: Jeffcott, layers: Sequence[SectionLayer], speed: Array) -> SystemModes:
     """Whirl modes in the drum's frame: all of them without laminar friction, with it those that grow most.
 
     Parameters
     ----------
     rotor, layers, speed : as for `drum_matrices`
-    slow : instead of those that grow most the slow ones, as by `slow_modes`
 
     Returns
     -------
@@ -125,8 +120,9 @@ def drum_modes(
 
     fastest = _fastest(started, system.mass, system.laminar)
     slip = np.abs(started.imag)
-    search = MostGrowing(started, slip, circles, terms, every, np.zeros(speed.shape), fastest)
-    return slow_modes(search, speed) if slow else most_growing(search, speed)
+    return most_growing(
+        MostGrowing(started, slip, circles, terms, every, np.zeros(speed.shape), fastest), speed
+    )
 
 
 def roots(matrices: CoupledMatrices) -> Complex:
@@ -148,7 +144,7 @@ class MostGrowing:
     slip: Array  #: frequency of each over the drum, rad/s, 0 or above, shape (n, m)
     circles: Array  #: displacements that tell the sense of a whirl, in pairs across the axis, shape (2 c, N)
     #: T(lambda) and its derivative, shape (k, N, N), at points, (k,), of the speeds they belong to, (k,)
-    terms: Terms
+    terms: Callable[[Complex, Index], tuple[Complex, Complex]]
     #: all lambda at some of the speeds, nan in place of some, shape (k, m) from (k,)
     every: Callable[[Index], Complex]
     tip: Array  #: imaginary part of the end of the cut of T, rad/s, shape (n,)
@@ -182,58 +178,6 @@ def most_growing(search: MostGrowing, speed: Array) -> SystemModes:
     return modes.replaced(missed, _told(search, (start, others), missed, speed), _GONE)
 
 
-def slow_modes(search: MostGrowing, speed: Array) -> SystemModes:
-    """The modes that turn no faster than the spin, among them all that can come to grow; they are not counted.
-
-    Parameters
-    ----------
-    search, speed : as for `most_growing`
-    """
-    root, spin = search.started, speed[:, None]
-    wanted = (root.imag > 1e-9 * spin) & (root.imag < _SLOWEST * spin) & (root.real > -_DAMPED * spin)
-    place = np.argsort(~wanted, axis=1, kind="stable")[:, : int(wanted.sum(axis=1).max(initial=0))]
-    wanted, start = (np.take_along_axis(part, place, axis=1) for part in (wanted, root))
-    everywhere = np.arange(speed.size)
-    root, _, found = _followed(
-        search.terms, np.where(wanted, start, 1j * spin), everywhere, len(search.circles.T)
-    )
-    found &= wanted
-    # Where two starts lead to one mode another is missed: the later one goes on with all others divided out.
-    again = wanted & (~found | _twice(root, found, speed))
-    root = np.where(again, start, root)
-    found = (found & ~again) | _apart(search.terms, root, again, found & ~again, speed)
-    unknown = np.zeros(speed.shape, dtype=bool)
-    return SystemModes(root, np.ones(root.shape), _RESOLVED * (np.abs(root) + spin), found, unknown)
-
-
-def _apart(terms: Terms, root: Complex, moving: Flags, known: Flags, speed: Array) -> Flags:
-    """Newton's method on some modes, in place, with those known and one another divided out; which settled."""
-    settled = np.zeros(root.shape, dtype=bool)
-    row, column = np.nonzero(moving)
-    present = known | moving
-    for _ in range(_STEPS):
-        if row.size == 0:
-            break
-        own = root[row, column]
-        matrix, slope = terms(own * (1.0 + _BESIDE), row)
-        rise = np.trace(np.linalg.solve(matrix, slope), axis1=-2, axis2=-1)
-        gap = own[:, None] - root[row]
-        other = np.divide(1.0, gap, out=np.zeros_like(gap), where=present[row] & (gap != 0.0))
-        step = 1.0 / (rise - other.sum(axis=1))
-        root[row, column] = own - step
-        done = np.abs(step) <= _SETTLED * np.abs(own)
-        settled[row[done], column[done]] = True
-        on = ~done & (np.abs(own - step) < 2.0 * speed[row])
-        row, column = row[on], column[on]
-    return settled
-
-
-def _twice(root: Complex, found: Flags, spin: Array) -> Flags:
-    """Modes that an earlier one is as well: two starts may lead to one mode, shape (n, f)."""
-    alike = np.tril(np.abs(root[:, :, None] - root[:, None, :]) <= _SAME * spin[:, None, None], -1)
-    return np.asarray((alike & found[:, None, :]).any(axis=2))
-
-
 def _split(root: Complex, which: Index) -> tuple[Complex, Complex]:
     """Those at the places given, shape (n, f), and the others above the real axis, nan in place of some."""
     others = np.where(root.imag > 0.0, root, complex(np.nan, np.nan))
@@ -263,7 +207,9 @@ def _told(search: MostGrowing, starts: tuple[Complex, Complex], at: Index, speed
             found[part] = size + 1j * np.angle(unit)
         return found
 
-    kept = found & ~_twice(root, found, spin)
+    # Two starts may lead to one mode.
+    twice = np.tril(np.abs(root[:, :, None] - root[:, None, :]) <= _SAME * spin[:, None, None], -1)
+    kept = found & ~(twice & found[:, None, :]).any(axis=2)
     left = others.real < (region.line - _ASIDE * spin)[:, None]
     known = np.where(np.hstack([kept, left]), np.hstack([root, others]), complex(np.nan, np.nan))
     count = missed_modes(determinant, 2 * len(search.circles.T), known, region)
@@ -293,7 +239,7 @@ def _sizes(circles: Array, shape: Complex) -> tuple[Array, Array]:
 
 
 def _followed(
-    terms: Terms, start: Complex, at: Index, size: int
+    terms: Callable[[Complex, Index], tuple[Complex, Complex]], start: Complex, at: Index, size: int
 ) -> tuple[Complex, Complex, Flags]:
     """Newton's method on each mode with its own laminar friction.
 
@@ -453,15 +399,12 @@ def standing_matrices(system: RotorSystem, layers: Sequence[Placed], speed: Arra
     return StandingMatrices(mass, damping, stiffness, laminar, quarter)
 
 
-def standing_modes(
-    system: RotorSystem, layers: Sequence[Placed], speed: Array, slow: bool = False
-) -> SystemModes:
+def standing_modes(system: RotorSystem, layers: Sequence[Placed], speed: Array) -> SystemModes:
     """Whirl modes in the standing frame: all without laminar friction, with it those that grow most.
 
     Parameters
     ----------
     system, layers, speed : as for `standing_matrices`
-    slow : instead of those that grow most the slow ones, as by `slow_modes`
     """
     found = standing_matrices(system, layers, speed)
     rows = np.zeros((2 * len(layers), len(found.mass)))
@@ -501,8 +444,7 @@ def standing_modes(
         return standing_roots(plain.at(owner), np.asarray(drags, dtype=complex), speed[owner])
 
     fastest = _fastest(started, found.mass, found.laminar)
-    search = MostGrowing(started, slip, circles, terms, every, speed, fastest)
-    return slow_modes(search, speed) if slow else most_growing(search, speed)
+    return most_growing(MostGrowing(started, slip, circles, terms, every, speed, fastest), speed)
 
 
 def _real(matrix: Any) -> Array:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import os
 
 import numpy as np
 import pytest
@@ -18,6 +17,7 @@ from solvers.rotor.tub import Mount, Tub
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
 from solvers.whirl.edges import undamped_edges, unstable_bands
 from solvers.whirl.growth import asynchronous_growth, planar_layers
+from tests.mutants import kills
 
 WATER = known_liquid("water")
 Machine = tuple[Rotor, list[Fill], Friction, float, float]
@@ -35,7 +35,9 @@ def drawn(seed: int) -> Machine:
     ratio = 0.0 if rng.random() < 0.33 else 10.0 ** rng.uniform(-3.0, -0.7)
     damping = 2.0 * ratio * mass * natural
     radius = rng.uniform(0.05, 0.2)
-    baffles = Baffles(int(rng.integers(3, 6)), radius * rng.uniform(0.93, 0.99)) if rng.random() < 0.125 else None
+    baffles = (
+        Baffles(int(rng.integers(3, 6)), radius * rng.uniform(0.93, 0.99)) if rng.random() < 0.125 else None
+    )
     fills = []
     for _ in range(int(rng.integers(1, 3))):
         height, depth = radius * rng.uniform(0.2, 0.8), radius * 10.0 ** rng.uniform(-1.7, -0.5)
@@ -48,7 +50,8 @@ def drawn(seed: int) -> Machine:
         share = rng.uniform(0.3, 0.7)
         places = (-radius * rng.uniform(0.5, 2.5), radius * rng.uniform(0.5, 2.5))
         supports = tuple(
-            Support(z, part * stiff, part * damping) for z, part in zip(places, (share, 1 - share), strict=True)
+            Support(z, part * stiff, part * damping)
+            for z, part in zip(places, (share, 1 - share), strict=True)
         )
         polar = across * rng.uniform(0.1, 1.5)
         rotor = TwoPlane(mass, across, polar, supports, (PlaneUnbalance(0.0, 1e-3),))
@@ -79,3 +82,67 @@ def contradictions(seed: int, speeds: int) -> list[float]:
         inside |= (asked >= low) & (asked <= high)
         edge |= np.minimum(np.abs(asked - low), np.abs(asked - high)) <= 1e-7 * asked
     return asked[~edge & (inside != (growth > 0.0))].tolist()
+
+
+def no_band_lost(seeds: range, speeds: int = 200) -> None:
+    """No seed's bands contradict the growth at speeds that they were not found from."""
+    wrong = {seed: found for seed in seeds if (found := contradictions(seed, speeds))}
+    assert not wrong
+
+
+@kills("solvers.whirl.edges:_refine", "(rates > 0.0) != first", "(rates > 0.0) == first")
+def test_no_band_lost() -> None:
+    """A sample of random machines: planar, on two planes, tubs, clear and beside baffles."""
+    no_band_lost(range(10))
+
+
+@pytest.mark.slow
+def test_no_band_lost_in_200() -> None:
+    """The same of 200 machines."""
+    no_band_lost(range(200))
+
+
+#: Two planes, no damping: bands of 594 to 674 and 971 to 1428 rpm and a stable gap between.
+GAPPED = TwoPlane(
+    10.0, 0.05, 0.015, (Support(0.1, 1e4, 0.0), Support(-0.1, 1e4, 0.0)), (PlaneUnbalance(0.0, 1e-3),)
+)
+HALF = Fill(Chamber(0.06, 0.02, plane=0.15), WATER, 113.0973e-6)
+
+
+@pytest.mark.parametrize("speeds", [60, 100, 2001])
+def test_number_of_speeds(speeds: int) -> None:
+    """Neither a band nor the gap between two is lost, however few speeds are asked for."""
+    asked = np.linspace(20.0, 3000.0, speeds)
+    growth = asynchronous_growth(GAPPED, [HALF], asked)[0]
+    (bands,) = unstable_bands(GAPPED, [[HALF]], asked, growth=growth[None])
+    (other,) = unstable_bands(GAPPED, [[HALF]], asked[[0, -1]])
+    np.testing.assert_array_equal(bands, other)
+    assert len(bands) == 2
+    for low, high in bands:
+        beside = np.array([low * (1 - 1e-8), low * (1 + 1e-8), high * (1 - 1e-8), high * (1 + 1e-8)])
+        grows = asynchronous_growth(GAPPED, [HALF], beside)[0] > 0.0
+        assert grows.tolist() == [False, True, True, False]
+    # A grid of 0.4 rad/s, by the sign of the growth alone.
+    fine = np.arange(50.0, 160.0, 0.4)
+    grows = asynchronous_growth(GAPPED, [HALF], fine)[0] > 0.0
+    edges = fine[1:][grows[1:] != grows[:-1]]
+    np.testing.assert_allclose(np.ravel(bands), edges - 0.2, atol=0.2)
+
+
+@kills("solvers.whirl.looks:_meetings", "(first * last < 0.0)", "(first * last < -np.inf)")
+def test_films() -> None:
+    """Bands of a film on two planes, as narrow as the film is thin, are gone to, each between two speeds.
+
+    Without gyration the rotor's shift is a Jeffcott rotor whose film is in the plane of its centre of mass: its
+    edges are those of the undamped planar rotor.
+    """
+    rotor = TwoPlane(
+        6.0, 0.05, 0.0, (Support(0.1, 3e4, 0.0), Support(-0.1, 3e4, 0.0)), (PlaneUnbalance(0.0, 1e-3),)
+    )
+    for depth in (1e-4, 1e-6):
+        chamber = Chamber(0.1, 0.02, plane=0.0)
+        fill = Fill(chamber, WATER, math.pi * 0.02 * (0.1**2 - (0.1 - 0.1 * depth) ** 2))
+        (bands,) = unstable_bands(rotor, [[fill]], np.array([30.0, 400.0]))
+        mass, layers = planar_layers(6.0, [fill], NO_FRICTION)
+        # Each edge to the half of the digits that a double root leaves.
+        np.testing.assert_allclose(np.ravel(bands), undamped_edges(mass, 6e4, layers), rtol=1e-7)
