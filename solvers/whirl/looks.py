@@ -100,9 +100,9 @@ def looks(
 def _first_speeds(system: RotorSystem, fills: Sequence[Fill], first: float, last: float) -> Array:
     """Ends of the range, speeds between at even ratios, and those where a wave meets a rotor's mode.
 
-    A wave of a clear ring goes round at c = 1 + T -+ sqrt(T^2 + T) times the spin, seen from outside. It meets
-    a mode, of the rotor alone or with the liquid's mass, at a critical speed of a rotor of the mass c^2 M and
-    the gyroscopic matrix c G [theory: whirl, eq. 32].
+    A wave of a clear ring goes round at c = 1 + T -+ sqrt(T^2 + T) times the spin, seen from outside. It
+    meets a mode, of the rotor alone or with the liquid's mass, at a critical speed of a rotor of the mass
+    c^2 M and the gyroscopic matrix c G [theory: whirl, eq. 32].
     """
     count = max(_FEWEST, 1 + int(np.ceil(np.log(last / first) / _APART)))
     found = [np.geomspace(first, last, count)]

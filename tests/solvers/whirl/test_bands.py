@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ import pytest
 from fluid.fill import Fill
 from fluid.friction.laws import NO_FRICTION, Friction
 from fluid.liquid import known_liquid
+from fluid.whirl import plane_layer
 from meshes.chamber import Baffles, Chamber
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import Rotor
@@ -17,6 +19,8 @@ from solvers.rotor.tub import Mount, Tub
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
 from solvers.whirl.edges import undamped_edges, unstable_bands
 from solvers.whirl.growth import asynchronous_growth, planar_layers
+from solvers.whirl.looks import _first_speeds
+from solvers.whirl.system import coupled_matrices, linear_modes
 from tests.mutants import kills
 
 WATER = known_liquid("water")
@@ -129,12 +133,11 @@ def test_number_of_speeds(speeds: int) -> None:
     np.testing.assert_allclose(np.ravel(bands), edges - 0.2, atol=0.2)
 
 
-@kills("solvers.whirl.looks:_meetings", "(first * last < 0.0)", "(first * last < -np.inf)")
 def test_films() -> None:
     """Bands of a film on two planes, as narrow as the film is thin, are gone to, each between two speeds.
 
-    Without gyration the rotor's shift is a Jeffcott rotor whose film is in the plane of its centre of mass: its
-    edges are those of the undamped planar rotor.
+    Without gyration the rotor's shift is a Jeffcott rotor whose film is in the plane of its centre of mass:
+    its edges are those of the undamped planar rotor.
     """
     rotor = TwoPlane(
         6.0, 0.05, 0.0, (Support(0.1, 3e4, 0.0), Support(-0.1, 3e4, 0.0)), (PlaneUnbalance(0.0, 1e-3),)
@@ -146,3 +149,30 @@ def test_films() -> None:
         mass, layers = planar_layers(6.0, [fill], NO_FRICTION)
         # Each edge to the half of the digits that a double root leaves.
         np.testing.assert_allclose(np.ravel(bands), undamped_edges(mass, 6e4, layers), rtol=1e-7)
+
+
+@kills("solvers.whirl.looks:_first_speeds", "mass=ratio**2 * mass", "mass=ratio * mass")
+@kills("solvers.whirl.looks:_first_speeds", "gyroscopic=ratio * system", "gyroscopic=system")
+@kills("solvers.whirl.looks:_first_speeds", "way * np.sqrt(x.layer_tanh", "way * np.sqrt(2.0 * x.layer_tanh")
+def test_meetings_of_waves() -> None:
+    """Where a wave meets a mode both have one frequency, that of the layer alone and of the rotor alone."""
+    system = GAPPED.system()
+    layer = plane_layer(HALF, NO_FRICTION)
+    assert layer is not None
+    found = _first_speeds(system, [HALF], 20.0, 3000.0)
+    even = np.geomspace(20.0, 3000.0, 1 + math.ceil(math.log(150.0) / 0.08))
+    own = found[np.abs(found[:, None] - even).min(axis=1) > 1e-9 * found]
+    # Two waves, each with rotors of two masses; a forward mode runs away from the faster wave.
+    assert own.size >= 4
+    # E of no friction has the zeros s of the free waves.
+    slips = np.roots([1.0, -2.0 * layer.layer_tanh, -layer.layer_tanh])
+    at = system.at(HALF.chamber.plane)
+    heavy = replace(system, mass=system.mass + HALF.mass * at.T @ at)
+    for speed in own:
+        spin = np.array([speed])
+        modes = np.concatenate(
+            [linear_modes(coupled_matrices(one, [], spin), np.eye(4)).root[0].imag for one in (system, heavy)]
+        )
+        off = np.abs(np.abs(modes)[:, None] - np.abs(1.0 + slips) * speed).min()
+        # Eigenvalues to some hundred roundings of the largest.
+        assert off <= 1e-9 * speed
