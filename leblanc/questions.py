@@ -407,6 +407,8 @@ def _source(mesh: str | Path | None, unit: Quantity | None, size: Quantity | Non
         return None
     from leblanc.studies.modes import SectionSource
 
+    if isinstance(unit, str) and unit.strip()[:1].isalpha():
+        unit = f"1 {unit}"  # the unit by its name alone
     return SectionSource(
         Path(mesh),
         None if unit is None else parse_option(unit, LENGTH, "--mesh-unit"),

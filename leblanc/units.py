@@ -44,6 +44,8 @@ class Dimension:
 
 # Engineering units in one SI unit, for what is shown to people.
 RPM = 60.0 / (2.0 * math.pi)  # revolutions per minute in one rad/s
+ZERO_TO_PEAK = "zero to peak"  # every amplitude: largest distance from rest, half of a peak-to-peak reading
+MM_PEAK = "mm 0-p"  # the same beside the unit of an axis
 MM = 1e3  # millimetres in one metre
 ML = 1e6  # millilitres in one cubic metre
 LITRE = 1e3  # litres in one cubic metre

@@ -1,12 +1,13 @@
 """`leblanc notebooks`: the notebooks that come with the package, executed; exit code 1 if one fails.
 
-Each runs in an empty folder, in a kernel of its own in which warnings and floating-point faults are errors;
-what is printed to the standard error fails it as well.
+Each runs in an empty folder, in a kernel of its own in which warnings and floating-point faults are errors.
+A warning or an error of Python that is printed to the standard error fails it as well; log lines do not.
 """
 
 from __future__ import annotations
 
 import os
+import re
 import sys
 import time
 from importlib.util import find_spec
@@ -39,6 +40,11 @@ width="{{ (output | get_metadata("width", "image/png")) or "" }}"
 alt="{{ ((output | get_metadata("alt", "image/png")) or "") | escape_html }}">
 </div>{% endblock %}
 """
+# A line of Python's own about a warning or an error. What libraries log, on a busy machine that a step took
+# long, is none.
+_TOLD = re.compile(
+    r"^(Traceback \(most|(.*: )?[\w.]*(Warning|Error|Exception|Interrupt|Exit)\b: )", re.MULTILINE
+)
 # Run first in each kernel and not kept: the reader's own kernel is left as it is.
 _STRICT = """\
 import warnings
@@ -165,11 +171,12 @@ def _without_first(book: Any) -> None:
 
 
 def _complaints(book: Any) -> str:
-    """What the cells wrote to the standard error."""
+    """What the cells wrote to the standard error, if a warning or an error of Python is in it."""
     outputs = (output for cell in book.cells if cell.cell_type == "code" for output in cell.outputs)
-    return "".join(
+    written = "".join(
         output.text for output in outputs if output.output_type == "stream" and output.name == "stderr"
     )
+    return written if _TOLD.search(written) else ""
 
 
 def write_pages(book: Any, stem: str, out: Path) -> None:

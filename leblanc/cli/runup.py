@@ -74,7 +74,8 @@ def runup(
     options = ("--cells", cells, None), ("--samples", samples, None), ("--no-check", no_check, False)
     again = ("--ensemble", ensemble, 0), ("--seed", seed, 0)
     command = command_line("runup", scene, *options, *again)
-    what = about(machine, command, "runup.nc", unused=("speeds", "optimise"))
+    unused = ("speeds", *(() if machine.chambers else ("model",)), "optimise")
+    what = about(machine, command, "runup.nc", unused=unused)
     write_runup_report(result, what, figures, folder / "runup.html")
     if animate is not None:
         _film(result, animate)
@@ -98,11 +99,11 @@ def _film(result: RunupResult, path: Path) -> None:
 def _tell(result: RunupResult, folder: Path) -> None:
     """The run as text."""
     from leblanc.text.machine import load_table
+    from leblanc.text.numbers import amplitude_sentence
     from leblanc.text.runup import answer_rows, ball_rows, passage_rows
 
     print_table([*answer_rows(result), *ball_rows(result), *passage_rows(result)])
-    if result.plane:
-        print(f"Amplitudes are those {result.plane}.")
+    print(amplitude_sentence(result.plane))
     if result.loads is not None:
         head, lines = load_table(result.loads)
         print()

@@ -25,7 +25,7 @@ from leblanc.results.models.comparison import Comparison
 from leblanc.results.notes.response import plane_label
 from leblanc.results.response import RunResult
 from leblanc.text.explanation import comparison_alt
-from leblanc.units import MM, RPM
+from leblanc.units import MM, MM_PEAK, RPM
 from meshes.arrays import Array
 
 Axes = Any  # matplotlib's, which no module that only draws imports
@@ -88,7 +88,7 @@ def _panels(figure: Figure, found: Comparison, limits: Span, part: str) -> list[
     _draw_amplitude(panels[0], found, limits)
     result = next(iter(found.results.values()))
     place = "" if result.motion is None else plane_label(bool(result.chambers))
-    panels[0].set_ylabel(f"Amplitude{place} (mm)")
+    panels[0].set_ylabel(f"Amplitude{place} ({MM_PEAK})")
     if len(panels) > 1:
         order = np.argsort(found.speed, kind="stable")
         apart = [100.0 * found.difference(name)[order] for name in names]

@@ -22,7 +22,7 @@ from leblanc.figures.drawing.page import (
 from leblanc.results.base import one_line
 from leblanc.results.exciter import ExciterResult
 from leblanc.text.exciter import alt
-from leblanc.units import MM, RPM
+from leblanc.units import MM, MM_PEAK, RPM
 
 FRAME = Frame(left=0.72, top=0.46, between=0.14, below=0.42)
 TITLE = "Stuck speeds of the balls and vibration of the platform"
@@ -98,7 +98,7 @@ def _draw_vibration(axes: Any, result: ExciterResult) -> None:
         axes.plot(result.speed * RPM, result.fast * MM, label="fast vibration, with the shaft", **look)
     _draw_checks(axes, result, "slow", MM)
     _draw_checks(axes, result, "fast", MM)
-    axes.set_ylabel("Amplitude (mm)")
+    axes.set_ylabel(f"Amplitude ({MM_PEAK})")
 
 
 def _draw_checks(axes: Any, result: ExciterResult, quantity: str, unit: float) -> None:

@@ -25,7 +25,7 @@ from leblanc.figures.runup import caption
 from leblanc.results.base import FilledChamber
 from leblanc.results.drawn.machine import film_factor, pool
 from leblanc.results.runup import RunupFrames, RunupResult
-from leblanc.units import LENGTH, MM, RPM, unit_for
+from leblanc.units import LENGTH, MM, MM_PEAK, RPM, unit_for
 from meshes.arrays import Array
 
 Axes = Any  # matplotlib's, which no module that only draws imports
@@ -208,7 +208,7 @@ def _draw_curve(axes: Axes, result: RunupResult, frames: RunupFrames) -> Show:
     (dot,) = axes.plot([], [], "o", color=AXIS, markersize=6, zorder=5)
     axes.set_ylim(0.0, 1.1 * float(amplitude.max()) * MM or 1.0)
     axes.set_xlabel("Speed (rpm)")
-    axes.set_ylabel("Amplitude (mm)", labelpad=2.0)
+    axes.set_ylabel(f"Amplitude ({MM_PEAK})", labelpad=2.0)
     axes.xaxis.set_major_formatter(number)
     axes.yaxis.set_major_formatter(number)
 

@@ -25,7 +25,7 @@ from leblanc.results.base import one_line, texts
 from leblanc.results.notes.response import plane_label
 from leblanc.results.optimum import ConditionTable, OptimumResult
 from leblanc.text.optimum import amplitude_plane, load_words, worst_condition
-from leblanc.units import DEGREE, LENGTH, MM, UNBALANCE, VOLUME, in_rpm, unit_for, with_unit
+from leblanc.units import DEGREE, LENGTH, MM, MM_PEAK, UNBALANCE, VOLUME, in_rpm, unit_for, with_unit
 from meshes.arrays import Array, Flags
 
 Axes = Any  # matplotlib's, which no module that only draws imports
@@ -329,7 +329,7 @@ def _draw_map(figure: Figure, axes: Axes, result: OptimumResult) -> None:
 def _vibration_label(result: OptimumResult) -> str:
     """Of an axis of vibrations, with the plane where a rotor tilts."""
     tilts = result.response is not None and result.response.motion is not None
-    return f"Vibration{plane_label(chambers=True) if tilts else ''} (mm)"
+    return f"Vibration{plane_label(chambers=True) if tilts else ''} ({MM_PEAK})"
 
 
 def _three(value: float, _at: float | None = None) -> str:

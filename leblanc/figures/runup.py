@@ -30,7 +30,7 @@ from leblanc.results.notes.response import plane_label
 from leblanc.results.races.balls import in_race
 from leblanc.results.runup import RunupResult
 from leblanc.text.runup import describe_model, largest, largest_dry
-from leblanc.units import LENGTH, MM, RPM, friction_words, with_unit
+from leblanc.units import LENGTH, MM, MM_PEAK, RPM, friction_words, with_unit
 from meshes.arrays import Array, Flags
 
 Axes = Any  # matplotlib's, which no module that only draws imports
@@ -356,7 +356,7 @@ def _bare(result: RunupResult) -> dict[str, Any]:
 
 def _label(result: RunupResult) -> str:
     """Of an axis of amplitudes."""
-    return f"Amplitude{plane_label(chambers=True) if result.plane else ''} (mm)"
+    return f"Amplitude{plane_label(chambers=True) if result.plane else ''} ({MM_PEAK})"
 
 
 def _place(result: RunupResult) -> Any:

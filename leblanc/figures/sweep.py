@@ -22,7 +22,7 @@ from leblanc.results.base import one_line
 from leblanc.results.notes.response import plane_label
 from leblanc.results.sweep import SweepResult
 from leblanc.text.sweep import alt
-from leblanc.units import MM, RPM
+from leblanc.units import MM, MM_PEAK, RPM
 from meshes.arrays import Array
 
 Axes = Any  # matplotlib's, which no module that only draws imports
@@ -82,7 +82,7 @@ def _draw(axes: Axes, result: SweepResult, lines: tuple[Array, Array, Array], li
     axes.plot(rpm, dry, label="median without liquid", marker="o", markevery=every, **BARE)
     value_axis(axes, 0.0, [(rpm, line) for line in (*wet.T, dry)])
     axes.set_xlim(*limits)
-    axes.set_ylabel(f"Amplitude{plane_label('chamber' in result.plane) if result.plane else ''} (mm)")
+    axes.set_ylabel(f"Amplitude{plane_label('chamber' in result.plane) if result.plane else ''} ({MM_PEAK})")
     axes.xaxis.set_major_formatter(number)
     axes.yaxis.set_major_formatter(number)
     axes.yaxis.set_minor_formatter("")
@@ -96,7 +96,7 @@ def _boxes(figure: Figure, result: SweepResult) -> None:
         peaks = [("peak_amplitude", "with liquid"), ("peak_amplitude_dry", "without liquid")]
         last = [(name, f"largest,\n{text}") for name, text in peaks] + last
     growth = [("peak_growth", "largest growth\nof a whirl")]
-    panels = [(last, "Amplitude (mm)", MM), (growth, "Growth (1/s)", 1.0)]
+    panels = [(last, f"Amplitude ({MM_PEAK})", MM), (growth, "Growth (1/s)", 1.0)]
     rows, heights = [], []
     for outputs, label, unit in panels:
         axes: Any = figure.add_axes((0, 0, 1, 1), label=label)

@@ -22,7 +22,7 @@ from leblanc.figures.drawing.page import save as save  # a figure is drawn and w
 from leblanc.results.base import one_line
 from leblanc.results.whirl_map import WhirlMap
 from leblanc.text.whirl_map import alt, cycles_alt
-from leblanc.units import ML, MM, RPM, VOLUME, with_unit
+from leblanc.units import ML, MM, MM_PEAK, RPM, VOLUME, with_unit
 from meshes.arrays import Array
 
 Axes = Any  # matplotlib's, which no module that only draws imports
@@ -253,7 +253,7 @@ def _dress_cycles(top: Axes, below: Axes, result: WhirlMap) -> None:
     for label, look in (("stable", STABLE), ("unstable", LEFT), ("the liquid lags by over a third", FAR)):
         top.plot([], [], label=label, **look)
     top.set_ylim(0.0, None)
-    top.set_ylabel("Amplitude (mm)")
+    top.set_ylabel(f"Amplitude ({MM_PEAK})")
     top.tick_params(labelbottom=False)
     if result.depth > 0.0:
         depth = result.depth * MM

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from leblanc.files import writing
+from leblanc.units import ZERO_TO_PEAK
 from meshes.errors import InputError
 
 if TYPE_CHECKING:
@@ -100,6 +101,8 @@ def variable(dims: tuple[str, ...], values: Any, units: str, long_name: str, tex
     units, long_name : as CF asks
     text : description, if there is more to say
     """
+    if units == "m" and "amplitude" in long_name + text and ZERO_TO_PEAK not in text:
+        text = f"{ZERO_TO_PEAK}, {text}" if text else ZERO_TO_PEAK
     said = {"description": text} if text else {}
     return Variable(dims, np.asarray(values), {"units": units, "long_name": long_name} | said)
 

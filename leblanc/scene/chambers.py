@@ -107,6 +107,8 @@ def section_of_any_file(
 MAX_BAFFLES = 360
 
 _ROUNDING = 1e-9  # relative; a chamber filled to the brim may be written with nine digits
+# Of the drum's space: a film of a radius times 2e-8, thinner than molecules; no mesh of doubles has it.
+_FILM = 4e-8
 
 
 MAX_TABLE = 1000  # points of a property over temperature
@@ -517,9 +519,7 @@ class Chamber(Part):
 
     @cached_property
     def _fill(self) -> Fill:
-        volume, capacity = self.volume, self.walls.capacity
-        full = capacity < volume <= capacity * (1.0 + _ROUNDING)
-        return Fill(self.walls, self.liquid, capacity if full else volume)
+        return _held(self.walls, self.liquid, self.volume)
 
     def fill(self) -> Fill:
         """The chamber with its liquid, as the solvers take it."""
@@ -538,8 +538,17 @@ class Chamber(Part):
         """
         other = self.altered(volume=volume)
         other.__dict__["walls"] = self.walls  # the same, and hundreds of volumes are tried
-        other.__dict__["_fill"] = Fill(self.walls, self.liquid, volume)
+        other.__dict__["_fill"] = _held(self.walls, self.liquid, volume)
         return other
+
+
+def _held(walls: Walls, liquid: Liquid, volume: float) -> Fill:
+    """What a chamber holds: full and empty within the rounding of a radius."""
+    capacity, drum = walls.capacity, math.pi * walls.height * walls.radius**2
+    if volume < _FILM * drum:
+        return Fill(walls, liquid, 0.0)
+    full = capacity < volume <= capacity * (1.0 + _ROUNDING)
+    return Fill(walls, liquid, capacity if full else volume)
 
 
 def _in_section(values: Mapping[str, Any]) -> Iterator[Conflict]:

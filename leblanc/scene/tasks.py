@@ -154,8 +154,8 @@ class Optimisation(Part):
     )
     vibration_limit: Annotated[float | None, _LENGTH] = Field(
         None,
-        description="amplitude for least_mass; if left out one per cent above the least possible, with "
-        "balls a hundredth of the amplitude without them",
+        description="amplitude, zero to peak, for least_mass; if left out one per cent above the least "
+        "possible, with balls a hundredth of the amplitude without them",
     )
     limit_at: Annotated[str, one_of("working_speed", "operating")] = Field(
         "working_speed", description="whether the limit holds at the working or at all operating speeds"
@@ -207,7 +207,7 @@ class Optimisation(Part):
         Field(None, description="range of operating speeds; the scene's if left out")
     )
     clearance: Annotated[float | None, _LENGTH] = Field(
-        None, description="largest amplitude at the operating speeds; no limit if left out"
+        None, description="largest amplitude, zero to peak, at the operating speeds; no limit if left out"
     )
     loads_over: Annotated[str, one_of(*LOADS_OVER)] = Field(
         "operating",

@@ -17,7 +17,18 @@ from leblanc.results.models.comparison import Comparison, ModelAnswer
 from leblanc.results.motion.tilting import RestMode
 from leblanc.text.numbers import NOT_FOUND, number
 from leblanc.text.run import amplitude_place, error_words, speeds_words
-from leblanc.units import LENGTH, RPM, TORQUE, VOLUME, Unit, in_rpm, over_rpm, unit_for, with_unit
+from leblanc.units import (
+    LENGTH,
+    RPM,
+    TORQUE,
+    VOLUME,
+    ZERO_TO_PEAK,
+    Unit,
+    in_rpm,
+    over_rpm,
+    unit_for,
+    with_unit,
+)
 from meshes.arrays import Array
 
 Rows = list[tuple[str, str]]
@@ -30,13 +41,20 @@ REFUSED = "does not answer"
 
 def machine_rows(answer: Explanation) -> Rows:
     """The rotor as a whole; label and text."""
-    dry, wet = in_rpm(answer.critical_speed_dry), in_rpm(answer.critical_speed_wet)
+    dry, wet = (in_rpm(speed) for speed in (answer.critical_speed_dry, answer.critical_speed_wet))
+    beside = f", {wet} with it at small deflections" if answer.layers else ""
     first, last = answer.speed_ratio
     rows = [
-        ("critical speed", f"{dry} without liquid, {wet} with it at small deflections"),
+        ("critical speed", f"{dry} without liquid{beside}"),
         ("damping ratio", f"{answer.damping_ratio:.4g}"),
         ("speeds", f"{first:.3g} to {last:.3g} times the dry critical speed"),
     ]
+    if math.isnan(answer.critical_speed_dry):
+        free = [mode.moves for mode in answer.modes if mode.frequency == 0.0]
+        rows = [
+            ("free to move", f"{len(free)} motions that nothing holds: {', '.join(free)}"),
+            ("critical speed", "none is given: the axis moves freely, and `leblanc run` refuses the machine"),
+        ]
     if answer.captured_from is not None:
         captured = f"above {in_rpm(answer.captured_from)} a ring of liquid stands against gravity"
         rows.append(("captured", captured))
@@ -223,7 +241,7 @@ def comparison_head(found: Comparison) -> tuple[str, ...]:
     found : the comparison
     """
     place = next((amplitude_place(result) for result in found.results.values()), "")
-    amplitude = f"largest amplitude{f' {place}' if place else ''} ({_unit(found).name})"
+    amplitude = f"largest amplitude{f' {place}' if place else ''}, {ZERO_TO_PEAK} ({_unit(found).name})"
     held = ("held states",) if _any_held(found) else ()
     return (
         "model",

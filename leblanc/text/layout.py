@@ -38,7 +38,7 @@ def answer(result: LayoutResult) -> str:
 def _measured(result: LayoutResult, value: float) -> str:
     if result.measure == "couplings":
         return f"{value:.3g}" if value >= _SHOWN**2 else "0"
-    return f"{-100.0 * value:.3g} %"
+    return f"{0.0 - 100.0 * value:.3g} %"
 
 
 def facts(result: LayoutResult) -> list[tuple[str, str]]:

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from leblanc.units import MINUS as MINUS
 from leblanc.units import NOT_FOUND as NOT_FOUND
-from leblanc.units import RPM
+from leblanc.units import RPM, ZERO_TO_PEAK
 from leblanc.units import number as number
 
 MOST_RANGES = 4  # listed one by one
@@ -34,3 +34,18 @@ def ranges(speed: NDArray[np.float64], mask: NDArray[np.bool_]) -> str:
     pairs = zip(first.tolist(), last.tolist(), strict=True)
     parts = [number(a) if a == b else f"{number(a)} to {number(b)}" for a, b in pairs]
     return "; ".join(parts) + " rpm"
+
+
+def amplitudes_are(place: str = "") -> tuple[str, str]:
+    """What the amplitudes of an answer are, as label and value.
+
+    Parameters
+    ----------
+    place : where along the axis; empty for a rotor that moves in one plane
+    """
+    return "Amplitudes", f"{ZERO_TO_PEAK}{', ' if place else ''}{place}"
+
+
+def amplitude_sentence(place: str = "") -> str:
+    """The same as a sentence."""
+    return f"{' are '.join(amplitudes_are(place))}."

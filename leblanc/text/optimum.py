@@ -8,7 +8,7 @@ import numpy as np
 
 from leblanc.results.base import texts
 from leblanc.results.optimum import ConditionTable, OptimumCode, OptimumResult
-from leblanc.text.numbers import number
+from leblanc.text.numbers import amplitude_sentence, number
 from leblanc.text.run import amplitude_place, quality_words
 from leblanc.units import LENGTH, MASS, ML, UNBALANCE, VOLUME, celsius, in_rpm, unit_for, with_unit
 
@@ -31,7 +31,7 @@ def describe_optimum(result: OptimumResult) -> list[str]:
         + (" (whether a small whirl grows is not known)" if math.isnan(result.growth) else ""),
         *_quality(result),
         *_over_conditions(result),
-        *([f"Amplitudes are those {place}."] if (place := amplitude_plane(result)) else []),
+        amplitude_sentence(amplitude_plane(result)),
         *texts(result.notes),
         *_to_paste(result),
     ]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from leblanc.results.base import one_line
 from leblanc.results.sweep import SweepResult
+from leblanc.text.numbers import amplitude_sentence, amplitudes_are
 from leblanc.units import ANGULAR_SPEED, LENGTH, MASS, Unit, unit_for
 
 _SHARED = ("peak_amplitude", "last_amplitude", "peak_growth")  # whose sensitivities are shown
@@ -26,8 +27,7 @@ def lines(result: SweepResult) -> list[str]:
         unit = _unit(result.units[name], numbers)
         cells = "".join(f"{unit.number(x):>12}" for x in numbers)
         found.append(f"{name.replace('_', ' '):24}{cells}  {unit.name}")
-    plane = [f"Amplitudes are those {result.plane}."] if result.plane else []
-    return [*found, *plane, *_shares(result), f"The data are in {result.store}"]
+    return [*found, amplitude_sentence(result.plane), *_shares(result), f"The data are in {result.store}"]
 
 
 def _unit(written: str, numbers: list[float]) -> Unit:
@@ -68,8 +68,7 @@ def summary(result: SweepResult) -> list[tuple[str, str]]:
         ("Samples done", f"{result.done} of {result.samples}, {result.method}, seed {result.seed}"),
         ("Varied", ", ".join(result.fields)),
     ]
-    if result.plane:
-        rows.append(("Amplitudes", result.plane))
+    rows.append(amplitudes_are(result.plane))
     if result.speeds > 1:
         rows.append(("Largest amplitude", spread(result, "peak_amplitude")))
         rows.append(("Largest amplitude without liquid", spread(result, "peak_amplitude_dry")))

@@ -84,6 +84,9 @@ def extent(curves: list[Curve]) -> float:
     return float(np.hypot(*np.ptp(np.concatenate([curve.points for curve in curves]), axis=0)))
 
 
+# Units of the US survey foot, m, by their number in a DXF file: foot, inch, yard, mile.
+_SURVEY = {21: 1200.0 / 3937.0, 22: 100.0 / 3937.0, 23: 3600.0 / 3937.0, 24: 6336000.0 / 3937.0}
+
 _READ = ("LINE", "ARC", "CIRCLE", "ELLIPSE", "LWPOLYLINE", "POLYLINE", "SPLINE", "INSERT")
 
 
@@ -126,7 +129,8 @@ def read_drawing(path: str | Path) -> tuple[list[Curve], float | None]:
     try:
         with limited_memory(path):
             document = ezdxf.readfile(path)
-            entities = list(islice(_opened(document.modelspace()), _MOST + 1))
+            entities = list(islice(_opened(document.modelspace(), _layers(document)), _MOST + 1))
+            said = b"$INSUNITS" in Path(path).read_bytes()  # ezdxf takes metres where a file does not say
     except InputError:
         raise
     except RecursionError as fault:
@@ -138,30 +142,53 @@ def read_drawing(path: str | Path) -> tuple[list[Curve], float | None]:
         raise InputError(
             "path", str(path), f"a drawing of at most {_MOST} curves, those of its blocks counted"
         )
-    pieces = [(entity, points) for entity in entities for points in _pieces(path, entity)]
+    pieces = [(layer, points) for entity, layer in entities for points in _pieces(path, entity)]
     if not pieces:
         kinds = ", ".join(sorted({entity.dxftype() for entity in document.modelspace()})) or "nothing"
-        raise InputError("path", str(path), f"a drawing with {', '.join(_READ[:-1])}; it holds {kinds}")
+        raise InputError("path", str(path), f"a drawing that shows {', '.join(_READ[:-1])}; it holds {kinds}")
     curves, heights = [], []
-    for entity, (points, degree, knots, weights) in pieces:
+    for layer, (points, degree, knots, weights) in pieces:
         at = np.array([(p.x, p.y, p.z) for p in points], dtype=np.float64)
         heights.append(at[:, 2])
-        curves.append(Curve(str(entity.dxf.layer), at[:, :2], degree, tuple(knots), tuple(weights)))
+        curves.append(Curve(layer, at[:, :2], degree, tuple(knots), tuple(weights)))
     extent = max(float(np.ptp(np.concatenate([c.points for c in curves]), axis=0).max()), 1e-300)
     if np.ptp(np.concatenate(heights)) > 1e-9 * extent:
         raise InputError("path", str(path), "a drawing in a plane z = constant")
-    unit = int(document.units)
-    return curves, None if unit == 0 else float(units.conversion_factor(unit, units.M))
+    unit = int(document.units) if said else 0
+    if unit in _SURVEY:
+        return curves, _SURVEY[unit]
+    return curves, float(units.conversion_factor(unit, units.M)) if 0 < unit < min(_SURVEY) else None
 
 
-def _opened(entities: Any) -> Iterator[Any]:
-    """Curves among some entities, with blocks and polylines taken apart."""
+def _layers(document: Any) -> tuple[frozenset[str], frozenset[str]]:
+    """Layers that CAD does not show or plot, in lower case, and those of them that are frozen."""
+    frozen = {layer.dxf.name.lower() for layer in document.layers if layer.is_frozen()}
+    hidden = {layer.dxf.name.lower() for layer in document.layers if layer.is_off() or not layer.dxf.plot}
+    return frozenset({"defpoints", *hidden, *frozen}), frozenset(frozen)
+
+
+def _opened(
+    entities: Any, layers: tuple[frozenset[str], frozenset[str]], around: str = "0"
+) -> Iterator[tuple[Any, str]]:
+    """Curves that CAD plots among some entities, each with its layer; blocks and polylines taken apart.
+
+    What a block has on layer 0 lies on that of its insertion, `around`. A layer that is off hides what lies
+    on it; one that is frozen also hides blocks inserted on it, whatever layers they hold.
+    """
+    hidden, frozen = layers
     for entity in entities:
-        kind = entity.dxftype()
-        if kind in ("INSERT", "LWPOLYLINE", "POLYLINE"):
-            yield from _opened(entity.virtual_entities())
-        elif kind in _READ:
-            yield entity
+        kind, layer = entity.dxftype(), str(entity.dxf.layer)
+        layer = around if layer == "0" else layer
+        block = kind == "INSERT"
+        if kind not in _READ or entity.dxf.invisible or layer.lower() in (frozen if block else hidden):
+            continue
+        if block:
+            for copy in entity.multi_insert() if entity.mcount > 1 else (entity,):
+                yield from _opened(copy.virtual_entities(), layers, layer)
+        elif kind in ("LWPOLYLINE", "POLYLINE"):
+            yield from ((piece, layer) for piece in entity.virtual_entities())
+        else:
+            yield entity, layer
 
 
 def _pieces(path: str | Path, entity: Any) -> Iterator[tuple[Any, int, Any, Any]]:

@@ -117,8 +117,14 @@ def resistance(depth, row):
     share = _share(depth, row[TIP], row[GAP])
     if share <= _CLOSED:
         return -1.0
-    lost = (1.0 / (_contraction(share) * share) - 1.0) / depth
+    lost = (1.0 / (_contraction(share) * share) - 1.0) / max(depth, 1e-12)
     return 0.5 * lost * lost
+
+
+@_jit
+def shut(area, row):
+    """Whether a baffle lets nothing pass of a layer of this area."""
+    return resistance(_depth(area), row) < 0.0
 
 
 @_jit

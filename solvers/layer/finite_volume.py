@@ -19,7 +19,7 @@ import numpy as np
 from numba import njit
 
 from fluid import long_wave
-from solvers.layer.baffles import FACE, OPEN, obstruct, slope_aside, smear, straighten, take
+from solvers.layer.baffles import FACE, OPEN, obstruct, shut, slope_aside, smear, straighten, take
 
 # Products and sums may be contracted, zeros lose their signs; the order of sums stays. Views of arrays need
 # no reference counts here, and what only compiled code calls no wrappers: less to compile.
@@ -392,7 +392,7 @@ def ring_rates(
             straighten(plates, area.size, work[VELOCITY], work[_BENT_VELOCITY], GHOSTS)
     if energy.size > 0:
         fluctuations(area, energy, spin, work[_ROLLER])
-    fastest = _faces(pull_face, spin, full, slot, dispersion, work, energy.size > 0)
+    fastest = _faces(pull_face, plates, spin, full, slot, dispersion, work, energy.size > 0)
     mass = work[_MASS]
     if plates.shape[0] > 0:
         obstruct(plates, area, spin, full, slot, pull_face, work[_BEFORE:], work[_AFTER:], mass, work[_FLOW])
@@ -466,7 +466,7 @@ def _cells(area, q, spin, pull, full, slot, bent, work):
 
 
 @_inlined
-def _faces(pull_face, spin, full, slot, bent, work, rolling):
+def _faces(pull_face, plates, spin, full, slot, bent, work, rolling):
     """Fluxes through each cell's left face, and once more through the first; returns the largest speed.
 
     `bent`: the cells are parabolas; `rolling`: they have fluctuations.
@@ -480,6 +480,12 @@ def _faces(pull_face, spin, full, slot, bent, work, rolling):
     wide, pull = work[_AREA], work[_PULL]
     head, velocity = (_BENT_HEAD, _BENT_VELOCITY) if bent else (_HEAD, VELOCITY)
     beds(wide[1:], wide[2:], pull[1:], pull[2:], bed)
+    for k in range(plates.shape[0]):
+        # A closed baffle is a wall: it bears the liquid to its own place, however dry the other side.
+        i = int(plates[k, FACE])
+        if i >= 0 and shut(max(wide[i + 1], wide[i + 2]), plates[k]):
+            bed[i] = pull_face[i]
+            bed[n] = bed[0]
     for k in range(2):
         # First the cell after each face, then the one before it.
         cells, row, way = slice(2 - k, m + 2 - k), _AFTER + k * _ROWS, 2.0 * k - 1.0

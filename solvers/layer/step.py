@@ -153,13 +153,17 @@ def add_velocity(area, q, pushed):
 def calm(area, q, spin):
     """Leave films the momentum of their faded velocity, which no front exceeds: the rest goes to the wall.
 
-    No front runs ahead at twice the speed of the drum; films may go twice as fast as that.
+    No front runs ahead at twice the speed of the drum; films may go twice as fast as that. Returns the sum of
+    what they gain.
     """
-    most = FASTEST * abs(spin)
+    most, gained = FASTEST * abs(spin), 0.0
     for i in range(area.size):
         a = area[i]
         u = np.minimum(np.maximum(faded_velocity(a, q[i], spin), -most), most)
-        q[i] = (u - spin * a) * a if a < THIN else q[i]
+        now = (u - spin * a) * a if a < THIN else q[i]
+        gained += now - q[i]
+        q[i] = now
+    return gained
 
 
 @_part

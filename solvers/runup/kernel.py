@@ -164,11 +164,13 @@ _VELOCITY, _SURFACE, _LOG = range(WORK + 7, WORK + 10)
 _RATE_E, _NEXT_E = WORK + 10, WORK + 11
 # What the law of the wall adds to the velocity; of other laws it stays nothing.
 _PUSHED = WORK + 12
+# Angular momentum before friction.
+_HELD = WORK + 13
 
 
 def layer_scratch(layers: int, cells: int) -> NDArray[np.float64]:
     """Scratch that `layer_step` wants for each of so many layers."""
-    return np.zeros((layers, WORK + 13, cells + 2 * GHOSTS))
+    return np.zeros((layers, WORK + 14, cells + 2 * GHOSTS))
 
 
 @_jit
@@ -176,16 +178,16 @@ def measure(area, q, spin, angles, spare, out):
     """Fill `out`, a record MEASURES, for a layer [theory: coupling, eq. 2, 4 and 7]."""
     n = area.size
     profile(area, q, spin, spare[_VELOCITY, :n], spare[_SURFACE, :n], spare[_LOG, :n])
-    measure_profile(area, spin, angles, spare, out)
+    measure_profile(area, q, spin, angles, spare, out)
 
 
 @_unwrapped
-def measure_profile(area, spin, angles, spare, out):
+def measure_profile(area, q, spin, angles, spare, out):
     """The same of a layer whose profile stands in its scratch, as `layer_step` leaves it."""
     n = area.size
     velocity, surface, log = spare[_VELOCITY, :n], spare[_SURFACE, :n], spare[_LOG, :n]
     step = 2.0 * np.pi / n
-    sums = _moments(area, velocity, surface, log, spin, angles[0], angles[1])
+    sums = _moments(area, q, velocity, surface, log, spin, angles[0], angles[1])
     out.moment_x, out.moment_y = sums[0] * step, sums[1] * step
     out.spinning, out.energy = sums[2] * step, sums[3] * step
     across, along = spare[0], spare[1]
@@ -198,17 +200,20 @@ def measure_profile(area, spin, angles, spare, out):
 
 
 @_summed
-def _moments(area, velocity, surface, log, spin, cosine, sine):
-    """Sums over the cells: first moment, angular momentum and energy."""
+def _moments(area, q, velocity, surface, log, spin, cosine, sine):
+    """Sums over the cells: first moment, angular momentum and energy.
+
+    A film holds all its angular momentum, although its velocity is faded out.
+    """
     moment_x, moment_y, spinning, energy = 0.0, 0.0, 0.0, 0.0
     for i in range(area.size):
         r, u = surface[i], velocity[i]
         lever = (1.0 - r) * (1.0 + r + r * r) / 3.0
         moment_x += lever * cosine[i]
         moment_y += lever * sine[i]
-        whole = area[i] * (1.0 - area[i])
-        spinning += spin * whole + u * area[i]
-        energy += 0.5 * spin * spin * whole + spin * u * area[i] + 0.5 * u * u * log[i]
+        whole, relative = area[i] * (1.0 - area[i]), q[i] + spin * area[i] * area[i]
+        spinning += spin * whole + relative
+        energy += 0.5 * spin * spin * whole + spin * relative + 0.5 * u * u * log[i]
     return moment_x, moment_y, spinning, energy
 
 
@@ -249,8 +254,10 @@ def _power(area, velocity, surface, log, rate_a, spin, x, y, cosine, sine):
 
 
 @_summed
-def _rub(area, velocity, log, kept, pushed, spin, full, slot):
+def _rub(area, q, held, velocity, log, kept, pushed, spin, full, slot):
     """Let friction leave its share of the velocities and add to them; sums over the cells.
+
+    `q` and `held` are their angular momenta after it and before it.
 
     Returns
     -------
@@ -261,15 +268,14 @@ def _rub(area, velocity, log, kept, pushed, spin, full, slot):
     for i in range(area.size):
         u, v = velocity[i], velocity[i] * kept[i] + pushed[i]
         velocity[i] = v
-        torque += area[i] * (v - u)
+        torque += q[i] - held[i]
         lost = 0.5 * log[i] * (u - v) * (u + v)
         heat += lost
-        turning = spin * area[i]
         pressed = np.maximum(area[i] - full, 0.0)
-        still = turning * (0.5 * spin * (1.0 - area[i]) + v) + 0.5 * log[i] * v * v
+        still = spin * (0.5 * spin * area[i] * (1.0 + area[i]) + q[i]) + 0.5 * log[i] * v * v
         still += 0.5 * slot * pressed * pressed
         after += still
-        before += still + turning * (u - v) + lost
+        before += still + spin * (held[i] - q[i]) + lost
     return torque, heat, before, after
 
 
@@ -278,9 +284,10 @@ def _half_friction(area, q, spin, layer, drags, dt, inside, spare, gains):
     """Half a step of friction; the energy before and after, with the profile left in the scratch."""
     n, step = area.size, 2.0 * np.pi / area.size
     velocity, surface, log = spare[_VELOCITY, :n], spare[_SURFACE, :n], spare[_LOG, :n]
-    kept, pushed = spare[_KEPT, :n], spare[_PUSHED, :n]
+    kept, pushed, held = spare[_KEPT, :n], spare[_PUSHED, :n], spare[_HELD, :n]
     coefficient, thin, table = drags
     profile(area, q, spin, velocity, surface, log)
+    copy(q, held)
     if layer.law == NONE:
         for i in range(n):
             kept[i] = 1.0
@@ -294,7 +301,7 @@ def _half_friction(area, q, spin, layer, drags, dt, inside, spare, gains):
         if layer.law == WALL:
             add_velocity(area, q, pushed)
     slot = inside.slot * spin * spin
-    torque, heat, before, after = _rub(area, velocity, log, kept, pushed, spin, inside.full, slot)
+    torque, heat, before, after = _rub(area, q, held, velocity, log, kept, pushed, spin, inside.full, slot)
     gains.torque += torque * step
     gains.heat += heat * step
     return before * step, after * step
@@ -364,7 +371,10 @@ def layer_step(
             correct(area, q, rate_a, rate_q, dt, next_a, next_q)
             correct_energy(rolling, rate_e, dt, next_e)
             bound_energy(area, rolling, spin)
-            calm(area, q, spin)
+            # What films lose to the wall is a torque of the drum, which works.
+            stuck = step * calm(area, q, spin)
+            gains.torque += stuck
+            gains.loss += spin * stuck
     energy, _ = _half_friction(area, q, spins[1], layer, drags, dt, inside, spare, gains)
     gains.loss -= energy + gains.missed
     return Outcome.DONE, fastest
@@ -462,7 +472,8 @@ def _measure_layers(machine, state, room):
     for j in range(machine.layers.shape[0]):
         layer = machine.layers[j]
         # Their steps have left the profiles at the end.
-        measure_profile(state.area[j], spins[1], machine.angles, room.spare[j], room.end[j])
+        area, q = state.area[j], state.momentum[j]
+        measure_profile(area, q, spins[1], machine.angles, room.spare[j], room.end[j])
         relative_momentum(room.begin[j], layer, spins[0], turn[0], turn[1], room.before[j])
         relative_momentum(room.end[j], layer, spins[1], turn[2], turn[3], room.after[j])
         flow_inertia(room.begin[j], layer, cosine / size, sine / size, room.inertia[j])

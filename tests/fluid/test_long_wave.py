@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.integrate import quad
 
 from fluid import long_wave as lw
 from fluid.friction import laws as friction
@@ -12,6 +13,21 @@ from tests.mutants import kills
 AREA = np.array([0.001, 0.05, 0.15, 0.3, 0.45])
 VELOCITY = np.array([0.1, -0.05, 0.2, -0.3, 0.05])
 SPIN = 1.3
+
+
+@kills("fluid.long_wave:wall_pressure", "spin * spin * area", "2.0 * spin * spin * area")
+@kills("fluid.long_wave:wall_pressure", "2.0 * spin * log", "spin * log")
+@kills("fluid.long_wave:wall_pressure", "0.5 * velocity", "velocity")
+@kills("fluid.long_wave:wall_pressure", "pull * (1.0 - surface)", "pull * surface")
+@kills("fluid.long_wave:wall_pressure", "/ (surface * surface) - 1.0", "/ surface - 1.0")
+def test_pressure_of_the_wall_holds_the_liquid_on_its_circles() -> None:
+    """dp/dr = (Omega r + u/r)^2/r + f_r from the surface to the wall, with the flow u/r, by quadrature."""
+    for area, velocity, pull in zip(AREA, VELOCITY, (0.0, 0.3, -0.2, 0.1, 0.05), strict=True):
+        surface = lw.free_surface_radius(area)
+        wanted, _ = quad(lambda r, u=velocity, f=pull: (SPIN * r + u / r) ** 2 / r + f, surface, 1.0)
+        found = lw.wall_pressure(velocity, lw.layer_log(area), area, surface, SPIN, pull)
+        # Quadrature of a smooth function: to rounding of the largest term.
+        assert abs(found - wanted) < 1e-12
 
 
 @kills("fluid.long_wave:layer_log", "-0.5 * np.log1p", "-np.log1p")

@@ -10,10 +10,12 @@ import re
 import sys
 from dataclasses import dataclass
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 from leblanc.cli import exit_code
+from tests.mutants import kills
 from validation import run_notebooks
 from validation.notebook_page import Table, picture
 from validation.run_notebooks import texts
@@ -169,6 +171,25 @@ def test_pages_show_no_markup_need_no_network_and_fit_a_telephone(tmp_path: Path
         assert not re.search(r"""(src|href)=["']https?:""", page)
     assert len(list(tmp_path.glob("*.html"))) == len(NOTEBOOKS)
     assert proofread.faults(tmp_path) == []
+
+
+@kills("validation.run_notebooks:_complaints", 'output.name == "stderr"', 'output.name == "stdout"')
+@kills("validation.run_notebooks:_complaints", "if _TOLD.search(written)", "if written")
+def test_warnings_and_errors_are_complaints_and_log_lines_are_none() -> None:
+    def told(text: str, name: str = "stderr") -> str:
+        output = SimpleNamespace(output_type="stream", name=name, text=text)
+        cell = SimpleNamespace(cell_type="code", outputs=[output])
+        return run_notebooks._complaints(SimpleNamespace(cells=[cell]))
+
+    for text in (
+        "/a/b.py:12: DeprecationWarning: old\n  f()\n",
+        "going on\nTraceback (most recent call last):\n  File x\n",
+        "Exception ignored in: <function f>\nValueError: no\n",
+    ):
+        assert told(text) == text and told(text, "stdout") == ""
+    # As py-pde logs where the first step, which compiles, or a busy machine takes long.
+    for text in ("pde.solvers.controller: Simulation was slow\n", "100%|####| 3.0/3.0\n", "Errors: none\n"):
+        assert told(text) == ""
 
 
 def test_without_the_extra_its_name_is_said(

@@ -1,4 +1,4 @@
-"""The runner of the notebooks: a wrong case, a warning and words on the standard error each fail it."""
+"""The runner of the notebooks: a wrong case, a warning and a warning of another process each fail it."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def test_a_case_that_is_broken_fails_the_notebook(tmp_path: Path) -> None:
     [
         ("warning", 'import warnings\n\nwarnings.warn("old", DeprecationWarning, stacklevel=1)'),
         ("overflow", "import numpy as np\n\nnp.array([1e300]) * np.array([1e300])"),
-        ("words", 'import sys\n\nprint("careful", file=sys.stderr)'),
+        ("elsewhere", 'import sys\n\nprint("part.py:3: UserWarning: careful", file=sys.stderr)'),
     ],
 )
 def test_what_else_fails(tmp_path: Path, name: str, code: str) -> None:

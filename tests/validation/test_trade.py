@@ -16,7 +16,7 @@ from validation.trade import __main__ as trade_main
 from validation.trade import fingerprint, kept, names
 from validation.trade.__main__ import table
 from validation.trade.answers import FAMILY, WAVES, answer, lone_layer
-from validation.trade.cases import layer_questions, response_question, runup_question
+from validation.trade.cases import layer_questions, refined_to, response_question, runup_question
 from validation.trade.cases import questions as all_questions
 from validation.trade.judge import Row, dominates
 from validation.trade.results import record_of, trade_json
@@ -118,6 +118,8 @@ def test_made_again() -> None:
         scene = load_scene(EXAMPLES / f"{name}.toml")
         for question in (response_question(scene), runup_question(scene)):
             stored = {row.label: row for row in rows_of(kept(name), question.name)}
+            before = next(one for one in kept(name)["questions"] if one["question"] == question.name)
+            question = refined_to(question, before["reference"])
             assert set(stored) == {case.label for case in question.cases}
             cheap = [case for case in question.cases if case.model != "fem" and (case.resolution or 0) <= 32]
             for label, (error, peak) in error_table(question, cheap).items():

@@ -121,7 +121,7 @@ def _line(name: str, question: dict[str, Any], rows: list[dict[str, Any]]) -> st
         question["question"],
         f"{question['reference']} ({own})",
         f"{' + '.join(default['used'])}: {_pair(default)}",
-        "none" if advised is None else f"{_label(advised)}: {_pair(advised)}",
+        "undecided" if advised is None else f"{_label(advised)}: {_pair(advised)}",
         f"{_label(cheapest)}: {_pair(cheapest)}",
     ]
     return "| " + " | ".join(cells) + " |"

@@ -8,7 +8,7 @@ from typing import Any
 from leblanc.scene.examples import example
 from validation.cases.case import Case, compare
 from validation.trade import kept, names
-from validation.trade.cases import Question, questions
+from validation.trade.cases import Question, questions, refined_to
 from validation.trade.judge import Comparison, Row
 from validation.trade.trade import TradeRecord, error_table
 
@@ -32,8 +32,9 @@ def cases() -> list[Case]:
 
 
 def _errors(name: str, question: Question) -> list[Case]:
-    kept_rows = (row for comparison in record(name).comparisons for row in comparison.rows)
-    rows = {row.label: row for row in kept_rows if row.question == question.name}
+    before = next(one for one in record(name).comparisons if one.question == question.name)
+    rows = {row.label: row for row in before.rows}
+    question = refined_to(question, before.reference)
     cheap = [case for case in question.cases if case.model != "fem" and (case.resolution or 0) <= _CELLS]
     found = []
     for label, (error, _) in error_table(question, cheap).items():

@@ -74,6 +74,9 @@ class Answer:
     #: largest error that the answer tells of itself, relative: of a layer alone that of its waves beside the
     #: exact one, without friction; nan where it tells none
     estimate: float = math.nan
+    #: cells that steps in time advanced, over all steps; of linear layers their steps; 0 where nothing goes
+    #: through time
+    work: float = 0.0
 
 
 class SceneAt(Scene):
@@ -204,7 +207,8 @@ def _held(scene: Scene, cells: int) -> Answer:
     # Of the cells there is no estimate, the ladder shows what they do; of the waves where they whirl.
     waves = wave_errors(machine, states)
     estimate = float(np.nanmax(waves)) if np.isfinite(waves).any() else math.nan
-    return Answer(amplitude, captured, reason, ("long_wave",), ripple, estimate)
+    work = float(sum(state.steps for state in states) * numerics.cells * len(scene.fills))
+    return Answer(amplitude, captured, reason, ("long_wave",), ripple, estimate, work)
 
 
 def whirl_growth(scene: Scene) -> Array:
@@ -217,9 +221,11 @@ def whirl_growth(scene: Scene) -> Array:
 def _runup(scene: Scene, case: Case) -> Answer:
     plan = planned(scene)
     dispersion = plan.dispersion if case.resolution is None else case.variant == DISPERSION
-    taken = taken_run(scene, case.model, case.resolution or plan.cells, dispersion)
-    good = judged(scene, taken.history, taken.model)[0]
-    return Answer(taken.history.amplitude, bool(good.all()), taken.history.reason, (taken.model,))
+    cells = case.resolution or plan.cells
+    taken = taken_run(scene, case.model, cells, dispersion)
+    history, good = taken.history, judged(scene, taken.history, taken.model)[0]
+    work = float(history.steps + history.layer_steps * cells)
+    return Answer(history.amplitude, bool(good.all()), history.reason, (taken.model,), work=work)
 
 
 def taken_run(scene: Scene, model: str, cells: int, dispersion: bool) -> RunupChoice:
@@ -287,7 +293,8 @@ def _long_waves(scene: Scene, case: Case) -> Answer:
     force, layer = found.force_ratio, fill.depth / fill.chamber.radius
     estimate = float(long_wave_error(layer, whirl.detuning, _SMALL, False, numerics.cells))
     values = np.concatenate([force.real, force.imag])
-    return Answer(values, True, found.reason, (case.model,), estimate=estimate)
+    work = float(numerics.cells**2)  # to a factor: the steps go with the cells
+    return Answer(values, True, found.reason, (case.model,), estimate=estimate, work=work)
 
 
 def _one_family(scene: Scene, case: Case) -> Answer:
@@ -296,9 +303,9 @@ def _one_family(scene: Scene, case: Case) -> Answer:
     fill, whirl, friction = lone_layer(scene)
     found = OneFamily(friction, case.resolution or 256, solver=case.variant).wave(fill, whirl)
     offset = complex(found.answer.offset[0])
-    in_range = bool(found.answer.in_range[0])
+    in_range, work = bool(found.answer.in_range[0]), float(case.resolution or 256) ** 2
     values, estimate = np.array([offset.real, offset.imag]), float(found.answer.error[0])
-    return Answer(values, in_range, found.reason, (case.model,), estimate=estimate)
+    return Answer(values, in_range, found.reason, (case.model,), estimate=estimate, work=work)
 
 
 _ANSWERS: dict[str, Callable[[Scene, Case], Answer]] = {

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from leblanc.scene.scene import Exciter, Runup, Scene, require_clear
 from leblanc.studies.models.choose import across_gravity, is_cut
 from leblanc.studies.runup import planned
 from meshes.arrays import Array, Flags
+from meshes.errors import InputError
 from solvers.layer.places import fewest_cells
 from solvers.runup.state import layer_capture
 from validation.trade.answers import (
@@ -36,7 +37,7 @@ SPEEDS = 9  # at which the response is compared
 SAMPLES = 1000  # of a run-up's history
 CELLS, QUICK_CELLS = (16, 32, 64, 128, 256, 512), (16, 32, 64)
 HELD_CELLS, QUICK_HELD = (32, 64, 128, 256), (16, 32, 64)  # of waves held in time
-_MOST_CELLS = 4096
+_MOST_CELLS, _MOST_SMALL = 4096, 600  # of a refined reference: of any, of small waves in compartments
 MESHES: tuple[tuple[int, int], ...] = ((16, 1), (32, 1), (64, 1), (16, 2), (32, 2), (64, 2))
 QUICK_MESHES: tuple[tuple[int, int], ...] = ((16, 1), (16, 2))
 SMALL_CELLS, QUICK_SMALL = (24, 48, 96, 192), (12, 24, 48)  # of small waves in compartments
@@ -131,15 +132,16 @@ def layer_questions(scene: Scene, quick: bool = False) -> list[Question]:
     )
     others = [name for name in names(wave) if name not in ("finite_volume", "explicit")]
     waves = (*ladder[1:], ladder[0], *(Case(WAVES, "long_wave", n, name) for name in others for n in few))
-    best = Case(FAMILY, "kdv", 64, settle_family.NEWTON)
+    finer = tuple(Case(FAMILY, "kdv", n, settle_family.NEWTON) for n in (256, 128, 64))
+    best = finer[0]
     others = [name for name in names(family) if name not in (settle_family.NEWTON, "explicit")]
-    steady = (best, *(Case(FAMILY, "kdv", n, name) for name in others for n in few))
+    steady = (*reversed(finer), *(Case(FAMILY, "kdv", n, name) for name in others for n in few))
     return [
         Question(
             *(WAVES, scene, f"{layer}, three whirl periods from rest; error: of the force over the periods"),
             *(waves, ladder[0], ladder[:3]),
         ),
-        Question(*(FAMILY, scene, f"{layer}, settled; error: of the centre of mass", steady, best, (best,))),
+        Question(*(FAMILY, scene, f"{layer}, settled; error: of the centre of mass", steady, best, finer)),
     ]
 
 
@@ -180,6 +182,32 @@ def response_question(scene: Scene, quick: bool = False) -> Question:
 
 
 _ERROR = "error: largest relative one of the amplitude"
+
+
+def finer(question: Question) -> Question | None:
+    """The question with a reference twice as fine; None where that is exact or as fine as it goes."""
+    first = question.ladder[0]
+    most = _MOST_SMALL if first.variant == SMALL else _MOST_CELLS
+    if len(question.ladder) < 3 or first.resolution is None or 2 * first.resolution > most:
+        return None
+    best, place = replace(first, resolution=2 * first.resolution), question.cases.index(first) + 1
+    cases = (*question.cases[:place], best, *question.cases[place:])
+    return replace(question, cases=cases, reference=best, ladder=(best, *question.ladder[:2]))
+
+
+def refined_to(question: Question, reference: str) -> Question:
+    """The question with the reference of that label.
+
+    Raises
+    ------
+    InputError : no reference of the question, however fine, has it
+    """
+    found: Question | None = question
+    while found is not None and found.reference.label != reference:
+        found = finer(found)
+    if found is None:
+        raise InputError("reference", reference, f"{question.reference.label} or a finer one")
+    return found
 
 
 def stands_lying(scene: Scene) -> Flags:

@@ -40,8 +40,8 @@ def run(scene: Any, case: Any) -> dict[str, Any]:
 
     Returns
     -------
-    `values`, `in_range`, `reason`, `used`, `ripple`, `estimate` of the answer; `memory`, bytes; `time` and
-    `first`, CPU time of the run and of the first small piece with its imports and compilation, s
+    `values`, `in_range`, `reason`, `used`, `ripple`, `estimate`, `work` of the answer; `memory`, bytes;
+    `time` and `first`, CPU time of the run and of the first small piece with its imports and compilation, s
     """
     begin = time.process_time()
     from validation.trade.answers import answer, taste
@@ -62,6 +62,7 @@ def run(scene: Any, case: Any) -> dict[str, Any]:
         "used": found.used,
         "ripple": None if found.ripple is None else found.ripple.tolist(),
         "estimate": found.estimate,
+        "work": found.work,
         "memory": memory,
         "time": taken,
         "first": first,

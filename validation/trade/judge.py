@@ -14,7 +14,12 @@ from validation.trade.cases import Question
 _ROUNDING = 1e-12  # relative error of what is called exact
 # Least difference of times that counts, relative: the same computation under two names was within 2.5 %.
 _REPRODUCED = 0.03
+# Less than the default's cost by this factor is worth a change; cells times steps that take as long as what
+# is made besides the steps: a tenth of a second.
+_WORTH, _BESIDES = 2.0, 1e6
 _LEAST_ORDER = 0.25  # of convergence; what converges slower is not extrapolated
+# An order beyond the second may be chance on three meshes; the factor is that of the grid convergence index.
+_MOST_ORDER, _SAFETY = 2.0, 1.25
 
 
 @dataclass(frozen=True)
@@ -54,6 +59,7 @@ class Row:
     estimate: float = math.nan
     #: of the ripple, over the best answer's amplitude; nan where it is not asked for
     ripple_error: float = math.nan
+    work: float = 0.0  #: of the answer
     on_front: bool = False  #: no other row dominates it
     default: bool = False  #: what the scene's default gives; what is advised for its tolerance
     recommended: bool = False
@@ -88,7 +94,7 @@ class Comparison:
 
     @property
     def recommended(self) -> Row | None:
-        """What is advised; None if nothing has answered."""
+        """What is advised; None where it cannot be decided."""
         return next((row for row in self.rows if row.recommended), None)
 
 
@@ -130,6 +136,7 @@ def compare(question: Question, runs: Mapping[Case, Run], tolerance: float) -> C
                 note=run.answer.reason or _other_physics(question, case),
                 estimate=run.answer.estimate,
                 ripple_error=_ripple_error(run.answer, best),
+                work=run.answer.work,
             )
         )
     found = _judged(question, rows, own, order, tolerance)
@@ -147,7 +154,7 @@ def _ripple_error(found: Answer, best: Answer) -> float:
 
 def _judged(question: Question, rows: list[Row], own: float, order: float, tolerance: float) -> Comparison:
     """The comparison with front, default and recommendation marked."""
-    advised = recommend(rows, own, tolerance)
+    advised = recommend(rows, own, tolerance, question.reference.label)
     marked = tuple(
         replace(
             row,
@@ -211,8 +218,8 @@ def reference_error(question: Question, ladder: Sequence[Answer]) -> tuple[float
     """Error of the best answer itself, by Richardson's extrapolation, and the order of its convergence.
 
     With the differences d1 and d2 between three resolutions, each twice as fine as the last, the order is
-    p = log2(d1/d2) and the finest one's error d2/(2^p - 1). Where the order is hardly above zero the answers
-    do not converge, and the largest difference stands for the error.
+    p = log2(d1/d2) and the finest one's error at most 1.25 d2/(2^min(p, 2) - 1). Where the order is hardly
+    above zero the answers do not converge, and the largest difference stands for the error.
 
     Parameters
     ----------
@@ -231,7 +238,7 @@ def reference_error(question: Question, ladder: Sequence[Answer]) -> tuple[float
     order = math.log2(coarse / fine) if coarse > 0.0 else 0.0
     if order < _LEAST_ORDER:
         return max(coarse, fine), math.nan
-    return max(fine / (2.0**order - 1.0), _ROUNDING), order
+    return max(_SAFETY * fine / (2.0 ** min(order, _MOST_ORDER) - 1.0), _ROUNDING), order
 
 
 def dominates(row: Row, other: Row, own: float) -> bool:
@@ -255,25 +262,73 @@ def _noise(row: Row, other: Row) -> float:
     return max(row.spread * row.time, other.spread * other.time, _REPRODUCED * min(row.time, other.time))
 
 
-def recommend(rows: Sequence[Row], own: float, tolerance: float) -> int:
-    """Index of the row that is advised: the cheapest within the tolerance, the default if it is as cheap.
+def advisable(rows: Sequence[Row], reference: str) -> list[int]:
+    """Indices of the rows that may be advised: what a scene can name, with its physics, that has answered.
 
-    Advised is what a scene can name, with the physics of the scene. If none of that is within the
-    tolerance, the most accurate one, of equals the cheapest; -1 if nothing has answered.
+    The reference is none of them: nothing better is there to say how wrong it is.
+    """
+    return [
+        k
+        for k, row in enumerate(rows)
+        if row.selectable and not row.note and math.isfinite(row.error) and row.label != reference
+    ]
+
+
+def effort(row: Row, default: Row) -> tuple[bool, float]:
+    """What a row costs, to be compared with others: counted and not timed, so that an advice is no chance.
+
+    The cells that steps advance, and what is made besides; closed forms cost nothing beside that. Of a layer
+    alone the solvers of py-pde, whose steps are not counted, come after our own.
+    """
+    foreign = row.question in (WAVES, FAMILY) and row.variant != default.variant
+    return foreign, row.work + _BESIDES if row.work > 0.0 else 0.0
+
+
+def recommend(rows: Sequence[Row], own: float, tolerance: float, reference: str) -> int:
+    """Index of the row that is advised; -1 where it cannot be decided.
+
+    A row is within the tolerance where its error and the reference's own one together are, and beyond it
+    where its error less the reference's is. Advised is the cheapest within by `effort`, but the default if it
+    is within and not twice as dear; where all are beyond, the most accurate, of equals the cheapest. Nothing
+    is decided where the reference's own error is larger than the tolerance, where no row is within and one
+    may be, and where the reference alone is within.
 
     Parameters
     ----------
     rows : of one question, the default first
     own : error of the reference
     tolerance : relative error that is allowed
+    reference : label of the row that the others are held against
     """
-    known = [k for k, row in enumerate(rows) if row.selectable and not row.note and math.isfinite(row.error)]
-    within = [k for k in known if rows[k].error <= tolerance]
-    if not within:
-        least = min((rows[k].error for k in known), default=math.nan)
-        within = [k for k in known if rows[k].error <= least + own]
-    if not within:
+    known = advisable(rows, reference)
+    if not (known and own <= tolerance):
         return -1
-    best = min(within, key=lambda k: rows[k].time)
-    noise = _noise(rows[best], rows[0])
-    return 0 if 0 in within and rows[0].time <= rows[best].time + noise else best
+    chosen = [k for k in known if rows[k].error + own <= tolerance]
+    if not chosen:
+        least = min(rows[k].error for k in known)
+        if least - own <= tolerance or any(row.label == reference and row.selectable for row in rows):
+            return -1
+        chosen = [k for k in known if rows[k].error <= least + own]
+    best = min(chosen, key=lambda k: effort(rows[k], rows[0]))
+    return 0 if 0 in chosen and not _cheaper(rows[best], rows[0], rows[0]) else best
+
+
+def _cheaper(row: Row, other: Row, default: Row) -> bool:
+    """Whether a row costs so much less than another that this is worth a change."""
+    (foreign, work), (alien, most) = effort(row, default), effort(other, default)
+    return foreign < alien or (foreign == alien and _WORTH * work < most)
+
+
+def decided(comparison: Comparison, tolerance: float) -> bool:
+    """Whether a finer reference could change no advice.
+
+    It could where nothing is advised, and where a cheaper row than the advised one may be within as well.
+    """
+    advised, own = comparison.recommended, comparison.reference_error
+    if advised is None:
+        return False
+    known = [comparison.rows[k] for k in advisable(comparison.rows, comparison.reference)]
+    return not any(
+        tolerance - own < row.error <= tolerance + own and _cheaper(row, advised, comparison.default)
+        for row in known
+    )

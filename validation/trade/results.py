@@ -13,6 +13,7 @@ from validation.trade.trade import TradeRecord
 
 _KILO, _MEGA = 1e3, 1e6  # milliseconds in a second, bytes in a megabyte
 _PER_CENT = 100.0
+_EXACT = 1e-11  # own error of the best answer, below which it is rounding
 # What a row need not have.
 _UNKNOWN = "error", "peak_error", "estimate", "ripple_error"
 
@@ -95,31 +96,58 @@ def _number(value: float) -> float | None:
 
 
 def recommendation(comparison: Comparison, tolerance: float) -> str:
-    """What to take for a tolerance, and why, in words.
+    """What to take for a tolerance, the errors that this rests on, and what it costs, in words.
 
     Parameters
     ----------
-    one : the comparison
+    comparison : of one question
     tolerance : relative error that is allowed
     """
     advised, default = comparison.recommended, comparison.default
+    kept = f"keep the default, {default.label} (here {', '.join(default.used)})"
+    own = f"{_share(comparison.reference_error)} of the reference, {comparison.reference}"
     if advised is None:
-        return f"{comparison.question}: nothing has answered"
-    what = f"take {advised.label}"
-    if advised.default:
-        what = f"keep the default, {advised.label} (here {', '.join(advised.used)})"
+        return f"{comparison.question}: {_undecided(comparison, tolerance, kept)}"
+    what = kept if advised.default else f"take {advised.label}"
     wrong = f"its error is {error_words(advised, comparison)}"
+    if comparison.reference_error > _EXACT:
+        wrong = f"its error is {_share(advised.error)}, beside {own}"
+        if not advised.resolved:
+            wrong = f"its error is below the {own}"
     if advised.error > tolerance:
         why = f"nothing is within {_share(tolerance)}; {wrong}, the least"
     else:
         why = f"{wrong}, within {_share(tolerance)}, and nothing as good is cheaper"
-    beside = ""
+    cost = f"; it takes {_time(advised.time)}"
     if not advised.default:
-        ratio = default.time / advised.time
-        pace = f"takes {ratio:.3g} times as long"
-        beside = f"; the default's error is {error_words(default, comparison)} and it {pace}"
+        gap = error_words(default, comparison)
+        cost += f", the default {_time(default.time)} with an error of {gap}"
     warning = "" if advised.in_range else "; it says of itself that it is out of its range"
-    return f"{comparison.question}: {what}: {why}{beside}{warning}"
+    return f"{comparison.question}: {what}: {why}{cost}{warning}"
+
+
+def _undecided(comparison: Comparison, tolerance: float, kept: str) -> str:
+    """Why nothing can be advised but the default."""
+    if not any(math.isfinite(row.error) for row in comparison.rows):
+        return f"nothing has answered; {kept}"
+    default, own = comparison.default, comparison.reference_error
+    best = next(row for row in comparison.rows if row.label == comparison.reference)
+    size = _share(own) if math.isfinite(own) else "an unknown amount"
+    off = f"the reference, {best.label}, is itself off by {size}"
+    if not own <= tolerance:
+        off += f", more than {_share(tolerance)}"
+    elif default.error - own <= tolerance:
+        off += f", too much to tell whether the default is within {_share(tolerance)}"
+    else:
+        off += f", and nothing else is known to be within {_share(tolerance)}"
+    gap = (
+        f"the default is {_share(default.error)} away from it"
+        if default.resolved
+        else "no farther is the default"
+    )
+    gap = "the default has no answer" if math.isnan(default.error) else gap
+    cost = f"the default takes {_time(default.time)}, the reference {_time(best.time)}"
+    return f"cannot decide at this cost: {kept}: {off}; {gap}; {cost}"
 
 
 def error_words(row: Row, comparison: Comparison) -> str:
@@ -139,6 +167,10 @@ def error_words(row: Row, comparison: Comparison) -> str:
     )
 
 
+def _time(seconds: float) -> str:
+    return f"{_KILO * seconds:.3g} ms" if seconds < 1.0 else f"{seconds:.3g} s"
+
+
 def _share(value: float) -> str:
     return f"{_PER_CENT * value:.2g} %"
 
@@ -153,7 +185,7 @@ def trade_lines(record: TradeRecord) -> list[str]:
     lines = [one_line(record.name)]
     for comparison in record.comparisons:
         own = f"best: {comparison.reference}"
-        if comparison.reference_error > 1e-11:
+        if comparison.reference_error > _EXACT:
             own += f", whose own error is some {_share(comparison.reference_error)}"
             own += (
                 f" (order {comparison.order:.2g})"

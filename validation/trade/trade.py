@@ -15,10 +15,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from leblanc.results.base import one_line
-from leblanc.scene.scene import Scene, require_clear
+from leblanc.scene.scene import Scene, require_chambers, require_clear
 from validation.trade.answers import Answer, Case, answer, taste
-from validation.trade.cases import Question, questions
-from validation.trade.judge import Comparison, Run, compare, errors
+from validation.trade.cases import Question, finer, questions
+from validation.trade.judge import Comparison, Run, compare, decided, errors
 
 Progress = Callable[[str, float], object]
 
@@ -28,6 +28,9 @@ REPEATS = 5
 _LONG, _LONGER = 0.3, 1.5
 _FEW = 1
 _SHORT = 0.02  # s; shorter runs are timed several at once
+# Cells times steps of a finer reference at most, and with short ladders; by how much they go up where its
+# cells are twice as many. Counted, so that no clock decides; some 60 and 20 s.
+_MOST, _MOST_QUICK, _GROWTH = 6e8, 2e8, 4.0
 
 
 @dataclass(frozen=True)
@@ -62,6 +65,7 @@ def trade_scene(
         waves that py-pde solves
     only : the question that is measured; all if None
     """
+    require_chambers(scene, "the accuracy and cost of liquid models")
     require_clear(scene, "a comparison of models, most of which know circular walls alone", baffles=True)
     tell = progress or (lambda _, __: None)
     tolerance = scene.model.tolerance
@@ -73,10 +77,37 @@ def trade_scene(
             tell(text, (k + share) / len(cases))
 
         runs = measure(question, repeats, said)
-        found.append(compare(question, runs, tolerance))
+        found.append(refine(question, runs, tolerance, _MOST_QUICK if quick else _MOST, said))
     return TradeRecord(
         one_line(scene.name), scene.source, scene.assumed, scene.digest, tolerance, tuple(found)
     )
+
+
+def refine(
+    question: Question, runs: dict[Case, Run], tolerance: float, most: float, progress: Progress
+) -> Comparison:
+    """The comparison with its reference refined until it decides what to take, or costs too much.
+
+    Parameters
+    ----------
+    question : with its cases
+    runs : of each
+    tolerance : relative error that is allowed
+    most : work of a reference, as of an `Answer`
+    progress : is called with what runs and the share that is done
+    """
+    found = compare(question, runs, tolerance)
+    while not decided(found, tolerance):
+        better = finer(question)
+        if better is None or _GROWTH * runs[question.reference].answer.work > most:
+            break
+        progress(f"{question.name}: {better.reference.label}", 1.0)
+        run = alone(question.scene, better.reference)
+        if run.answer.reason or runs[question.reference].answer.in_range > run.answer.in_range:
+            break  # a finer mesh on which the layer falls is no better answer
+        question, runs = better, runs | {better.reference: run}
+        found = compare(question, runs, tolerance)
+    return found
 
 
 def error_table(question: Question, cases: Iterable[Case]) -> dict[str, tuple[float, float]]:
@@ -142,7 +173,7 @@ def alone(scene: Scene, case: Case) -> Run:
     read = json.loads(done.stdout)
     found = Answer(
         np.array(read["values"]), read["in_range"], read["reason"], tuple(read["used"]),
-        None if read["ripple"] is None else np.array(read["ripple"]), read["estimate"],
+        None if read["ripple"] is None else np.array(read["ripple"]), read["estimate"], read["work"],
     )  # fmt: skip
     return Run(found, (read["time"],), read["first"], read["memory"])
 

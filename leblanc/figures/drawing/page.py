@@ -145,11 +145,11 @@ def save_png(figure: Figure, directory: Path, name: str, title: str) -> Path:
 
 def number(value: float, _position: float | None = None) -> str:
     """Tick label without an offset or a common factor elsewhere on the axis."""
-    return f"{value:.10g}".replace("-", "\N{MINUS SIGN}")
+    return f"{value + 0.0:.10g}".replace("-", "\N{MINUS SIGN}")
 
 
 _PLOTTED = {"mm": LENGTH, "ml": VOLUME, "g": MASS}  # units in which figures draw, as they end a label
-_UNIT = re.compile(r"\((mm|ml|g)\)$")
+_UNIT = re.compile(r"\((mm|ml|g)( 0-p)?\)$")
 
 
 def readable(axis: Any) -> None:
@@ -167,7 +167,7 @@ def readable(axis: Any) -> None:
     chosen = unit_for(dimension, *(float(limit) / drawn.count for limit in axis.get_view_interval()))
     if chosen != drawn:
         factor = chosen.count / drawn.count
-        axis.set_label_text(f"{axis.get_label_text()[: found.start()]}({chosen.name})")
+        axis.set_label_text(f"{axis.get_label_text()[: found.start()]}({chosen.name}{found[2] or ''})")
         axis.set_major_formatter(lambda value, _position=None: number(value * factor))
 
 

@@ -25,7 +25,7 @@ from leblanc.results.base import one_line
 from leblanc.results.races.balls import in_race
 from leblanc.results.races.states import BallsResult
 from leblanc.text.races.balls import alt, answer
-from leblanc.units import MM, RPM
+from leblanc.units import MM, MM_PEAK, RPM
 
 FRAME = Frame(left=0.72, top=0.46, between=0.14, below=0.42)
 TITLE = "Amplitude with balls and where they rest"
@@ -105,7 +105,7 @@ def _draw_amplitudes(axes: Any, result: BallsResult) -> None:
     axes.plot(*gapped(rpm, shown * MM, breaks), color=WET, linewidth=1.6, label="stable state", zorder=3.0)
     top = float(np.nanmax(np.concatenate((bare, shown, [0.0]))))
     axes.set_ylim(-0.02 * _FAR * top * MM, _FAR * top * MM or 1.0)
-    axes.set_ylabel("Amplitude (mm)")
+    axes.set_ylabel(f"Amplitude ({MM_PEAK})")
 
 
 def _draw_angles(axes: Any, result: BallsResult) -> None:

@@ -14,7 +14,7 @@ from leblanc.figures.response import DRY, WET
 from leblanc.results.base import one_line
 from leblanc.results.races.design import BallDesignResult
 from leblanc.text.races.design import alt, answer
-from leblanc.units import MM, RPM
+from leblanc.units import MM, MM_PEAK, RPM
 from meshes.arrays import Flags
 
 FRAME = Frame(left=0.72, top=0.14, between=0.14, below=0.42, gaps=(0.14, 0.56))
@@ -108,7 +108,7 @@ def _draw_designs(axes: Any, result: BallDesignResult) -> None:
             **star,
         )
     axes.set_ylim(-0.03 * top * MM, top * MM)
-    axes.set_ylabel("Amplitude (mm)")
+    axes.set_ylabel(f"Amplitude ({MM_PEAK})")
 
 
 def _draw_decay(axes: Any, result: BallDesignResult) -> None:
@@ -157,7 +157,7 @@ def _draw_speeds(axes: Any, result: BallDesignResult) -> None:
     top = float(np.nanmax(np.concatenate((bare, stable, [0.0]))))
     axes.set_ylim(-0.02 * top * MM, 1.1 * top * MM or 1.0)
     axes.set_xlabel("Speed (rpm)")
-    axes.set_ylabel("Amplitude (mm)")
+    axes.set_ylabel(f"Amplitude ({MM_PEAK})")
 
 
 def _caption(result: BallDesignResult) -> Caption:

@@ -6,7 +6,7 @@ import hashlib
 import json
 import math
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from os import PathLike
 from pathlib import Path
 from typing import Annotated, Any
@@ -412,6 +412,10 @@ def _fields(
             kind = _kind(given, method)
             where, value = (*where, kind), given[kind]
             distribution = read_distribution(kind, value, rule)
+        except ValidationError as error:  # of a table that stands for the value, as a liquid's
+            own = faults_of(error, file, rule.table)
+            faults += [replace(one, field=f"{field_path(where)}.{one.field}") for one in own]
+            continue
         except REFUSALS as error:
             said = None if value is None else shown(value)
             if value is None and not isinstance(given, Mapping):

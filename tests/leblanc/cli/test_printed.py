@@ -58,7 +58,8 @@ def test_a_headline_that_does_not_hold_says_so(name: str) -> None:
     """At the largest amplitude: out of range, unstable, or neither; in the sentence and in the table."""
     result = lb.run(lb.example(name).replace({"speeds.count": 60}))
     curve = result.curve  # with the speeds between, where the peak is
-    k = int(np.nanargmax(curve.amplitude))
+    k = curve.top
+    assert k is not None
     largest = text.comparisons(result)[0].label
     headline = text.answer(result).partition(" and ")[0]
     for words, holds in (("out of range", curve.in_range[k]), ("unstable", curve.stable[k])):
@@ -79,16 +80,16 @@ def test_console_chamber_figure_and_view_show_one_amplitude(name: str) -> None:
     assert chamber_state(result, result.curve.speed.size - 1).startswith(f"amplitude {size} at chamber 1,")
     assert view_state(motion, last, [False] * len(scene.chambers))[0] == f"amplitude {place}: {size}"
     assert place in text.answer(result) and place in text.alts(result)["amplitude"]
-    assert dict(text.summary(result))["Amplitudes"] == place
+    assert dict(text.summary(result))["Amplitudes"] == f"zero to peak, {place}"
     figure = result.plot()
-    assert figure.axes[0].get_ylabel() == "Amplitude at chamber 1 (mm)"
+    assert figure.axes[0].get_ylabel() == "Amplitude at chamber 1 (mm 0-p)"
     assert place in figure.caption.shown
 
 
 def test_a_rotor_in_one_plane_has_no_plane_to_name() -> None:
     result = lb.run(lb.example("centrifuge").replace({"speeds.count": 5}))
     assert text.amplitude_place(result) == "" and "plane" not in text.answer(result)
-    assert result.plot().axes[0].get_ylabel() == "Amplitude (mm)"
+    assert result.plot().axes[0].get_ylabel() == "Amplitude (mm 0-p)"
 
 
 LAYER = [
@@ -148,7 +149,7 @@ def test_small_and_large_machines_are_in_their_units(
     """A hundredth of the unbalance moves a hundredth: micrometres in table, figure and report alike."""
     words = run(capsys, "centrifuge", tmp_path, 'unbalance = "1.5 kg*mm"', 'unbalance = "150 kg*mm"')
     assert "Largest amplitude (um" in words
-    assert "Amplitude (um)" in (tmp_path / "amplitude.svg").read_text(encoding="utf-8")
+    assert "Amplitude (um 0-p)" in (tmp_path / "amplitude.svg").read_text(encoding="utf-8")
     page = (tmp_path / "summary.html").read_text(encoding="utf-8")
     assert "Largest amplitude (um" in page and not re.search(r"\b0\.0\d+ mm", page)
 
@@ -162,7 +163,7 @@ def test_the_plane_of_a_sweep_is_named(tmp_path: Path) -> None:
     found = lb.sweep(tmp_path / "study.toml", out=tmp_path, workers=0)
     assert found.plane == "in the plane of chamber 1 at \N{MINUS SIGN}280 mm"
     lines = sweep_lines(found)
-    assert f"Amplitudes are those {found.plane}." in lines
+    assert f"Amplitudes are zero to peak, {found.plane}." in lines
     (row,) = (line for line in lines if line.startswith("last amplitude  "))
     assert row.endswith(("  mm", "  um"))
     mean = float(row.split()[2]) / {"mm": 1e3, "um": 1e6}[row.split()[-1]]

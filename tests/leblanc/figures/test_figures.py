@@ -21,6 +21,7 @@ from matplotlib.transforms import Bbox
 from leblanc import figures
 from leblanc.figures import chambers as chamber
 from leblanc.figures.drawing import curves
+from leblanc.figures.drawing.page import number
 from leblanc.results.base import FilledChamber
 from tests.oracles.records import EXTREMES, RPM, dry_deflection, folded, record_of, response_of, rig
 
@@ -40,7 +41,7 @@ def test_amplitude_in_mm_over_rpm():
     record = rig()
     figure = figures.amplitude_figure(record)
     (axes,) = figure.axes
-    assert (axes.get_xlabel(), axes.get_ylabel()) == ("Speed (rpm)", "Amplitude (mm)")
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("Speed (rpm)", "Amplitude (mm 0-p)")
     assert axes.child_axes[0].get_xlabel() == "Speed (rad/s)"
     np.testing.assert_allclose(axes.get_xlim(), (100.0, 2000.0), rtol=1e-12)
     wet, dry = line(figure, "with liquid"), line(figure, "without liquid")
@@ -312,3 +313,7 @@ def test_right_angle_between_unbalance_and_deflection_at_resonance():
     assert y < 0.0
     # The constants of the rig give 1000 rpm to five digits.
     assert math.isclose(x, 0.0, abs_tol=1e-3 * abs(y))
+
+
+def test_a_tick_of_zero_has_no_sign() -> None:
+    assert [number(value) for value in (-0.0, 0.0, -2.5)] == ["0", "0", "\N{MINUS SIGN}2.5"]

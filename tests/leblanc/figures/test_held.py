@@ -64,7 +64,7 @@ def test_limit_cycles_are_marked_and_their_whirl_drawn() -> None:
     held = result.held
     assert held is not None
     figure = figures.amplitude_figure(result)
-    assert [axes.get_ylabel() for axes in figure.axes[:2]] == ["Amplitude (mm)", "Whirl speed (rpm)"]
+    assert [axes.get_ylabel() for axes in figure.axes[:2]] == ["Amplitude (mm 0-p)", "Whirl speed (rpm)"]
     marks = line(figure, "limit cycle, mean")
     known = np.isfinite(marks.get_ydata())
     np.testing.assert_allclose(marks.get_xdata()[known], result.speed[held.limit_cycle] / RPM)

@@ -97,8 +97,8 @@ def test_the_plane_of_the_amplitude_is_named() -> None:
     result = replace(two_chambers(), response=lb.run(tilting))
     figure = objective_figure(result)
     FigureCanvasAgg(figure).draw()
-    assert any(axes.get_ylabel() == "Vibration at chamber 1 (mm)" for axes in figure.axes)
+    assert any(axes.get_ylabel() == "Vibration at chamber 1 (mm 0-p)" for axes in figure.axes)
     caption = " ".join(text.get_text() for text in reversed(figure.texts))
     assert "in the plane of chamber 1" in caption
-    assert front_figure(result).axes[0].get_ylabel() == "Vibration at chamber 1 (mm)"
-    assert front_figure(two_chambers()).axes[0].get_ylabel() == "Vibration (mm)"
+    assert front_figure(result).axes[0].get_ylabel() == "Vibration at chamber 1 (mm 0-p)"
+    assert front_figure(two_chambers()).axes[0].get_ylabel() == "Vibration (mm 0-p)"

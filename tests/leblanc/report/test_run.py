@@ -210,10 +210,11 @@ def test_numbers_are_those_of_the_json(name: str, tmp_path: Path, capsys) -> Non
     page = read_page(tmp_path / "summary.html")
     rpm = [speed * 30.0 / math.pi for speed in answer["speed"]]
     wet, dry = answer["amplitude"], answer["amplitude_dry"]
-    most, most_dry, between = answer["peak"], answer["peak_dry"], answer["refined"]
-    # The peaks are those of all speeds: of the scene, and between them.
-    assert most["amplitude"] == max(wet + between["amplitude"])
-    assert most_dry["amplitude"] == max(dry + between["amplitude_dry"])
+    most, most_dry, curve = answer["peak"], answer["peak_dry"], answer["curve"]
+    # The peaks are those of all speeds, of the scene and between them; with liquid where the answer holds.
+    holds = zip(curve["amplitude"], curve["in_range"], strict=True)
+    assert most["amplitude"] == max(size for size, inside in holds if inside)
+    assert most_dry["amplitude"] == max(curve["amplitude_dry"])
     sizes = most["amplitude"], most_dry["amplitude"]
     (label,) = (row[0] for row in page.rows if row and row[0].startswith("Largest amplitude (mm"))
     assert page.row(label) == [printed(x) for x in (sizes[0] * 1e3, sizes[1] * 1e3, sizes[0] / sizes[1])]

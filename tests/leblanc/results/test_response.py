@@ -10,9 +10,12 @@ import numpy as np
 import pytest
 import xarray as xr
 
+import leblanc as lb
 from leblanc.files import writing
 from leblanc.results.netcdf import write_netcdf
 from leblanc.results.response import RunResult
+from leblanc.text.numbers import amplitude_sentence
+from leblanc.text.run import summary
 from meshes.errors import InputError
 from tests.oracles.records import folded, record_of, response_of, rig
 
@@ -137,3 +140,16 @@ def test_records_that_contradict_themselves_are_refused():
         record_of(replace(response, stable=response.stable[:3]))
     with pytest.raises(InputError, match=r"response\.branch_stable"):
         record_of(replace(response, branch_stable=np.ones((5, 2), dtype=np.bool_)))
+
+
+def test_amplitudes_are_zero_to_peak() -> None:
+    """Each amplitude of a data file, the axis of its figure and the rows of a summary say so."""
+    result = lb.run(lb.example("horizontal_rig").replace({"speeds.count": 5}))
+    data = result.to_dataset()
+    named = [name for name in data.variables if "amplitude" in str(name) and data[name].attrs["units"] == "m"]
+    assert {"amplitude", "amplitude_dry", "peak_amplitude", "curve_amplitude"} <= set(named)
+    for name in named:
+        assert "zero to peak" in data[name].attrs["description"]
+    assert result.plot().axes[0].get_ylabel() == "Amplitude (mm 0-p)"
+    assert dict(summary(result))["Amplitudes"] == "zero to peak"
+    assert amplitude_sentence("in a plane") == "Amplitudes are zero to peak, in a plane."

@@ -13,6 +13,7 @@ import leblanc as lb
 from fluid.fill import Fill
 from fluid.friction.laws import Friction
 from fluid.liquid import Liquid
+from leblanc.results.notes.runup import RunupCode, numerical_error
 from leblanc.scene.scene import Scene
 from leblanc.studies.runup import runup_scene
 from leblanc.text.runup import answer, answer_rows, peak_known
@@ -103,3 +104,19 @@ def test_what_a_reader_is_told() -> None:
         assert ("Largest of all known to", peak_known(one)) in answer_rows(one)
     half = replace(found, in_range=np.arange(found.time.size) % 2 == 0)
     assert f"for {100.0 * half.in_range.mean():.3g} % of the run" in answer(half)
+
+
+def test_a_look_that_is_too_coarse_says_so() -> None:
+    """Without the check, with fewer than 64 cells, for liquid that lies at the bottom first."""
+    own = lb.example("front_loader").replace({"programme.steps": ["to 20 rpm in 0.05 s"]})
+    codes = {note.code for note in runup_scene(own, cells=32, check=False).notes}
+    assert RunupCode.TOO_COARSE in codes and RunupCode.ERROR_UNKNOWN not in codes
+    for error, cells, code in (
+        (math.nan, 63, RunupCode.TOO_COARSE),
+        (math.nan, 64, RunupCode.ERROR_UNKNOWN),
+        (math.nan, None, RunupCode.ERROR_UNKNOWN),  # upright, or linear layers
+        (0.5, 32, RunupCode.ROUGH),
+    ):
+        note = numerical_error(error, cells)
+        assert note is not None and note.code is code
+    assert numerical_error(1e-3, 32) is None

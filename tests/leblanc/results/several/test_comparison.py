@@ -169,7 +169,7 @@ def test_lines_of_the_figure_are_told_apart_without_colour() -> None:
 
 def test_one_model_needs_no_differences() -> None:
     figure = comparison(answer("statics", wet(ADDED))).plot()
-    assert [axes.get_ylabel() for axes in figure.axes] == ["Amplitude (mm)"]
+    assert [axes.get_ylabel() for axes in figure.axes] == ["Amplitude (mm 0-p)"]
 
 
 def test_narrow_resonances_are_drawn_wider_below() -> None:

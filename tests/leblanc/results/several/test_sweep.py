@@ -112,7 +112,7 @@ def test_bands_of_the_figure_are_the_quantiles(found: SweepResult) -> None:
 def test_boxes_of_one_speed_are_the_quantiles(tmp_path: Path) -> None:
     result = sweep_result(study_in(tmp_path, STUDY, ONE), tmp_path / "out", workers=0)
     above, below = result.plot().axes
-    assert (above.get_xlabel(), below.get_xlabel()) == ("Amplitude (mm)", "Growth (1/s)")
+    assert (above.get_xlabel(), below.get_xlabel()) == ("Amplitude (mm 0-p)", "Growth (1/s)")
     assert len(above.patches) == 2  # with and without liquid
     for box, name in zip(above.patches, ("last_amplitude", "last_amplitude_dry"), strict=True):
         low, high = result.single[name].quantiles[0, [1, 3]] * 1e3

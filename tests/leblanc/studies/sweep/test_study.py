@@ -96,6 +96,12 @@ CASES = (
     vary('"rotor.unbalance" = { lognormal = [0, 2] }', '"rotor.unbalance".lognormal', "a median above 0"),
     vary('"rotor.mass" = { choice = [] }', '"rotor.mass".choice', "a list of 1 to"),
     vary('"rotor.mass" = { choice = ["heavy"] }', '"rotor.mass".choice', "a mass"),
+    vary(
+        '"chambers.0.liquid" = { choice = ["water", { density = 2e7, viscosity = 1e-6 }] }',
+        *('"chambers.0.liquid".choice.density = 20000000.0', "a density", "from 0.001 to"),
+    ),
+    vary('"model.friction" = { choice = [{ linear = -1.0 }] }', '"model.friction".choice.linear', "from 0"),
+    vary('"model.friction" = { choice = [{ lineal = 1.0 }] }', '"model.friction".choice', "spelled as"),
     vary('"model.liquid" = { choice = ["statik"] }', '"model.liquid".choice', "one of: auto, statics"),
     vary('"model.liquid" = { uniform = [0, 1] }', '"model.liquid".uniform', "choice", "no uniform"),
     vary('"rotor.mass" = { linspace = [3, 12, 4] }', '"rotor.mass"', "exactly one of", "method is sobol"),
