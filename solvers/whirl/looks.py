@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
+from typing import Any
 
 import numpy as np
 
@@ -181,12 +182,12 @@ def _follow(low: Looks, high: Looks) -> _Followed:
 
 
 def _pairing(off: Array) -> Index:
-    """For each of m places one of m others, nearest first, by distances of shape (k, m, m); shape (k, m)."""
-    count, places = off.shape[0], off.shape[1]
-    left, there = off.copy(), np.zeros(off.shape[:2], dtype=np.intp)
+    """For each of m places one of p others, nearest first, by distances of shape (k, m, p); shape (k, m)."""
+    count, places, others = off.shape
+    left, there = off.copy(), np.zeros((count, places), dtype=np.intp)
     every = np.arange(count)
-    for _ in range(places):
-        one, other = np.divmod(np.argmin(left.reshape(count, -1), axis=1), places)
+    for _ in range(min(places, others)):
+        one, other = np.divmod(np.argmin(left.reshape(count, places * others), axis=1), others)
         free = np.isfinite(left[every, one, other])
         there[every[free], one[free]] = other[free]
         left[every, one], left[every, :, other] = np.inf, np.inf
@@ -276,7 +277,7 @@ def _meetings(low: Looks, high: Looks) -> tuple[Array, ...]:
     return low.row[where], speed, low.speed[where], high.speed[where], np.asarray(0.5 * root)
 
 
-def _gone_to(at: Callable[[Index, Array], Looks], meetings: Sequence[Array]) -> list[Looks]:
+def _gone_to(at: Callable[[Index, Array], Looks], meetings: Sequence[Any]) -> list[Looks]:
     """What is seen on the way to meetings of two modes, by Newton's method on the distance of frequencies.
 
     Inside a band both have one frequency, and from outside the step leads into it: with a distance as

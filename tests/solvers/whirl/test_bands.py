@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 
 from fluid.fill import Fill
-from fluid.friction.laws import NO_FRICTION, Friction
+from fluid.friction.laws import NO_FRICTION, Friction, FrictionLaw
 from fluid.liquid import known_liquid
 from fluid.whirl import plane_layer
-from meshes.chamber import Baffles, Chamber
+from meshes.baffles import Baffles
+from meshes.chamber import Chamber
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import Rotor
 from solvers.rotor.tub import Mount, Tub
@@ -70,7 +71,12 @@ def drawn(seed: int) -> Machine:
             0.7 * mass, 0.3 * mass, (inertia[0], inertia[1], inertia[2]), 0.3 * inertia[1], 0.2 * inertia[0],
             tuple(springs), tuple(dampers), 1e-3,
         )  # fmt: skip
-    law = [NO_FRICTION, NO_FRICTION, Friction("linear", 10.0 ** rng.uniform(-2.0, 0.7)), Friction("stokes")]
+    law = [
+        NO_FRICTION,
+        NO_FRICTION,
+        Friction(FrictionLaw.LINEAR, 10.0 ** rng.uniform(-2.0, 0.7)),
+        Friction(FrictionLaw.STOKES),
+    ]
     return rotor, fills, law[int(rng.integers(0, 4))], 0.3 * natural, 6.0 * natural
 
 
@@ -85,7 +91,7 @@ def contradictions(seed: int, speeds: int) -> list[float]:
     for low, high in bands:
         inside |= (asked >= low) & (asked <= high)
         edge |= np.minimum(np.abs(asked - low), np.abs(asked - high)) <= 1e-7 * asked
-    return asked[~edge & (inside != (growth > 0.0))].tolist()
+    return [float(x) for x in asked[~edge & (inside != (growth > 0.0))]]
 
 
 def no_band_lost(seeds: range, speeds: int = 200) -> None:
