@@ -260,7 +260,7 @@ def _pairs(modes: _Followed) -> tuple[tuple[Array, Array, Array, Array], Array] 
     return (gap[0], gap[1], gap[2], gap[3]), np.sqrt(decay[:, one] * decay[:, other])
 
 
-def _meetings(low: Looks, high: Looks) -> tuple[Array, ...]:
+def _meetings(low: Looks, high: Looks) -> tuple[Any, ...]:
     """Meetings of two modes inside intervals: row, speed, both ends, rad/s, and the root that they share."""
     modes = _follow(low, high)
     pairs = _pairs(modes)

@@ -248,7 +248,7 @@ def motion(system: Jeffcott, fill: Fill, spin: float, rate: float) -> np.ndarray
     return np.block([[np.zeros((2, 2)), np.eye(2)], [-inverse @ spring, -inverse @ drag]])
 
 
-@kills("solvers.whirl.growth:machines_growth", "modes.slip + problem.spin", "modes.slip - problem.spin")
+@kills("solvers.whirl.growth:machines_growth", "found.slip + speed[here]", "found.slip - speed[here]")
 def test_time() -> None:
     """A small disturbance advanced in time grows, or decays, at the rate given."""
     for spin, k in ((128.0, 0.0), (128.0, 5.0), (95.0, 5.0), (300.0, 5.0)):
