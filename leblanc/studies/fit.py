@@ -106,9 +106,6 @@ def fit_scene(
     problem.answer(np.zeros(first.size))
 
     def explained(x: Array) -> bool:
-        found = problem.scaled(x)
-        if found is None or (stated[0] == ESTIMATE and relative_rms(problem, problem.left(found)) > LARGE):
-            return False  # sensors are better than that: there may be better values
         return any(
             unexplained(problem, here(problem, x, stated, k)) is None for k in kinds_of(problem, stated)
         )

@@ -16,7 +16,7 @@ _NEAR, _FAR = 1.2, 2.3
 _TRIED, _TRIED_DEAR = 24, 4
 # Most searches, and for each unknown more; few where each answer is dear.
 _MOST, _MOST_DEAR = (6, 4), (2, 1)
-_AGAIN = 2  # searches that must come to the best values
+_UNSEEN = 0.5  # valleys that have not been found, on average, at which a search ends
 _FLOOR = 1e-6  # of the size of a quantity: less left is nothing but rounding
 _ROUGH, _FINE = 1e-3, 1e-8  # where searches end, of the sum
 _SCAN, _SCAN_FAR = 41, 9  # values of one unknown within _FAR of the guess, and beyond on either side
@@ -82,61 +82,66 @@ def search(
     explained: Callable[[Array], bool],
     progress: Callable[[float], None] | None = None,
 ) -> Searched:
-    """Ends of searches from the guess and from others about it, until the best has been found again.
+    """Ends of searches until the best has been found again and hardly any are unseen [theory: fit, eq. 6].
 
     Parameters
     ----------
     problem : with its guess at 0
     starts : searches at least
-    seed : of the other starts
+    seed : of the starts
     explained : whether what is left with some values may be noise; if not the search goes on
     progress : called with the share that is done
     """
     plain = problem.weighted(problem.plain())
-    begins = _scanned(problem, plain) if problem.first.size == 1 else _tried(problem, seed, starts)
+    alone = problem.first.size == 1
+    begins = _scanned(problem, plain) if alone else _tried(problem, seed, starts)
     base, each = _MOST if problem.measurement.over == "speed" else _MOST_DEAR
-    most = max(starts, base + each * problem.first.size)
+    most = min(len(begins), max(starts, base + each * problem.first.size))
     found: list[Valley] = []
-    for k, begin in enumerate(begins[:most]):
-        # By turns: the logarithms have wider valleys, sizes find what logarithms weigh too little.
-        if k % 2 == 0:
-            begin = descend(problem, problem.logarithmic, begin, _ROUGH, 20).x
+    for begin in begins[:most]:
         found.append(descend(problem, plain, begin))
+        found.sort(key=lambda valley: valley.cost)
         if progress is not None:
-            progress((k + 1) / min(most, len(begins)))
-        best = min(found, key=lambda valley: valley.cost)
-        again = _again(problem, found, best)
-        if len(found) >= max(starts, _AGAIN) and again >= _AGAIN and explained(best.x):
+            progress(len(found) / most)
+        # The lowest places of a scan are followed one and all: it has seen what lies between them.
+        enough = not alone and len(found) >= starts and _unseen(problem, found) <= _UNSEEN
+        if enough and _again(problem, found) > 1 and explained(found[0].x):
             break
-    ordered = sorted(found, key=lambda valley: valley.cost)
-    return Searched(tuple(ordered), _again(problem, found, ordered[0]))
+    return Searched(tuple(found), _again(problem, found))
 
 
-def _again(problem: Problem, found: list[Valley], best: Valley) -> int:
-    """Searches that came to the best sum."""
-    return sum(valley.cost <= 1.01 * best.cost + floor(problem) for valley in found)
+def _again(problem: Problem, found: list[Valley]) -> int:
+    """Searches that came to the best sum, of ends in rising order."""
+    return sum(valley.cost <= 1.01 * found[0].cost + floor(problem) for valley in found)
+
+
+def _unseen(problem: Problem, found: list[Valley]) -> float:
+    """Expected number of valleys that no search has come to, of ends in rising order [theory: fit, eq. 6]."""
+    sums = [valley.cost for valley in found]
+    seen = 1 + sum(high > 1.01 * low + floor(problem) for low, high in zip(sums, sums[1:], strict=False))
+    rest = len(sums) - seen - 2
+    return seen * (len(sums) - 1) / rest - seen if rest > 0 else float("inf")
 
 
 def _tried(problem: Problem, seed: int, starts: int) -> list[Array]:
-    """Starts, the guess first, then those of a Sobol sequence about it with least left."""
+    """Starts: the guess, then places of a Sobol sequence about it that no better one is close to."""
     from scipy.stats import qmc
 
     count = problem.first.size
-    dear = problem.measurement.over != "speed"
-    size = max((_TRIED_DEAR if dear else _TRIED) * count, starts)
-    power = int(np.ceil(np.log2(size)))
+    each = _TRIED if problem.measurement.over == "speed" else _TRIED_DEAR
+    power = int(np.ceil(np.log2(max(each * count, starts))))
     spread = 2.0 * qmc.Sobol(count, rng=np.random.default_rng(seed)).random_base2(power) - 1.0
     reach = np.where(np.arange(2**power) % 2 == 0, _NEAR, _FAR)
     points = spread * reach[:, None]
+    problem.ahead(points)
     sums = [float(np.sum(np.square(problem.logarithmic(x)))) for x in points]
-    order = np.argsort(sums, kind="stable")
-    # Of starts that are close to one another the better one.
-    apart: list[Array] = []
-    rest: list[Array] = []
-    for x in points[order]:
-        near = any(float(np.abs(x - other).max()) < 0.3 for other in apart)
-        (rest if near else apart).append(x)
-    return [np.zeros(count), *apart, *rest]
+    points = points[np.argsort(sums, kind="stable")]
+    close = _FAR * 2.0 ** ((1 - power) / count)  # half the distance of neighbours among those further away
+    apart, rest = [np.zeros(count)], []
+    for k, x in enumerate(points):
+        near = np.abs(points[:k] - x).max(axis=1) < close
+        (rest if near.any() else apart).append(x)
+    return [*apart, *rest]
 
 
 def _scanned(problem: Problem, plain: Residual) -> list[Array]:
@@ -146,6 +151,7 @@ def _scanned(problem: Problem, plain: Residual) -> list[Array]:
     if problem.measurement.over != "speed":
         inner, outer = inner[::4], outer[::3]
     points = np.concatenate([-outer[::-1], inner, outer])
+    problem.ahead(points[:, None])
     found: list[float] = []
     for residual in (plain, problem.logarithmic):
         sums = np.array([float(np.sum(np.square(residual(np.array([x]))))) for x in points])
@@ -153,5 +159,4 @@ def _scanned(problem: Problem, plain: Residual) -> list[Array]:
         low = np.flatnonzero((sums <= padded[:-2]) & (sums <= padded[2:]) & (sums < NO_ANSWER**2))
         best = low[np.argsort(sums[low], kind="stable")][:_VALLEYS]
         found += [x for x in points[best].tolist() if x not in found]
-    # The guess again behind them, so that no scan leaves a search without a start.
-    return [np.array([x]) for x in (*found, 0.0, 0.05)]
+    return [np.array([x]) for x in found or [0.0]]
