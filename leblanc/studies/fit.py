@@ -49,7 +49,7 @@ from leblanc.studies.fitting.problem import (
     require_scale,
     ties_of,
 )
-from leblanc.studies.fitting.search import Searched, Valley, floor, search
+from leblanc.studies.fitting.search import Searched, Valley, descend, floor, search
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
 
@@ -57,6 +57,7 @@ _ALIKE = 0.05  # two answers whose unknowns differ by less than this are one
 _CANDIDATES = 3  # ends of searches that are compared by their likelihood
 _ROUNDING = 1e-9  # of the size: less left is nothing but rounding
 _ROUNDS = 4  # times that a profile may find better values
+_JOINTLY = 0.99  # of noise: less far from the best values by all unknowns at once
 _POINTS = 400  # of the fitted curve
 _LOPSIDED = 4.0  # one arm of an interval over the other
 _TOLD = 0.2  # share of an unknown in a direction that the data do not tell
@@ -73,7 +74,7 @@ def fit_scene(
     noise: str = ESTIMATE,
     file: str | PathLike[str] | None = None,
 ) -> FitResult:
-    """Values of a scene that bring its answer closest to what was measured [theory: fit, eq. 1-10].
+    """Values of a scene that bring its answer closest to what was measured [theory: fit, eq. 1-11].
 
     Parameters
     ----------
@@ -155,15 +156,32 @@ def _at_bound(x: Array) -> Flags:
     return np.asarray(np.abs(np.abs(x) - LIMIT) < 1e-6)
 
 
-def _others(searched: Searched, best: Array, told: Flags, least: float) -> list[Array]:
-    """Ends of searches elsewhere, by unknowns that the data tell, with an answer as good to a tenth."""
+def _others(problem: Problem, searched: Searched, best: Judged, told: Flags) -> list[Array]:
+    """Ends of searches elsewhere, by unknowns that the data tell, that noise does not rule out.
+
+    In one of a hundred cases the sum of the truth rises further for all unknowns at once [theory: fit, eq. 11].
+    """
+    from scipy.special import fdtri
+
+    residual = problem.weighted(best.sigma)
+    least = float(np.sum(np.square(residual(best.x))))
+    limit = least + best.x.size * float(fdtri(best.x.size, problem.freedom, _JOINTLY)) + floor(problem)
     found: list[Array] = []
-    limit = 1.1 * searched.valleys[0].cost + least
+    tried = 0
     for valley in searched.valleys:
-        far = all(np.abs(valley.x - x)[told].max(initial=0.0) > _ALIKE for x in (best, *found))
-        if valley.cost <= limit and far:
-            found.append(valley.x)
+        if valley.cost > 4.0 * searched.valleys[0].cost + floor(problem) or tried == _CANDIDATES:
+            break
+        if _is_near(valley.x, (best.x, *found), told):
+            continue
+        tried += 1
+        other = descend(problem, residual, valley.x)
+        if other.cost <= limit and not _is_near(other.x, (best.x, *found), told):
+            found.append(other.x)
     return found
+
+
+def _is_near(x: Array, places: Sequence[Array], told: Flags) -> bool:
+    return any(np.abs(x - place)[told].max(initial=0.0) <= _ALIKE for place in places)
 
 
 def _result(
@@ -192,13 +210,13 @@ def _result(
     if not accepted or rounding:
         std[:] = np.nan
     lopsided = {note.data["path"] for note in notes if note.code in (FitCode.PLATEAU, FitCode.LOPSIDED)}
-    told = np.isfinite(bent.std)
+    told = np.isfinite(bent.std) & np.array([path not in lopsided for path in paths])
     if accepted:
         shown = [path in lopsided for path in paths]
         notes = notes + fit_notes(
             paths, value, bent.std * slope, bent.correlation, edge.tolist(), shown, problem.spans
         )
-    others = _others(searched, best.x, told, floor(problem))
+    others = _others(problem, searched, best, told) if accepted else []
     if others:
         notes.append(_other_note(problem, paths, others))
     notes = [*measurement.notes, *notes, *_scale_notes(problem, scales)]
@@ -290,7 +308,7 @@ def _other_note(problem: Problem, paths: Sequence[str], others: Sequence[Array])
         ", ".join(f"{path} = {units.number(v)}" for path, v in zip(paths, row, strict=True))
         for row in values[:3]
     )
-    text = f"Another answer is as good to a tenth: the data allow {told} (SI) as well."
+    text = f"Another answer fits within the noise: the data allow {told} (SI) as well."
     return Note(FitCode.OTHER_MINIMUM, {"starts": len(others), "values": values}, text)
 
 

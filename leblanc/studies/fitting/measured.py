@@ -87,7 +87,7 @@ def read_measured(
     """Table of measured values: a header of names with units, then numbers.
 
     Between columns stand commas, semicolons or tabs; decimal commas are read where no comma stands between
-    columns. Amplitudes become displacements, zero to peak [theory: fit, eq. 6].
+    columns. Amplitudes become displacements, zero to peak.
 
     Parameters
     ----------

@@ -8,17 +8,19 @@ for each kind of noise.
 from __future__ import annotations
 
 import argparse
-import time
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
-from leblanc.results.fit import FitResult, quantile
+from leblanc.results.fit import FitResult
 from leblanc.scene.scene import Scene, scene_from_table
+from leblanc.scene.schema.load import SceneError
 from leblanc.studies.fit import fit_scene
 from leblanc.studies.fitting.measured import Measurement
 from leblanc.studies.fitting.problem import answer
 from meshes.arrays import Array
+from meshes.errors import InputError
 
 PLANAR = ("rotor.mass", "rotor.stiffness", "rotor.damping", "rotor.unbalance", "chambers.0.volume")
 TILTING = (
@@ -27,6 +29,19 @@ TILTING = (
     "rotor.supports.0.damping",
     "rotor.supports.1.stiffness",
 )
+DRY_TRUTH = {"rotor.stiffness": 18750.0, "rotor.damping": 90.0, "rotor.unbalance": 0.004}
+DRY = {
+    "name": "dry",
+    "rotor": {
+        "kind": "jeffcott",
+        "mass": 30.0,
+        "axis": "vertical",
+        **{path.split(".")[1]: value for path, value in DRY_TRUTH.items()},
+    },
+    "chambers": [{"radius": 0.1, "height": 0.05, "volume": 0.0, "liquid": "water"}],
+    "speeds": {"start": "80 rpm", "stop": "900 rpm", "count": 40},
+    "model": {"liquid": "linear"},
+}
 # Of the interval of 95 %: within it in 2000 unknowns of normal noise one is not.
 _WIDE = 1.8
 _EXACT = 1e-3  # of a value without noise
@@ -132,21 +147,52 @@ def drawn(seed: int) -> Fitted:
         try:
             guess = scene.replace(dict(zip(paths, off.tolist(), strict=True)))
             break
-        except Exception:  # noqa: BLE001 - a chamber that would overflow: other guesses
+        except (InputError, SceneError):  # a chamber that would overflow: another guess
             continue
     return Fitted(truth, fit_scene(guess, Measurement("speed", speed, (("amplitude", seen),)), paths), noise)
 
 
-if __name__ == "__main__":
+def dry(random: np.random.Generator, kind: str, share: float = 0.03) -> FitResult:
+    """A dry planar machine with noise of one kind, stated ("relative", "absolute") or estimated from either."""
+    scene = scene_from_table(DRY)
+    speed = scene.speed_array()
+    (amplitude,) = answer(scene, "speed", speed, ["amplitude"])
+    size = share * float(np.sqrt(np.mean(np.square(amplitude))))
+    absolute = kind == "absolute" or (kind == "estimate" and random.random() < 0.5)
+    sigma = np.full(speed.size, size) if absolute else share * amplitude
+    seen = amplitude + sigma * random.standard_normal(speed.size)
+    stated = {"absolute": f"{1e3 * size} mm", "relative": f"{100.0 * share} %", "estimate": "estimate"}[kind]
+    guess = scene.replace({"rotor.stiffness": 15e3, "rotor.damping": 60.0, "rotor.unbalance": 2e-3})
+    table = Measurement("speed", speed, (("amplitude", np.maximum(seen, 0.0)),))
+    return fit_scene(guess, table, tuple(DRY_TRUTH), noise=stated)
+
+
+def covered(kind: str, seed: int) -> NDArray[np.bool_]:
+    """Whether each interval of 95 % holds the truth."""
+    low, high = dry(np.random.default_rng(seed), kind).interval.T
+    truth = np.array(list(DRY_TRUTH.values()))
+    return np.asarray((low <= truth) & (truth <= high))
+
+
+def _main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--count", type=int, default=0)
+    parser.add_argument("--coverage", type=int, default=0)
     parser.add_argument("--seed", type=int, default=0)
     asked = parser.parse_args()
-    begun, counts = time.process_time(), {"right": 0, "noted": 0, "silent": 0}
+    counts = {"right": 0, "noted": 0, "silent": 0}
     for seed in range(asked.seed, asked.seed + asked.count):
         one = drawn(seed)
         counts[one.verdict] += 1
-        r = one.result
-        print(seed, one.verdict, f"{one.noise:g} left {r.residual_rms:.2g} {r.accepted} {r.evaluations} evals", time.process_time()-begun,
-            " ".join(f"{p.split('.')[-1]}={v/t:.4g}[{a/t:.3g},{b/t:.3g}]" for p, v, t, (a,b) in zip(r.unknown, r.value, one.truth, r.interval)), [n.code for n in r.notes], flush=True)
-    print(counts)
+        codes = " ".join(note.code.value for note in one.result.notes)
+        print(seed, one.verdict, one.result.value / one.truth, codes, counts, flush=True)
+    inside = {kind: np.zeros(len(DRY_TRUTH), dtype=int) for kind in ("relative", "absolute", "estimate")}
+    for k in range(asked.coverage):
+        for kind, held in inside.items():
+            held += covered(kind, asked.seed + k)
+        if k % 10 == 9 or k == asked.coverage - 1:
+            print(k + 1, {kind: (held / (k + 1)).round(4).tolist() for kind, held in inside.items()}, flush=True)
+
+
+if __name__ == "__main__":
+    _main()

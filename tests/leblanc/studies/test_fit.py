@@ -192,7 +192,6 @@ def _loaded(position: float, angle: float) -> lb.Scene:
 
 
 @kills("leblanc.studies.fitting.problem:Problem.values", "np.isnan(spans)", "spans == spans")
-@kills("leblanc.studies.fit:_result", "value, problem.spans)", "value, value)")
 @kills(
     "leblanc.results.fit:FitResult.interval", "self.value - wide, self.value + wide", "ends[:, 0], ends[:, 1]"
 )
