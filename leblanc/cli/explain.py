@@ -60,7 +60,7 @@ def _print_balls(answer: BallExplanation) -> None:
     """The explanation of a scene with balls: that of the scene without them, and theirs."""
     from leblanc.text.races.numbers import ball_rows, race_rows
 
-    _print(answer.machine, len(answer.machine.layers) > 0)
+    _print(answer.machine)
     for k, race in enumerate(answer.races):
         print(f"race {k + 1}")
         print_table(race_rows(race, float(answer.speed[-1])), indent=2)
@@ -68,7 +68,7 @@ def _print_balls(answer: BallExplanation) -> None:
     print_table([*ball_rows(answer), *(("not told", text) for text in answer.lacking)], indent=2)
 
 
-def _print(answer: Explanation, liquid: bool = True) -> None:
+def _print(answer: Explanation) -> None:
     """The explanation as text; of the liquid only where there is any."""
     from leblanc.results.base import percent
     from leblanc.text.closed_forms import closed_form_rows
@@ -88,19 +88,19 @@ def _print(answer: Explanation, liquid: bool = True) -> None:
     if answer.modes:
         print("natural frequencies at rest, without liquid")
         print_table(mode_rows(answer.modes), indent=2)
-    if not liquid:
-        return
     for k, layer in enumerate(answer.layers):
         print(f"chamber {k + 1}")
         print_table(layer_rows(layer), indent=2)
-    print(f"liquid model, with a tolerance of {percent(answer.tolerance)}")
+    if answer.models:
+        print(f"liquid model, with a tolerance of {percent(answer.tolerance)}")
     for span in answer.models:
         print(f"  {span_heading(span)}")
         print_table(span_rows(span), indent=4)
     if rows := estimate_rows(answer):
         print("  estimated: error of the means, ripple about them once a turn by gravity")
         print_table(rows, ESTIMATES, indent=4)
-    print_table(described(span.model for span in answer.models), indent=2)
+    if answer.models:
+        print_table(described(span.model for span in answer.models), indent=2)
     told = closed_form_rows(answer.closed_forms)
     told += [("not told", text) for text in answer.closed_forms.lacking]
     if told:

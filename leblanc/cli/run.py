@@ -59,9 +59,11 @@ def run(
     from leblanc.report.page import about, command_line
     from leblanc.report.run import write_run_report
     from leblanc.results.netcdf import write_netcdf
+    from leblanc.results.notes.baffles import BaffleCode
+    from leblanc.results.notes.response import RunCode
     from leblanc.text.closed_forms import closed_form_rows
     from leblanc.text.machine import load_table
-    from leblanc.text.run import amplitude_place, comparisons, limit_rows, unanswered
+    from leblanc.text.run import amplitude_place, comparison_table, limit_rows, unanswered
 
     write_netcdf(result.named_arrays(), folder / "response.nc")
     figures = write_figures(result, folder)
@@ -69,16 +71,19 @@ def run(
         machine,
         command_line("run", scene, ("--cycles", cycles, False)),
         "response.nc",
-        unused=("runup", "optimise"),
+        unused=(*(("model",) if result.chamberless else ()), "runup", "optimise"),
     )
     write_run_report(result, what, figures, folder / "summary.html")
     if json:
         print_json(result.to_json())
     else:
-        rows = [(row.label, row.wet, row.dry, row.ratio) for row in comparisons(result)]
-        print_table(rows, ("", "with liquid", "without", "ratio"), right=True)
+        heads, rows = comparison_table(result)
+        print_table(rows, heads, right=True)
         if place := amplitude_place(result):
             print(f"Amplitudes are those {place}.")
+        for note in result.notes:
+            if note.code in (RunCode.LEFT_OUT, BaffleCode.CLOSED_COMPARTMENTS):
+                print(note.text)
         if result.loads is not None:
             head, lines = load_table(result.loads)
             print()

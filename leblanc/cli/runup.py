@@ -74,7 +74,8 @@ def runup(
     options = ("--cells", cells, None), ("--samples", samples, None), ("--no-check", no_check, False)
     again = ("--ensemble", ensemble, 0), ("--seed", seed, 0)
     command = command_line("runup", scene, *options, *again)
-    what = about(machine, command, "runup.nc", unused=("speeds", "optimise"))
+    unused = ("speeds", *(() if machine.chambers else ("model",)), "optimise")
+    what = about(machine, command, "runup.nc", unused=unused)
     write_runup_report(result, what, figures, folder / "runup.html")
     if animate is not None:
         _film(result, animate)

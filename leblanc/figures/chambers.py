@@ -438,7 +438,9 @@ def choose_views(result: RunResult) -> Views:
     """
     curve = result.curve
     deflection = curve.deflection
-    last, highest = deflection.size - 1, peak(curve.amplitude)
+    last, highest = deflection.size - 1, curve.top
+    if highest is not None and np.isinf(curve.amplitude[highest]):
+        highest = peak(curve.amplitude)
     instants = [i for i in (highest, last) if i is not None and np.isfinite(deflection[i])]
     if highest is None or highest == last or curve.amplitude[highest] == 0.0:
         instants = instants[-1:]

@@ -96,6 +96,8 @@ def write_figures(result: RunResult, directory: Path) -> tuple[FigureFiles, ...]
         ("phase", "Phase of the deflection over speed", phase_figure),
         ("chamber", "Chamber seen along the axis", chamber_figure),
     ]
+    if result.chamberless:
+        figures = [figures[0], figures[2]]
     if result.motion is not None:
         figures.append(("campbell", "Natural frequencies over speed", campbell_figure))
     if result.loads is not None:
@@ -110,7 +112,7 @@ def loads_figure(result: RunResult) -> Figure:
 
 
 def amplitude_figure(result: RunResult) -> Figure:
-    """Amplitude over speed with and without liquid."""
+    """Amplitude over speed with and without liquid; one curve of a machine without chambers."""
     text = "Amplitude of the deflection."
     if result.motion is not None:
         text = f"Largest radius of the axis' orbit {amplitude_place(result)}."
@@ -217,8 +219,9 @@ def draw_amplitude(axes: Axes, curves: Curves, result: RunResult) -> None:
     if curves.held is not None:
         lines += _draw_held(axes, curves, curves.held)
     lines += _draw_on_top(axes, curves, result)
-    reported(axes, curves, curves.amplitude, "with liquid")
-    without(axes, curves, curves.amplitude_dry)
+    reported(axes, curves, curves.amplitude, "without liquid" if result.chamberless else "with liquid")
+    if not result.chamberless:
+        without(axes, curves, curves.amplitude_dry)
     if np.any(np.count_nonzero(curves.chain >= 0, axis=1) > 1):
         thin = {"color": WET, "linewidth": 0.8, "zorder": 1.9}
         stable, unstable = other_branches(curves)
@@ -332,8 +335,9 @@ def draw_angle(axes: Axes, curves: Curves, result: RunResult) -> None:
 
 def draw_phase(axes: Axes, curves: Curves, result: RunResult) -> None:
     """Angle from the unbalance to the deflection, with and without liquid."""
-    reported(axes, curves, curves.phase, "with liquid")
-    without(axes, curves, curves.phase_dry)
+    reported(axes, curves, curves.phase, "without liquid" if result.chamberless else "with liquid")
+    if not result.chamberless:
+        without(axes, curves, curves.phase_dry)
     angle_axis(axes, curves, [curves.phase, curves.phase_dry])
     background(axes, curves, result, [curves.phase, curves.phase_dry])
     axes.set_ylabel("Phase of the deflection (deg)")
@@ -408,7 +412,10 @@ def background(axes: Axes, curves: Curves, result: RunResult, lines: list[Array]
             x, y = joined([(np.array(span), np.full(2, height)) for span in marked])
             axes.plot(x, y, linestyle=dashes, label=label, **bars)
     for speed, line, color, label in (
-        (result.critical_speed_wet, (0, (6, 1.5, 1, 1.5, 1, 1.5)), WET, "critical speed with liquid,"),
+        (
+            None if result.chamberless else result.critical_speed_wet,
+            *((0, (6, 1.5, 1, 1.5, 1, 1.5)), WET, "critical speed with liquid,"),
+        ),
         (result.critical_speed_dry, (0, (6, 1.5, 1, 1.5)), DRY, "critical speed without liquid,"),
         (result.capture_speed, (0, (8, 3)), "0.3", "a ring can stand from"),
         (result.carried_from, (0, (2, 2)), "0.3", "carried round from rest from"),

@@ -34,7 +34,7 @@ from leblanc.text.run import (
     WHIRL,
     Limit,
     answer,
-    comparisons,
+    comparison_table,
     facts,
     largest_error,
     limits,
@@ -76,7 +76,8 @@ def write_run_report(result: RunResult, what: About, figures: Sequence[FigureFil
     figures : in the order of the page
     path : the file to write or replace
     """
-    shown = [figure for figure in figures if len(figures) > SHOWN or figure.name != "phase"]
+    few = len(figures) <= SHOWN and not result.chamberless
+    shown = [figure for figure in figures if not few or figure.name != "phase"]
     elsewhere = (*(OF_MODELS if result.models else ()), RunCode.HELD)
     error = largest_error(result)
     parts = {
@@ -84,18 +85,14 @@ def write_run_report(result: RunResult, what: About, figures: Sequence[FigureFil
         "machine": machine(result),
         "answer": answer(result),
         "doubt": doubt(response_checks(result), f"estimated error {error}" if error else ""),
-        "comparisons": table(
-            "",
-            ("", "with liquid", "without", "ratio"),
-            [(row.label, row.wet, row.dry, row.ratio) for row in comparisons(result)],
-        ),
+        "comparisons": table("", *comparison_table(result)),
         "loads": load_part(result.loads),
         "facts": table("", (), facts(result)),
         "closed_forms": closed_form_tables(result),
         "checks": response_checks(result),
         "pictures": [picture(files) for files in shown],
-        "why": why(result.models) if result.models else _used(result),
-        "models": models(result.models_used, result.held is not None),
+        "why": why(result.models) if result.models else None if result.chamberless else _used(result),
+        "models": [] if result.chamberless else models(result.models_used, result.held is not None),
         "held": held_motions(result),
         "remarks": [*notes(result.notes, elsewhere), *remarks(result)],
     }

@@ -113,17 +113,17 @@ def facts(result: RunupResult) -> list[tuple[str, str]]:
         place = result.liquid_position[-1]
         angle = number(math.degrees(math.atan2(place.imag, place.real)))
         where = f"{with_unit(abs(place), LENGTH)} off the axis at {angle} deg"
+    liquid = [("Mass of the liquid", with_unit(mass, MASS)), ("Its centre of mass at the end", where)]
     return [
         *ball_rows(result),
-        ("Mass of the liquid", with_unit(mass, MASS)),
-        ("Its centre of mass at the end", where),
+        *([] if result.chamberless else liquid),
         ("Phase of the deflection at the end", f"{number(math.degrees(float(result.phase[-1])))} deg"),
         ("Resolution", f"{result.cells} cells, {result.steps} steps, {result.time.size} samples kept"),
         ("Error by half the cells, of the largest", _share(result.error_estimate)),
         ("Error of model and steps", _share(result.model_error)),
         *([] if result.spread is None else [("By rounding alone", rounding(result))]),
         ("Energy not accounted for, of the work", _share(result.energy.closure)),
-        ("Largest change of a layer's mass", _share(result.mass_error)),
+        *([] if result.chamberless else [("Largest change of a layer's mass", _share(result.mass_error))]),
     ]
 
 
@@ -158,8 +158,10 @@ def checks(result: RunupResult) -> Table:
     found = [
         ("Stopped before its end", one_line(history.reason) or "no", not history.converged),
         ("Energy or deflection not physical", one_line(faults) or "no", bool(faults)),
-        ("Liquid model out of range", times(result.time, ~result.in_range), bool((~result.in_range).any())),
     ]
+    if not result.chamberless:
+        loose = ~result.in_range
+        found.append(("Liquid model out of range", times(result.time, loose), bool(loose.any())))
     for k, chamber in enumerate(result.chambers):
         if chamber.volume == 0.0:
             continue
@@ -170,6 +172,7 @@ def checks(result: RunupResult) -> Table:
         found.append((f"{name} leaves a wall dry", times(result.time, dry), bool(dry.any())))
     bands = "not examined" if result.bands is None else rpm_bands(result.bands) or "none"
     rough = not result.error_estimate <= ERROR
+    mass = _size(f"Mass changed above {number(100.0 * MASS_CHANGE)} %", result.mass_error, MASS_CHANGE)
     return table(
         "",
         ("Limits of the answer", ""),
@@ -181,7 +184,7 @@ def checks(result: RunupResult) -> Table:
                 Cell(_share(result.error_estimate) if rough else "no", warning=rough),
             ),
             _size(f"Energy lost above {number(100.0 * CLOSURE)} %", result.energy_error, CLOSURE),
-            _size(f"Mass changed above {number(100.0 * MASS_CHANGE)} %", result.mass_error, MASS_CHANGE),
+            *([] if result.chamberless else [mass]),
         ],
     )
 
@@ -252,8 +255,8 @@ def write_runup_report(result: RunupResult, what: About, figures: Sequence[Figur
         "balance": [picture(files) for files in figures if files.name == BALANCE],
         "curve": [picture(files) for files in figures if files.name == CURVE],
         "pictures": [picture(files) for files in figures if files.name not in (CURVE, BALANCE)],
-        "why": why(result),
-        "models": models((result.model,)),
+        "why": None if result.chamberless else why(result),
+        "models": [] if result.chamberless else models((result.model,)),
         "remarks": notes([note.text for note in result.notes if note.code not in IN_TABLES]),
     }
     write_page("runup", what, parts, path)

@@ -138,6 +138,8 @@ class Explanation(Result):
     def to_json(self) -> dict[str, Any]:
         """What `explain` prints for scripts, SI; what is not finite becomes null when it is printed."""
         own = {name: value for name, value in asdict(self).items() if name not in _ABOUT}
+        if not self.layers:
+            own["critical_speed_wet"] = None
         return {**own, **self.closed_forms.to_json(), "not_told": list(self.closed_forms.lacking)}
 
     def named_arrays(self) -> NamedArrays:

@@ -46,6 +46,12 @@ def grade_words(quality: float) -> str:
 _CIRCLE = 1e-9  # of the deflection, that the part against the spin may have in a circle
 SCALARS = ("liquid_mass", "critical_speed_dry", "critical_speed_wet", "capture_speed")
 STABILITY = ("not_known", "unstable", "stable")
+# What there is none of without a chamber: an empty list for scripts, no variable in the data file.
+OF_LIQUID = (
+    *("liquid_offset", "liquid_angle", "dry_patch", "model", "error_estimate", "critical_speeds_wet"),
+    *("chamber_deflection", "chamber_real", "chamber_imag", "critical_speed_wet", "capture_speed"),
+    "carried_from",
+)
 STATES = ("dry_patch", "stable", "model", "in_range", "converged")  # over speed
 
 
@@ -154,6 +160,11 @@ class RunResult(Loaded, Result):
                 raise InputError(f"response.{each.name}", shape, f"of shape {expected}")
 
     @property
+    def chamberless(self) -> bool:
+        """The machine has no chamber: it is the one without liquid."""
+        return not self.chambers
+
+    @property
     def amplitude(self) -> Array:
         """Largest distance of the axis from the line it rests in, of the branch reported, m, shape (n,)."""
         return self.response.amplitude
@@ -185,15 +196,16 @@ class RunResult(Loaded, Result):
 
     @property
     def peak(self) -> dict[str, float]:
-        """Largest amplitude over the whole range of speeds and where it is, m and rad/s.
+        """Largest amplitude over the range of speeds and where it is, m and rad/s.
 
-        The amplitude is infinite where it has no bound; both are nan where nothing was found.
+        Of the speeds at which the answer holds: found and in the range of its model; of all where it holds at
+        none. The amplitude is infinite where it has no bound; both are nan where nothing was found.
         """
-        return asdict(highest(self.curve.speed, self.curve.amplitude))
+        return asdict(self.curve.peak)
 
     @property
     def peak_dry(self) -> dict[str, float]:
-        """The same of the rotor without liquid."""
+        """The same of the rotor without liquid, which is known at every speed."""
         return asdict(highest(self.curve.speed, self.curve.amplitude_dry))
 
     @property
@@ -351,14 +363,15 @@ class RunResult(Loaded, Result):
 
         Lists run over speed, with None (null) where nothing was found; `branches` has one list for each
         speed, of as many deflections as there are branches. The amplitude of a peak is None where it has no
-        bound; `refined` has speeds of its own.
+        bound. `refined` has speeds of its own; `curve` has those of both, so that its largest amplitude in
+        range is the peak. Without a chamber lists of the liquid are empty.
         """
         r = self.response
         present = ~np.isnan(r.branch_deflection)
         ends = np.cumsum(np.count_nonzero(present, axis=1)).tolist()
         rows = [slice(start, stop) for start, stop in pairwise([0, *ends])]
         branches, branch_stable = finite(r.branch_deflection[present]), r.branch_stable[present].tolist()
-        return {
+        found: dict[str, Any] = {
             "speed": finite(r.speed),
             "amplitude": finite(self.amplitude),
             "amplitude_min": finite(self.amplitude_min),
@@ -383,14 +396,20 @@ class RunResult(Loaded, Result):
             **_quality_json(self),
             **({} if self.motion is None else self.motion.to_json()),
             **({} if self.whirl is None else self.whirl.to_json()),
-            **_refined_json(self.refined),
+            **_curve_json(self),
             **({} if self.held is None else self.held.to_json()),
             **({} if self.loads is None else self.loads.to_json()),
             **({} if self.closed_forms is None else self.closed_forms.to_json()),
         }
+        if self.chamberless:
+            of_liquid = found.keys() & OF_LIQUID
+            found |= {name: [] if isinstance(found[name], list) else None for name in of_liquid}
+        return found
 
     def named_arrays(self) -> NamedArrays:
-        """Arrays over the dimensions `speed` and `branch`; units, names and descriptions in the attributes.
+        """Arrays over the dimensions `speed`, `curve_speed` and `branch`; units and names in the attributes.
+
+        `amplitude` stands at the speeds asked for; `curve_amplitude` is the whole curve with its peaks.
 
         netCDF has no complex numbers and no truth values: deflections are pairs `_real`, `_imag`, truth
         values are bytes with `flag_meanings`. There is no time stamp, so one result gives one file, byte for
@@ -399,14 +418,17 @@ class RunResult(Loaded, Result):
         rank = np.arange(self.response.branch_deflection.shape[1], dtype=np.int32)
         own = {
             "inputs": "\n".join(one_line("{}: {} [{}]".format(*entry)) for entry in self.inputs),
-            "model": ", ".join(self.models_used),
+            **({} if self.chamberless else {"model": ", ".join(self.models_used)}),
             "axis": self.axis,
         }
+        columns = _variables(self)
+        if self.chamberless:
+            columns = {name: column for name, column in columns.items() if name not in OF_LIQUID}
         return NamedArrays(
-            _variables(self),
+            columns,
             coords={
                 "speed": var(("speed",), self.speed, "rad s-1", "spin speed", "of the rotor about its axis"),
-                **_refined_speeds(self.refined),
+                **_further_speeds(self),
                 "branch": var(("branch",), rank, "1", "branch", "rank by rising amplitude"),
             },
             attrs=attributes(self, "run", own, self.notes),
@@ -418,12 +440,14 @@ def _numbers(found: dict[str, float]) -> dict[str, float | None]:
     return {name: value if math.isfinite(value) else None for name, value in found.items()}
 
 
-def _refined_json(refined: Response | None) -> dict[str, Any]:
-    """Amplitudes between the speeds asked for."""
-    if refined is None:
+def _curve_json(result: RunResult) -> dict[str, Any]:
+    """Amplitudes between the speeds asked for, and the curve through both, which has the peaks."""
+    if result.refined is None:
         return {}
-    names = ("speed", "amplitude", "amplitude_dry")
-    return {"refined": {name: finite(getattr(refined, name)) for name in names}}
+    names, curve = ("speed", "amplitude", "amplitude_dry"), result.curve
+    refined = {name: finite(getattr(result.refined, name)) for name in names}
+    whole = {name: finite(getattr(curve, name)) for name in names} | {"in_range": curve.in_range.tolist()}
+    return {"refined": refined, "curve": whole}
 
 
 def _quality_json(result: RunResult) -> dict[str, Any]:
@@ -443,9 +467,10 @@ def _variables(result: RunResult) -> dict[str, Variable]:
     motion = numbered(result.state)
     mass, dry, wet, capture = (np.array(getattr(result, name), dtype=np.float64) for name in SCALARS)
     carried = np.array(math.nan if result.carried_from is None else result.carried_from)
+    reported = "of the branch reported, at the speeds asked for: curve_amplitude has the peaks between them"
     lag, slow = "from the unbalance, positive with the spin, a lag is negative", "against slow disturbances"
     return {
-        "amplitude": var(over, result.amplitude, "m", "amplitude", "of the branch reported"),
+        "amplitude": var(over, result.amplitude, "m", "amplitude", reported),
         "amplitude_min": var(over, result.amplitude_min, "m", "least amplitude", "over time"),
         "amplitude_max": var(over, result.amplitude_max, "m", "largest amplitude", "over time"),
         "state": flags(*(over, motion, " ".join(MOTIONS), "state of the motion"), "once it is settled"),
@@ -482,12 +507,16 @@ def _variables(result: RunResult) -> dict[str, Variable]:
     }
 
 
-def _refined_speeds(refined: Response | None) -> dict[str, Variable]:
-    """The speeds between those asked for, a dimension of their own."""
-    if refined is None:
+def _further_speeds(result: RunResult) -> dict[str, Variable]:
+    """The speeds between those asked for, and both together, dimensions of their own."""
+    if result.refined is None:
         return {}
     text = "between those asked for, where it takes that to find the largest amplitudes"
-    return {"refined_speed": var(("refined_speed",), refined.speed, "rad s-1", "refined spin speed", text)}
+    whole, both = result.curve.speed, "those asked for and those between them: the whole curve with its peaks"
+    return {
+        "refined_speed": var(("refined_speed",), result.refined.speed, "rad s-1", "refined spin speed", text),
+        "curve_speed": var(("curve_speed",), whole, "rad s-1", "spin speed of the curve", both),
+    }
 
 
 def _peak_variables(result: RunResult) -> dict[str, Variable]:
@@ -502,6 +531,11 @@ def _peak_variables(result: RunResult) -> dict[str, Variable]:
         wet, dry = result.refined.amplitude, result.refined.amplitude_dry
         found["refined_amplitude"] = var(over, wet, "m", "amplitude", text)
         found["refined_amplitude_dry"] = var(over, dry, "m", "amplitude", f"{text}, without liquid")
+        over, curve, text = ("curve_speed",), result.curve, "the whole curve with its peaks"
+        wet, dry = curve.amplitude, curve.amplitude_dry
+        found["curve_amplitude"] = var(over, wet, "m", "amplitude", text)
+        found["curve_amplitude_dry"] = var(over, dry, "m", "amplitude", f"{text}, without liquid")
+        found["curve_in_range"] = flags(over, curve.in_range, "no yes", "in range", "the liquid model holds")
     return found
 
 

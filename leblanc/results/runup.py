@@ -30,6 +30,11 @@ from solvers.synchronous.response import Response
 
 Values = NDArray[Any]
 Bands = tuple[tuple[float, float], ...]
+# What there is none of without a chamber: an empty list for scripts, no variable in the data file.
+OF_LIQUID = (
+    *("liquid_offset", "liquid_angle", "liquid_offset_mean", "liquid_angle_mean", "captured"),
+    *("depth_max", "depth_min", "mean_rotation", "lag"),
+)
 _FEWEST = 8  # samples in a mean over turns
 
 
@@ -171,6 +176,11 @@ class RunupResult(Loaded, Result):
     def bare(self) -> bool:
         """Neither liquid nor balls are on the rotor: it is the one that it is compared with."""
         return not self.races and bool(self.layer_mass.sum() == 0.0)
+
+    @property
+    def chamberless(self) -> bool:
+        """The machine has no chamber at all, with liquid or with balls."""
+        return not self.chambers and not self.races
 
     @property
     def without(self) -> str:
@@ -426,7 +436,10 @@ class RunupResult(Loaded, Result):
         return bool(self.in_range[min(int(np.searchsorted(self.time, time)), self.time.size - 1)])
 
     def to_json(self) -> dict[str, Any]:
-        """What `runup` prints for scripts, SI and radians; of chambers a list in each list over time."""
+        """What `runup` prints for scripts, SI and radians; of chambers a list in each list over time.
+
+        Without a chamber lists of the liquid are empty.
+        """
         over = ["time", "speed", "amplitude", "speed_dry", "amplitude_dry"]
         over += ["phase", "liquid_offset", "liquid_angle"]
         over += ["liquid_offset_mean", "liquid_angle_mean", "mass_error", "captured", "in_range"]
@@ -437,6 +450,7 @@ class RunupResult(Loaded, Result):
         rest += ["steps", "cells", "model", "model_reason"]
         own = ("model_error", "name", "digest", "assumed", "bands", *(("ensemble",) if self.spread else ()))
         return {name: getattr(self, name) for name in (*over, *rest, *own)} | {
+            **({**{name: [] for name in OF_LIQUID}, "model": None} if self.chamberless else {}),
             **({"passages": [asdict(passage) for passage in self.passages]} if self.passages else {}),
             **({} if self.unbalance_left is None else {"unbalance_left": self.unbalance_left}),
             **({} if self.motor_limited is None else {"motor_limited": self.motor_limited}),
@@ -472,6 +486,8 @@ class RunupResult(Loaded, Result):
         """
         columns = _columns(self)
         coords = {name: columns.pop(name) for name in ("time", "chamber")}
+        if self.chamberless:
+            columns = {name: column for name, column in columns.items() if name not in OF_LIQUID}
         return NamedArrays(columns, coords, self._attributes())
 
     def _attributes(self) -> dict[str, Any]:
@@ -481,7 +497,7 @@ class RunupResult(Loaded, Result):
             "rotor": self.kind,
             "axis": self.axis,
             "friction": friction_words(self.friction),
-            "model": self.model,
+            "model": "none" if self.chamberless else self.model,
             "model_reason": one_line(self.model_reason),
             "model_error": self.model_error,
             "cells": np.int32(self.cells),

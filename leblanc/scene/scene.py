@@ -29,7 +29,7 @@ from leblanc.scene.rotors import TwoPlaneRotor as TwoPlaneRotor
 from leblanc.scene.schema.load import SceneError, SceneFault, given_at, meant, read_scene, shown, with_lines
 from leblanc.scene.schema.part import Conflict, Part, faults_of
 from leblanc.scene.schema.paths import keys_of, require_field, with_values
-from leblanc.scene.schema.rules import Entries, Refused, Speed, Text, entries, one_of, quantity, whole
+from leblanc.scene.schema.rules import Refused, Speed, Text, entries, one_of, quantity, whole
 from leblanc.scene.spindle import Spindle as Spindle
 from leblanc.scene.spindle import without_liquid
 from leblanc.scene.tasks import Optimisation
@@ -55,7 +55,6 @@ HELD = ("auto", "never", "always")
 MAX_CELLS = 4096
 LIQUID_MODELS = ("auto", "statics", "linear", "long_wave", "potential", "kdv", "fem")
 _LAWS = ("none", "stokes", "wall")
-_SOME_CHAMBERS = Entries(1, MAX_CHAMBERS, "tables headed [[chambers]]")
 
 _Path = Annotated[str, PlainValidator(Text(200))]
 
@@ -213,7 +212,7 @@ class Scene(Part):
     )
     rotor: AnyRotor = Field(discriminator="kind", description="the machine without its liquid")
     chambers: Annotated[tuple[AnyChamber, ...], entries(0, MAX_CHAMBERS, "tables headed [[chambers]]")] = (
-        Field((), description="each with its liquid or its balls; at least one with a jeffcott")
+        Field((), description="each with its liquid or its balls; without chambers [model] has no effect")
     )
     cabinet: Cabinet | None = Field(
         None, description="that stands on the floor around the rotor; forces under its feet are told if given"
@@ -233,10 +232,7 @@ class Scene(Part):
 
     @classmethod
     def conflicts(cls, values: Mapping[str, Any], given: Mapping[str, Any]) -> Iterator[Conflict]:
-        """A planar rotor has liquid, one table drives it, and what is assumed stands in the file."""
-        if values.get("chambers") == () and _kind(given.get("rotor")) in (None, "jeffcott"):
-            missing = "chambers" not in given
-            yield Conflict(("chambers",), f"{'given: ' if missing else ''}{_SOME_CHAMBERS.allowed}")
+        """One table drives it, and what is assumed stands in the file."""
         yield from _ball_conflicts(values)
         yield from cabinet_conflicts(values, _kind(given.get("rotor")))
         if _kind(given.get("rotor")) == "spindle":
@@ -272,6 +268,10 @@ class Scene(Part):
     def without_balls(self) -> Scene:
         """The same machine without its balls."""
         return self.altered(chambers=self.liquids) if self.balls else self
+
+    def as_read(self) -> Scene:
+        """The same machine; without chambers, whose liquid `[model]` is about, with the usual one."""
+        return self if self.chambers else self.altered(model=Model())
 
     @property
     def speed_plan(self) -> Runup | Programme | None:
@@ -317,7 +317,7 @@ class Scene(Part):
     @property
     def digest(self) -> str:
         """Fingerprint of the content (SHA-256): the same however units, keys and blanks are written."""
-        model = self.model
+        model = self.as_read().model
         content = {
             "name": self.name,
             "source": self.source,
@@ -505,6 +505,22 @@ def require_no_balls(scene: Scene, what: str) -> None:
     """
     if scene.balls:
         raise InputError(f"chambers.{len(scene.liquids)}.kind", "balls", f"left out for {what}")
+
+
+def require_chambers(scene: Scene, what: str) -> None:
+    """What is only asked of a machine with chambers.
+
+    Parameters
+    ----------
+    scene : the machine
+    what : needs them, in words that follow "for"
+
+    Raises
+    ------
+    InputError : the scene has none
+    """
+    if not scene.chambers:
+        raise InputError("chambers", "none", f"at least one for {what}")
 
 
 def dry_rotor(scene: Scene) -> Jeffcott | TwoPlane | Tub:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
@@ -42,7 +42,8 @@ class Answers:
     model: NDArray[np.str_]  #: of the liquid, by name
     #: of the model taken, relative, of amplitude and liquid the larger one; nan where unknown
     error_estimate: Array
-    #: largest over the range of speeds, found between them as well, m; with balls at the speeds themselves
+    #: largest over the range of speeds at which the answer holds, found between them as well, m; with balls
+    #: at the speeds themselves
     peak_amplitude: Array
     peak_amplitude_dry: Array
     #: with balls, else None: amplitude without them, m, how they rest, and whether the balanced state is
@@ -82,6 +83,8 @@ def answer_scenes(scenes: Sequence[Scene]) -> Answers:
     counts = {scene.speeds.count for scene in scenes}
     if len(counts) != 1:
         raise InputError("scenes", sorted(counts), "at least one, all with one number of speeds")
+    if not all(scene.chambers for scene in scenes):
+        return _joined([_bare(scene) for scene in scenes])
     if any(scene.balls for scene in scenes):
         return _joined([_with_balls(scene) for scene in scenes])
     planar = [k for k, scene in enumerate(scenes) if isinstance(scene.rotor, JeffcottRotor)]
@@ -102,9 +105,20 @@ def _joined(parts: Sequence[Answers], order: Index | None = None) -> Answers:
     return Answers(**found)
 
 
+def _bare(scene: Scene) -> Answers:
+    """Answers of one scene; without chambers nothing is told of a liquid."""
+    found = answer_scenes([scene]) if scene.chambers else _single(scene)
+    if scene.chambers:
+        return found
+    unknown = dict.fromkeys(
+        ("liquid_offset", "liquid_angle", "error_estimate"), np.full(found.speed.shape, np.nan)
+    )
+    return replace(found, **unknown, model=np.full(found.speed.shape, "none"))
+
+
 def _with_balls(scene: Scene) -> Answers:
     """Answers of one scene with balls as `run` gives them: the state reported at each speed."""
-    result = run_balls(scene)
+    result = run_balls(scene, families=False)
     over = [field.name for field in fields(Answers) if not field.name.startswith("peak_")]
     known = {name: getattr(result, name, None) for name in over[:-1]}
     nothing, inside = np.full(result.speed.shape, np.nan), np.ones(result.speed.shape, dtype=bool)
@@ -149,7 +163,8 @@ def _planar(scenes: Sequence[Scene]) -> Answers:
     # What is not known is not stable.
     found["stable"] = answer.stable & (growth <= 0.0)
     found["in_range"] = answer.in_range & np.stack([choice.in_range for choice in choices]).ravel()
-    each = [answer.at(np.flatnonzero(owner == k)) for k in range(len(scenes))]
+    held = replace(answer, in_range=found["in_range"])
+    each = [held.at(np.flatnonzero(owner == k)) for k in range(len(scenes))]
     found = {name: values.reshape(shape) for name, values in found.items()}
     return Answers(**found, **_peaks(each, responses_between(prepared, each)))
 
@@ -158,8 +173,8 @@ def _peaks(answers: Sequence[Response], between: Sequence[Response]) -> dict[str
     """Largest amplitudes of each scene at its speeds and between them."""
     every = [joined(pair) for pair in zip(answers, between, strict=True)]
     return {
-        f"peak_{name}": np.array([highest(each.speed, getattr(each, name)).amplitude for each in every])
-        for name in ("amplitude", "amplitude_dry")
+        "peak_amplitude": np.array([each.peak.amplitude for each in every]),
+        "peak_amplitude_dry": np.array([highest(each.speed, each.amplitude_dry).amplitude for each in every]),
     }
 
 

@@ -6,7 +6,7 @@ import os
 from collections.abc import Sequence
 
 from leblanc.results.models.comparison import Comparison, ModelAnswer
-from leblanc.scene.scene import LIQUID_MODELS, WITHOUT_CHAMBERS, Scene, require_no_balls
+from leblanc.scene.scene import LIQUID_MODELS, WITHOUT_CHAMBERS, Scene, require_chambers, require_no_balls
 from leblanc.studies.held.holding import HERE, Holding
 from leblanc.studies.run import run_scene
 from meshes.errors import InputError
@@ -58,6 +58,7 @@ def _check(scene: Scene, models: Sequence[str]) -> None:
     require_no_balls(scene, "a comparison of liquid models, as balls have one model; `leblanc run` answers")
     if isinstance(scene.rotor, WITHOUT_CHAMBERS):
         raise InputError("rotor.kind", scene.rotor.kind, "jeffcott, two_plane or tub for a comparison")
+    require_chambers(scene, "a comparison of liquid models")
     known = ", ".join(LIQUID_MODELS)
     if not models:
         raise InputError(FIELD, "none", f"at least one of {known}")

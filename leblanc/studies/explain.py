@@ -24,6 +24,7 @@ from leblanc.results.explanation import (
     WhirlOutlook,
 )
 from leblanc.results.motion.tilting import RestMode
+from leblanc.results.notes.baffles import closed_compartments
 from leblanc.results.races.numbers import BallExplanation
 from leblanc.scene.rotors import Exciter as ExciterOfScene
 from leblanc.scene.rows import baffle_words
@@ -47,7 +48,7 @@ from meshes.errors import InputError
 from solvers.cycles.estimate import largest_estimate
 from solvers.rotor.exciter.machine import characteristic_speeds
 from solvers.rotor.jeffcott import Jeffcott
-from solvers.rotor.vibration import critical_speeds, modes, orbit, unbalance_response
+from solvers.rotor.vibration import axis_is_free, critical_speeds, modes, orbit, unbalance_response
 from solvers.statics.hydrostatics import optimal_volume
 from solvers.synchronous.response import critical_speed, main_critical_speeds, wet_critical_speeds
 from solvers.whirl.growth import asynchronous_growth
@@ -89,7 +90,8 @@ def explain_scene(scene: Scene) -> Explanation:
     ------
     InputError : the scene names a liquid model that does not know its chambers
     """
-    machine = prepare(scene)
+    scene = scene.as_read()
+    machine = prepare(scene, free=True)
     gravity, (choice,) = machine.axial_gravity, choose_all([machine])
     growth = asynchronous_growth(machine.rotor, scene.fills, machine.speed, machine.friction)[0]
     choice = costed(machine, choice, growth)
@@ -121,8 +123,8 @@ def explain_scene(scene: Scene) -> Explanation:
         speed_ratio=(ends[0] / bare.critical_speed, ends[1] / bare.critical_speed),
         captured_from=choice.captured_from,
         layers=tuple(layers),
-        models=model_spans(choice, machine.speed),
-        estimates=speed_estimates(choice, machine.speed),
+        models=model_spans(choice, machine.speed) if scene.fills else (),
+        estimates=speed_estimates(choice, machine.speed) if scene.fills else (),
         tolerance=choice.tolerance,
         modes=bare.modes,
         runup=runup_outlook(scene),
@@ -226,9 +228,7 @@ def _walls(fill: Fill) -> str:
         return f"section of {fill.chamber.section.name}"
     if fill.chamber.baffles is None:
         return ""
-    effect = "they cut the liquid into compartments"
-    if fill.compartments < 2:
-        effect = "at rest in the drum the liquid lies as without them"
+    effect = closed_compartments(fill) or "at rest in the drum the liquid lies as without them"
     return f"baffles: {baffle_words(fill.chamber.baffles)}; {effect}"
 
 
@@ -263,6 +263,9 @@ def _bare(machine: Prepared, model: str) -> _Bare:
     answer = unbalance_response(system, last)
     moved = [float(np.abs(orbit(system, answer, fill.chamber.plane).forward[0])) for fill in fills]
     deflection = tuple(size if np.isfinite(size) else 0.0 for size in moved)
+    if axis_is_free(system):
+        nothing = math.nan
+        return _Bare(rotor.mass, nothing, nothing, nothing, deflection, rest_modes(system))
     if isinstance(rotor, Jeffcott):
         wet = critical_speed(rotor, fills, gravity, synchronous_model(model))
         return _Bare(rotor.mass, rotor.natural_frequency, wet, rotor.damping_ratio, deflection)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -55,6 +56,7 @@ def loads_over_speed(
     asked: Index,
     held: Mapping[float, HeldState] | None = None,
     lost: Array | float = 0.0,
+    counts: Flags | None = None,
 ) -> MachineLoads:
     """Loads of steady motions, each over its turn [theory: loads, eq. 14-16 and 18-19].
 
@@ -67,6 +69,7 @@ def loads_over_speed(
     asked : which of the speeds are those of the scene
     held : motions held in time by their speed, whose own turns and heat count there
     lost : power that is lost besides what supports and liquid take, W, shape (k,)
+    counts : speeds at which the answer holds, of which the worst is taken; all if None or if it holds at none
     """
     power = steady_power(machine, friction, coordinates, speed) + lost
     worst, states = turn_extremes(machine, coordinates, speed), held or {}
@@ -75,13 +78,14 @@ def loads_over_speed(
         if spin in states:
             rows[k] = held_extremes(machine, spin, states[spin].path)
             power[k] = states[spin].heat if math.isfinite(states[spin].heat) else power[k]
-    return _loads(
+    found = _loads(
         machine,
         joined(rows) if rows else worst,
         *(speed, np.zeros(0), np.zeros(0), power / speed, power),
         np.stack(orbits(machine, coordinates)),
         asked,
     )
+    return found if counts is None or not counts.any() else replace(found, counts=counts)
 
 
 def steady_power(machine: LoadedMachine, friction: Friction, coordinates: Complex, speed: Array) -> Array:

@@ -7,7 +7,7 @@ resonances with and without liquid where it is not. From there `solvers.synchron
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Protocol
@@ -32,6 +32,8 @@ _NEAR, _NEARER = 1e-4, 1e-6  # relative distances over which its amplitude grows
 _GROWN = 30.0  # times, at least
 _TWIN = 1e-12  # relative distance of two resonances that are one
 _ASIDE = 3e-9  # relative distance of a speed that is taken for the resonance
+_EDGE = 1e-9  # relative distance of two speeds, one on each side of where an answer begins to hold
+_EDGE_ROUNDS = 40  # in which such two come together, by halves
 
 
 @dataclass(frozen=True)
@@ -81,7 +83,7 @@ def responses_between(
     -------
     Response of each between its first and its last speed, by rising speed; at no speed at all where it has
     just one. Deflections are infinite where they have no bound. The liquid model is chosen at every speed as
-    at the others
+    at the others. Where the answer holds at some speeds alone, the largest amplitude of those is found too
     """
     nowhere = np.zeros(0, dtype=np.intp)
     if all(machine.speed[-1] <= machine.speed[0] for machine in machines):
@@ -100,8 +102,8 @@ def responses_between(
     def still(owner: Index, speed: Array) -> Complex:
         return _marked(asked.without_liquid(owner, speed), _met(endless_dry, owner, speed))
 
-    def wet(owner: Index, speed: Array, close: bool = True) -> Complex:
-        """Parts with liquid, the answer being kept."""
+    def wet(owner: Index, speed: Array, close: bool = True) -> Response:
+        """Answer with liquid, which is kept."""
         answer = asked.with_liquid(owner, speed, close)
         endless = _met(endless_wet, owner, speed)
         answer = replace(
@@ -112,15 +114,52 @@ def responses_between(
         )
         for k in np.unique(owner).tolist():
             found[k].append(answer.at(np.flatnonzero(owner == k)))
-        return answer.parts
+        return answer
+
+    def wet_of(k: int, speed: Array) -> Response:
+        return wet(np.full(speed.size, k, dtype=np.intp), speed)
 
     seen = [np.zeros(0) for _ in ends]
     if dry:
         begin = [Samples(answer.speed, answer.parts_dry) for answer in answers]
         seen = [samples.speed for samples in _explored(still, still, begin, asked.dry, seen, ends, drawn)]
     begin = [Samples(answer.speed, answer.parts) for answer in answers]
-    _explored(partial(wet, close=False), wet, begin, asked.wet, seen, ends, drawn)
+    _explored(
+        lambda owner, speed: wet(owner, speed, close=False).parts,
+        *(lambda owner, speed: wet(owner, speed).parts, begin, asked.wet, seen, ends, drawn),
+    )
+    for k, answer in enumerate(answers):
+        _holding(partial(wet_of, k), by_speed([answer, *found[k]]), asked.wet[k].bound)
     return [by_speed(parts) for parts in found]
+
+
+def _holding(answer: Callable[[Array], Response], known: Response, bound: float) -> None:
+    """Ask a machine for the largest amplitude of the speeds at which its answer holds.
+
+    Where that is beside a speed at which it does not hold, the edge between the two is closed in on.
+    """
+    out = ~known.holds & ~np.isnan(known.amplitude)
+    if not out.any() or not known.holds.any():
+        return
+
+    def parts(_: Index, speed: Array) -> Complex:
+        nonlocal known
+        fresh = np.setdiff1d(speed, known.speed)  # what does not hold is asked for again
+        if fresh.size:
+            known = by_speed([known, answer(fresh)])
+        own = known.at(np.searchsorted(known.speed, speed))
+        return np.where(own.holds[:, None], own.parts, np.nan)
+
+    refine(parts, [Samples(known.speed, np.where(known.holds[:, None], known.parts, np.nan))], [bound])
+    for _ in range(_EDGE_ROUNDS):
+        top = known.top
+        assert top is not None
+        sides = [k for k in (top - 1, top + 1) if 0 <= k < known.speed.size and not known.holds[k]]
+        here = known.speed[top]
+        middles = [0.5 * (here + known.speed[k]) for k in sides if abs(known.speed[k] - here) > _EDGE * here]
+        if not middles:
+            break
+        parts(np.zeros(1, dtype=np.intp), np.array(middles))
 
 
 def _explored(

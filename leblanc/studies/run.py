@@ -16,7 +16,7 @@ from leblanc.results.motion.held import HELD_MODELS, Held
 from leblanc.results.motion.self_excited import SelfExcited
 from leblanc.results.motion.tilting import Motion, RestMode
 from leblanc.results.notes import response as notes
-from leblanc.results.notes.baffles import smeared_baffles
+from leblanc.results.notes.baffles import compartment_notes, smeared_baffles
 from leblanc.results.response import RunResult
 from leblanc.scene.inputs import input_rows
 from leblanc.scene.scene import Scene, TubRotor
@@ -220,6 +220,7 @@ def run_scene(
     >>> result.speed.size
     201
     """
+    scene = scene.as_read()
     if holding.solver != COUPLED and not may_hold(scene):
         raise InputError(
             "solver", holding.solver, "left out: the scene has no motion held in time ([model] held)"
@@ -237,7 +238,8 @@ def run_scene(
     else:
         answer, motion, (dry, wet) = motion_response(machine, choice)
     progress("peaks between the speeds")
-    (refined,) = responses_between([machine], [answer], drawn=True)
+    in_range_too = replace(answer, in_range=answer.in_range & choice.in_range)
+    (refined,) = responses_between([machine], [in_range_too], drawn=True)
     if by_elements(scene):
         progress("finite elements")
         choice, answer, refined = element_answers(machine, choice, answer, refined)
@@ -289,7 +291,7 @@ def run_scene(
         motion=motion,
         whirl=whirl,
         error_estimate=choice.error,
-        models=model_spans(choice, machine.speed),
+        models=model_spans(choice, machine.speed) if scene.fills else (),
         tolerance=choice.tolerance,
         refined=refined,
         axial_gravity=machine.axial_gravity,
@@ -309,7 +311,10 @@ def _loads(
     every = by_speed([answer, refined])
     order = np.argsort(np.concatenate((answer.speed, refined.speed)), kind="stable")
     asked = np.argsort(order, kind="stable")[: answer.speed.size]
-    return loads_over_speed(machine, scene.model.friction, every.speed, every.coordinates, asked, held)
+    friction = scene.model.friction
+    return loads_over_speed(
+        machine, friction, every.speed, every.coordinates, asked, held, counts=every.holds
+    )
 
 
 def _balance(machine: Prepared, answer: Response) -> dict[str, Array]:
@@ -348,18 +353,21 @@ def _notes(
 ) -> tuple[Note, ...]:
     """Limits of validity and findings."""
     cost = held_cost(machine, choice, whirl.growth)
-    found = [notes.liquid_models(choice), notes.tolerance_missed(choice, machine.speed, cost)]
+    found = [notes.tolerance_missed(choice, machine.speed, cost)]
+    if machine.scene.fills:
+        found.insert(0, notes.liquid_models(choice))
     if any(sheds is not None for sheds in sheds_of(machine.scene.rotor)):
         found.append(notes.unbalance_leaves(left_in_the_end(machine.scene.rotor)))
     if choice.captured_from is not None:
         found.append(notes.not_carried(choice.captured_from, carried_from(machine.scene)))
+    found.append(notes.left_out(by_speed([answer, refined]), choice.captured_from))
     found.append(notes.one_family(answer))
     if held is not None:
         found += [*notes.held_motions(held, answer.speed), *smeared_baffles(machine.scene.fills, held.cells)]
+    chambers = bool(machine.scene.fills)
     if motion is None:
-        found.append(notes.slow_disturbances(held))
+        found.append(notes.slow_disturbances(held) if chambers else None)
     else:
-        chambers = bool(machine.scene.fills)
         found.append(notes.plane(motion.position, motion.zero, chambers, held is not None))
         found.append(_against_spin(answer, motion, held) if chambers else None)
     found.append(notes.self_excited(whirl))
@@ -369,7 +377,7 @@ def _notes(
         first, last = answer.speed[several][[0, -1]].tolist()
         found.append(notes.several_answers(first, last, stable=motion is None))
     found.append(_endless(by_speed([answer, refined])))
-    found += _walls(machine, answer, motion)
+    found += [*compartment_notes(machine.scene.fills), *_walls(machine, answer, motion)]
     found += [*_meshes(machine.scene), *doubts(machine.scene)]
     return tuple(note for note in found if note is not None)
 

@@ -28,9 +28,9 @@ from leblanc.studies.drives import planned as planned
 from leblanc.studies.drives import programme_notes, rotor_in_time, unbalance_left
 from leblanc.studies.machine import loaded_machine, loads_over_time
 from leblanc.studies.models.choose import across_gravity as across_gravity  # of a run-up, asked for with it
-from leblanc.studies.models.choose import axial_gravity, is_cut, prepare, ruled_out_linear
+from leblanc.studies.models.choose import axial_gravity, captured_speed, is_cut, prepare, ruled_out_linear
 from leblanc.studies.models.liquid import RUNUP_MODELS, runup_model
-from leblanc.studies.models.validity import doubts
+from leblanc.studies.models.validity import doubts, require_supported
 from leblanc.studies.peaks import responses_between
 from leblanc.studies.races.balls import races_shown, started_balls
 from meshes.arrays import Array, Flags
@@ -230,8 +230,10 @@ def chosen_run(
 
     Raises
     ------
-    InputError : the scene names a model that does not go through time
+    InputError : the scene names a model that does not go through time, or its axis is free to move
     """
+    scene = scene.as_read()
+    require_supported(scene)
     model, tolerance = liquid_model(scene), scene.model.tolerance
     system, friction = rotor_in_time(scene), scene.model.friction
 
@@ -240,6 +242,11 @@ def chosen_run(
         given = system, scene.fills, drive, friction, gravity, resolved, report, model, snapshots, follow
         return run_up(*given)
 
+    if not scene.chambers:
+        # Both models step the rotor alike; this one is the quicker, the other has the cells of a film.
+        model = "long_wave" if np.size(snapshots) else "linear"
+        history = run(model, numerics, progress)
+        return RunupChoice(history, model, _by_steps(history), "the machine has no chamber.")
     if scene.model.liquid == "long_wave":
         history = run(model, numerics, progress)
         return RunupChoice(history, model, _by_steps(history), "the scene asks for long waves.")
@@ -312,6 +319,7 @@ def runup_scene(
     ------
     InputError : no run-up in the scene, a rotor without linear equations of motion, a value out of its range
     """
+    scene = scene.as_read()
     require_clear(scene, "a run-up, whose waves run in a ring with circular walls", baffles=True)
     require_room(scene)
     plan = planned(scene)
@@ -505,7 +513,7 @@ def _notes(
     """What happened and how far it can be trusted."""
     h = taken.history
     found = [
-        notes.liquid_model(taken.model, taken.reason),
+        notes.liquid_model(taken.model, taken.reason) if scene.chambers else None,
         None if h.converged else notes.stopped(h.reason),
         notes.numerical_error(h.error_estimate),
         notes.handover_error(h.handover_estimate),
@@ -536,10 +544,13 @@ def _never_caught(scene: Scene, history: RunupHistory) -> Iterator[Note]:
 def steady_response(scene: Scene, speed: Array) -> Response | None:
     """Synchronous response over the speeds that were passed, refined where it is largest.
 
-    None unless the rotor is a Jeffcott rotor without balls.
+    None unless the rotor is a Jeffcott rotor without balls that passes speeds with an annular layer.
     """
     passed = _passed(speed, STEADY_SPEEDS)
     if not isinstance(scene.rotor, JeffcottRotor) or passed.size == 0 or is_cut(scene) or scene.balls:
+        return None
+    stands = captured_speed(scene)  # below, no annular layer has a steady response
+    if stands is not None and not (passed := passed[passed > stands]).size:
         return None
     answer = response(jeffcott(scene), scene.fills, passed, axial_gravity(scene))
     exact = scene.altered(model=scene.model.altered(liquid="statics"))

@@ -68,7 +68,7 @@ def map_scene(
     """
     _check(scene, volumes, speeds)
     law = scene.model.friction if friction is None else friction
-    machine = prepare(scene)
+    machine = prepare(scene, free=True)
     rotor, speed = machine.rotor, np.linspace(scene.speeds.start, scene.speeds.stop, speeds)
     rows = fills_over_volume(scene.fills, volumes, max_volume)
     parts = []

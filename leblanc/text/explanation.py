@@ -30,13 +30,20 @@ REFUSED = "does not answer"
 
 def machine_rows(answer: Explanation) -> Rows:
     """The rotor as a whole; label and text."""
-    dry, wet = in_rpm(answer.critical_speed_dry), in_rpm(answer.critical_speed_wet)
+    dry, wet = (in_rpm(speed) for speed in (answer.critical_speed_dry, answer.critical_speed_wet))
+    beside = f", {wet} with it at small deflections" if answer.layers else ""
     first, last = answer.speed_ratio
     rows = [
-        ("critical speed", f"{dry} without liquid, {wet} with it at small deflections"),
+        ("critical speed", f"{dry} without liquid{beside}"),
         ("damping ratio", f"{answer.damping_ratio:.4g}"),
         ("speeds", f"{first:.3g} to {last:.3g} times the dry critical speed"),
     ]
+    if math.isnan(answer.critical_speed_dry):
+        free = [mode.moves for mode in answer.modes if mode.frequency == 0.0]
+        rows = [
+            ("free to move", f"{len(free)} motions that nothing holds: {', '.join(free)}"),
+            ("critical speed", "none is given: the axis moves freely, and `leblanc run` refuses the machine"),
+        ]
     if answer.captured_from is not None:
         captured = f"above {in_rpm(answer.captured_from)} a ring of liquid stands against gravity"
         rows.append(("captured", captured))

@@ -40,7 +40,7 @@ def answer(result: RunResult) -> str:
         size = f"{final} with the liquid{_aside(result, -1)}"
         bare = _UNBOUNDED if last.dry == _INFINITE else last.dry_text
         return f"At {speed} the amplitude{where} {size} and {bare} without."
-    highest = largest(result.curve.amplitude)
+    highest = result.curve.top
     assert highest is not None
     at_last = f"it {final}{_aside(result, -1)} instead of {last.dry_text}"
     if last.dry == _INFINITE:
@@ -48,11 +48,20 @@ def answer(result: RunResult) -> str:
     if last.wet == NOT_FOUND:
         at_last = f"no answer was found with the liquid; without it is {last.dry_text}"
     at_highest = f"at {at.wet} rpm with the liquid{_aside(result, highest)}"
-    first = f"The largest amplitude{where} is {most.wet_text}{_on_average(result, highest)} {at_highest}"
+    held = _where_it_holds(result)
+    first = (
+        f"The largest amplitude{where}{held} is {most.wet_text}{_on_average(result, highest)} {at_highest}"
+    )
     if most.wet == _INFINITE:
         first = f"The amplitude{where} {_UNBOUNDED} {at_highest}"
     bare = f"it {_UNBOUNDED}" if most.dry == _INFINITE else most.dry_text
     return f"{first} and {bare} at {at.dry} rpm without; at {speed} {at_last}."
+
+
+def _where_it_holds(result: RunResult) -> str:
+    """Said of a largest amplitude that others exceed at speeds at which the answer does not hold."""
+    curve = result.curve
+    return " where the answer holds" if np.any(curve.amplitude > curve.peak.amplitude) else ""
 
 
 _INFINITE, _UNBOUNDED = "infinite", "grows without bound"
@@ -153,13 +162,26 @@ def largest_error(result: RunResult) -> str:
     ----------
     result : the response
     """
-    if result.error_estimate is None or np.isnan(result.error_estimate).all():
+    if result.chamberless or result.error_estimate is None or np.isnan(result.error_estimate).all():
         return ""
     known = result.error_estimate[np.isfinite(result.error_estimate)]
     unknown = result.error_estimate.size - known.size
     most = percent(float(known.max())) if known.size else "without a bound"
     rest = f", without a bound at {unknown} of {result.speed.size} speeds" if known.size and unknown else ""
     return (f"at most {most}" if most[0].isdigit() else most) + rest
+
+
+def comparison_table(result: RunResult) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
+    """Heads and rows of `comparisons`, as printed; of a machine without chambers one column.
+
+    Parameters
+    ----------
+    result : the response
+    """
+    rows = comparisons(result)
+    if result.chamberless:
+        return ("", "without liquid"), [(row.label, row.wet) for row in rows]
+    return ("", "with liquid", "without", "ratio"), [(row.label, row.wet, row.dry, row.ratio) for row in rows]
 
 
 @dataclass(frozen=True)
@@ -194,7 +216,7 @@ def comparisons(result: RunResult) -> list[Comparison]:
     result : the response
     """
     r = result.curve
-    wet, dry = largest(r.amplitude), largest(r.amplitude_dry)
+    wet, dry = r.top, largest(r.amplitude_dry)
     at_wet, at_dry = (NOT_FOUND if i is None else number(r.speed[i] * RPM) for i in (wet, dry))
     found = [
         _compared("Largest amplitude", result, wet, dry),
@@ -248,6 +270,8 @@ def facts(result: RunResult) -> list[tuple[str, str]]:
     if r.liquid_offset[-1] > 0.0:
         angle = number(math.degrees(r.liquid_angle[-1]))
         where = f"{with_unit(float(r.liquid_offset[-1]), LENGTH)} off the axis at {angle} deg"
+    if result.chamberless:
+        return _vibration(result)
     return [
         ("Mass of the liquid", with_unit(result.liquid_mass, MASS)),
         (f"Its centre of mass at {in_rpm(float(r.speed[-1]))}", where),
@@ -297,8 +321,9 @@ def _vibration(result: RunResult) -> list[tuple[str, str]]:
         f"{number(mode.frequency / (2.0 * math.pi))} ({mode.damping_ratio:.2g})"
         for mode in result.motion.modes
     ]
+    wet = [("Critical speeds with liquid", listed(result.motion.critical_speeds_wet))]
     return [
-        ("Critical speeds with liquid", listed(result.motion.critical_speeds_wet)),
+        *([] if result.chamberless else wet),
         ("Critical speeds without liquid", listed(result.motion.critical_speeds_dry)),
         ("Natural frequencies at rest (damping ratios)", ", ".join(at_rest) + " Hz"),
     ]
@@ -324,7 +349,8 @@ def limits(result: RunResult) -> list[Limit]:
     lost = ~r.converged if held is None else ~r.converged & ~held.at
     found = [_limit("Not converged", r.speed, lost)] if held is None or lost.any() else []
     found += _held_limits(result, held) if held is not None else []
-    found.append(_limit("Liquid model out of range", r.speed, ~r.in_range))
+    if not result.chamberless:
+        found.append(_limit("Liquid model out of range", r.speed, ~r.in_range))
     if result.capture_speed is not None:
         loose = r.speed <= result.capture_speed
         edge = f" (below {in_rpm(result.capture_speed)})" if loose.any() else ""
@@ -337,10 +363,11 @@ def limits(result: RunResult) -> list[Limit]:
         found.append(
             Limit("Not carried round from rest", f"{ranges(r.speed, loose)}{edge}", bool(loose.any()))
         )
-    if tolerance is not None and result.error_estimate is not None:
+    if tolerance is not None and result.error_estimate is not None and not result.chamberless:
         missed = ~(result.error_estimate <= tolerance)
         found.append(_limit(f"Error above {number(100.0 * tolerance)} % or unknown", r.speed, missed))
-    found.append(_limit("Wall dry in part", r.speed, r.dry_patch))
+    if not result.chamberless:
+        found.append(_limit("Wall dry in part", r.speed, r.dry_patch))
     unstable = result.stability == "unstable"
     found.append(
         _limit("Answer unstable", r.speed, unstable if held is None else unstable & ~held.limit_cycle)
@@ -449,7 +476,7 @@ def remarks(result: RunResult) -> list[str]:
     result : the response
     """
     r, found = result.curve, []
-    highest = largest(r.amplitude)
+    highest = r.top
     if highest is None:
         found.append("No answer was found at any speed.")
     elif np.isinf(r.amplitude[highest]):
@@ -474,17 +501,27 @@ def alts(result: RunResult) -> dict[str, str]:
     """
     most, at, last, *_ = comparisons(result)
     where = f" {place}" if (place := amplitude_place(result)) else ""
+    if result.chamberless:
+        return {
+            "amplitude": f"Curve of the amplitude{where} over speed: largest {most.dry_text} "
+            f"at {at.dry} rpm.",
+            "liquid": "No liquid.",
+            "chamber": "No chamber.",
+            "phase": "Curve of the angle from the unbalance to the deflection over speed.",
+            "campbell": "Curves of the natural frequencies over speed.",
+        }
     values = dict(facts(result))
     centre = next(value for label, value in values.items() if label.startswith("Its centre"))
     return {
-        "amplitude": f"Curves of the amplitude{where} over speed: largest {most.wet_text} at {at.wet} "
-        f"rpm with liquid, {most.dry_text} at {at.dry} rpm without.{_held_alt(result)}{_on_top_alt(result)}",
+        "amplitude": f"Curves of the amplitude{where} over speed: largest{_where_it_holds(result)} "
+        f"{most.wet_text} at {at.wet} rpm with liquid, {most.dry_text} at {at.dry} rpm without."
+        f"{_held_alt(result)}{_on_top_alt(result)}",
         "liquid": "Curves of the distance and the angle of the liquid's centre of mass over speed; at the "
         f"last speed: {centre}.{_swing_alt(result)}",
         "phase": "Curves of the angle from the unbalance to the deflection over speed, with and without "
         "liquid.",
-        "chamber": "Drawing of each chamber with its liquid, seen along the axis, at the largest deflection, "
-        f"{most.wet_text}, and at the last speed, {last.wet_text}.",
+        "chamber": "Drawing of each chamber with its liquid, seen along the axis, at the largest deflection"
+        f"{_where_it_holds(result)}, {most.wet_text}, and at the last speed, {last.wet_text}.",
         "campbell": "Curves of the natural frequencies without liquid over speed.",
     }
 
@@ -533,7 +570,8 @@ def summary(result: RunResult) -> list[tuple[str, str]]:
     ----------
     result : the response
     """
-    rows = [(row.label, f"{row.wet} with liquid, {row.dry} without") for row in comparisons(result)]
+    both = ((row.label, f"{row.wet} with liquid, {row.dry} without") for row in comparisons(result))
+    rows = [(row.label, row.wet) for row in comparisons(result)] if result.chamberless else list(both)
     place = amplitude_place(result)
     plane = [("Amplitudes", place)] if place else []
     return [("Scene", one_line(result.name)), *plane, *rows, *facts(result)]

@@ -68,7 +68,7 @@ def _trust(result: RunupResult) -> str:
     """How well the largest amplitude is known, and for how much of the run the model holds: two sentences."""
     known = peak_known(result)
     first = f" The largest of all is known to {known}." if known else ""
-    return f"{first} The liquid model holds for {_fair(result)} of the run."
+    return first if result.chamberless else f"{first} The liquid model holds for {_fair(result)} of the run."
 
 
 def _fair(result: RunupResult) -> str:
@@ -119,7 +119,8 @@ def answer_rows(result: RunupResult) -> list[tuple[str, str]]:
     ]
     if known := peak_known(result):
         rows.append(("Largest of all known to", known))
-    rows.append(("Liquid model holds", f"for {_fair(result)} of the run"))
+    if not result.chamberless:
+        rows.append(("Liquid model holds", f"for {_fair(result)} of the run"))
     if result.spread is not None:
         rows.append(("By rounding alone", rounding(result)))
     if largest_dry(result):
@@ -204,11 +205,12 @@ def summary(result: RunupResult) -> list[tuple[str, str]]:
     """The main numbers of a run-up, as labels and values."""
 
     plane = [("Amplitudes", result.plane)] if result.plane else []
+    told = describe_model(result.model, result.cells, result.dispersion, result.bore)
     return [
         *plane,
         *answer_rows(result),
         *ball_rows(result),
         *passage_rows(result),
-        ("Liquid model", describe_model(result.model, result.cells, result.dispersion, result.bore)),
+        *([] if result.chamberless else [("Liquid model", told)]),
         ("End", result.reason or "it came to its end"),
     ]

@@ -91,6 +91,30 @@ def modes(system: RotorSystem, spin: ArrayLike = 0.0, *, damped: bool = True) ->
     return Modes(omega, np.asarray(eigenvalue, dtype=complex), np.asarray(shape / largest, dtype=complex))
 
 
+FREE = 1e-9  # square of a natural frequency over the largest one, below which nothing holds the motion
+_STILL = 1e-6  # of the axis' largest motion, that is rounding
+
+
+def free_motions(system: RotorSystem) -> Array:
+    """Shapes of motions that nothing holds, of unit kinetic energy, shape (n, k)."""
+    from scipy.linalg import eigh
+
+    square, shapes = eigh(system.stiffness, system.mass)
+    loose = square < FREE * square.max() if square.max() > 0.0 else np.ones(square.size, dtype=bool)
+    return np.asarray(shapes[:, loose])
+
+
+def axis_is_free(system: RotorSystem) -> bool:
+    """A motion that nothing holds moves the spin axis sideways: unbalance and liquid drive it."""
+    from scipy.linalg import eigh
+
+    every, free = eigh(system.stiffness, system.mass)[1], free_motions(system)
+    return any(
+        np.linalg.norm(part @ free) > _STILL * np.linalg.norm(part @ every)
+        for part in (system.centre, system.lean)
+    )
+
+
 def _without_rounding(value: Complex) -> Complex:
     """Eigenvalues with 0 for parts that are rounding: of a free body, of equal overdamped modes."""
     size = np.abs(value)

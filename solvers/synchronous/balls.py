@@ -14,7 +14,14 @@ from meshes.errors import InputError
 from solvers.liquid_model import LiquidModel, Whirls
 from solvers.rotor.balls.balancers import BallRace
 from solvers.rotor.balls.states import RotorWithBalls
-from solvers.rotor.balls.steady import BallStates, attracting, collected, starts_of, steady_states
+from solvers.rotor.balls.steady import (
+    BallStates,
+    attracting,
+    begin_joined,
+    collected,
+    starts_of,
+    steady_states,
+)
 from solvers.rotor.system import RotorSystem
 from solvers.synchronous.balance import backward_mass, directions
 from solvers.synchronous.models import STATICS
@@ -74,7 +81,8 @@ def wet_states(
     small = _masses(model, wet, spin, np.zeros((spin.size, len(wet))), gravity)
     compliance = machine.compliance(spin, _added(system, wet, small))
     each, many = np.repeat(compliance, len(starts), axis=0), np.repeat(spin, len(starts))
-    places, rests = machine.settle(each, np.tile(starts, (spin.size, 1)))
+    joined = begin_joined(spin.size)
+    places, rests = machine.settle(each, np.tile(starts, (spin.size, 1)), joined=joined)
     mass, going = np.repeat(small, len(starts), axis=0), np.arange(many.size)
     for _ in range(_ROUNDS):
         seen = _seen(system, wet, machine.coordinates(each[going], places[going]))
@@ -86,7 +94,7 @@ def wet_states(
         # The mean of two rounds in a row: a wall that dries makes them overshoot.
         mass[going] = 0.5 * (mass[going] + found)
         each[going] = machine.compliance(many[going], _added(system, wet, mass[going]))
-        places[going], rests[going] = machine.settle(each[going], places[going])
+        places[going], rests[going] = machine.settle(each[going], places[going], joined=joined[going])
     agrees = np.ones(many.size, dtype=bool)
     agrees[going] = False
     shape = spin.size, len(starts)

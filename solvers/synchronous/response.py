@@ -8,6 +8,7 @@ deflections, dampers left out.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields, replace
 from typing import Any, TypeVar
@@ -27,6 +28,7 @@ from solvers.synchronous.balance import Balance, Liquid, backward_mass, directio
 from solvers.synchronous.coupled import Near, newton, solutions, stable_solutions
 from solvers.synchronous.models import LINEAR, STATICS
 from solvers.synchronous.pairs import Pairs, pair_machines
+from solvers.synchronous.peaks import Peak
 from solvers.synchronous.planar import all_deflections, divide, is_stable, liquid_offset, over, with_phase
 
 
@@ -263,6 +265,30 @@ class Response:
     def amplitude_dry(self) -> Array:
         """The same of the rotor without liquid, m, shape (n,)."""
         return np.asarray(np.abs(self.parts_dry).sum(axis=1))
+
+    @property
+    def holds(self) -> Flags:
+        """Validity of the answer: found, in the range of its model, or known to have no bound, shape (n,)."""
+        return (self.converged & self.in_range) | np.isinf(self.amplitude)
+
+    @property
+    def top(self) -> int | None:
+        """Index of the largest amplitude of the speeds at which the answer holds, the first of equals.
+
+        Of all speeds where it holds at none; None where nothing was found.
+        """
+        known = ~np.isnan(self.amplitude)
+        if not known.any():
+            return None
+        counts = known & self.holds
+        return int(np.argmax(np.where(counts if counts.any() else known, self.amplitude, -1.0)))
+
+    @property
+    def peak(self) -> Peak:
+        """The amplitude there."""
+        if self.top is None:
+            return Peak(math.nan, math.nan)
+        return Peak(float(self.speed[self.top]), float(self.amplitude[self.top]))
 
     @property
     def branch_amplitude(self) -> Array:

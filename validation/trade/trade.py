@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from leblanc.results.base import one_line
-from leblanc.scene.scene import Scene, require_clear
+from leblanc.scene.scene import Scene, require_chambers, require_clear
 from validation.trade.answers import Answer, Case, answer, taste
 from validation.trade.cases import Question, questions
 from validation.trade.judge import Comparison, Run, compare, errors
@@ -62,6 +62,7 @@ def trade_scene(
         waves that py-pde solves
     only : the question that is measured; all if None
     """
+    require_chambers(scene, "the accuracy and cost of liquid models")
     require_clear(scene, "a comparison of models, most of which know circular walls alone", baffles=True)
     tell = progress or (lambda _, __: None)
     tolerance = scene.model.tolerance

@@ -10,7 +10,7 @@ import numpy as np
 
 from leblanc.results.netcdf import Variable, finite
 from leblanc.results.netcdf import variable as var
-from meshes.arrays import Array, Index
+from meshes.arrays import Array, Flags, Index
 from solvers.rotor.loads.turn import Extremes
 
 
@@ -50,6 +50,7 @@ class MachineLoads:
     asked: Index  #: which of the k are speeds of the scene, shape (n,)
     impulse: Array  #: of each hand-over of liquid on each bearing, N s, shape (j, b)
     jumps: Array  #: time of each, s, shape (j,)
+    counts: Flags | None = None  #: which of the k count for the worst, shape (k,); all if None
 
     @property
     def stands(self) -> bool:
@@ -83,11 +84,17 @@ class MachineLoads:
 
     def least(self, values: Array) -> Worst:
         """The least of some values, shape (k,)."""
+        values = self._counting(values)
         return self._at(values, None if np.isnan(values).all() else int(np.nanargmin(values)))
 
     def largest(self, values: Array) -> Worst:
         """The largest of some values, shape (k,)."""
+        values = self._counting(values)
         return self._at(values, None if np.isnan(values).all() else int(np.nanargmax(values)))
+
+    def _counting(self, values: Array) -> Array:
+        """The same, nan where they do not count."""
+        return values if self.counts is None else np.where(self.counts, values, np.nan)
 
     def _at(self, values: Array, k: int | None) -> Worst:
         if k is None:

@@ -26,6 +26,8 @@ class BallCode(NoteCode):
     IN_RATIO = "in_ratio"
     LOADS_OF_STATES = "loads_of_states"
     LIQUID_WAVES = "liquid_waves"
+    FAMILY = "family"
+    ELSEWHERE = "elsewhere"
 
 
 def capacity(enough: bool, most: float) -> Note:
@@ -130,6 +132,39 @@ def runs_on(first: float, last: float, found: bool) -> Note:
     return Note(BallCode.RUNS_ON, {"first": first, "last": last}, text)
 
 
+def family(first: float, last: float, dimension: int, least: float, largest: float) -> Note:
+    """More balls than the state needs.
+
+    Parameters
+    ----------
+    first, last : of the speeds with families, rad/s
+    dimension : the largest
+    least, largest : growth over all members at all these speeds, 1/s
+    """
+    text = (
+        f"{over_rpm(first, last).capitalize()} the balls can stand in infinitely many ways with the same "
+        f"deflection (up to {dimension} direction{'' if dimension == 1 else 's'} to move along). Angles and "
+        "growth are those of the member that creeping balls come to; over all members growth is from "
+        f"{number(least)} to {number(largest)} 1/s."
+    )
+    data = {"first": first, "last": last, "dimension": dimension, "least": least, "largest": largest}
+    return Note(BallCode.FAMILY, data, text)
+
+
+def elsewhere(first: float, last: float) -> Note:
+    """The reported member is not stable, others are.
+
+    Parameters
+    ----------
+    first, last : of such speeds, rad/s
+    """
+    text = (
+        f"{over_rpm(first, last).capitalize()} the reported member is not stable, but others with the same "
+        "deflection are: balls that leave it can come to rest there. A run-up shows whether they do."
+    )
+    return Note(BallCode.ELSEWHERE, {"first": first, "last": last}, text)
+
+
 def covered() -> Note:
     """Balls in liquid."""
     text = (
@@ -142,7 +177,8 @@ def covered() -> Note:
 def free_balls() -> Note:
     """Which motions of the balls do not count."""
     text = (
-        "Balls that the balance does not need may move freely without unbalancing the rotor: no instability."
+        "Balls that the balance does not need may move freely without unbalancing the rotor: no instability. "
+        "Where they can stand in many ways growth is that of an even share; `leblanc run` has its range."
     )
     return Note(BallCode.FREE, {}, text)
 

@@ -34,6 +34,7 @@ class RunCode(NoteCode):
     LIQUID_MODEL = "liquid_model"
     TOLERANCE_MISSED = "tolerance_missed"
     NOT_CARRIED = "not_carried"
+    LEFT_OUT = "left_out"
     SLOW_DISTURBANCES = "slow_disturbances"
     PLANE = "plane"
     AGAINST_SPIN = "against_spin"
@@ -128,7 +129,7 @@ def not_carried(stands: float, carried: float | None = None) -> Note:
     data: dict[str, Any] = {"below": stands}
     text = (
         f"A ring of liquid can stand from {in_rpm(stands)} on: below, gravity across the axis keeps the "
-        "liquid from riding with the drum, and the answer is out of range."
+        "liquid from riding with the drum, and the answer is out of range: it does not count for the largest."
     )
     if carried is not None:
         data["carried_from"] = carried if math.isfinite(carried) else None
@@ -152,6 +153,45 @@ def carried_words(stands: float, carried: float) -> str:
         f"From rest the walls carry it from {in_rpm(carried)} on: between the two an answer holds for a "
         "ring that stands already, as on the way down."
     )
+
+
+def left_out(curve: Response, stands: float | None) -> Note | None:
+    """Speeds that do not count for the largest amplitude; None where all or none of them do.
+
+    Smaller amplitudes without an annular layer are not worth it: `not_carried` has them.
+
+    Parameters
+    ----------
+    curve : the answer at the speeds asked for and between them, by rising speed
+    stands : speed above which an annular layer exists, rad/s; None where it does at every one
+    """
+    out = ~curve.holds & ~np.isnan(curve.amplitude)
+    if not out.any() or not curve.holds.any() or curve.top is None:
+        return None
+    below = curve.speed <= (-1.0 if stands is None else stands)
+    lost = ~curve.converged & ~below
+    reasons = {
+        "no annular layer exists": out & below,
+        "no converged answer was found": out & lost,
+        "the liquid model is out of range": out & ~below & ~lost,
+    }
+    parts, spans = [], []
+    for why, rows in reasons.items():
+        # Neighbours of one kind are one range.
+        ends = np.flatnonzero(np.diff(np.concatenate([[False], rows, [False]]).astype(int))).reshape(-1, 2)
+        own = [(float(curve.speed[a]), float(curve.speed[b - 1])) for a, b in ends.tolist()]
+        if own:
+            parts.append(f"{rpm_bands(own)}, where {why}")
+            spans += own
+    most = float(curve.amplitude[out].max())
+    if most <= curve.peak.amplitude and not np.any(out & ~below):
+        return None
+    text = f"The largest amplitude leaves out {'; '.join(parts)} (up to {with_unit(most, LENGTH)} there)."
+    beside = bool(out[max(curve.top - 1, 0)] or out[min(curve.top + 1, out.size - 1)])
+    if beside:
+        text += " It lies at the edge of what is left out: beyond, the amplitude may be larger."
+    data = {"spans": tuple(spans), "amplitude": most, "at_edge": beside}
+    return Note(RunCode.LEFT_OUT, data, text)
 
 
 def slow_disturbances(held: Held | None = None) -> Note | None:
@@ -196,7 +236,8 @@ def held_motions(held: Held, speed: Array) -> list[Note]:
     size = f"estimated error at most {percent(worst)}" if not np.isnan(error).all() else "error not estimated"
     text = (
         f"Rotor and {waves} held in time at {count} of {speed.size} speeds, {held.cells} {parts} round each "
-        f"wall, {size}."
+        f"wall, {size}. Their largest amplitude is one of the speeds held, among them the peaks of the "
+        "steady answer and without liquid."
     )
     if held.model == "potential":
         text += (

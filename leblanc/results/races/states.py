@@ -17,8 +17,9 @@ from leblanc.results.netcdf import NamedArrays, Variable, finite, flags
 from leblanc.results.netcdf import variable as var
 from leblanc.results.races.balls import GravityOnBalls, RaceOfBalls, ball_moment
 from meshes.arrays import Array, Complex, Flags, Index
-from solvers.rotor.balls.steady import BallKind, BallStates
+from solvers.rotor.balls.steady import GROWS, BallKind, BallStates
 
+_EQUAL = 1e-7  # relative; of amplitudes, and of growth over the spin
 STATE_NAMES: Mapping[int, str] = {kind: kind.name.lower() for kind in BallKind}
 
 
@@ -34,9 +35,12 @@ def reported_state(states: BallStates, sizes: Array) -> Index:
     """
     if states.kind.shape[1] == 0:
         return np.full(states.speed.shape, -1)
-    largest = np.argmax(np.where(states.stable, sizes, -1.0), axis=1)
+    stable = np.where(states.stable, sizes, -1.0)
+    # Of amplitudes that are equal the first: rounding does not choose.
+    largest = np.argmax(stable >= stable.max(axis=1, keepdims=True) * (1.0 - _EQUAL), axis=1)
     growth = np.where(states.kind > 0, np.nan_to_num(states.growth, nan=np.inf), np.inf)
-    least = np.argmin(growth, axis=1)
+    slack = _EQUAL * states.speed[:, None]
+    least = np.argmax(growth <= growth.min(axis=1, keepdims=True) + slack, axis=1)
     found = np.where(states.stable.any(axis=1), largest, least)
     return np.where((states.kind > 0).any(axis=1), found, -1)
 
@@ -79,6 +83,9 @@ class BallsResult(Result):
     #: deflection in the plane of each race below which its balls stay where they are, m
     sticking: tuple[float, ...]
     notes: tuple[Note, ...]  #: limits of validity and findings
+    #: least and largest growth of small motions over the members of the reported state's family, 1/s, twice
+    #: its own growth where it is the only member, shape (s, 2); None where it was not asked for
+    growth_range: Array | None = None
     #: forces and clearances of the state reported where it is stable; None where the scene asks for none
     loads: MachineLoads | None = None
     #: what the sources' closed forms say of the rotor
@@ -158,6 +165,18 @@ class BallsResult(Result):
         return self._of_chosen(self.states.growth, np.nan)
 
     @property
+    def family_dimension(self) -> Index:
+        """Dimension of the family of the state reported, 0 of a single one, -1 without one, shape (s,)."""
+        return self._of_chosen(self.states.dimension, -1)
+
+    @property
+    def elsewhere(self) -> Flags:
+        """The member told is not stable, and others of its family are, shape (s,)."""
+        if self.growth_range is None:
+            return np.zeros(self.speed.shape, dtype=bool)
+        return np.asarray(~self.stable & (self.growth_range[:, 0] <= GROWS * self.speed))
+
+    @property
     def ball_angle(self) -> Array:
         """Angle of each ball from the drum's zero mark, rad, shape (s, N)."""
         return self._of_chosen(self.states.places, np.nan)
@@ -209,8 +228,8 @@ class BallsResult(Result):
 
     @property
     def unstable(self) -> Flags:
-        """No state found is stable, shape (s,)."""
-        return np.asarray(~self.states.stable.any(axis=1))
+        """No state found is stable, nor a member of the family reported, shape (s,)."""
+        return np.asarray(~self.states.stable.any(axis=1) & ~self.elsewhere)
 
     def to_json(self) -> dict[str, Any]:
         """What `run` prints for scripts: SI units, radians, null for what is not there."""
@@ -219,6 +238,8 @@ class BallsResult(Result):
         over += ["ball_unbalance", "converged", "capacity", "can_balance", "sticking", "position", "name"]
         return {name: getattr(self, name) for name in (*over, "digest", "assumed")} | {
             "balanced_from": number_or_none(self.balanced_from),
+            "growth_range": None if self.growth_range is None else finite(self.growth_range),
+            "family_dimension": [None if size < 0 else size for size in self.family_dimension.tolist()],
             "states": [self._states_at(k) for k in range(self.speed.size)],
             "notes": texts(self.notes),
             **({} if self.loads is None else self.loads.to_json()),
@@ -238,6 +259,17 @@ class BallsResult(Result):
             text = "gravity leaves liquid and balls on their walls"
             found["in_range"] = flags(("speed",), self.in_range, "no yes", "in range", text)
         return found
+
+    def _ranges(self) -> dict[str, Variable]:
+        """Growth over the family, where it was asked for."""
+        if self.growth_range is None:
+            return {}
+        text = "over all members of the state's family"
+        least, largest = self.growth_range.T
+        return {
+            "growth_least": var(("speed",), least, "s-1", "least growth of small motions", text),
+            "growth_largest": var(("speed",), largest, "s-1", "largest growth of small motions", text),
+        }
 
     def _states_at(self, k: int) -> list[dict[str, Any]]:
         """All states at one speed."""
@@ -269,6 +301,10 @@ class BallsResult(Result):
                 "ball_angle": var(("speed", "ball"), self.ball_angle, "rad", "angle of the ball in the drum"),
                 "ball_unbalance": var(over, self.ball_unbalance, "kg m", "unbalance of all balls together"),
                 "liquid_offset": var(over, self.liquid_offset, "m", "liquid's centre of mass from the axis"),
+                "family_dimension": var(
+                    over, self.family_dimension.astype(np.int32), "1", "dimension of the state's family"
+                ),
+                **self._ranges(),
                 "state_kind": var(every, self.states.kind.astype(np.int32), "1", f"0 to 3: {kinds}"),
                 "state_amplitude": var(every, self.sizes, "m", "amplitude of each state found"),
                 "state_growth": var(every, self.states.growth, "s-1", "its growth of small motions"),

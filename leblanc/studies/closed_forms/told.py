@@ -34,7 +34,7 @@ def closed_forms(machine: Prepared, answer: Response | None = None) -> ClosedFor
     balancing, why_not = _balancing(scene, speed)
     missing = [lacking(scene), why_not, _no_balls(scene)]
     vector = None
-    if answer is not None and isinstance(machine.rotor, Jeffcott):
+    if answer is not None and scene.fills and isinstance(machine.rotor, Jeffcott):
         vector = vector_model(machine.rotor, answer, sum(fill.mass for fill in scene.fills))
     return ClosedForms(
         upright=upright(scene, speed),

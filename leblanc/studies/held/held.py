@@ -22,7 +22,7 @@ from solvers.held.branch import HeldBranches, HeldTask, held_branches
 from solvers.held.hold import require_known_solver, start
 from solvers.held.state import HeldKind, HeldMachine, HeldState, HoldNumerics
 from solvers.rotor.vibration import orbit
-from solvers.synchronous.response import Response, joined, response
+from solvers.synchronous.response import Response, by_speed, joined, response
 from solvers.whirl.growth import asynchronous_growth
 
 OWN_STEPS = "dop853"  # of exact waves, which py-pde does not hold
@@ -78,7 +78,7 @@ def hold_answer(
     models[rows] = choice.held_model
     waves = np.nan_to_num(held.wave_error[rows])  # where they have no estimate the notes say so
     error[rows] = held.error[rows] + waves + _left_out(machine, began.answer.at(rows))
-    kept = every.at(np.arange(rows.size, total)) if began.at.all() else began.refined.at(_far(began))
+    kept = by_speed([every.at(np.arange(rows.size, total)), began.refined.at(_far(began))])
     return replace(choice, models=models, error=error), answer, kept, held, motions
 
 
@@ -102,13 +102,15 @@ def _left_out(machine: Prepared, steady: Response) -> Array:
 
 
 def _between(began: Began) -> Index:
-    """Refined speeds at which the wave is held as well: the peaks, with liquid and without."""
-    size = began.refined.speed.size
-    if not began.at.all() or size == 0:
-        return np.zeros(0, dtype=np.intp)
-    peaks = (np.argmax(np.where(np.isfinite(part), part, -1.0))
-             for part in (began.refined.amplitude, began.refined.amplitude_dry))  # fmt: skip
-    return np.unique(np.array(list(peaks), dtype=np.intp))
+    """Refined speeds at which the wave is held as well: the peaks, with liquid and without, next to one held.
+
+    Where steady models answer on both sides they answer there too.
+    """
+    refined = began.refined
+    wet = np.where(refined.holds, refined.amplitude, np.nan)
+    peaks = [int(np.nanargmax(size)) for part in (wet, refined.amplitude_dry)
+             if np.isfinite(size := np.where(np.isfinite(part), part, np.nan)).any()]  # fmt: skip
+    return np.setdiff1d(np.array(peaks, dtype=np.intp), _far(began))
 
 
 def _far(began: Began) -> Index:

@@ -20,6 +20,7 @@ from leblanc.results.choice import Choice, HeldCost
 from leblanc.results.motion.held import HELD_MODELS
 from leblanc.scene.scene import Scene, dry_rotor, require_no_balls
 from leblanc.studies.models.liquid import RUNUP_MODELS, synchronous_model
+from leblanc.studies.models.validity import require_supported
 from meshes.arrays import Array, Flags
 from meshes.chamber_section import rest_offset, surface_is_whole
 from meshes.errors import InputError
@@ -62,14 +63,22 @@ class Prepared:
         return self.rotor
 
 
-def prepare(scene: Scene) -> Prepared:
+def prepare(scene: Scene, free: bool = False) -> Prepared:
     """The scene's machine as solvers take it.
+
+    Parameters
+    ----------
+    scene : the machine
+    free : its axis may be free to move
 
     Raises
     ------
-    InputError : the scene is that of an exciter, or has balls
+    InputError : the scene is that of an exciter, or has balls; its axis is free to move and may not be
     """
     require_no_balls(scene, "this; `leblanc run` and `leblanc runup` answer with balls")
+    if not free:
+        require_supported(scene)
+    scene = scene.as_read()
     rotor = dry_rotor(scene)
     return Prepared(
         scene=scene,
@@ -170,7 +179,7 @@ def models_at(machines: Sequence[Prepared]) -> list[tuple[NDArray[np.str_], Flag
 
 def _carried(machine: Prepared) -> Flags:
     """Whether the liquid rides with the drum, and covers a wall that is no circle, shape (n,)."""
-    captured_from, speed = _captured_from(machine.scene), machine.speed
+    captured_from, speed = captured_speed(machine.scene), machine.speed
     found = np.ones(speed.shape, dtype=bool) if captured_from is None else speed > captured_from
     if is_cut(machine.scene):
         found &= speed > max(_covers(fill, machine.axial_gravity) for fill in machine.scene.fills)
@@ -359,7 +368,7 @@ def _choice(machine: Prepared, linear: LinearError, gravity: GravityError) -> Ch
         models=models,
         prescribed=scene.model.liquid != "auto",
         in_range=_carried(machine),
-        captured_from=_captured_from(scene),
+        captured_from=captured_speed(scene),
         tolerance=tolerance,
         error=error,
         linear=linear,
@@ -386,7 +395,7 @@ def _covers(fill: Fill, gravity: float) -> float:
     return math.sqrt(gravity * fill.chamber.height / (fill.depth * (fill.depth + 2.0 * inner)))
 
 
-def _captured_from(scene: Scene) -> float | None:
+def captured_speed(scene: Scene) -> float | None:
     """Speed above which centrifugal acceleration holds every layer against gravity across the axis, rad/s."""
     layers = [fill for fill in scene.fills if _has_surface(fill)]
     if scene.rotor.axis == "vertical" or scene.gravity == 0.0 or not layers:
@@ -426,7 +435,7 @@ def carried_from(scene: Scene) -> float | None:
     rad/s, inf where nothing drags on one of them; None where no layer lies at the bottom first, or that of a
     chamber whose section is no circle
     """
-    stands = _captured_from(scene)
+    stands = captured_speed(scene)
     if stands is None or any(fill.chamber.section is not None for fill in scene.fills):
         return None
     balances = [balance_from(scene, fill) for fill in scene.fills]
@@ -446,7 +455,7 @@ def runup_outlook(scene: Scene) -> str:
     scene : the machine; nothing is said of one without a run-up or a programme
     """
     liquid, tolerance = scene.model.liquid, scene.model.tolerance
-    if scene.speed_plan is None:
+    if scene.speed_plan is None or not scene.chambers:
         return ""
     from solvers.runup.runup import largest_wave
 

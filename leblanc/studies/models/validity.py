@@ -19,7 +19,10 @@ from leblanc.results.notes.doubts import DoubtCode, doubt
 from leblanc.scene.rotors import JeffcottRotor, TubRotor, TwoPlaneRotor
 from leblanc.scene.scene import WITHOUT_CHAMBERS, Exciter, MagneticRotor, Scene
 from leblanc.units import DENSITY, LENGTH, MASS, UNBALANCE, VISCOSITY, in_rpm, number, rpm_range, with_unit
+from meshes.errors import InputError
 from solvers.liquid_model import Range
+from solvers.rotor.system import RotorSystem
+from solvers.rotor.vibration import axis_is_free, free_motions
 
 SMALLEST, LARGEST = 2e-4, 10.0  # of a wall, m
 THINNEST = 1e-6  # of a layer all round its wall, m
@@ -28,7 +31,6 @@ OVERDAMPED = 1.0  # damping ratio of a support
 ECCENTRICITY = {"tub": 0.25}  # of the largest wall: the centre of mass from the axis; of a drum with laundry
 _ECCENTRICITY = 0.1  # of other rotors
 FARTHEST = 10.0  # radii of gyration from the centre of mass; the ends of a rod lie at 1.7
-FREE = 1e-9  # square of a natural frequency over the largest one
 LIGHTEST, HEAVIEST = 50.0, 25e3  # density of a liquid, kg/m^3
 THICKEST = 0.5  # kinematic viscosity, m^2/s
 GRAVITY = 100.0  # m/s^2
@@ -140,20 +142,41 @@ def _far(scene: Scene, places: list[tuple[str, float]], gyration: float) -> Iter
 
 def _free(scene: Scene) -> Iterator[Note]:
     """Directions in which nothing holds the machine."""
-    from scipy.linalg import eigh
-
     assert isinstance(scene.rotor, TwoPlaneRotor | TubRotor)
-    system = scene.rotor.machine().system()
-    square, shapes = eigh(system.stiffness, system.mass)
-    loose = square < FREE * square.max() if square.max() > 0.0 else np.ones(square.size, dtype=bool)
-    if not loose.any():
+    if ways := _free_ways(scene.rotor.machine().system()):
+        field, cure = _CURES[scene.rotor.kind]
+        yield doubt(DoubtCode.FREE, field, f"it takes {cure}; nothing holds the machine {ways}", "")
+
+
+def _free_ways(system: RotorSystem) -> str:
+    """Directions in which nothing holds a machine, in words; empty where there is none."""
+    free = free_motions(system)
+    energy = (np.abs(free) ** 2 * np.diag(system.mass)[:, None]).sum(axis=1)
+    most = np.argsort(energy)[::-1][: free.shape[1]]
+    return " and ".join(_WAYS[system.coordinates[k]] for k in sorted(most.tolist()))
+
+
+# Field that holds a rotor, and what it takes.
+_CURES = {
+    "tub": ("rotor.springs", "springs with a stiffness along x, y and z, or more of them"),
+    "two_plane": ("rotor.supports", "supports in two planes, stiff in both directions"),
+}
+
+
+def require_supported(scene: Scene) -> None:
+    """Refuse a machine whose axis can move freely: it never comes to a steady motion of some size.
+
+    Raises
+    ------
+    InputError : with the free motions and what holds them
+    """
+    rotor = scene.rotor
+    if not isinstance(rotor, TwoPlaneRotor | TubRotor) or not axis_is_free(rotor.machine().system()):
         return
-    energy = (np.abs(shapes[:, loose]) ** 2 * np.diag(system.mass)[:, None]).sum(axis=1)
-    most = np.argsort(energy)[::-1][: int(loose.sum())]
-    ways = [_WAYS[system.coordinates[k]] for k in sorted(most.tolist())]
-    parts = "springs" if isinstance(scene.rotor, TubRotor) else "supports"
-    text = f"nothing holds the machine {' and '.join(ways)}"
-    yield doubt(DoubtCode.FREE, f"rotor.{parts}", text, "")
+    field, cure = _CURES[rotor.kind]
+    ways = _free_ways(rotor.machine().system())
+    allowed = f"{cure}: nothing holds the machine {ways}, and an axis that moves freely has no amplitude"
+    raise InputError(field, f"free {ways}", allowed)
 
 
 def _chambers(scene: Scene) -> Iterator[Note]:

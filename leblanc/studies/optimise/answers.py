@@ -7,9 +7,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from fluid.waves import capture_speed
 from leblanc.scene.scene import JeffcottRotor, Scene, Speeds, dry_rotor, jeffcott
 from leblanc.studies.models.choose import axial_gravity, is_cut, models_at, prepare
 from leblanc.studies.models.liquid import synchronous_model
+from leblanc.studies.models.validity import require_supported
 from leblanc.studies.peaks import responses_between, wet_resonances
 from meshes.arrays import Array, Flags
 from solvers.rotor.vibration import orbit
@@ -50,6 +52,7 @@ class FilledMachine:
     """
 
     def __init__(self, scene: Scene) -> None:
+        require_supported(scene)
         # One model for all volumes: a change of model within its tolerance would look like a better volume.
         liquid = "statics" if scene.model.liquid == "auto" else scene.model.liquid
         model = scene.model.altered(liquid=liquid)
@@ -92,24 +95,41 @@ class FilledMachine:
         return FillAnswers(*found.T)
 
     def peaks(self, volumes: Array, speeds: Speeds) -> Array:
-        """Largest amplitudes over a range of speeds, found between them as well, m, shape (m,).
+        """Largest amplitudes over the speeds of a range at which annular layers exist, at any of them.
 
         Parameters
         ----------
         volumes : of the chambers, m^3, shape (m, c)
         speeds : the range; how many there are does not matter
+
+        Returns
+        -------
+        m, shape (m,)
         """
-        rows, span = np.ascontiguousarray(volumes), (speeds.start, speeds.stop)
-        keys = [(row.tobytes(), *span) for row in rows]
+        rows = np.ascontiguousarray(volumes)
+        keys = [(row.tobytes(), speeds.start, speeds.stop) for row in rows]
         fresh = list(
             {key: k for k, key in reversed(list(enumerate(keys))) if key not in self._peaks}.values()
         )
         fresh.sort()
         if fresh:
             found = self._planar_peaks if self.planar else self._other_peaks
-            for k, size in zip(fresh, found(rows[fresh], *span).tolist(), strict=True):
+            begin = self.first_speed(speeds)
+            for k, size in zip(fresh, found(rows[fresh], begin, speeds.stop).tolist(), strict=True):
                 self._peaks[keys[k]] = math.inf if math.isnan(size) else size
         return np.array([self._peaks[key] for key in keys])
+
+    def first_speed(self, speeds: Speeds) -> float:
+        """First speed of a range that counts, rad/s: below it gravity leaves no annular layer, however thin.
+
+        One for all volumes, none included: a peak must not look lower because more of the range is left out.
+        All of a range below it counts, for lack of a better answer.
+        """
+        if self.scene.rotor.axis == "vertical" or self.scene.gravity == 0.0 or not self.scene.fills:
+            return speeds.start
+        walls = [fill.chamber.radius for fill in self.scene.fills]
+        stands = max(float(capture_speed(radius, self.scene.gravity)) for radius in walls)
+        return speeds.start if stands >= speeds.stop else max(speeds.start, math.nextafter(stands, math.inf))
 
     def _planar_peaks(self, volumes: Array, start: float, stop: float) -> Array:
         """The top of each resonance curve; where it lies outside the range, an end of the range."""

@@ -17,6 +17,7 @@ from fluid.whirl import is_full
 from leblanc.results import optimum
 from leblanc.results.base import ConstraintValue, Note
 from leblanc.results.choice import ModelSpan
+from leblanc.results.notes.baffles import compartment_notes
 from leblanc.results.optimum import (
     CandidateChamber,
     Candidates,
@@ -337,11 +338,13 @@ def _limits(scene: Scene, problem: Problem, volume: Array) -> tuple[Note, ...]:
         for k, (fill, freed) in enumerate(zip(scene.fills, freeing_volumes(scene), strict=True))
         if fill.chamber.baffles is not None and freed > 0.0
     )
+    fills = with_volumes(scene, volume).fills
+    parted += tuple(compartment_notes(fills))
     if problem.evaluate.runs is None:
         return parted
     return parted + tuple(
         optimum.too_deep(k, deepest)
-        for k, fill in enumerate(with_volumes(scene, volume).fills)
+        for k, fill in enumerate(fills)
         if fill.depth > deepest * fill.chamber.radius and not is_full(fill)
     )
 

@@ -251,7 +251,7 @@ def _peak(scene: Scene, task: Optimisation, machine: FilledMachine, problem: Pro
         evaluate = replace(problem.evaluate, vibration=RunupPeak(scene, problem.evaluate.runs))
         return replace(problem, evaluate=evaluate, meaning="largest amplitude of the run-up in time")
     speeds = scene.speeds
-    text = f"largest steady amplitude {over_rpm(speeds.start, speeds.stop)}"
+    text = f"largest steady amplitude {over_rpm(machine.first_speed(speeds), speeds.stop)}"
     evaluate = replace(problem.evaluate, vibration=PeakOver(machine, speeds))
     return replace(problem, evaluate=evaluate, meaning=text, speeds=(speeds.stop, *_resonances(scene)))
 

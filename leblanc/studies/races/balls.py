@@ -18,17 +18,21 @@ from leblanc.scene.races import BallRace
 from leblanc.scene.scene import Scene
 from leblanc.studies.closed_forms.told import closed_forms
 from leblanc.studies.machine import loaded_machine, loads_over_speed
-from leblanc.studies.models.choose import Prepared, carried_from, choose_all, prepare
+from leblanc.studies.models.choose import Prepared, axial_gravity, carried_from, choose_all, prepare
 from leblanc.studies.models.validity import doubts
 from leblanc.studies.races.estimates import carried_balls, gravity_on_balls, liquid_errors
 from leblanc.studies.races.states import liquid_beside
+from meshes.arrays import Array
 from meshes.errors import InputError
+from solvers.liquid_model import LiquidModel
 from solvers.rotor.balls.balancers import BallRace as Race
+from solvers.rotor.balls.families import Member, growth_ranges
 from solvers.rotor.balls.states import RotorWithBalls, turning
 from solvers.rotor.balls.steady import BallKind
+from solvers.rotor.system import RotorSystem
 from solvers.rotor.vibration import orbit
 from solvers.runup.balls import Balls
-from solvers.synchronous.balls import wet_states
+from solvers.synchronous.balls import in_step, wet_states
 from solvers.synchronous.errors import GravityError
 from solvers.synchronous.response import response
 
@@ -71,12 +75,13 @@ def _places(race: BallRace) -> list[float]:
     return [math.pi + apart * (k - 0.5 * (race.count - 1)) for k in range(race.count)]
 
 
-def run_balls(scene: Scene) -> BallsResult:
+def run_balls(scene: Scene, families: bool = True) -> BallsResult:
     """States in which the balls of a scene rest in the drum, at each of its speeds [theory: races, eq. 5-8].
 
     Parameters
     ----------
     scene : with races, and chambers with liquid or none
+    families : look for the least and the largest growth over families of states, which takes some time
 
     Raises
     ------
@@ -121,10 +126,34 @@ def run_balls(scene: Scene) -> BallsResult:
         liquid_model=liquid if any(fill.volume > 0.0 for fill in scene.fills) else "",
         tolerance=scene.model.tolerance,
     )
+    if families:
+        answer = replace(answer, growth_range=_growth_range(scene, system, races, answer, model))
     answer, waves = _estimated(machine, races, answer)
     answer = replace(answer, loads=_loads(scene, answer))
     alike = turning(system) is not None
     return replace(answer, notes=_run_notes(scene, answer, alike, waves))
+
+
+def _growth_range(
+    scene: Scene, system: RotorSystem, races: list[Race], answer: BallsResult, model: LiquidModel
+) -> Array:
+    """Least and largest growth over the family of each state reported, 1/s, shape (s, 2)."""
+    found = np.repeat(answer.growth[:, None], 2, axis=1)
+    rows, chosen, states = np.arange(answer.speed.size), answer.chosen, answer.states
+    still = states.still[rows, chosen]
+    # All members of a family that only turns in the drum are alike.
+    wide = np.flatnonzero((answer.family_dimension > 0) & still.any(axis=1))
+    gravity, members = axial_gravity(scene), []
+    for k in wide.tolist():
+        speed, own = float(answer.speed[k]), chosen[k]
+        machine = RotorWithBalls(in_step(system, scene.fills, speed, gravity, model), tuple(races))
+        places, coordinates = states.places[k, own], states.coordinates[k, own]
+        members.append(Member(machine, speed, places, coordinates, still[k]))
+    if members:
+        ranges = growth_ranges(members)
+        found[wide, 0] = np.fmin(found[wide, 0], ranges[:, 0])
+        found[wide, 1] = np.fmax(found[wide, 1], ranges[:, 1])
+    return found
 
 
 def _estimated(
@@ -167,6 +196,15 @@ def _run_notes(
     if answer.unstable.any():
         first, last = answer.speed[answer.unstable][[0, -1]].tolist()
         found.append(notes.runs_on(first, last, bool(answer.converged[answer.unstable].any())))
+    wide = (answer.family_dimension > 0) & answer.converged
+    if answer.growth_range is not None and wide.any():
+        least, largest = answer.growth_range[wide].min(), answer.growth_range[wide].max()
+        first, last = answer.speed[wide][[0, -1]].tolist()
+        most = int(answer.family_dimension.max())
+        found.append(notes.family(first, last, most, float(least), float(largest)))
+    if answer.elsewhere.any():
+        first, last = answer.speed[answer.elsewhere][[0, -1]].tolist()
+        found.append(notes.elsewhere(first, last))
     if any(answer.sticking):
         found.append(notes.sticks(max(answer.sticking)))
     if answer.gravity is not None:

@@ -148,7 +148,7 @@ def _lacking(scene: Scene, turned: RotorWithBalls) -> Iterator[str]:
     if scene.rotor.axis == "horizontal":
         yield "Gravity across the axis, which swings the balls: `leblanc runup` has it."
     if any(race.count > 2 for race in scene.balls):
-        yield "Three balls and more can balance in many ways: growth is that of one of them."
+        yield "Three balls and more can balance in many ways: growth is of one; `leblanc run` has its range."
     if turning(turned.system) is None:
         yield "The supports differ in two directions: the balls' swing with twice the spin is left out."
     if scene.rotor.kind == "tub":

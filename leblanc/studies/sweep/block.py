@@ -75,7 +75,7 @@ OVER_SPEED: tuple[Output, ...] = (
 )
 
 SINGLE: tuple[Output, ...] = (
-    Output("peak_amplitude", NUMBER, False, "m", "largest amplitude", "over the range of speeds"),
+    Output("peak_amplitude", NUMBER, False, "m", "largest amplitude", "over the speeds at which it holds"),
     Output(
         "peak_amplitude_dry",
         NUMBER,

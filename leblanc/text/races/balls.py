@@ -31,7 +31,11 @@ def answer(result: BallsResult) -> str:
         first = f"From {in_rpm(result.balanced_from)} on the balls balance the rotor"
     if not result.stable.any():
         found = result.converged.any()
-        nothing = "no state is stable" if found else "no state of balls at rest was found"
+        nothing = (
+            "no state that creeping balls come to is stable"
+            if found
+            else "no state of balls at rest was found"
+        )
         return f"{first}: {nothing}; without balls the largest amplitude is {without}."
     most = int(np.argmax(np.where(result.stable, result.amplitude, -1.0)))
     peak = f"{with_unit(float(result.amplitude[most]), LENGTH)} at {in_rpm(float(result.speed[most]))}"
@@ -60,6 +64,9 @@ def facts(result: BallsResult) -> list[tuple[str, str]]:
             f"{number(float(result.growth[-1]))} 1/s" if known else NOT_FOUND,
         ),
     ]
+    if result.growth_range is not None and result.family_dimension[-1] > 0:
+        least, largest = map(float, result.growth_range[-1])
+        rows.append((f"Growth over the family at {last}", f"{number(least)} to {number(largest)} 1/s"))
     if result.kind != "jeffcott":
         rows.append(("Amplitudes", plane_words(result.position, chambers=True)))
     if any(result.sticking):
@@ -81,6 +88,7 @@ def limits(result: BallsResult) -> list[Limit]:
     checks = [
         ("No state found", ~result.converged),
         ("No state is stable", result.unstable & result.converged),
+        ("Stable only elsewhere in the family", result.elsewhere),
         ("Several states are stable, the largest is told", several),
         ("More amplitude than without balls", result.amplitude > result.amplitude_without),
     ]

@@ -43,12 +43,13 @@ class Linearised:
     damping: Array
     stiffness: Array
     neutral: Array  #: directions of the balls, orthonormal, along which nothing changes, shape (N, d)
+    moved: Array  #: what the rotor's deflection does along them, shape (n, d)
     settled = True
 
     def matrix(self) -> Array:
-        """Rates of (z without the neutral directions, z'), shape (2 (n + N) - d,) twice.
+        """Rates of (z across the family, z'), shape (2 (n + N) - d,) twice [theory: races, eq. 18].
 
-        A shift along a neutral direction has no force, so it drives nothing and is left out; its rate stays.
+        A shift along the family has no force, so it drives nothing and is left out; its rate stays.
         """
         size, count = self.mass.shape[0], self.neutral.shape[0]
         held = _across(self.neutral)
@@ -57,6 +58,7 @@ class Linearised:
         free = kept.shape[1]
         whole = np.zeros((free + size, free + size))
         whole[:free, free:] = kept.T
+        whole[: size - count, free + size - count :] -= self.moved @ self.neutral.T
         forces = np.hstack((self.stiffness @ kept, self.damping))
         whole[free:] = -np.linalg.solve(self.mass, forces)
         return whole
@@ -208,7 +210,7 @@ def small_motions(
     neutral = neutral_directions(machine, angles, still)
     turn = turning(machine.system)
     if turn is not None:
-        return _turning_motions(machine, speed, angles, moved.real, turn, neutral)
+        return _turning_motions(machine, speed, angles, moved.real, turn, neutral, still)
     if steps is not None:
         return _half_turn(machine, speed, angles, moved, neutral, steps)
     return _settled_half_turn(machine, speed, angles, moved, neutral)
@@ -242,7 +244,13 @@ def linearised(
 
 
 def _turning_motions(
-    machine: RotorWithBalls, speed: float, angles: Array, deflection: Array, turn: Array, neutral: Array
+    machine: RotorWithBalls,
+    speed: float,
+    angles: Array,
+    deflection: Array,
+    turn: Array,
+    neutral: Array,
+    still: Flags,
 ) -> Linearised:
     system, moment, balls, whole = machine.system, machine.moment, machine.balls, machine.mass
     n, count = len(system.coordinates), moment.size
@@ -259,7 +267,40 @@ def _turning_motions(
     held[:n, n:] = -(speed**2) * moment * along.T
     held[n:, :n] = held[:n, n:].T
     held[n:, n:] = np.diag(speed**2 * moment * (outward @ deflection))
-    return Linearised(mass, drag, held, neutral)
+    shifted = np.zeros((n, neutral.shape[1]))
+    if turns_freely(machine, still):
+        # Along the others nothing of the deflection changes, so that the turn's part across them has all.
+        across = np.ones(count) - neutral @ neutral.sum(axis=0)
+        size = float(np.linalg.norm(across))
+        neutral = np.column_stack((neutral, across / size))
+        shifted = np.column_stack((shifted, turn @ deflection / size))
+    return Linearised(mass, drag, held, neutral, shifted)
+
+
+def turns_freely(machine: RotorWithBalls, still: Flags) -> bool:
+    """Balls and deflection may turn together in the drum: the rotor by itself is balanced.
+
+    Where no plane has a deflection this is one of `neutral_directions`.
+
+    Parameters
+    ----------
+    machine : rotor and balls
+    still : balls in whose plane the axis does not move, shape (N,)
+    """
+    held = np.abs(machine.push).sum(axis=0)
+    return bool((np.abs(machine.system.unbalance) <= _RANK * held).all() and not still.all())
+
+
+def family_dimension(machine: RotorWithBalls, places: ArrayLike, still: Flags) -> int:
+    """Number of directions along which a state may move and stays one [theory: races, eq. 16].
+
+    Parameters
+    ----------
+    machine : rotor and balls
+    places : of the balls, rad, shape (N,)
+    still : balls in whose plane the axis does not move, shape (N,)
+    """
+    return int(neutral_directions(machine, places, still).shape[1] + turns_freely(machine, still))
 
 
 def _directions(machine: RotorWithBalls, angles: Array) -> tuple[Array, Array]:

@@ -26,6 +26,8 @@ _SETTLING = 400  # rounds
 _LONGEST = 0.4  # rad, that a ball moves in a round
 _RESTS = 1e-11  # of the pull on a ball of the bare rotor: what a state may leave
 _NEWTON = 60  # rounds
+_CREEPS, _LOCAL = 2000, 1e-5  # steps of a way of creeping balls, at most; rad, error of each
+_RANK = 1e-7  # of the largest: smaller singular values are none
 
 
 def quarter_turn(system: RotorSystem) -> Array:
@@ -222,7 +224,9 @@ class RotorWithBalls:
         """
         return _pulls(*self._scaled_answers(compliance), places)
 
-    def settle(self, compliance: Complex, places: Array, rounds: int = _SETTLING) -> tuple[Array, Flags]:
+    def settle(
+        self, compliance: Complex, places: Array, rounds: int = _SETTLING, joined: Flags | None = None
+    ) -> tuple[Array, Flags]:
         """Let the balls go where they are pulled, as in a stiff oil, until they rest [theory: races, eq. 5].
 
         Implicit steps that grow as the pull fades; in the end they are Newton's.
@@ -232,11 +236,13 @@ class RotorWithBalls:
         compliance : of each of p problems, shape (p, n, n)
         places : start of the balls, rad, shape (p, N)
         rounds : most steps
+        joined : starts whose balls move race by race as one, shape (p,); None: none
 
         Returns
         -------
         Places, shape (p, N), and whether the balls rest there, shape (p,)
         """
+        as_one = np.full(places.shape[0], False) if joined is None else joined
         answers = self._scaled_answers(compliance)
         found, length = places.astype(float).copy(), np.full(places.shape[0], 0.5)
         unit = np.eye(places.shape[1])
@@ -250,10 +256,63 @@ class RotorWithBalls:
             shrink = np.where(np.isfinite(before), before / np.maximum(size, 1e-300), 1.0)
             length = np.clip(length * np.clip(shrink, 0.5, 3.0), 0.5, 1e9)
             step = np.linalg.solve(unit / length[:, None, None] - slope, pull[:, :, None])[:, :, 0]
+            step[as_one] = step[as_one] @ self._mean_of_race
             most = np.abs(step).max(axis=1, initial=1e-300)
             step *= np.minimum(1.0, _LONGEST / most)[:, None]
             found += step * busy[:, None]
         return found, np.asarray(size <= 1e3 * _RESTS)
+
+    @cached_property
+    def _mean_of_race(self) -> Array:
+        """What gives each ball the mean of its race, shape (N, N)."""
+        counts = [len(race.masses) for race in self.races]
+        own = np.repeat(np.eye(len(counts)), counts, axis=0)
+        return np.asarray(own / counts @ own.T)
+
+    def creep(self, compliance: Complex, places: Array) -> tuple[Array, Flags]:
+        """Where balls come to that creep along their pull in time [theory: races, eq. 17].
+
+        The way itself, to a part of `_LOCAL` a step, in place of the long steps of `settle`: of a family of
+        states it tells one. Steps of a linearly implicit method of second order, which damps what is stiff;
+        at the end Newton's across the family.
+
+        Parameters
+        ----------
+        compliance : of each of p problems, shape (p, n, n)
+        places : start of the balls, rad, shape (p, N)
+
+        Returns
+        -------
+        Places, shape (p, N), and whether the balls rest there, shape (p,)
+        """
+        bare, each = self._scaled_answers(compliance)
+        found, length, unit = places.astype(float), np.full(places.shape[0], 0.1), np.eye(places.shape[1])
+        going, share = np.arange(places.shape[0]), 1.0 / (2.0 + math.sqrt(2.0))
+        for _ in range(_CREEPS):
+            at, h = found[going], length[going, None]
+            pull, slope = _pulls(bare[going], each[going], at)
+            busy = np.abs(pull).max(axis=1) > _RESTS
+            if not busy.all():
+                going = going[busy]
+                if not going.size:
+                    break
+                at, h, pull, slope = at[busy], h[busy], pull[busy], slope[busy]
+            inverse = np.asarray(np.linalg.inv(unit - share * h[:, :, None] * slope), dtype=float)
+            first = _times(inverse, pull)
+            middle = _pulls(bare[going], each[going], at + 0.5 * h * first)[0]
+            second = _times(inverse, middle - first) + first
+            ahead = _pulls(bare[going], each[going], at + h * second)[0]
+            third = ahead - (6.0 + math.sqrt(2.0)) * (second - middle) - 2.0 * (first - pull)
+            error = h[:, 0] / 6.0 * np.abs(first - 2.0 * second + _times(inverse, third)).max(axis=1)
+            kept = error <= _LOCAL
+            found[going[kept]] += (h * second)[kept]
+            factor = 0.8 * np.cbrt(_LOCAL / np.maximum(error, 1e-12 * _LOCAL))
+            length[going] = np.minimum(length[going] * np.clip(factor, 0.2, 5.0), 1e6)
+        for _ in range(3):
+            pull, slope = _pulls(bare, each, found)
+            found -= _times(np.asarray(np.linalg.pinv(slope, rcond=_RANK)), pull)
+        rests = np.abs(_pulls(bare, each, found)[0]).max(axis=1) <= 1e3 * _RESTS
+        return found, np.asarray(rests)
 
     def nearest(self, compliance: Complex, places: ArrayLike) -> Array | None:
         """Places next to given ones at which the balls rest, whether they would go there or not.
@@ -286,6 +345,11 @@ class RotorWithBalls:
             return balanced_places(self.system, self.races)
         except InputError:
             return None
+
+
+def _times(matrix: Array, vector: Array) -> Array:
+    """Products of matrices, shape (p, N, N), with vectors, shape (p, N)."""
+    return np.asarray((matrix @ vector[:, :, None])[:, :, 0])
 
 
 def _pulls(bare: Complex, each: Complex, places: Array) -> tuple[Array, Array]:

@@ -12,14 +12,19 @@ from numpy.typing import ArrayLike
 from meshes.arrays import Array, Complex, Flags, Index
 from meshes.errors import InputError
 from solvers.rotor.balls.balancers import BallRace
-from solvers.rotor.balls.stability import small_motions
+from solvers.rotor.balls.families import Polygons
+from solvers.rotor.balls.stability import family_dimension, small_motions, turns_freely
 from solvers.rotor.balls.states import RotorWithBalls
 from solvers.rotor.system import RotorSystem
 
-_STARTS = 5  # irregular ones besides those by intent
+_LED, _STARTS = 5, 5  # starts by intent, and irregular ones
 _ALIKE = 1e-5  # of the balls' unbalance: states nearer than that are one
+_BALANCED = 1e-9  # of what the balls all together do: counts as none
 _STILL = 1e-7  # of the bare rotor's amplitudes: counts as none
-_GROWS = 1e-9  # of the spin
+GROWS = 1e-9  # of the spin
+_EQUAL = (
+    1e-7  # relative: amplitudes of states that differ by less are one, and their order that of the starts
+)
 _NEUTRAL = 1e-9  # slope of a pull over the largest pull: balls that creep neither come nor go
 _TOGETHER = (1, 2)  # starts with all balls together
 
@@ -44,11 +49,15 @@ class BallStates:
     #: largest real part of the roots of small motions, 1/s, below 0 where they fade; nan where the map of
     #: half a turn did not settle, which does not count as stable, shape (s, b)
     growth: Array
+    #: directions along which a state can move and stays one: of a family `places` and `growth` are those of
+    #: the member that creeping balls come to [theory: races, eq. 16-17], shape (s, b)
+    dimension: Index
+    still: Flags  #: balls in whose plane the axis does not move, shape (s, b, N)
 
     @property
     def stable(self) -> Flags:
         """Small motions fade or stay, shape (s, b)."""
-        return np.asarray((self.kind != BallKind.NONE) & (self.growth <= _GROWS * self.speed[:, None]))
+        return np.asarray((self.kind != BallKind.NONE) & (self.growth <= GROWS * self.speed[:, None]))
 
 
 def starts_of(counts: Sequence[int]) -> Array:
@@ -61,9 +70,10 @@ def starts_of(counts: Sequence[int]) -> Array:
     counts : of balls in each race
     """
     even = np.concatenate([2.0 * np.pi * np.arange(count) / count for count in counts])
-    order = np.concatenate([np.arange(count) for count in counts])
-    uneven = even + 0.3 * np.sin(order + 1.0)
-    near = 0.15 * np.sin(2.0 * order + 1.0)
+    # Counted over all races: two balls of one plane that begin at one angle would part by rounding alone.
+    every = np.arange(even.size)
+    uneven = even + 0.3 * np.sin(every + 1.0)
+    near = 0.15 * np.sin(2.0 * every + 1.0)
     zero = np.zeros(even.size)
     some = np.random.default_rng(0).uniform(0.0, 2.0 * np.pi, (_STARTS, even.size))
     return np.array([uneven, zero, zero + np.pi, near, near + np.pi, *some])
@@ -105,10 +115,15 @@ def steady_states(system: RotorSystem, races: Sequence[BallRace], speed: ArrayLi
     compliance = machine.compliance(spin)
     starts = starts_of([len(race.masses) for race in races])
     each = np.repeat(compliance, len(starts), axis=0)
-    places, rests = machine.settle(each, np.tile(starts, (spin.size, 1)))
+    places, rests = machine.settle(each, np.tile(starts, (spin.size, 1)), joined=begin_joined(spin.size))
     shape = (spin.size, len(starts))
     kept = (rests & attracting(machine, each, places, len(starts))).reshape(shape)
-    return collected(machine, spin, compliance, places.reshape(*shape, -1), kept)
+    return collected(machine, spin, each.reshape(*shape, *each.shape[1:]), places.reshape(*shape, -1), kept)
+
+
+def begin_joined(count: int) -> Flags:
+    """Of the starts of `starts_of`, so many times, those whose balls begin and stay together."""
+    return np.tile(np.isin(np.arange(_LED + _STARTS), _TOGETHER), count)
 
 
 def attracting(machine: RotorWithBalls, compliance: Complex, places: Array, count: int) -> Flags:
@@ -134,6 +149,18 @@ def attracting(machine: RotorWithBalls, compliance: Complex, places: Array, coun
     return np.asarray(np.where(stay, draw_all, draws))
 
 
+@dataclass
+class _Found:
+    """One state at a speed, or one member of a family."""
+
+    kind: BallKind
+    places: Array  #: shape (N,)
+    coordinates: Complex  #: shape (n,)
+    still: Flags  #: shape (N,)
+    dimension: int  #: of its family
+    starts: list[int]  #: from which the search came to it or another member; -1 for the closed form
+
+
 def collected(
     machine: RotorWithBalls,
     speed: Array,
@@ -144,69 +171,156 @@ def collected(
 ) -> BallStates:
     """Different states among those found, the balanced one first, then by rising deflection.
 
+    Of a family the member to which balls creep from the first start that leads to it.
+
     Parameters
     ----------
     machine : rotor and balls
     speed : rad/s, shape (s,)
-    compliance : shape (s, n, n), or (s, k, n, n) where each state has its own
-    places, rests : found from k starts, shapes (s, k, N) and (s, k)
+    compliance : shape (s, k, n, n), each start has its own
+    places, rests : found from k starts, those of `starts_of`, shapes (s, k, N) and (s, k)
     added : to the mass matrix in small motions, of liquid, shape (s, n, n)
     """
-    wanted, rows = machine.balanced(), []
+    wanted = machine.balanced()
+    rows: list[list[_Found]] = []
     for i in range(speed.size):
-        own = compliance[i] if compliance.ndim == 4 else np.repeat(compliance[i][None], places.shape[1], 0)
-        candidates, matrices = places[i][rests[i]], own[rests[i]]
+        starts = np.flatnonzero(rests[i])
+        candidates, matrices = places[i][starts], compliance[i][starts]
         if wanted is not None:
             candidates = np.vstack((wanted, candidates))
-            matrices = np.concatenate((own[:1], matrices))
-        found = _different(machine, matrices, candidates)
-        whole = machine if added is None else machine.carrying(added[i])
-        rows.append([(*state[:3], growth(whole, float(speed[i]), *state[1:])) for state in found])
+            matrices, starts = np.concatenate((compliance[i, :1], matrices)), np.insert(starts, 0, -1)
+        rows.append(_different(machine, matrices, candidates, starts))
+    _to_members(machine, compliance, rows)
     # A place for a state even where there is none at any speed: every reader finds it empty.
     most = max([1, *map(len, rows)])
     n, count = len(machine.system.coordinates), machine.moment.size
-    kind = np.zeros((speed.size, most), dtype=np.intp)
+    kind, dimension = (np.zeros((speed.size, most), dtype=np.intp) for _ in range(2))
     where, rates = np.full((speed.size, most, count), np.nan), np.full((speed.size, most), np.nan)
     amplitudes = np.full((speed.size, most, n), complex(np.nan, np.nan))
+    still = np.zeros((speed.size, most, count), dtype=bool)
     for i, row in enumerate(rows):
-        for k, (name, angles, coordinates, rate) in enumerate(row):
-            kind[i, k], where[i, k], amplitudes[i, k], rates[i, k] = name, angles, coordinates, rate
-    return BallStates(speed, kind, where, amplitudes, rates)
+        whole = machine if added is None else machine.carrying(added[i])
+        for k, state in enumerate(row):
+            kind[i, k], dimension[i, k] = state.kind, state.dimension
+            where[i, k] = np.mod(state.places + np.pi, 2.0 * np.pi) - np.pi
+            amplitudes[i, k], still[i, k] = state.coordinates, state.still
+            rates[i, k] = growth(whole, float(speed[i]), where[i, k], state.coordinates, state.still)
+    return BallStates(speed, kind, where, amplitudes, rates, dimension, still)
 
 
-def _different(
-    machine: RotorWithBalls, compliance: Complex, places: Array
-) -> list[tuple[BallKind, Array, Complex, Flags]]:
-    """Each state once, with the balls in whose plane the axis rests.
+def _to_members(machine: RotorWithBalls, compliance: Complex, rows: list[list[_Found]]) -> None:
+    """Take of each family the member that creeping balls come to [theory: races, eq. 17].
 
-    Of states that leave all races at rest the first alone: their balls may stand anyhow.
+    From the first start whose balls, on their true way, come to the family; the long steps of the search may
+    have gone elsewhere. Where none does, as to a balanced state that draws no balls, the member next to the
+    first start.
     """
+    starts = starts_of([len(race.masses) for race in machine.races])
+    begins = begin_joined(1)
+    waiting = [
+        (i, state, [k for k in state.starts if k >= 0 and not begins[k]])
+        for i, row in enumerate(rows)
+        for state in row
+        if state.dimension
+    ]
+    while waiting:
+        going = [(i, state, left) for i, state, left in waiting if left]
+        for _, state, left in waiting:
+            if not left and state.still.any():
+                _to_nearest(machine, state, starts[0])
+        if not going:
+            break
+        first = [left[0] for _, _, left in going]
+        matrices = np.array([compliance[i, k] for (i, _, _), k in zip(going, first, strict=True)])
+        places, rests = machine.creep(matrices, starts[first])
+        coordinates, still = machine.coordinates(matrices, places), machine.at_rest(matrices, places)
+        waiting = []
+        for p, (i, state, left) in enumerate(going):
+            if rests[p] and _same_family(machine, state, places[p], coordinates[p], still[p]):
+                state.places = places[p]
+                if state.kind is not BallKind.BALANCED:
+                    state.coordinates = coordinates[p]
+            else:
+                waiting.append((i, state, left[1:]))
+
+
+def _same_family(
+    machine: RotorWithBalls, state: _Found, places: Array, coordinates: Complex, still: Flags
+) -> bool:
+    """Whether balls came to a family: the same planes at rest, and the others as they were."""
+    if not np.array_equal(still, state.still):
+        return False
+    both = np.array([state.places, places])
+    means = _means(machine, both, np.array([state.coordinates, coordinates]), state.still)
+    return bool(np.abs(means[0] - means[1]).max() <= _ALIKE)
+
+
+def _to_nearest(machine: RotorWithBalls, state: _Found, start: Array) -> None:
+    """The member next to a start, by Newton's method, where it finds one."""
+    polygons, still = Polygons(machine, state.still), state.still
+    found, known = polygons.onto(start[still], polygons.held(state.places[still]))
+    if known:
+        state.places = state.places.copy()
+        state.places[still] = found
+
+
+def _means(machine: RotorWithBalls, places: Array, coordinates: Complex, still: Flags) -> Complex:
+    """First and second harmonic of each race whose plane moves, 0 of others, shape (p, 2 races).
+
+    From the deflection where state and deflection turn freely in the drum.
+    """
+    counts = [len(race.masses) for race in machine.races]
+    first = np.cumsum([0, *counts[:-1]])
+    if turns_freely(machine, still):
+        moved = machine.forward(coordinates)[:, np.argmin(still)]
+        places = places - np.angle(moved)[:, None]
+    turn = np.exp(1j * places)
+    return np.hstack([np.add.reduceat(turn**k, first, axis=1) / counts * ~still[first] for k in (1, 2)])
+
+
+def _different(machine: RotorWithBalls, compliance: Complex, places: Array, starts: Index) -> list[_Found]:
+    """Each state or family once, the smallest deflection first, equal ones in the order of their starts."""
     coordinates = machine.coordinates(compliance, places)
     size, still = np.abs(machine.forward(coordinates)).max(axis=1), machine.at_rest(compliance, places)
     counts = [len(race.masses) for race in machine.races]
     first = np.cumsum([0, *counts[:-1]])
-    turn = np.exp(1j * places)
-    means = np.hstack([np.add.reduceat(turn**k, first, axis=1) / counts for k in (1, 2)])
-    found: list[tuple[BallKind, Array, Complex, Flags]] = []
-    seen: list[Complex] = []
-    rests = False
-    for p in np.argsort(size, kind="stable").tolist():
+    gathered = np.abs(np.add.reduceat(np.exp(1j * places), first, axis=1) / counts)
+    size = np.where(still.all(axis=1), 0.0, size)
+    found: list[_Found] = []
+    seen: list[tuple[Flags, Complex]] = []
+    for p in _ordered(size):
+        (means,) = _means(machine, places[p][None], coordinates[p][None], still[p])
+        known = [
+            k
+            for k, (rest, other) in enumerate(seen)
+            if np.array_equal(rest, still[p]) and np.abs(means - other).max() <= _ALIKE
+        ]
+        if known:
+            found[known[0]].starts.append(int(starts[p]))
+            continue
+        seen.append((still[p], means))
         kind = BallKind.APART
         if still[p].all():
-            if rests:
-                continue
-            rests = True
-            bare = np.abs(compliance[p] @ machine.system.unbalance).max()
-            if np.abs(coordinates[p]).max() <= _STILL * bare:
+            answer = np.abs(compliance[p] @ np.vstack((machine.system.unbalance, machine.push)).T)
+            held = float(answer[:, 1:].sum(axis=1).max())
+            if np.abs(coordinates[p]).max() <= max(_STILL * float(answer[:, 0].max()), _BALANCED * held):
                 kind = BallKind.BALANCED
                 coordinates[p] = 0.0  # what is left is rounding
-        elif np.allclose(np.abs(means[p, : len(counts)]), 1.0, rtol=0.0, atol=1e-8):
+        elif np.allclose(gathered[p], 1.0, rtol=0.0, atol=1e-8):
             kind = BallKind.TOGETHER
-        if any(np.abs(means[p] - other).max() <= _ALIKE for other in seen):
-            continue
-        seen.append(means[p])
-        angles = np.mod(places[p] + np.pi, 2.0 * np.pi) - np.pi
-        found.append((kind, angles, coordinates[p], still[p]))
+        dimension = family_dimension(machine, places[p], still[p])
+        found.append(_Found(kind, places[p], coordinates[p], still[p], dimension, [int(starts[p])]))
+    return found
+
+
+def _ordered(size: Array) -> list[int]:
+    """Rising sizes, those that are equal but for `_EQUAL` in their order."""
+    order = np.argsort(size, kind="stable").tolist()
+    found: list[int] = []
+    while order:
+        alike = [p for p in order if size[p] <= size[order[0]] * (1.0 + _EQUAL)]
+        found += sorted(alike)
+        order = order[len(alike) :]
     return found
 
 

@@ -11,9 +11,12 @@ import numpy as np
 import pytest
 
 from fluid.fill import Fills
+from leblanc.results.base import percent
+from leblanc.results.notes.baffles import BaffleCode
 from leblanc.scene.scene import Scene, jeffcott, load_scene, scene_from_table
 from leblanc.scene.schema.load import SceneError, read_toml
 from leblanc.studies.batch import answer_scenes
+from leblanc.studies.explain import explain_scene
 from leblanc.studies.models.choose import choose
 from leblanc.studies.run import run_scene
 from leblanc.studies.runup import runup_scene
@@ -24,6 +27,7 @@ from meshes.files.exchange import write_section
 from meshes.section import Section, disc
 from solvers.sloshing.model import SmallWaves
 from tests.leblanc.studies.test_modes import circle_drawing
+from tests.mutants import kills
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 BASE: dict[str, Any] = {
@@ -93,6 +97,34 @@ def test_compartments_add_less_mass() -> None:
     assert np.isnan(record.error_estimate).all()
     assert not np.isfinite(record.error_estimate).any()
     assert added < 0.5 * scene(CUT).fills[0].full_mass
+
+
+@kills("leblanc.results.notes.baffles:closed_compartments", "fill.added_mass / fill.full_mass", "0.5")
+@kills("leblanc.results.notes.baffles:closed_compartments", "fill.compartments < 2", "fill.compartments > 2")
+def test_compartments_that_hardly_balance_are_told() -> None:
+    """One sentence in `run`, `explain` and `optimise` for equal chambers; none where the liquid passes.
+
+    The balancing mass is pi h R^2 for a layer that leaves the wall wet, less the surface a^2 whose shift each
+    sector of four takes back: the integral of cos^2 of its mean over the circle.
+    """
+    sectors = np.arange(4)[:, None] * (math.pi / 2.0)
+    angle = sectors + (np.arange(1000) + 0.5) * (math.pi / 2000.0)
+    surface = 0.01 - CHAMBER["volume"] / (math.pi * CHAMBER["height"])  # its radius squared
+    left = 1.0 - surface / 0.01 * 2.0 * float(np.mean(np.cos(angle).mean(axis=1) ** 2))
+    chamber = CHAMBER | {"baffles": {"count": 4, "tip_radius": 0.05}}
+    own = scene_from_table(
+        BASE | {"chambers": [chamber, chamber]} | {"speeds": BASE["speeds"] | {"count": 3}}
+    )
+    found = [note for note in run_scene(own).notes if note.code == BaffleCode.CLOSED_COMPARTMENTS]
+    assert len(found) == 1
+    note = found[0]
+    assert note.text.startswith("Chambers 1 and 2: baffles of 50 mm are higher than the layer of 10.05 mm")
+    assert "close 4 compartments: the liquid cannot gather on one side" in note.text
+    assert f"its balancing mass is {percent(left)} of that in a clear ring" in note.text
+    assert all(note.text[18:100] in layer.walls for layer in explain_scene(own).layers)
+    passes = chamber | {"baffles": {"count": 4, "tip_radius": 0.095}}
+    low = scene_from_table(BASE | {"chambers": [passes]} | {"speeds": BASE["speeds"] | {"count": 3}})
+    assert not [note for note in run_scene(low).notes if note.code == BaffleCode.CLOSED_COMPARTMENTS]
 
 
 def test_many_scenes_at_once_are_those_alone() -> None:

@@ -54,7 +54,7 @@ def test_an_empty_file_lacks_everything(tmp_path: Path, capsys: pytest.CaptureFi
     path = tmp_path / "scene.toml"
     path.touch()
     lines = shell(path, capsys).splitlines()
-    assert [line.split(": ")[1] for line in lines] == ["name", "rotor", "chambers", "speeds"]
+    assert [line.split(": ")[1] for line in lines] == ["name", "rotor", "speeds"]
 
 
 def test_a_file_that_is_not_there(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -81,7 +81,6 @@ CASES = (
     case("damping_ratio = 0.10", "", "rotor.damping_ratio", "exactly one of damping_ratio and damping"),
     case('unbalance = "0.6 kg*mm"', "", "rotor.unbalance", "must be given", "kg*m"),
     case('axis = "horizontal"', "", "rotor.axis", "horizontal, vertical"),
-    case(CHAMBER, "", "chambers", "must be given", "1 to 1000"),
     case('radius = "65 mm"\n', "", "chambers.0.radius", "must be given", "a length"),
     case('height = "20 mm"', "", "chambers.0.height", "must be given", "a length"),
     case('volume = "10 ml"', "", "chambers.0.volume", "must be given", "a volume"),

@@ -71,7 +71,6 @@ def test_parts_are_refused_in_the_same_words() -> None:
         "rotor.damping_ratio",
         "rotor.unbalance",
         "rotor.axis",
-        "chambers",
         "speeds.stop",
         "speeds.count",
     ]

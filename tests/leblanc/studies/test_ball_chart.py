@@ -34,6 +34,12 @@ def scene(name: str, **changes: Any) -> lb.Scene:
     )
 
 
+def beside_liquid(**changes: Any) -> lb.Scene:
+    """Two balls beside liquid, which balance in one way: a chart and `run` judge the same state."""
+    machine = scene("balls_and_liquid", rotor__unbalance=3e-3, **changes)
+    return machine.altered(chambers=(*machine.liquids, machine.balls[0]))
+
+
 def growth_by_run(machine: lb.Scene, kind: BallKind) -> np.ndarray:
     """Growth about the states of a kind at each speed, by the solver of `run`, which shares no code."""
     found = lb.run(machine)
@@ -42,8 +48,7 @@ def growth_by_run(machine: lb.Scene, kind: BallKind) -> np.ndarray:
     return np.asarray(np.nanmin(rows, axis=1))
 
 
-def as_in_run(name: str) -> None:
-    machine = scene(name, speeds__count=3)
+def as_in_run(machine: lb.Scene) -> None:
     chart = lb.map_balls(machine, values=2, speeds=3)
     np.testing.assert_allclose(chart.speed, machine.speed_array(), rtol=1e-14)
     expected = growth_by_run(machine, BallKind.BALANCED)
@@ -53,19 +58,29 @@ def as_in_run(name: str) -> None:
 
 @pytest.mark.parametrize("name", ["balls", "long_rotor"])
 def test_growth_with_the_scene_as_it_stands_is_that_of_run(name: str) -> None:
-    as_in_run(name)
+    as_in_run(scene(name, speeds__count=3))
 
 
 @kills("solvers.synchronous.balls:in_step", "system.mass + _in_step", "system.mass + 0.0 * _in_step")
 def test_growth_beside_liquid_is_that_of_run() -> None:
-    """The liquid as a mass in step; two races of one plane share the unbalance by what they hold."""
-    as_in_run("balls_and_liquid")
+    """The liquid as a mass in step."""
+    as_in_run(beside_liquid(speeds__count=3))
+
+
+def test_an_even_share_is_one_of_the_family() -> None:
+    """Two races of one plane share the unbalance by what they hold: growth in the range of all members."""
+    machine = scene("balls_and_liquid", speeds__count=3)
+    chart, found = lb.map_balls(machine, values=2, speeds=3), lb.run(machine)
+    assert isinstance(found, BallsResult) and found.growth_range is not None
+    balanced = (found.states.kind[:, 0] == BallKind.BALANCED) & (found.chosen == 0)
+    assert balanced.sum() >= 2
+    least, largest = found.growth_range[balanced].T
+    assert (least <= chart.scene_growth[balanced]).all() and (chart.scene_growth[balanced] <= largest).all()
 
 
 @kills(f"{CHARTS}:stable_bands", "bracketed_root(largest, x[known], x[known + 1])[0]", "x[known]")
-@pytest.mark.parametrize("name", ["balls", "balls_and_liquid"])
-def test_the_edge_is_where_the_growth_of_run_changes_its_sign(name: str) -> None:
-    machine = scene(name)
+@pytest.mark.parametrize("machine", [scene("balls"), beside_liquid()], ids=["balls", "balls_and_liquid"])
+def test_the_edge_is_where_the_growth_of_run_changes_its_sign(machine: lb.Scene) -> None:
     edge = lb.map_balls(machine, values=2, speeds=12).stable_from
     beside = {"speeds.start": edge * (1.0 - 1e-6), "speeds.stop": edge * (1.0 + 1e-6), "speeds.count": 2}
     below, above = growth_by_run(machine.replace(beside), BallKind.BALANCED)
@@ -103,8 +118,8 @@ def test_the_long_rotor_comes_out_of_the_command(tmp_path: Path, capsys: pytest.
     for damping, edge in EDGES.items():
         # Straight pieces of a fiftieth of the chart on a curve: a second-order error.
         assert np.interp(np.log(damping), np.log(value), speed) == pytest.approx(edge, rel=2e-3)
-        machine = scene("long_rotor").replace(dict.fromkeys(SUPPORTS, damping))
-        assert lb.map_balls(machine, values=2, speeds=3).stable_from == pytest.approx(edge, abs=0.006)
+    machine = scene("long_rotor").replace(dict.fromkeys(SUPPORTS, 5.0))
+    assert lb.map_balls(machine, values=2, speeds=3).stable_from == pytest.approx(EDGES[5.0], abs=0.006)
     assert {path.name for path in tmp_path.iterdir()} == {
         *("map.nc", "map.html", "map.png", "map.svg", "contents.json")
     }

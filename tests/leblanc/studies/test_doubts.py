@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,8 @@ from leblanc.cli import main
 from leblanc.scene.examples import example_names, example_path
 from leblanc.scene.scene import Scene, scene_from_table
 from leblanc.studies.models.validity import doubts
+from leblanc.text.explanation import machine_rows
+from meshes.errors import InputError
 
 SCENES = [name for name in example_names() if "rotor" in tomllib.loads(example_path(name).read_text())]
 
@@ -138,6 +141,27 @@ def test_directions_in_which_nothing_holds_a_tub() -> None:
     assert note.text.endswith("nothing holds the machine along x and along y and about x and about z.")
     whole = [{"position": [x, y, 0.2], "stiffness": [5e3] * 3} for x in (0.2, -0.2) for y in (0.1, -0.1)]
     assert doubts(tub(whole)) == ()
+
+
+def test_a_machine_that_moves_freely_has_no_headline() -> None:
+    """Two upright springs hold no steady motion of some size: refused with the free motions and the cure.
+
+    `explain` answers without critical speeds; springs all round have them.
+    """
+    upright = tub([{"position": [x, 0, 0.2], "stiffness": [0, 0, 5000]} for x in (0.2, -0.2)])
+    few = upright.replace({"speeds.count": 5})
+    for ask in (lb.run, lb.run_up, lb.optimise):
+        with pytest.raises(InputError, match="stiffness along x, y and z") as refused:
+            ask(few)
+        assert refused.value.field == "rotor.springs"
+        assert "along x and along y and about x and about z" in str(refused.value)
+    told = lb.explain(few)
+    assert math.isnan(told.critical_speed_dry) and math.isnan(told.critical_speed_wet)
+    rows = dict(machine_rows(told))
+    assert rows["free to move"].startswith("4 motions") and "critical speed" in rows
+    rest = [{"position": [x, y, 0.2], "stiffness": [5e3] * 3} for x in (0.2, -0.2) for y in (0.1, -0.1)]
+    held = tub(rest).replace({"speeds.count": 5})
+    assert "free to move" not in dict(machine_rows(lb.explain(held)))
 
 
 def test_a_rotor_in_one_support_may_tilt_freely() -> None:

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+import leblanc as lb
 from leblanc.results.notes.response import RunCode
 from leblanc.results.response import RunResult
 from leblanc.scene.scene import Scene, load_scene
@@ -23,7 +24,7 @@ from leblanc.studies.optimise.objectives import PeakOver
 from leblanc.studies.optimise.optimise import optimise_scene
 from leblanc.studies.peaks import _distinct, responses_between
 from leblanc.studies.run import run_scene
-from leblanc.text.run import answer, remarks, summary
+from leblanc.text.run import alts, answer, remarks, summary
 from leblanc.units import RPM
 from meshes.arrays import Array
 from solvers.synchronous.response import Response, by_speed, response
@@ -219,6 +220,107 @@ def test_sweeps_and_comparisons() -> None:
     models = compare_models(scenes[0], ["linear", "statics"])
     assert models.answers[1].peak_amplitude == pytest.approx(
         run("centrifuge", 241).peak["amplitude"], rel=1e-3
+    )
+
+
+# Resonances below the speed at which gravity across the axis lets an annular layer be.
+RIG = {"rotor.critical_speed": "90 rpm", "rotor.damping_ratio": 0.02, "rotor.unbalance": 1e-5}
+PLANES = {f"rotor.supports.{k}.{name}": value for k in (0, 1) for name, value in
+          (("stiffness", 700.0), ("damping", 2.0))}  # fmt: skip
+PLANES |= {
+    "rotor.unbalances.0.size": 1.5e-5,
+    "rotor.unbalances.1.size": 1.2e-5,
+    "rotor.unbalances.1.angle": 0.5,
+}
+LOW = {"speeds.start": "60 rpm", "speeds.stop": "400 rpm", "model.liquid": "statics", "assumed": []}
+LYING = {"horizontal_rig": RIG | LOW, "two_plane_rig": PLANES | LOW}
+
+
+def stands(own: Scene) -> float:
+    """Speed at which centrifugal acceleration at the surface of the thickest layer is gravity, rad/s."""
+    radii = []
+    for fill in own.fills:
+        area = math.pi * fill.chamber.radius**2 - fill.volume / fill.chamber.height
+        radii.append(math.sqrt(area / math.pi))
+    return max(math.sqrt(own.gravity / radius) for radius in radii)
+
+
+@kills("solvers.synchronous.response:Response.holds", "self.converged & self.in_range", "self.converged")
+@kills("leblanc.studies.peaks:_holding", "0.5 * (here + known.speed[k])", "here + 0.0 * k")
+@kills("leblanc.studies.peaks:_holding", "not known.holds[k]]", "known.holds[k]]")
+def test_the_largest_amplitude_is_that_of_speeds_at_which_the_answer_holds() -> None:
+    """An edge or a lower resonance above the speed of an annular layer, from few speeds as from many.
+
+    At 1001 speeds nothing that holds is larger, and below the edge something is.
+    """
+    for name, changes in LYING.items():
+        own = lb.example(name).replace(changes)
+        edge = stands(own)
+        dense = sampled(own, 1001)
+        holds = dense.speed > edge
+        found = [run_scene(own.replace({"speeds.count": count})) for count in (12, 60)]
+        for each in found:
+            assert each.peak["speed"] >= edge * (1.0 - 1e-12)
+            assert each.peak["amplitude"] == pytest.approx(found[0].peak["amplitude"], rel=1e-8)
+            # A dense grid misses the edge by up to a step, a quarter of a percent of the speed.
+            assert each.peak["amplitude"] >= dense.amplitude[holds].max() * (1.0 - 1e-9)
+            assert each.peak["amplitude"] <= dense.amplitude[holds].max() * 1.02
+        assert dense.amplitude[~holds].max() > 2.0 * found[0].peak["amplitude"]
+        if name == "horizontal_rig":  # falls from the edge on
+            assert found[0].peak["speed"] == pytest.approx(edge, rel=1e-8)
+        answers = answer_scenes([own.replace({"speeds.count": 12})])
+        assert answers.peak_amplitude[0] == pytest.approx(found[0].peak["amplitude"], rel=1e-8)
+
+
+@cache
+def lying(name: str) -> RunResult:
+    return run_scene(lb.example(name).replace(LYING[name] | {"speeds.count": 12}))
+
+
+def test_what_the_largest_amplitude_leaves_out_is_told() -> None:
+    """The speeds that do not count, why, how large it is there, and whether the peak lies beside them."""
+    for name, beside in (("horizontal_rig", True), ("two_plane_rig", False)):
+        found = lying(name)
+        (note,) = (note for note in found.notes if note.code is RunCode.LEFT_OUT)
+        ((first, last),) = note.data["spans"]
+        assert first == found.speed[0] and found.curve.speed[~found.curve.in_range][-1] == last
+        assert note.data["amplitude"] == found.curve.amplitude.max() > found.peak["amplitude"]
+        assert note.data["at_edge"] is beside and ("lies at the edge" in note.text) is beside
+        assert "no annular layer exists" in note.text
+        rows = dict(summary(found))
+        assert rows["at the speed (rpm)"].startswith(f"{found.peak['speed'] * RPM:.4g} ")
+        assert "where the answer holds is" in answer(found)
+        assert all("where the answer holds" in alts(found)[figure] for figure in ("amplitude", "chamber"))
+    upright = run("centrifuge", 241)
+    assert not [note for note in upright.notes if note.code is RunCode.LEFT_OUT]
+    assert "holds" not in answer(upright)
+
+
+@kills("leblanc.results.response:_curve_json", "result.curve", "result.response")
+def test_one_curve_contains_its_peaks() -> None:
+    """The largest amplitude of the curve, among the speeds in range, is the peak of the table."""
+    for found in (run("centrifuge", 241), lying("two_plane_rig")):
+        curve, data = found.to_json()["curve"], found.to_dataset()
+        for size, inside in (
+            (np.array(curve["amplitude"]), np.array(curve["in_range"])),
+            (data["curve_amplitude"].values, data["curve_in_range"].values == 1),
+        ):
+            assert size[inside].max() == found.peak["amplitude"]
+        assert max(curve["amplitude_dry"]) == found.peak_dry["amplitude"]
+        assert np.all(np.diff(curve["speed"]) > 0.0) and data["curve_amplitude"].dims == ("curve_speed",)
+        assert set(found.to_json()["speed"]) <= set(curve["speed"])
+
+
+def test_a_peak_of_the_optimiser_does_not_fall_because_less_of_it_counts() -> None:
+    """Its range begins where the thinnest layer can be: the same for every volume, none and full included."""
+    own = lb.example("horizontal_rig").replace(LYING["horizontal_rig"])
+    machine = FilledMachine(own)
+    begin = math.sqrt(own.gravity / 0.05)  # of the smaller of the two walls
+    assert machine.first_speed(own.speeds) == pytest.approx(begin, rel=1e-12)
+    volumes = np.array([[0.0, 0.0], [1e-5, 1e-5], [0.999 * fill.chamber.capacity for fill in own.fills]])
+    ends = machine.at(np.repeat(volumes, 2, axis=0), np.tile([begin, own.speeds.stop], 3))
+    np.testing.assert_allclose(
+        machine.peaks(volumes, own.speeds), ends.amplitude.reshape(3, 2).max(1), rtol=1e-9
     )
 
 

@@ -85,8 +85,9 @@ def test_several_races_keep_their_balls_and_places(name: str) -> None:
         np.testing.assert_allclose(along, 1e3 * race.plane, atol=1e-9)
         moment += race.capacity / race.count * np.exp(1j * np.angle(across)).sum()
     if name == "balls_and_liquid":
-        # In one plane they take the unbalance away.
-        np.testing.assert_allclose(moment, -machine.rotor.unbalance, rtol=1e-9)
+        # In one plane they take the unbalance away; but where some that would overlap are drawn side by side.
+        apart = 2.0 * 6.0 / 94.0 if view.apart[-1] else 1e-9
+        assert abs(moment + machine.rotor.unbalance) < apart * machine.rotor.unbalance
         assert {piece.name for piece in picture.pieces} >= {"surface 1", "liquid 1", "wall 2", "wall 3"}
 
 

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
+from scipy.linalg import block_diag
 
 from meshes.errors import InputError
 from solvers.rotor.campbell import campbell
@@ -17,8 +19,10 @@ from solvers.rotor.system import RotorSystem
 from solvers.rotor.two_plane import Support, TwoPlane
 from solvers.rotor.vibration import (
     Modes,
+    axis_is_free,
     critical_speeds,
     dynamic_stiffness,
+    free_motions,
     modes,
     orbit,
     unbalance_response,
@@ -108,6 +112,38 @@ def test_equal_overdamped_modes_and_free_bodies() -> None:
     loose = TwoPlane(3.0, 0.1, 0.05, (Support(0.0, 1e4, 1.0),)).system()
     assert np.count_nonzero(modes(loose, 0.0).frequency) == 2
     assert np.count_nonzero(modes(loose, 50.0).frequency) == 3  # and the free top
+
+
+@kills("solvers.rotor.vibration:free_motions", "square < FREE", "square < -FREE")
+@kills("solvers.rotor.vibration:axis_is_free", "(system.centre, system.lean)", "(system.centre,)")
+@kills("solvers.rotor.vibration:axis_is_free", "part @ free", "system.centre @ free * 0.0")
+def test_motions_that_nothing_holds() -> None:
+    """A rod in one support turns about it, one in two does not; a turn about its own axis moves no axis."""
+    ends = Support(-0.2, 1e4, 1.0), Support(0.3, 1e4, 1.0)
+    hinged = TwoPlane(3.0, 0.1, 0.05, ends[:1]).system()
+    free = free_motions(hinged)
+    assert free.shape[1] == 2 and axis_is_free(hinged)
+    # No force at the support: it stays where it is, and the kinetic energies are those of unit motions.
+    np.testing.assert_allclose(hinged.at(-0.2) @ free, 0.0, atol=1e-9)
+    np.testing.assert_allclose(free.T @ hinged.mass @ free, np.eye(2), atol=1e-12)
+    middle = TwoPlane(3.0, 0.1, 0.05, (Support(0.0, 1e4, 1.0),)).system()  # leans, the centre rests
+    assert axis_is_free(middle) and not np.abs(middle.centre @ free_motions(middle)).max() > 1e-9
+    assert not axis_is_free(TwoPlane(3.0, 0.1, 0.05, ends).system())
+    assert not axis_is_free(tub().system()) and not axis_is_free(Jeffcott(4.0, 4e4, 84.0, 6e-4).system())
+    # A coordinate that no spring holds and that moves no axis, as a turn about it.
+    held = TwoPlane(3.0, 0.1, 0.05, ends).system()
+    wide = replace(
+        held,
+        coordinates=(*held.coordinates, "turn"),
+        mass=block_diag(held.mass, 0.05),
+        damping=block_diag(held.damping, 0.0),
+        gyroscopic=block_diag(held.gyroscopic, 0.0),
+        stiffness=block_diag(held.stiffness, 0.0),
+        unbalance=np.append(held.unbalance, 0.0),
+        centre=np.pad(held.centre, ((0, 0), (0, 1))),
+        lean=np.pad(held.lean, ((0, 0), (0, 1))),
+    )
+    assert free_motions(wide).shape[1] == 1 and not axis_is_free(wide)
 
 
 @kills(

@@ -228,10 +228,10 @@ def test_momentum() -> None:
 def test_energy() -> None:
     """The remainder of the energy balance goes down with the square of the step and the cell."""
     left = []
-    for cells in (12, 24):
+    for cells in (8, 16):
         found = machine(cells, 0.5)
         before = found.energy()
-        assert found.advance(0.15, 20.0, 0.3, 1000) == Outcome.DONE
+        assert found.advance(0.1, 20.0, 0.3, 1000) == Outcome.DONE
         s = found.sums
         gained = s.unbalance + s.drive + s.gravity
         lost = s.support + s.friction + s.bores + s.profile

@@ -66,9 +66,11 @@ def test_no_flipped_byte_changes_a_number(store: Path) -> None:
 
 
 def test_what_is_missing_is_answered_again(store: Path) -> None:
-    """Of each variable one chunk after the other; metadata are not made up."""
+    """One chunk after the other, of every fifth variable; metadata are not made up."""
     whole = tree(store)
-    for path in files(store):
+    metadata = [path for path in files(store) if path.name == "zarr.json"]
+    chunks = [path for path in files(store) if path.name != "zarr.json"]
+    for path in metadata + chunks[::5]:
         content = path.read_bytes()
         path.unlink()
         if path.name == "zarr.json":
