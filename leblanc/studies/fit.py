@@ -33,7 +33,6 @@ from leblanc.studies.fitting.noise import (
     ESTIMATE,
     Judged,
     here,
-    is_exact,
     kinds_of,
     parse_noise,
     refine,

@@ -404,5 +404,5 @@ def _check(values: Array, names: Sequence[str], lines: Sequence[int], path: str 
         if bad.size:
             value = float(column[bad[0]])
             bound = "above 0" if name == "speed" else "of at least 0"
-            allowed = f"a {name} {bound}" if low[bad[0]] else f"a {name} of at most {most:g} in SI units"
+            allowed = f"{name} {bound}" if low[bad[0]] else f"{name} of at most {most:g} in SI units"
             raise InputError(f"{path}:{lines[bad[0]]}", value, allowed)

@@ -25,7 +25,6 @@ _LEAST = 1e-6  # of the size: noise below it is not looked for
 _EXACT = 1e-4  # of the largest value: less left needs no explanation
 _CHANCE = 2e-3  # of noise that looks worse: below it what is left is no noise
 _FEW = 3  # degrees of freedom up to which no pattern is seen
-_FEW_POOR = 0.1  # of the size: more left than that by so few is not taken for noise
 _PASSES = 4  # of weights by the fitted values
 
 
@@ -94,7 +93,7 @@ def _noise(problem: Problem, x: Array, stated: tuple[str, float], kind: str) -> 
     share = max(problem.freedom, 1) / problem.count
     sizes, sigma = [], []
     together = _together(problem, left, shapes)
-    for k, ((name, value), rest, shape) in enumerate(
+    for k, ((name, _value), rest, shape) in enumerate(
         zip(problem.measurement.columns, left, shapes, strict=True)
     ):
         typical = 1.0 if name in ANGLES else problem.sizes[k]
@@ -179,8 +178,7 @@ def unexplained(problem: Problem, judged: Judged) -> Note | None:
     if rms > POOR:
         return poor_note(rms, "no sensor has so much noise")
     if problem.freedom <= _FEW:
-        few = f"{problem.count} values are too few to see noise in so much"
-        return poor_note(rms, few) if rms > _FEW_POOR else None
+        return None
     for reason in (
         _repeated(problem, white),
         _neighbours(problem, judged, white),

@@ -346,7 +346,11 @@ def planar_steady(scenes: Sequence[Scene], speed: Array) -> list[Response]:
     rows = [np.flatnonzero(names == name) for name in np.unique(names)]
     parts = [
         machine_responses(
-            pairs, owner[row], np.tile(speed, len(scenes))[row], gravity, synchronous_model(str(names[row[0]]))
+            pairs,
+            owner[row],
+            np.tile(speed, len(scenes))[row],
+            gravity,
+            synchronous_model(str(names[row[0]])),
         )
         for row in rows
     ]

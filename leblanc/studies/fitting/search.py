@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -118,7 +119,7 @@ def _again(problem: Problem, found: list[Valley]) -> int:
 def _unseen(problem: Problem, found: list[Valley]) -> float:
     """Expected number of valleys that no search has come to, of ends in rising order [theory: fit, eq. 6]."""
     sums = [valley.cost for valley in found]
-    seen = 1 + sum(high > 1.01 * low + floor(problem) for low, high in zip(sums, sums[1:], strict=False))
+    seen = 1 + sum(high > 1.01 * low + floor(problem) for low, high in itertools.pairwise(sums))
     rest = len(sums) - seen - 2
     return seen * (len(sums) - 1) / rest - seen if rest > 0 else float("inf")
 

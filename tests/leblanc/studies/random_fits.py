@@ -89,7 +89,9 @@ def planar(random: np.random.Generator) -> Scene:
         "axis": str(random.choice(["horizontal", "vertical"])),
     }
     chamber = {"radius": radius, "height": height, "volume": volume, "liquid": "water"}
-    return scene_from_table({"name": "planar", "rotor": rotor, "chambers": [chamber], "speeds": _speeds(critical)})
+    return scene_from_table(
+        {"name": "planar", "rotor": rotor, "chambers": [chamber], "speeds": _speeds(critical)}
+    )
 
 
 def tilting(random: np.random.Generator) -> Scene:
@@ -113,7 +115,9 @@ def tilting(random: np.random.Generator) -> Scene:
     }
     volume = float(random.uniform(0.2, 0.6)) * np.pi * radius**2 * height
     chamber = {"radius": radius, "height": height, "volume": volume, "liquid": "water", "plane": 0.8 * radius}
-    return scene_from_table({"name": "tilting", "rotor": rotor, "chambers": [chamber], "speeds": _speeds(critical)})
+    return scene_from_table(
+        {"name": "tilting", "rotor": rotor, "chambers": [chamber], "speeds": _speeds(critical)}
+    )
 
 
 def _speeds(critical: float) -> dict[str, float]:
@@ -153,7 +157,7 @@ def drawn(seed: int) -> Fitted:
 
 
 def dry(random: np.random.Generator, kind: str, share: float = 0.03) -> FitResult:
-    """A dry planar machine with noise of one kind, stated ("relative", "absolute") or estimated from either."""
+    """A dry planar machine with noise of one kind, stated, or estimated from either kind."""
     scene = scene_from_table(DRY)
     speed = scene.speed_array()
     (amplitude,) = answer(scene, "speed", speed, ["amplitude"])
@@ -191,7 +195,9 @@ def _main() -> None:
         for kind, held in inside.items():
             held += covered(kind, asked.seed + k)
         if k % 10 == 9 or k == asked.coverage - 1:
-            print(k + 1, {kind: (held / (k + 1)).round(4).tolist() for kind, held in inside.items()}, flush=True)
+            print(
+                k + 1, {kind: (held / (k + 1)).round(4).tolist() for kind, held in inside.items()}, flush=True
+            )
 
 
 if __name__ == "__main__":

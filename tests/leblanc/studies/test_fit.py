@@ -233,7 +233,7 @@ def test_water_that_leaves_a_load() -> None:
     assert np.all(found.std < [0.004, 0.1])
 
 
-@kills("leblanc.studies.fit:_others", "[told]", "")
+@kills("leblanc.studies.fit:_is_near", "[told]", "")
 def test_measured_angles_of_a_rig() -> None:
     """The rig's six angles: what a least squares of its own finds, and friction that they do not tell."""
     angles = read_measured(Path("docs/examples/rig_angles.csv"), ("x", "y"))
@@ -254,7 +254,8 @@ def test_measured_angles_of_a_rig() -> None:
     np.testing.assert_allclose(found.value[:2], dry, rtol=1e-3)
     assert np.isfinite(found.std[:2]).all() and math.isnan(found.std[2])
     # Searches that differ in what is not told alone are no other answer.
-    assert {note.code for note in found.notes} == {FitCode.NOT_TOLD}
+    # Six values cannot tell noise of 0.19 rad from a scene that does not meet them: said so.
+    assert {note.code for note in found.notes} == {FitCode.NOT_TOLD, FitCode.LARGE}
 
 
 def test_data_that_the_scene_cannot_meet() -> None:
