@@ -106,7 +106,7 @@ class FitResult(Result):
     freedom: int = 0
     accepted: bool = True  #: noise, or the error of the model, explains what is left
     noise: Noise = Noise("absolute", False, (), ())  #: of the measured values
-    #: ends of the intervals of 95 %, where a profile and not the standard error gives them, SI, nan elsewhere,
+    #: ends of the intervals of 95 %, where a profile gives them, SI, nan elsewhere,
     #: shape (p, 2)
     profile: Array | None = None
     tied: tuple[tuple[str, ...], ...] = ()  #: other paths that have the value of each unknown

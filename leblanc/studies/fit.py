@@ -158,7 +158,7 @@ def _at_bound(x: Array) -> Flags:
 def _others(problem: Problem, searched: Searched, best: Judged, told: Flags) -> list[Array]:
     """Ends of searches elsewhere, by unknowns that the data tell, that noise does not rule out.
 
-    In one of a hundred cases the sum of the truth rises further for all unknowns at once [theory: fit, eq. 11].
+    In one of a hundred cases the sum of the truth rises further for all unknowns [theory: fit, eq. 11].
     """
     from scipy.special import fdtri
 

@@ -178,8 +178,8 @@ class Problem:
             responses = planar_steady(scenes, speed)
         except (InputError, np.linalg.LinAlgError):
             return  # one by one it is seen which of them has no answer
-        for x, response in zip(answered, responses, strict=True):
-            self._keep(x, [np.asarray(_quantity(response, name))[where] for name in self.names])
+        for x, own in zip(answered, responses, strict=True):
+            self._keep(x, [np.asarray(_quantity(own, name))[where] for name in self.names])
 
     def _keep(self, x: Array, found: list[Array] | None) -> list[Array] | None:
         """An answer, kept; None where some of it is not finite."""

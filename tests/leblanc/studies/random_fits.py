@@ -1,6 +1,6 @@
 """Fits of machines drawn at random: how many find the truth, and how many miss it without a note.
 
-`python -m tests.leblanc.studies.random_fits --count 300` fits two to four unknowns from guesses that are off by
+`python -m tests.leblanc.studies.random_fits --count 300` fits 2 to 4 unknowns from guesses that are off by
 up to a factor e, to data with noise of 0 to 2 %; `--coverage 400` counts the intervals that hold the truth,
 for each kind of noise.
 """
