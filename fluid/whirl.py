@@ -88,11 +88,10 @@ def plate_terms(layer_tanh: ArrayLike, spin: ArrayLike, slip: ArrayLike) -> tupl
     """`plate_rate` and its derivative with respect to the slip."""
     s, t, twice = np.asarray(slip, dtype=complex), np.asarray(layer_tanh), 2.0 * np.asarray(spin)
     along, against = np.sqrt(1j * (s + twice)), np.sqrt(1j * (s - twice))
-    # At the end of a cut the root is 0 and its slope without end: the other alone counts.
-    inverse = (np.divide(1.0, x, out=np.zeros_like(x), where=x != 0.0) for x in (along, against))
     first, second = 0.5 * (1.0 - t), 0.5 * (1.0 + t)
-    slope = 0.5j * sum(share * x for share, x in zip((first, second), inverse, strict=True))
-    return np.asarray(first * along + second * against), np.asarray(slope)
+    # At the end of a cut the root is 0 and its slope without end, for which that next to it serves.
+    steep = (share / np.where(x == 0.0, 1e-150, x) for share, x in ((first, along), (second, against)))
+    return np.asarray(first * along + second * against), np.asarray(0.5j * sum(steep))
 
 
 def layer_rate(layer: Layer, spin: ArrayLike, slip: ArrayLike) -> Complex:

@@ -32,6 +32,7 @@ _EPS = float(np.finfo(float).eps)
 _BLOCK = 128  # speeds whose arrays fit the processor's cache
 _SWEEPS = 60
 _OWN = 8  # steps to the waves with floor and lid at their own frequencies
+_WAVE = 1e-9  # relative: a step after which such a wave is exact
 _CUTS = (1.0, 3.0)  # over the spin: where the roots of the drags on circles along and against it end
 _STEP = 1e-13  # relative, at which a root counts as found
 _GONE = -1e300  # lambda of what has no wave, 1/s
@@ -196,7 +197,9 @@ def _layer_waves(layer: Layer, speed: Array) -> Complex:
         slope = own * (4.0 * np.square(own) + 3.0 * stokes * own + 2.0 * steady)
         step = wave / (slope - 2j * lids * rise * own**3)
         own = own - step
-    settled = (np.abs(step) <= 1e-9 * np.abs(own)) & (own.real > 0.0)
+        if np.all(np.abs(step) <= _WAVE * np.abs(own)):
+            break
+    settled = (np.abs(step) <= _WAVE * np.abs(own)) & (own.real > 0.0)
     waves = np.full(p.shape, complex(np.nan, np.nan))
     waves[row[settled], column[settled]] = ((np.square(own) + 1j) * spin)[settled]
     return waves

@@ -135,8 +135,8 @@ def test_a_whirl_that_excites_itself(ratio: float) -> None:
 def test_unbalance_may_hold_what_would_whirl() -> None:
     """Where linear theory lets a whirl of the even layer grow, unbalance and gravity can keep it down.
 
-    The kick dies: the motion repeats every turn, and is neither a limit cycle nor unsettled. The chamber is tall:
-    floor and lid drag on long waves less than on exact ones.
+    The kick dies: the motion repeats every turn, and is neither a limit cycle nor unsettled. The chambers are
+    tall: floor and lid drag on long waves less than on exact ones.
     """
     critical = 1051.0 * math.pi / 30.0
     rotor = Jeffcott(40.0, 40.0 * critical**2, 2.0 * 0.1 * 40.0 * critical, 6e-3)
