@@ -52,9 +52,14 @@ def unstable_bands(
     found = _bands(rotor, rows, row, points, rate, friction)
     if growth is None:
         return found
-    # Speeds asked for of which the bands say otherwise are looked from as well.
+    # Speeds asked for of which the bands say otherwise are looked from as well, and where the growth is not
+    # known at one it is not known up to its neighbours.
     own = np.repeat(np.arange(len(rows)), grid.size), np.tile(grid, len(rows)), np.asarray(growth).ravel()
     other = np.concatenate([_contradicts(bands, grid, g) for bands, g in zip(found, growth, strict=True)])
+    for k, at_speeds in enumerate(growth):
+        for low, high in bands_not_known(grid, at_speeds):
+            rate[(row == k) & (points > low) & (points < high)] = np.nan
+            other |= (own[0] == k) & (own[1] >= low) & (own[1] <= high)
     if not other.any():
         return found
     row, points, rate = (np.concatenate([x, y[other]]) for x, y in zip((row, points, rate), own, strict=True))

@@ -38,7 +38,7 @@ _SHARE = 1e-7  # of the spin: how far left of the mode that grows most the other
 _ASIDE = 1e-4  # of the spin: how far left of that the others start at least
 _SAME = 1e-9  # of the spin: modes as near as that are one
 _GONE = -1e300  # lambda of a mode that there is not, 1/s
-_BLOCK = 64  # points whose matrices fit the processor's cache
+_BLOCK = 32  # points whose matrices fit the processor's cache
 _RESOLVED = 1e-11  # of the frequencies, below which growth is rounding
 
 
@@ -105,15 +105,19 @@ def drum_modes(rotor: Jeffcott, layers: Sequence[SectionLayer], speed: Array) ->
     if not np.any(system.laminar):
         return linear_modes(CoupledMatrices(system.mass, system.damping, system.stiffness), circles)
     first = system.damping + np.sqrt(0.5 * _SLOW * speed)[:, None, None] * system.laminar
-    started = roots(CoupledMatrices(system.mass, first, system.stiffness))
+    slowly = CoupledMatrices(system.mass, first, system.stiffness)
+    started = roots(slowly)
     plain = CoupledMatrices(system.mass, system.damping, system.stiffness)
+    mass, laminar, every_damping, stiffness = (
+        part.astype(complex) for part in (system.mass, system.laminar, system.damping, system.stiffness)
+    )
 
     def terms(root: Complex, owner: Index) -> tuple[Complex, Complex]:
-        at, damping = root[:, None, None], system.damping[owner]
+        at, damping = root[:, None, None], every_damping[owner]
         # Of both roots the one whose layer dies out away from the wall.
-        drag = np.sqrt(at) * system.laminar
-        matrix = at * (at * system.mass + damping + drag) + system.stiffness[owner]
-        return matrix, 2.0 * at * system.mass + damping + 1.5 * drag
+        drag = np.sqrt(at) * laminar
+        matrix = at * (at * mass + damping + drag) + stiffness[owner]
+        return matrix, 2.0 * at * mass + damping + 1.5 * drag
 
     def every(owner: Index) -> Complex:
         return drum_roots(plain.at(owner), system.laminar, speed[owner])
@@ -121,7 +125,7 @@ def drum_modes(rotor: Jeffcott, layers: Sequence[SectionLayer], speed: Array) ->
     fastest = _fastest(started, system.mass, system.laminar)
     slip = np.abs(started.imag)
     return most_growing(
-        MostGrowing(started, slip, circles, terms, every, np.zeros(speed.shape), fastest), speed
+        MostGrowing(started, slowly, slip, circles, terms, every, np.zeros(speed.shape), fastest), speed
     )
 
 
@@ -141,6 +145,7 @@ class MostGrowing:
 
     #: lambda with friction at the frequency of slow waves, `_SLOW` of the spin, shape (n, m)
     started: Complex
+    slowly: CoupledMatrices  #: with that friction
     slip: Array  #: frequency of each over the drum, rad/s, 0 or above, shape (n, m)
     circles: Array  #: displacements that tell the sense of a whirl, in pairs across the axis, shape (2 c, N)
     #: T(lambda) and its derivative, shape (k, N, N), at points, (k,), of the speeds they belong to, (k,)
@@ -192,7 +197,7 @@ def _told(search: MostGrowing, starts: tuple[Complex, Complex], at: Index, speed
     by a factor whose own zero is left of the line.
     """
     start, others = starts
-    root, shape, found = _followed(search.terms, start, at, len(search.circles.T))
+    root, shape, found = _followed(search.terms, start, at, _shapes(search, start, at))
     along, against = _sizes(search.circles, shape)
     spin = speed[at]
     rate = np.where(found, root.real, -np.inf).max(axis=1)
@@ -218,6 +223,18 @@ def _told(search: MostGrowing, starts: tuple[Complex, Complex], at: Index, speed
     return SystemModes(root, sense, _RESOLVED * scale, found, told & (count == 0.0))
 
 
+def _shapes(search: MostGrowing, start: Complex, at: Index) -> Complex:
+    """Shapes of modes with friction at the frequency of slow waves, by which alike modes part, (n f, N)."""
+    root, owner = start.ravel() * (1.0 + _BESIDE), np.repeat(at, start.shape[1])
+    here, lam = search.slowly.at(owner), root[:, None, None]
+    size = len(here.mass)
+    any_shape = np.ones(size, dtype=complex) + 0.1j * np.arange(size)
+    shape = np.linalg.solve(lam * (lam * here.mass + here.damping) + here.stiffness, any_shape[:, None])[
+        ..., 0
+    ]
+    return np.asarray(shape / np.abs(shape).max(axis=1, keepdims=True))
+
+
 def _fastest(started: Complex, mass: Array, laminar: Array) -> Array:
     """Rate of the fastest mode, and where the drag equals the inertia, 1/s, shape (n,)."""
     drag = float(np.abs(np.linalg.eigvals(np.linalg.solve(mass, laminar))).max())
@@ -239,7 +256,7 @@ def _sizes(circles: Array, shape: Complex) -> tuple[Array, Array]:
 
 
 def _followed(
-    terms: Callable[[Complex, Index], tuple[Complex, Complex]], start: Complex, at: Index, size: int
+    terms: Callable[[Complex, Index], tuple[Complex, Complex]], start: Complex, at: Index, shape: Complex
 ) -> tuple[Complex, Complex, Flags]:
     """Newton's method on each mode with its own laminar friction.
 
@@ -248,14 +265,13 @@ def _followed(
     terms : of `MostGrowing`
     start : first values of f modes at each of n speeds, above the real axis, shape (n, f)
     at : which speeds, shape (n,)
-    size : N of the matrices
+    shape : first shapes, shape (n f, N)
 
     Returns
     -------
     Modes, shape (n, f); their shapes, (n, f, N); whether they settled, (n, f)
     """
     root, owner = start.astype(complex).ravel(), np.repeat(at, start.shape[1])
-    shape = np.broadcast_to(np.ones(size, dtype=complex) + 0.1j * np.arange(size), (root.size, size)).copy()
     on, found = np.arange(root.size), np.zeros(root.shape, dtype=bool)
     for _ in range(_STEPS):
         # A mode met to rounding makes the matrix singular to rounding, which is wanted; so little away it is
@@ -273,7 +289,7 @@ def _followed(
         on = on[~settled]
         if on.size == 0:
             break
-    return root.reshape(start.shape), shape.reshape(*start.shape, size), found.reshape(start.shape)
+    return root.reshape(start.shape), shape.reshape(*start.shape, -1), found.reshape(start.shape)
 
 
 @dataclass(frozen=True, eq=False)
@@ -416,14 +432,18 @@ def standing_modes(system: RotorSystem, layers: Sequence[Placed], speed: Array) 
         return linear_modes(CoupledMatrices(found.mass, found.damping, found.stiffness), circles)
     drag = np.sqrt(0.5 * _SLOW * speed)[:, None, None] * found.laminar
     slipping = -speed[:, None, None] * found.quarter @ drag
-    started = roots(CoupledMatrices(found.mass, found.damping + drag, found.stiffness + slipping))
+    slowly = CoupledMatrices(found.mass, found.damping + drag, found.stiffness + slipping)
+    started = roots(slowly)
     # Of the two circles of a mode the one with the spin, which slips less.
     slip = np.abs(np.abs(started.imag) - speed[:, None])
     turned = found.quarter @ found.laminar
     plain = CoupledMatrices(found.mass, found.damping, found.stiffness)
+    mass, laminar, turn, every_damping, stiffness = (
+        part.astype(complex) for part in (found.mass, found.laminar, turned, found.damping, found.stiffness)
+    )  # once: products of complex and real arrays convert them each time, at eight times the cost
 
     def terms(root: Complex, owner: Index) -> tuple[Complex, Complex]:
-        at, damping = root[:, None, None], found.damping[owner]
+        at, damping = root[:, None, None], every_damping[owner]
         # Either sense of circle slips by its own frequency over the drum.
         power, slope = [], []
         for way in (-1j, 1j):
@@ -435,16 +455,20 @@ def standing_modes(system: RotorSystem, layers: Sequence[Placed], speed: Array) 
             (0.5 * (pair[0] + pair[1]) for pair in (power, slope)),
             (-0.5j * (pair[0] - pair[1]) for pair in (power, slope)),
         )
-        shear, change = (u * found.laminar + v * turned for u, v in zip(mean, half, strict=True))
-        matrix = at * (at * found.mass + damping) + found.stiffness[owner] + shear
-        return matrix, 2.0 * at * found.mass + damping + change
+        shear, change = (u * laminar + v * turn for u, v in zip(mean, half, strict=True))
+        matrix = at * mass
+        matrix += damping
+        matrix *= at
+        matrix += stiffness[owner]
+        matrix += shear
+        return matrix, 2.0 * at * mass + damping + change
 
     def every(owner: Index) -> Complex:
         drags = 0.5 * np.stack([found.laminar - 1j * turned, found.laminar + 1j * turned])
         return standing_roots(plain.at(owner), np.asarray(drags, dtype=complex), speed[owner])
 
     fastest = _fastest(started, found.mass, found.laminar)
-    return most_growing(MostGrowing(started, slip, circles, terms, every, speed, fastest), speed)
+    return most_growing(MostGrowing(started, slowly, slip, circles, terms, every, speed, fastest), speed)
 
 
 def _real(matrix: Any) -> Array:
