@@ -173,6 +173,11 @@ def most_growing(search: MostGrowing, speed: Array) -> SystemModes:
     everywhere = np.arange(speed.size)
     modes = _told(search, _split(root, most), everywhere, speed)
     missed = np.flatnonzero(~modes.complete)
+    if missed.size:
+        modes = modes.replaced(
+            missed, _told(search, _split(root[missed], most[missed]), missed, speed, True), _GONE
+        )
+        missed = np.flatnonzero(~modes.complete)
     if missed.size == 0:
         return modes
     again = search.every(missed)
@@ -190,14 +195,18 @@ def _split(root: Complex, which: Index) -> tuple[Complex, Complex]:
     return np.take_along_axis(root, which, axis=1), others
 
 
-def _told(search: MostGrowing, starts: tuple[Complex, Complex], at: Index, speed: Array) -> SystemModes:
+def _told(
+    search: MostGrowing, starts: tuple[Complex, Complex], at: Index, speed: Array, own: bool = False
+) -> SystemModes:
     """Modes followed from starting values at some speeds, complete where no other grows more.
 
-    The starting values of the others serve as well to make smooth what is followed, as no zero is lost or won
-    by a factor whose own zero is left of the line.
+    Two that are almost alike part if they start from their own shapes. The starting values of the others serve
+    as well to make smooth what is followed, as no zero is lost or won by a factor whose own zero is left of the
+    line.
     """
     start, others = starts
-    root, shape, found = _followed(search.terms, start, at, _shapes(search, start, at))
+    plain = np.tile(_any_shape(len(search.circles.T)), (start.size, 1))
+    root, shape, found = _followed(search.terms, start, at, _shapes(search, start, at) if own else plain)
     along, against = _sizes(search.circles, shape)
     spin = speed[at]
     rate = np.where(found, root.real, -np.inf).max(axis=1)
@@ -223,15 +232,17 @@ def _told(search: MostGrowing, starts: tuple[Complex, Complex], at: Index, speed
     return SystemModes(root, sense, _RESOLVED * scale, found, told & (count == 0.0))
 
 
+def _any_shape(size: int) -> Complex:
+    """A shape that has something of every mode, shape (N,)."""
+    return np.ones(size, dtype=complex) + 0.1j * np.arange(size)
+
+
 def _shapes(search: MostGrowing, start: Complex, at: Index) -> Complex:
     """Shapes of modes with friction at the frequency of slow waves, by which alike modes part, (n f, N)."""
     root, owner = start.ravel() * (1.0 + _BESIDE), np.repeat(at, start.shape[1])
     here, lam = search.slowly.at(owner), root[:, None, None]
-    size = len(here.mass)
-    any_shape = np.ones(size, dtype=complex) + 0.1j * np.arange(size)
-    shape = np.linalg.solve(lam * (lam * here.mass + here.damping) + here.stiffness, any_shape[:, None])[
-        ..., 0
-    ]
+    plain = _any_shape(len(here.mass))[:, None]
+    shape = np.linalg.solve(lam * (lam * here.mass + here.damping) + here.stiffness, plain)[..., 0]
     return np.asarray(shape / np.abs(shape).max(axis=1, keepdims=True))
 
 
@@ -289,7 +300,7 @@ def _followed(
         on = on[~settled]
         if on.size == 0:
             break
-    return root.reshape(start.shape), shape.reshape(*start.shape, -1), found.reshape(start.shape)
+    return root.reshape(start.shape), shape.reshape(*start.shape, shape.shape[-1]), found.reshape(start.shape)
 
 
 @dataclass(frozen=True, eq=False)
