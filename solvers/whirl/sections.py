@@ -200,9 +200,9 @@ def _told(
 ) -> SystemModes:
     """Modes followed from starting values at some speeds, complete where no other grows more.
 
-    Two that are almost alike part if they start from their own shapes. The starting values of the others serve
-    as well to make smooth what is followed, as no zero is lost or won by a factor whose own zero is left of the
-    line.
+    Two that are almost alike part if they start from their own shapes. The starting values of the others
+    serve as well to make smooth what is followed, as no zero is lost or won by a factor whose own zero is
+    left of the line.
     """
     start, others = starts
     plain = np.tile(_any_shape(len(search.circles.T)), (start.size, 1))
@@ -234,7 +234,7 @@ def _told(
 
 def _any_shape(size: int) -> Complex:
     """A shape that has something of every mode, shape (N,)."""
-    return np.ones(size, dtype=complex) + 0.1j * np.arange(size)
+    return np.asarray(1.0 + 0.1j * np.arange(size))
 
 
 def _shapes(search: MostGrowing, start: Complex, at: Index) -> Complex:
