@@ -107,13 +107,12 @@ def _joined(parts: Sequence[Answers], order: Index | None = None) -> Answers:
 
 def _bare(scene: Scene) -> Answers:
     """Answers of one scene; without chambers nothing is told of a liquid."""
-    found = answer_scenes([scene]) if scene.chambers else _single(scene)
     if scene.chambers:
-        return found
-    unknown = dict.fromkeys(
-        ("liquid_offset", "liquid_angle", "error_estimate"), np.full(found.speed.shape, np.nan)
-    )
-    return replace(found, **unknown, model=np.full(found.speed.shape, "none"))
+        return answer_scenes([scene])
+    found = _single(scene)
+    unknown = np.full(found.speed.shape, np.nan)
+    none = dict.fromkeys(("liquid_offset", "liquid_angle", "error_estimate"), unknown)
+    return replace(found, **none, model=np.full(found.speed.shape, "none"))
 
 
 def _with_balls(scene: Scene) -> Answers:

@@ -87,6 +87,8 @@ def extent(curves: list[Curve]) -> float:
 # Units of the US survey foot, m, by their number in a DXF file: foot, inch, yard, mile.
 _SURVEY = {21: 1200.0 / 3937.0, 22: 100.0 / 3937.0, 23: 3600.0 / 3937.0, 24: 6336000.0 / 3937.0}
 
+_FRAME = 16  # flag of a vertex that steers a spline
+
 _READ = ("LINE", "ARC", "CIRCLE", "ELLIPSE", "LWPOLYLINE", "POLYLINE", "SPLINE", "INSERT")
 
 
@@ -186,6 +188,8 @@ def _opened(
             for copy in entity.multi_insert() if entity.mcount > 1 else (entity,):
                 yield from _opened(copy.virtual_entities(), layers, layer)
         elif kind in ("LWPOLYLINE", "POLYLINE"):
+            if kind == "POLYLINE":  # a fitted one holds the frame of its spline too, which is not drawn
+                entity.vertices[:] = [one for one in entity.vertices if not one.dxf.flags & _FRAME]
             yield from ((piece, layer) for piece in entity.virtual_entities())
         else:
             yield entity, layer

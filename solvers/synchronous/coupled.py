@@ -302,8 +302,9 @@ def newton(balance: Balance, begin: Complex, which: Index) -> tuple[Complex, Fla
         if active.size == 0:
             break
         step = solve_each(matrix, -np.hstack((left.real, left.imag)))
-        sound = np.asarray(np.isfinite(step).all(axis=1))
-        step = np.where(sound[:, None], step[:, : x.shape[1]] + 1j * step[:, x.shape[1] :], 0.0)
+        # A singular matrix tells no way; its infinities are no numbers to reckon with.
+        step = np.where(np.isfinite(step).all(axis=1, keepdims=True), step, 0.0)
+        step = step[:, : x.shape[1]] + 1j * step[:, x.shape[1] :]
         trial, length = x[active] + step, np.ones(active.size)
         left, matrix, scale = _linearised(balance, trial, which[active])
         for _ in range(_HALVINGS):

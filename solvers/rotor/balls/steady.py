@@ -22,9 +22,7 @@ _ALIKE = 1e-5  # of the balls' unbalance: states nearer than that are one
 _BALANCED = 1e-9  # of what the balls all together do: counts as none
 _STILL = 1e-7  # of the bare rotor's amplitudes: counts as none
 GROWS = 1e-9  # of the spin
-_EQUAL = (
-    1e-7  # relative: amplitudes of states that differ by less are one, and their order that of the starts
-)
+_EQUAL = 1e-7  # relative: states whose amplitudes differ by less stand in the order of their starts
 _NEUTRAL = 1e-9  # slope of a pull over the largest pull: balls that creep neither come nor go
 _TOGETHER = (1, 2)  # starts with all balls together
 

@@ -102,7 +102,7 @@ def test_compartments_add_less_mass() -> None:
 @kills("leblanc.results.notes.baffles:closed_compartments", "fill.added_mass / fill.full_mass", "0.5")
 @kills("leblanc.results.notes.baffles:closed_compartments", "fill.compartments < 2", "fill.compartments > 2")
 def test_compartments_that_hardly_balance_are_told() -> None:
-    """One sentence in `run`, `explain` and `optimise` for equal chambers; none where the liquid passes.
+    """One sentence in `run` and `explain` for equal chambers; none where the liquid passes.
 
     The balancing mass is pi h R^2 for a layer that leaves the wall wet, less the surface a^2 whose shift each
     sector of four takes back: the integral of cos^2 of its mean over the circle.
@@ -125,6 +125,22 @@ def test_compartments_that_hardly_balance_are_told() -> None:
     passes = chamber | {"baffles": {"count": 4, "tip_radius": 0.095}}
     low = scene_from_table(BASE | {"chambers": [passes]} | {"speeds": BASE["speeds"] | {"count": 3}})
     assert not [note for note in run_scene(low).notes if note.code == BaffleCode.CLOSED_COMPARTMENTS]
+
+
+@kills("leblanc.scene.chambers:_held", "volume < _FILM * drum", "volume < 0.0")
+def test_a_film_thinner_than_molecules_is_no_liquid() -> None:
+    """Beside baffles, where elements mesh every layer: as an empty chamber; a film that has a mesh answers."""
+    own = BASE | {"speeds": BASE["speeds"] | {"count": 3}}
+    wet, drum = CHAMBER | {"baffles": CUT}, math.pi * 0.01 * 0.02
+
+    def amplitude(volume: float) -> np.ndarray:
+        return run_scene(scene_from_table(own | {"chambers": [wet, CHAMBER | {"volume": volume}]})).amplitude
+
+    empty = amplitude(0.0)
+    for share in (1e-15, 3.9e-8):
+        np.testing.assert_array_equal(amplitude(share * drum), empty)
+    thin = amplitude(4.1e-8 * drum)
+    assert np.isfinite(thin).all() and not np.array_equal(thin, empty)
 
 
 def test_many_scenes_at_once_are_those_alone() -> None:

@@ -98,9 +98,9 @@ def test_file(tmp_path: Path) -> None:
     assert any("not --radius" in note.text for note in other.notes)
 
 
-def circle_drawing(path: Path) -> None:
-    """A circle of 150 mm in millimetres."""
-    document = ezdxf().new(units=4)
+def circle_drawing(path: Path, units: int = 4) -> None:
+    """A circle of 150 mm in millimetres, whatever the unit that the file names."""
+    document = ezdxf().new(units=units)
     document.modelspace().add_circle((0, 0), 150.0)
     document.saveas(path)
 
@@ -115,10 +115,10 @@ def ezdxf() -> Any:
 
 
 def test_outline(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """A drawn circle has the ring's waves, in the drawing's own unit."""
-    circle_drawing(tmp_path / "circle.dxf")
+    """A drawn circle has the ring's waves, in the drawing's own unit or one that is given, which wins."""
     shown = []
-    for more in ([], ["--mesh-size", "10 mm"]):
+    for units, more in ((4, []), (4, ["--mesh-size", "10 mm"]), (1, ["--mesh-unit", "mm"])):
+        circle_drawing(tmp_path / "circle.dxf", units)
         assert main([*CALL, "--count", "4", "--mesh", str(tmp_path / "circle.dxf"), *more, "--json"]) == 0
         shown.append(json.loads(capsys.readouterr().out))
     plain = answer_modes(Chamber(R, H), VOLUME, WATER, 40.0, 4)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from itertools import product
 from pathlib import Path
 
@@ -9,6 +10,7 @@ import ezdxf
 import pytest
 
 from meshes.files.drawing import read_drawing
+from tests.mutants import kills
 
 HIDE = ("off", "frozen", "not plotting", "invisible", "Defpoints")
 
@@ -82,3 +84,19 @@ def test_a_file_without_a_header_says_no_unit(tmp_path: Path) -> None:
     text = "0\nSECTION\n2\nENTITIES\n0\nCIRCLE\n8\n0\n10\n0.0\n20\n0.0\n40\n1.0\n0\nENDSEC\n0\nEOF\n"
     (tmp_path / "a.dxf").write_text(text)
     assert read_drawing(tmp_path / "a.dxf")[1] is None
+
+
+@kills("meshes.files.drawing:_opened", "not one.dxf.flags & _FRAME", "one.dxf.flags >= 0")
+def test_a_fitted_polyline_is_its_fitted_vertices(tmp_path: Path) -> None:
+    """The frame that steers it lies outside and is not drawn."""
+    document = ezdxf.new("R2000", units=4)
+    line = document.modelspace().add_polyline2d([], close=True)
+    for way, flag, size in ((4, 16, 9.0), (12, 8, 2.0)):
+        angles = [2.0 * math.pi * k / way for k in range(way)]
+        line.append_formatted_vertices(
+            [(size * math.cos(a), size * math.sin(a)) for a in angles], "xy", {"flags": flag}
+        )
+    document.saveas(tmp_path / "a.dxf")
+    curves, _ = read_drawing(tmp_path / "a.dxf")
+    assert len(curves) == 12
+    assert max(abs(curve.points).max() for curve in curves) == pytest.approx(2.0)

@@ -23,11 +23,12 @@ from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import Rotor, RotorSystem
 from solvers.rotor.tub import Mount, Tub
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
-from solvers.rotor.vibration import critical_speeds, orbit, unbalance_response
+from solvers.rotor.vibration import critical_speeds, orbit, solve_each, unbalance_response
 from solvers.sloshing.model import SmallWaves
 from solvers.statics.hydrostatics import equilibrium
+from solvers.synchronous import coupled
 from solvers.synchronous.balance import backward_mass, harmonic_balance
-from solvers.synchronous.coupled import one_plane, several_planes, stable_solutions
+from solvers.synchronous.coupled import newton, one_plane, several_planes, stable_solutions
 from solvers.synchronous.models import LINEAR, STATICS
 from solvers.synchronous.response import (
     Response,
@@ -429,6 +430,30 @@ def test_newton_finds_what_the_search_finds() -> None:
     np.testing.assert_array_equal(tables[0][0], tables[1][0])
     np.testing.assert_allclose(tables[0][1], tables[1][1], rtol=1e-7)
     assert np.bincount(tables[0][0]).max() == 3
+
+
+@kills(
+    "solvers.synchronous.coupled:newton", "keepdims=True), step, 0.0)", "keepdims=True) | True, step, 0.0)"
+)
+def test_a_singular_matrix_leaves_a_start_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    """One of two starts has no step: it is not converged, without a fault; the other finds what it should."""
+    speed, alone = np.array([60.0, 60.0]), np.zeros(2, dtype=np.intp)
+    terms = harmonic_balance(two_plane().system(), [[at_plane(0.03, 1.2e-5)]], alone, speed, 0.0, STATICS)
+    begin = 1.2 * np.linalg.solve(terms.stiffness, terms.force[..., None])[..., 0]
+    wanted, found = newton(terms, begin, np.array([0, 1]))
+    assert found.all()
+    monkeypatch.setattr(coupled, "solve_each", lambda matrix, right: _without_first(right, matrix))
+    answer, found = newton(terms, begin, np.array([0, 1]))
+    assert found.tolist() == [False, True]
+    np.testing.assert_array_equal(answer[0], begin[0])
+    np.testing.assert_allclose(answer[1], wanted[1], rtol=1e-9)
+
+
+def _without_first(right: np.ndarray, matrix: np.ndarray) -> np.ndarray:
+    """As `solve_each`, the first of several with a singular matrix."""
+    out = solve_each(matrix, right).astype(complex)
+    out[: len(out) - 1] = complex(np.inf, 0.0)
+    return out
 
 
 @kills(
