@@ -11,17 +11,17 @@ from numpy.typing import ArrayLike
 from fluid.fill import Fill
 from fluid.friction.laws import NO_FRICTION, Friction
 from fluid.whirl import Layer, neutral_stiffness
-from meshes.arrays import Array, Index
-from solvers.rotor.jeffcott import Jeffcott
+from meshes.arrays import Array, Flags, Index
 from solvers.rotor.system import Rotor
-from solvers.whirl.growth import growth_at, planar_layers
+from solvers.whirl.growth import growth_at
+from solvers.whirl.looks import looks
 
 Bands = tuple[tuple[float, float], ...]
 
 _WIDTH = 1e-10  # relative, of the bracket an edge is left in
+_BESIDE = 1e-8  # relative, of speeds at an edge
 _NEAR = 1e-3  # of a bracket: how closely the secant's zero is looked at
 _STEPS = 60
-_MOST_SEEDED = 8  # layers; polynomials of more are too steep to have their zeros found
 
 
 def unstable_bands(
@@ -33,8 +33,8 @@ def unstable_bands(
 ) -> tuple[Bands, ...]:
     """Bands of speed in which some whirl grows, their edges refined.
 
-    Looked at are the speeds given and, so that no narrow band is lost between them, the edges and the middle
-    of each band of the same rotor without any damping, if it is a Jeffcott rotor.
+    Looked at are speeds of its own choice between the first and the last of those given, so that no band is
+    lost between two of these and none depends on their number [theory: whirl, eq. 32 and 33].
 
     Parameters
     ----------
@@ -48,16 +48,38 @@ def unstable_bands(
     Next to a speed at which the growth is not known a band ends at the last one at which it is
     """
     grid = np.asarray(speed, dtype=float)
-    row, points = np.repeat(np.arange(len(rows)), grid.size), np.tile(grid, len(rows))
-    known = growth_at(rotor, rows, row, points, friction)[0] if growth is None else growth.ravel()
-    seeds = [_seeds(rotor, fills, float(grid[0]), float(grid[-1])) for fills in rows]
-    more = np.repeat(np.arange(len(rows)), [own.size for own in seeds])
-    between = np.concatenate([*seeds, np.empty(0)])
-    added = growth_at(rotor, rows, more, between, friction)[0]
-    row, points = np.concatenate([row, more]), np.concatenate([points, between])
-    rate = np.concatenate([known, added])
+    row, points, rate = looks(rotor, rows, float(grid[0]), float(grid[-1]), friction)
+    found = _bands(rotor, rows, row, points, rate, friction)
+    if growth is None:
+        return found
+    # Speeds asked for of which the bands say otherwise are looked from as well, and where the growth is not
+    # known at one it is not known up to its neighbours.
+    own = np.repeat(np.arange(len(rows)), grid.size), np.tile(grid, len(rows)), np.asarray(growth).ravel()
+    other = np.concatenate([_contradicts(bands, grid, g) for bands, g in zip(found, growth, strict=True)])
+    for k, at_speeds in enumerate(growth):
+        for low, high in bands_not_known(grid, at_speeds):
+            rate[(row == k) & (points > low) & (points < high)] = np.nan
+            other |= (own[0] == k) & (own[1] >= low) & (own[1] <= high)
+    if not other.any():
+        return found
+    row, points, rate = (np.concatenate([x, y[other]]) for x, y in zip((row, points, rate), own, strict=True))
     order = np.lexsort((points, row))
-    row, points, rate = row[order], points[order], rate[order]
+    return _bands(rotor, rows, row[order], points[order], rate[order], friction)
+
+
+def _contradicts(bands: Bands, speed: Array, growth: Array) -> Flags:
+    """Speeds inside bands at which nothing grows and outside at which something does, shape (n,)."""
+    inside, edge = np.zeros(speed.shape, dtype=bool), np.zeros(speed.shape, dtype=bool)
+    for low, high in bands:
+        inside |= (speed >= low) & (speed <= high)
+        edge |= np.minimum(np.abs(speed - low), np.abs(speed - high)) <= _BESIDE * speed
+    return np.asarray(~edge & ~np.isnan(growth) & (inside != (growth > 0.0)))
+
+
+def _bands(
+    rotor: Rotor, rows: Sequence[Sequence[Fill]], row: Index, points: Array, rate: Array, friction: Friction
+) -> tuple[Bands, ...]:
+    """Bands between points by rising row and speed at which the growth is known, their edges refined."""
     grows, known_there = rate > 0.0, ~np.isnan(rate)
     # Where growth begins, after a point, and where it ceases, likewise; the ends of the rows count.
     inner = row[1:] == row[:-1]
@@ -144,18 +166,6 @@ def _refine(
         low[:, active] = points[beyond - 1, at], rates[beyond - 1, at]
         high[:, active] = points[beyond, at], rates[beyond, at]
     return np.asarray(0.5 * (low[0] + high[0]))
-
-
-def _seeds(rotor: Rotor, fills: Sequence[Fill], first: float, last: float) -> Array:
-    """Edges without damping and the middles between neighbours, inside the range."""
-    if not isinstance(rotor, Jeffcott):
-        return np.empty(0)
-    mass, layers = planar_layers(rotor.mass, fills, NO_FRICTION)
-    if not 0 < len(layers) <= _MOST_SEEDED:
-        return np.empty(0)
-    edges = undamped_edges(mass, rotor.stiffness, layers)
-    speeds = np.concatenate([edges, 0.5 * (edges[1:] + edges[:-1])])
-    return np.unique(speeds[(speeds > first) & (speeds < last)])
 
 
 def undamped_edges(mass: float, stiffness: float, layers: Sequence[Layer]) -> Array:

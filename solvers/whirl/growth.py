@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -17,7 +17,7 @@ from solvers.rotor.jeffcott import Jeffcott, PlanarMachine
 from solvers.rotor.system import Rotor
 from solvers.sloshing.reduced import section_layer, section_layers
 from solvers.whirl.laminar import laminar_modes
-from solvers.whirl.planar import PlanarProblem, planar_modes
+from solvers.whirl.planar import Modes, PlanarProblem, planar_modes
 from solvers.whirl.sections import drum_modes, standing_modes
 from solvers.whirl.system import SystemModes, circles_of, coupled_matrices, linear_modes
 
@@ -192,10 +192,30 @@ def machines_growth(
     growth and whirl_speed as from `asynchronous_growth`, shape (n,)
     """
     growth, whirl_speed = np.full((2, speed.size), np.nan)
+    for here, found in _planar_parts(machines, frictions, owner, speed):
+        if isinstance(found, SystemModes):
+            growth[here], slip = _fastest(found, np.zeros(here.shape))
+            whirl_speed[here] = slip + speed[here]
+            continue
+        values = dominant(found.slip + speed[here], found.rounding, speed[here])
+        for table, own in zip((growth, whirl_speed), values, strict=True):
+            table[here] = np.where(found.converged, own, np.nan)
+    return growth, whirl_speed
+
+
+def _planar_parts(
+    machines: Sequence[PlanarMachine], frictions: Sequence[Friction], owner: Index, speed: Array
+) -> Iterator[tuple[Index, SystemModes | Modes]]:
+    """Points of planar machines with as many modes each, and those modes; arguments of `machines_growth`.
+
+    In the frame of the drum where baffles stand in the liquid [theory: sections, eq. 3].
+    """
     uneven = np.array([any(fill.uneven for fill in fills) for _, fills in machines], dtype=bool)
     for i in np.intersect1d(np.flatnonzero(uneven), owner).tolist():
         here = np.flatnonzero(owner == i)
-        growth[here], whirl_speed[here] = _uneven_growth(machines[i], frictions[i], speed[here])
+        rotor, fills = machines[i]
+        solid, parted = section_layers(fills, frictions[i])
+        yield here, drum_modes(replace(rotor, mass=rotor.mass + solid), parted, speed[here])
     tables = [
         planar_layers(rotor.mass, fills, friction)
         for (rotor, fills), friction in zip(machines, frictions, strict=True)
@@ -218,21 +238,46 @@ def machines_growth(
         ).reshape(own.size, kind[0], 4)[place]
         stiffness, damping = support[own[place]].T
         columns = (layers[:, :, k].T for k in range(4))
-        problem = PlanarProblem(mass, stiffness, damping, speed[here], *columns)
-        modes = planar_modes(problem)
-        found = dominant(modes.slip + problem.spin, modes.rounding, problem.spin)
-        for table, values in zip((growth, whirl_speed), found, strict=True):
-            table[here] = np.where(modes.converged, values, np.nan)
-    return growth, whirl_speed
+        yield here, planar_modes(PlanarProblem(mass, stiffness, damping, speed[here], *columns))
 
 
-def _uneven_growth(machine: PlanarMachine, friction: Friction, speed: Array) -> tuple[Array, Array]:
-    """Growth of one machine whose chambers have baffles in the liquid [theory: sections, eq. 3]."""
-    rotor, fills = machine
-    solid, layers = section_layers(fills, friction)
-    modes = drum_modes(replace(rotor, mass=rotor.mass + solid), layers, speed)
-    growth, slip = _fastest(modes, np.zeros(speed.shape))
-    return growth, slip + speed
+def modes_at(
+    rotor: Rotor, rows: Sequence[Sequence[Fill]], row: Index, speed: Array, friction: Friction
+) -> tuple[Complex, Array]:
+    """Modes of small whirls at points (row, speed), and the growth of the one that grows most.
+
+    Parameters
+    ----------
+    rotor, rows, row, speed, friction : as for `growth_at`
+
+    Returns
+    -------
+    root : growth + i frequency, 1/s, each mode once, in a frame in which modes that are coupled meet where
+        they are alike; 0 for a growth that is rounding, nan where a point has fewer modes, shape (n, m)
+    growth : as from `growth_at`, shape (n,)
+    """
+    parts: Iterable[tuple[Index, SystemModes | Modes]]
+    if isinstance(rotor, Jeffcott):
+        parts = _planar_parts([(rotor, fills) for fills in rows], [friction] * len(rows), row, speed)
+    else:
+        own = ((np.flatnonzero(row == k), rows[k]) for k in np.unique(row).tolist())
+        parts = ((here, system_modes(rotor, fills, speed[here], friction)) for here, fills in own)
+    growth, seen = np.full(speed.size, np.nan), []
+    for here, found in parts:
+        if isinstance(found, SystemModes):
+            growth[here] = _fastest(found, speed[here])[0]
+            known = found.found & (found.root.imag >= 0.0)
+            root, rounding = np.where(known, found.root, complex(np.nan, np.nan)), found.rounding
+        else:
+            most = dominant(found.slip + speed[here], found.rounding, speed[here])[0]
+            growth[here] = np.where(found.converged, most, np.nan)
+            root, rounding = (1j * found.slip).T, found.rounding.T
+        seen.append((here, np.where(np.abs(root.real) <= rounding, 1j * root.imag, root)))
+    width = max((part.shape[1] for _, part in seen), default=0)
+    roots = np.full((speed.size, width), complex(np.nan, np.nan))
+    for here, part in seen:
+        roots[here, : part.shape[1]] = part
+    return roots, growth
 
 
 def planar_layers(mass: float, fills: Sequence[Fill], friction: Friction) -> tuple[float, list[Layer]]:

@@ -38,6 +38,7 @@ _SHARE = 1e-7  # of the spin: how far left of the mode that grows most the other
 _ASIDE = 1e-4  # of the spin: how far left of that the others start at least
 _SAME = 1e-9  # of the spin: modes as near as that are one
 _GONE = -1e300  # lambda of a mode that there is not, 1/s
+_BLOCK = 32  # points whose matrices fit the processor's cache
 _RESOLVED = 1e-11  # of the frequencies, below which growth is rounding
 
 
@@ -104,15 +105,19 @@ def drum_modes(rotor: Jeffcott, layers: Sequence[SectionLayer], speed: Array) ->
     if not np.any(system.laminar):
         return linear_modes(CoupledMatrices(system.mass, system.damping, system.stiffness), circles)
     first = system.damping + np.sqrt(0.5 * _SLOW * speed)[:, None, None] * system.laminar
-    started = roots(CoupledMatrices(system.mass, first, system.stiffness))
+    slowly = CoupledMatrices(system.mass, first, system.stiffness)
+    started = roots(slowly)
     plain = CoupledMatrices(system.mass, system.damping, system.stiffness)
+    mass, laminar, every_damping, stiffness = (
+        part.astype(complex) for part in (system.mass, system.laminar, system.damping, system.stiffness)
+    )
 
     def terms(root: Complex, owner: Index) -> tuple[Complex, Complex]:
-        at, damping = root[:, None, None], system.damping[owner]
+        at, damping = root[:, None, None], every_damping[owner]
         # Of both roots the one whose layer dies out away from the wall.
-        drag = np.sqrt(at) * system.laminar
-        matrix = at * (at * system.mass + damping + drag) + system.stiffness[owner]
-        return matrix, 2.0 * at * system.mass + damping + 1.5 * drag
+        drag = np.sqrt(at) * laminar
+        matrix = at * (at * mass + damping + drag) + stiffness[owner]
+        return matrix, 2.0 * at * mass + damping + 1.5 * drag
 
     def every(owner: Index) -> Complex:
         return drum_roots(plain.at(owner), system.laminar, speed[owner])
@@ -120,7 +125,7 @@ def drum_modes(rotor: Jeffcott, layers: Sequence[SectionLayer], speed: Array) ->
     fastest = _fastest(started, system.mass, system.laminar)
     slip = np.abs(started.imag)
     return most_growing(
-        MostGrowing(started, slip, circles, terms, every, np.zeros(speed.shape), fastest), speed
+        MostGrowing(started, slowly, slip, circles, terms, every, np.zeros(speed.shape), fastest), speed
     )
 
 
@@ -140,6 +145,7 @@ class MostGrowing:
 
     #: lambda with friction at the frequency of slow waves, `_SLOW` of the spin, shape (n, m)
     started: Complex
+    slowly: CoupledMatrices  #: with that friction
     slip: Array  #: frequency of each over the drum, rad/s, 0 or above, shape (n, m)
     circles: Array  #: displacements that tell the sense of a whirl, in pairs across the axis, shape (2 c, N)
     #: T(lambda) and its derivative, shape (k, N, N), at points, (k,), of the speeds they belong to, (k,)
@@ -167,6 +173,11 @@ def most_growing(search: MostGrowing, speed: Array) -> SystemModes:
     everywhere = np.arange(speed.size)
     modes = _told(search, _split(root, most), everywhere, speed)
     missed = np.flatnonzero(~modes.complete)
+    if missed.size:
+        modes = modes.replaced(
+            missed, _told(search, _split(root[missed], most[missed]), missed, speed, True), _GONE
+        )
+        missed = np.flatnonzero(~modes.complete)
     if missed.size == 0:
         return modes
     again = search.every(missed)
@@ -184,14 +195,18 @@ def _split(root: Complex, which: Index) -> tuple[Complex, Complex]:
     return np.take_along_axis(root, which, axis=1), others
 
 
-def _told(search: MostGrowing, starts: tuple[Complex, Complex], at: Index, speed: Array) -> SystemModes:
+def _told(
+    search: MostGrowing, starts: tuple[Complex, Complex], at: Index, speed: Array, own: bool = False
+) -> SystemModes:
     """Modes followed from starting values at some speeds, complete where no other grows more.
 
-    The starting values of the others serve as well to make smooth what is followed, as no zero is lost or won
-    by a factor whose own zero is left of the line.
+    Two that are almost alike part if they start from their own shapes. The starting values of the others
+    serve as well to make smooth what is followed, as no zero is lost or won by a factor whose own zero is
+    left of the line.
     """
     start, others = starts
-    root, shape, found = _followed(search.terms, start, at, len(search.circles.T))
+    plain = np.tile(_any_shape(len(search.circles.T)), (start.size, 1))
+    root, shape, found = _followed(search.terms, start, at, _shapes(search, start, at) if own else plain)
     along, against = _sizes(search.circles, shape)
     spin = speed[at]
     rate = np.where(found, root.real, -np.inf).max(axis=1)
@@ -199,8 +214,12 @@ def _told(search: MostGrowing, starts: tuple[Complex, Complex], at: Index, speed
     region = Region(np.where(told, rate, 0.0) - _SHARE * spin, search.tip[at], spin, search.fastest[at])
 
     def determinant(points: Complex, owner: Index) -> Complex:
-        unit, size = np.linalg.slogdet(search.terms(points, at[owner])[0])
-        return np.asarray(size + 1j * np.angle(unit))
+        found = np.empty(points.shape, dtype=complex)
+        for first in range(0, points.size, _BLOCK):
+            part = slice(first, first + _BLOCK)
+            unit, size = np.linalg.slogdet(search.terms(points[part], at[owner[part]])[0])
+            found[part] = size + 1j * np.angle(unit)
+        return found
 
     # Two starts may lead to one mode.
     twice = np.tril(np.abs(root[:, :, None] - root[:, None, :]) <= _SAME * spin[:, None, None], -1)
@@ -211,6 +230,20 @@ def _told(search: MostGrowing, starts: tuple[Complex, Complex], at: Index, speed
     scale = np.abs(root) + spin[:, None]
     sense = np.where(along >= against, 1.0, -1.0)
     return SystemModes(root, sense, _RESOLVED * scale, found, told & (count == 0.0))
+
+
+def _any_shape(size: int) -> Complex:
+    """A shape that has something of every mode, shape (N,)."""
+    return np.asarray(1.0 + 0.1j * np.arange(size))
+
+
+def _shapes(search: MostGrowing, start: Complex, at: Index) -> Complex:
+    """Shapes of modes with friction at the frequency of slow waves, by which alike modes part, (n f, N)."""
+    root, owner = start.ravel() * (1.0 + _BESIDE), np.repeat(at, start.shape[1])
+    here, lam = search.slowly.at(owner), root[:, None, None]
+    plain = _any_shape(len(here.mass))[:, None]
+    shape = np.linalg.solve(lam * (lam * here.mass + here.damping) + here.stiffness, plain)[..., 0]
+    return np.asarray(shape / np.abs(shape).max(axis=1, keepdims=True))
 
 
 def _fastest(started: Complex, mass: Array, laminar: Array) -> Array:
@@ -234,7 +267,7 @@ def _sizes(circles: Array, shape: Complex) -> tuple[Array, Array]:
 
 
 def _followed(
-    terms: Callable[[Complex, Index], tuple[Complex, Complex]], start: Complex, at: Index, size: int
+    terms: Callable[[Complex, Index], tuple[Complex, Complex]], start: Complex, at: Index, shape: Complex
 ) -> tuple[Complex, Complex, Flags]:
     """Newton's method on each mode with its own laminar friction.
 
@@ -243,14 +276,13 @@ def _followed(
     terms : of `MostGrowing`
     start : first values of f modes at each of n speeds, above the real axis, shape (n, f)
     at : which speeds, shape (n,)
-    size : N of the matrices
+    shape : first shapes, shape (n f, N)
 
     Returns
     -------
     Modes, shape (n, f); their shapes, (n, f, N); whether they settled, (n, f)
     """
     root, owner = start.astype(complex).ravel(), np.repeat(at, start.shape[1])
-    shape = np.broadcast_to(np.ones(size, dtype=complex) + 0.1j * np.arange(size), (root.size, size)).copy()
     on, found = np.arange(root.size), np.zeros(root.shape, dtype=bool)
     for _ in range(_STEPS):
         # A mode met to rounding makes the matrix singular to rounding, which is wanted; so little away it is
@@ -268,7 +300,7 @@ def _followed(
         on = on[~settled]
         if on.size == 0:
             break
-    return root.reshape(start.shape), shape.reshape(*start.shape, size), found.reshape(start.shape)
+    return root.reshape(start.shape), shape.reshape(*start.shape, shape.shape[-1]), found.reshape(start.shape)
 
 
 @dataclass(frozen=True, eq=False)
@@ -411,14 +443,18 @@ def standing_modes(system: RotorSystem, layers: Sequence[Placed], speed: Array) 
         return linear_modes(CoupledMatrices(found.mass, found.damping, found.stiffness), circles)
     drag = np.sqrt(0.5 * _SLOW * speed)[:, None, None] * found.laminar
     slipping = -speed[:, None, None] * found.quarter @ drag
-    started = roots(CoupledMatrices(found.mass, found.damping + drag, found.stiffness + slipping))
+    slowly = CoupledMatrices(found.mass, found.damping + drag, found.stiffness + slipping)
+    started = roots(slowly)
     # Of the two circles of a mode the one with the spin, which slips less.
     slip = np.abs(np.abs(started.imag) - speed[:, None])
     turned = found.quarter @ found.laminar
     plain = CoupledMatrices(found.mass, found.damping, found.stiffness)
+    mass, laminar, turn, every_damping, stiffness = (
+        part.astype(complex) for part in (found.mass, found.laminar, turned, found.damping, found.stiffness)
+    )  # once: products of complex and real arrays convert them each time, at eight times the cost
 
     def terms(root: Complex, owner: Index) -> tuple[Complex, Complex]:
-        at, damping = root[:, None, None], found.damping[owner]
+        at, damping = root[:, None, None], every_damping[owner]
         # Either sense of circle slips by its own frequency over the drum.
         power, slope = [], []
         for way in (-1j, 1j):
@@ -430,16 +466,20 @@ def standing_modes(system: RotorSystem, layers: Sequence[Placed], speed: Array) 
             (0.5 * (pair[0] + pair[1]) for pair in (power, slope)),
             (-0.5j * (pair[0] - pair[1]) for pair in (power, slope)),
         )
-        shear, change = (u * found.laminar + v * turned for u, v in zip(mean, half, strict=True))
-        matrix = at * (at * found.mass + damping) + found.stiffness[owner] + shear
-        return matrix, 2.0 * at * found.mass + damping + change
+        shear, change = (u * laminar + v * turn for u, v in zip(mean, half, strict=True))
+        matrix = at * mass
+        matrix += damping
+        matrix *= at
+        matrix += stiffness[owner]
+        matrix += shear
+        return matrix, 2.0 * at * mass + damping + change
 
     def every(owner: Index) -> Complex:
         drags = 0.5 * np.stack([found.laminar - 1j * turned, found.laminar + 1j * turned])
         return standing_roots(plain.at(owner), np.asarray(drags, dtype=complex), speed[owner])
 
     fastest = _fastest(started, found.mass, found.laminar)
-    return most_growing(MostGrowing(started, slip, circles, terms, every, speed, fastest), speed)
+    return most_growing(MostGrowing(started, slowly, slip, circles, terms, every, speed, fastest), speed)
 
 
 def _real(matrix: Any) -> Array:

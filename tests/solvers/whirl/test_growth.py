@@ -218,7 +218,6 @@ def test_edge_steps() -> None:
     assert len(looks) - 1 <= 7
 
 
-@kills("solvers.whirl.edges:_seeds", "np.concatenate([edges, 0.5 * (", "np.concatenate([0.1 * edges, 0.1 * (")
 def test_thin_film() -> None:
     """The band of a film, off the grid here, lies between the critical speeds with and without added mass."""
     speeds = np.linspace(30.0, 400.0, 20)
@@ -249,7 +248,7 @@ def motion(system: Jeffcott, fill: Fill, spin: float, rate: float) -> np.ndarray
     return np.block([[np.zeros((2, 2)), np.eye(2)], [-inverse @ spring, -inverse @ drag]])
 
 
-@kills("solvers.whirl.growth:machines_growth", "modes.slip + problem.spin", "modes.slip - problem.spin")
+@kills("solvers.whirl.growth:machines_growth", "found.slip + speed[here]", "found.slip - speed[here]")
 def test_time() -> None:
     """A small disturbance advanced in time grows, or decays, at the rate given."""
     for spin, k in ((128.0, 0.0), (128.0, 5.0), (95.0, 5.0), (300.0, 5.0)):

@@ -1,0 +1,184 @@
+"""No band of self-excited whirl is lost between two speeds, on any rotor."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fluid.fill import Fill
+from fluid.friction.laws import NO_FRICTION, Friction, FrictionLaw
+from fluid.liquid import known_liquid
+from fluid.whirl import plane_layer
+from meshes.baffles import Baffles
+from meshes.chamber import Chamber
+from solvers.rotor.jeffcott import Jeffcott
+from solvers.rotor.system import Rotor
+from solvers.rotor.tub import Mount, Tub
+from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
+from solvers.whirl.edges import undamped_edges, unstable_bands
+from solvers.whirl.growth import asynchronous_growth, planar_layers
+from solvers.whirl.looks import _first_speeds
+from solvers.whirl.system import coupled_matrices, linear_modes
+from tests.mutants import kills
+
+WATER = known_liquid("water")
+Machine = tuple[Rotor, list[Fill], Friction, float, float]
+
+
+def drawn(seed: int) -> Machine:
+    """A rotor of some kind with liquid in one or two chambers, a law of friction and a range of speeds.
+
+    Every third without damping of the supports, every second without friction, every eighth with baffles.
+    """
+    rng = np.random.default_rng([31, seed])
+    kind = ("jeffcott", "two_plane", "two_plane", "tub")[seed % 4]
+    mass, natural = 10.0 ** rng.uniform(0.5, 1.7), 10.0 ** rng.uniform(1.3, 2.3)
+    stiff = mass * natural**2
+    ratio = 0.0 if rng.random() < 0.33 else 10.0 ** rng.uniform(-3.0, -0.7)
+    damping = 2.0 * ratio * mass * natural
+    radius = rng.uniform(0.05, 0.2)
+    baffles = (
+        Baffles(int(rng.integers(3, 6)), radius * rng.uniform(0.93, 0.99)) if rng.random() < 0.125 else None
+    )
+    fills = []
+    for _ in range(int(rng.integers(1, 3))):
+        height, depth = radius * rng.uniform(0.2, 0.8), radius * 10.0 ** rng.uniform(-1.7, -0.5)
+        chamber = Chamber(radius, height, plane=radius * rng.uniform(-2.0, 2.0), baffles=baffles)
+        fills.append(Fill(chamber, WATER, math.pi * height * (radius**2 - (radius - depth) ** 2)))
+    if kind == "jeffcott":
+        rotor: Rotor = Jeffcott(mass, stiff, damping, 1e-3)
+    elif kind == "two_plane":
+        across = mass * radius**2 * rng.uniform(0.3, 3.0)
+        share = rng.uniform(0.3, 0.7)
+        places = (-radius * rng.uniform(0.5, 2.5), radius * rng.uniform(0.5, 2.5))
+        supports = tuple(
+            Support(z, part * stiff, part * damping)
+            for z, part in zip(places, (share, 1 - share), strict=True)
+        )
+        polar = across * rng.uniform(0.1, 1.5)
+        rotor = TwoPlane(mass, across, polar, supports, (PlaneUnbalance(0.0, 1e-3),))
+    else:
+        inertia = mass * radius**2 * rng.uniform(0.5, 2.0, 3)
+        springs, dampers = [], []
+        for _ in range(4):
+            place = tuple(radius * rng.uniform(-1.5, 1.5, 3))
+            springs.append(Mount(place, along_axes=tuple(0.25 * stiff * rng.uniform(0.3, 1.0, 3))))
+            dampers.append(Mount(place, along_axes=tuple(0.25 * damping * rng.uniform(0.3, 1.0, 3))))
+        rotor = Tub(
+            0.7 * mass, 0.3 * mass, (inertia[0], inertia[1], inertia[2]), 0.3 * inertia[1], 0.2 * inertia[0],
+            tuple(springs), tuple(dampers), 1e-3,
+        )  # fmt: skip
+    law = [
+        NO_FRICTION,
+        NO_FRICTION,
+        Friction(FrictionLaw.LINEAR, 10.0 ** rng.uniform(-2.0, 0.7)),
+        Friction(FrictionLaw.STOKES),
+    ]
+    return rotor, fills, law[int(rng.integers(0, 4))], 0.3 * natural, 6.0 * natural
+
+
+def contradictions(seed: int, speeds: int) -> list[float]:
+    """Speeds at which a whirl grows outside all bands or fades inside one, the edges themselves left out."""
+    rotor, fills, friction, first, last = drawn(seed)
+    asked = np.linspace(first, last, speeds)
+    growth = asynchronous_growth(rotor, fills, asked, friction)[0]
+    (bands,) = unstable_bands(rotor, [fills], asked[[0, -1]], friction)
+    inside = np.zeros(speeds, dtype=bool)
+    edge = np.isnan(growth)
+    for low, high in bands:
+        inside |= (asked >= low) & (asked <= high)
+        edge |= np.minimum(np.abs(asked - low), np.abs(asked - high)) <= 1e-7 * asked
+    return [float(x) for x in asked[~edge & (inside != (growth > 0.0))]]
+
+
+def no_band_lost(seeds: range, speeds: int = 200) -> None:
+    """No seed's bands contradict the growth at speeds that they were not found from."""
+    wrong = {seed: found for seed in seeds if (found := contradictions(seed, speeds))}
+    assert not wrong
+
+
+@kills("solvers.whirl.edges:_refine", "(rates > 0.0) != first", "(rates > 0.0) == first")
+def test_no_band_lost() -> None:
+    """A sample of random machines: planar, on two planes, tubs, clear and beside baffles."""
+    no_band_lost(range(10))
+
+
+@pytest.mark.slow
+def test_no_band_lost_in_200() -> None:
+    """The same of 200 machines."""
+    no_band_lost(range(200))
+
+
+#: Two planes, no damping: bands of 594 to 674 and 971 to 1428 rpm and a stable gap between.
+GAPPED = TwoPlane(
+    10.0, 0.05, 0.015, (Support(0.1, 1e4, 0.0), Support(-0.1, 1e4, 0.0)), (PlaneUnbalance(0.0, 1e-3),)
+)
+HALF = Fill(Chamber(0.06, 0.02, plane=0.15), WATER, 113.0973e-6)
+
+
+@pytest.mark.parametrize("speeds", [60, 100, 2001])
+def test_number_of_speeds(speeds: int) -> None:
+    """Neither a band nor the gap between two is lost, however few speeds are asked for."""
+    asked = np.linspace(20.0, 3000.0, speeds)
+    growth = asynchronous_growth(GAPPED, [HALF], asked)[0]
+    (bands,) = unstable_bands(GAPPED, [[HALF]], asked, growth=growth[None])
+    (other,) = unstable_bands(GAPPED, [[HALF]], asked[[0, -1]])
+    np.testing.assert_array_equal(bands, other)
+    assert len(bands) == 2
+    for low, high in bands:
+        beside = np.array([low * (1 - 1e-8), low * (1 + 1e-8), high * (1 - 1e-8), high * (1 + 1e-8)])
+        grows = asynchronous_growth(GAPPED, [HALF], beside)[0] > 0.0
+        assert grows.tolist() == [False, True, True, False]
+    # A grid of 0.4 rad/s, by the sign of the growth alone.
+    fine = np.arange(50.0, 160.0, 0.4)
+    grows = asynchronous_growth(GAPPED, [HALF], fine)[0] > 0.0
+    edges = fine[1:][grows[1:] != grows[:-1]]
+    np.testing.assert_allclose(np.ravel(bands), edges - 0.2, atol=0.2)
+
+
+def test_films() -> None:
+    """Bands of a film on two planes, as narrow as the film is thin, are gone to, each between two speeds.
+
+    Without gyration the rotor's shift is a Jeffcott rotor whose film is in the plane of its centre of mass:
+    its edges are those of the undamped planar rotor.
+    """
+    rotor = TwoPlane(
+        6.0, 0.05, 0.0, (Support(0.1, 3e4, 0.0), Support(-0.1, 3e4, 0.0)), (PlaneUnbalance(0.0, 1e-3),)
+    )
+    for depth in (1e-4, 1e-6):
+        chamber = Chamber(0.1, 0.02, plane=0.0)
+        fill = Fill(chamber, WATER, math.pi * 0.02 * (0.1**2 - (0.1 - 0.1 * depth) ** 2))
+        (bands,) = unstable_bands(rotor, [[fill]], np.array([30.0, 400.0]))
+        mass, layers = planar_layers(6.0, [fill], NO_FRICTION)
+        # Each edge to the half of the digits that a double root leaves.
+        np.testing.assert_allclose(np.ravel(bands), undamped_edges(mass, 6e4, layers), rtol=1e-7)
+
+
+@kills("solvers.whirl.looks:_first_speeds", "mass=ratio**2 * mass", "mass=ratio * mass")
+@kills("solvers.whirl.looks:_first_speeds", "gyroscopic=ratio * system", "gyroscopic=system")
+@kills("solvers.whirl.looks:_first_speeds", "way * np.sqrt(x.layer_tanh", "way * np.sqrt(2.0 * x.layer_tanh")
+def test_meetings_of_waves() -> None:
+    """Where a wave meets a mode both have one frequency, that of the layer alone and of the rotor alone."""
+    system = GAPPED.system()
+    layer = plane_layer(HALF, NO_FRICTION)
+    assert layer is not None
+    found = _first_speeds(system, [HALF], 20.0, 3000.0)
+    even = np.geomspace(20.0, 3000.0, 1 + math.ceil(math.log(150.0) / 0.08))
+    own = found[np.abs(found[:, None] - even).min(axis=1) > 1e-9 * found]
+    # Two waves, each with rotors of two masses; a forward mode runs away from the faster wave.
+    assert own.size >= 4
+    # E of no friction has the zeros s of the free waves.
+    slips = np.roots([1.0, -2.0 * layer.layer_tanh, -layer.layer_tanh])
+    at = system.at(HALF.chamber.plane)
+    heavy = replace(system, mass=system.mass + HALF.mass * at.T @ at)
+    for speed in own:
+        spin = np.array([speed])
+        modes = np.concatenate(
+            [linear_modes(coupled_matrices(one, [], spin), np.eye(4)).root[0].imag for one in (system, heavy)]
+        )
+        off = np.abs(np.abs(modes)[:, None] - np.abs(1.0 + slips) * speed).min()
+        # Eigenvalues to some hundred roundings of the largest.
+        assert off <= 1e-9 * speed
