@@ -340,7 +340,8 @@ def layer_step(
     next_a, next_q = spare[_NEXT_A, :n], spare[_NEXT_Q, :n]
     rate_e, next_e = spare[_RATE_E, : rolling.size], spare[_NEXT_E, : rolling.size]
     velocity, surface, log = spare[VELOCITY, GHOSTS:], spare[SURFACE, GHOSTS:], spare[LOG, GHOSTS:]
-    gains.torque, gains.work, gains.heat, gains.loss, gains.missed, gains.baffles = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    gains.torque, gains.work, gains.heat = 0.0, 0.0, 0.0
+    gains.loss, gains.missed, gains.baffles = 0.0, 0.0, 0.0
     drags = coefficient, thin, table
     _, gains.loss = _half_friction(area, q, spins[0], layer, drags, dt, inside, spare, gains)
     copy(area, next_a)
@@ -678,9 +679,11 @@ def _tally(machine, state, room, dt):
         sums.drive += scale * gains.work
         sums.gravity += _lowered(machine.gravity, layer, room.begin[j], room.end[j], room.turn)
         sums.friction += scale * gains.heat
-        sums.bores += scale * gains.loss
+        sums.lost += scale * gains.loss
         sums.baffles += scale * gains.baffles
         sums.profile += scale * gains.missed
+    # Bores give nothing back: what the scheme does is no heat, the balance leaves it.
+    sums.bores = max(sums.bores, sums.lost)
     for j in range(machine.pools.shape[0]):
         pool, past = machine.pools[j], spin - 0.5 * (room.lean_rate[j] + state.lean_rate[j])
         sums.drive += spin * room.drag[j]

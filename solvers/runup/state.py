@@ -169,12 +169,12 @@ POOL = floats("mass", "arm", "length", "inertia")
 # torque by a change of the spin on the ball and on the drum, and its resistance to rolling over its pressure.
 BALL = floats("mass", "radius", "inertia", "drag", "carried", "driven", "resistance")
 # What is summed up over time [theory: coupling, eq. 9-10]: work of the unbalance, of the drive on the liquid,
-# of gravity; heat in the supports and by wall friction, loss in bores and by the scheme, loss at the baffles,
-# what the assumed profile of the flow misses while the spin changes; work of the motor; steps, layer steps,
-# largest disagreement left.
+# of gravity; heat in the supports and by wall friction, loss in bores, loss at the baffles, what the assumed
+# profile of the flow misses while the spin changes; work of the motor; what layers lose in bores and by the
+# scheme, whose largest value so far is the loss in bores; steps, layer steps, largest disagreement left.
 SUMS = floats(
     *("unbalance", "drive", "gravity", "support", "friction", "bores", "baffles", "profile", "motor"),
-    *("steps", "layer_steps", "disagreement"),
+    *("lost", "steps", "layer_steps", "disagreement"),
 )
 
 
