@@ -564,7 +564,8 @@ def tally_ball(ball, held, gravity, moving, change, spins, dt, sums):
     angle, rate = moving
     spin, mean, middle = 0.5 * (spins[0] + spins[1]), rate + 0.5 * change, angle + 0.5 * dt * rate
     sums.drive += spin * ball_turned(ball, held, rate, change, spins, dt)
-    sums.friction += (spin - mean) * ball_dragged(ball, held, rate, change, spins, dt)
+    # A ball that stops slipping within the step resists as at its end: that is no heat below zero.
+    sums.friction += max((spin - mean) * ball_dragged(ball, held, rate, change, spins, dt), 0.0)
     pull = gravity[1] * np.cos(middle) - gravity[0] * np.sin(middle)
     sums.gravity += dt * ball.mass * ball.radius * mean * pull
 

@@ -238,7 +238,7 @@ def test_energy() -> None:
         assert found.advance(0.1, 20.0, 0.3, 1000) == Outcome.DONE
         s = found.sums
         gained = s.unbalance + s.drive + s.gravity
-        lost = s.support + s.friction + s.bores + s.profile
+        lost = s.support + s.friction + s.lost + s.profile
         left.append(abs(gained - lost - (found.energy() - before)) / abs(s.unbalance))
     assert left[1] < 2e-2
     assert left[1] < 0.35 * left[0]
