@@ -75,8 +75,9 @@ def outline_section(
 ) -> Section:
     """Section from an outline drawn elsewhere, its geometric axis at the drawing's origin.
 
-    The largest closed outline is the outer wall; the others lie side by side within it, as inner walls and
-    obstacles. Only what CAD shows and plots counts. The same file and sizes give the same mesh.
+    The largest closed outline is the outer wall; the others lie within it and are inner walls and obstacles,
+    whatever is drawn inside those. Only what CAD shows and plots counts. The same file and sizes give the
+    same mesh.
 
     Parameters
     ----------
@@ -96,7 +97,7 @@ def outline_section(
     Raises
     ------
     InputError : a value out of its range, a file that cannot be read, an outline that is open or crossed, or
-        lies outside the largest or within another
+        lies outside the largest
     ImportError : Gmsh or ezdxf is not installed: `pip install leblanc[cad]`
     """
     file = _check(path, wall_size, inside_size, growth, order)
@@ -278,7 +279,10 @@ def _check_crossings(path: str | Path, gmsh: Any, walls: list[Curve], ends: Indi
 def _nested(
     path: str | Path, gmsh: Any, walls: list[Curve], ends: Indices, places: Array, loops: list[list[int]]
 ) -> list[list[int]]:
-    """Outlines that do not cross, the largest first, which must hold all others side by side."""
+    """The largest of some outlines that do not cross, which must hold all others, and those right within it.
+
+    What lies within an obstacle, as the bore of a hollow shaft, bounds nothing that liquid reaches.
+    """
     if len(loops) == 1:
         return loops
     with _aside(gmsh, walls, ends, places) as (made, unit):
@@ -287,6 +291,7 @@ def _nested(
         gmsh.model.occ.synchronize()
         order = sorted(range(len(loops)), key=lambda k: -gmsh.model.occ.getMass(2, faces[k]))
         boxes = np.array([gmsh.model.getBoundingBox(2, face) for face in faces])[:, [0, 1, 3, 4]]
+        kept = order[:1]
         for rank, k in enumerate(order[1:], start=1):
             place = places[ends[loops[k][0], 0]]
             at = place / unit
@@ -302,10 +307,9 @@ def _nested(
                     f"a drawing whose largest outline holds all others; one lies outside at ({x:g}, {y:g})"
                 )
                 raise InputError("path", str(path), allowed)
-            if len(around) > 1:
-                allowed = "outlines side by side within the largest; one lies within another"
-                raise InputError("path", str(path), f"a drawing of {allowed} at ({x:g}, {y:g})")
-    return [loops[k] for k in order]
+            if len(around) == 1:
+                kept.append(k)
+    return [loops[k] for k in kept]
 
 
 def _add_all(gmsh: Any, curves: list[Curve], ends: Indices, places: Array) -> list[int]:

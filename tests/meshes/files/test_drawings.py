@@ -305,7 +305,7 @@ def in_a_bay(doc: Any, space: Any) -> None:
 
 
 def within_an_obstacle(doc: Any, space: Any) -> None:
-    """A hollow shaft."""
+    """A hollow shaft: no liquid comes into its bore."""
     circle(space, 100)
     circle(space, 30)
     circle(space, 20)
@@ -381,7 +381,7 @@ DRAWINGS: dict[Draw, float | str] = {
     touching_the_wall: "touching another",
     touching_corner: "cross",
     in_a_bay: "outside",
-    within_an_obstacle: "within another",
+    within_an_obstacle: PI * 9100,
     bow_tie: "cross",
     arc_through_its_polyline: "cross",
     tilted_circle: "plane z = constant",
