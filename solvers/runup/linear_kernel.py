@@ -31,9 +31,10 @@ from solvers.runup.kernel import (
 
 _jit: Any = machine_code(**COMPILED)
 
-# Of a layer: mass, curvature, friction rate, power of the spin that it goes with, moment of inertia; under
-# the law of the wall last velocity of its table, R/h + 2 R/h_c, otherwise 0 both.
-LINEAR_LAYER = floats("mass", "curvature", "rate", "power", "inertia", "top", "sides")
+# Of a layer: mass, curvature, friction rate of its waves and of it as a whole, power of the spin that they go
+# with, moment of inertia; under the law of the wall last velocity of its table, R/h + 2 R/h_c, otherwise 0
+# both.
+LINEAR_LAYER = floats("mass", "curvature", "rate", "whole", "power", "inertia", "top", "sides")
 
 
 class LinearMachine(NamedTuple):
@@ -182,7 +183,7 @@ def _wall_drag(m, j, spin, lag):
     """Rate of the friction of the walls on a layer as a whole, 1/s."""
     layer = m.layers[j]
     if layer.top == 0.0:
-        return layer.rate * spin**layer.power
+        return layer.whole * spin**layer.power
     rate, _ = mean_rate(m.tables[j], layer.top, lag)
     return rate * layer.sides
 

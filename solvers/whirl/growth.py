@@ -234,10 +234,10 @@ def _planar_parts(
         place = index[owner[here]]
         mass = np.array([tables[i][0] for i in own])[place]
         layers = np.array(
-            [[(x.mass, x.layer_tanh, x.rate, x.stokes) for x in tables[i][1]] for i in own]
-        ).reshape(own.size, kind[0], 4)[place]
+            [[(x.mass, x.layer_tanh, x.rate, x.stokes, x.lids) for x in tables[i][1]] for i in own]
+        ).reshape(own.size, kind[0], 5)[place]
         stiffness, damping = support[own[place]].T
-        columns = (layers[:, :, k].T for k in range(4))
+        columns = (layers[:, :, k].T for k in range(5))
         yield here, planar_modes(PlanarProblem(mass, stiffness, damping, speed[here], *columns))
 
 
@@ -310,7 +310,7 @@ def planar_layers(mass: float, fills: Sequence[Fill], friction: Friction) -> tup
 def _alike(first: Layer, second: Layer) -> bool:
     return all(
         abs(getattr(first, name) - getattr(second, name)) <= _ALIKE * abs(getattr(first, name))
-        for name in ("layer_tanh", "rate", "stokes")
+        for name in ("layer_tanh", "rate", "stokes", "lids")
     )
 
 

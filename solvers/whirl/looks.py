@@ -224,7 +224,8 @@ def _pairing(off: Array) -> Index:
 def _unsure(low: Looks, high: Looks) -> tuple[Flags, Array]:
     """Intervals to be looked into, and where: as a share of their width, shape (k,).
 
-    Modes that cannot be followed, and growths and distances of two modes whose tangents meet beyond zero.
+    Modes that cannot be followed, growth that goes over to another mode, and growths and distances of two
+    modes whose tangents meet beyond zero.
     """
     width, modes = high.speed - low.speed, _follow(low, high)
     lost = (modes.counts & ~modes.sure).any(axis=1)
@@ -250,13 +251,27 @@ def _unsure(low: Looks, high: Looks) -> tuple[Flags, Array]:
             & (gap[3] * gap[0] > 0.0)
         )
         near = beyond, twice & (reach < width[:, None] * np.abs(gap[2] - gap[3]))
-    wanted = np.concatenate([rises | falls, near[1]], axis=1)
-    places = np.concatenate([at, near[0]], axis=1)
+    between, gap_there = _handed_over(low, high, modes)
+    wanted = np.concatenate([gap_there[:, None], rises | falls, near[1]], axis=1)
+    places = np.concatenate([between[:, None], at, near[0]], axis=1)
     which = np.argmax(wanted, axis=1)
     asked = wanted.any(axis=1) & (width > 1e-8 * high.speed)
-    place = np.take_along_axis(places, which[:, None], axis=1)[:, 0] if wanted.shape[1] else share
+    place = np.take_along_axis(places, which[:, None], axis=1)[:, 0]
     share = np.where(asked, np.clip(place, 0.1, 0.9), share)
     return split | asked, share
+
+
+def _handed_over(low: Looks, high: Looks, modes: _Followed) -> tuple[Array, Flags]:
+    """Where none of the modes may grow that do so at the ends, as a share of the width; intervals of these.
+
+    In the middle between the zeros of the chords of the last that ceases and of the first that begins.
+    """
+    start, end = modes.start.real, modes.end.real
+    first, last = modes.sure & (start > 0.0), modes.sure & (end > 0.0)
+    zero = np.divide(start, start - end, out=np.full(start.shape, np.nan), where=first != last)
+    ceases = np.where(first & ~last, zero, 0.0).max(axis=1, initial=0.0)
+    begins = np.where(last & ~first, zero, 1.0).min(axis=1, initial=1.0)
+    return 0.5 * (ceases + begins), (low.growth > 0.0) & (high.growth > 0.0) & ~(first & last).any(axis=1)
 
 
 def _tangents(first: Array, last: Array, rise: Array, fall: Array, width: Array) -> tuple[Array, Array]:

@@ -112,6 +112,21 @@ def test_no_band_lost_in_200() -> None:
     no_band_lost(range(200))
 
 
+@kills("solvers.whirl.looks:_handed_over", "0.5 * (ceases + begins)", "0.0 * begins")
+@kills("solvers.whirl.looks:_handed_over", "~(first & last).any(axis=1)", "(first & last).any(axis=1)")
+def test_gap_between_two_modes() -> None:
+    """Growth goes over from one mode to another within 0.4 % of the speed: between them nothing grows."""
+    rotor, fills, friction, first, last = drawn(88)
+    (bands,) = unstable_bands(rotor, [fills], np.array([first, last]), friction)
+    assert len(bands) == 2
+    (_, ceases), (begins, _) = bands
+    assert 1.0 < begins / ceases < 1.004
+    beside = np.array([ceases * (1 - 1e-6), ceases * (1 + 1e-6), begins * (1 - 1e-6), begins * (1 + 1e-6)])
+    growth, whirl_speed = asynchronous_growth(rotor, fills, beside, friction)
+    assert (growth > 0.0).tolist() == [True, False, False, True]
+    assert whirl_speed[3] < 0.9 * whirl_speed[0]
+
+
 #: Two planes, no damping: bands of 594 to 674 and 971 to 1428 rpm and a stable gap between.
 GAPPED = TwoPlane(
     10.0, 0.05, 0.015, (Support(0.1, 1e4, 0.0), Support(-0.1, 1e4, 0.0)), (PlaneUnbalance(0.0, 1e-3),)
