@@ -10,7 +10,7 @@ import numpy as np
 from leblanc.figures.drawing.page import Caption, Figure, FigureFiles, Frame, lay_out, number, save, style
 from leblanc.results.base import one_line
 from leblanc.results.fit import FitResult, Measured
-from leblanc.units import MM, RPM, Unit
+from leblanc.units import MM, MM_PEAK, RPM, Unit
 from meshes.arrays import Array
 
 Axes = Any  # matplotlib's, which no module that only draws imports
@@ -68,7 +68,8 @@ def _draw(
     for axes in (above, below):
         axes.margins(y=0.12)  # no mark is cut at the edge
     words = part.name.replace("_", " ").capitalize()
-    above.set_ylabel(f"{words}\n({unit})")
+    peak = unit == "mm" and part.name in ("amplitude", "peak")
+    above.set_ylabel(f"{words}\n({MM_PEAK if peak else unit})")
     below.set_ylabel(f"left ({unit})")
 
 

@@ -38,6 +38,7 @@ class FitCode(NoteCode):
     FLAT = "flat"
     NOT_REPEATED = "not_repeated"
     LARGE = "large"
+    FEW = "few"
     CONVERTED = "converted"
 
 
@@ -222,6 +223,16 @@ def poor_note(rms: float, reason: str) -> Note:
         "There are no standard errors."
     )
     return Note(FitCode.POOR, {"residual_rms": rms}, text)
+
+
+def few_note(rms: float, freedom: int) -> Note:
+    """That so few values cannot show whether what is left is noise."""
+    more = f"{freedom} value{'' if freedom == 1 else 's'} more than unknowns"
+    text = (
+        f"{100.0 * rms:.2g} % of the data's size are left, and {more} cannot show whether that is noise: "
+        "state the error of the sensor (--noise) or measure more. There are no standard errors."
+    )
+    return Note(FitCode.FEW, {"residual_rms": rms, "freedom": freedom}, text)
 
 
 def large_note(rms: float) -> Note:

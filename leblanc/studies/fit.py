@@ -49,6 +49,7 @@ from leblanc.studies.fitting.problem import (
     ties_of,
 )
 from leblanc.studies.fitting.search import Searched, Valley, descend, floor, search
+from leblanc.studies.models.validity import require_supported
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
 
@@ -96,6 +97,7 @@ def fit_scene(
     """
     if measurement.over != "time":
         require_no_balls(scene, f"a fit over {measurement.over}; with balls it takes a run-up over time")
+        require_supported(scene)
     stated = parse_noise(noise)
     groups = ties_of(scene, unknown)
     first = np.array([first_guess(scene, group[0]) for group in groups])
@@ -160,11 +162,14 @@ def _others(problem: Problem, searched: Searched, best: Judged, told: Flags) -> 
 
     In one of a hundred cases the sum of the truth rises further for all unknowns [theory: fit, eq. 11].
     """
-    from scipy.special import fdtri
+    from scipy.special import chdtri, fdtri
 
     residual = problem.weighted(best.sigma)
     least = float(np.sum(np.square(residual(best.x))))
-    limit = least + best.x.size * float(fdtri(best.x.size, problem.freedom, _JOINTLY)) + floor(problem)
+    count = best.x.size
+    estimated = count * float(fdtri(count, problem.freedom, _JOINTLY))
+    rise = float(chdtri(count, 1.0 - _JOINTLY)) if best.noise.stated else estimated
+    limit = least + rise + floor(problem)
     found: list[Array] = []
     tried = 0
     for valley in searched.valleys:

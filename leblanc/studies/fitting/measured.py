@@ -55,6 +55,7 @@ _TAKEN = (
 )
 _EXTRA_ACCELERATIONS = {"g": 9.80665, "g0": 9.80665, "gn": 9.80665, "mg": 9.80665e-3}  # standard gravity
 _BRACKETS = re.compile(r"(.*?)\s*(?:\[([^\[\]]*)\]|\(([^()]*)\)|\{([^{}]*)\})\s*")
+_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}(?:,\d{3})+", re.ASCII)
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
 
 
@@ -101,7 +102,7 @@ def read_measured(
     ------
     InputError : no such file, a column that is none of these, a value that is no number; with its line
     """
-    rows = list(_rows(path, _text(path)))
+    rows, delimiter = _rows(path, _text(path))
     if not rows:
         raise InputError(FIELD, str(path), "a table: a header, then rows of numbers")
     (line, head), body = rows[0], rows[1:]
@@ -123,7 +124,7 @@ def read_measured(
     if len(over) != 1 or len(names) < 2:
         allowed = "speed, time or added, one of them, and what was measured over it"
         raise InputError(place, ", ".join(head), allowed)
-    comma = _decimal_comma(path, body, list(taken))
+    comma = _decimal_comma(path, body, list(taken), delimiter)
     values = np.array([_numbers(row, taken, len(head), comma, f"{path}:{k}") for k, row in body])
     at = values[:, names.index(over[0])]
     _check(values, names, [k for k, _ in body], path)
@@ -180,9 +181,9 @@ def _text(path: str | PathLike[str]) -> str:
         raise InputError(FIELD, str(path), f"a table of text that can be read ({fault})") from fault
 
 
-def _rows(path: str | PathLike[str], text: str) -> Iterator[tuple[int, list[str]]]:
-    """Number of the line and cells of each row; empty lines and comments are left out."""
-    delimiter = ""
+def _rows(path: str | PathLike[str], text: str) -> tuple[list[tuple[int, list[str]]], str]:
+    """Number of the line and cells of each row, without empty lines and comments; the sign between cells."""
+    delimiter, found = "", []
     for number, line in enumerate(text.splitlines(), 1):
         if not line.strip() or line.lstrip().startswith("#"):
             continue
@@ -202,7 +203,8 @@ def _rows(path: str | PathLike[str], text: str) -> Iterator[tuple[int, list[str]
         while cells and not cells[-1]:
             cells.pop()
         if cells:
-            yield number, cells
+            found.append((number, cells))
+    return found, delimiter
 
 
 def _sign(delimiter: str) -> str:
@@ -357,19 +359,23 @@ def _size(unit: str, dimension: Dimension, place: str, cell: str) -> float:
 
 
 def _decimal_comma(
-    path: str | PathLike[str], body: Sequence[tuple[int, Sequence[str]]], used: Sequence[int]
+    path: str | PathLike[str], body: Sequence[tuple[int, Sequence[str]]], used: Sequence[int], delimiter: str
 ) -> bool:
-    """Whether commas are the decimal signs of a table; refused where both signs are."""
+    """Whether commas are the decimal signs of a table; refused where both signs are, or thousands may be."""
     comma = point = None
+    decimal = delimiter != ","
     for line, row in body:
         for cell in (row[k] for k in used if k < len(row)):
             if "," in cell and cell.rfind(",") > cell.rfind("."):
                 comma = comma or (line, cell)
+                decimal |= not _THOUSANDS.fullmatch(cell)
             elif "." in cell:
                 point = point or (line, cell)
     if comma and point:
         later = max(comma, point)
         raise InputError(f"{path}:{later[0]}", later[1], "a number with the decimal sign of the other rows")
+    if comma and not decimal:
+        raise InputError(f"{path}:{comma[0]}", comma[1], "a number without a sign between its thousands")
     return comma is not None
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from leblanc import units
 from leblanc.results.base import Note
-from leblanc.results.fit import POOR, Noise, poor_note
+from leblanc.results.fit import POOR, Noise, few_note, poor_note
 from leblanc.studies.fitting.measured import ANGLES, SIZES
 from leblanc.studies.fitting.problem import Problem, is_turn, model_error
 from leblanc.studies.fitting.search import descend
@@ -24,7 +24,7 @@ _LEAST_READING = 1e-3
 _LEAST = 1e-6  # of the size: noise below it is not looked for
 _EXACT = 1e-4  # of the largest value: less left needs no explanation
 _CHANCE = 2e-3  # of noise that looks worse: below it what is left is no noise
-_FEW = 3  # degrees of freedom up to which no pattern is seen
+_FEW = 3  # degrees of freedom up to which no pattern is seen, nor noise told from a bad fit
 _PASSES = 4  # of weights by the fitted values
 
 
@@ -178,7 +178,7 @@ def unexplained(problem: Problem, judged: Judged) -> Note | None:
     if rms > POOR:
         return poor_note(rms, "no sensor has so much noise")
     if problem.freedom <= _FEW:
-        return None
+        return few_note(rms, problem.freedom)
     for reason in (
         _repeated(problem, white),
         _neighbours(problem, judged, white),
@@ -246,39 +246,44 @@ def _repeated(problem: Problem, white: Sequence[Array]) -> str:
     return f"rows that repeat scatter {units.number(float(np.sqrt(ratio)))} times less than they lie off"
 
 
-def _neighbours(problem: Problem, judged: Judged, white: Sequence[Array]) -> str:
-    """What is left of neighbours is alike, or opposite: their correlation beside that of noise.
+def _beside(vectors: Array, size: int) -> Array:
+    """Half the sum of both neighbours within each quantity of some size, shape as given."""
+    found = np.zeros_like(vectors)
+    for start in range(0, vectors.shape[0], size):
+        part, to = vectors[start : start + size], found[start : start + size]
+        to[1:] += 0.5 * part[:-1]
+        to[:-1] += 0.5 * part[1:]
+    return found
 
-    With the projection M on what a fit leaves of noise, the ratio e'Ae/e'e of normal noise has the mean
-    tr(MA)/v and the variance 2 (v tr(MAMA) - tr(MA)^2)/(v^2 (v + 2)) [theory: fit, eq. 8].
+
+def alike_by_chance(basis: Array, size: int) -> tuple[float, float]:
+    """Mean and variance of e'Ae/e'e of normal noise [theory: fit, eq. 8].
+
+    Parameters
+    ----------
+    basis : orthonormal directions that a fit takes out of the noise, shape (n columns, p)
+    size : values of each column
     """
+    moved = _beside(basis, size)
+    inner = basis.T @ moved
+    trace = -float(np.trace(inner))
+    pairs = 0.5 * (basis.shape[0] // size) * (size - 1)
+    both = pairs - 2.0 * float(np.sum(np.square(moved))) + float(np.sum(np.square(inner)))
+    freedom = basis.shape[0] - basis.shape[1]
+    return trace / freedom, 2.0 * (freedom * both - trace**2) / (freedom**2 * (freedom + 2.0))
+
+
+def _neighbours(problem: Problem, judged: Judged, white: Sequence[Array]) -> str:
+    """What is left of neighbours is alike, or opposite: their correlation beside that of noise."""
     from scipy.special import betainc
 
     basis = _basis(problem, judged)
-    size = white[0].size
-
-    def shifted(vectors: Array) -> Array:
-        """Half the sum of both neighbours within each quantity, shape as given."""
-        found = np.zeros_like(vectors)
-        for start in range(0, vectors.shape[0], size):
-            part, to = vectors[start : start + size], found[start : start + size]
-            to[1:] += 0.5 * part[:-1]
-            to[:-1] += 0.5 * part[1:]
-        return found
-
     rest = np.concatenate(white)
-    freedom = rest.size - basis.shape[1]
     squares = float(rest @ rest)
-    if freedom <= _FEW or squares == 0.0:
+    if rest.size - basis.shape[1] <= _FEW or squares == 0.0:
         return ""
-    ratio = float(rest @ shifted(rest)) / squares
-    moved = shifted(basis)
-    inner = basis.T @ moved
-    trace = -float(np.trace(inner))
-    pairs = 0.5 * len(white) * (size - 1)
-    both = pairs - 2.0 * float(np.sum(np.square(moved))) + float(np.sum(np.square(inner)))
-    mean = trace / freedom
-    variance = 2.0 * (freedom * both - trace**2) / (freedom**2 * (freedom + 2.0))
+    ratio = float(rest @ _beside(rest, white[0].size)) / squares
+    mean, variance = alike_by_chance(basis, white[0].size)
     if variance <= 1e-12:
         return ""
     # Of the beta distribution between -1 and 1 with that mean and variance.

@@ -328,17 +328,17 @@ def _history(scene: Scene) -> RunupHistory:
 
 
 def steady(scene: Scene, speed: Array) -> Response:
-    """Synchronous response at some speeds by the liquid model that the scene asks for."""
+    """Synchronous response of a supported machine at some speeds by the liquid model that it asks for."""
     if scene.model.liquid not in ("auto", "statics", "linear"):
         raise InputError("model.liquid", scene.model.liquid, "auto, statics or linear for a fit over speed")
-    machine = replace(prepare(scene), speed=speed)
+    machine = replace(prepare(scene, free=True), speed=speed)
     (choice,) = choose_all([machine])
     return response(machine.rotor, scene.fills, speed, machine.axial_gravity, liquid_models(choice))
 
 
 def planar_steady(scenes: Sequence[Scene], speed: Array) -> list[Response]:
     """`steady` of several planar machines at once."""
-    machines = [replace(prepare(scene), speed=speed) for scene in scenes]
+    machines = [replace(prepare(scene, free=True), speed=speed) for scene in scenes]
     names = np.concatenate([models for models, _ in models_at(machines)])
     owner = np.repeat(np.arange(len(scenes)), speed.size)
     pairs = [(machine.planar, machine.scene.fills) for machine in machines]
@@ -360,7 +360,7 @@ def planar_steady(scenes: Sequence[Scene], speed: Array) -> list[Response]:
 
 def model_error(scene: Scene, speed: Array) -> Array:
     """Relative error of the steady answer as the package estimates it, nan where it has none, shape (n,)."""
-    (choice,) = choose_all([replace(prepare(scene), speed=speed)])
+    (choice,) = choose_all([replace(prepare(scene, free=True), speed=speed)])
     return np.asarray(choice.error)
 
 

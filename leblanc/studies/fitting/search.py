@@ -19,7 +19,7 @@ _TRIED, _TRIED_DEAR = 24, 4
 _MOST, _MOST_DEAR = (6, 4), (2, 1)
 _UNSEEN = 0.5  # valleys that have not been found, on average, at which a search ends
 _FLOOR = 1e-6  # of the size of a quantity: less left is nothing but rounding
-_ROUGH, _FINE = 1e-3, 1e-8  # where searches end, of the sum
+_FINE = 1e-8  # of the sum, where searches end
 _SCAN, _SCAN_FAR = 41, 9  # values of one unknown within _FAR of the guess, and beyond on either side
 _VALLEYS = 4  # of a scan, that are followed to their floor
 
