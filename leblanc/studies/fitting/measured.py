@@ -257,11 +257,8 @@ def _squeezed(text: str) -> str:
 def _asked(head: Sequence[str], header: str, place: str) -> tuple[int, str]:
     """Number and header of a column that was asked for; a unit may stand in either."""
     name, unit = _parts(header)
-    for same in (
-        lambda cell: _squeezed(cell) == _squeezed(header),
-        lambda cell: _squeezed(_parts(cell)[0]) == _squeezed(name),
-    ):
-        alike = [k for k, cell in enumerate(head) if same(cell)]
+    for wanted, cells in ((header, head), (name, [_parts(cell)[0] for cell in head])):
+        alike = [k for k, cell in enumerate(cells) if _squeezed(cell) == _squeezed(wanted)]
         if len(alike) > 1:
             raise InputError(place, header, f"one column of the file; {len(alike)} are headed so")
         if alike:

@@ -138,7 +138,8 @@ def _tried(problem: Problem, seed: int, starts: int) -> list[Array]:
     sums = [float(np.sum(np.square(problem.logarithmic(x)))) for x in points]
     points = points[np.argsort(sums, kind="stable")]
     close = _FAR * 2.0 ** ((1 - power) / count)  # half the distance of neighbours among those further away
-    apart, rest = [np.zeros(count)], []
+    apart: list[Array] = [np.zeros(count)]
+    rest: list[Array] = []
     for k, x in enumerate(points):
         near = np.abs(points[:k] - x).max(axis=1) < close
         (rest if near.any() else apart).append(x)
@@ -152,7 +153,7 @@ def _scanned(problem: Problem, plain: Residual) -> list[Array]:
     if problem.measurement.over != "speed":
         inner, outer = inner[::4], outer[::3]
     points = np.concatenate([-outer[::-1], inner, outer])
-    problem.ahead(points[:, None])
+    problem.ahead(list(points[:, None]))
     found: list[float] = []
     for residual in (plain, problem.logarithmic):
         sums = np.array([float(np.sum(np.square(residual(np.array([x]))))) for x in points])

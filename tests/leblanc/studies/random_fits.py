@@ -128,7 +128,7 @@ def value_at(scene: Scene, path: str) -> float:
     """A value of a scene, SI."""
     table = scene.table()
     for key in path.split("."):
-        table = table[int(key)] if isinstance(table, list | tuple) else table[key]  # type: ignore[index, assignment]
+        table = table[int(key)] if isinstance(table, list | tuple) else table[key]
     return float(table)  # type: ignore[arg-type]
 
 

@@ -54,7 +54,7 @@ def test_tables(tmp_path: Path) -> None:
     ],
 )
 def test_tables_as_loggers_write_them(tmp_path: Path, text: str | bytes) -> None:
-    """Semicolons and decimal commas, tabs, quotes, units in brackets, after a comma or in a row of their own."""
+    """Semicolons and decimal commas, tabs, quotes, units in brackets, after a comma, in a row."""
     found = read_measured(table(tmp_path, text), ("x", "y"))
     np.testing.assert_allclose(found.at, [2 * math.pi, 40 * math.pi])
     ((name, values),) = found.columns
@@ -92,7 +92,7 @@ def test_motions_become_displacements() -> None:
 
 
 def test_columns_in_other_words(tmp_path: Path) -> None:
-    """`--column` names what is meant, gives it a unit that the file has not, and leaves out all other columns."""
+    """`--column` names what is meant, gives it a unit that it lacks, and leaves out other columns."""
     text = "Nr;Drehzahl;Schwingweg [um pp];Temp [C]\n1;60;3000;20\n2;120;4000;21\n"
     asked = named_columns(['amplitude="Schwingweg [um pp]"', "speed = Drehzahl [rpm]"])
     found = read_measured(table(tmp_path, text), ("x",), column=asked)
@@ -180,9 +180,10 @@ def test_any_text_is_refused_or_read(tmp_path_factory: pytest.TempPathFactory, t
 def test_noise_in_words() -> None:
     """A share of each reading, or an error with a unit; nothing else."""
     assert parse_noise("estimate")[0] == "estimate"
-    assert parse_noise("3 %") == parse_noise("3%") == ("relative", pytest.approx(0.03))
-    assert parse_noise("0.1 mm") == ("length", pytest.approx(1e-4))
-    assert parse_noise("2 deg") == ("angle", pytest.approx(math.pi / 90.0))
+    known = {"3 %": ("relative", 0.03), "3%": ("relative", 0.03), "0.1 mm": ("length", 1e-4)}
+    for text, (kind, size) in (known | {"2 deg": ("angle", math.pi / 90.0)}).items():
+        assert parse_noise(text)[0] == kind
+        assert parse_noise(text)[1] == pytest.approx(size, rel=1e-12)
     for wrong in ("", "3 kg", "0 mm", "-1 mm", "0 %", "100 %", "nan mm", "much"):
         with pytest.raises(InputError):
             parse_noise(wrong)
