@@ -317,9 +317,10 @@ def _column(cell: str, name: str, dimension: Dimension, free: bool, place: str) 
     order, size = 0, None
     if name == "amplitude":
         order, size = _motion(unit, words)
+    if free and not order:
+        return _Column(name, 1.0, 0, "")
     if size is None:
-        size = 1.0 if free else _size(unit, dimension, place, cell)
-        order = 0
+        size = _size(unit, dimension, place, cell)
     text = _conversion(cell, name, order, taken)
     return _Column(name, size * factor, order, text)
 

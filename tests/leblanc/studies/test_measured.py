@@ -32,6 +32,9 @@ def test_tables(tmp_path: Path) -> None:
     np.testing.assert_allclose(found.columns[1][1], [-math.pi / 4, math.pi / 2])
     free = read_measured(table(tmp_path, "speed [rpm], amplitude [LSB]\n60, 5\n120, 7\n"), (), True)
     np.testing.assert_allclose(free.columns[0][1], [5.0, 7.0])
+    # Of a free scale what the file has is kept.
+    free = read_measured(table(tmp_path, "speed [rpm], amplitude [mm pp]\n60, 5\n120, 7\n"), (), True)
+    np.testing.assert_allclose(free.columns[0][1], [5.0, 7.0])
 
 
 @pytest.mark.parametrize(
