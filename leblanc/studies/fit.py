@@ -27,7 +27,7 @@ from leblanc.scene.scene import Scene, require_no_balls
 from leblanc.scene.schema.load import given_at
 from leblanc.scene.schema.paths import rule_at
 from leblanc.scene.schema.rules import Refused
-from leblanc.studies.fitting.errors import Curvature, Profiles, curvature, profiles
+from leblanc.studies.fitting.errors import Curvature, Profiles, averaged, curvature, profiles
 from leblanc.studies.fitting.measured import ANGLES, Measurement
 from leblanc.studies.fitting.noise import (
     ESTIMATE,
@@ -74,7 +74,7 @@ def fit_scene(
     noise: str = ESTIMATE,
     file: str | PathLike[str] | None = None,
 ) -> FitResult:
-    """Values of a scene that bring its answer closest to what was measured [theory: fit, eq. 1-11].
+    """Values of a scene that bring its answer closest to what was measured [theory: fit, eq. 1-12].
 
     Parameters
     ----------
@@ -113,15 +113,17 @@ def fit_scene(
         )
 
     searched = search(problem, max(starts, 1), seed, explained, progress)
-    best = _likeliest(problem, searched, stated)
+    best, other = _likeliest(problem, searched, stated)
     reason = unexplained(problem, best)
-    bent, profile, best = _errors(problem, best, stated, reason is None)
+    bent, profile, best = _errors(problem, best, other, stated, reason is None)
     reason = unexplained(problem, best)
     return _result(problem, searched, best, bent, profile, reason, file)
 
 
-def _likeliest(problem: Problem, searched: Searched, stated: tuple[str, float]) -> Judged:
-    """Best values by the likeliest kind of noise, of the ends of the searches that are nearly as good."""
+def _likeliest(
+    problem: Problem, searched: Searched, stated: tuple[str, float]
+) -> tuple[Judged, Judged | None]:
+    """Best values by the likeliest kind of noise, of the ends of good searches; those by another kind."""
     best = searched.valleys[0]
     starts: list[Valley] = []
     for valley in searched.valleys:
@@ -130,18 +132,21 @@ def _likeliest(problem: Problem, searched: Searched, stated: tuple[str, float]) 
             starts.append(valley)
     kinds = kinds_of(problem, stated)
     if best.cost <= problem.count * _ROUNDING**2:
-        return here(problem, best.x, stated, kinds[0])
+        return here(problem, best.x, stated, kinds[0]), None
     found = [refine(problem, valley.x, stated, kind) for valley in starts[:_CANDIDATES] for kind in kinds]
-    return min(found, key=lambda judged: judged.unlikely)
+    likeliest = min(found, key=lambda judged: judged.unlikely)
+    others = [judged for judged in found if judged.noise.kind != likeliest.noise.kind]
+    return likeliest, min(others, key=lambda judged: judged.unlikely, default=None)
 
 
 def _errors(
-    problem: Problem, best: Judged, stated: tuple[str, float], wanted: bool
+    problem: Problem, best: Judged, other: Judged | None, stated: tuple[str, float], wanted: bool
 ) -> tuple[Curvature, Profiles, Judged]:
     """Curvature and profiles about the best values, which a profile may improve."""
     for _ in range(_ROUNDS):
-        residual = problem.weighted(best.sigma)
-        bent = curvature(problem.jacobian(residual, best.x, central=True))
+        bent = _curvature(problem, best)
+        if wanted and other is not None:
+            bent = averaged(bent, best, _curvature(problem, other), other)
         none = Profiles((None,) * best.x.size, None)
         if not wanted:
             return bent, none, best
@@ -151,6 +156,10 @@ def _errors(
             return bent, profile, best
         best = refine(problem, profile.better, stated, best.noise.kind)
     return bent, none, best
+
+
+def _curvature(problem: Problem, judged: Judged) -> Curvature:
+    return curvature(problem.jacobian(problem.weighted(judged.sigma), judged.x, central=True))
 
 
 def _at_bound(x: Array) -> Flags:

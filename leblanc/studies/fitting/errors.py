@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from leblanc.studies.fitting.noise import Judged
 from leblanc.studies.fitting.problem import LIMIT, Problem, Residual
 from leblanc.studies.fitting.search import descend
 from meshes.arrays import Array, Flags
@@ -28,6 +29,8 @@ class Curvature:
     std: Array  #: nan where nothing tells it, shape (p,)
     correlation: Array  #: shape (p, p)
     flat: tuple[Array, ...]  #: directions that the data do not tell, shape (p,) each
+    #: factor of each error because the kind of noise is not known, shape (p,); none where it is
+    unsure: Array | None = None
 
 
 def curvature(jacobian: Array) -> Curvature:
@@ -43,6 +46,17 @@ def curvature(jacobian: Array) -> Curvature:
     correlation = np.divide(covariance, outer, out=np.eye(unknowns), where=outer > 0.0)
     flat = tuple(turn[k] for k in range(unknowns) if not told[k] or inverse[k] > _JOINT)
     return Curvature(covariance, np.where(lost, np.nan, deviation), correlation, flat)
+
+
+def averaged(bent: Curvature, best: Judged, bent_other: Curvature, other: Judged) -> Curvature:
+    """The curvature with the mean square of errors by two kinds of noise [theory: fit, eq. 12]."""
+    share = 1.0 / (1.0 + np.exp(0.5 * min(other.unlikely - best.unlikely, 100.0)))
+    apart = np.square(bent_other.std) + np.square(other.x - best.x)
+    mean = (1.0 - share) * np.square(bent.std) + share * apart
+    known = np.isfinite(mean) & (bent.std > 0.0)
+    factor = np.sqrt(np.divide(mean, np.square(bent.std), out=np.ones(mean.size), where=known))
+    factor = np.where(np.abs(other.x - best.x) < 1.0, np.maximum(factor, 1.0), 1.0)
+    return replace(bent, std=bent.std * factor, unsure=factor)
 
 
 @dataclass(frozen=True)
@@ -79,17 +93,20 @@ def profiles(
     residual = problem.weighted(sigma)
     least = float(np.sum(np.square(residual(x))))
     found: list[tuple[Side, Side] | None] = []
+    factor = np.ones(x.size) if bent.unsure is None else bent.unsure
+    bent = replace(bent, std=bent.std / factor)
     for k in range(x.size):
+        reach = quantile * float(factor[k])
         if fixed[k]:
             found.append(None)
             continue
         std = float(bent.std[k])
-        if np.isfinite(std) and _holds(problem, residual, x, bent, k, quantile, least):
+        if np.isfinite(std) and _holds(problem, residual, x, bent, k, reach, least):
             found.append(None)
             continue
         sides = []
         for way in (-1.0, 1.0):
-            side = _side(problem, residual, x, bent, k, way, quantile, least)
+            side = _side(problem, residual, x, bent, k, way, reach, least)
             if isinstance(side, np.ndarray):
                 return Profiles((), side)
             sides.append(side)

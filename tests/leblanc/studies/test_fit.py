@@ -12,12 +12,12 @@ import pytest
 
 import leblanc as lb
 from leblanc.cli import main
-from leblanc.results.fit import FitCode
+from leblanc.results.fit import FitCode, Noise
 from leblanc.scene.scene import scene_from_table
 from leblanc.studies.fit import fit_scene
-from leblanc.studies.fitting.errors import curvature
+from leblanc.studies.fitting.errors import averaged, curvature
 from leblanc.studies.fitting.measured import Measurement, read_measured
-from leblanc.studies.fitting.noise import alike_by_chance
+from leblanc.studies.fitting.noise import Judged, alike_by_chance
 from leblanc.studies.fitting.problem import answer as _answer
 from meshes.arrays import Array
 from meshes.errors import InputError
@@ -31,6 +31,7 @@ MACHINE = scene_from_table(DRY)
 SPEED = np.linspace(10.0, 60.0, 30)
 UNKNOWN = ("rotor.stiffness", "rotor.damping")
 TRUTH = np.array([18750.0, 90.0])
+LIKELY = 2.0 * math.log(3.0)  # minus twice the logarithm of a likelihood of a third
 GUESS = MACHINE.replace({"rotor.stiffness": 15e3, "rotor.damping": 60.0})
 
 
@@ -182,6 +183,26 @@ def test_uncertainty_of_a_straight_line() -> None:
     blind = curvature(np.stack([np.ones(20), np.zeros(20)], axis=1))
     assert math.isfinite(blind.std[0]) and math.isnan(blind.std[1])
     np.testing.assert_allclose(np.abs(blind.flat[0]), [0.0, 1.0], atol=1e-12)
+
+
+@kills("leblanc.studies.fitting.errors:averaged", "0.5 * min", "2.0 * min")
+@kills("leblanc.studies.fitting.errors:averaged", " + np.square(other.x - best.x)", "")
+def test_two_kinds_of_noise() -> None:
+    """Chances of 3 to 1: the variance of a mixture of two normal distributions about the likelier mean."""
+    noise, none = Noise("absolute", False, (), ()), (np.ones(1),)
+    best, other = (Judged(np.array([x]), noise, none, u, True) for x, u in ((0.0, 4.0), (0.3, 4.0 + LIKELY)))
+    mixed = averaged(curvature(np.eye(1) / 0.1), best, curvature(np.eye(1) / 0.2), other)
+    random = np.random.default_rng(0)
+    trials = np.where(
+        random.random(200_000) < 0.25,
+        0.3 + 0.2 * random.standard_normal(200_000),
+        0.1 * random.standard_normal(200_000),
+    )
+    # Four standard errors of a mean square of 200 000, whose own scatter is about twice its size.
+    assert mixed.std[0] ** 2 == pytest.approx(np.mean(np.square(trials)), rel=0.018)
+    assert mixed.unsure is not None and mixed.unsure[0] == pytest.approx(10.0 * mixed.std[0])
+    # An error that the other kind tells better is kept.
+    assert averaged(curvature(np.eye(1)), best, curvature(np.eye(1) / 0.2), other).std[0] == 1.0
 
 
 def test_over_time() -> None:
