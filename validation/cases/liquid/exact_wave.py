@@ -31,8 +31,8 @@ _ORIGINS = {
         "second code", "two codes in numpy of the same equations, with even nodes and by a Moebius map"
     ),
     _FLOW: COMPUTED_FLOW,
-    _CLOSED: Origin("closed form", "circles, twins and what is conserved"),
 }
+_EXACT = Origin("closed form", "circles, twins and what is conserved")
 # Newton's method, on matrices of some hundred rows, and the last of twelve digits, which is not sure.
 _ROUNDING = 3e-12
 # By its file the flow is right to this; the absolute part is the gas.
@@ -123,7 +123,7 @@ def _case(
 ) -> Case:
     """A case of this group; its values are what is printed, what is computed and the difference."""
     verdict: Verdict = "agrees" if agrees else "differs"
-    origin = _ORIGINS[source]
+    origin = _ORIGINS.get(source, _EXACT)
     return Case(f"exact_wave/{name}", source, quantity, *values, verdict, note, origin=origin)
 
 
