@@ -66,8 +66,8 @@ class WhirlNumbers:
     #: centrifugal acceleration at the free surface over gravity across the axis, Omega^2 a/g
     centrifuge: float
     reynolds: float  #: Omega R^2/nu
-    #: laminar layer of the oscillation at the wall over the mean depth, sqrt(2 nu/|s|)/h0; 0 for a
-    #: synchronous whirl, which moves nothing
+    #: laminar layer of the oscillation at the wall over the mean depth, sqrt(2 nu/|s|)/h0; for a
+    #: synchronous whirl, which moves nothing, 0 or that of gravity, which turns at the spin
     wall_layer: float
 
 
@@ -95,7 +95,8 @@ def whirl_numbers(
         for speed in free_wave_speeds(1, math.log(radius / surface) if surface else math.inf, spin)
     ]
     nearer = min(pair, key=lambda speed: abs(slip - speed))
-    skin = math.sqrt(2.0 * viscosity / abs(slip)) / depth if slip else 0.0
+    slowest = abs(slip) or (spin if gravity else 0.0)
+    skin = math.sqrt(2.0 * viscosity / slowest) / depth if slowest else 0.0
     return WhirlNumbers(
         relative_depth=depth / radius,
         deflection=amplitude / depth,

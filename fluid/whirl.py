@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fluid.fill import FULL, Fill
-from fluid.friction.laws import LINEAR, STOKES, Friction, FrictionLaw, damping_rate
+from fluid.friction.laws import LINEAR, Friction, FrictionLaw, damping_rate
 from meshes.arrays import Array, Complex
 
 
@@ -25,16 +25,16 @@ class Layer:
     mass: float  #: of the liquid m_l, kg
     layer_tanh: float  #: T = tanh(L), from 0 to 1
     rate: float  #: k of the linear friction, 1/s
-    #: chi sqrt(nu) of the laminar friction, k(s) = stokes sqrt(i s), s^(-1/2) [theory: whirl, eq. 12]
+    #: of the laminar friction on the wall, k(s) = stokes sqrt(i s), s^(-1/2) [theory: whirl, eq. 12]
     stokes: float
+    lids: float = 0.0  #: 2 sqrt(nu)/h_c of floor and lid, s^(-1/2), see `plate_rate`
 
 
 def plane_layer(fill: Fill, friction: Friction) -> Layer | None:
     """Layer of a fill under a law of friction; None without liquid or without a free surface.
 
     Quadratic friction damps in proportion to the motion, so it is no friction to an infinitesimal whirl, and
-    of the law of the wall it feels the part of the waves, whose drag by floor and lid is that at the
-    frequency of the slower free wave [theory: friction, eq. 9].
+    of the law of the wall it feels the part of the waves, which is the laminar one.
 
     Parameters
     ----------
@@ -46,15 +46,78 @@ def plane_layer(fill: Fill, friction: Friction) -> Layer | None:
         return None
     # R^2 - a^2 and, twice the area per radian, over R^2.
     film = fill.volume / (math.pi * fill.chamber.height) / radius**2
-    tanh, rate, stokes = film / (2.0 - film), 0.0, 0.0
-    depth, area = fill.depth / radius, 0.5 * film
+    tanh, rate, stokes, lids = film / (2.0 - film), 0.0, 0.0, 0.0
     if friction.law is FrictionLaw.LINEAR:
-        rate = float(damping_rate(LINEAR, friction.coefficient, 0.0, depth, area, 0.0))
+        depth = fill.depth / radius
+        rate = float(damping_rate(LINEAR, friction.coefficient, 0.0, depth, 0.5 * film, 0.0))
     elif friction.law.laminar:
-        shear = math.sqrt(fill.liquid.viscosity) / radius
-        lid = friction.lid(radius, fill.chamber.height, slower_slip(tanh), 1.0)
-        stokes = float(damping_rate(STOKES, shear, lid, depth, area, 0.0))
-    return Layer(fill.mass, tanh, rate, stokes)
+        shear = math.sqrt(fill.liquid.viscosity)
+        stokes, lids = shear / radius * wall_share(tanh), 2.0 * shear / fill.chamber.height
+    return Layer(fill.mass, tanh, rate, stokes, lids)
+
+
+def wall_share(layer_tanh: float, crests: int = 1) -> float:
+    """Drag of a wall on a wave over that on the shear of its own velocity, times R [theory: whirl, eq. 12].
+
+    n (1 - T_n^2)/T_n: a wall layer moves the wall in by its thickness d, and T_n with it.
+
+    Parameters
+    ----------
+    layer_tanh : T_n = tanh(n L), from 0 to 1
+    crests : n
+    """
+    return crests * (1.0 - layer_tanh) * (1.0 + layer_tanh) / layer_tanh
+
+
+def plate_rate(layer_tanh: ArrayLike, spin: ArrayLike, slip: ArrayLike) -> Complex:
+    """Drag of floor and lid on a wave over 2 sqrt(nu)/h_c, complex, s^(-1/2) [theory: whirl, eq. 12].
+
+    The flow is the sum of two circles, whose layers the Coriolis force makes unlike: of the energy (1 - T)/2
+    goes round as e^{i s t} and (1 + T)/2 the other way.
+
+    Parameters
+    ----------
+    layer_tanh : T_n = tanh(n L), from 0 to 1, shape (...,)
+    spin : Omega, rad/s, shape (...,)
+    slip : s, rad/s, complex, shape (...,)
+    """
+    return plate_terms(layer_tanh, spin, slip)[0]
+
+
+def plate_terms(layer_tanh: ArrayLike, spin: ArrayLike, slip: ArrayLike) -> tuple[Complex, Complex]:
+    """`plate_rate` and its derivative with respect to the slip."""
+    s, t, twice = np.asarray(slip, dtype=complex), np.asarray(layer_tanh), 2.0 * np.asarray(spin)
+    along, against = np.sqrt(1j * (s + twice)), np.sqrt(1j * (s - twice))
+    first, second = 0.5 * (1.0 - t), 0.5 * (1.0 + t)
+    # At the end of a cut the root is 0 and its slope without end, for which that next to it serves.
+    steep = (share / np.where(x == 0.0, 1e-150, x) for share, x in ((first, along), (second, against)))
+    return np.asarray(first * along + second * against), np.asarray(0.5j * sum(steep))
+
+
+def layer_rate(layer: Layer, spin: ArrayLike, slip: ArrayLike) -> Complex:
+    """All friction of a layer, k of `wave_function`, 1/s, complex with the inertia of wall layers.
+
+    Parameters
+    ----------
+    layer : of a chamber
+    spin, slip : as in `plate_rate`
+    """
+    plates = layer.lids * plate_rate(layer.layer_tanh, spin, slip)
+    return np.asarray(layer.rate + stokes_rate(layer.stokes, slip) + plates)
+
+
+def steady_rate(layer: Layer, spin: ArrayLike) -> Complex:
+    """Friction that does not depend on the frequency, from which the search for modes starts, 1/s.
+
+    Linear friction, and floor and lid as they drag on the slower free wave, next to which whirls grow.
+
+    Parameters
+    ----------
+    layer : of a chamber
+    spin : Omega, rad/s
+    """
+    plates = layer.lids * complex(plate_rate(layer.layer_tanh, 1.0, -slower_slip(layer.layer_tanh)))
+    return np.asarray(layer.rate + plates * np.sqrt(np.asarray(spin)))
 
 
 def body_force_rate(fill: Fill, friction: Friction, spin: float) -> float:
@@ -76,7 +139,7 @@ def body_force_rate(fill: Fill, friction: Friction, spin: float) -> float:
     layer = plane_layer(fill, friction)
     if layer is None:
         return 0.0
-    return layer.rate + float(stokes_rate(layer.stokes, slower_slip(layer.layer_tanh) * spin).real)
+    return float(layer_rate(layer, spin, -slower_slip(layer.layer_tanh) * spin).real)
 
 
 def slower_slip(layer_tanh: float) -> float:
@@ -174,8 +237,7 @@ def drag_power(layer: Layer, spin: ArrayLike, whirl_speed: float | Array, force:
     W, shape (...,)
     """
     slip = np.asarray(whirl_speed - np.asarray(spin))
-    rate = layer.rate + stokes_rate(layer.stokes, slip)
-    wave = wave_function(layer.layer_tanh, spin, slip, rate)
+    wave = wave_function(layer.layer_tanh, spin, slip, layer_rate(layer, spin, slip))
     share = 0.5 * layer.mass * (1.0 - layer.layer_tanh)
     return np.asarray(-share * np.square(force) * slip * wave.imag / np.square(np.abs(wave)))
 

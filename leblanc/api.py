@@ -487,8 +487,9 @@ def layer(
     ----------
     radius, height : of the chamber, m
     volume : of the liquid, m^3
-    speed, whirl_speed : of the spin and of the whirl in space, rad/s
-    whirl_amplitude : radius of the whirl, m
+    speed, whirl_speed : of the spin and of the whirl in space, rad/s; the second left out where gravity alone
+        drives
+    whirl_amplitude : radius of the whirl, m; none under gravity if left out
     model : statics, linear, long_wave, kdv, fem or potential; auto takes the cheapest that is good enough
     cells : round the wall; 256 for long_wave, 96 for fem if None; of potential at most as many from crest to
         trough, 432 if None, and in time round the wall, 2048 if None

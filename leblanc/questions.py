@@ -145,13 +145,19 @@ def layer_question(
         return LayerQuestion({}, None, 0.0, {**whirl, "crest": float(free), "crests": crests, "model": made})
     if mode is not None:
         raise InputError("--mode", mode, "left out without --free")
+    pull = parse_option(gravity, ACCELERATION, "--gravity")
+    if pull > 0.0 and (
+        whirl_amplitude is None or parse_option(whirl_amplitude, LENGTH, "--whirl-amplitude") == 0.0
+    ):
+        # Gravity alone drives: nothing whirls.
+        whirl_speed, whirl_amplitude = whirl["speed"] if whirl_speed is None else whirl_speed, 0.0
     if whirl_speed is None or whirl_amplitude is None:
         name = "--whirl-amplitude" if whirl_amplitude is None else "--whirl-speed"
         raise InputError(name, None, "given, or --free in its place")
     whirl |= {
         "whirl_speed": parse_option(whirl_speed, ANGULAR_SPEED, "--whirl-speed"),
         "whirl_amplitude": parse_option(whirl_amplitude, LENGTH, "--whirl-amplitude"),
-        "gravity": parse_option(gravity, ACCELERATION, "--gravity"),
+        "gravity": pull,
     }
     with as_options():
         whirl["model"] = _layer_model(model, law, cells, dispersion, solver, tolerance)

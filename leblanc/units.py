@@ -597,7 +597,7 @@ def small_whirl_friction(friction: Friction) -> str:
     """Law of friction as a small whirl meets it, in words."""
     if friction.law is FrictionLaw.QUADRATIC:
         return "none (the quadratic law does not act on small whirls)"
-    if friction.law is FrictionLaw.WALL:
+    if friction.law.laminar:
         return "laminar, with the Coriolis force"
     return friction_words(friction)
 

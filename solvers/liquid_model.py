@@ -16,6 +16,7 @@ from typing import ClassVar, Protocol
 
 import numpy as np
 
+from fluid import waves
 from fluid.fill import Fill, Fills
 from fluid.numbers import whirl_numbers
 from meshes.arrays import Array, Complex, Flags, Index
@@ -67,6 +68,31 @@ class Whirl:
     def period(self) -> float:
         """Time of one whirl seen from the drum, or of one turn of a synchronous one, s."""
         return 2.0 * math.pi / (abs(self.slip) or self.spin)
+
+
+def drag_frequency(fill: Fill, whirl: Whirl) -> float:
+    """Frequency in the drum of what moves the liquid, which laminar friction takes, rad/s, 0 or above.
+
+    The slip of a whirl, the spin under gravity across the axis. Under both, that at which the drag takes as
+    much as from the two small waves apart: the roots of the frequencies weighted with their energies
+    [theory: friction, eq. 11].
+
+    Parameters
+    ----------
+    fill, whirl : chamber and liquid, and what moves it
+    """
+    if whirl.gravity == 0.0:
+        return abs(whirl.slip)
+    if whirl.amplitude == 0.0 or whirl.slip == 0.0 or not 0.0 < fill.surface_radius < fill.chamber.radius:
+        return whirl.spin
+    kappa = (fill.chamber.radius / fill.surface_radius) ** 2
+    wave = abs(float(waves.displacement_ratio(kappa, whirl.speed / whirl.spin))) * whirl.amplitude
+    if not math.isfinite(wave):
+        return abs(whirl.slip)
+    own = (whirl.slip * wave) ** 2
+    other = (whirl.spin * float(waves.gravity_displacement(kappa, whirl.spin, whirl.gravity))) ** 2
+    root = (own * math.sqrt(abs(whirl.slip)) + other * math.sqrt(whirl.spin)) / (own + other)
+    return root**2
 
 
 def grown(time: Array | float, ramp: float) -> Array:
@@ -464,7 +490,7 @@ def require_crest(fill: Fill, crest: float, crests: int) -> None:
 
 
 def no_free_wave(fill: Fill, ranges: Mapping[str, Range], reason: str) -> FreeWave:
-    """A free wave that was not found: the layer at rest, and why.
+    """A free wave that was not found, and why.
 
     Parameters
     ----------
@@ -475,7 +501,7 @@ def no_free_wave(fill: Fill, ranges: Mapping[str, Range], reason: str) -> FreeWa
     return FreeWave(
         whirl_speed=(math.nan, math.nan),
         theta=theta,
-        depth=np.full(theta.shape, fill.depth),
+        depth=np.full(theta.shape, math.nan),
         crest=math.nan,
         trough=math.nan,
         crest_number=math.nan,

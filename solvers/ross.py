@@ -21,7 +21,7 @@ from scipy.interpolate import make_interp_spline
 
 from fluid.fill import Fill
 from fluid.friction.laws import NO_FRICTION, Friction
-from fluid.whirl import offset_with_friction, plane_layer, stokes_rate, wave_function
+from fluid.whirl import layer_rate, offset_with_friction, plane_layer, wave_function
 from meshes.arrays import Array, Complex
 from meshes.errors import InputError
 
@@ -78,7 +78,7 @@ def dynamic_stiffness(
     if layer is None:
         return np.asarray(-fill.mass * np.square(w), dtype=complex)
     slip = w - omega
-    rate = layer.rate + stokes_rate(layer.stokes, slip)
+    rate = layer_rate(layer, omega, slip)
     if np.any(wave_function(layer.layer_tanh, omega, slip, rate) == 0.0):
         raise InputError("whirl_speed", w.tolist(), "off the free waves of a layer without friction")
     offset = offset_with_friction(layer.layer_tanh, omega, w, rate)

@@ -21,8 +21,12 @@ def layer(
     volume: Annotated[str, typer.Option(help="Volume of the liquid.")],
     height: Annotated[str, typer.Option(help="Height of the chamber along the axis.")],
     speed: Annotated[str, typer.Option(help="Spin speed, rad/s or with a unit.")],
-    whirl_speed: Annotated[str | None, typer.Option(help="Whirl speed in space.")] = None,
-    whirl_amplitude: Annotated[str | None, typer.Option(help="Radius of the whirl.")] = None,
+    whirl_speed: Annotated[
+        str | None, typer.Option(help="Whirl speed in space; left out where gravity alone drives.")
+    ] = None,
+    whirl_amplitude: Annotated[
+        str | None, typer.Option(help="Radius of the whirl [default: 0 with --gravity].")
+    ] = None,
     free: Annotated[
         float | None,
         typer.Option(

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.results.base import Note, NoteCode, Result, carried, one_line, texts, versions
+from leblanc.results.base import Note, NoteCode, Result, carried, one_line, percent, texts, versions
 from leblanc.results.netcdf import NamedArrays, variable
 from meshes.arrays import Array, Complex
 from meshes.errors import InputError, require_not_negative, require_positive
@@ -33,6 +33,8 @@ class LayerCode(NoteCode):
     LEE_WAVES = "lee_waves"
     NO_SMOOTH_WAVE = "no_smooth_wave"
     NO_EXACT_WAVE = "no_exact_wave"
+    TWO_GRIDS = "two_grids"
+    FRICTION_FREQUENCY = "friction_frequency"
 
 
 @dataclass(frozen=True)
@@ -104,6 +106,28 @@ def no_exact_wave(reason: str) -> Note:
     return Note(LayerCode.NO_EXACT_WAVE, {}, f"no smooth exact wave was found: {reason}")
 
 
+def two_grids(gap: float) -> Note:
+    """The whirl is larger than smooth waves follow: the error is that between two grids."""
+    text = (
+        "without friction no smooth steady wave follows so large a whirl: this one is as steep as the cells "
+    )
+    text += f"let it be, and the force on half as many differs by {percent(gap)}"
+    return Note(LayerCode.TWO_GRIDS, {"gap": gap}, text)
+
+
+def friction_frequency(frequency: float, alone: bool) -> Note:
+    """The one frequency that laminar friction takes where gravity acts across the axis.
+
+    Parameters
+    ----------
+    frequency : seen from the drum, rad/s
+    alone : nothing else moves; else it is a mean of that of the whirl and that of gravity
+    """
+    of = "gravity, which turns in the drum" if alone else "whirl and gravity, weighted with their energies"
+    text = f"laminar friction is that of {frequency:.4g} rad/s seen from the drum, the frequency of {of}"
+    return Note(LayerCode.FRICTION_FREQUENCY, {"frequency": frequency}, text)
+
+
 @dataclass(frozen=True)
 class LayerCase:
     """The layer and the whirl of a question."""
@@ -172,7 +196,8 @@ class LayerResult(Result):
     in_range: bool  #: the model holds; `validity` and `notes` say why not
     mean_rotation: float  #: of the liquid relative to the drum, rad/s
     wall_time: float  #: s
-    theta: Array  #: angle from the deflection, rad, and depth of the layer there, m, shape (k,)
+    #: angle from the deflection, rad, and depth of the layer there, m, nan if no wave was found, shape (k,)
+    theta: Array
     depth: Array
     notes: tuple[Note, ...]  #: what the model leaves out here
     #: steady part of the offset under gravity across the axis, in space, m: up is negative
@@ -198,7 +223,7 @@ class LayerResult(Result):
             spin=self.case.speed,
             whirl_speed=self.case.whirl_speed,
             theta=self.theta,
-            depth=self.depth,
+            depth=drawn_depth(self.depth, self.case),
             force_ratio=self.force_ratio,
             offset=self.offset,
             notes=texts(self.notes),
@@ -359,7 +384,7 @@ class LayerPeriodsResult(Result):
     @property
     def in_range(self) -> bool:
         """The model holds."""
-        return not self.notes
+        return all(note.code == LayerCode.FRICTION_FREQUENCY for note in self.notes)
 
     time = carried("history.time")
     force_ratio = carried("history.force_ratio")
@@ -415,6 +440,11 @@ class LayerPeriodsResult(Result):
             "theta": variable(("theta",), h.theta, "rad", "angle from the deflection, with the spin"),
         }
         return NamedArrays(columns, coords, _attributes(self.case, self.converged, self.in_range, self.notes))
+
+
+def drawn_depth(depth: Array, case: LayerCase) -> Array:
+    """Depths for a picture: of the layer at rest where no wave was found, shape (k,), m."""
+    return np.where(np.isnan(depth), case.mean_depth, depth)
 
 
 def _taken(case: LayerCase) -> dict[str, Any]:

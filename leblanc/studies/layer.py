@@ -23,12 +23,15 @@ from leblanc.results.layer import (
     Wave,
     WaveFrames,
     against_whirl,
+    drawn_depth,
     dry_wall,
+    friction_frequency,
     inner_wall,
     lee_waves,
     no_answer,
     no_smooth_wave,
     out_of_range,
+    two_grids,
 )
 from leblanc.results.notes.baffles import smeared_baffles
 from leblanc.studies.models.validity import judge
@@ -41,7 +44,7 @@ from leblanc.studies.models.whirling import (
     watched,
 )
 from meshes.errors import InputError, require_not_negative, require_positive
-from solvers.liquid_model import LiquidWave, WaveModel, Whirl
+from solvers.liquid_model import LiquidWave, WaveModel, Whirl, drag_frequency
 from solvers.potential.model import Potential, PotentialWave
 from solvers.potential.steady import Branch
 from solvers.pypde.models import LongWave, OneFamily, Progress
@@ -50,6 +53,7 @@ from solvers.wave_error import detuning_ratio
 
 _EVEN = 720  # angles of a film
 _SMOOTH = "smooth_whirl"  # has a note of its own, which says why
+_GRIDS = "grid_gap"  # likewise
 _ONE_WAY = 1e-6  # part of the answer that may go the other way round before it is worth a note
 
 
@@ -68,7 +72,8 @@ def answer_layer(
     ----------
     fill : chamber and liquid, with some liquid in it
     speed : spin speed Omega, rad/s
-    whirl_speed : omega_w in space, rad/s, not 0; negative against the spin
+    whirl_speed : omega_w in space, rad/s, not 0; negative against the spin; without an amplitude under
+        gravity nothing whirls, and the spin takes its place
     whirl_amplitude : A, m; without any, statics, linear theory and elements give the limit of the force
         ratio, the others no force
     model : of the liquid, with its friction and resolution, as by `leblanc.studies.models.liquid.wave_model`;
@@ -87,16 +92,18 @@ def answer_layer(
     if not math.isfinite(whirl_speed) or whirl_speed == 0.0:
         raise InputError("--whirl-speed", whirl_speed, "a finite number other than 0")
     begin = time.perf_counter()
-    whirl = Whirl(speed, whirl_speed, whirl_amplitude, gravity=gravity)
+    whirl = _driven(Whirl(speed, whirl_speed, whirl_amplitude, gravity=gravity))
     with as_options():
         choice = choose_wave(model, fill, whirl) if isinstance(model, AutoWave) else WaveChoice(model)
         wave = choice.wave or watched(_with_baffles(choice.model, fill), progress).wave(fill, whirl)
     taken, model = time.perf_counter() - begin, choice.model
-    notes, surface = (*wave_notes(wave), *_beyond_waves(fill, whirl, wave)), fill.surface_radius
+    grids, apart = _both_grids(wave)
+    notes = (*wave_notes(wave), *_beyond_waves(fill, whirl, wave), *(grids if apart else ()))
+    surface = fill.surface_radius
     in_range = not notes
     if in_range and wave.answer.dry_patch[0]:
         notes = (dry_wall(),)
-    notes = (*notes, *choice.notes)
+    notes = (*notes, *choice.notes, *(() if apart else grids), *_friction_notes(model, fill, whirl))
     if isinstance(model, LongWave):
         notes = (*notes, *smeared_baffles([fill], model.numerics.cells))
     exact = _exact(wave) if isinstance(wave, PotentialWave) else None
@@ -121,6 +128,26 @@ def answer_layer(
         validity=judge(wave.numbers, wave.ranges),
         exact=exact,
     )
+
+
+def _driven(whirl: Whirl) -> Whirl:
+    """Under gravity alone nothing whirls: the answer is that of the drum's own frame."""
+    return replace(whirl, speed=whirl.spin) if whirl.gravity and whirl.amplitude == 0.0 else whirl
+
+
+def _both_grids(wave: LiquidWave) -> tuple[tuple[Note, ...], bool]:
+    """How far two grids differ, where the wave is as steep as they let it be, and whether that is too far."""
+    if _GRIDS not in wave.numbers:
+        return (), False
+    gap = wave.numbers[_GRIDS]
+    return (two_grids(gap),), _GRIDS in wave.ranges and gap > wave.ranges[_GRIDS][1]
+
+
+def _friction_notes(model: WaveModel, fill: Fill, whirl: Whirl) -> tuple[Note, ...]:
+    """Which frequency laminar friction takes, where gravity acts as well."""
+    if not (isinstance(model, LongWave) and model.friction.law.laminar and whirl.gravity):
+        return ()
+    return (friction_frequency(drag_frequency(fill, whirl), whirl.amplitude == 0.0 or whirl.slip == 0.0),)
 
 
 def _with_baffles(model: WaveModel, fill: Fill) -> WaveModel:
@@ -227,7 +254,7 @@ def wave_notes(wave: LiquidWave) -> tuple[Note, ...]:
     clear = wave.answer.limits.get("inner_wall")
     return (
         *([no_answer(wave.reason)] if wave.reason else []),
-        *out_of_range(tuple(n for n in judge(wave.numbers, wave.ranges) if n.name != _SMOOTH)),
+        *out_of_range(tuple(n for n in judge(wave.numbers, wave.ranges) if n.name not in (_SMOOTH, _GRIDS))),
         *([against_whirl(wave.counter)] if wave.counter > _ONE_WAY else []),
         *([] if clear is None or clear[0] else [inner_wall()]),
     )
@@ -274,7 +301,7 @@ def layer_history(
     ------
     InputError : a value out of its range, a model other than the long waves and the exact one
     """
-    whirl = Whirl(speed, whirl_speed, whirl_amplitude, ramp, gravity)
+    whirl = _driven(Whirl(speed, whirl_speed, whirl_amplitude, ramp, gravity))
     choice = _in_time(model, fill, whirl)
     model = choice.model
     if isinstance(model, Potential):
@@ -287,7 +314,8 @@ def layer_history(
         history = simulate(fill, whirl, duration, model.friction, model.numerics, model.solver, progress)
     wave = model.wave_at_end(fill, whirl, history)
     numbers = judge(wave.numbers, wave.ranges)
-    return LayerPeriodsResult(_case(fill, whirl, choice), history, wave_notes(wave), numbers)
+    notes = (*wave_notes(wave), *_friction_notes(model, fill, whirl))
+    return LayerPeriodsResult(_case(fill, whirl, choice), history, notes, numbers)
 
 
 def _in_time(model: WaveModel | AutoWave, fill: Fill, whirl: Whirl) -> WaveChoice:
@@ -335,7 +363,7 @@ def layer_film(
     ------
     InputError : a value out of its range
     """
-    whirl = Whirl(speed, whirl_speed, whirl_amplitude, ramp, gravity)
+    whirl = _driven(Whirl(speed, whirl_speed, whirl_amplitude, ramp, gravity))
     if isinstance(model, AutoWave):
         with as_options():
             model = (choose_wave if duration is None else choose_in_time)(model, fill, whirl).model
@@ -397,6 +425,6 @@ def steady_film(answer: LayerResult | FreeWaveResult, whirl: Whirl, duration: fl
     apart, even = np.diff(answer.theta), np.linspace(-math.pi, math.pi, _EVEN, endpoint=False)
     theta = answer.theta if apart.max() < 1.5 * apart.min() else even
     turned = theta - whirl.slip * time[:, None]
-    depth = np.interp(turned, answer.theta, answer.depth, period=2.0 * math.pi)
+    depth = np.interp(turned, answer.theta, drawn_depth(answer.depth, answer.case), period=2.0 * math.pi)
     deflection = whirl.amplitude * np.exp(1j * whirl.slip * time)
     return WaveFrames(time=time, theta=theta, depth=depth, deflection=deflection)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fluid.fill import Fill
+from fluid.whirl import plane_layer, slower_slip
 from leblanc.results.base import FilledChamber, Note
 from leblanc.results.choice import Choice, model_spans
 from leblanc.results.machine.loads import MachineLoads
@@ -45,6 +46,7 @@ from meshes.arrays import Array, Complex
 from meshes.chamber_section import liquid_of
 from meshes.errors import InputError
 from solvers.held.state import COUPLED, HeldState
+from solvers.liquid_model import THIN_LAYERS
 from solvers.rotor.balance_quality import balance_quality, tolerance_planes
 from solvers.rotor.campbell import campbell
 from solvers.rotor.jeffcott import Jeffcott
@@ -370,7 +372,7 @@ def _notes(
     else:
         found.append(notes.plane(motion.position, motion.zero, chambers, held is not None))
         found.append(_against_spin(answer, motion, held) if chambers else None)
-    found.append(notes.self_excited(whirl))
+    found += [notes.self_excited(whirl), _thick_layers(machine)]
     found.append(None if whirl.large is None else notes.large_whirl(whirl.large, answer.speed))
     several = np.count_nonzero(np.isfinite(answer.branch_deflection), axis=1) > 1
     if several.any():
@@ -400,6 +402,20 @@ def _against_spin(answer: Response, motion: Motion, held: Held | None) -> Note |
     if share[worst] <= 1e-6:
         return None
     return notes.against_spin(float(share[worst]), float(answer.speed[known][worst]), held)
+
+
+def _thick_layers(machine: Prepared) -> Note | None:
+    """Where laminar layers of the slower waves are not as thin as friction of small whirls takes them."""
+    layers = [(fill, plane_layer(fill, machine.friction)) for fill in machine.scene.fills]
+    # delta = sqrt(2 nu/|s|) at the slower wave, whose frequency goes with the spin: thick below one speed.
+    limit, least = THIN_LAYERS[1], 0.0
+    for fill, layer in layers:
+        if layer is not None and layer.stokes > 0.0:
+            slip = 2.0 * fill.liquid.viscosity / (limit * fill.depth) ** 2
+            least = max(least, slip / slower_slip(layer.layer_tanh))
+    if least <= machine.speed[0]:
+        return None
+    return notes.thick_wall_layer(least, limit, whole=least > float(machine.speed[-1]))
 
 
 def _walls(machine: Prepared, answer: Response, motion: Motion | None) -> list[Note]:

@@ -18,7 +18,7 @@ from meshes.files.foreign import limited_memory
 _MOST = 20_000  # curves; blocks within blocks make many of a few lines
 
 # Ends of curves nearer than this part of the drawing meet.
-_MEET = 1e-6
+MEET = 1e-6
 
 
 def meet(points: Array) -> tuple[Indices, Array]:
@@ -32,7 +32,7 @@ def meet(points: Array) -> tuple[Indices, Array]:
     -------
     Number of the place of each end, shape (N,), and the places, shape (P, 2).
     """
-    reach = _MEET * float(np.ptp(points, axis=0).max())
+    reach = MEET * float(np.ptp(points, axis=0).max())
     first = np.array([min(near) for near in cKDTree(points).query_ball_point(points, reach)])
     places, number = np.unique(first, return_inverse=True)
     return number.astype(np.int64), points[places]
@@ -59,7 +59,7 @@ def closed_loops(path: str | Path, ends: Indices, places: Array) -> list[list[in
     if np.any(degree != 2):
         worst = int(np.argmax(degree != 2))
         x, y = places[worst]
-        state = "open" if degree[worst] == 1 else "branching"
+        state = {1: "open", 3: "branching"}.get(int(degree[worst]), "touching another, or drawn twice,")
         raise InputError("path", str(path), f"a drawing of closed outlines; one is {state} at ({x:g}, {y:g})")
     at: list[list[int]] = [[] for _ in places]
     for k, (first, other) in enumerate(ends):
@@ -77,11 +77,6 @@ def closed_loops(path: str | Path, ends: Indices, places: Array) -> list[list[in
             place = other if place == first else first
         loops.append(loop)
     return loops
-
-
-def extent(curves: list[Curve]) -> float:
-    """Diagonal of the rectangle that some curves span."""
-    return float(np.hypot(*np.ptp(np.concatenate([curve.points for curve in curves]), axis=0)))
 
 
 # Units of the US survey foot, m, by their number in a DXF file: foot, inch, yard, mile.
@@ -131,6 +126,7 @@ def read_drawing(path: str | Path) -> tuple[list[Curve], float | None]:
     try:
         with limited_memory(path):
             document = ezdxf.readfile(path)
+            _take_arrays_apart(path, document)
             entities = list(islice(_opened(document.modelspace(), _layers(document)), _MOST + 1))
             said = b"$INSUNITS" in Path(path).read_bytes()  # ezdxf takes metres where a file does not say
     except InputError:
@@ -169,6 +165,19 @@ def _layers(document: Any) -> tuple[frozenset[str], frozenset[str]]:
     return frozenset({"defpoints", *hidden, *frozen}), frozenset(frozen)
 
 
+def _take_arrays_apart(path: str | Path, document: Any) -> None:
+    """Put single copies in place of arrays of blocks: their spacing grows with the block that holds them."""
+    for layout in (document.modelspace(), *document.blocks):
+        arrays = [entity for entity in layout if entity.dxftype() == "INSERT" and entity.mcount > 1]
+        if sum(array.mcount for array in arrays) > _MOST:
+            raise InputError("path", str(path), f"a drawing of arrays of at most {_MOST} copies")
+        for array in arrays:
+            for copy in array.multi_insert():
+                document.entitydb.add(copy)
+                layout.add_entity(copy)
+            layout.delete_entity(array)
+
+
 def _opened(
     entities: Any, layers: tuple[frozenset[str], frozenset[str]], around: str = "0"
 ) -> Iterator[tuple[Any, str]]:
@@ -185,8 +194,7 @@ def _opened(
         if kind not in _READ or entity.dxf.invisible or layer.lower() in (frozen if block else hidden):
             continue
         if block:
-            for copy in entity.multi_insert() if entity.mcount > 1 else (entity,):
-                yield from _opened(copy.virtual_entities(), layers, layer)
+            yield from _opened(entity.virtual_entities(), layers, layer)
         elif kind in ("LWPOLYLINE", "POLYLINE"):
             if kind == "POLYLINE":  # a fitted one holds the frame of its spline too, which is not drawn
                 entity.vertices[:] = [one for one in entity.vertices if not one.dxf.flags & _FRAME]

@@ -7,7 +7,9 @@ import ctypes
 import math
 import os
 import sys
+from collections import Counter
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +17,7 @@ import numpy as np
 
 from meshes.arrays import Array, Indices
 from meshes.errors import InputError, require_positive
-from meshes.files.drawing import Curve, closed_loops, extent, meet, read_drawing
+from meshes.files.drawing import MEET, Curve, closed_loops, meet, read_drawing
 from meshes.files.foreign import require_file
 from meshes.quality import cell_areas
 from meshes.rings.triangles import open_slits
@@ -73,8 +75,9 @@ def outline_section(
 ) -> Section:
     """Section from an outline drawn elsewhere, its geometric axis at the drawing's origin.
 
-    The largest closed outline is the outer wall, those within it are inner walls and obstacles. The same file
-    and sizes give the same mesh.
+    The largest closed outline is the outer wall; the others lie within it and are inner walls and obstacles,
+    whatever is drawn inside those. Only what CAD shows and plots counts. The same file and sizes give the
+    same mesh.
 
     Parameters
     ----------
@@ -93,7 +96,8 @@ def outline_section(
 
     Raises
     ------
-    InputError : a value out of its range, a file that cannot be read, an outline that is open or crossed
+    InputError : a value out of its range, a file that cannot be read, an outline that is open or crossed, or
+        lies outside the largest
     ImportError : Gmsh or ezdxf is not installed: `pip install leblanc[cad]`
     """
     file = _check(path, wall_size, inside_size, growth, order)
@@ -165,6 +169,7 @@ def _gmsh(path: str | Path) -> Iterator[Any]:
     options = {
         "General.Terminal": 0.0,
         "General.NumThreads": 1.0,
+        "Geometry.ToleranceBoolean": 0.0,
         "Mesh.Algorithm": 6.0,
         "Mesh.MeshSizeExtendFromBoundary": 0.0,
         "Mesh.MeshSizeFromPoints": 0.0,
@@ -201,31 +206,116 @@ def _gmsh(path: str | Path) -> Iterator[Any]:
 
 def _build(path: str | Path, gmsh: Any, curves: list[Curve], slits: Sequence[str]) -> list[int]:
     """Make the drawing's surface; the numbers of the curves in it that are slits."""
-    layers = {curve.layer for curve in curves}
+    layers = {curve.layer.lower(): curve.layer for curve in curves}
+    thin = {name.lower() for name in slits}
     for name in slits:
-        if name not in layers:
-            raise InputError("slits", name, f"a layer of the drawing: {', '.join(sorted(layers))}")
-    walls = [curve for curve in curves if curve.layer not in slits]
-    baffles = [curve for curve in curves if curve.layer in slits]
+        if name.lower() not in layers:
+            shown = ", ".join(sorted(layers.values()))
+            raise InputError("slits", name, f"a layer of the drawing that shows curves: {shown}")
+    walls = [curve for curve in curves if curve.layer.lower() not in thin]
+    baffles = [curve for curve in curves if curve.layer.lower() in thin]
     if not walls:
         raise InputError("slits", tuple(slits), "layers that leave curves for the walls")
     points = np.array([p for curve in walls for p in (curve.points[0], curve.points[-1])])
     number, places = meet(points)
-    loops = closed_loops(path, number.reshape(-1, 2), places)
-    tags = [gmsh.model.occ.addPoint(x, y, 0.0) for x, y in places]
-    made = [_add(gmsh, curve, tags[number[2 * k]], tags[number[2 * k + 1]]) for k, curve in enumerate(walls)]
-    outlines = sorted(loops, key=lambda loop: -extent([walls[k] for k in loop]))
+    ends = number.reshape(-1, 2)
+    speck = 2.0 * MEET * float(np.ptp(places, axis=0).max())
+    whole = [
+        k for k, (start, end) in enumerate(ends) if start != end or np.ptp(walls[k].points, 0).max() > speck
+    ]
+    walls, ends = [walls[k] for k in whole], ends[whole]
+    loops = closed_loops(path, ends, places)
+    _check_crossings(path, gmsh, walls, ends, places)
+    outlines = _nested(path, gmsh, walls, ends, places, loops)
+    made = _add_all(gmsh, walls, ends, places)
     wires = [gmsh.model.occ.addCurveLoop([made[k] for k in loop]) for loop in outlines]
     surface = gmsh.model.occ.addPlaneSurface(wires)
     if not baffles:
         gmsh.model.occ.synchronize()
         return []
-    ends = [[gmsh.model.occ.addPoint(*curve.points[k], 0.0) for k in (0, -1)] for curve in baffles]
-    lines = [_add(gmsh, curve, *pair) for curve, pair in zip(baffles, ends, strict=True)]
+    tips = [[gmsh.model.occ.addPoint(*curve.points[k], 0.0) for k in (0, -1)] for curve in baffles]
+    lines = [_add(gmsh, curve, *pair) for curve, pair in zip(baffles, tips, strict=True)]
     _, parts = gmsh.model.occ.fragment([(2, surface)], [(1, line) for line in lines])
     gmsh.model.occ.synchronize()
     # Parts of baffles outside the section bound nothing and are not meshed with it.
     return [tag for pieces in parts[1:] for dimension, tag in pieces if dimension == 1]
+
+
+@contextlib.contextmanager
+def _aside(gmsh: Any, curves: list[Curve], ends: Indices, places: Array) -> Iterator[tuple[list[int], float]]:
+    """Curves in a model of their own, one unit large, and how long that unit is."""
+    model, unit = gmsh.model.getCurrent(), float(np.ptp(places, axis=0).max())
+    gmsh.model.add("leblanc outlines alone")
+    try:
+        small = [replace(curve, points=curve.points / unit) for curve in curves]
+        yield _add_all(gmsh, small, ends, places / unit), unit
+    finally:
+        gmsh.model.remove()
+        gmsh.model.setCurrent(model)
+
+
+def _check_crossings(path: str | Path, gmsh: Any, walls: list[Curve], ends: Indices, places: Array) -> None:
+    """Refuse curves that cross, touch or cover one another but where they end."""
+    with _aside(gmsh, walls, ends, places) as (made, unit):
+        gmsh.option.setNumber("Geometry.ToleranceBoolean", MEET)
+        try:
+            _, parts = gmsh.model.occ.fragment([(1, tag) for tag in made], [])
+        finally:
+            gmsh.option.setNumber("Geometry.ToleranceBoolean", 0.0)
+        gmsh.model.occ.synchronize()
+        owners = Counter(part for pieces in parts for part in pieces)
+        for curve, own, pieces in zip(walls, places[ends], parts, strict=True):
+            if len(pieces) == 1 and owners[pieces[0]] == 1:
+                continue
+            tips = gmsh.model.getBoundary(pieces, combined=False, oriented=False)
+            at = np.array([gmsh.model.getValue(*tip, []) for tip in tips])[:, :2] * unit
+            away = np.hypot(*(at[:, None] - own[None]).T).min(axis=0)
+            inner = away.max() > 2.0 * MEET * unit
+            x, y = at[np.argmax(away)] if inner else curve.points[len(curve.points) // 2]
+            allowed = f"a drawing of outlines that do not cross or touch, as they do at ({x:g}, {y:g})"
+            raise InputError("path", str(path), allowed)
+
+
+def _nested(
+    path: str | Path, gmsh: Any, walls: list[Curve], ends: Indices, places: Array, loops: list[list[int]]
+) -> list[list[int]]:
+    """The largest of some outlines that do not cross, which must hold all others, and those right within it.
+
+    What lies within an obstacle, as the bore of a hollow shaft, bounds nothing that liquid reaches.
+    """
+    if len(loops) == 1:
+        return loops
+    with _aside(gmsh, walls, ends, places) as (made, unit):
+        wires = [gmsh.model.occ.addCurveLoop([made[k] for k in loop]) for loop in loops]
+        faces = [gmsh.model.occ.addPlaneSurface([wire]) for wire in wires]
+        gmsh.model.occ.synchronize()
+        order = sorted(range(len(loops)), key=lambda k: -gmsh.model.occ.getMass(2, faces[k]))
+        boxes = np.array([gmsh.model.getBoundingBox(2, face) for face in faces])[:, [0, 1, 3, 4]]
+        kept = order[:1]
+        for rank, k in enumerate(order[1:], start=1):
+            place = places[ends[loops[k][0], 0]]
+            at = place / unit
+            around = [
+                other
+                for other in order[:rank]
+                if np.all((boxes[other, :2] <= at) & (at <= boxes[other, 2:]))
+                and gmsh.model.isInside(2, faces[other], [*at, 0.0])
+            ]
+            x, y = place
+            if order[0] not in around:
+                allowed = (
+                    f"a drawing whose largest outline holds all others; one lies outside at ({x:g}, {y:g})"
+                )
+                raise InputError("path", str(path), allowed)
+            if len(around) == 1:
+                kept.append(k)
+    return [loops[k] for k in kept]
+
+
+def _add_all(gmsh: Any, curves: list[Curve], ends: Indices, places: Array) -> list[int]:
+    """Add curves between places where they meet."""
+    tags = [gmsh.model.occ.addPoint(x, y, 0.0) for x, y in places]
+    return [_add(gmsh, curve, tags[i], tags[j]) for curve, (i, j) in zip(curves, ends, strict=True)]
 
 
 def _add(gmsh: Any, curve: Curve, start: int, end: int) -> int:

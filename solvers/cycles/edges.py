@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fluid.whirl import layer_rate
 from meshes.arrays import Array, Complex
 from solvers.cycles.balance import Circular
 
@@ -67,13 +68,11 @@ def _modes(machine: Circular, spin: float, before: Complex | None) -> tuple[Comp
     """Roots lambda of all modes at a spin in the order of those before, 1/s, and the rotor's shapes."""
     places = machine.places
     # The friction of each mode has its own slip: all modes are found with that of one, which is kept.
-    rates = np.array([place.layer.rate for place in places])
-    roots, vectors = _eigen(machine, spin, rates + _laminar(machine, 0.15 * spin))
+    roots, vectors = _eigen(machine, spin, _rates(machine, spin, -0.15 * spin))
     if any(place.layer.stokes for place in places):
         for i in range(roots.size):
             for _ in range(_ROUNDS):
-                own = rates + _laminar(machine, abs(roots[i].imag - spin))
-                near, shapes = _eigen(machine, spin, own)
+                near, shapes = _eigen(machine, spin, _rates(machine, spin, roots[i].imag - spin))
                 k = int(np.argmin(np.abs(near - roots[i])))
                 moved = abs(near[k] - roots[i])
                 roots[i], vectors[:, i] = near[k], shapes[:, k]
@@ -91,19 +90,20 @@ def _edge(machine: Circular, spin: float, whirl_speed: float, shape: Complex) ->
     """An edge with its wave, which [theory: whirl, eq. 4] has."""
     sizes = np.array([abs(place.row @ shape) for place in machine.places])
     shape = shape / sizes.max()
-    rates, slip = _laminar(machine, abs(whirl_speed - spin)), whirl_speed - spin
+    slip = whirl_speed - spin
+    rates = _rates(machine, spin, slip)
     troughs = []
     for place, rate, size in zip(machine.places, rates.tolist(), (sizes / sizes.max()).tolist(), strict=True):
         t = place.layer.layer_tanh
-        left = slip**2 - 2.0 * t * spin * slip - t * spin**2 - 1j * (place.layer.rate + rate) * slip
+        left = slip**2 - 2.0 * t * spin * slip - t * spin**2 - 1j * rate * slip
         # The surface's wave over the offset of the centre of mass is kappa - 1.
         troughs.append(size * whirl_speed**2 * t / abs(left) / place.fill.depth)
     return Edge(spin, whirl_speed, shape, max(troughs))
 
 
-def _laminar(machine: Circular, slip: float) -> Array:
-    """Rate of decay of the laminar friction in each layer, 1/s."""
-    return np.array([place.layer.stokes * np.sqrt(0.5 * slip) for place in machine.places])
+def _rates(machine: Circular, spin: float, slip: float) -> Array:
+    """Friction of each layer without the inertia of wall layers, 1/s."""
+    return np.array([layer_rate(place.layer, spin, slip).real for place in machine.places])
 
 
 def _eigen(machine: Circular, spin: float, rates: Array) -> tuple[Complex, Complex]:

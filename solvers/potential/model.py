@@ -342,7 +342,7 @@ class Potential(WaveModel):
         )
 
     def _without(self, fill: Fill, whirl: Whirl, reason: str, largest: float) -> PotentialWave:
-        """No wave: the layer as it is at rest, and why."""
+        """No wave, and why."""
         none = complex(math.nan, math.nan)
         numbers = numbers_of(fill, whirl, {})
         answer = whirl_answer(
@@ -358,7 +358,7 @@ class Potential(WaveModel):
         return PotentialWave(
             answer=answer,
             theta=theta,
-            depth=np.full(theta.shape, fill.depth),
+            depth=np.full(theta.shape, math.nan),
             numbers=numbers,
             ranges=self.ranges,
             mass_error=math.nan,

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
@@ -74,14 +74,15 @@ class LongWave(WaveModel):
     takes_baffles = True
     ranges: ClassVar[Mapping[str, Range]] = {
         "relative_depth": LONG, "centrifuge": CAPTURED, "wall_layer": THIN_LAYERS, "force_gap": (0.0, 0.1),
-        "smooth_whirl": SMOOTH,
+        "smooth_whirl": SMOOTH, "grid_gap": (0.0, 0.05),
     }  # fmt: skip
 
     def wave(self, fill: Fill, whirl: Whirl) -> LiquidWave:
         """See `WaveModel`; the error is that of smooth waves beside exact ones [theory: model_error, eq. 35].
 
         Under gravity across the axis and with baffles it is the gap between the forces by momentum and by
-        pressure.
+        pressure. A whirl larger than smooth waves follow is answered on half as many cells as well: its error
+        is the difference, of a wave that steepens until the cells hold it.
 
         Raises
         ------
@@ -90,10 +91,23 @@ class LongWave(WaveModel):
         from solvers.pypde.settle import settle
 
         history = settle(fill, whirl, self.friction, self.numerics, self.solver, self.progress)
-        return self.wave_at_end(fill, whirl, history, steady=True)
+        gap = math.nan
+        if smooth_whirl(fill, whirl).get("smooth_whirl", 0.0) > SMOOTH[1] and history.converged:
+            cells = self.numerics.cells
+            half = replace(self.numerics, cells=cells // 2 if cells >= 16 else 2 * cells)
+            other = settle(fill, whirl, self.friction, half, self.solver)
+            here = complex(history.force_ratio[-1])
+            there = complex(other.force_ratio[-1]) if other.force_ratio.size else complex(math.inf)
+            gap = abs(here - there) / max(1.0, abs(here))
+        return self.wave_at_end(fill, whirl, history, steady=True, grid_gap=gap)
 
     def wave_at_end(
-        self, fill: Fill, whirl: Whirl, history: LayerHistory, steady: bool = False
+        self,
+        fill: Fill,
+        whirl: Whirl,
+        history: LayerHistory,
+        steady: bool = False,
+        grid_gap: float = math.nan,
     ) -> LiquidWave:
         """The wave as a history leaves it, with the last means as its answer.
 
@@ -102,6 +116,7 @@ class LongWave(WaveModel):
         fill, whirl : chamber and liquid, and its whirl
         history : from `solvers.pypde.settle`
         steady : it was followed until it no longer changed, so that it counts where smooth waves end
+        grid_gap : difference of the force on half as many cells, over the larger of it and 1; nan: not asked
         """
         chamber, answered = fill.chamber, history.force_ratio.size > 0
         none = complex(math.nan, math.nan)
@@ -111,7 +126,9 @@ class LongWave(WaveModel):
             gap = float(abs(force - history.pressure_ratio[-1])) / max(1.0, float(abs(force)))
             extremes = np.concatenate([history.depth_max, history.depth_min])
             found = {"force_gap": gap, "wave_amplitude": wave_amplitude(extremes, fill.depth)}
-        numbers = numbers_of(fill, whirl, found | (smooth_whirl(fill, whirl) if steady else {}))
+        found |= smooth_whirl(fill, whirl) if steady else {}
+        folded = not math.isnan(grid_gap)
+        numbers = numbers_of(fill, whirl, found | ({"grid_gap": grid_gap} if folded else {}))
         ranges = _bounds(self.ranges, self.friction)
         deepest = float(history.depth.max(initial=0.0))
         limits = {"inner_wall": deepest <= chamber.radius - chamber.inner_radius}
@@ -123,7 +140,11 @@ class LongWave(WaveModel):
             limits=kept_limits(numbers, ranges) | limits,
             dry_patch=float(history.depth.min(initial=math.inf)) <= 0.0,
             converged=history.converged,
-            error=gap if whirl.gravity or chamber.baffles else self._error(fill, whirl),
+            error=grid_gap
+            if folded
+            else gap
+            if whirl.gravity or chamber.baffles
+            else self._error(fill, whirl),
         )
         return LiquidWave(
             answer=answer,
@@ -274,7 +295,7 @@ class OneFamily(WaveModel):
         return LiquidWave(
             answer=answer,
             theta=around[order],
-            depth=(chamber.radius - np.sqrt(chamber.radius**2 - 2.0 * area))[order],
+            depth=np.where(reason, math.nan, chamber.radius - np.sqrt(chamber.radius**2 - 2.0 * area))[order],
             numbers=numbers,
             ranges=ranges,
             mass_error=abs(float(area.mean()) / family.mean_area - 1.0),

@@ -30,7 +30,7 @@ from solvers.layer.records import LOADS, Drive, Outcome, Record, Wall, records
 from solvers.layer.state import means, ring
 from solvers.layer.step import centre, scratch, tally
 from solvers.layer.step import march as march_layer
-from solvers.liquid_model import Whirl, grown
+from solvers.liquid_model import Whirl, drag_frequency, grown
 from solvers.slices import compiled
 
 
@@ -45,7 +45,7 @@ class LongWaveTerms:
 
     fill: Fill  #: chamber and liquid; the volume is that of the uniform layer
     whirl: Whirl  #: of the drum's axis, at a constant speed in space, and gravity; its spin is that at time 0
-    #: on the wall; the laminar law takes the frequency of the whirl seen from the drum at time 0
+    #: on the wall; the laminar law takes the frequency of what moves, seen from the drum at time 0
     friction: Friction = NO_FRICTION
     dispersion: bool = False  #: add the finite depth's dispersion [theory: long_wave, eq. 13]
     spin_rate: float = 0.0  #: rate of change of the spin, rad/s^2
@@ -56,13 +56,14 @@ class LongWaveTerms:
 
     def drag(self) -> tuple[int, float]:
         """Law and coefficient of the friction as `fluid.friction.laws.damping_rate` takes them."""
-        return self.friction.at(self.fill.liquid.viscosity, self.whirl.slip, self.fill.chamber.radius)
+        frequency = drag_frequency(self.fill, self.whirl)
+        return self.friction.at(self.fill.liquid.viscosity, frequency, self.fill.chamber.radius)
 
     def wall_drag(self) -> WallDrag | None:
         """The law of the wall at the spin at time 0, rates in 1/s; None under another law."""
         if self.friction.law is not FrictionLaw.WALL:
             return None
-        return _wall_drag(self.friction, self.fill, self.whirl.slip, self.whirl.spin)
+        return _wall_drag(self.friction, self.fill, drag_frequency(self.fill, self.whirl), self.whirl.spin)
 
     def wall(self) -> Wall:
         """What the compiled steps know of the wall, rates in 1/s."""

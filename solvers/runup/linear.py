@@ -12,7 +12,7 @@ import numpy as np
 from fluid.fill import Fill
 from fluid.friction.baffles import baffle_torque
 from fluid.friction.laws import Friction, damping_rate
-from fluid.whirl import is_full
+from fluid.whirl import is_full, layer_rate, plane_layer, slower_slip
 from meshes.arrays import Array, Complex
 from meshes.errors import InputError
 from solvers.layer.records import Outcome, records
@@ -362,15 +362,17 @@ def _layer(fill: Fill, friction: Friction) -> tuple[float, ...]:
     """Record LINEAR_LAYER in its order; the quadratic law has no friction to offer a small motion."""
     chamber = fill.chamber
     if fill.surface_radius <= 0.0:
-        return fill.mass, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0
+        return fill.mass, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     kappa = (chamber.radius / fill.surface_radius) ** 2
-    area, rate, top, sides = mean_area(fill), 0.0, 0.0, 0.0
+    area, rate, whole, top, sides = mean_area(fill), 0.0, 0.0, 0.0, 0.0
     inertia = fill.liquid.density * chamber.height * 2.0 * math.pi * chamber.radius**4 * area * (1.0 - area)
     if area > 0.0:
-        layer, drag = layer_properties(fill, friction, False), layer_drag(fill, friction)
-        depth, lid = fill.depth / chamber.radius, layer.lid
-        if drag is not None:
-            # Its waves feel the drag of small ones, the layer as a whole that of the mean flow.
-            lid, top, sides = layer.plates, layer.top, 1.0 / depth + layer.lid
-        rate = float(damping_rate(layer.law, layer.coefficient, lid, depth, area, 0.0))
-    return fill.mass, kappa, rate, 0.5 if friction.law.laminar else 0.0, inertia, top, sides
+        layer, small = layer_properties(fill, friction, False), plane_layer(fill, friction)
+        depth = fill.depth / chamber.radius
+        # The layer as a whole feels the drag of a mean flow, its waves that of the slower free one.
+        rate = whole = float(damping_rate(layer.law, layer.coefficient, layer.lid, depth, area, 0.0))
+        if layer_drag(fill, friction) is not None:
+            top, sides = layer.top, 1.0 / depth + layer.lid
+        if friction.law.laminar and small is not None:
+            rate = float(layer_rate(small, 1.0, -slower_slip(small.layer_tanh)).real)
+    return fill.mass, kappa, rate, whole, 0.5 if friction.law.laminar else 0.0, inertia, top, sides

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from fluid.fill import Fill
 from fluid.friction.laws import Friction, layer_thickness
-from fluid.whirl import is_full, plane_layer, slower_slip
+from fluid.whirl import is_full, plane_layer
 from meshes.arrays import Array, Complex
 from meshes.baffles import Baffles
 from meshes.chamber import Chamber
@@ -143,7 +143,8 @@ class SectionLayer:
     density: float  #: rho h of all of them together, kg/m^2
     liquid: ReducedLiquid  #: its motions
     rate: float  #: k of linear friction, 1/s
-    #: S of laminar friction, D = sqrt(lambda) S, shape (m, m), s^(-1/2) [theory: sections, eq. 5]
+    #: S of laminar friction on walls, and of floor and lid along and across the velocity, shape (3, m, m),
+    #: s^(-1/2) [theory: sections, eq. 5]
     laminar: Array
 
 
@@ -159,23 +160,20 @@ def section_layer(fill: Fill, friction: Friction) -> SectionLayer | None:
     """
     if fill.volume == 0.0 or is_full(fill):
         return None
-    chamber, stokes = fill.chamber, friction.law.laminar
+    chamber = fill.chamber
     density = fill.liquid.density * chamber.height
     plain = plane_layer(_clear(fill), friction)
     assert plain is not None
     if not fill.uneven:
         liquid = clear_ring(chamber.radius, fill.surface_radius)
-        return SectionLayer(density, liquid, plain.rate, plain.stokes * liquid.inertia)
-    # Of a fluid layer of that thickness at the edges of baffles.
-    cut = float(layer_thickness(fill.liquid.viscosity, _SLIP)) if stokes else 0.0
-    liquid, drag = _of_section(fill, cut) if chamber.baffles is None else _of_baffles(fill, cut)
-    laminar = np.zeros_like(drag)
-    if stokes:
-        # Walls and baffles; then floor and lid, which drag on all of the liquid.
-        film = fill.volume / (math.pi * chamber.height) / _clear(fill).chamber.radius ** 2
-        slip = slower_slip(film / (2.0 - film))
-        plates = friction.lid(1.0, chamber.height, slip, 1.0) * liquid.inertia
-        laminar = math.sqrt(fill.liquid.viscosity) * (drag + plates)
+        walls = plain.stokes * liquid.inertia
+    else:
+        stokes = math.sqrt(fill.liquid.viscosity) if friction.law.laminar else 0.0
+        # Of a fluid layer of that thickness at the edges of baffles.
+        cut = float(layer_thickness(fill.liquid.viscosity, _SLIP)) if stokes else 0.0
+        liquid, drag = _of_section(fill, cut) if chamber.baffles is None else _of_baffles(fill, cut)
+        walls = stokes * drag
+    laminar = np.stack([walls, plain.lids * liquid.inertia, plain.lids * liquid.gyration])
     return SectionLayer(density, liquid, plain.rate, laminar)
 
 

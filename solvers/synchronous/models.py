@@ -211,7 +211,7 @@ class Linear(WaveModel):
         numbers = numbers_of(fill, whirl, found | smooth_whirl(fill, whirl))
         inner_wall = surface - abs(displacement) >= chamber.inner_radius
         theta = angles()
-        drawn = surface + displacement * np.cos(theta) if converged else np.full(theta.shape, surface)
+        drawn = surface + displacement * np.cos(theta) if converged else np.full(theta.shape, math.nan)
         answer = whirl_answer(
             fill,
             whirl,

@@ -30,10 +30,10 @@ Characteristic = Callable[[Complex, Index], Complex]
 
 @dataclass(frozen=True)
 class Region:
-    """Right of a line, without the cuts that end at two conjugate points and run from there to the left."""
+    """Right of a line, without the cuts that end at conjugate points and run from there to the left."""
 
     line: Array  #: real part of the line, 1/s, shape (n,)
-    tip: Array  #: imaginary part of the end of the upper cut, 0 or above, rad/s, shape (n,)
+    tips: Array  #: imaginary parts of the ends of cuts, from 0 upwards, rad/s, shape (n, c)
     scale: Array  #: a frequency of the problem, rad/s, above 0, shape (n,)
     #: beyond which the function goes as its highest power but for some per cent, rad/s, shape (n,)
     far: Array
@@ -84,26 +84,27 @@ def _path(pairs: Complex, region: Region) -> tuple[Complex, Index]:
     """
     paths, owners = [], []
     for k in range(region.line.size):
-        left, tip, size = (float(part[k]) for part in (region.line, region.tip, region.scale))
+        left, size = float(region.line[k]), float(region.scale[k])
         fastest = np.nanmax(pairs[k].imag, initial=size, where=np.isfinite(pairs[k]))
         far = _FAR * max(float(region.far[k]), float(fastest))
         around = [size * (1.0 + _FIRST), size * (1.0 - _FIRST), [size]]
         height = np.concatenate([*around, np.geomspace(1e-2 * size, far, 12)])
         height = np.unique(height[height > 0.0])
-        lip, end, past = _LIP * size, 1j * tip, _END * size
-        back = left * (1.0 - _FIRST)
-        if left >= past:
-            parts: list[Any] = [[left], left + 1j * height]
-        elif tip == 0.0:
-            parts = [[past], [past + 1j * lip], back[::-1] + 1j * lip, left + 1j * height[height > lip]]
-        else:
-            below, above = height[height < tip - lip], height[height > tip + lip]
-            parts = [
-                *([left], left + 1j * below, [left + end - 1j * lip], back + end - 1j * lip),
-                *([past + end - 1j * lip, past + end + 1j * lip], back[::-1] + end + 1j * lip),
-                *([left + end + 1j * lip], left + 1j * above),
-            ]
-        points = np.concatenate(parts).astype(complex)
+        lip, past = _LIP * size, _END * size
+        back, parts, passed = left * (1.0 - _FIRST), list[Any](), 0.0
+        for tip in region.tips[k].tolist() if left < past else ():
+            low, high = 1j * (tip - lip), 1j * (tip + lip)
+            if tip == 0.0:
+                parts += [[past]]
+            else:
+                between = height[(height > passed) & (height < tip - lip)]
+                start = [left] if passed == 0.0 else []
+                parts += [start, left + 1j * between, [left + low], back + low, [past + low]]
+            parts += [[past + high], back[::-1] + high, [left + high]]
+            passed = tip + lip
+        if not parts:
+            parts = [[left]]
+        points = np.concatenate([*parts, left + 1j * height[height > passed]]).astype(complex)
         paths.append(points)
         owners.append(np.full(points.size, k, dtype=np.intp))
     return np.concatenate(paths), np.concatenate(owners)

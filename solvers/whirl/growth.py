@@ -234,16 +234,16 @@ def _planar_parts(
         place = index[owner[here]]
         mass = np.array([tables[i][0] for i in own])[place]
         layers = np.array(
-            [[(x.mass, x.layer_tanh, x.rate, x.stokes) for x in tables[i][1]] for i in own]
-        ).reshape(own.size, kind[0], 4)[place]
+            [[(x.mass, x.layer_tanh, x.rate, x.stokes, x.lids) for x in tables[i][1]] for i in own]
+        ).reshape(own.size, kind[0], 5)[place]
         stiffness, damping = support[own[place]].T
-        columns = (layers[:, :, k].T for k in range(4))
+        columns = (layers[:, :, k].T for k in range(5))
         yield here, planar_modes(PlanarProblem(mass, stiffness, damping, speed[here], *columns))
 
 
 def modes_at(
     rotor: Rotor, rows: Sequence[Sequence[Fill]], row: Index, speed: Array, friction: Friction
-) -> tuple[Complex, Array]:
+) -> tuple[Complex, Array, Array]:
     """Modes of small whirls at points (row, speed), and the growth of the one that grows most.
 
     Parameters
@@ -254,6 +254,7 @@ def modes_at(
     -------
     root : growth + i frequency, 1/s, each mode once, in a frame in which modes that are coupled meet where
         they are alike; 0 for a growth that is rounding, nan where a point has fewer modes, shape (n, m)
+    rounding : of each, 1/s, shape (n, m)
     growth : as from `growth_at`, shape (n,)
     """
     parts: Iterable[tuple[Index, SystemModes | Modes]]
@@ -272,12 +273,13 @@ def modes_at(
             most = dominant(found.slip + speed[here], found.rounding, speed[here])[0]
             growth[here] = np.where(found.converged, most, np.nan)
             root, rounding = (1j * found.slip).T, found.rounding.T
-        seen.append((here, np.where(np.abs(root.real) <= rounding, 1j * root.imag, root)))
-    width = max((part.shape[1] for _, part in seen), default=0)
+        seen.append((here, np.where(np.abs(root.real) <= rounding, 1j * root.imag, root), rounding))
+    width = max((part.shape[1] for _, part, _ in seen), default=0)
     roots = np.full((speed.size, width), complex(np.nan, np.nan))
-    for here, part in seen:
-        roots[here, : part.shape[1]] = part
-    return roots, growth
+    noise = np.full((speed.size, width), np.nan)
+    for here, part, unsure in seen:
+        roots[here, : part.shape[1]], noise[here, : part.shape[1]] = part, unsure
+    return roots, noise, growth
 
 
 def planar_layers(mass: float, fills: Sequence[Fill], friction: Friction) -> tuple[float, list[Layer]]:
@@ -308,7 +310,7 @@ def planar_layers(mass: float, fills: Sequence[Fill], friction: Friction) -> tup
 def _alike(first: Layer, second: Layer) -> bool:
     return all(
         abs(getattr(first, name) - getattr(second, name)) <= _ALIKE * abs(getattr(first, name))
-        for name in ("layer_tanh", "rate", "stokes")
+        for name in ("layer_tanh", "rate", "stokes", "lids")
     )
 
 

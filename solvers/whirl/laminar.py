@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fluid.whirl import Layer, stokes_rate
+from fluid.whirl import Layer, plate_terms, steady_rate, stokes_rate
 from meshes.arrays import Array, Complex, Index
 from solvers.rotor.system import RotorSystem
 from solvers.whirl.count import Characteristic, Region, missed_modes
@@ -31,6 +31,9 @@ Placed = tuple[float, Layer]
 _EPS = float(np.finfo(float).eps)
 _BLOCK = 128  # speeds whose arrays fit the processor's cache
 _SWEEPS = 60
+_OWN = 8  # steps to the waves with floor and lid at their own frequencies
+_WAVE = 1e-9  # relative: a step after which such a wave is exact
+_CUTS = (1.0, 3.0)  # over the spin: where the roots of the drags on circles along and against it end
 _STEP = 1e-13  # relative, at which a root counts as found
 _GONE = -1e300  # lambda of what has no wave, 1/s
 _LEAST = 1e-7  # relative, which noise of the determinant may hide
@@ -132,7 +135,7 @@ def _counted(problem: _Problem, modes: SystemModes, speed: Array, fastest: Array
     # Where rounding hides the phase so close to the modes found, farther from them; that claims more.
     for beside in _BESIDE:
         spin = speed[unsure]
-        region = Region(best[unsure] - beside * spin, spin, spin, fastest[unsure])
+        region = Region(best[unsure] - beside * spin, np.outer(spin, _CUTS), spin, fastest[unsure])
         count = missed_modes(determinant(unsure), problem.degree, known[unsure], region)
         complete[unsure] = count == 0.0
         unsure = unsure[np.isnan(count)]
@@ -159,9 +162,9 @@ def _with_waves(modes: SystemModes, waves: Sequence[Complex], speed: Array) -> S
 
 def _groups(system: RotorSystem, layers: Sequence[Placed]) -> list[tuple[list[int], int]]:
     """Equal layers, and in how many independent ways they move with the rotor."""
-    found: dict[tuple[float, float, float], list[int]] = {}
+    found: dict[tuple[float, ...], list[int]] = {}
     for j, (_, layer) in enumerate(layers):
-        found.setdefault((layer.layer_tanh, layer.rate, layer.stokes), []).append(j)
+        found.setdefault((layer.layer_tanh, layer.rate, layer.stokes, layer.lids), []).append(j)
     ranks = []
     for members in found.values():
         along = np.array([_CIRCLES[0] @ system.at(layers[j][0]) for j in members])
@@ -172,9 +175,10 @@ def _groups(system: RotorSystem, layers: Sequence[Placed]) -> list[tuple[list[in
 def _layer_waves(layer: Layer, speed: Array) -> Complex:
     """Free waves of a layer with laminar friction, lambda, nan for what has no wave, shape (n, 4).
 
-    Zeros of E in p = sqrt(i s/Omega) with a positive real part [theory: whirl, eq. 13].
+    Zeros of E in p = sqrt(i s/Omega) with a positive real part [theory: whirl, eq. 13], from those with floor
+    and lid as they drag on the slower one.
     """
-    t, rate = layer.layer_tanh, layer.rate / speed
+    t, rate = layer.layer_tanh, steady_rate(layer, speed) / speed
     companion = np.zeros((speed.size, 4, 4), dtype=complex)
     companion[:, 1:, :3] = np.eye(3)
     # p^4 + stokes p^3 + (k - 2 i T) p^2 + T = 0.
@@ -182,8 +186,23 @@ def _layer_waves(layer: Layer, speed: Array) -> Complex:
     companion[:, 2, 3] = 2j * t - rate
     companion[:, 3, 3] = -layer.stokes / np.sqrt(speed)
     p = np.linalg.eigvals(companion)
-    waves = (np.square(p) + 1j) * speed[:, None]
-    return np.where(p.real > 0.0, waves, complex(np.nan, np.nan))
+    row, column = np.nonzero(p.real > 0.0)
+    spin, own = speed[row], p[row, column]
+    linear, stokes, lids = layer.rate / spin, layer.stokes / np.sqrt(spin), layer.lids / np.sqrt(spin)
+    step: Complex = np.zeros_like(own)
+    for _ in range(_OWN):
+        plates, rise = plate_terms(t, 1.0, -1j * np.square(own))
+        steady = linear + lids * plates - 2j * t
+        wave = np.square(own) * (np.square(own) + stokes * own + steady) + t
+        slope = own * (4.0 * np.square(own) + 3.0 * stokes * own + 2.0 * steady)
+        step = wave / (slope - 2j * lids * rise * own**3)
+        own = own - step
+        if np.all(np.abs(step) <= _WAVE * np.abs(own)):
+            break
+    settled = (np.abs(step) <= _WAVE * np.abs(own)) & (own.real > 0.0)
+    waves = np.full(p.shape, complex(np.nan, np.nan))
+    waves[row[settled], column[settled]] = ((np.square(own) + 1j) * spin)[settled]
+    return waves
 
 
 def _aberth(problem: _Problem, start: Complex, speed: Array) -> SystemModes:
@@ -270,9 +289,8 @@ def _eliminate(problem: _Problem, root: Complex, spin: Array) -> _Eliminated:
     problem : the rotor with its layers
     root, spin : lambda, 1/s, and Omega, rad/s, shape (k,)
     """
-    system = problem.system
-    at, rate = root[:, None, None], spin[:, None, None]
-    damping = system.damping + rate * system.gyroscopic
+    system, at = problem.system, root[:, None, None]
+    damping = system.damping + spin[:, None, None] * system.gyroscopic
     matrix = at * (at * system.mass + damping) + system.stiffness
     slope = 2.0 * at * system.mass + damping
     waves, poles = np.zeros_like(root), np.zeros_like(root)
@@ -283,9 +301,12 @@ def _eliminate(problem: _Problem, root: Complex, spin: Array) -> _Eliminated:
             shape = np.outer(place.T @ _AXES[:, side], _CIRCLES[side] @ place)
             turned = root - 1j * sense * spin
             friction = stokes_rate(layer.stokes, -1j * turned)
+            plates, rise = plate_terms(t, sense * spin, -1j * turned)
+            rate = layer.rate + layer.lids * plates
             # W, in the slip, where films keep their digits, and its slope; W d = -(1 - T)/2 lambda^2 w.
-            wave = turned * (turned - 2j * sense * t * spin + layer.rate + friction) + t * np.square(spin)
-            bend = 2.0 * turned - 2j * sense * t * spin + layer.rate + 1.5 * friction
+            wave = turned * (turned - 2j * sense * t * spin + rate + friction) + t * np.square(spin)
+            bend = 2.0 * turned - 2j * sense * t * spin + rate + 1.5 * friction
+            bend = bend - 1j * layer.lids * rise * turned
             wave = np.where(wave == 0.0, _EPS * np.square(spin), wave)
             share = 0.5 * (1.0 - t) * np.square(root) / wave
             force = layer.mass * np.square(root) * (1.0 - share)
@@ -300,6 +321,8 @@ def _eliminate(problem: _Problem, root: Complex, spin: Array) -> _Eliminated:
 
 def all_modes(system: RotorSystem, layers: Sequence[Placed], speed: Array) -> Complex:
     """All modes at once: slower, and none is missed [theory: whirl, eq. 20].
+
+    Exact for layers without floor and lid, whose drag is that on the slower wave.
 
     Parameters
     ----------

@@ -28,6 +28,8 @@ _FEWEST = 9
 _BESIDE = 1e-6  # relative, of the second speed by which slopes are found
 _FOLLOWED = 0.02  # of the change of the spin: how far a mode may be from where its slopes lead
 _LEAP = 0.05  # of the spin: a mode does not go so far over that second speed
+_SIDE_BY_SIDE = 0.1  # of the spread of slopes: below it modes go side by side and do not cross
+_HIDDEN = 1e-4  # of the spin: rounding of a root, which hides its growth and its slope
 _HALVINGS = 7
 _NARROW, _AT_EDGE = 1e-6, 0.01  # relative width of intervals that are not split further, at edges
 _FLOOR = 1e-10  # of the spin: growth that is not looked for
@@ -130,14 +132,39 @@ def _looked(
     """Modes and growth at points, and slopes by a second speed close by."""
     size = speed.size
     both, spins = np.concatenate([row, row]), np.concatenate([speed, speed * (1.0 + _BESIDE)])
-    roots, rates = modes_at(rotor, rows, both, spins, friction)
+    roots, rounding, rates = modes_at(rotor, rows, both, spins, friction)
+    roots = np.where(rounding <= _HIDDEN * spins[:, None], roots, complex(np.nan, np.nan))
     root, beside, growth = roots[:size], roots[size:], rates[:size]
-    gap = np.where(np.isnan(root)[:, :, None] | np.isnan(beside)[:, None, :], np.inf, 1.0)
-    gap = np.where(np.isinf(gap), np.inf, np.abs(beside[:, None, :] - root[:, :, None]))
-    nearest = _pairing(gap)
-    change = np.take_along_axis(beside, nearest, axis=1) - root
+    change = _changes(root, beside)
     change = np.where(np.abs(change) <= _LEAP * speed[:, None], change, complex(np.nan, np.nan))
     return Looks(row, speed, growth, root, change / (_BESIDE * speed[:, None]))
+
+
+def _changes(root: Complex, beside: Complex) -> Complex:
+    """Change of each mode to a second speed close by, where the nearest is taken for the same, shape (n, m).
+
+    Two that keep side by side, closer than they change, are told apart by their common change.
+    """
+
+    def paired(led: Complex) -> tuple[Index, Complex]:
+        gap = np.abs(beside[:, None, :] - led[:, :, None])
+        to = _pairing(np.where(np.isnan(gap), np.inf, gap))
+        return to, np.take_along_axis(beside, to, axis=1) - root
+
+    to, change = paired(root)
+    near = np.abs(root[:, :, None] - root[:, None, :]) <= np.abs(change)[:, :, None]
+    if near.sum() <= np.isfinite(change).sum():
+        return change
+    count = np.maximum(near.sum(axis=2), 1)
+    common = np.where(near, change[:, None, :], 0.0).sum(axis=2) / count
+    other, common_change = paired(root + common)
+    spread = [
+        np.where(near & (to != other)[:, :, None], np.abs(part[:, :, None] - part[:, None, :]), 0.0).sum(
+            axis=(1, 2)
+        )
+        for part in (change, common_change)
+    ]
+    return np.where((spread[1] < _SIDE_BY_SIDE * spread[0])[:, None], common_change, change)
 
 
 def _joined(parts: Sequence[Looks]) -> Looks:
@@ -197,7 +224,8 @@ def _pairing(off: Array) -> Index:
 def _unsure(low: Looks, high: Looks) -> tuple[Flags, Array]:
     """Intervals to be looked into, and where: as a share of their width, shape (k,).
 
-    Modes that cannot be followed, and growths and distances of two modes whose tangents meet beyond zero.
+    Modes that cannot be followed, growth that goes over to another mode, and growths and distances of two
+    modes whose tangents meet beyond zero.
     """
     width, modes = high.speed - low.speed, _follow(low, high)
     lost = (modes.counts & ~modes.sure).any(axis=1)
@@ -223,13 +251,27 @@ def _unsure(low: Looks, high: Looks) -> tuple[Flags, Array]:
             & (gap[3] * gap[0] > 0.0)
         )
         near = beyond, twice & (reach < width[:, None] * np.abs(gap[2] - gap[3]))
-    wanted = np.concatenate([rises | falls, near[1]], axis=1)
-    places = np.concatenate([at, near[0]], axis=1)
+    between, gap_there = _handed_over(low, high, modes)
+    wanted = np.concatenate([gap_there[:, None], rises | falls, near[1]], axis=1)
+    places = np.concatenate([between[:, None], at, near[0]], axis=1)
     which = np.argmax(wanted, axis=1)
     asked = wanted.any(axis=1) & (width > 1e-8 * high.speed)
-    place = np.take_along_axis(places, which[:, None], axis=1)[:, 0] if wanted.shape[1] else share
+    place = np.take_along_axis(places, which[:, None], axis=1)[:, 0]
     share = np.where(asked, np.clip(place, 0.1, 0.9), share)
     return split | asked, share
+
+
+def _handed_over(low: Looks, high: Looks, modes: _Followed) -> tuple[Array, Flags]:
+    """Where none of the modes may grow that do so at the ends, as a share of the width; intervals of these.
+
+    In the middle between the zeros of the chords of the last that ceases and of the first that begins.
+    """
+    start, end = modes.start.real, modes.end.real
+    first, last = modes.sure & (start > 0.0), modes.sure & (end > 0.0)
+    zero = np.divide(start, start - end, out=np.full(start.shape, np.nan), where=first != last)
+    ceases = np.where(first & ~last, zero, 0.0).max(axis=1, initial=0.0)
+    begins = np.where(last & ~first, zero, 1.0).min(axis=1, initial=1.0)
+    return 0.5 * (ceases + begins), (low.growth > 0.0) & (high.growth > 0.0) & ~(first & last).any(axis=1)
 
 
 def _tangents(first: Array, last: Array, rise: Array, fall: Array, width: Array) -> tuple[Array, Array]:
@@ -285,6 +327,7 @@ def _gone_to(at: Callable[[Index, Array], Looks], meetings: Sequence[Any]) -> li
     """
     row, speed, low, high, root = meetings
     found: list[Looks] = []
+    before = np.full(row.shape, np.inf)
     for _ in range(_STEPS):
         if row.size == 0:
             break
@@ -301,8 +344,10 @@ def _gone_to(at: Callable[[Index, Array], Looks], meetings: Sequence[Any]) -> li
         gap, rate = (part.imag[:, 0] - part.imag[:, 1] for part in (pair, slope))
         step = np.divide(-gap, rate, out=np.full(gap.shape, np.nan), where=np.abs(rate) > 1e-9)
         on = np.isfinite(step) & (here.growth <= 0.0) & (np.abs(step) > _MET * speed)
-        on &= (speed + step > low) & (speed + step < high)
+        # What does not come nearer to a meeting has none.
+        on &= (speed + step > low) & (speed + step < high) & (np.abs(step) < 0.5 * before)
         row, low, high, step = row[on], low[on], high[on], step[on]
+        before = np.abs(step)
         root = (pair.mean(axis=1) + 0.0)[on] + step * slope.mean(axis=1)[on]
         speed = speed[on] + step
     return found

@@ -9,19 +9,21 @@ from __future__ import annotations
 
 import os
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fluid.whirl import damped_waves, stokes_rate
+from fluid.whirl import damped_waves, plate_rate, plate_terms, stokes_rate
 from meshes.arrays import Array, Complex, Flags
 
 _CHUNK = 4096  # points whose arrays fit the processor's cache
 _THREADS = 4
 _SWEEPS = 90
 _CHECK = 2  # sweeps between looks at who is done
+_OWN = 24  # sweeps of modes with floor and lid at their own frequency
 _STEP, _NEAR = 1e-7, 1e-5  # of the root, of the distance to the next: a step after which a root is exact
+_ROUGH = 3e-2  # of both: after which it may be followed to where floor and lid have its own frequency
 _EPS = float(np.finfo(float).eps)
 _TINY = 1e-290
 
@@ -38,12 +40,20 @@ class PlanarProblem:
     layer_tanh: Array
     rate: Array
     stokes: Array
+    lids: Array
 
     def part(self, which: slice | Flags | NDArray[np.intp]) -> PlanarProblem:
         """The same at some of the points."""
         return PlanarProblem(
-            *(x[which] for x in (self.mass, self.stiffness, self.damping, self.spin)),
-            *(x[:, which] for x in (self.liquid, self.layer_tanh, self.rate, self.stokes)),
+            self.mass[which],
+            self.stiffness[which],
+            self.damping[which],
+            self.spin[which],
+            self.liquid[:, which],
+            self.layer_tanh[:, which],
+            self.rate[:, which],
+            self.stokes[:, which],
+            self.lids[:, which],
         )
 
 
@@ -65,8 +75,11 @@ class _Scaled:
     damping: Array
     mass: Array
     tanh: Array
-    linear: Complex
+    plain: Complex  #: 2 T + i k of linear friction
+    linear: Complex  #: the same with floor and lid; of each root, shape (g, m, p)
+    bent: Complex  #: its slope over s
     stokes: Array
+    lids: Array
     coupling: Array
     laminar: bool
 
@@ -99,26 +112,47 @@ def planar_modes(problem: PlanarProblem) -> Modes:
 def _chunk(problem: PlanarProblem) -> Modes:
     scaled = _scaled(problem)
     x, converged = _aberth(scaled, _starts(scaled))
+    if np.any(scaled.lids > 0.0):
+        # Of the roots those that are modes.
+        most = max(int((x.real > 0.0).sum(axis=0).max()), 1)
+        x = np.take_along_axis(x, np.argsort(-x.real, axis=0)[:most], axis=0)
+        before = x
+        x, settled = _aberth(scaled, x, x.real > 0.0)
+        late = np.flatnonzero(~settled)
+        if late.size:
+            here = _part(scaled, ~settled)
+            x[:, late], settled[late] = _past_cuts(here, x[:, late], before[:, late])
+        converged, scaled = converged & settled, _own(scaled, x)
     noise = _rounding(scaled, x)
     if scaled.laminar:
         # s = -i x^2; a root within rounding of the cut decays in any case.
         noise = 2.0 * np.abs(x) * noise
         admitted = x.real > 0.0
         x = np.where(admitted, -1j * np.square(x), complex(np.nan, np.nan))
+        more = ((0, 4 + 4 * len(scaled.tanh) - len(x)), (0, 0))
+        x, noise = np.pad(x, more, constant_values=complex(np.nan, np.nan)), np.pad(noise, more)
     return Modes(x * problem.spin, noise * problem.spin, converged)
 
 
 def _scaled(problem: PlanarProblem) -> _Scaled:
     spin, mass = problem.spin, problem.mass
-    share = problem.liquid / mass
+    share, t = problem.liquid / mass, problem.layer_tanh
+    # Floor and lid drag on the slower wave, until each mode is known.
+    stokes, lids = problem.stokes / np.sqrt(spin), problem.lids / np.sqrt(spin)
+    plates = lids * plate_rate(t, 1.0, t - np.sqrt(np.square(t) + t))
+    plain = 2.0 * t + 1j * problem.rate / spin
+    linear = plain + 1j * plates
     return _Scaled(
         stiffness=problem.stiffness / mass / np.square(spin),
         damping=problem.damping / mass / spin,
         mass=1.0 + share.sum(axis=0),
-        tanh=problem.layer_tanh,
-        linear=2.0 * problem.layer_tanh + 1j * problem.rate / spin,
-        stokes=problem.stokes / np.sqrt(spin),
-        coupling=share * 0.5 * (1.0 - problem.layer_tanh),
+        tanh=t,
+        plain=plain,
+        linear=linear,
+        bent=np.zeros_like(linear),
+        stokes=stokes,
+        lids=lids,
+        coupling=share * 0.5 * (1.0 - t),
         laminar=bool(np.any(problem.stokes > 0.0)),
     )
 
@@ -143,6 +177,48 @@ def _starts(scaled: _Scaled) -> Complex:
     return np.concatenate([x, -x])
 
 
+def _own(scaled: _Scaled, x: Complex, other: Flags | None = None) -> _Scaled:
+    """With floor and lid as they drag on each root's own motion, linear and its slope of shape (g, m, p).
+
+    Where `other` of shape (m, p) is set, the nearer end of a cut has its other root.
+    """
+    s, t, lids = -1j * np.square(x), scaled.tanh[:, None], scaled.lids[:, None]
+    rate, slope = plate_terms(t, 1.0, s)
+    if other is not None:
+        side = np.where(s.real > 0.0, 1.0, -1.0)
+        share = np.where(other, 1.0 + side * t, 0.0)
+        one = plate_terms(side, 1.0, s)
+        rate, slope = rate - share * one[0], slope - share * one[1]
+    linear = scaled.plain[:, None] + 1j * lids * rate
+    return replace(scaled, linear=linear, bent=1j * lids * slope)
+
+
+def _past_cuts(scaled: _Scaled, x: Complex, before: Complex) -> tuple[Complex, Flags]:
+    """Roots that the cuts of floor and lid are in the way of, and the points where all are known.
+
+    From those `before`, in g = sqrt(i (s -+ 2 Omega)) of the nearer end, where there is no cut; a root that
+    comes out with Re g < 0 is no mode, as its layers would not die out.
+    """
+    value, slope = _polynomial(_own(scaled, x), x)
+    lost = (before.real > 0.0) & ~(np.abs(value) <= _STEP * np.abs(slope * x))
+    row, column = np.nonzero(lost)
+    here, s = _part(scaled, column), -1j * np.square(before[row, column])[None]
+    end = np.where(s.real > 0.0, 2.0, -2.0)
+    g, moved = np.sqrt(1j * (s - end)), np.zeros_like(s)
+    for _ in range(_OWN):
+        root = np.sqrt(1j * end + np.square(g))
+        value, slope = _polynomial(_own(here, root, g.real < 0.0), root)
+        bottom = slope * g
+        moved = np.divide(value * root, bottom, out=np.zeros_like(g), where=np.abs(bottom) > _TINY)
+        g = g - moved
+    settled = (np.abs(moved) <= _STEP * np.abs(g))[0]
+    x = x.copy()
+    x[row, column] = np.where(settled & (g.real > 0.0)[0], np.sqrt(1j * end + np.square(g))[0], -1.0)
+    known = np.ones(x.shape[1], dtype=bool)
+    known[column[~settled]] = False
+    return x, known
+
+
 def _polynomial(scaled: _Scaled, x: Complex) -> tuple[Complex, Complex]:
     """P and dP/dx, both over a positive number that keeps high powers in range [theory: whirl, eq. 8]."""
     s, ds = (-1j * x * x, -2j * x) if scaled.laminar else (x, np.ones_like(x))
@@ -152,8 +228,9 @@ def _polynomial(scaled: _Scaled, x: Complex) -> tuple[Complex, Complex]:
     quartic = np.square(np.square(omega))
     steep = 4.0 * omega * omega * omega * ds
     free, free_slope = np.ones_like(x), np.zeros_like(x)
-    for t, b, drag, pull in zip(scaled.tanh, scaled.linear, scaled.stokes, scaled.coupling, strict=True):
-        wave, bend = s * (s - b) - t, (2.0 * s - b) * ds
+    layers = scaled.tanh, scaled.linear, scaled.bent, scaled.stokes, scaled.coupling
+    for t, b, c, drag, pull in zip(*layers, strict=True):
+        wave, bend = s * (s - b) - t, (2.0 * s - b - s * c) * ds
         if scaled.laminar:
             wave, bend = wave - drag * x * x * x, bend - 3.0 * drag * x * x
         slope = slope * wave + value * bend + pull * (steep * free + quartic * free_slope)
@@ -205,25 +282,31 @@ def _pairs(x: Complex) -> tuple[Complex, Array]:
     return total, nearest
 
 
-def _aberth(scaled: _Scaled, x: Complex) -> tuple[Complex, Flags]:
+def _aberth(scaled: _Scaled, x: Complex, modes: Flags | None = None) -> tuple[Complex, Flags]:
     """All roots at all points; points whose roots stand still are left out of further sweeps.
 
     The iteration is of third order: a step well below the distance of the next root leaves its cube over the
-    square of that.
+    square of that. With `modes`, shape of x, those alone move, each with the drag of its own frequency.
     """
     found, converged = x.copy(), np.zeros(x.shape[1], dtype=bool)
     active = np.arange(x.shape[1])
-    for sweep in range(1, _SWEEPS + 1):
+    fixed = scaled
+    rough = modes is None and np.any(scaled.lids > 0.0)
+    near, least = (_ROUGH, _ROUGH) if rough else (_NEAR, _STEP)
+    for sweep in range(1, (_SWEEPS if modes is None else _OWN) + 1):
+        if modes is not None:
+            scaled = _own(fixed, x)
         value, slope = _polynomial(scaled, x)
         repulsion, nearest = _pairs(x)
         bottom = slope - value * repulsion
         step = np.zeros_like(x)
-        np.divide(value, bottom, out=step, where=np.abs(bottom) > _TINY)
+        moving = np.abs(bottom) > _TINY
+        np.divide(value, bottom, out=step, where=moving if modes is None else moving & modes)
         x = x - step
         if sweep % _CHECK:
             continue
         moved = np.abs(step)
-        done = np.asarray(((moved <= _NEAR * nearest) & (moved <= _STEP * np.abs(x))).all(axis=0))
+        done = np.asarray(((moved <= near * nearest) & (moved <= least * np.abs(x))).all(axis=0))
         if sweep > 4 * _CHECK and not done.all():
             late = np.flatnonzero(~done)
             noise = _rounding(_part(scaled, ~done), x[:, late])
@@ -231,19 +314,24 @@ def _aberth(scaled: _Scaled, x: Complex) -> tuple[Complex, Flags]:
         found[:, active] = x
         converged[active[done]] = True
         active, x, scaled = active[~done], x[:, ~done], _part(scaled, ~done)
+        if modes is not None:
+            fixed, modes = _part(fixed, ~done), modes[:, ~done]
         if active.size == 0:
             break
     return found, converged
 
 
-def _part(scaled: _Scaled, keep: Flags) -> _Scaled:
+def _part(scaled: _Scaled, keep: Flags | NDArray[np.intp]) -> _Scaled:
     return _Scaled(
         stiffness=scaled.stiffness[keep],
         damping=scaled.damping[keep],
         mass=scaled.mass[keep],
         tanh=scaled.tanh[:, keep],
-        linear=scaled.linear[:, keep],
+        plain=scaled.plain[:, keep],
+        linear=scaled.linear[..., keep],
+        bent=scaled.bent[..., keep],
         stokes=scaled.stokes[:, keep],
+        lids=scaled.lids[:, keep],
         coupling=scaled.coupling[:, keep],
         laminar=scaled.laminar,
     )

@@ -9,7 +9,7 @@ each. In both frames the modes that grow most are followed with laminar friction
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -44,12 +44,12 @@ _RESOLVED = 1e-11  # of the frequencies, below which growth is rounding
 
 @dataclass(frozen=True, eq=False)
 class DrumMatrices:
-    """M z'' + (C + sqrt(lambda) S) z' + K z = 0 at n speeds [theory: sections, eq. 3]."""
+    """M z'' + (C + D(lambda)) z' + K z = 0 at n speeds [theory: sections, eq. 3]."""
 
     mass: Array  #: symmetric, positive definite, shape (N, N)
     damping: Array  #: shape (n, N, N)
     stiffness: Array
-    laminar: Array  #: S, symmetric, shape (N, N)
+    laminar: Array  #: of `SectionLayer`, times the density, shape (3, N, N)
 
 
 def drum_matrices(rotor: Jeffcott, layers: Sequence[SectionLayer], speed: Array) -> DrumMatrices:
@@ -71,7 +71,10 @@ def drum_matrices(rotor: Jeffcott, layers: Sequence[SectionLayer], speed: Array)
 
     inertia, gyration, surface = parts("inertia"), parts("gyration"), parts("surface")
     rate = scipy.linalg.block_diag(*(layer.density * layer.rate * layer.liquid.inertia for layer in layers))
-    laminar = scipy.linalg.block_diag(np.zeros((2, 2)), *(layer.density * layer.laminar for layer in layers))
+    laminar = [
+        scipy.linalg.block_diag(np.zeros((2, 2)), *(layer.density * layer.laminar[k] for layer in layers))
+        for k in range(3)
+    ]
     spin = speed[:, None, None]
     mass = np.block([[heavy * np.eye(2), pull], [pull.T, inertia]])
     twist = np.block([[heavy * _TURN, _TURN @ pull], [pull.T @ _TURN, gyration]])
@@ -85,8 +88,22 @@ def drum_matrices(rotor: Jeffcott, layers: Sequence[SectionLayer], speed: Array)
         mass=mass,
         damping=2.0 * spin * twist + steady,
         stiffness=np.square(spin) * spread + spin * turned + support,
-        laminar=laminar,
+        laminar=np.array(laminar),
     )
+
+
+def _shears(rate: Complex, spin: Array) -> tuple[Complex, Complex]:
+    """lambda times what `SectionLayer.laminar` is multiplied by in D(lambda), and its slope, shape (3, k).
+
+    Floor and lid drag with sqrt(lambda +- 2 i Omega) on the circles of the flow, of both roots the one whose
+    layer dies out away from the wall [theory: sections, eq. 5].
+    """
+    wall, along, against = (np.sqrt(rate + turn * spin) for turn in (0.0, 2j, -2j))
+    # Half of what is left of lambda over the root, 0 at the end of a cut.
+    steep = [0.5 * rate * np.divide(1.0, x, out=np.zeros_like(x), where=x != 0.0) for x in (along, against)]
+    factors = np.stack([wall, 0.5 * (along + against), -0.5j * (along - against)])
+    bends = np.stack([0.5 * wall, 0.5 * (steep[0] + steep[1]), -0.5j * (steep[0] - steep[1])])
+    return factors * rate, factors + bends
 
 
 def drum_modes(rotor: Jeffcott, layers: Sequence[SectionLayer], speed: Array) -> SystemModes:
@@ -104,29 +121,31 @@ def drum_modes(rotor: Jeffcott, layers: Sequence[SectionLayer], speed: Array) ->
     circles = _circles(layers)
     if not np.any(system.laminar):
         return linear_modes(CoupledMatrices(system.mass, system.damping, system.stiffness), circles)
-    first = system.damping + np.sqrt(0.5 * _SLOW * speed)[:, None, None] * system.laminar
-    slowly = CoupledMatrices(system.mass, first, system.stiffness)
+    walls, plates = system.laminar[0], system.damping + _of_plates(system.laminar, speed)
+    plain = CoupledMatrices(system.mass, plates, system.stiffness)
+    slowly = replace(plain, damping=plates + np.sqrt(0.5 * _SLOW * speed)[:, None, None] * walls)
     started = roots(slowly)
-    plain = CoupledMatrices(system.mass, system.damping, system.stiffness)
     mass, laminar, every_damping, stiffness = (
         part.astype(complex) for part in (system.mass, system.laminar, system.damping, system.stiffness)
     )
 
     def terms(root: Complex, owner: Index) -> tuple[Complex, Complex]:
         at, damping = root[:, None, None], every_damping[owner]
-        # Of both roots the one whose layer dies out away from the wall.
-        drag = np.sqrt(at) * laminar
-        matrix = at * (at * mass + damping + drag) + stiffness[owner]
-        return matrix, 2.0 * at * mass + damping + 1.5 * drag
+        shear, change = (np.tensordot(x.T, laminar, 1) for x in _shears(root, speed[owner]))
+        matrix = at * (at * mass + damping) + stiffness[owner] + shear
+        return matrix, 2.0 * at * mass + damping + change
 
     def every(owner: Index) -> Complex:
-        return drum_roots(plain.at(owner), system.laminar, speed[owner])
+        return drum_roots(plain.at(owner), walls, speed[owner])
 
     fastest = _fastest(started, system.mass, system.laminar)
-    slip = np.abs(started.imag)
-    return most_growing(
-        MostGrowing(started, slowly, slip, circles, terms, every, np.zeros(speed.shape), fastest), speed
-    )
+    slip, tips = np.abs(started.imag), np.outer(speed, [0.0, 2.0])
+    return most_growing(MostGrowing(started, slowly, slip, circles, terms, every, tips, fastest), speed)
+
+
+def _of_plates(laminar: Array, speed: Array) -> Array:
+    """Drag of floor and lid on slow motions, which the Coriolis force alone decides, shape (n, N, N)."""
+    return np.asarray(np.sqrt(speed)[:, None, None] * (laminar[1] + laminar[2]))
 
 
 def roots(matrices: CoupledMatrices) -> Complex:
@@ -152,7 +171,7 @@ class MostGrowing:
     terms: Callable[[Complex, Index], tuple[Complex, Complex]]
     #: all lambda at some of the speeds, nan in place of some, shape (k, m) from (k,)
     every: Callable[[Index], Complex]
-    tip: Array  #: imaginary part of the end of the cut of T, rad/s, shape (n,)
+    tips: Array  #: imaginary parts of the ends of the cuts of T, rad/s, shape (n, 2)
     fastest: Array  #: rate beyond which the masses alone count, 1/s, shape (n,)
 
 
@@ -211,7 +230,7 @@ def _told(
     spin = speed[at]
     rate = np.where(found, root.real, -np.inf).max(axis=1)
     told = np.isfinite(rate)
-    region = Region(np.where(told, rate, 0.0) - _SHARE * spin, search.tip[at], spin, search.fastest[at])
+    region = Region(np.where(told, rate, 0.0) - _SHARE * spin, search.tips[at], spin, search.fastest[at])
 
     def determinant(points: Complex, owner: Index) -> Complex:
         found = np.empty(points.shape, dtype=complex)
@@ -248,7 +267,7 @@ def _shapes(search: MostGrowing, start: Complex, at: Index) -> Complex:
 
 def _fastest(started: Complex, mass: Array, laminar: Array) -> Array:
     """Rate of the fastest mode, and where the drag equals the inertia, 1/s, shape (n,)."""
-    drag = float(np.abs(np.linalg.eigvals(np.linalg.solve(mass, laminar))).max())
+    drag = float(np.abs(np.linalg.eigvals(np.linalg.solve(mass, laminar[0] + laminar[1]))).max())
     return np.asarray(np.maximum(np.abs(started).max(axis=1), drag**2))
 
 
@@ -313,7 +332,7 @@ class CircleLayer:
 
     density: float  #: rho h, kg/m^2
     liquid_area: float  #: m^2
-    gyration: Complex  #: C, B and S, shape (m, m)
+    gyration: Complex  #: C, B, shape (m, m), and what `SectionLayer.laminar` is, (3, m, m)
     surface: Complex
     laminar: Complex
     moment: Complex  #: p, shape (m,), m
@@ -385,7 +404,7 @@ class StandingMatrices:
     mass: Array  #: shape (N, N), (n, N, N), (n, N, N)
     damping: Array
     stiffness: Array
-    laminar: Array  #: S, shape (N, N)
+    laminar: Array  #: of `CircleLayer`, times the density, shape (3, N, N)
     quarter: Array  #: multiplies the liquid's complex coordinates by i, shape (N, N)
 
 
@@ -401,7 +420,8 @@ def standing_matrices(system: RotorSystem, layers: Sequence[Placed], speed: Arra
     count, spin = len(system.coordinates), speed[:, None, None]
     circles = [(plane, circle_layer(layer)) for plane, layer in layers]
     size = count + 2 * sum(len(circle.moment) for _, circle in circles)
-    mass, laminar, quarter = np.zeros((3, size, size))
+    mass, quarter = np.zeros((2, size, size))
+    laminar = np.zeros((3, size, size))
     damping, stiffness = np.zeros((2, speed.size, size, size))
     mass[:count, :count] = system.mass
     damping[:, :count, :count] = system.damping + spin * system.gyroscopic
@@ -422,7 +442,8 @@ def standing_matrices(system: RotorSystem, layers: Sequence[Placed], speed: Arra
             np.square(spin) * (spread - unit - 2.0 * turn @ twist)
             - circle.rate * circle.density * spin * turn
         )
-        laminar[own, own], quarter[own, own] = circle.density * _real(circle.laminar), turn
+        laminar[:, own, own] = circle.density * np.array([_real(part) for part in circle.laminar])
+        quarter[own, own] = turn
     return StandingMatrices(mass, damping, stiffness, laminar, quarter)
 
 
@@ -441,14 +462,19 @@ def standing_modes(system: RotorSystem, layers: Sequence[Placed], speed: Array) 
     circles = np.concatenate([rows, own])
     if not np.any(found.laminar):
         return linear_modes(CoupledMatrices(found.mass, found.damping, found.stiffness), circles)
-    drag = np.sqrt(0.5 * _SLOW * speed)[:, None, None] * found.laminar
-    slipping = -speed[:, None, None] * found.quarter @ drag
-    slowly = CoupledMatrices(found.mass, found.damping + drag, found.stiffness + slipping)
-    started = roots(slowly)
+    plates = _of_plates(found.laminar, speed)
+    plain, slowly = (
+        CoupledMatrices(
+            found.mass,
+            found.damping + drag,
+            found.stiffness - speed[:, None, None] * found.quarter @ drag,
+        )
+        for drag in (plates, plates + np.sqrt(0.5 * _SLOW * speed)[:, None, None] * found.laminar[0])
+    )
     # Of the two circles of a mode the one with the spin, which slips less.
+    started = roots(slowly)
     slip = np.abs(np.abs(started.imag) - speed[:, None])
     turned = found.quarter @ found.laminar
-    plain = CoupledMatrices(found.mass, found.damping, found.stiffness)
     mass, laminar, turn, every_damping, stiffness = (
         part.astype(complex) for part in (found.mass, found.laminar, turned, found.damping, found.stiffness)
     )  # once: products of complex and real arrays convert them each time, at eight times the cost
@@ -456,17 +482,12 @@ def standing_modes(system: RotorSystem, layers: Sequence[Placed], speed: Array) 
     def terms(root: Complex, owner: Index) -> tuple[Complex, Complex]:
         at, damping = root[:, None, None], every_damping[owner]
         # Either sense of circle slips by its own frequency over the drum.
-        power, slope = [], []
-        for way in (-1j, 1j):
-            slip = at + way * speed[owner][:, None, None]
-            root_slip = np.sqrt(slip)
-            power.append(slip * root_slip)
-            slope.append(1.5 * root_slip)
-        mean, half = (
-            (0.5 * (pair[0] + pair[1]) for pair in (power, slope)),
-            (-0.5j * (pair[0] - pair[1]) for pair in (power, slope)),
+        spin = speed[owner]
+        ways = [_shears(root + way * spin, spin) for way in (-1j, 1j)]
+        shear, change = (
+            np.tensordot(0.5 * (one + other).T, laminar, 1) + np.tensordot(-0.5j * (one - other).T, turn, 1)
+            for one, other in zip(*ways, strict=True)
         )
-        shear, change = (u * laminar + v * turn for u, v in zip(mean, half, strict=True))
         matrix = at * mass
         matrix += damping
         matrix *= at
@@ -475,11 +496,11 @@ def standing_modes(system: RotorSystem, layers: Sequence[Placed], speed: Array) 
         return matrix, 2.0 * at * mass + damping + change
 
     def every(owner: Index) -> Complex:
-        drags = 0.5 * np.stack([found.laminar - 1j * turned, found.laminar + 1j * turned])
+        drags = 0.5 * np.stack([found.laminar[0] - 1j * turned[0], found.laminar[0] + 1j * turned[0]])
         return standing_roots(plain.at(owner), np.asarray(drags, dtype=complex), speed[owner])
 
-    fastest = _fastest(started, found.mass, found.laminar)
-    return most_growing(MostGrowing(started, slowly, slip, circles, terms, every, speed, fastest), speed)
+    fastest, tips = _fastest(started, found.mass, found.laminar), np.outer(speed, [1.0, 3.0])
+    return most_growing(MostGrowing(started, slowly, slip, circles, terms, every, tips, fastest), speed)
 
 
 def _real(matrix: Any) -> Array:

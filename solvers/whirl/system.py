@@ -11,7 +11,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from fluid.whirl import Layer
+from fluid.whirl import Layer, steady_rate
 from meshes.arrays import Array, Complex, Flags, Index
 from solvers.rotor.system import RotorSystem
 
@@ -52,12 +52,15 @@ def coupled_matrices(
     turn, unit = np.array([[0.0, 1.0], [-1.0, 0.0]]), np.eye(2)
     for j, (plane, layer) in enumerate(layers):
         own, at = slice(count + 2 * j, count + 2 * j + 2), system.at(plane)
-        t, rate, inertia = layer.layer_tanh, layer.rate, layer.mass / (0.5 * (1.0 - layer.layer_tanh))
+        t, inertia = layer.layer_tanh, layer.mass / (0.5 * (1.0 - layer.layer_tanh))
+        # Of a complex rate the second part acts across the velocity.
+        steady = steady_rate(layer, spin)
+        drag = steady.real * unit - steady.imag * turn
         mass[:count, :count] += layer.mass * at.T @ at
         mass[own, :count], mass[:count, own] = layer.mass * at, layer.mass * at.T
         mass[own, own] = inertia * unit
-        damping[:, own, own] = inertia * (rate * unit + 2.0 * (1.0 + t) * spin * turn)
-        stiffness[:, own, own] = inertia * (rate * spin * turn - (1.0 + t) * np.square(spin) * unit)
+        damping[:, own, own] = inertia * (drag + 2.0 * (1.0 + t) * spin * turn)
+        stiffness[:, own, own] = inertia * (spin * drag @ turn - (1.0 + t) * np.square(spin) * unit)
     return CoupledMatrices(mass, damping, stiffness)
 
 

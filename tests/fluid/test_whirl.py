@@ -15,17 +15,27 @@ from fluid.friction.laws import Friction, stokes_coefficient
 from fluid.liquid import Liquid
 from fluid.waves import force_ratio, free_wave_frequencies, offset_ratio
 from fluid.whirl import (
+    Layer,
     covering_speed,
     damped_waves,
     force_with_friction,
     is_full,
+    layer_rate,
     neutral_stiffness,
     offset_with_friction,
     plane_layer,
+    plate_rate,
+    plate_terms,
+    steady_rate,
     stokes_rate,
+    wall_share,
     wave_function,
 )
 from meshes.chamber import Chamber
+from meshes.rings.quadrilaterals import ring
+from solvers.sloshing.forced import mode_damping
+from solvers.sloshing.modes import sloshing_modes
+from solvers.sloshing.system import condense
 from tests.fluid.test_waves import POINTS, layer_system
 from tests.mutants import kills
 
@@ -120,11 +130,12 @@ def test_force_is_newtons_law(kappa: float, ratio: float, growth: float, rate: f
 
 
 @kills("fluid.whirl:plane_layer", "0.5 * film", "1.0 * film")
-@kills("fluid.friction.laws:Friction.lid", "2.0 * radius / height", "1.0 * radius / height")
 @kills("fluid.whirl:plane_layer", "math.sqrt(fill.liquid.viscosity)", "fill.liquid.viscosity")
 @kills("fluid.whirl:plane_layer", "film / (2.0 - film)", "film / (2.0 + film)")
+@kills("fluid.whirl:wall_share", "crests * (1.0", "(1.0")
+@kills("fluid.whirl:wall_share", "(1.0 + layer_tanh) / layer_tanh", "(1.0 - layer_tanh) / layer_tanh")
 def test_laws() -> None:
-    """Torque of the shear over the angular momentum of the liquid, law by law [theory: long_wave]."""
+    """Linear: torque of the shear over the angular momentum. Laminar: heat at the wall over the energy."""
     chamber = Chamber(RADIUS, 0.02)
     for share in (1e-9, 0.1, 0.6):
         fill = Fill(chamber, WATER, share * chamber.capacity)
@@ -137,36 +148,109 @@ def test_laws() -> None:
         assert layer.mass == pytest.approx(1000.0 * fill.volume)
         layer = plane_layer(fill, Friction("stokes"))
         assert layer is not None and layer.rate == 0.0
+        assert layer.lids == pytest.approx(2.0 * 1e-3 / chamber.height, rel=1e-12)
         for slip in (7.0, -7.0):
-            k = float(stokes_coefficient(1e-6, slip)) * (1.0 / depth + 2.0 / chamber.height)
+            k = float(stokes_coefficient(1e-6, slip)) * 4.0 * RADIUS * a**2 / (RADIUS**4 - a**4)
             drag = complex(stokes_rate(layer.stokes, slip))
-            assert drag.real == pytest.approx(2.0 * RADIUS / (RADIUS + a) * k, rel=1e-9)
+            # The difference of fourth powers keeps seven digits of a film of 1e-9.
+            assert drag.real == pytest.approx(k, rel=1e-6)
             # Inertia: -i k s has the real part k_i s, of the sign of s^2.
             assert drag.imag == pytest.approx(math.copysign(drag.real, slip), rel=1e-12)
+        for n in (1, 2, 3):
+            # u_r and u_theta go as r^(n - 1) -+ R^(2 n)/r^(n + 1).
+            r = a + (RADIUS - a) * (0.5 + 0.5 * np.polynomial.legendre.leggauss(40)[0])
+            weight = 0.5 * (RADIUS - a) * np.polynomial.legendre.leggauss(40)[1]
+            inner, outer = (r / RADIUS) ** (n - 1), (RADIUS / r) ** (n + 1)
+            energy = weight @ ((np.square(inner - outer) + np.square(inner + outer)) * r)
+            t_n = math.tanh(n * math.log(RADIUS / a))
+            assert wall_share(t_n, n) == pytest.approx(4.0 * RADIUS**2 / energy, rel=1e-6)
     for law in (Friction(), Friction("quadratic", 0.3)):
         layer = plane_layer(fill, law)
-        assert layer is not None and layer.rate == layer.stokes == 0.0
+        assert layer is not None and layer.rate == layer.stokes == layer.lids == 0.0
+
+
+@kills("fluid.whirl:layer_rate", "layer.lids * plate_rate", "2.0 * layer.lids * plate_rate")
+@kills("fluid.whirl:plate_terms", "first * along + second * against", "second * along + first * against")
+@kills("fluid.whirl:steady_rate", "-slower_slip", "slower_slip")
+def test_decay_is_that_of_the_modes() -> None:
+    """Waves of a ring by elements with the Coriolis force on floor and lid, to first order in friction."""
+    height = 0.02
+    for a in (0.135, 0.09):
+        system = condense(ring(RADIUS, a, 64, 4))
+        modes = sloshing_modes(system, SPIN, 4)
+        found = mode_damping(system, modes, 1e-6, height)
+        for frequency, rate in zip(modes.frequency.tolist(), found.rate.tolist(), strict=True):
+            waves = {n: free_wave_frequencies(n, math.log(RADIUS / a), SPIN) for n in (1, 2)}
+            n, s = min(
+                ((n, float(s)) for n in waves for s in waves[n]), key=lambda wave: abs(wave[1] - frequency)
+            )
+            if abs(s - frequency) > 1e-4 * SPIN:
+                continue  # of more crests
+            t = math.tanh(n * math.log(RADIUS / a))
+            layer = Layer(1.0, t, 0.0, 1e-3 / RADIUS * wall_share(t, n), 2e-3 / height)
+            k = complex(layer_rate(layer, SPIN, s)).real
+            # (s - i g)^2 - ... = i k s; four quadratic elements across have the wall's slope to 1e-3.
+            assert k * s / (2.0 * (s - t * SPIN)) == pytest.approx(rate, rel=2e-3)
+            if n == 1 and s < 0.0:
+                steady = complex(steady_rate(layer, SPIN) + stokes_rate(layer.stokes, s))
+                assert steady.real == pytest.approx(k, rel=1e-12)
+
+
+@kills("fluid.whirl:plate_terms", "0.5 * (1.0 - t), 0.5 * (1.0 + t)", "0.5 * (1.0 - t), 0.5")
+@kills("fluid.whirl:plate_terms", "first * along + second * against", "second * along + first * against")
+@kills("fluid.whirl:plate_terms", "np.sqrt(1j * (s + twice))", "np.sqrt(1j * s)")
+def test_floor_and_lid() -> None:
+    """Offset with a drag of its own on each circle of the flow, against the equations of motion."""
+    lids, momentum = 0.7, slice(0, 2 * POINTS)
+    for a in (0.135, 0.1, 0.05):
+        for whirl in (30.0, -25.0, 190.0, 52.0 - 4.0j, -60.0 - 2.0j):
+            slip = whirl - SPIN
+            static, inertia, forcing = dragged(a, 0.0)
+            # u + i v as e^{i s t} and its mirror image feel the Coriolis force with and against their turn.
+            along, against = (lids * np.sqrt(1j * (slip + turn)) for turn in (2.0 * SPIN, -2.0 * SPIN))
+            turned = np.kron([[0.0, 0.5j], [-0.5j, 0.0]], np.eye(POINTS))
+            drag = 0.5 * (along + against) * np.eye(2 * POINTS) + (along - against) * turned
+            static[momentum, momentum] += inertia[momentum, momentum].diagonal()[:, None] * drag
+            answer = np.linalg.solve(static + 1j * slip * inertia, whirl**2 * forcing)
+            wanted = -answer[-1] / ((RADIUS / a) ** 2 - 1.0)
+            rate = layer_rate(Layer(1.0, tanh_of(a), 0.0, 0.0, lids), SPIN, slip)
+            found = offset_with_friction(tanh_of(a), SPIN, whirl, rate)
+            np.testing.assert_allclose(found, wanted, rtol=1e-7)
+
+
+def test_slope_of_floor_and_lid() -> None:
+    """Against a central difference, of second order in the step; at the end of a cut it is finite."""
+    for t, slip in ((0.1, 30.0 - 2.0j), (0.7, -95.0 + 4.0j)):
+        ends = [plate_rate(t, SPIN, slip + side * 1e-3) for side in (1.0, -1.0)]
+        slope = complex(plate_terms(t, SPIN, slip)[1])
+        assert slope == pytest.approx(complex(ends[0] - ends[1]) / 2e-3, rel=1e-7)
+    assert np.isfinite(plate_terms(0.1, SPIN, np.array([2.0 * SPIN, -2.0 * SPIN]))[1]).all()
 
 
 @kills("fluid.whirl:stokes_rate", "np.sqrt(1j * np.asarray(slip", "np.sqrt(-1j * np.asarray(slip")
 def test_wall_layer() -> None:
-    """Shear of a growing oscillation on a wall: u_t = nu u_yy + U_t on a fine grid."""
-    nu, points = 1e-3, 6000
-    for slip in (3.0 - 0.4j, -2.0 - 0.1j, 1.0 + 0.3j):
-        thick = math.sqrt(nu / abs(slip))
+    """Shear of a growing oscillation on a wall: u_t + 2 i Omega u = nu u_yy + ... on a fine grid.
+
+    Along the wall without the Coriolis force, on floor and lid as u + i v with it.
+    """
+    nu, points, spin = 1e-3, 6000, 0.7
+    pairs = [(s, turn) for s in (3.0 - 0.4j, -2.0 - 0.1j, 1.0 + 0.3j) for turn in (0.0, 2.0 * spin)]
+    for slip, turn in pairs:
+        thick = math.sqrt(nu / abs(slip + turn))
         y = np.linspace(0.0, 40.0 * thick, points)
         step = y[1]
         # Velocity relative to the outer flow, -U on the wall.
         band = np.zeros((3, points), dtype=complex)
         band[0, 2:] = band[2, :-2] = nu / step**2
-        band[1, 1:-1] = -2.0 * nu / step**2 - 1j * slip
+        band[1, 1:-1] = -2.0 * nu / step**2 - 1j * (slip + turn)
         band[1, [0, -1]] = 1.0
         right = np.zeros(points, dtype=complex)
         right[0] = -1.0
         u = linalg.solve_banded((1, 1), band, right)
         shear = nu * (-1.5 * u[0] + 2.0 * u[1] - 0.5 * u[2]) / step
         # Second order: (step/thickness)^2 of some 4e-5.
-        assert complex(stokes_rate(math.sqrt(nu), slip)) == pytest.approx(shear, rel=1e-4)
+        drag = math.sqrt(nu) * plate_rate(-1.0, spin, slip) if turn else stokes_rate(math.sqrt(nu), slip)
+        assert complex(drag) == pytest.approx(shear, rel=1e-4)
 
 
 @kills("fluid.whirl:neutral_stiffness", "total + own * (1.0 + offset", "total + own * (1.0 - offset")

@@ -47,6 +47,7 @@ class RunCode(NoteCode):
     ONE_FAMILY = "one_family"
     NOT_SETTLED = "not_settled"
     LARGE_WHIRL = "large_whirl"
+    THICK_WALL_LAYER = "thick_wall_layer"
     UNBALANCE_LEAVES = "unbalance_leaves"
     LOADS = "loads"
 
@@ -390,6 +391,23 @@ def self_excited(whirl: SelfExcited) -> Note:
         fastest = f", fastest at {growth:.3g} 1/s, whirling at {in_rpm(turning)}"
     text = f"A whirl grows by itself from {listed}{fastest}: unstable there ({theory}).{unknown}"
     return Note(RunCode.SELF_EXCITED, data, text)
+
+
+def thick_wall_layer(speed: float, limit: float, whole: bool) -> Note:
+    """Speeds at which the growth of whirls is out of the range of laminar friction.
+
+    Parameters
+    ----------
+    speed : up to which the layer on the wall is thicker, rad/s
+    limit : thickness over the liquid's depth
+    whole : that is all of the range
+    """
+    where = "At these speeds" if whole else f"Below {in_rpm(speed)}"
+    text = (
+        f"{where} the laminar layer of waves on the wall is thicker than {limit:g} of the liquid's depth: "
+        "growth rates and bands are out of range there."
+    )
+    return Note(RunCode.THICK_WALL_LAYER, {"speed": speed, "limit": limit}, text)
 
 
 def large_whirl(large: LargeWhirl, speed: Array) -> Note | None:

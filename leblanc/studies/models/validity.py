@@ -271,6 +271,7 @@ MEANING = {
     "trough": "least depth over mean depth",
     "crest_number": "speed of the liquid at the crest over that of the crest",
     "force_gap": "force by pressure less that by momentum, over the force or the full drum's",
+    "grid_gap": "force on these cells less that on half as many, over the force or the full drum's",
     "other_family": "response of the family left out over that of the one taken",
 }
 

@@ -13,13 +13,14 @@ from fluid.fill import Fill
 from fluid.friction.laws import Friction
 from fluid.liquid import known_liquid
 from leblanc.cli import main
+from leblanc.questions import layer_question
 from leblanc.results.layer import LayerCode, LayerResult
 from leblanc.studies.layer import answer_layer, steady_film
 from leblanc.studies.models.liquid import wave_model
 from leblanc.text.liquid import layer_summary
 from leblanc.text.numbers import number
 from meshes.chamber import Chamber
-from solvers.liquid_model import Whirl
+from solvers.liquid_model import Whirl, drag_frequency
 from solvers.potential.steady import forced, linear_detuning
 from solvers.pypde.models import OneFamily
 from solvers.synchronous.models import LINEAR, STATICS
@@ -355,3 +356,83 @@ def test_bad_kdv_input(capsys: pytest.CaptureFixture[str], change: list[str], na
     code = main(["layer", "--radius", "0.15", "--volume", repr(VOLUME), *options, "--model", "kdv", *change])
     assert code == 2
     assert named in capsys.readouterr().err
+
+
+def _driven_by_gravity(law: str, whirl_speed: float | None, amplitude: float | None = 0.0) -> LayerResult:
+    question = layer_question(
+        radius=0.05, volume=4.71e-4, height=0.2, speed=40.0, whirl_speed=whirl_speed, gravity=9.81,
+        whirl_amplitude=amplitude, model="long_wave", cells=16, friction=law,
+    )  # fmt: skip
+    return answer_layer(**question.whirl)
+
+
+@pytest.mark.parametrize("law", ["stokes", "wall"])
+def test_where_nothing_whirls_the_whirl_speed_does_not_matter(law: str) -> None:
+    """Gravity turns at -Omega in the drum: friction is at that frequency, to the last digit."""
+    found = [
+        _driven_by_gravity(law, 40.0),
+        _driven_by_gravity(law, 80.0),
+        _driven_by_gravity(law, None, None),
+    ]
+    for other in found[1:]:
+        assert other.force_ratio == found[0].force_ratio and other.offset == found[0].offset
+        assert other.mean_rotation == found[0].mean_rotation
+    assert found[0].notes[-1].data["frequency"] == 40.0
+    assert found[0].mean_rotation != _driven_by_gravity("none", 40.0).mean_rotation
+
+
+def test_friction_goes_from_the_frequency_of_gravity_to_that_of_the_whirl() -> None:
+    fill = Fill(Chamber(0.05, 0.2), known_liquid("water"), 4.71e-4)
+    at = [drag_frequency(fill, Whirl(40.0, 30.0, size, gravity=1.0)) for size in (0.0, 1e-9, 1e-4, 1e-1)]
+    assert at[0] == 40.0 and at == sorted(at, reverse=True)
+    assert at[1] == pytest.approx(40.0, rel=1e-6) and at[3] == pytest.approx(10.0, rel=1e-3)
+    # A synchronous whirl moves nothing in the drum; without gravity the slip alone counts.
+    assert drag_frequency(fill, Whirl(40.0, 40.0, 1e-4, gravity=1.0)) == 40.0
+    assert drag_frequency(fill, Whirl(40.0, 30.0, 1e-4)) == 10.0
+
+
+@kills("solvers.liquid_model:drag_frequency", "(whirl.slip * wave) ** 2", "wave**2")
+@kills("solvers.liquid_model:drag_frequency", "return root**2", "return root")
+def test_one_frequency_takes_as_much_as_two() -> None:
+    """The heat of the two waves apart, energy by energy, and of both at the one frequency."""
+    fill, whirl = (
+        Fill(Chamber(0.05, 0.2), known_liquid("water"), 4.71e-4),
+        Whirl(40.0, 30.0, 3e-5, gravity=1.0),
+    )
+    t = (0.05**2 - fill.surface_radius**2) / (0.05**2 + fill.surface_radius**2)
+    # Displacements T a/(s^2 - 2 T Omega s - T Omega^2) under accelerations a of slips -10 and -40 rad/s.
+    accelerations = {10.0: 900.0 * 3e-5, 40.0: 1.0}
+    speeds = {s: s * t * a / (s**2 + 80.0 * t * s - 1600.0 * t) for s, a in accelerations.items()}
+    apart = sum(math.sqrt(s) * u**2 for s, u in speeds.items())
+    one = math.sqrt(drag_frequency(fill, whirl)) * sum(u**2 for u in speeds.values())
+    assert one == pytest.approx(apart, rel=1e-9)
+
+
+@kills("solvers.pypde.models:LongWave.wave", "abs(here - there)", "0.0 * abs(here - there)")
+def test_beyond_the_fold_two_grids_are_asked() -> None:
+    """Far beyond the fold a bore holds: the error is the distance of two grids, and bounds the range."""
+    fill = Fill(Chamber(R, 0.05), known_liquid("water"), 5.0 * VOLUME)
+    found = {
+        cells: answer_layer(
+            fill, SPIN, 0.74 * SPIN, 0.08 * (R - A), wave_model("long_wave", Friction("linear", 3.0), cells)
+        )
+        for cells in (12, 24, 48)
+    }
+    for cells in (24, 48):
+        here, half = found[cells], found[cells // 2]
+        gap = abs(here.force_ratio - half.force_ratio) / max(1.0, abs(here.force_ratio))
+        assert here.error_estimate == pytest.approx(gap, rel=1e-6)
+        assert here.in_range == (gap <= 0.05)
+        assert sum(note.code == LayerCode.TWO_GRIDS for note in here.notes) == 1
+    assert not found[24].in_range and found[48].in_range
+    # Below it nothing more is asked.
+    small = answer_layer(fill, SPIN, 0.9 * SPIN, 1e-4, wave_model("long_wave", Friction("linear", 3.0), 24))
+    assert all(note.code != LayerCode.TWO_GRIDS for note in small.notes)
+
+
+def test_a_wave_that_was_not_found_has_no_depths() -> None:
+    fill = Fill(Chamber(R, 0.05), known_liquid("water"), 5.0 * VOLUME)
+    folded = answer_layer(fill, SPIN, 0.74 * SPIN, 0.13 * (R - A), wave_model("potential"))
+    assert not folded.converged and np.isnan(folded.depth).all() and folded.notes
+    # A picture shows the layer at rest.
+    assert folded.wave().depth == pytest.approx(np.full(folded.depth.shape, fill.depth))

@@ -7,11 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fluid.friction.laws import NO_FRICTION, layer_thickness
+from fluid.whirl import damped_waves
 from leblanc.results.motion.self_excited import SelfExcited
+from leblanc.results.notes.response import RunCode
 from leblanc.results.notes.response import self_excited as note_of
 from leblanc.scene.scene import dry_rotor, load_scene
 from leblanc.studies.models.choose import prepare
-from leblanc.studies.run import run_scene, self_excited
+from leblanc.studies.run import _thick_layers, run_scene, self_excited
 from leblanc.text.run import limits
 from meshes.arrays import Array
 from solvers.whirl import laminar
@@ -103,10 +106,31 @@ def test_rig() -> None:
     ((low, high),) = whirl.bands
     speed = load_scene("examples/horizontal_rig.toml").speed_array()
     grows = whirl.growth > 0.0
-    assert 104.0 < low < 110.0 < high < 160.0
+    assert 104.0 < low < 112.0 < high < 160.0
     np.testing.assert_array_equal(grows, (speed > low) & (speed < high))
     assert np.all(whirl.whirl_speed[grows] < speed[grows])
     # Refined edges: growth there is its slope, some 0.1 in a unit of speed, times 1e-8 of the speed.
     scene = load_scene("examples/horizontal_rig.toml")
     at_edges, _ = asynchronous_growth(dry_rotor(scene), scene.fills, [low, high], scene.model.friction)
     assert np.all(np.abs(at_edges) < 1e-6)
+
+
+@kills("leblanc.studies.run:_thick_layers", "2.0 * fill.liquid.viscosity", "fill.liquid.viscosity")
+@kills("leblanc.studies.run:_thick_layers", "slip / slower_slip(layer.layer_tanh)", "slip")
+def test_thick_wall_layers_are_said() -> None:
+    """Below the speed at which the slower wave's layer is a fifth of the depth growth is out of range."""
+    machine = prepare(load_scene("examples/horizontal_rig.toml"))
+    note = _thick_layers(machine)
+    assert note is not None and note.code is RunCode.THICK_WALL_LAYER
+    speed, shares = float(note.data["speed"]), []  # type: ignore[arg-type]
+    assert machine.speed[-1] < speed and note.text.startswith("At these speeds")
+    for fill in machine.scene.fills:
+        kappa = (fill.chamber.radius / fill.surface_radius) ** 2
+        slower = abs(float(damped_waves((kappa - 1.0) / (kappa + 1.0), speed, 0.0)[1].real))
+        shares.append(float(layer_thickness(fill.liquid.viscosity, slower)) / fill.depth)
+    assert max(shares) == pytest.approx(0.2, rel=1e-9)
+    faster = _thick_layers(replace(machine, speed=2.0 * machine.speed))
+    assert faster is not None and faster.text.startswith("Below 2600 rpm") and faster.data["speed"] == speed
+    assert _thick_layers(replace(machine, speed=speed + machine.speed)) is None
+    # Without laminar friction there are none.
+    assert _thick_layers(replace(machine, friction=NO_FRICTION)) is None

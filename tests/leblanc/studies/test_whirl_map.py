@@ -120,7 +120,7 @@ def test_notes_say_which_dampings_there_are() -> None:
     record = small()
     assert "laminar" in record.friction
     assert not any(note.code is MapCode.WITHOUT_FRICTION for note in record.notes)
-    assert "138.8" in str(record.notes[0]) and len(record.scene_edges) == 1
+    assert "140.1" in str(record.notes[0]) and len(record.scene_edges) == 1
 
 
 def test_other_rotors() -> None:

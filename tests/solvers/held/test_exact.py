@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from fluid.friction.laws import Friction
-from fluid.whirl import body_force_rate, plane_layer, stokes_rate
+from fluid.whirl import body_force_rate, layer_rate, plane_layer
 from meshes.errors import InputError
 from solvers.held.exact import begin, exact_machine, march, riding
 from solvers.held.hold import hold, hold_with_error, start
@@ -123,7 +123,7 @@ def test_the_force_damps_as_the_walls_do() -> None:
     assert layer is not None
     tanh = layer.layer_tanh
     slip = 150.0 * (math.sqrt(tanh * (1.0 + tanh)) - tanh)
-    wanted = float(stokes_rate(layer.stokes, slip).real)
+    wanted = float(layer_rate(layer, 150.0, -slip).real)
     assert body_force_rate(SMALL, Friction("stokes"), 150.0) == pytest.approx(wanted, rel=1e-12)
     linear = plane_layer(SMALL, Friction("linear", 3.0))
     assert linear is not None

@@ -130,9 +130,9 @@ def test_arrays_of_fills() -> None:
     np.testing.assert_array_equal(back.chamber.inner_radius, arrays.chamber.inner_radius[[3, 1]])
 
 
-@kills("solvers.whirl.growth:machines_growth", "support[own[place]].T", "support[place].T")
+@kills("solvers.whirl.growth:_planar_parts", "support[own[place]].T", "support[place].T")
 @kills(
-    "solvers.whirl.growth:machines_growth",
+    "solvers.whirl.growth:_planar_parts",
     "mass = np.array([tables[i][0] for i in own])[place]",
     "mass = np.array([tables[0][0] for i in own])[place]",
 )

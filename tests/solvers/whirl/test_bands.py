@@ -20,7 +20,7 @@ from solvers.rotor.tub import Mount, Tub
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
 from solvers.whirl.edges import undamped_edges, unstable_bands
 from solvers.whirl.growth import asynchronous_growth, planar_layers
-from solvers.whirl.looks import _first_speeds
+from solvers.whirl.looks import _changes, _first_speeds, looks
 from solvers.whirl.system import coupled_matrices, linear_modes
 from tests.mutants import kills
 
@@ -112,6 +112,21 @@ def test_no_band_lost_in_200() -> None:
     no_band_lost(range(200))
 
 
+@kills("solvers.whirl.looks:_handed_over", "0.5 * (ceases + begins)", "0.0 * begins")
+@kills("solvers.whirl.looks:_handed_over", "~(first & last).any(axis=1)", "(first & last).any(axis=1)")
+def test_gap_between_two_modes() -> None:
+    """Growth goes over from one mode to another within 0.4 % of the speed: between them nothing grows."""
+    rotor, fills, friction, first, last = drawn(88)
+    (bands,) = unstable_bands(rotor, [fills], np.array([first, last]), friction)
+    assert len(bands) == 2
+    (_, ceases), (begins, _) = bands
+    assert 1.0 < begins / ceases < 1.004
+    beside = np.array([ceases * (1 - 1e-6), ceases * (1 + 1e-6), begins * (1 - 1e-6), begins * (1 + 1e-6)])
+    growth, whirl_speed = asynchronous_growth(rotor, fills, beside, friction)
+    assert (growth > 0.0).tolist() == [True, False, False, True]
+    assert whirl_speed[3] < 0.9 * whirl_speed[0]
+
+
 #: Two planes, no damping: bands of 594 to 674 and 971 to 1428 rpm and a stable gap between.
 GAPPED = TwoPlane(
     10.0, 0.05, 0.015, (Support(0.1, 1e4, 0.0), Support(-0.1, 1e4, 0.0)), (PlaneUnbalance(0.0, 1e-3),)
@@ -182,3 +197,24 @@ def test_meetings_of_waves() -> None:
         off = np.abs(np.abs(modes)[:, None] - np.abs(1.0 + slips) * speed).min()
         # Eigenvalues to some hundred roundings of the largest.
         assert off <= 1e-9 * speed
+
+
+@kills("solvers.whirl.looks:_changes", "spread[1] < _SIDE_BY_SIDE", "spread[1] < 0.0")
+@kills("solvers.whirl.looks:_changes", "paired(root + common)", "paired(root - common)")
+def test_modes_side_by_side_keep_their_slopes() -> None:
+    """Two that are nearer to one another than they change go on beside each other; two that cross do."""
+    gap, change = 3e-8, 1e-6
+    root = np.array([[1.0j, (1.0 + gap) * 1j, 2.0j, complex(np.nan, np.nan)]])
+    np.testing.assert_allclose(_changes(root, root[:, [1, 2, 0, 3]] + change * 1j)[0, :3].imag, change)
+    beside = np.array([[1.0j, (1.0 + gap - change) * 1j, 2.0j, complex(np.nan, np.nan)]])
+    np.testing.assert_allclose(_changes(root, beside)[0, :3].imag, [0.0, -change, 0.0], atol=1e-14)
+
+
+@kills("solvers.whirl.looks:_looked", "rounding <= _HIDDEN * spins", "rounding <= np.inf * spins")
+def test_what_rounding_hides_is_not_followed() -> None:
+    """On supports 1e9 times as stiff as the spin asks for, waves of a film are known to no digit."""
+    supports = (Support(-0.1, 4e18, 1e4), Support(0.1, 3e18, 1e4))
+    rotor = TwoPlane(10.0, 0.1, 0.05, supports, (PlaneUnbalance(0.0, 1e-3),))
+    fill = Fill(Chamber(0.1, 0.05, plane=0.02), WATER, 1e-5)
+    speed = looks(rotor, [[fill]], 1.0, 10.0, NO_FRICTION)[1]
+    assert speed.size < 60

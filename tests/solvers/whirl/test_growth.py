@@ -16,7 +16,7 @@ from scipy.linalg import expm
 from fluid.fill import Fill
 from fluid.friction.laws import Friction
 from fluid.liquid import Liquid
-from fluid.whirl import Layer, plane_layer, stokes_rate
+from fluid.whirl import Layer, layer_rate, plane_layer
 from meshes.chamber import Chamber
 from meshes.errors import InputError
 from solvers.rotor.jeffcott import Jeffcott
@@ -77,20 +77,20 @@ def wolf(mu: float, depth: float, zeta: float, spin: float, rate: float) -> np.n
 @kills("solvers.whirl.planar:_scaled", "mass=1.0 + share.sum", "mass=1.0 - share.sum")
 @kills(
     "solvers.whirl.planar:_scaled",
-    "2.0 * problem.layer_tanh + 1j * problem.rate",
-    "2.0 * problem.layer_tanh - 1j * problem.rate",
+    "2.0 * t + 1j * problem.rate",
+    "2.0 * t - 1j * problem.rate",
 )
 @kills(
     "solvers.whirl.planar:_scaled",
-    "share * 0.5 * (1.0 - problem.layer_tanh)",
-    "share * 0.5 * (1.0 + problem.layer_tanh)",
+    "share * 0.5 * (1.0 - t)",
+    "share * 0.5 * (1.0 + t)",
 )
 @kills(
     "solvers.whirl.system:coupled_matrices",
     "layer.mass / (0.5 * (1.0 - layer.layer_tanh))",
     "layer.mass / (0.5 * (1.0 + layer.layer_tanh))",
 )
-@kills("solvers.whirl.system:coupled_matrices", "rate * unit + 2.0", "rate * unit - 2.0")
+@kills("solvers.whirl.system:coupled_matrices", "(drag + 2.0 *", "(drag - 2.0 *")
 def test_characteristic_equation() -> None:
     """Growth and whirl speed of the fastest of the polynomial's roots."""
     spins = np.array([30.0, 95.0, 128.0, 160.0, 400.0])
@@ -294,7 +294,7 @@ def test_energy() -> None:
 
 
 @kills("solvers.whirl.system:coupled_matrices", "+= layer.mass * at.T @ at", "-= layer.mass * at.T @ at")
-@kills("solvers.whirl.system:coupled_matrices", "rate * spin * turn - (1.0", "-rate * spin * turn - (1.0")
+@kills("solvers.whirl.system:coupled_matrices", "(spin * drag @ turn", "(-spin * drag @ turn")
 @kills(
     "solvers.whirl.system:coupled_matrices",
     "- (1.0 + t) * np.square(spin) * unit",
@@ -324,8 +324,11 @@ def laminar_function(system: Jeffcott, fill: Fill, spin: float, s: np.ndarray) -
     """Characteristic function with laminar friction, in kappa, the square root as it stands."""
     mass, stiffness, damping = system.mass, system.stiffness, system.damping
     kappa, omega = (RADIUS / fill.surface_radius) ** 2, s + spin
-    shear = np.sqrt(1j * fill.liquid.viscosity * s)
-    rate = shear * (1.0 / fill.depth + 2.0 / HEIGHT) * 2.0 * RADIUS / (RADIUS + fill.surface_radius)
+    a, nu, t = fill.surface_radius, fill.liquid.viscosity, (kappa - 1.0) / (kappa + 1.0)
+    # Floor and lid drag on two circles.
+    plates = (1.0 - t) * np.sqrt(1j * (s + 2.0 * spin)) + (1.0 + t) * np.sqrt(1j * (s - 2.0 * spin))
+    wall = np.sqrt(1j * nu * s) * 4.0 * RADIUS * a**2 / ((RADIUS - a) * (RADIUS + a) * (RADIUS**2 + a**2))
+    rate = wall + math.sqrt(nu) * plates / HEIGHT
     d = (1.0 - kappa) * omega**2 + 2.0 * kappa * s**2 - 1j * rate * (1.0 + kappa) * s
     rotor = stiffness - mass * omega**2 + 1j * damping * omega
     return np.asarray(rotor * d - fill.mass * omega**2 * (d - omega**2))
@@ -352,7 +355,7 @@ def test_laminar() -> None:
             problem = PlanarProblem(
                 *(np.array([x]) for x in (mass, stiffness, damping, spin)),
                 fill.mass * one,
-                *(layer.layer_tanh * one, 0.0 * one, layer.stokes * one),
+                *(layer.layer_tanh * one, 0.0 * one, layer.stokes * one, layer.lids * one),
             )
             slip = planar_modes(problem).slip[:, 0]
             slip = slip[~np.isnan(slip)]
@@ -398,6 +401,59 @@ def test_any_rotor() -> None:
 
 @kills("solvers.whirl.laminar:_eliminate", "+ 1.5 * friction", "+ 1.0 * friction")
 @kills("solvers.whirl.laminar:_eliminate", "2.0 - 4.0 * share", "2.0 - 2.0 * share")
+def zeros_of_the_waves(layer: Layer, spin: float) -> np.ndarray:
+    """All zeros s/Omega of E on the sheet where layers die out, by Newton's method from a grid."""
+    t, wall, lids = layer.layer_tanh, layer.stokes / math.sqrt(spin), layer.lids / math.sqrt(spin)
+    x, y = np.meshgrid(np.linspace(-9.0, 9.0, 46), np.linspace(-1.0, 9.0, 26))
+
+    def wave(s: np.ndarray) -> np.ndarray:
+        along, against, slow = (np.sqrt(1j * (s + turn)) for turn in (2.0, -2.0, 0.0))
+        drag = wall * slow + 0.5 * lids * ((1.0 - t) * along + (1.0 + t) * against)
+        return np.asarray(s * s - 2.0 * t * s - t - 1j * drag * s)
+
+    s = (x + 1j * y).ravel()
+    moved = np.zeros_like(s)
+    with np.errstate(all="ignore"):
+        for _ in range(60):
+            step = 1e-6 * (1.0 + np.abs(s))
+            moved = wave(s) * 2.0 * step / (wave(s + step) - wave(s - step))
+            s = s - moved
+        s = s[np.abs(moved) < 1e-9 * np.abs(s)]
+    return np.unique(np.round(s, 6))
+
+
+@kills("solvers.whirl.planar:_past_cuts", "g.real < 0.0)", "g.real < -9.0)")
+@kills(
+    "solvers.whirl.planar:_past_cuts",
+    "np.sqrt(1j * end + np.square(g))[0]",
+    "np.sqrt(1j * end - np.square(g))[0]",
+)
+@kills("solvers.whirl.planar:_own", "slope - share * one[1]", "slope + share * one[1]")
+def test_modes_beside_the_cuts_of_floor_and_lid() -> None:
+    """Slow drums whose layers are as thick as the chamber is high: s is next to -+2 Omega, where roots end.
+
+    On a rotor far stiffer than that the modes are the zeros of E.
+    """
+    speed = 1e-3
+    for share in (0.3, 0.6, 0.9, 1.0 - 1e-6):
+        fill = Fill(Chamber(RADIUS, HEIGHT), WATER, share * Chamber(RADIUS, HEIGHT).capacity)
+        layer = plane_layer(fill, Friction("stokes"))
+        assert layer is not None
+        one = np.ones((1, 1))
+        problem = PlanarProblem(
+            *(np.array([x]) for x in (4.0, 4e4, 80.0, speed)),
+            *(x * one for x in (fill.mass, layer.layer_tanh, 0.0, layer.stokes, layer.lids)),
+        )
+        modes = planar_modes(problem)
+        assert modes.converged.all()
+        found = modes.slip[:, 0] / speed
+        found = found[np.isfinite(found) & (np.abs(found) < 100.0)]
+        wanted = zeros_of_the_waves(layer, speed)
+        assert wanted.size > 0 and found.size == wanted.size
+        # As they were rounded, and the support's stiffness of 1e10 drums.
+        assert np.abs(found[:, None] - wanted).min(axis=0).max() < 2e-6
+
+
 def test_laminar_derivative() -> None:
     """The slope of the eliminated rotor against a central difference."""
     system, fill = machine(0.2, 0.1, 0.05, 1e-4)
@@ -413,22 +469,22 @@ def test_laminar_derivative() -> None:
         np.testing.assert_allclose(here.slope, slope, rtol=1e-6, atol=1e-6 * np.abs(slope).max())
 
 
-@kills("solvers.whirl.laminar:_layer_waves", "(np.square(p) + 1j) * speed", "(np.square(p) - 1j) * speed")
-@kills("solvers.whirl.laminar:_layer_waves", "2j * t - rate", "2j * t + rate")
+@kills("solvers.whirl.laminar:_layer_waves", "(np.square(own) + 1j) * spin", "(np.square(own) - 1j) * spin")
+@kills("solvers.whirl.laminar:_layer_waves", "plates - 2j * t", "plates + 2j * t")
 @kills("solvers.whirl.laminar:_layer_waves", "0, 3] = -t", "0, 3] = t")
-@kills(
-    "solvers.whirl.laminar:_layer_waves", "-layer.stokes / np.sqrt(speed)", "layer.stokes / np.sqrt(speed)"
-)
+@kills("solvers.whirl.laminar:_layer_waves", "layer.lids / np.sqrt", "-layer.lids / np.sqrt")
 def test_layer_waves() -> None:
     """Waves of a layer alone: zeros of E with its square root as it stands."""
-    for stokes, t, rate in ((0.05, 0.1, 0.0), (2.0, 0.3, 4.0), (3e3, 1e-4, 0.0)):
+    for stokes, t, rate, lids in ((0.05, 0.1, 0.0, 0.03), (2.0, 0.3, 4.0, 0.0), (3e3, 1e-4, 0.0, 0.5)):
         speed = np.array([20.0, 150.0])
-        waves = _layer_waves(Layer(1.0, t, rate, stokes), speed)
+        layer = Layer(1.0, t, rate, stokes, lids)
+        waves = _layer_waves(layer, speed)
         for spin, row in zip(speed, waves, strict=True):
             row = row[~np.isnan(row)]
             assert row.size >= 2
             s = -1j * row - spin
-            drag = rate + stokes * np.sqrt(1j * s)
+            along, against = np.sqrt(1j * (s + 2.0 * spin)), np.sqrt(1j * (s - 2.0 * spin))
+            drag = rate + stokes * np.sqrt(1j * s) + 0.5 * lids * ((1.0 - t) * along + (1.0 + t) * against)
             terms = np.abs(s) ** 2 + 2.0 * t * spin * np.abs(s) + t * spin**2 + np.abs(drag * s)
             residual = s**2 - 2.0 * t * spin * s - t * spin**2 - 1j * drag * s
             # s keeps what the spin's size leaves of it.
@@ -457,8 +513,8 @@ def cone(polar: float) -> tuple[RotorSystem, Fill, float]:
 @kills("solvers.whirl.system:coupled_matrices", "spin * system.gyroscopic", "-spin * system.gyroscopic")
 @kills(
     "solvers.whirl.system:coupled_matrices",
-    "system.at(plane)\n        t, rate",
-    "system.at(0.0)\n        t, rate",
+    "system.at(plane)\n        t, inertia",
+    "system.at(0.0)\n        t, inertia",
 )
 @kills(
     "solvers.whirl.system:sense_of",
@@ -608,13 +664,13 @@ def test_quadratic_friction_does_nothing_to_a_small_whirl() -> None:
 def test_growth_crosses_zero_with_the_rate_of_the_laminar_layer() -> None:
     """Small viscosity: the wave of a layer on a rigid drum decays as the real drag and the inertia say."""
     system, fill = machine(0.1, 0.1)
-    stiff = replace(system, stiffness=1e12)
+    stiff = replace(system, stiffness=1e12, damping=1e9)
     layer = plane_layer(fill, Friction("stokes"))
     assert layer is not None
     t, spin = layer.layer_tanh, 40.0
     s = spin * (t - math.sqrt(t * t + t))
     # First order: ds = i k s/(2 (s - T Omega)); second order is k/s, 3 %, of it.
-    first = (1j * stokes_rate(layer.stokes, s) * s / (2.0 * (s - t * spin))).imag
+    first = (1j * layer_rate(layer, spin, s) * s / (2.0 * (s - t * spin))).imag
     growth, _ = asynchronous_growth(stiff, [fill], [spin], Friction("stokes"))
     assert growth[0] == pytest.approx(-first, rel=0.05)
 

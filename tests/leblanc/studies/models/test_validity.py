@@ -122,7 +122,8 @@ def test_json_of_a_history(capsys: pytest.CaptureFixture[str]) -> None:
     answer = json.loads(capsys.readouterr().out)
     assert answer["in_range"] is True and answer["notes"] == []
     found = {number["name"]: number for number in answer["validity"]}
-    assert set(found) == set(MEANING) - {"other_family", "crest", "trough", "crest_number", "smooth_whirl"}
+    others = {"other_family", "crest", "trough", "crest_number", "smooth_whirl", "grid_gap"}
+    assert set(found) == set(MEANING) - others
     assert found["relative_depth"]["most"] == 0.3 and found["centrifuge"]["value"] is None
     assert 0.0 < found["wave_amplitude"]["value"] < 0.2 and found["force_gap"]["value"] < 0.1
     # In words the same numbers stand one to a line.
