@@ -3,14 +3,10 @@
 import os
 from collections.abc import Iterator
 
-from tests.compiled import use_own_cache
-
 # Small matrices get many times slower when the BLAS spreads them over threads.
 for _variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(_variable, "1")
 os.environ.setdefault("MPLBACKEND", "Agg")
-
-use_own_cache()
 
 import numpy as np  # noqa: E402
 import pytest  # noqa: E402

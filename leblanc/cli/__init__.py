@@ -77,7 +77,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     def command() -> object:
         commands = get_command(application(given[0]))
-        return _recorded(given[0], lambda: _run(commands, given))
+        try:
+            return _recorded(given[0], lambda: _run(commands, given))
+        finally:
+            _tell_of_compiling()
 
     if arguments is not None:
         return exit_code(command)
@@ -103,6 +106,13 @@ def _recorded(command: str, action: Callable[[], object]) -> object:
             raise
         _tell(record.close())
     return code
+
+
+def _tell_of_compiling() -> None:
+    """Say that compiled code could be kept nowhere, where any was loaded."""
+    loaded = sys.modules.get("solvers.machine_code")
+    if loaded is not None and loaded.cache_folder() is None:
+        say("Note: compiled for this run alone, no cache can be written; NUMBA_CACHE_DIR may name a folder.")
 
 
 def _tell(lines: Sequence[str]) -> None:

@@ -1,19 +1,18 @@
 """Many states of a layer through the same time at once: what derivatives by differences take most of.
 
-Compiled by numba with its cache on disk.
+Compiled.
 """
 
 from __future__ import annotations
 
 from typing import Any
 
-from numba import njit
-
 from solvers.layer.finite_volume import COMPILED
 from solvers.layer.records import Outcome
 from solvers.layer.step import advance
+from solvers.machine_code import machine_code
 
-_jit: Any = njit(**COMPILED)
+_jit: Any = machine_code(**COMPILED)
 
 
 @_jit

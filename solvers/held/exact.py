@@ -180,7 +180,7 @@ def march(
                 outcome = Outcome.BROKE if broke else Outcome.WANTS_NODES
                 return _moment(exact, state, moment.spin, moment.layers), outcome
             exact, state = finer(exact, state)
-            watch.forget()
+            watch.forget(moment.layers)
             continue
         if course.ended is Ended.DRIED:
             return _moment(exact, state, moment.spin, moment.layers), Outcome.DRIED

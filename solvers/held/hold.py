@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from fluid.fill import Fill
-from meshes.arrays import Array, Complex
+from meshes.arrays import Array, Complex, Flags
 from meshes.errors import require_positive
 from solvers.held.state import COUPLED, HeldKind, HeldMachine, HeldState, HoldNumerics, Moment
 from solvers.held.turns import Watch
@@ -124,15 +124,14 @@ def hold(
     numerics = numerics or HoldNumerics()
     require_positive("speed", begin.spin)
     require_known_solver(machine, begin.spin, numerics)
-    watch, moment, outcome = Watch(machine, begin, numerics, slowest), begin, Outcome.RAN_OUT
-    while outcome is not Outcome.DONE:
+    watch, moment = Watch(machine, begin, numerics, slowest), begin
+    while True:
         moment, outcome = _march(machine, moment, numerics, watch, trackers)
-        fallen = _fallen(machine, moment, outcome)
-        if fallen is None:
-            break
+        fallen = _fallen(machine, moment, outcome, watch.down)
+        if fallen is None or watch.count >= numerics.turns:
+            return watch.answer(moment, outcome)
         moment = fallen
-        watch.forget()
-    return watch.answer(moment, outcome)
+        watch.forget(moment.layers)
 
 
 def compile_kernels(machine: HeldMachine, begin: Moment) -> None:
@@ -261,14 +260,18 @@ def _stepping(equation: Any, grid: Any, numerics: HoldNumerics, interval: float)
     return stepping(equation, grid, numerics.solver, interval)
 
 
-def _fallen(machine: HeldMachine, moment: Moment, outcome: Outcome) -> Moment | None:
-    """The moment with its deepest layer at the bottom, where gravity has thrown it down; else None."""
-    thrown = outcome in (Outcome.AT_AXIS, Outcome.NOT_COUPLED)
+def _fallen(machine: HeldMachine, moment: Moment, outcome: Outcome, down: Flags) -> Moment | None:
+    """The moment with its deepest layer at the bottom, where gravity has thrown it down; else None.
+
+    `down`: layers that lie there already, between two walls.
+    """
+    thrown = outcome in (Outcome.AT_AXIS, Outcome.NOT_COUPLED) or bool(down.any())
     if not (thrown and machine.gravity > 0.0 and moment.layers.any()):
         return None
     which = np.flatnonzero(moment.layers)
     radius = np.array([machine.fills[j].chamber.radius for j in which.tolist()])
-    deepest = int(np.argmax(moment.area.max(axis=1) / np.square(radius)))
+    depth = moment.area.max(axis=1) / np.square(radius)
+    deepest = int(np.argmax(np.where(down, depth, 0.0) if down.any() else depth))
     layers, kept = moment.layers.copy(), np.arange(which.size) != deepest
     layers[which[deepest]] = False
     return replace(moment, area=moment.area[kept], momentum=moment.momentum[kept], layers=layers)

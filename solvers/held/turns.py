@@ -12,8 +12,9 @@ from typing import Any
 
 import numpy as np
 
-from meshes.arrays import Array, Complex, Index
+from meshes.arrays import Array, Complex, Flags, Index
 from solvers.held.state import SHORT, HeldKind, HeldMachine, HeldState, HoldNumerics, Moment
+from solvers.layer.inside import full_area
 from solvers.layer.records import Outcome
 from solvers.runup.path import FINE, apart, evenly, fastest_frequency
 from solvers.runup.state import mean_area, planes_of
@@ -38,6 +39,7 @@ _DIES = 0.8  # of the spread of a window's means in the next, where the motion d
 _ALIKE = 0.02  # of the amplitude, by which the extremes of two windows of a limit cycle may differ
 _SWING = 0.1  # of the way between the extremes, by which that may
 _MEANS = 5.0  # times the tolerance, by which their means may
+_LIES = 0.5  # of the spin, by which liquid that has filled its gap lags where it lies at the bottom
 
 
 @dataclass
@@ -69,10 +71,14 @@ class Watch:
         self.quick = abs(self.slowest) * _LONG > _QUICK
         self.count, self.steps = 0, 0
         self.heats: list[float] = []  # of each turn, J, where they are told
-        self.forget()
+        self.forget(begin.layers)
 
-    def forget(self) -> None:
-        """Begin anew, as after a layer has fallen."""
+    def forget(self, layers: Flags) -> None:
+        """Begin anew with these chambers' layers, as after one has fallen."""
+        self.which = np.flatnonzero(layers)
+        fills = [self.machine.fills[j] for j in self.which.tolist()]
+        self.gaps = np.array([full_area(fill) * fill.chamber.radius**2 for fill in fills])
+        self.lying = np.zeros(len(fills), dtype=int)  # turns on end that each layer has lain at the bottom
         self.rows: list[Array] = []
         self.sizes: list[tuple[float, float, float]] = []
         self.areas: list[tuple[Array, Array]] = []
@@ -91,6 +97,8 @@ class Watch:
         weight = np.diff(steps[:, 0], prepend=2.0 * steps[0, 0] - steps[1, 0])
         self.sizes.append((float(size @ weight / weight.sum()), float(size.min()), float(size.max())))
         self.areas.append((layers.min(axis=(0, 2)), layers.sum(axis=2)[-1]))
+        if self._lies(layers, state).any():
+            return True
         if self.probe is not None:
             return self._probed(state)
         if not self._judge():
@@ -105,6 +113,26 @@ class Watch:
         n = self.begin.coordinates.size
         state.data[-2 * n :] *= 1.0 + _NUDGE
         return False
+
+    @property
+    def down(self) -> Flags:
+        """Layers that have lain at the bottom long enough to be a mass that does not turn."""
+        return np.asarray(self.lying >= SHORT)
+
+    def _lies(self, layers: Array, state: Any) -> Flags:
+        """Count the turns in which gravity holds a layer between the walls at the bottom; `down`.
+
+        Without an inner wall its steps would have failed at the axis.
+        """
+        if self.machine.gravity == 0.0 or self.machine.exact:
+            return self.down
+        full = layers.max(axis=(0, 2)) > self.gaps
+        if full.any():
+            area, momentum = state.data[: full.size], state.data[full.size : 2 * full.size]
+            spin = self.begin.spin
+            full &= _mean_rotation(self.machine, spin, area, momentum, self.which) < -_LIES * spin
+        self.lying = np.where(full, self.lying + 1, 0)
+        return self.down
 
     def _seen(self, steps: Array) -> Array:
         """Coordinates and moments of the layers at the end of a turn, each over the size it has in it."""
@@ -263,7 +291,7 @@ class Watch:
         dry = np.zeros(len(machine.fills), dtype=bool)
         dry[which] = np.min(areas, axis=0) <= 0.0
         turning = np.zeros(len(machine.fills))
-        turning[which] = _mean_rotation(machine, moment, which)
+        turning[which] = _mean_rotation(machine, spin, moment.area, moment.momentum, which)
         reason = outcome.message
         if self.kind is HeldKind.NOT_SETTLED and not reason:
             reason = f"the motion still changes after {self.count} turns"
@@ -360,12 +388,12 @@ def _centres(machine: HeldMachine, moments: Array, which: Index, weight: Array) 
     return mean, ripple
 
 
-def _mean_rotation(machine: HeldMachine, moment: Moment, which: Index) -> Array:
+def _mean_rotation(machine: HeldMachine, spin: float, area: Array, momentum: Array, which: Index) -> Array:
     """Of each layer relative to the drum, rad/s: u L over the area, as in a run-up."""
     radius = np.array([machine.fills[j].chamber.radius for j in which.tolist()])[:, None]
-    a, q = moment.area / np.square(radius), moment.momentum / radius**4
+    a, q = area / np.square(radius), momentum / radius**4
     log = -0.5 * np.log1p(-2.0 * np.minimum(a, 0.4999))
-    velocity = np.divide(q, a, out=np.zeros_like(a), where=a > 0.0) + moment.spin * a
+    velocity = np.divide(q, a, out=np.zeros_like(a), where=a > 0.0) + spin * a
     return np.asarray((velocity * log).sum(axis=1) / np.maximum(a.sum(axis=1), 1e-300))
 
 

@@ -2,8 +2,7 @@
 
 Mass and momentum pass such a face as an orifice lets them [theory: baffles, eq. 5-10]. Where fewer than four
 cells stand between two baffles, their resistance is a sink of momentum all over the layer instead
-[theory: baffles, eq. 11-12]. Lengths over R, times in the unit of the spin given. Compiled by numba with its
-cache on disk.
+[theory: baffles, eq. 11-12]. Lengths over R, times in the unit of the spin given.
 """
 
 from __future__ import annotations
@@ -13,7 +12,6 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numba import njit
 
 from fluid import long_wave
 from fluid.fill import Fill
@@ -21,16 +19,16 @@ from fluid.friction import baffles
 from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.layer.places import FEWEST_CELLS, is_smeared
+from solvers.machine_code import machine_code
 
 _OPTIONS: dict[str, Any] = {
-    "cache": True,
     "fastmath": {"contract", "arcp", "nsz"},
     "error_model": "numpy",
     "_nrt": False,
     "no_cpython_wrapper": True,
     "no_cfunc_wrapper": True,
 }
-_jit: Any = njit(**_OPTIONS)
+_jit: Any = machine_code(**_OPTIONS)
 
 # Columns of a layer's table of baffles, one row each: the face, below 0 in rows that are not used; distances
 # of the edges from the wall over R; a loss coefficient given over the mean depth, below 0 for the law; then

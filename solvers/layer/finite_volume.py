@@ -7,8 +7,7 @@ Heun's (SSP), with friction in two exact half steps around them [theory: long_wa
 times in the unit of the spin given. The equations are those of `fluid.long_wave`.
 
 Every pass over the ring is free of branches and reads arrays straight through, so that the compiler turns it
-into vector instructions; together the passes cost a third of a loop that decides cell by cell. Compiled by
-numba with its cache on disk.
+into vector instructions; together the passes cost a third of a loop that decides cell by cell.
 """
 
 from __future__ import annotations
@@ -16,15 +15,14 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numba import njit
 
 from fluid import long_wave
 from solvers.layer.baffles import FACE, OPEN, obstruct, shut, slope_aside, smear, straighten, take
+from solvers.machine_code import machine_code
 
 # Products and sums may be contracted, zeros lose their signs; the order of sums stays. Views of arrays need
 # no reference counts here, and what only compiled code calls no wrappers: less to compile.
 COMPILED: dict[str, Any] = {
-    "cache": True,
     "fastmath": {"contract", "arcp", "nsz"},
     "error_model": "numpy",
     "_nrt": False,
@@ -32,13 +30,13 @@ COMPILED: dict[str, Any] = {
 # Where a gap is full speeds count twice for the step. A ramp within a cell stays within its neighbours in
 # steps of half a cell: with longer ones, as of a Courant number of 0.8, a gap that fills and empties rings.
 PRESSED = 2.0
-_face_jit: Any = njit(**(COMPILED | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}))
+_face_jit: Any = machine_code(**(COMPILED | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}))
 # What becomes part of its callers.
-_inlined: Any = njit(inline="always")
+_inlined: Any = machine_code(inline="always")
 # Sums and largest values over a ring, in parts that the compiler chooses once and for all: the same numbers
 # give the same sum.
 SUMMED: dict[str, Any] = COMPILED | {"fastmath": {"contract", "arcp", "nsz", "reassoc", "nnan"}}
-_sum_jit: Any = njit(**(SUMMED | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}))
+_sum_jit: Any = machine_code(**(SUMMED | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}))
 
 _surface = _face_jit(long_wave.free_surface_radius)
 _head = _face_jit(long_wave.static_head)
@@ -336,7 +334,7 @@ def largest(slow, fast):
     return _greatest(slow, fast) if bad == 0 else np.inf
 
 
-_jit: Any = njit(**COMPILED)
+_jit: Any = machine_code(**COMPILED)
 
 _bernoulli = _face_jit(long_wave.bernoulli)
 _CONSTANT, _CURVED, _LESS = long_wave.PADE

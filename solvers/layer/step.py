@@ -3,7 +3,7 @@
 Heun's method in two stages between two half steps of friction, exact but for the law of the wall
 [theory: long_wave, eq. 11]. The coupled
 machine takes the parts and puts its own forces to them. Lengths over R, times in the unit of the spin given.
-Compiled by numba with its cache on disk.
+Compiled.
 """
 
 from __future__ import annotations
@@ -11,7 +11,6 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from fluid import long_wave
@@ -35,16 +34,17 @@ from solvers.layer.finite_volume import (
 )
 from solvers.layer.inside import NOTHING, Inside
 from solvers.layer.records import PACE, Drive, Outcome, Record, Wall, records
+from solvers.machine_code import machine_code
 from solvers.slices import FASTEST, RUNAWAY, compiled, slices, step_budget
 
-_jit: Any = njit(**COMPILED)
+_jit: Any = machine_code(**COMPILED)
 # What only compiled code calls needs no wrappers.
 _bare: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-_part: Any = njit(**(COMPILED | _bare))
-_sum_part: Any = njit(**(SUMMED | _bare))
-_sum_jit: Any = njit(**SUMMED)
+_part: Any = machine_code(**(COMPILED | _bare))
+_sum_part: Any = machine_code(**(SUMMED | _bare))
+_sum_jit: Any = machine_code(**SUMMED)
 # Parts of one function: compiled one by one and linked they would cost twice the time to compile.
-_inner: Any = njit(inline="always")
+_inner: Any = machine_code(inline="always")
 
 # Courant number beyond which a step is taken again.
 LARGEST = 1.0

@@ -2,7 +2,7 @@
 
 Each step looks for the mean acceleration of every chamber's axis that makes the layers' change of momentum
 and the rotor's trapezium agree: momentum is handed over to rounding, and the rotor's part is stable for any
-stiffness. SI units; layers over their wall radius. Compiled by numba with its cache on disk.
+stiffness. SI units; layers over their wall radius. Compiled.
 """
 
 from __future__ import annotations
@@ -10,7 +10,6 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from fluid.friction.laws import NONE, STOKES, WALL
@@ -33,12 +32,13 @@ from solvers.layer.step import (
     profile,
     stage_rates,
 )
+from solvers.machine_code import machine_code
 
-_jit: Any = njit(**COMPILED)
-_unwrapped: Any = njit(**(COMPILED | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}))
-_summed: Any = njit(**(SUMMED | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}))
+_jit: Any = machine_code(**COMPILED)
+_unwrapped: Any = machine_code(**(COMPILED | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}))
+_summed: Any = machine_code(**(SUMMED | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}))
 # Parts of one function: compiled one by one and linked they would cost twice the time to compile.
-_inner: Any = njit(inline="always")
+_inner: Any = machine_code(inline="always")
 
 
 @_unwrapped

@@ -1,6 +1,6 @@
 """Rotor and linear layers through time by the trapezium [theory: coupling, eq. 11-13].
 
-SI units. Compiled by numba with its cache on disk.
+SI units. Compiled.
 """
 
 from __future__ import annotations
@@ -8,13 +8,13 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from meshes.arrays import Array
 from solvers.layer.drag import mean_rate
 from solvers.layer.finite_volume import COMPILED
 from solvers.layer.records import Outcome, Record, floats
+from solvers.machine_code import machine_code
 from solvers.runup.kernel import (
     AGREED,
     SHORTEST,
@@ -29,7 +29,7 @@ from solvers.runup.kernel import (
     watch,
 )
 
-_jit: Any = njit(**COMPILED)
+_jit: Any = machine_code(**COMPILED)
 
 # Of a layer: mass, curvature, friction rate of its waves and of it as a whole, power of the spin that they go
 # with, moment of inertia; under the law of the wall last velocity of its table, R/h + 2 R/h_c, otherwise 0

@@ -5,9 +5,9 @@ psi from the deflection, seen from the wall's centre, lies at s = r^2 = 1 + eps^
 rotation axis; the circle through it is inside the wall for |angle| < phi. All integrands are positive, so
 that nothing cancels at any speed, eccentricity or fill [theory: statics, eq. 11-15].
 
-A search for a response asks for thousands of states a few at a time, so all of it is compiled, by numba with
-its cache on disk. Of every state: eps = e/R, eccentricity over radius; steep = B = beta R^2/h; zeta, height
-of the unclamped surface at the wall's farthest point over h; none of them below 0.
+A search for a response asks for thousands of states a few at a time, so all of it is compiled. Of every
+state: eps = e/R, eccentricity over radius; steep = B = beta R^2/h; zeta, height of the unclamped surface at
+the wall's farthest point over h; none of them below 0.
 """
 
 from __future__ import annotations
@@ -15,16 +15,16 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
+
+from solvers.machine_code import machine_code
 
 # Products and sums may be contracted; no arrays are made here, so that nothing needs reference counts.
 COMPILED: dict[str, Any] = {
-    "cache": True,
     "fastmath": {"contract", "nsz"},
     "error_model": "numpy",
     "_nrt": False,
 }
-_jit: Any = njit(**(COMPILED | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}))
+_jit: Any = machine_code(**(COMPILED | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}))
 
 # The wall is divided at v = pi - psi = pi/4. Far part: the nearest singularity (v = 0 when the rotation axis
 # touches the wall) is pi/4 beyond the end of a panel of half-length 3/8 pi: the error falls as 3**(-2 n).

@@ -11,7 +11,6 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from tests.compiled import use_own_cache
 from tests.net.answers import Answer, read, write
 from tests.net.call import use_checkout
 from tests.net.cases import Case, all_cases, missing
@@ -40,7 +39,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
     # Before numpy is loaded: small matrices get many times slower when the BLAS spreads them over threads.
     os.environ |= dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1")
     os.environ["MPLBACKEND"] = "Agg"
-    use_own_cache()
     cases = [case for case in all_cases() if asked.only in case.name]
     if asked.list:
         print("\n".join(f"{case.name:28}{' '.join(case.argv)}" for case in cases))

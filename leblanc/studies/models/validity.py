@@ -163,6 +163,12 @@ _CURES = {
 }
 
 
+def moves_freely(scene: Scene) -> bool:
+    """Whether nothing holds the axis in some direction."""
+    rotor = scene.rotor
+    return isinstance(rotor, TwoPlaneRotor | TubRotor) and axis_is_free(rotor.machine().system())
+
+
 def require_supported(scene: Scene) -> None:
     """Refuse a machine whose axis can move freely: it never comes to a steady motion of some size.
 
@@ -170,11 +176,11 @@ def require_supported(scene: Scene) -> None:
     ------
     InputError : with the free motions and what holds them
     """
-    rotor = scene.rotor
-    if not isinstance(rotor, TwoPlaneRotor | TubRotor) or not axis_is_free(rotor.machine().system()):
+    if not moves_freely(scene):
         return
-    field, cure = _CURES[rotor.kind]
-    ways = _free_ways(rotor.machine().system())
+    assert isinstance(scene.rotor, TwoPlaneRotor | TubRotor)
+    field, cure = _CURES[scene.rotor.kind]
+    ways = _free_ways(scene.rotor.machine().system())
     allowed = f"{cure}: nothing holds the machine {ways}, and an axis that moves freely has no amplitude"
     raise InputError(field, f"free {ways}", allowed)
 

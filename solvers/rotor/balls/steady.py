@@ -18,6 +18,7 @@ from solvers.rotor.balls.states import RotorWithBalls
 from solvers.rotor.system import RotorSystem
 
 _LED, _STARTS = 5, 5  # starts by intent, and irregular ones
+_LEAD = 0.1  # rad, from race to race, of those with all balls of a race together
 _ALIKE = 1e-5  # of the balls' unbalance: states nearer than that are one
 _BALANCED = 1e-9  # of what the balls all together do: counts as none
 _STILL = 1e-7  # of the bare rotor's amplitudes: counts as none
@@ -72,7 +73,8 @@ def starts_of(counts: Sequence[int]) -> Array:
     every = np.arange(even.size)
     uneven = even + 0.3 * np.sin(every + 1.0)
     near = 0.15 * np.sin(2.0 * every + 1.0)
-    zero = np.zeros(even.size)
+    # Nor do races of one plane begin at one angle: only rounding would part them.
+    zero = np.repeat(_LEAD * np.arange(len(counts)), counts)
     some = np.random.default_rng(0).uniform(0.0, 2.0 * np.pi, (_STARTS, even.size))
     return np.array([uneven, zero, zero + np.pi, near, near + np.pi, *some])
 

@@ -1,4 +1,4 @@
-"""Time steps of a rotor with ball balancers, compiled by numba with its cache on disk."""
+"""Time steps of a rotor with ball balancers, compiled."""
 
 from __future__ import annotations
 
@@ -6,13 +6,13 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numba import njit
 
 from meshes.arrays import Array
+from solvers.machine_code import machine_code
 from solvers.rotor.balls import motion as ball_motion
 from solvers.slices import compiled, slices
 
-_jit: Any = njit(cache=True, error_model="numpy", nogil=True)
+_jit: Any = machine_code(error_model="numpy", nogil=True)
 _rates: Any = _jit(ball_motion.rates)
 
 

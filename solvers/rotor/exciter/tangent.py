@@ -8,15 +8,15 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numba import njit
 
 from meshes.arrays import Array
 from meshes.errors import InputError, require_positive
+from solvers.machine_code import machine_code
 from solvers.rotor.exciter.machine import Dimensionless
 from solvers.rotor.exciter.motion import MOST_STEPS
 from solvers.slices import compiled, slices
 
-_jit: Any = njit(cache=True, error_model="numpy", nogil=True)
+_jit: Any = machine_code(error_model="numpy", nogil=True)
 
 
 @dataclass(frozen=True)

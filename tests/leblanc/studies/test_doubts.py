@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -176,6 +177,21 @@ def test_a_rotor_in_one_support_may_tilt_freely() -> None:
 def test_an_unbalance_far_from_the_rotor() -> None:
     (note,) = doubts(lb.example("two_plane_rig").replace({"rotor.unbalances.0.position": "5 m"}))
     assert note.data["field"] == "rotor.unbalances.0.position" and note.data["likely"] == "5 mm"
+
+
+def test_a_machine_that_moves_freely_is_refused_in_one_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The refusal says what a warning of the file would say."""
+    text = example_path("tub").read_text(encoding="utf-8")
+    text = re.sub(r"(?s)^assumed = \[.*?^\]\n", "", text, flags=re.MULTILINE)
+    begin, end = text.index("[[rotor.springs]]"), text.index("[[rotor.dampers]]")
+    spring = "[[rotor.springs]]\nposition = [{}, 0, 0.2]\nstiffness = [0, 0, 5000]\n"
+    path = tmp_path / "scene.toml"
+    path.write_text(text[:begin] + spring.format(0.2) + spring.format(-0.2) + text[end:], encoding="utf-8")
+    assert main(["run", str(path), "--out", str(tmp_path)]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.count("nothing holds the machine along x and along y and about x and about z") == 1
 
 
 def test_a_doubt_is_a_line_on_stderr_and_a_note_of_the_result(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -16,7 +17,9 @@ from meshes.errors import InputError
 from solvers.held.branch import HeldTask, held_branches, one_by_one
 from solvers.held.hold import _resampled, hold, hold_with_error, start
 from solvers.held.state import HeldKind, HeldMachine, HeldState, HoldNumerics
+from solvers.layer.inside import full_area
 from solvers.rotor.jeffcott import Jeffcott
+from solvers.runup.state import layer_capture
 from solvers.sloshing.model import SmallWaves
 from solvers.synchronous.response import response
 from solvers.whirl.growth import asynchronous_growth
@@ -95,6 +98,30 @@ def test_gravity_across_leaves_the_mean() -> None:
     # Second order in the wave that gravity makes: (0.4 mm over 1.2 mm of depth)^2 of the liquid's share.
     assert found.amplitude == pytest.approx(plain.amplitude, rel=2e-3)
     assert found.ripple[0] > 100.0 * plain.ripple[0]
+
+
+@kills("solvers.held.turns:Watch._lies", "full, self.lying + 1, 0", "full, 0, 0")
+@kills("solvers.held.turns:Watch._lies", " < -_LIES * spin", " < _LIES * spin")
+def test_between_two_walls_a_layer_falls_as_without_an_inner_one() -> None:
+    """Where it lies at the bottom, and fills its gap there, it is the mass that never turned with the drum.
+
+    At speeds at which gravity is a tenth of the centrifugal acceleration it fills its gap and rides.
+    """
+    chamber, numerics = Chamber(0.065, 0.02, 0.055), HoldNumerics(cells=16, turns=64)
+    for share, ratio, rides in ((0.3, 1.35, False), (0.95, 3.0, True)):
+        fill = Fill(chamber, WATER, share * chamber.capacity)
+        machine = HeldMachine(RIG.system(), (fill,), Friction("linear", 1.0), 9.81)
+        begin = start(machine, ratio * layer_capture(fill, 9.81), numerics)
+        found = hold(machine, begin, numerics)
+        assert found.captured.tolist() == [rides]
+        if rides:
+            assert found.moment.area.max() > full_area(fill) * chamber.radius**2
+            continue
+        none = np.zeros((0, numerics.cells))
+        laid = hold(machine, replace(begin, area=none, momentum=none, layers=found.captured), numerics)
+        # What is left of the motion before is below the tolerance of both.
+        assert found.settled and laid.settled
+        assert found.amplitude == pytest.approx(laid.amplitude, rel=2.0 * numerics.tolerance)
 
 
 SCALE = 60.0  # omega_n

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from leblanc.results.notes.baffles import BaffleCode
 from leblanc.scene.examples import example
 from leblanc.scene.scene import Scene, scene_from_table
 from leblanc.scene.tasks import Optimisation
@@ -17,6 +18,7 @@ from leblanc.studies.optimise.objectives import RunupPeak
 from leblanc.studies.optimise.optimise import optimise_scene
 from leblanc.studies.optimise.walls import freeing_volumes, most_cells
 from leblanc.studies.run import run_scene
+from leblanc.units import LENGTH, with_unit
 from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.rotor.jeffcott import Jeffcott
@@ -146,6 +148,13 @@ def test_the_best_volume_with_baffles() -> None:
         cut = bool(found.volume[0] < FREED)
         assert (set(found.response.response.model) == {"fem"}) == cut == (span[1] < FREED)
         assert found.closed_form == ()
+        # The sentence on a ring that hardly balances, with the layer that the best volume makes.
+        said = [str(note) for note in found.notes if note.code == BaffleCode.CLOSED_COMPARTMENTS]
+        assert len(said) == cut
+        deep = 0.065 - math.sqrt(0.065**2 - found.volume[0] / (math.pi * 0.02))
+        for sentence in said:
+            assert "baffles of 5 mm" in sentence and f"layer of {with_unit(deep, LENGTH)}" in sentence
+            assert "close 8 compartments" in sentence
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,111 @@
+"""Machine code is kept where nobody else can write, for numba unpickles it; else it is not kept."""
+
+from __future__ import annotations
+
+import os
+import re
+import stat
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import numba
+import pytest
+
+from leblanc.cli import main
+from solvers.machine_code import cache_folder, machine_code, private_folder
+
+posix = pytest.mark.skipif(os.name != "posix", reason="needs modes of folders")
+
+
+@pytest.fixture(autouse=True)
+def anew(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """The folder is chosen once in a process, from the environment."""
+    monkeypatch.setattr(numba.config, "CACHE_DIR", "")
+    cache_folder.cache_clear()
+    yield
+    cache_folder.cache_clear()
+
+
+@pytest.fixture
+def caches(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The user's own caches."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "caches"))
+    return tmp_path / "caches"
+
+
+def twice(number: float) -> float:
+    return 2.0 * number
+
+
+@posix
+def test_the_same_folder_is_found_again(caches: Path) -> None:
+    folder = private_folder("machine-code-1")
+    assert folder is not None and folder.parent.parent == caches
+    assert stat.S_IMODE(folder.stat().st_mode) == 0o700
+    assert private_folder("machine-code-1") == folder
+
+
+@posix
+@pytest.mark.parametrize("how", ["open to all", "link", "file"])
+def test_a_folder_of_others_is_not_taken(how: str, caches: Path, tmp_path: Path) -> None:
+    folder = private_folder("machine-code-1")
+    assert folder is not None
+    folder.rmdir()
+    if how == "open to all":
+        folder.mkdir()
+        folder.chmod(0o777)
+    elif how == "link":
+        folder.symlink_to(tmp_path)
+    else:
+        folder.write_bytes(b"")
+    assert private_folder("machine-code-1") is None
+
+
+def test_a_user_without_a_home_has_no_folder(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Without HOME, or with one that is a file, nothing is written anywhere, least of all here."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "no_folder").write_bytes(b"")
+    for place in ("~/caches", str(tmp_path / "no_folder")):
+        monkeypatch.setattr("platformdirs.user_cache_path", lambda *_, p=place, **__: Path(p) / "leblanc")
+        cache_folder.cache_clear()
+        assert cache_folder() is None
+        made = machine_code()(twice)
+        assert made(4.0) == 8.0 and not made.stats.cache_path
+    assert [path.name for path in tmp_path.iterdir()] == ["no_folder"]
+
+
+def test_each_state_of_the_sources_has_its_own_and_old_ones_go(caches: Path) -> None:
+    old, used = (private_folder(f"machine-code-{k}") for k in (1, 2))
+    assert old is not None and used is not None
+    month = time.time() - 31 * 86400
+    os.utime(old, (month, month))
+    folder = cache_folder()
+    assert folder is not None and re.fullmatch("machine-code-[0-9a-f]{16}", folder.name)
+    assert sorted(caches.joinpath("leblanc").iterdir()) == sorted([used, folder])
+    made = machine_code(error_model="numpy")(twice)
+    assert made(4.0) == 8.0 and list(folder.rglob("*.nbc"))
+    assert numba.config.CACHE_DIR == ""  # for nobody else's functions
+
+
+def test_the_users_own_choice_comes_first(
+    caches: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path / "own"))
+    assert cache_folder() == tmp_path / "own"
+    assert machine_code()(twice)(4.0) == 8.0
+    assert list((tmp_path / "own").rglob("*.nbc")) and not caches.exists()
+
+
+def test_commands_say_that_nothing_is_kept(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("solvers.machine_code.private_folder", lambda name: None)
+    arguments = ["run", "examples/horizontal_rig.toml", "--out", str(tmp_path)]
+    assert main(arguments) == 0
+    said = capsys.readouterr().err.splitlines()
+    assert sum("compiled for this run alone" in line for line in said) == 1
+    monkeypatch.undo()
+    cache_folder.cache_clear()
+    assert main(arguments) == 0
+    assert "compiled for this run alone" not in capsys.readouterr().err
