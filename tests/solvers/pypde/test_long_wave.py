@@ -83,10 +83,7 @@ def made(law: str) -> tuple[Any, ...]:
     shear = {
         "none": sympy.Integer(0),
         "linear": LAWS["linear"] * depth * u,
-        "stokes": sympy.sqrt(OIL.viscosity * drag_frequency(layer(), MADE) / 2)
-        * (1 / depth + 2 / H)
-        * depth
-        * u,
+        "stokes": stokes * depth * u,
         "quadratic": LAWS["quadratic"] * u * u,
     }[law]
     mass = sympy.diff(area, t) + sympy.diff(R * u * log, theta)
