@@ -618,7 +618,7 @@ def small_whirl_friction(friction: Friction) -> str:
     if friction.law is FrictionLaw.QUADRATIC:
         return "none (the quadratic law does not act on small whirls)"
     if friction.law.laminar:
-        return "laminar, with the Coriolis force"
+        return "laminar"
     return friction_words(friction)
 
 

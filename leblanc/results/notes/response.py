@@ -402,11 +402,8 @@ def thick_wall_layer(speed: float, limit: float, whole: bool) -> Note:
     limit : thickness over the liquid's depth
     whole : that is all of the range
     """
-    where = "At these speeds" if whole else f"Below {in_rpm(speed)}"
-    text = (
-        f"{where} the laminar layer of waves on the wall is thicker than {limit:g} of the liquid's depth: "
-        "growth rates and bands are out of range there."
-    )
+    where = "here" if whole else f"below {in_rpm(speed)}"
+    text = f"Growth and bands {where} are out of range: a laminar wall layer over {limit:g} of the depth."
     return Note(RunCode.THICK_WALL_LAYER, {"speed": speed, "limit": limit}, text)
 
 
