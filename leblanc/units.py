@@ -620,3 +620,8 @@ def small_whirl_friction(friction: Friction) -> str:
     if friction.law.laminar:
         return "laminar, with the Coriolis force"
     return friction_words(friction)
+
+
+def in_peak(unit: str) -> str:
+    """A unit of amplitudes as heads of tables name it."""
+    return MM_PEAK.replace("mm", unit)

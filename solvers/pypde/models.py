@@ -46,6 +46,11 @@ if TYPE_CHECKING:
 Progress = Callable[[float], object] | None
 
 
+# A jump is as steep as the cells let it be, and its error goes with their size: what half as many change is
+# the error that is left. It may be as large as that of long waves with a jump beside computed two-phase flow.
+_GRIDS: Range = (0.0, 0.05)
+
+
 def _bounds(ranges: Mapping[str, Range], friction: Friction) -> Mapping[str, Range]:
     """Ranges of a model; friction rounds a fold off: where smooth waves end is known without it alone."""
     if friction.law is FrictionLaw.NONE:
@@ -74,7 +79,7 @@ class LongWave(WaveModel):
     takes_baffles = True
     ranges: ClassVar[Mapping[str, Range]] = {
         "relative_depth": LONG, "centrifuge": CAPTURED, "wall_layer": THIN_LAYERS, "force_gap": (0.0, 0.1),
-        "smooth_whirl": SMOOTH, "grid_gap": (0.0, 0.05),
+        "smooth_whirl": SMOOTH, "grid_gap": _GRIDS,
     }  # fmt: skip
 
     def wave(self, fill: Fill, whirl: Whirl) -> LiquidWave:

@@ -3,8 +3,8 @@
 A mode changes fast only where another meets it. So modes and their slopes over the spin are taken at a few
 speeds, whatever speeds a user asks for, and each interval is looked at until its modes are followed from end
 to end, until no growth can have risen above zero or fallen below it inside, and until every meeting of two
-modes has been gone to [theory: whirl, eq. 32 and 33]. Beside baffles with laminar friction the first speeds
-alone serve.
+modes has been gone to [theory: whirl, eq. 32 and 33]. Beside baffles with laminar friction the modes that
+grow most are followed, which are all that are known there.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from fluid.whirl import plane_layer
 from meshes.arrays import Array, Complex, Flags, Index
 from solvers.rotor.system import Rotor, RotorSystem
 from solvers.rotor.vibration import critical_speeds
-from solvers.whirl.growth import growth_at, modes_at
+from solvers.whirl.growth import modes_at
 
 _APART = 0.08  # first distance of speeds, relative
 _FEWEST = 9
@@ -34,6 +34,7 @@ _HALVINGS = 7
 _NARROW, _AT_EDGE = 1e-6, 0.01  # relative width of intervals that are not split further, at edges
 _FLOOR = 1e-10  # of the spin: growth that is not looked for
 _DAMPED = 0.1  # of the spin: decay beyond which a mode is not followed
+_WITHIN = 2.0  # of the change of the spin: decay that no meeting makes growth within it
 _SLOW = 1.1  # of the spin: frequency up to which it is
 _STEPS = 6  # towards a meeting
 _MET = 1e-10  # of the spin: how near a meeting is gone to
@@ -74,9 +75,6 @@ def looks(
 
     own = [_first_speeds(rotor.system(), fills, first, last) for fills in rows]
     row, speed = np.repeat(np.arange(len(rows)), [part.size for part in own]), np.concatenate(own)
-    if friction.law.laminar and any(fill.uneven for fills in rows for fill in fills):
-        # Only the modes that grow most are known there, and those come and go: what cannot be followed.
-        return row, speed, growth_at(rotor, rows, row, speed, friction)[0]
     seen = at(row, speed)
     inside = seen.row[1:] == seen.row[:-1]
     low, high = seen.at(np.flatnonzero(inside)), seen.at(np.flatnonzero(inside) + 1)
@@ -204,7 +202,8 @@ def _follow(low: Looks, high: Looks) -> _Followed:
     end, comes = (np.take_along_axis(part, there, axis=1) for part in (high.root, high.slope))
     rate = np.where(np.isnan(low.root), -np.inf, low.root.real)
     spin = low.speed[:, None]
-    counts = (rate > -_DAMPED * spin) & (np.abs(low.root.imag) < _SLOW * spin)
+    heavily = np.minimum(_DAMPED * spin, _WITHIN * width[:, :, 0])
+    counts = (rate > -heavily) & (np.abs(low.root.imag) < _SLOW * spin)
     return _Followed(low.root, low.slope, end, comes, near, counts)
 
 

@@ -38,7 +38,7 @@ _SHARE = 1e-7  # of the spin: how far left of the mode that grows most the other
 _ASIDE = 1e-4  # of the spin: how far left of that the others start at least
 _SAME = 1e-9  # of the spin: modes as near as that are one
 _GONE = -1e300  # lambda of a mode that there is not, 1/s
-_BLOCK = 32  # points whose matrices fit the processor's cache
+_BLOCK = 96  # points whose matrices fit the processor's cache
 _RESOLVED = 1e-11  # of the frequencies, below which growth is rounding
 
 
@@ -106,6 +106,12 @@ def _shears(rate: Complex, spin: Array) -> tuple[Complex, Complex]:
     return factors * rate, factors + bends
 
 
+def _mixed(weights: Complex, parts: Complex) -> Complex:
+    """Sums of matrices by weights at k points, shape (k, N, N) from (c, k) and (c, N, N)."""
+    size = parts.shape[-1]
+    return np.asarray((weights.T @ parts.reshape(len(parts), -1)).reshape(-1, size, size))
+
+
 def drum_modes(rotor: Jeffcott, layers: Sequence[SectionLayer], speed: Array) -> SystemModes:
     """Whirl modes in the drum's frame: all of them without laminar friction, with it those that grow most.
 
@@ -129,18 +135,22 @@ def drum_modes(rotor: Jeffcott, layers: Sequence[SectionLayer], speed: Array) ->
         part.astype(complex) for part in (system.mass, system.laminar, system.damping, system.stiffness)
     )
 
-    def terms(root: Complex, owner: Index) -> tuple[Complex, Complex]:
-        at, damping = root[:, None, None], every_damping[owner]
-        shear, change = (np.tensordot(x.T, laminar, 1) for x in _shears(root, speed[owner]))
-        matrix = at * (at * mass + damping) + stiffness[owner] + shear
-        return matrix, 2.0 * at * mass + damping + change
+    def matrix(root: Complex, owner: Index) -> Complex:
+        at, shear = root[:, None, None], _mixed(_shears(root, speed[owner])[0], laminar)
+        return np.asarray(at * (at * mass + every_damping[owner]) + stiffness[owner] + shear)
+
+    def slope(root: Complex, owner: Index) -> Complex:
+        change = _mixed(_shears(root, speed[owner])[1], laminar)
+        return np.asarray(2.0 * root[:, None, None] * mass + every_damping[owner] + change)
 
     def every(owner: Index) -> Complex:
         return drum_roots(plain.at(owner), walls, speed[owner])
 
     fastest = _fastest(started, system.mass, system.laminar)
     slip, tips = np.abs(started.imag), np.outer(speed, [0.0, 2.0])
-    return most_growing(MostGrowing(started, slowly, slip, circles, terms, every, tips, fastest), speed)
+    return most_growing(
+        MostGrowing(started, slowly, slip, circles, matrix, slope, every, tips, fastest), speed
+    )
 
 
 def _of_plates(laminar: Array, speed: Array) -> Array:
@@ -167,8 +177,9 @@ class MostGrowing:
     slowly: CoupledMatrices  #: with that friction
     slip: Array  #: frequency of each over the drum, rad/s, 0 or above, shape (n, m)
     circles: Array  #: displacements that tell the sense of a whirl, in pairs across the axis, shape (2 c, N)
-    #: T(lambda) and its derivative, shape (k, N, N), at points, (k,), of the speeds they belong to, (k,)
-    terms: Callable[[Complex, Index], tuple[Complex, Complex]]
+    #: T(lambda), and its derivative, shape (k, N, N), at points, (k,), of the speeds they belong to, (k,)
+    matrix: Callable[[Complex, Index], Complex]
+    slope: Callable[[Complex, Index], Complex]
     #: all lambda at some of the speeds, nan in place of some, shape (k, m) from (k,)
     every: Callable[[Index], Complex]
     tips: Array  #: imaginary parts of the ends of the cuts of T, rad/s, shape (n, 2)
@@ -225,7 +236,7 @@ def _told(
     """
     start, others = starts
     plain = np.tile(_any_shape(len(search.circles.T)), (start.size, 1))
-    root, shape, found = _followed(search.terms, start, at, _shapes(search, start, at) if own else plain)
+    root, shape, found = _followed(search, start, at, _shapes(search, start, at) if own else plain)
     along, against = _sizes(search.circles, shape)
     spin = speed[at]
     rate = np.where(found, root.real, -np.inf).max(axis=1)
@@ -236,7 +247,7 @@ def _told(
         found = np.empty(points.shape, dtype=complex)
         for first in range(0, points.size, _BLOCK):
             part = slice(first, first + _BLOCK)
-            unit, size = np.linalg.slogdet(search.terms(points[part], at[owner[part]])[0])
+            unit, size = np.linalg.slogdet(search.matrix(points[part], at[owner[part]]))
             found[part] = size + 1j * np.angle(unit)
         return found
 
@@ -286,13 +297,13 @@ def _sizes(circles: Array, shape: Complex) -> tuple[Array, Array]:
 
 
 def _followed(
-    terms: Callable[[Complex, Index], tuple[Complex, Complex]], start: Complex, at: Index, shape: Complex
+    search: MostGrowing, start: Complex, at: Index, shape: Complex
 ) -> tuple[Complex, Complex, Flags]:
     """Newton's method on each mode with its own laminar friction.
 
     Parameters
     ----------
-    terms : of `MostGrowing`
+    search : where the matrices are from
     start : first values of f modes at each of n speeds, above the real axis, shape (n, f)
     at : which speeds, shape (n,)
     shape : first shapes, shape (n f, N)
@@ -307,8 +318,8 @@ def _followed(
         # A mode met to rounding makes the matrix singular to rounding, which is wanted; so little away it is
         # never exactly so.
         near = root[on] * (1.0 + _BESIDE)
-        matrix, slope = terms(near, owner[on])
-        solved = np.linalg.solve(matrix, slope @ shape[on][..., None])[..., 0]
+        moved = search.slope(near, owner[on]) @ shape[on][..., None]
+        solved = np.linalg.solve(search.matrix(near, owner[on]), moved)[..., 0]
         anchor = np.argmax(np.abs(solved), axis=-1)[:, None]
         largest = np.take_along_axis(solved, anchor, -1)
         step = (np.take_along_axis(shape[on], anchor, -1) / largest)[:, 0]
@@ -475,32 +486,36 @@ def standing_modes(system: RotorSystem, layers: Sequence[Placed], speed: Array) 
     started = roots(slowly)
     slip = np.abs(np.abs(started.imag) - speed[:, None])
     turned = found.quarter @ found.laminar
-    mass, laminar, turn, every_damping, stiffness = (
-        part.astype(complex) for part in (found.mass, found.laminar, turned, found.damping, found.stiffness)
+    mass, laminar, every_damping, stiffness = (
+        part.astype(complex)
+        for part in (found.mass, np.concatenate([found.laminar, turned]), found.damping, found.stiffness)
     )  # once: products of complex and real arrays convert them each time, at eight times the cost
 
-    def terms(root: Complex, owner: Index) -> tuple[Complex, Complex]:
-        at, damping = root[:, None, None], every_damping[owner]
+    def shears(root: Complex, owner: Index, part: int) -> Complex:
         # Either sense of circle slips by its own frequency over the drum.
         spin = speed[owner]
-        ways = [_shears(root + way * spin, spin) for way in (-1j, 1j)]
-        shear, change = (
-            np.tensordot(0.5 * (one + other).T, laminar, 1) + np.tensordot(-0.5j * (one - other).T, turn, 1)
-            for one, other in zip(*ways, strict=True)
-        )
-        matrix = at * mass
-        matrix += damping
-        matrix *= at
-        matrix += stiffness[owner]
-        matrix += shear
-        return matrix, 2.0 * at * mass + damping + change
+        one, other = (_shears(root + way * spin, spin)[part] for way in (-1j, 1j))
+        return _mixed(np.concatenate([0.5 * (one + other), -0.5j * (one - other)]), laminar)
+
+    def matrix(root: Complex, owner: Index) -> Complex:
+        made = root[:, None, None] * mass
+        made += every_damping[owner]
+        made *= root[:, None, None]
+        made += stiffness[owner]
+        made += shears(root, owner, 0)
+        return np.asarray(made)
+
+    def slope(root: Complex, owner: Index) -> Complex:
+        return np.asarray(2.0 * root[:, None, None] * mass + every_damping[owner] + shears(root, owner, 1))
 
     def every(owner: Index) -> Complex:
         drags = 0.5 * np.stack([found.laminar[0] - 1j * turned[0], found.laminar[0] + 1j * turned[0]])
         return standing_roots(plain.at(owner), np.asarray(drags, dtype=complex), speed[owner])
 
     fastest, tips = _fastest(started, found.mass, found.laminar), np.outer(speed, [1.0, 3.0])
-    return most_growing(MostGrowing(started, slowly, slip, circles, terms, every, tips, fastest), speed)
+    return most_growing(
+        MostGrowing(started, slowly, slip, circles, matrix, slope, every, tips, fastest), speed
+    )
 
 
 def _real(matrix: Any) -> Array:
