@@ -8,7 +8,7 @@ itself in a notebook.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from os import PathLike
 from pathlib import Path
@@ -373,9 +373,11 @@ def fit(
     measured: str | PathLike[str],
     unknown: Sequence[str],
     *,
-    starts: int = 4,
+    starts: int = 2,
     seed: int = 0,
     scale: str = "given",
+    noise: str = "estimate",
+    column: Mapping[str, str] | None = None,
 ) -> FitResult:
     """Unknowns of a scene from a measured curve, each with its uncertainty.
 
@@ -383,11 +385,13 @@ def fit(
     ----------
     scene : the machine, or the path of its file; its values are the first guess
     measured : path of a table over speed, time or liquid added, with a header such as
-        "speed [rpm], amplitude [mm]", commas between its columns
-    unknown : paths of the unknowns in the scene, as "rotor.mass"
-    starts : searches, each from other values
+        "speed [rpm], amplitude [mm]"; commas, semicolons or tabs between its columns
+    unknown : paths of the unknowns in the scene, as "rotor.mass"; "A=B" ties B to A
+    starts : searches at least; more follow until the best values have been found again
     seed : of the values that they start from
     scale : "given", "free" where the unit of the sensor is not known, "each" where every quantity has its own
+    noise : of the measured values: "estimate", "3 %" of each reading, or an error such as "0.1 mm"
+    column : headers of the file by the quantities that are meant, as in {"amplitude": "Schwingweg [um pp]"}
 
     Raises
     ------
@@ -409,12 +413,15 @@ def fit(
     4.0
     """
     machine = _scene(scene)
-    from leblanc.studies.fit import fit_scene, read_measured, require_scale
+    from leblanc.studies.fit import fit_scene
+    from leblanc.studies.fitting.measured import read_measured
+    from leblanc.studies.fitting.problem import require_scale
 
     with _keywords():
         free = require_scale(scale) != "given"
-        table = read_measured(measured, dry_rotor(machine).system().coordinates, free)
-        return fit_scene(machine, table, tuple(unknown), starts, seed, scale)
+        table = read_measured(measured, dry_rotor(machine).system().coordinates, free, column)
+        file = scene if isinstance(scene, str | PathLike) else None
+        return fit_scene(machine, table, tuple(unknown), starts, seed, scale, noise=noise, file=file)
 
 
 def sweep(

@@ -235,6 +235,26 @@ def unit_for(dimension: Dimension, *values: float) -> Unit:
     return [unit for least, unit in units if size * (1.0 + 5e-5) >= least][-1]
 
 
+def unit_typed(value: object, dimension: Dimension) -> Unit:
+    """Unit in which a value stands in a file, its SI unit where it is a plain number.
+
+    Parameters
+    ----------
+    value : as it was given, free of faults
+    dimension : of the value
+
+    Examples
+    --------
+    >>> unit = unit_typed("15 N/mm", STIFFNESS)
+    >>> unit.text(15e3), unit_typed(15e3, STIFFNESS).name
+    ('15 N/mm', 'N/m')
+    """
+    match = _QUANTITY.fullmatch(value.translate(_SPELLINGS)) if isinstance(value, str) else None
+    if match is None or not match[2] or dimension is TEMPERATURE:
+        return Unit(dimension.unit, 1.0)
+    return Unit(match[2], 1.0 / parse(f"1 {match[2]}", dimension))
+
+
 def with_unit(value: float, dimension: Dimension) -> str:
     """A value for print in the unit that a person would write.
 
@@ -600,3 +620,8 @@ def small_whirl_friction(friction: Friction) -> str:
     if friction.law.laminar:
         return "laminar, with the Coriolis force"
     return friction_words(friction)
+
+
+def in_peak(unit: str) -> str:
+    """A unit of amplitudes as heads of tables name it."""
+    return MM_PEAK.replace("mm", unit)

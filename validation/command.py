@@ -36,7 +36,9 @@ def validate(
     for result in found:
         print(f"{result.name}  [{result.source}]  {result.verdict.upper()}")
         print(f"    {result.quantity}")
-        print(f"    printed {_shown(result.printed)} | computed {_shown(result.computed)}")
+        print(f"    {result.origin.kind} {_shown(result.printed)} | computed {_shown(result.computed)}")
+        if result.origin.name not in ("", result.source):
+            print(f"    {result.origin}")
         print(f"    difference {_shown(result.difference)}" + (f"; {result.note}" if result.note else ""))
         if (effect := result.effect) is not None:
             print(f"    {effect.quantity}: {effect.measured:.3g} | computed {effect.computed:.3g}")

@@ -82,7 +82,9 @@ class Picture:
 
 
 def case_table(cases: Sequence[Case]) -> Table:
-    """Cases as printed, computed, difference and verdict, with what a reader must know to judge them.
+    """Cases as reference, computed, difference and verdict, with what a reader must know to judge them.
+
+    The reference is printed in the source unless the row says where it comes from.
 
     Parameters
     ----------
@@ -91,6 +93,7 @@ def case_table(cases: Sequence[Case]) -> Table:
     rows = []
     for case in cases:
         what = f"{case.quantity}\n[{case.source}; case {case.name.partition('/')[2]}]"
+        what += "" if case.origin.kind == "printed" else f"\nReference: {case.origin}"
         what += f"\n{case.note}" if case.note else ""
         if (effect := case.effect) is not None:
             what += f"\n{effect.quantity}: {effect.measured:.3g}, computed {effect.computed:.3g}"
@@ -100,7 +103,7 @@ def case_table(cases: Sequence[Case]) -> Table:
     counts = (
         f"{len(names)} {_PLURAL[verdict] if len(names) > 1 else verdict}" for verdict, names in found.items()
     )
-    header = ("What is compared", "Printed", "Computed", "Difference", "Verdict")
+    header = ("What is compared", "Reference", "Computed", "Difference", "Verdict")
     return Table(header, tuple(rows), f"Of {len(cases)}: " + ", ".join(counts) + ".")
 
 

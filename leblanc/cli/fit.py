@@ -19,9 +19,15 @@ def fit(
         typer.Argument(help="Table of what was measured (CSV), headed like: speed [rpm], amplitude [mm]."),
     ],
     unknown: Annotated[
-        list[str], typer.Option(help="Path of an unknown, as in rotor.mass; once for each of them.")
+        list[str],
+        typer.Option(help="Path of an unknown, as in rotor.mass; A=B ties B to A; once for each of them."),
     ],
-    starts: Annotated[int, typer.Option(help="Searches, each from other values.", min=1, max=1000)] = 4,
+    starts: Annotated[
+        int,
+        typer.Option(
+            help="Searches at least; more follow until the best values are found again.", min=1, max=1000
+        ),
+    ] = 2,
     seed: Annotated[int, typer.Option(help="Of the values that they start from.", min=0)] = 0,
     scale: Annotated[
         str,
@@ -29,6 +35,14 @@ def fit(
             help="given; free: the unit of the sensor is not known, shapes count; each: of every quantity."
         ),
     ] = "given",
+    noise: Annotated[
+        str,
+        typer.Option(help='estimate, a share of each reading ("3 %") or an error ("0.1 mm", "2 deg").'),
+    ] = "estimate",
+    column: Annotated[
+        list[str] | None,
+        typer.Option(help='Column of the file that is meant: amplitude="Schwingweg [um pp]", speed=, time=.'),
+    ] = None,
     out: Annotated[
         Path | None, typer.Option(help="Folder for the files [default: out/<scene name>].")
     ] = None,
@@ -36,17 +50,24 @@ def fit(
 ) -> None:
     """Unknowns of a scene from a measured curve, each with its uncertainty."""
     from leblanc.scene.scene import dry_rotor
-    from leblanc.studies.fit import fit_scene, read_measured, require_scale
+    from leblanc.studies.fit import fit_scene
+    from leblanc.studies.fitting.measured import named_columns, read_measured
+    from leblanc.studies.fitting.noise import parse_noise
+    from leblanc.studies.fitting.problem import require_scale
 
     machine, free = load(scene), require_scale(scale, "--scale") != "given"
-    table = read_measured(measured, dry_rotor(machine).system().coordinates, free)
+    parse_noise(noise, "--noise")
+    columns = named_columns(column or (), "--column")
+    table = read_measured(measured, dry_rotor(machine).system().coordinates, free, columns)
     folder = results_dir(machine.name, out, scene, machine.digest, "fit.nc")
     with working("search") as update:
-        found = fit_scene(machine, table, unknown, starts, seed, scale, lambda part: update(part, 1.0))
+        found = fit_scene(
+            machine, table, unknown, starts, seed, scale, lambda part: update(part, 1.0), noise, scene
+        )
 
     from leblanc.figures.fit import write_figures
     from leblanc.results.netcdf import write_netcdf
-    from leblanc.text.fit import HEAD, fit_rows, left_words
+    from leblanc.text.fit import HEAD, fit_rows, left_words, noise_words
 
     write_netcdf(found.named_arrays(), folder / "fit.nc")
     files = write_figures(found, folder)
@@ -55,6 +76,7 @@ def fit(
     else:
         print_table(fit_rows(found), HEAD, right=True)
         print(f"Left: {left_words(found)}")
+        print(f"Noise: {noise_words(found)}")
         for note in found.notes:
             print(f"note: {note}")
         print(f"See {files.png}; the data are in {folder / 'fit.nc'}")

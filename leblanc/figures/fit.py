@@ -10,7 +10,7 @@ import numpy as np
 from leblanc.figures.drawing.page import Caption, Figure, FigureFiles, Frame, lay_out, number, save, style
 from leblanc.results.base import one_line
 from leblanc.results.fit import FitResult, Measured
-from leblanc.units import MM, RPM
+from leblanc.units import MM, MM_PEAK, RPM, Unit
 from meshes.arrays import Array
 
 Axes = Any  # matplotlib's, which no module that only draws imports
@@ -29,7 +29,8 @@ def fit_figure(result: FitResult) -> Figure:
         panels: list[list[Axes]] = []
         for k, part in enumerate(result.measured):
             panels += [[figure.add_axes((0, 0, 1, 1), label=f"{k}{row}")] for row in "ab"]
-            _draw(panels[-2][0], panels[-1][0], result.at * factor, part, labelled=k == 0)
+            curve = None if result.curve is None else (result.curve.at * factor, result.curve.values[k])
+            _draw(panels[-2][0], panels[-1][0], result.at * factor, part, curve, labelled=k == 0)
         for (axes,) in panels:
             axes.xaxis.set_major_formatter(number)
             axes.yaxis.set_major_formatter(number)
@@ -43,15 +44,23 @@ def fit_figure(result: FitResult) -> Figure:
     return figure
 
 
-def _draw(above: Axes, below: Axes, over: Array, part: Measured, labelled: bool) -> None:
-    """One quantity and what is left of it."""
+def _draw(
+    above: Axes,
+    below: Axes,
+    over: Array,
+    part: Measured,
+    curve: tuple[Array, Array] | None,
+    labelled: bool,
+) -> None:
+    """One quantity with the fitted curve, and what is left of it."""
     angle, bare = part.unit == "rad", part.unit == ""
     factor = 180.0 / np.pi if angle else 1.0 if bare else MM
     unit = "deg" if angle else "as measured" if bare else "mm"
     mark = {"linestyle": "", "marker": "o", "markersize": 3.5, "markerfacecolor": "white"}
     names = ("measured", "fitted") if labelled else ("_", "_")
     above.plot(over, part.value * factor, color=DATA, label=names[0], zorder=3, **mark)
-    above.plot(over, part.fitted * factor, color=LINE, linewidth=1.4, label=names[1])
+    at, fitted = (over, part.fitted) if curve is None else curve
+    above.plot(at, fitted * factor, color=LINE, linewidth=1.4, label=names[1])
     left = part.value - part.fitted
     left = np.angle(np.exp(1j * left)) if angle else left
     below.axhline(0.0, color="0.6", linewidth=0.8)
@@ -59,17 +68,17 @@ def _draw(above: Axes, below: Axes, over: Array, part: Measured, labelled: bool)
     for axes in (above, below):
         axes.margins(y=0.12)  # no mark is cut at the edge
     words = part.name.replace("_", " ").capitalize()
-    above.set_ylabel(f"{words}\n({unit})")
+    peak = unit == "mm" and part.name in ("amplitude", "peak")
+    above.set_ylabel(f"{words}\n({MM_PEAK if peak else unit})")
     below.set_ylabel(f"left ({unit})")
 
 
 def _caption(result: FitResult) -> Caption:
-    pairs = zip(result.unknown, result.value.tolist(), result.std.tolist(), strict=True)
-    found = "; ".join(f"{path} = {value:.4g} ± {std:.2g}" for path, value, std in pairs)
+    found = "; ".join(_found(result, k) for k in range(len(result.unknown)))
     over = "liquid added" if result.over == "added" else result.over
     return Caption(
         f"Measured and fitted over {over}, and what is left between them.",
-        f"Scene: {one_line(result.name)}. Found, SI, with standard errors: {found}. Left: "
+        f"Scene: {one_line(result.name)}. Found, with standard errors: {found}. Left: "
         f"{100.0 * result.residual_rms:.2g} % of the measured size.",
     )
 
@@ -83,3 +92,11 @@ def write_figures(result: FitResult, directory: Path) -> FigureFiles:
     directory : where the files go; made if it is missing
     """
     return save(fit_figure(result), directory, "fit", "Measured and fitted")
+
+
+def _found(result: FitResult, k: int) -> str:
+    """One value with its standard error, in the unit of the scene's file."""
+    unit = result.units[k] if result.units else Unit("SI", 1.0)
+    std = float(result.std[k]) * unit.count
+    error = f" ± {std:.2g}" if np.isfinite(std) else ""
+    return f"{result.unknown[k]} = {unit.number(float(result.value[k]))}{error} {unit.name}".rstrip()

@@ -44,7 +44,7 @@ from leblanc.text.run import (
 from leblanc.text.whirl_map import answer as whirl_map_answer
 from leblanc.text.whirl_map import band_words
 from leblanc.text.whirl_map import facts as whirl_map_facts
-from leblanc.units import LENGTH, RPM, VOLUME, unit_for
+from leblanc.units import LENGTH, RPM, VOLUME, in_peak, unit_for
 from meshes.arrays import Array, Flags, Index
 
 if TYPE_CHECKING:
@@ -130,7 +130,7 @@ def held_motions(result: RunResult) -> list[Table]:
         for part in _runs(result.speed, held.limit_cycle)
     ]
     if cycles:
-        sizes = (f"{name} ({unit.name})" for name in ("mean amplitude", "least", "largest"))
+        sizes = (f"{name} ({in_peak(unit.name)})" for name in ("mean amplitude", "least", "largest"))
         tables.append(table("", ("Limit cycles (rpm)", *sizes, "whirl speed (rpm)"), cycles))
 
     def motion(states: NDArray[np.str_], values: Array) -> str:
@@ -145,7 +145,7 @@ def held_motions(result: RunResult) -> list[Table]:
         for part in _runs(result.speed, held.hysteresis)
     ]
     if apart:
-        ways = (f"{way} speed: motion, amplitude ({unit.name})" for way in ("rising", "falling"))
+        ways = (f"{way} speed: motion, amplitude ({in_peak(unit.name)})" for way in ("rising", "falling"))
         tables.append(table("", ("Up and down differ (rpm)", *ways), apart))
     return tables
 
@@ -286,7 +286,7 @@ def ball_states(result: BallsResult) -> Table:
             rows.append(
                 (number(result.speed[k] * RPM), name, size, "yes" if stable else "no", number(growth))
             )
-    head = ("Speed (rpm)", "balls", f"amplitude ({unit.name})", "stable", "growth (1/s)")
+    head = ("Speed (rpm)", "balls", f"amplitude ({in_peak(unit.name)})", "stable", "growth (1/s)")
     return table("States", head, rows)
 
 

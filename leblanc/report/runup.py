@@ -20,7 +20,7 @@ from leblanc.results.runup import RunupResult
 from leblanc.text.numbers import MOST_RANGES, number
 from leblanc.text.runup import answer, ball_rows, describe_model, largest_dry, rounding
 from leblanc.text.runup import moments as main_moments
-from leblanc.units import LENGTH, MASS, MINUS, RPM, rpm_bands, rpm_range, unit_for, with_unit
+from leblanc.units import LENGTH, MASS, MINUS, RPM, in_peak, rpm_bands, rpm_range, unit_for, with_unit
 
 if TYPE_CHECKING:
     from leblanc.figures.drawing.page import FigureFiles
@@ -79,13 +79,20 @@ def moments(result: RunupResult) -> Table:
         found.append(("Largest of the steady response", size, float(result.steady.speed[highest]), ""))
     unit = unit_for(LENGTH, *(size for _, size, _, _ in found))
     rows = [(label, unit.number(size), number(speed * RPM), time) for label, size, speed, time in found]
-    return table("", ("", f"amplitude ({unit.name})", "at (rpm)", "after (s)"), rows)
+    return table("", ("", f"amplitude ({in_peak(unit.name)})", "at (rpm)", "after (s)"), rows)
 
 
 def passages(result: RunupResult) -> Table:
     """The steps of a programme with the largest amplitude of each; no rows for a run-up."""
     unit = unit_for(LENGTH, *(passage.amplitude for passage in result.passages))
-    head = ("Step", "", "ends after (s)", f"largest amplitude ({unit.name})", "at (rpm)", result.without)
+    head = (
+        "Step",
+        "",
+        "ends after (s)",
+        f"largest amplitude ({in_peak(unit.name)})",
+        "at (rpm)",
+        result.without,
+    )
     rows = [
         (
             f"{passage.step}",

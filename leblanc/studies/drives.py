@@ -183,9 +183,14 @@ def programme_notes(
     found += _limited_steps(history, drive)
     for passage in passages:
         step, stage = plan.steps[passage.step - 1], drive.stages[passage.step - 1]
-        if step.kind != "coast" or step.speed is None or passage.end - passage.begin < plan.coast_limit:
+        if step.kind != "coast":
             continue
         stop = drive.target(stage, passage.speed_begin)
+        lasts = passage.end - passage.begin
+        if lasts < (stage.duration or 0.0) * (1.0 - _REACHED) and passage.speed_end > stop * (1.0 + _REACHED):
+            found.append(notes.stood(passage.step, passage.end, passage.speed_end))
+        if step.speed is None or lasts < plan.coast_limit:
+            continue
         found.append(notes.coast_not_ended(passage.step, stop, passage.speed_end, plan.coast_limit))
     return tuple(found)
 

@@ -2,452 +2,365 @@
 
 from __future__ import annotations
 
-import csv
-import math
-import re
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
 from os import PathLike
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from leblanc import units
 from leblanc.results.base import Note
-from leblanc.results.fit import POOR, REACH, FitCode, FitResult, Measured, fit_notes, poor_note
-from leblanc.scene.scene import Scene, dry_rotor, require_no_balls
-from leblanc.scene.schema.load import SceneError
-from leblanc.studies.drives import numerics_of, planned
-from leblanc.studies.models.choose import across_gravity, choose_all, liquid_models, prepare
-from leblanc.studies.runup import chosen_run, drive_of
-from leblanc.units import Dimension
+from leblanc.results.fit import (
+    LARGE,
+    FitCode,
+    FitResult,
+    FittedCurve,
+    Measured,
+    fit_notes,
+    flat_note,
+    large_note,
+    lopsided_note,
+    plateau_note,
+    quantile,
+    repeated_note,
+)
+from leblanc.scene.scene import Scene, require_no_balls
+from leblanc.scene.schema.load import given_at
+from leblanc.scene.schema.paths import rule_at
+from leblanc.scene.schema.rules import Refused
+from leblanc.studies.fitting.errors import Curvature, Profiles, averaged, curvature, profiles
+from leblanc.studies.fitting.measured import ANGLES, Measurement
+from leblanc.studies.fitting.noise import (
+    ESTIMATE,
+    Judged,
+    here,
+    kinds_of,
+    parse_noise,
+    refine,
+    relative_rms,
+    unexplained,
+)
+from leblanc.studies.fitting.problem import (
+    LIMIT,
+    Problem,
+    answer,
+    first_guess,
+    is_turn,
+    require_scale,
+    ties_of,
+)
+from leblanc.studies.fitting.search import Searched, Valley, descend, floor, search
+from leblanc.studies.models.validity import require_supported
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
-from solvers.runup.runup import RunupHistory
-from solvers.synchronous.response import Response, response
 
-FIELD = "measured"
-MOST_ROWS = 100_000
-_HEAD = re.compile(r"\s*([A-Za-z_]\w*)\s*(?:[\[(]\s*(.*?)\s*[\])])?\s*")
-# Of the first guess: how far off the other starts are.
-_SPREAD = 2.0
-# Left of a measured quantity where the scene has no answer with some values, over its size.
-_NO_ANSWER = 1e3
-# Of the logarithms, for derivatives; the peaks of run-ups whose walls run dry jump by a per cent.
-_STEP, _PEAK_STEP = 1e-4, 2e-2
-# What may have either sign is looked for about its first guess in steps of these, m and rad.
-_SPANS = {"position": 0.1, "angle": 1.0}
 _ALIKE = 0.05  # two answers whose unknowns differ by less than this are one
-_OVER = {"speed": units.ANGULAR_SPEED, "time": units.TIME, "added": units.VOLUME}
-SCALES = ("given", "free", "each")
-_QUANTITIES = {
-    "amplitude": units.LENGTH,
-    "peak": units.LENGTH,
-    "phase": units.ANGLE,
-    "liquid_offset": units.LENGTH,
-    "liquid_angle": units.ANGLE,
-}
-_ANGLES = ("phase", "liquid_angle")
-
-
-@dataclass(frozen=True)
-class Measurement:
-    """What was measured on a machine."""
-
-    over: str  #: "speed", "time", or "added" for liquid added to the first chamber
-    at: Array  #: rad/s, s or m^3, rising, shape (n,)
-    columns: tuple[tuple[str, Array], ...]  #: name and values of each quantity, SI, shape (n,)
-
-
-def read_measured(path: str | PathLike[str], coordinates: Sequence[str], free: bool = False) -> Measurement:
-    """A table of measured values: a header of names with units, then numbers, commas between them.
-
-    Parameters
-    ----------
-    path : of the file, as in "speed [rpm], amplitude [mm]"
-    coordinates : of the rotor, which may be measured over time
-    free : the scale of the quantities is not known, their units are any
-
-    Raises
-    ------
-    InputError : no such file, a column that is none of these, a value that is no number
-    """
-    try:
-        text = Path(path).read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as fault:
-        raise InputError(FIELD, str(path), f"a table of text that can be read ({fault})") from fault
-    rows = [row for row in csv.reader(text.splitlines()) if row and not row[0].lstrip().startswith("#")]
-    if len(rows) < 3 or len(rows) > MOST_ROWS:
-        raise InputError(FIELD, f"{len(rows)} rows", f"a header and from 2 to {MOST_ROWS} rows of numbers")
-    heads = [_head(cell, k, coordinates, free) for k, cell in enumerate(rows[0])]
-    over = [name for name, _ in heads if name in _OVER]
-    if len(over) != 1 or len(heads) < 2:
-        raise InputError(
-            FIELD, ", ".join(rows[0]), "speed, time or added, one of them, and what was measured over it"
-        )
-    values = np.array([_numbers(row, len(heads), k + 2) for k, row in enumerate(rows[1:])])
-    values = values * np.array([factor for _, factor in heads])
-    columns = {name: values[:, k] for k, (name, _) in enumerate(heads)}
-    order = np.argsort(columns[over[0]], kind="stable")
-    at = columns.pop(over[0])[order]
-    if over[0] == "speed" and not (at > 0.0).all():
-        raise InputError(FIELD, float(at.min()), "speeds above 0")
-    if over[0] == "added" and not (at >= 0.0).all():
-        raise InputError(FIELD, float(at.min()), "volumes of at least 0")
-    return Measurement(over[0], at, tuple((name, column[order]) for name, column in columns.items()))
-
-
-def _head(cell: str, k: int, coordinates: Sequence[str], free: bool) -> tuple[str, float]:
-    """Name of a column and the SI value of its unit."""
-    found = _HEAD.fullmatch(cell)
-    turns = {"alpha", "beta", "gamma"}
-    known = (
-        _OVER | _QUANTITIES | {name: units.ANGLE if name in turns else units.LENGTH for name in coordinates}
-    )
-    if found is None or found[1] not in known:
-        raise InputError(
-            f"{FIELD}, column {k + 1}", cell, "one of " + ", ".join(known) + ", as in speed [rpm]"
-        )
-    name, unit = found[1], found[2] or ""
-    if free and name not in (*_OVER, *_ANGLES):
-        return name, 1.0
-    return name, _unit(unit, known[name], f"{FIELD}, column {k + 1}")
-
-
-def _unit(unit: str, dimension: Dimension, field: str) -> float:
-    return units.parse(f"1 {unit}" if unit else 1.0, dimension, field)
-
-
-def _numbers(row: Sequence[str], count: int, line: int) -> list[float]:
-    try:
-        found = [float(cell) for cell in row]
-    except ValueError as fault:
-        raise InputError(f"{FIELD}, row {line}", ", ".join(row), "numbers with decimal points") from fault
-    if len(found) != count or not all(map(math.isfinite, found)):
-        raise InputError(f"{FIELD}, row {line}", ", ".join(row), f"{count} finite numbers")
-    return found
-
-
-def require_scale(scale: str, field: str = "scale") -> str:
-    """What is known of the scale of the measured lengths.
-
-    Parameters
-    ----------
-    scale : "given", "free" for one factor of all lengths, "each" for one of every quantity
-    field : what it is called where it was typed
-
-    Raises
-    ------
-    InputError : none of them
-    """
-    if scale not in SCALES:
-        raise InputError(field, scale, "one of " + ", ".join(SCALES))
-    return scale
+_CANDIDATES = 3  # ends of searches that are compared by their likelihood
+_ROUNDING = 1e-9  # of the size: less left is nothing but rounding
+_ROUNDS = 4  # times that a profile may find better values
+_JOINTLY = 0.99  # of noise: less far from the best values by all unknowns at once
+_POINTS = 400  # of the fitted curve
+_LOPSIDED = 4.0  # one arm of an interval over the other
+_TOLD = 0.2  # share of an unknown in a direction that the data do not tell
 
 
 def fit_scene(
     scene: Scene,
     measurement: Measurement,
     unknown: Sequence[str],
-    starts: int = 4,
+    starts: int = 2,
     seed: int = 0,
     scale: str = "given",
     progress: Callable[[float], None] | None = None,
+    noise: str = ESTIMATE,
+    file: str | PathLike[str] | None = None,
 ) -> FitResult:
-    """Values of a scene that bring its answer closest to what was measured [theory: fit, eq. 1-3].
+    """Values of a scene that bring its answer closest to what was measured [theory: fit, eq. 1-12].
 
     Parameters
     ----------
     scene : the machine; its values are the first guess
     measurement : of the steady response over speed, of the scene's run-up over time, or of amplitude at its
         last speed and largest amplitude over liquid added
-    unknown : paths of the unknowns in the scene
-    starts : searches, the first from the scene's values, the others from values up to twice as large or small
+    unknown : paths of the unknowns in the scene; "A=B" ties B to A
+    starts : searches at least, the first from the scene's values; more follow until the best values have been
+        found twice and noise may explain what they leave
     seed : of the others
     scale : "given"; "free": that of the measured lengths is not known, one factor for all of them is found as
         well; "each": one for every quantity
     progress : called with the share of the starts that is done
+    noise : "estimate", "3 %" of each reading, or an error such as "0.1 mm"
+    file : of the scene, whose units the values are shown in
 
     Raises
     ------
     InputError : no unknown, one that is no number above 0 in the scene, fewer points than unknowns
     """
-    from scipy.optimize import least_squares
-
     if measurement.over != "time":
         require_no_balls(scene, f"a fit over {measurement.over}; with balls it takes a run-up over time")
-    first = _first(scene, unknown)
-    points = measurement.at.size * len(measurement.columns)
-    problem = _Problem(scene, tuple(unknown), first, measurement, require_scale(scale))
-    if points <= len(unknown) + problem.factors:
-        raise InputError("unknown", len(unknown), f"fewer than the {points} measured values")
-    problem.residual(np.zeros(len(unknown)))
-    limit, random = math.log(REACH), np.random.default_rng(seed)
-    begins = np.log(_SPREAD) * random.uniform(-1.0, 1.0, (max(starts, 1) - 1, len(unknown)))
-    tried: list[Any] = []
-    for k, begin in enumerate([np.zeros(len(unknown)), *begins]):
-        tried.append(
-            least_squares(
-                problem.residual, begin, bounds=(-limit, limit), x_scale=0.1, diff_step=problem.step
-            )
-        )
-        if progress is not None:
-            progress((k + 1) / max(starts, 1))
-    best = min(tried, key=lambda each: float(each.cost))
-    return problem.result(best, tried, limit)
+        require_supported(scene)
+    stated = parse_noise(noise)
+    groups = ties_of(scene, unknown)
+    first = np.array([first_guess(scene, group[0]) for group in groups])
+    problem = Problem(scene, groups, first, measurement, require_scale(scale))
+    if problem.freedom < 1:
+        allowed = f"fewer than the {problem.count} measured values"
+        raise InputError("unknown", len(unknown), allowed)
+    problem.answer(np.zeros(first.size))
 
-
-def _others(tried: Sequence[Any], best: Any, told: Flags) -> int:
-    """Searches that ended elsewhere, by unknowns that the data tell, with an answer as good to a tenth."""
-    alike = [each.cost <= 1.1 * best.cost + 1e-18 for each in tried]
-    far = [float(np.abs(each.x - best.x)[told].max(initial=0.0)) > _ALIKE for each in tried]
-    return sum(good and other for good, other in zip(alike, far, strict=True))
-
-
-def _first(scene: Scene, unknown: Sequence[str]) -> Array:
-    """First guess of each unknown, SI."""
-    if not unknown:
-        raise InputError("unknown", "none", "at least one path such as rotor.mass")
-    found, table = [], scene.table()
-    for k, path in enumerate(unknown):
-        if path in unknown[:k]:
-            raise InputError("unknown", path, "different paths")
-        value: Any = table
-        signed = _span(path) is not None
-        try:
-            for key in path.split("."):
-                value = value[int(key)] if isinstance(value, list | tuple) else value[key]
-        except (KeyError, IndexError, TypeError, ValueError) as fault:
-            raise InputError("unknown", path, "the path of a value that stands in the scene") from fault
-        if isinstance(value, bool) or not isinstance(value, int | float) or not (signed or value > 0.0):
-            allowed = "the path of a number above 0, or of a position or angle, the first guess"
-            raise InputError("unknown", path, allowed)
-        found.append(float(value))
-    return np.array(found)
-
-
-def _span(path: str) -> float | None:
-    """Step of an unknown that may have either sign, m or rad; None where its logarithm is looked for."""
-    names = [key for key in path.split(".") if not key.isdigit()]
-    return _SPANS.get(names[-1])
-
-
-@dataclass
-class _Problem:
-    """The residual of a fit over its unknowns, by their logarithms or steps from the first guess."""
-
-    scene: Scene
-    unknown: tuple[str, ...]
-    first: Array
-    measurement: Measurement
-    scale: str
-    evaluations: int = 0
-
-    @property
-    def factors(self) -> int:
-        """How many factors of lengths are found besides the unknowns."""
-        lengths = sum(name not in _ANGLES for name, _ in self.measurement.columns)
-        return {"given": 0, "free": 1, "each": lengths}[self.scale]
-
-    @property
-    def step(self) -> float:
-        """Of the logarithms, for derivatives."""
-        return _PEAK_STEP if any(name == "peak" for name, _ in self.measurement.columns) else _STEP
-
-    @property
-    def spans(self) -> Array:
-        """Steps of unknowns that may have either sign, nan of those whose logarithm is looked for."""
-        return np.array([np.nan if (span := _span(path)) is None else span for path in self.unknown])
-
-    def values(self, logs: Array) -> Array:
-        """The unknowns, SI [theory: fit, eq. 5]."""
-        spans = self.spans
-        return np.where(np.isnan(spans), self.first * np.exp(logs), self.first + spans * logs)
-
-    def answer(self, logs: Array) -> list[Array]:
-        """The measured quantities by the scene with other values, before they are scaled."""
-        values = dict(zip(self.unknown, self.values(logs).tolist(), strict=True))
-        self.evaluations += 1
-        names = [name for name, _ in self.measurement.columns]
-        return _answer(self.scene.replace(values), self.measurement.over, self.measurement.at, names)
-
-    def scales(self, found: Sequence[Array]) -> list[float]:
-        """Best factor of each quantity [theory: fit, eq. 2]; 1 of angles, and where it is given."""
-        pairs = list(zip(found, self.measurement.columns, strict=True))
-        if self.scale == "each":
-            return [1.0 if name in _ANGLES else _factor([(own, value)]) for own, (name, value) in pairs]
-        lengths = [(own, value) for own, (name, value) in pairs if name not in _ANGLES]
-        common = _factor(lengths) if self.scale == "free" else 1.0
-        return [1.0 if name in _ANGLES else common for name, _ in self.measurement.columns]
-
-    def residual(self, logs: Array) -> Array:
-        """What is left of each quantity over the root of its mean square, shape (n columns,)."""
-        try:
-            found = self.answer(logs)
-        except (InputError, SceneError):
-            if self.evaluations <= 1:
-                raise
-            found = []
-        if not found or not all(np.isfinite(part).all() for part in found):
-            return np.full(self.measurement.at.size * len(self.measurement.columns), _NO_ANSWER)
-        parts = []
-        for own, (name, value), scale in zip(
-            found, self.measurement.columns, self.scales(found), strict=True
-        ):
-            if name in _ANGLES:
-                parts.append(np.angle(np.exp(1j * (own - value))))
-            else:
-                parts.append((scale * own - value) / _size(value))
-        return np.concatenate(parts)
-
-    def result(self, best: Any, tried: Sequence[Any], limit: float) -> FitResult:
-        """What was found, with its uncertainty from the curvature about it [theory: fit, eq. 3]."""
-        found, count = self.answer(best.x), best.fun.size
-        scales, value = self.scales(found), self.values(best.x)
-        edge = [abs(abs(x) - limit) < 1e-6 for x in best.x.tolist()]
-        std, correlation = _uncertainty(best.jac, float(best.fun @ best.fun), count - self.factors)
-        std = std * np.where(np.isnan(self.spans), value, self.spans)
-        others = _others(tried, best, np.isfinite(std))
-        notes = fit_notes(self.unknown, value, std, correlation, edge, others, self.spans)
-        notes += self._scale_notes(scales)
-        rms = float(np.sqrt(np.mean(np.square(best.fun))))
-        if rms > POOR:
-            notes.append(poor_note(rms))
-        if self.measurement.over == "speed" and best.fun @ best.fun < 1e-18 * count:
-            text = "The scene meets the data to rounding: their noise is not known, nor are the errors."
-            notes.append(Note(FitCode.NO_SPREAD, {}, text))
-        parts = []
-        for own, (name, measured), scale in zip(found, self.measurement.columns, scales, strict=True):
-            unit = "rad" if name in (*_ANGLES, "alpha", "beta", "gamma") else "m"
-            if self.scale != "given" and name not in _ANGLES:
-                own, unit = scale * own, ""
-            parts.append(Measured(name, unit, measured, own))
-        scene = self.scene
-        return FitResult(
-            name=scene.name,
-            source=scene.source,
-            assumed=scene.assumed,
-            digest=scene.digest,
-            unknown=self.unknown,
-            value=value,
-            std=std,
-            first=self.first,
-            correlation=correlation,
-            over=self.measurement.over,
-            at=self.measurement.at,
-            measured=tuple(parts),
-            scale=next((s for s in scales if s != 1.0), 1.0),
-            residual_rms=rms,
-            converged=bool(best.success) and bool((best.fun < _NO_ANSWER).all()),
-            evaluations=self.evaluations,
-            notes=tuple(notes),
-            signed=tuple(path for path in self.unknown if _span(path) is not None),
-            freedom=count - len(self.unknown) - self.factors,
+    def explained(x: Array) -> bool:
+        return any(
+            unexplained(problem, here(problem, x, stated, k)) is None for k in kinds_of(problem, stated)
         )
 
-    def _scale_notes(self, scales: Sequence[float]) -> list[Note]:
-        """The factors that were found."""
-        if self.scale == "free":
-            scale = next((s for s in scales if s != 1.0), 1.0)
-            text = f"One factor for all lengths was found as well: {units.number(scale)} of the scene's."
-            return [Note(FitCode.SCALE, {"scale": scale}, text)]
-        names = [name for name, _ in self.measurement.columns]
-        pairs = {name: s for name, s in zip(names, scales, strict=True) if name not in _ANGLES}
-        if self.scale == "given" or not pairs:
-            return []
-        told = ", ".join(f"{name} {units.number(s)}" for name, s in pairs.items())
-        text = f"A factor for each quantity was found as well, of the scene's: {told}."
-        return [Note(FitCode.SCALE, {"scale": pairs}, text)]
+    searched = search(problem, max(starts, 1), seed, explained, progress)
+    best, other = _likeliest(problem, searched, stated)
+    reason = unexplained(problem, best)
+    bent, profile, best = _errors(problem, best, other, stated, reason is None)
+    reason = unexplained(problem, best)
+    return _result(problem, searched, best, bent, profile, reason, file)
 
 
-def _factor(pairs: Sequence[tuple[Array, Array]]) -> float:
-    """The factor that brings some arrays closest to others, taken together."""
-    squares = sum(float(own @ own) for own, _ in pairs)
-    return sum(float(own @ value) for own, value in pairs) / squares if squares > 0.0 else 1.0
+def _likeliest(
+    problem: Problem, searched: Searched, stated: tuple[str, float]
+) -> tuple[Judged, Judged | None]:
+    """Best values by the likeliest kind of noise, of the ends of good searches; those by another kind."""
+    best = searched.valleys[0]
+    starts: list[Valley] = []
+    for valley in searched.valleys:
+        good = valley.cost <= 4.0 * best.cost + floor(problem)
+        if good and all(np.abs(valley.x - other.x).max() > _ALIKE for other in starts):
+            starts.append(valley)
+    kinds = kinds_of(problem, stated)
+    if best.cost <= problem.count * _ROUNDING**2:
+        return here(problem, best.x, stated, kinds[0]), None
+    found = [refine(problem, valley.x, stated, kind) for valley in starts[:_CANDIDATES] for kind in kinds]
+    likeliest = min(found, key=lambda judged: judged.unlikely)
+    others = [judged for judged in found if judged.noise.kind != likeliest.noise.kind]
+    return likeliest, min(others, key=lambda judged: judged.unlikely, default=None)
 
 
-def _size(value: Array) -> float:
-    """Root of the mean square, 1 where all is 0."""
-    return float(np.sqrt(np.mean(np.square(value)))) or 1.0
+def _errors(
+    problem: Problem, best: Judged, other: Judged | None, stated: tuple[str, float], wanted: bool
+) -> tuple[Curvature, Profiles, Judged]:
+    """Curvature and profiles about the best values, which a profile may improve."""
+    for _ in range(_ROUNDS):
+        bent = _curvature(problem, best)
+        if wanted and other is not None:
+            bent = averaged(bent, best, _curvature(problem, other), other)
+        none = Profiles((None,) * best.x.size, None)
+        if not wanted:
+            return bent, none, best
+        wide = quantile(problem.freedom, best.noise.stated)
+        profile = profiles(problem, best.x, best.sigma, bent, wide, _at_bound(best.x))
+        if profile.better is None:
+            return bent, profile, best
+        best = refine(problem, profile.better, stated, best.noise.kind)
+    return bent, none, best
 
 
-def _uncertainty(jacobian: Array, squares: float, count: int) -> tuple[Array, Array]:
-    """Standard errors of the logarithms, nan where nothing tells them, and their correlation.
+def _curvature(problem: Problem, judged: Judged) -> Curvature:
+    return curvature(problem.jacobian(problem.weighted(judged.sigma), judged.x, central=True))
 
-    Parameters
-    ----------
-    jacobian : of the residual, shape (n, p)
-    squares : sum of the residual's squares
-    count : n, less what else was found
+
+def _at_bound(x: Array) -> Flags:
+    return np.asarray(np.abs(np.abs(x) - LIMIT) < 1e-6)
+
+
+def _others(problem: Problem, searched: Searched, best: Judged, told: Flags) -> list[Array]:
+    """Ends of searches elsewhere, by unknowns that the data tell, that noise does not rule out.
+
+    In one of a hundred cases the sum of the truth rises further for all unknowns [theory: fit, eq. 11].
     """
-    unknowns = jacobian.shape[1]
-    _, size, turn = np.linalg.svd(jacobian, full_matrices=False)
-    told = size > 1e-7 * max(float(size.max()), 1e-300)
-    noise = squares / max(count - unknowns, 1)
-    inverse = np.where(told, 1.0 / np.where(told, size, 1.0), 0.0)
-    covariance = noise * (turn.T * np.square(inverse)) @ turn
-    lost = np.abs(turn[~told]).max(axis=0, initial=0.0) > 1e-3
-    deviation = np.sqrt(np.maximum(np.diag(covariance), 0.0))
-    outer = np.outer(deviation, deviation)
-    correlation = np.divide(covariance, outer, out=np.eye(unknowns), where=outer > 0.0)
-    return np.where(lost, np.nan, deviation), correlation
+    from scipy.special import chdtri, fdtri
+
+    residual = problem.weighted(best.sigma)
+    least = float(np.sum(np.square(residual(best.x))))
+    count = best.x.size
+    estimated = count * float(fdtri(count, problem.freedom, _JOINTLY))
+    rise = float(chdtri(count, 1.0 - _JOINTLY)) if best.noise.stated else estimated
+    limit = least + rise + floor(problem)
+    found: list[Array] = []
+    tried = 0
+    for valley in searched.valleys:
+        if valley.cost > 4.0 * searched.valleys[0].cost + floor(problem) or tried == _CANDIDATES:
+            break
+        if _is_near(valley.x, (best.x, *found), told):
+            continue
+        tried += 1
+        other = descend(problem, residual, valley.x)
+        if other.cost <= limit and not _is_near(other.x, (best.x, *found), told):
+            found.append(other.x)
+    return found
 
 
-def _answer(scene: Scene, over: str, at: Array, names: Sequence[str]) -> list[Array]:
-    """Quantities of a scene at measured speeds or times, or with liquid added."""
-    if over == "speed":
-        speed, where = np.unique(at, return_inverse=True)
-        found = _steady(scene, speed)
-        return [np.asarray(_quantity(found, name))[where] for name in names]
-    if over == "added":
-        filled = [_with_more(scene, volume) for volume in at.tolist()]
-        return [np.array([_of_fill(each, name) for each in filled]) for name in names]
-    history = _history(scene)
-    own = {name: history.coordinates[:, k] for k, name in enumerate(dry_rotor(scene).system().coordinates)}
-    own["amplitude"] = history.amplitude
-    for name in names:
-        if name not in own:
-            raise InputError(FIELD, name, "measured over speed or liquid added, or one of " + ", ".join(own))
-    return [np.interp(at, history.time, own[name], right=np.nan) for name in names]
+def _is_near(x: Array, places: Sequence[Array], told: Flags) -> bool:
+    return any(np.abs(x - place)[told].max(initial=0.0) <= _ALIKE for place in places)
 
 
-def _with_more(scene: Scene, volume: float) -> Scene:
-    """The scene with more liquid in its first chamber, m^3."""
-    return scene.replace({"chambers.0.volume": scene.liquids[0].volume + volume})
-
-
-def _of_fill(scene: Scene, name: str) -> float:
-    """A quantity of one fill: the steady amplitude at the last speed, the largest one of the run-up, m."""
-    if name == "peak":
-        return float(_history(scene).amplitude.max())
-    if name == "amplitude":
-        return float(_steady(scene, np.array([scene.speeds.stop])).amplitude[0])
-    raise InputError(FIELD, name, "amplitude or peak over liquid added")
-
-
-def _history(scene: Scene) -> RunupHistory:
-    """The scene's run-up or programme, without the second run that tells its error."""
-    plan = planned(scene)
-    drive, numerics = drive_of(plan, scene.rotor), numerics_of(plan, check=False)
-    return chosen_run(scene, drive, across_gravity(scene), numerics).history
-
-
-def _steady(scene: Scene, speed: Array) -> Response:
-    """Synchronous response at some speeds by the liquid model that the scene asks for."""
-    if scene.model.liquid not in ("auto", "statics", "linear"):
-        raise InputError("model.liquid", scene.model.liquid, "auto, statics or linear for a fit over speed")
-    machine = replace(prepare(scene), speed=speed)
-    (choice,) = choose_all([machine])
-    return response(machine.rotor, scene.fills, speed, machine.axial_gravity, liquid_models(choice))
-
-
-def _quantity(found: Response, name: str) -> Array:
-    """A measured quantity of a response."""
-    if name == "phase":
-        return np.angle(found.deflection)
-    if name not in ("amplitude", "liquid_offset", "liquid_angle"):
-        raise InputError(
-            FIELD, name, "measured over time, or one of amplitude, phase, liquid_offset, liquid_angle"
+def _result(
+    problem: Problem,
+    searched: Searched,
+    best: Judged,
+    bent: Curvature,
+    profile: Profiles,
+    reason: Note | None,
+    file: str | PathLike[str] | None,
+) -> FitResult:
+    """What was found, with its uncertainty and notes."""
+    measurement, scene, paths = problem.measurement, problem.scene, [group[0] for group in problem.unknown]
+    raw = problem.answer(best.x)
+    found = raw if raw is not None else [np.full(measurement.at.shape, np.nan)] * len(problem.names)
+    scales = problem.scales(found, best.sigma)
+    left = problem.left([own * s for own, s in zip(found, scales, strict=True)])
+    rms = relative_rms(problem, left)
+    accepted = reason is None
+    value = problem.values(best.x)
+    slope = np.where(np.isnan(problem.spans), value, problem.spans)
+    std, ends, notes = _intervals(problem, best, bent, profile, slope)
+    edge = _at_bound(best.x)
+    std[edge] = np.nan
+    rounding = rms < _ROUNDING
+    if not accepted or rounding:
+        std[:] = np.nan
+    lopsided = {note.data["path"] for note in notes if note.code in (FitCode.PLATEAU, FitCode.LOPSIDED)}
+    told = np.isfinite(bent.std) & np.array([path not in lopsided for path in paths])
+    if accepted:
+        shown = [path in lopsided for path in paths]
+        notes = notes + fit_notes(
+            paths, value, bent.std * slope, bent.correlation, edge.tolist(), shown, problem.spans
         )
-    return np.asarray(getattr(found, name))
+    others = _others(problem, searched, best, told) if accepted else []
+    if others:
+        notes.append(_other_note(problem, paths, others))
+    notes = [*measurement.notes, *notes, *_scale_notes(problem, scales)]
+    if searched.again < 2 and len(searched.valleys) > 1 and not rounding:
+        notes.append(repeated_note(len(searched.valleys)))
+    if reason is not None:
+        notes.append(reason)
+    elif rms > LARGE and not best.noise.stated:
+        notes.append(large_note(rms))
+    if rounding and accepted:
+        text = "The scene meets the data to rounding: their noise is not known, nor are the errors."
+        notes.append(Note(FitCode.NO_SPREAD, {}, text))
+    parts = []
+    for own, (name, measured), factor in zip(found, measurement.columns, scales, strict=True):
+        unit = "rad" if is_turn(name) else "m"
+        if problem.scale != "given" and name not in ANGLES:
+            own, unit = factor * own, ""
+        parts.append(Measured(name, unit, measured, own))
+    return FitResult(
+        name=scene.name,
+        source=scene.source,
+        assumed=scene.assumed,
+        digest=scene.digest,
+        unknown=tuple(paths),
+        value=value,
+        std=std,
+        first=problem.first,
+        correlation=bent.correlation,
+        over=measurement.over,
+        at=measurement.at,
+        measured=tuple(parts),
+        scale=next((s for s in scales if s != 1.0), 1.0),
+        residual_rms=rms,
+        converged=best.ended and raw is not None,
+        evaluations=problem.evaluations,
+        notes=tuple(notes),
+        signed=tuple(path for path, span in zip(paths, problem.spans, strict=True) if not np.isnan(span)),
+        freedom=problem.freedom,
+        accepted=accepted,
+        noise=best.noise,
+        profile=ends if accepted else None,
+        tied=tuple(group[1:] for group in problem.unknown),
+        curve=_curve(problem, best.x, scales),
+        units=_units(scene, paths, file),
+    )
+
+
+def _intervals(
+    problem: Problem, best: Judged, bent: Curvature, profile: Profiles, slope: Array
+) -> tuple[Array, Array, list[Note]]:
+    """Standard errors, SI, ends of intervals by profiles, nan elsewhere, and notes of plateaus."""
+    std = bent.std * slope
+    ends = np.full((best.x.size, 2), np.nan)
+    notes: list[Note] = []
+    paths = [group[0] for group in problem.unknown]
+    value = problem.values(best.x)
+    for k, sides in enumerate(profile.sides):
+        if sides is None:
+            continue
+        for j, side in enumerate(sides):
+            moved = best.x.copy()
+            moved[k] = side.end
+            ends[k, j] = problem.values(moved)[k]
+        below, above = sides
+        arms = np.array([best.x[k] - below.end, above.end - best.x[k]])
+        if below.open and above.open:
+            std[k] = np.nan
+        elif below.open or above.open:
+            std[k] = np.nan
+            notes.append(plateau_note(paths[k], value[k], float(ends[k, 0 if above.open else 1]), above.open))
+        elif arms.max() > _LOPSIDED * max(arms.min(), 1e-12):
+            std[k] = np.nan
+            notes.append(lopsided_note(paths[k], *ends[k].tolist()))
+        else:
+            std[k] = arms.mean() / quantile(problem.freedom, best.noise.stated) * slope[k]
+    for direction in bent.flat:
+        share = np.abs(direction) > _TOLD
+        std[share & ~(bent.std * 2.0 < 1.0)] = np.nan
+        if np.count_nonzero(share) > 1:
+            some = [path for path, own in zip(paths, share, strict=True) if own]
+            notes.append(flat_note(some, direction[share].tolist()))
+    return std, ends, notes
+
+
+def _other_note(problem: Problem, paths: Sequence[str], others: Sequence[Array]) -> Note:
+    """That the data allow other values as well, and which."""
+    values = [problem.values(x).tolist() for x in others]
+    told = "; ".join(
+        ", ".join(f"{path} = {units.number(v)}" for path, v in zip(paths, row, strict=True))
+        for row in values[:3]
+    )
+    text = f"Another answer fits within the noise: the data allow {told} (SI) as well."
+    return Note(FitCode.OTHER_MINIMUM, {"starts": len(others), "values": values}, text)
+
+
+def _scale_notes(problem: Problem, scales: Sequence[float]) -> list[Note]:
+    """The factors that were found."""
+    if problem.scale == "free":
+        scale = next((s for s in scales if s != 1.0), 1.0)
+        text = f"One factor for all lengths was found as well: {units.number(scale)} of the scene's."
+        return [Note(FitCode.SCALE, {"scale": scale}, text)]
+    pairs = {name: s for name, s in zip(problem.names, scales, strict=True) if name not in ANGLES}
+    if problem.scale == "given" or not pairs:
+        return []
+    told = ", ".join(f"{name} {units.number(s)}" for name, s in pairs.items())
+    text = f"A factor for each quantity was found as well, of the scene's: {told}."
+    return [Note(FitCode.SCALE, {"scale": pairs}, text)]
+
+
+def _curve(problem: Problem, x: Array, scales: Sequence[float]) -> FittedCurve | None:
+    """The fitted answer between the measured points; none over liquid added, where each point is a run."""
+    measurement = problem.measurement
+    if measurement.over == "added" or problem.answer(x) is None:
+        return None
+    at = np.linspace(measurement.at[0], measurement.at[-1], _POINTS)
+    at = np.union1d(at, measurement.at)
+    try:
+        found = answer(problem.with_values(x), measurement.over, at, problem.names)
+    except (InputError, np.linalg.LinAlgError):
+        return None
+    return FittedCurve(at, tuple(own * s for own, s in zip(found, scales, strict=True)))
+
+
+def _units(scene: Scene, paths: Sequence[str], file: str | PathLike[str] | None) -> tuple[units.Unit, ...]:
+    """Units in which the scene's file has its values, SI units without a file."""
+    found = []
+    for path in paths:
+        try:
+            dimension = getattr(rule_at(Scene, scene.table(), path), "dimension", units.NUMBER)
+        except Refused:  # of a run-up or programme, which no sweep varies
+            dimension = units.NUMBER
+        stands, given, _ = (False, None, None) if file is None else given_at(file, path)
+        found.append(units.unit_typed(given if stands else None, dimension))
+    return tuple(found)

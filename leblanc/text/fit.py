@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 from leblanc.results.fit import FitResult
-from leblanc.units import number
+from leblanc.units import MM, Unit
 
-HEAD = ("Unknown (SI)", "first guess", "found", "standard error", "of it", "95 % from", "to")
+HEAD = ("Unknown", "unit", "first guess", "found", "standard error", "of it", "95 % from", "to")
 
 
 def fit_rows(result: FitResult) -> list[tuple[str, ...]]:
@@ -19,18 +19,21 @@ def fit_rows(result: FitResult) -> list[tuple[str, ...]]:
     """
     found: list[tuple[str, ...]] = []
     columns = (result.first.tolist(), result.value.tolist(), result.std.tolist(), result.interval.tolist())
-    for path, first, value, std, ends in zip(result.unknown, *columns, strict=True):
+    for k, (path, first, value, std, ends) in enumerate(zip(result.unknown, *columns, strict=True)):
         known = not math.isnan(std)
+        unit = result.units[k] if result.units else Unit("SI", 1.0)
         bare = path in result.signed  # a position or an angle has no size to compare with
         share = "" if bare else f"{100.0 * std / abs(value):.2g} %" if known else "not told"
-        span = [number(end) if math.isfinite(end) else "not told" for end in ends]
-        found.append((path, number(first), number(value), number(std) if known else "not told", share, *span))
+        span = [unit.number(end) if math.isfinite(end) else "not told" for end in ends]
+        error = unit.number(std) if known else "not told"
+        name = " = ".join((path, *result.tied[k])) if result.tied else path
+        found.append((name, unit.name, unit.number(first), unit.number(value), error, share, *span))
     return found
 
 
 def summary(result: FitResult) -> list[tuple[str, str]]:
     """What a notebook shows."""
-    pairs = [(row[0], f"{row[2]}, standard error {row[3]}") for row in fit_rows(result)]
+    pairs = [(row[0], f"{row[3]} {row[1]}, standard error {row[4]}") for row in fit_rows(result)]
     return [*pairs, ("left", left_words(result))]
 
 
@@ -42,4 +45,26 @@ def left_words(result: FitResult) -> str:
     result : the fit
     """
     count = sum(part.value.size for part in result.measured)
-    return f"{100.0 * result.residual_rms:.2g} % of the measured size, over {count} values"
+    left = f"{100.0 * result.residual_rms:.2g} % of the measured size, over {count} values"
+    return f"{left}; {'accepted' if result.accepted else 'not accepted'}"
+
+
+def noise_words(result: FitResult) -> str:
+    """Noise that the values are weighted by.
+
+    Parameters
+    ----------
+    result : the fit
+    """
+    parts = []
+    units_of = {part.name: part.unit for part in result.measured}
+    for name, size in zip(result.noise.names, result.noise.size, strict=True):
+        unit = units_of[name]
+        if result.noise.kind == "relative" and unit != "rad":
+            parts.append(f"{name} {100.0 * size:.2g} % of each reading")
+        elif unit == "m":
+            parts.append(f"{name} {float(f'{size * MM:.2g}'):g} mm")
+        else:
+            parts.append(f"{name} {size:.2g} {unit}".strip())
+    given = "as stated" if result.noise.stated else "estimated from the residuals"
+    return f"{result.noise.kind}, {given}: " + ", ".join(parts)

@@ -10,7 +10,7 @@ from leblanc.results.base import texts
 from leblanc.results.optimum import ConditionTable, OptimumCode, OptimumResult
 from leblanc.text.numbers import amplitude_sentence, number
 from leblanc.text.run import amplitude_place, quality_words
-from leblanc.units import LENGTH, MASS, ML, UNBALANCE, VOLUME, celsius, in_rpm, unit_for, with_unit
+from leblanc.units import LENGTH, MASS, ML, UNBALANCE, VOLUME, celsius, in_peak, in_rpm, unit_for, with_unit
 
 _DIMENSIONS = {dimension.unit.replace("*", " "): dimension for dimension in (LENGTH, MASS, UNBALANCE)}
 
@@ -168,10 +168,11 @@ def over_conditions(table: ConditionTable) -> tuple[list[str], list[list[str]]]:
             ]
             for k in _some(table.temperature.size)
         ]
-        head = [f"Amplitude ({length.name})", *loads, "stability margin (1/s)"]
+        head = [f"Amplitude ({in_peak(length.name)})", *loads, "stability margin (1/s)"]
         return head, [*rows, ["without liquid", *dry, ""]]
     rows = [[loads[k], length.number(float(table.amplitude[0, k])), dry[k]] for k in _some(len(loads))]
-    return ["Unbalance", f"amplitude ({length.name})", f"without liquid ({length.name})"], rows
+    unit = in_peak(length.name)
+    return ["Unbalance", f"amplitude ({unit})", f"without liquid ({unit})"], rows
 
 
 def _some(count: int) -> list[int]:

@@ -14,7 +14,7 @@ from leblanc.results.motion.held import HELD_MODELS, Held
 from leblanc.results.notes.response import plane_words
 from leblanc.results.response import RunResult, grade_words
 from leblanc.text.numbers import NOT_FOUND, amplitudes_are, number, ranges
-from leblanc.units import LENGTH, MASS, RPM, VOLUME, in_rpm, over_rpm, rpm_bands, unit_for, with_unit
+from leblanc.units import LENGTH, MASS, RPM, VOLUME, in_peak, in_rpm, over_rpm, rpm_bands, unit_for, with_unit
 from meshes.arrays import Array, Flags
 
 AGAINST = 0.5  # from here on a whirl counts as one with or against the spin
@@ -255,7 +255,7 @@ def _compared(label: str, result: RunResult, wet: int | None, dry: int | None) -
     unit = unit_for(LENGTH, with_liquid, without)
     wet_text, dry_text = unit.number(with_liquid), unit.number(without)
     wrong = "" if wet is None else "".join(f", {text}" for text in _wrong(result, wet))
-    return Comparison(f"{label} ({unit.name}{wrong})", wet_text, dry_text, ratio, unit.name)
+    return Comparison(f"{label} ({in_peak(unit.name)}{wrong})", wet_text, dry_text, ratio, unit.name)
 
 
 def facts(result: RunResult) -> list[tuple[str, str]]:

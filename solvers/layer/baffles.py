@@ -329,6 +329,10 @@ def obstruct(table, area, spin, full, slot, pull_face, before, after, mass, flow
         slope_r = max(u_r - spin * area_r + area_r * wave_r, -half_r - u_r)
         flow_l = own_l + slope_l * (passed - mass_l) + open_ * (flow[i] - own_l - slope_l * (free - mass_l))
         flow_r = own_r + slope_r * (passed - mass_r) + open_ * (flow[i] - own_r - slope_r * (free - mass_r))
+        if held < 0.0:
+            # A wall presses on liquid that runs away from it by no more than its rest, and never pulls.
+            flow_l = min(max(flow_l, 0.0), before[4, i]) if mass_l < 0.0 else max(flow_l, before[4, i])
+            flow_r = min(max(flow_r, 0.0), after[4, i]) if mass_r > 0.0 else max(flow_r, after[4, i])
         through = passed + open_ * (mass[i] - free)
         row[TORQUE], row[OPEN] = flow_l - flow_r, open_
         row[POWER] = max(held, 0.0) * abs(passed) * passed * passed

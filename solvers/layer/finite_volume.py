@@ -532,7 +532,8 @@ def _faces(pull_face, plates, spin, full, slot, bent, work, rolling):
 def _gather(area, euler, step, work, d_q):
     """Rate of change of q from the fluxes, the force within each cell and the Euler force.
 
-    Inside a cell the force is A dB/dtheta, by the trapezium of its two ends.
+    Inside a cell the force is A dB/dtheta, by the trapezium of its two ends; a film on a steep bed, whose
+    state at an end is deeper than twice its own, is pushed as what there is of it.
     """
     n = area.size
     flow, bend = work[_FLOW], work[_HALF_HEAD, GHOSTS : n + GHOSTS]
@@ -540,7 +541,8 @@ def _gather(area, euler, step, work, d_q):
     area_r, push_r = work[_AFTER], work[_AFTER + 4]
     for i in range(n):
         through = (flow[i + 1] - push_l[i + 1]) - (flow[i] - push_r[i])
-        within = (area_l[i + 1] + area_r[i]) * bend[i]
+        most = 2.0 * area[i]
+        within = (np.minimum(area_l[i + 1], most) + np.minimum(area_r[i], most)) * bend[i]
         d_q[i] = -euler * area[i] - (through + within) / step
 
 

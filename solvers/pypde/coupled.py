@@ -413,7 +413,7 @@ class CoupledSolver(SolverBase):  # type: ignore[no-untyped-call]
             self.info["steps"] += int(machine.sums.steps - steps)
             self.info["followed"] = machine.followed() if self.follow else None
             sums = machine.sums
-            self.info["heat"] = float(sums.support + sums.friction + sums.baffles + sums.bores)
+            self.info["heat"] = float(sums.support + sums.friction + sums.baffles + sums.lost)
             return stop
 
         return advance

@@ -27,12 +27,14 @@ class Leg(NamedTuple):
     rate : of the spin, rad/s^2; 0 where the spin is free
     stage : of the programme, from 0
     limited : the motor gives less than the programme asks
+    coasts : only drag, liquid and supports act on the drum, which may come to a stand before the time
     """
 
     stop: float
     rate: float
     stage: int
     limited: bool = False
+    coasts: bool = False
 
 
 def highest(drive: Drive) -> float:
@@ -196,7 +198,8 @@ def _coast(
     """Until the drum has come down to a speed or its time is over.
 
     Where a straight line through the last leg comes down to the speed before the next sample, the leg ends
-    there: a drum that is slowed ever less comes to its speed in a few ever shorter ones.
+    there: a drum that is slowed ever less comes to its speed in a few ever shorter ones. It ends as well
+    where the drum stands before that.
     """
     assert stage.duration is not None and drive.inertia is not None
     end = machine.time + stage.duration
@@ -207,7 +210,9 @@ def _coast(
         until = min(_after(time, step, end), end)
         if slope < 0.0:
             until = min(until, time + max((stop - spin) / slope, _SLIVER * step))
-        yield Leg(until, 0.0, number)
+        yield Leg(until, 0.0, number, coasts=True)
+        if machine.time < until:
+            return
         slope = (machine.spin - spin) / (until - time)
 
 

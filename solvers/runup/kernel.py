@@ -303,6 +303,7 @@ def _half_friction(area, q, spin, layer, drags, dt, inside, spare, gains):
     slot = inside.slot * spin * spin
     torque, heat, before, after = _rub(area, q, held, velocity, log, kept, pushed, spin, inside.full, slot)
     gains.torque += torque * step
+    gains.work += spin * torque * step
     gains.heat += heat * step
     return before * step, after * step
 
@@ -339,7 +340,8 @@ def layer_step(
     next_a, next_q = spare[_NEXT_A, :n], spare[_NEXT_Q, :n]
     rate_e, next_e = spare[_RATE_E, : rolling.size], spare[_NEXT_E, : rolling.size]
     velocity, surface, log = spare[VELOCITY, GHOSTS:], spare[SURFACE, GHOSTS:], spare[LOG, GHOSTS:]
-    gains.torque, gains.heat, gains.loss, gains.missed, gains.baffles = 0.0, 0.0, 0.0, 0.0, 0.0
+    gains.torque, gains.work, gains.heat = 0.0, 0.0, 0.0
+    gains.loss, gains.missed, gains.baffles = 0.0, 0.0, 0.0
     drags = coefficient, thin, table
     _, gains.loss = _half_friction(area, q, spins[0], layer, drags, dt, inside, spare, gains)
     copy(area, next_a)
@@ -360,6 +362,7 @@ def layer_step(
         gains.missed += 0.5 * dt * step * euler * missed
         held, power = taken(inside.plates)
         gains.torque -= 0.5 * dt * held
+        gains.work -= 0.5 * dt * spin * held
         gains.baffles += 0.5 * dt * power
         # The drum's work by the baffles enters, their heat leaves.
         gains.loss -= 0.5 * dt * (spin * held + power)
@@ -374,6 +377,7 @@ def layer_step(
             # What films lose to the wall is a torque of the drum, which works.
             stuck = step * calm(area, q, spin)
             gains.torque += stuck
+            gains.work += spin * stuck
             gains.loss += spin * stuck
     energy, _ = _half_friction(area, q, spins[1], layer, drags, dt, inside, spare, gains)
     gains.loss -= energy + gains.missed
@@ -560,7 +564,8 @@ def tally_ball(ball, held, gravity, moving, change, spins, dt, sums):
     angle, rate = moving
     spin, mean, middle = 0.5 * (spins[0] + spins[1]), rate + 0.5 * change, angle + 0.5 * dt * rate
     sums.drive += spin * ball_turned(ball, held, rate, change, spins, dt)
-    sums.friction += (spin - mean) * ball_dragged(ball, held, rate, change, spins, dt)
+    # A ball that stops slipping within the step resists as at its end: that is no heat below zero.
+    sums.friction += max((spin - mean) * ball_dragged(ball, held, rate, change, spins, dt), 0.0)
     pull = gravity[1] * np.cos(middle) - gravity[0] * np.sin(middle)
     sums.gravity += dt * ball.mass * ball.radius * mean * pull
 
@@ -652,6 +657,14 @@ def _spin_after(machine, state, room, dt):
 
 
 @_unwrapped
+def _lowered(gravity, layer, begin, end, turn):
+    """Work of gravity on a layer over a step: its weight on the way of its centre of mass."""
+    x = end.moment_x * turn[2] - end.moment_y * turn[3] - begin.moment_x * turn[0] + begin.moment_y * turn[1]
+    y = end.moment_x * turn[3] + end.moment_y * turn[2] - begin.moment_x * turn[1] - begin.moment_y * turn[0]
+    return layer.weight * layer.radius**3 * (gravity[0] * x + gravity[1] * y)
+
+
+@_unwrapped
 def _tally(machine, state, room, dt):
     """Add one step's work and losses [theory: coupling, eq. 9-10]."""
     sums, n = state.sums[0], room.change.size
@@ -664,22 +677,22 @@ def _tally(machine, state, room, dt):
     for j in range(machine.layers.shape[0]):
         layer, gains = machine.layers[j], room.gains[j]
         scale = layer.weight * layer.radius**4
-        sums.drive += spin * scale * gains.torque
-        for i in range(2):
-            sums.gravity += 0.5 * dt * machine.gravity[i] * (room.before[j, i] + room.after[j, i])
+        sums.drive += scale * gains.work
+        sums.gravity += _lowered(machine.gravity, layer, room.begin[j], room.end[j], room.turn)
         sums.friction += scale * gains.heat
-        sums.bores += scale * gains.loss
+        sums.lost += scale * gains.loss
         sums.baffles += scale * gains.baffles
         sums.profile += scale * gains.missed
-    first = machine.layers.shape[0]
+    # Bores give nothing back: what the scheme does is no heat, the balance leaves it.
+    sums.bores = max(sums.bores, sums.lost)
     for j in range(machine.pools.shape[0]):
-        past = spin - 0.5 * (room.lean_rate[j] + state.lean_rate[j])
+        pool, past = machine.pools[j], spin - 0.5 * (room.lean_rate[j] + state.lean_rate[j])
         sums.drive += spin * room.drag[j]
         sums.friction += past * room.drag[j]
-        for i in range(2):
-            sums.gravity += (
-                0.5 * dt * machine.gravity[i] * (room.before[first + j, i] + room.after[first + j, i])
-            )
+        fallen_x = np.cos(room.lean[j]) - np.cos(state.lean[j])
+        fallen_y = np.sin(room.lean[j]) - np.sin(state.lean[j])
+        arm = pool.mass * pool.arm
+        sums.gravity += arm * (machine.gravity[0] * fallen_x + machine.gravity[1] * fallen_y)
     for j in range(machine.balls.shape[0]):
         ball, moving = machine.balls[j], (state.roll[j], state.roll_rate[j])
         tally_ball(ball, room.held[j], machine.gravity, moving, room.roll[j], room.spins, dt, sums)

@@ -271,6 +271,10 @@ def _tally(m, spin, spins, dt):
         sums.motor += dt * spin * motor_torque(m.curve, spin)
 
 
+# Rounds in which spin and load of a free drum are to agree: one after the other, then by secants.
+_PLAIN, _SECANT = 6, 12
+
+
 @_jit
 def advance_linear(m, stop, angle_step, most):
     """Advance rotor and layers to a time.
@@ -301,8 +305,8 @@ def advance_linear(m, stop, angle_step, most):
         if left > dt > 0.5 * left:
             dt = 0.5 * left
         after = before + (shaft.rate * dt if m.curve.shape[1] == 0 else 0.0)
-        rounds = 1 if m.curve.shape[1] == 0 else 6
-        for _ in range(rounds):
+        rounds, guess, found = 1 if m.curve.shape[1] == 0 else _PLAIN + _SECANT, after, after
+        for tried in range(rounds):
             spin = 0.5 * (before + after)
             first = complex(np.cos(shaft.angle), np.sin(shaft.angle))
             turned = shaft.angle + spin * dt
@@ -333,7 +337,17 @@ def advance_linear(m, stop, angle_step, most):
                 for j in range(m.balls.shape[0]):
                     rate, change = m.rate[balls + j], m.change[balls + j]
                     load += ball_turned(m.balls[j], m.held[j], rate, change, spins, dt)
-                after = driven(m.curve, shaft, load, dt)
+                last_guess, last_found = guess, found
+                guess, found = after, driven(m.curve, shaft, load, dt)
+                after = found
+                if tried + 1 < _PLAIN:
+                    continue
+                if abs(found - guess) <= AGREED * before or guess == last_guess:
+                    break
+                # Liquid that clings to a drum as light as itself answers the spin as strongly as it does.
+                slope = (found - last_found) / (guess - last_guess)
+                if tried + 1 < rounds and slope < 0.9:
+                    after = guess + (found - guess) / (1.0 - slope)
         if after <= 0.0 or abs(after - spins[1]) > AGREED * before:
             # A long step turns the drum round where a shorter one slows it down.
             if share <= SHORTEST:

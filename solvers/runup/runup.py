@@ -353,6 +353,11 @@ def _march(
                     break
         except KeyboardInterrupt:
             outcome = Outcome.INTERRUPTED
+        if outcome is Outcome.STOPPED and leg.coasts:
+            # A drum that comes to a stand has ended its coast.
+            outcome = Outcome.DONE
+            if machine.time == readings[-1].time:
+                continue
         if outcome is not Outcome.DONE:
             break
         readings.append(machine.read())

@@ -152,9 +152,10 @@ def drag_curves(
 # What a layer is measured by: moment and its rate of change by the flow, inertia of the flow, angular
 # momentum and energy in the frame that does not turn [theory: coupling, eq. 2, 4 and 7].
 MEASURES = floats("moment_x", "moment_y", "flow_x", "flow_y", "xx", "xy", "yy", "spinning", "energy")
-# What a layer's step adds up: impulse of the torque of wall and baffles, heat by friction, loss in bores and
-# by the scheme, energy that the flow's profile misses, heat at the baffles.
-GAINS = floats("torque", "heat", "loss", "missed", "baffles")
+# What a layer's step adds up: impulse of the torque of wall and baffles, its work at the spins at which it
+# acts, heat by friction, loss in bores and by the scheme, energy that the flow's profile misses, heat at the
+# baffles.
+GAINS = floats("torque", "work", "heat", "loss", "missed", "baffles")
 # The rotation: speed, angle turned, time; rate of change of the speed, on its ramp or in the last step with a
 # motor; moment of inertia about the axis with a motor.
 SHAFT = floats("spin", "angle", "time", "rate", "inertia")
@@ -168,12 +169,12 @@ POOL = floats("mass", "arm", "length", "inertia")
 # torque by a change of the spin on the ball and on the drum, and its resistance to rolling over its pressure.
 BALL = floats("mass", "radius", "inertia", "drag", "carried", "driven", "resistance")
 # What is summed up over time [theory: coupling, eq. 9-10]: work of the unbalance, of the drive on the liquid,
-# of gravity; heat in the supports and by wall friction, loss in bores and by the scheme, loss at the baffles,
-# what the assumed profile of the flow misses while the spin changes; work of the motor; steps, layer steps,
-# largest disagreement left.
+# of gravity; heat in the supports and by wall friction, loss in bores, loss at the baffles, what the assumed
+# profile of the flow misses while the spin changes; work of the motor; what layers lose in bores and by the
+# scheme, whose largest value so far is the loss in bores; steps, layer steps, largest disagreement left.
 SUMS = floats(
     *("unbalance", "drive", "gravity", "support", "friction", "bores", "baffles", "profile", "motor"),
-    *("steps", "layer_steps", "disagreement"),
+    *("lost", "steps", "layer_steps", "disagreement"),
 )
 
 

@@ -15,6 +15,7 @@ from validation.cases.rotors.blood_pump import LOAD, MACHINE, SPEED, control
 from validation.figures.rotors.blood_pump import controllers, slow_coils
 
 
+@kills("solvers.rotor.magnetic.machine:Magnets.force", "(near - far)", "(np.sqrt(near) - np.sqrt(far))")
 @kills(
     "solvers.rotor.magnetic.machine:MagneticRotor.motor_pull", "across.T @ across + own", "across.T @ across"
 )

@@ -5,14 +5,19 @@ from __future__ import annotations
 import json
 import math
 
+import numpy as np
 import pytest
 
 from leblanc.cli import main
 from leblanc.scene.scene import jeffcott, load_scene
 from meshes.errors import InputError
+from solvers.rotor.jeffcott import Jeffcott
+from solvers.synchronous.response import response
 from tests.mutants import kills
 from tests.oracles.cases import kept_cases
+from validation.cases.case import PRINTED, Origin, compare
 from validation.cases.liquid.layer import rotor_cases
+from validation.cases.rotors import turning
 from validation.cases.rotors.rigs import horizontal_rig, horizontal_rotor, vertical_rig, vertical_rotor
 from validation.command import GROUPS, all_cases
 
@@ -89,6 +94,47 @@ def test_unknown_group(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(InputError):
         all_cases("magic")
     assert main(["validate", "magic"]) == 2
+
+
+def test_origins() -> None:
+    """What is called printed names its source; a code, a scan, a closed form their own."""
+    words = "a quantity", 1.0, 1.0
+    with pytest.raises(InputError, match="names no source of the references"):
+        compare("group/a", "two other codes, exact_wave.json", *words, tolerance=0.1)
+    assert compare("group/a", "DR18, eq. 9; DG21", *words, tolerance=0.1).origin == PRINTED
+    for kind, name, wrong in (("scan", "", "name"), ("second code", "", "name"), ("hearsay", "x", "kind")):
+        with pytest.raises(InputError, match=rf"origin\.{wrong}"):
+            Origin(kind, name)  # type: ignore[arg-type]
+
+
+def test_a_value_of_another_code_is_not_told_as_printed(capsys: pytest.CaptureFixture[str]) -> None:
+    found = {case.name.partition("/")[2]: case for case in all_cases("optimal_volume")}
+    for name, case in found.items():
+        assert case.origin.kind == ("printed" if name.startswith("eq") else case.record()["origin"]["kind"])
+        assert ("scikit-fem" in case.origin.name) == name.startswith("fem-")
+    assert main(["validate", "turning"]) == 0
+    shown = capsys.readouterr().out
+    assert shown.count("    measured one of three resonances") == 3 and "    printed 5000 |" in shown
+
+
+@kills("validation.cases.rotors.turning:single_mode_damping", "2.0 * ratio *", "2.0 *")
+@kills("validation.cases.rotors.turning:single_mode_damping", "1.0 - ratio**2", "1.0 - ratio")
+def test_damping_of_a_single_mode() -> None:
+    """That of a rotor whose answer to an unbalance beside its resonance has that share of the one at it."""
+    rotor = Jeffcott(mass=2.0, stiffness=2.0 * 135.0**2, damping=2.0 * 2.0 * 0.05 * 135.0, unbalance=1.0)
+    at, off = np.abs(response(rotor, [], [135.0, 143.0]).deflection)
+    assert turning.single_mode_damping(135.0, 143.0, off / at) == pytest.approx(0.05, rel=1e-12)
+
+
+def test_resonances_that_are_not_told_apart(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With amplitudes between them nearly as large as at them, the widths are beyond the distances."""
+
+    def found() -> list[str]:
+        return [case.verdict for case in turning.cases() if "resonance" in case.name]
+
+    assert found() == ["agrees"] * 3
+    monkeypatch.setattr(turning, "_BETWEEN", {143.0: 0.0125, 160.0: 0.0165})
+    assert found() == ["differs"] * 3
 
 
 def test_the_rigs_are_those_of_the_examples() -> None:

@@ -8,14 +8,9 @@ from itertools import pairwise
 import pytest
 
 from tests.mutants import kills
-from validation.cases.case import Case
 from validation.cases.claims import cases
 from validation.cases.claims.chambers import COUNTS, KINDS, machine, rings, steady_gain
 from validation.cases.claims.swing import LOAD, PLACE, SWING, damping_that_swings, peak, rig
-
-
-def by_name() -> dict[str, Case]:
-    return {case.name.partition("/")[2]: case for case in cases()}
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -62,7 +57,7 @@ def test_damping_swings_the_load_as_far_as_asked() -> None:
 
 def test_verdicts() -> None:
     """Radii help at constant speed, the number of rings does not; 35 mm lie in what may be assumed."""
-    found = by_name()
+    found = {case.name.partition("/")[2]: case for case in cases()}
     verdicts = {name: case.verdict for name, case in found.items()}
     for kind, trends in (("concentric", {"at-speed", "peak"}), ("stacked", set())):
         for measure in ("at-speed", "peak", "run-up"):

@@ -189,21 +189,21 @@ def test_polar_moment() -> None:
 
 
 def test_compare_decides_the_verdict() -> None:
-    assert compare("g/a", "s", "q", 1.01, 1.0, tolerance=0.02).verdict == "agrees"
-    case = compare("g/a", "s", "q", 1.05, 1.0, tolerance=0.02, otherwise="trend")
+    assert compare("g/a", "X20", "q", 1.01, 1.0, tolerance=0.02).verdict == "agrees"
+    case = compare("g/a", "X20", "q", 1.05, 1.0, tolerance=0.02, otherwise="trend")
     assert case.verdict == "trend"
     assert case.difference == pytest.approx(0.05)
-    assert compare("g/a", "s", "q", 2.1, 1.0, tolerance=0.02, otherwise="trend").verdict == "differs"
-    assert compare("g/a", "s", "q", 0.0, 0.0, tolerance=0.0).verdict == "agrees"
-    assert compare("g/a", "s", "q", -2.0, -1.0, tolerance=0.0).difference == -1.0
+    assert compare("g/a", "X20", "q", 2.1, 1.0, tolerance=0.02, otherwise="trend").verdict == "differs"
+    assert compare("g/a", "X20", "q", 0.0, 0.0, tolerance=0.0).verdict == "agrees"
+    assert compare("g/a", "X20", "q", -2.0, -1.0, tolerance=0.0).difference == -1.0
 
 
 def test_case_rejects_what_a_report_cannot_show() -> None:
     with pytest.raises(InputError) as caught:
-        Case("g/a", "s", "q", 1.0, math.nan, 0.0, "agrees")
+        Case("g/a", "X20", "q", 1.0, math.nan, 0.0, "agrees")
     assert caught.value.field == "computed"
     with pytest.raises(InputError) as caught:
-        Case("g/a", "s", "q", 1.0, 1.0, 0.0, "wrong")  # type: ignore[arg-type]
+        Case("g/a", "X20", "q", 1.0, 1.0, 0.0, "wrong")  # type: ignore[arg-type]
     assert caught.value.field == "verdict"
 
 
@@ -233,14 +233,14 @@ def test_a_trend_is_as_large_within_a_factor_of_two(
     assert shape_verdict(False, effect) == "differs"
     if not alike:
         with pytest.raises(InputError, match="factor of 2"):
-            Case("g/a", "s", "q", "falls", "falls", "the same shape", "trend", effect=effect)
+            Case("g/a", "X20", "q", "falls", "falls", "the same shape", "trend", effect=effect)
 
 
 def test_a_trend_tells_the_size_of_its_effect_unless_the_source_has_words_alone() -> None:
-    assert Case("g/a", "s", "q", "grows", "1, 2", "the same", "trend").effect is None
+    assert Case("g/a", "X20", "q", "grows", "1, 2", "the same", "trend").effect is None
     for printed in (7.0, None):
         with pytest.raises(InputError) as caught:
-            Case("g/a", "s", "q", printed, 7.1, "near", "trend")
+            Case("g/a", "X20", "q", printed, 7.1, "near", "trend")
         assert caught.value.field == "effect"
 
 

@@ -16,7 +16,7 @@ from solvers.statics.hydrostatics import equilibrium
 from solvers.synchronous.response import response
 from tests.mutants import kills
 from validation.cases import errata
-from validation.cases.case import Case, compare
+from validation.cases.case import Case, Origin, compare
 from validation.cases.liquid import fill_optimum, layer
 from validation.cases.rotors import runup as runup_given
 from validation.cases.rotors import tub
@@ -44,6 +44,9 @@ def test_table_of_cases() -> None:
     assert [row[3] for row in table.rows] == ["+2 %", "printed is 50,000 times the computed", "the other way"]
     assert table.rows[2][1:3] == ("yes", "none")
     assert table.foot == "Of 3: 1 agrees, 1 erratum, 1 differs."
+    assert "Reference" in table.header and not any("Reference" in row[0] for row in table.rows)
+    (row,) = case_table([replace(CASES[0], origin=Origin("scan", "steps of 5e-4"))]).rows
+    assert "\nReference: scan: steps of 5e-4" in row[0]
     html = table._repr_html_()
     assert "a &lt; b &amp; c" in html and html.count("<tr") == 4 and "<br>a note" in html
     assert "group/two" not in html and "case two]" in html
@@ -108,8 +111,9 @@ def test_measured_angles_are_drawn_as_measured() -> None:
 def test_growth_in_time_lies_on_its_lines() -> None:
     """The coupled model's points are on the first and on the last of the curves, to the 2 % of the cases."""
     words = "linear theory", "growth", 1.0
-    case = Case("whirl/in-time-1.3", *words, 6.56, "none", "agrees")
-    damped = Case("whirl/in-time-1.7", *words, -1.675, "none", "agrees")
+    root = Origin("closed form", "root of the characteristic equation")
+    case = Case("whirl/in-time-1.3", *words, 6.56, "none", "agrees", origin=root)
+    damped = Case("whirl/in-time-1.7", *words, -1.675, "none", "agrees", origin=root)
     axes = whirl_figures.growth_figure([case, damped]).axes[0]
     first, last = axes.lines[1], axes.lines[4]
     for line, point in ((first, axes.lines[5]), (last, axes.lines[6])):

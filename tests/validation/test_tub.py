@@ -21,7 +21,6 @@ def test_verdicts() -> None:
     assert verdicts == {
         "supercritical": "agrees",
         "measured-amplitude": "differs",
-        "natural-frequencies": "trend",
         "angular-motion": "trend",
         "longitudinal-motion": "trend",
         "dg-spring-direction": "erratum",

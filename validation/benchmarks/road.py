@@ -23,7 +23,7 @@ from meshes.errors import InputError
 from solvers.layer.records import LOADS, Drive, Outcome, Record, Wall, records
 from solvers.layer.state import Numerics, ring
 from solvers.layer.step import march, scratch
-from solvers.liquid_model import Whirl
+from solvers.liquid_model import Whirl, drag_frequency
 from solvers.pypde.settle import simulate
 
 PERIODS, CELLS, REPEATS = 100, 128, 15
@@ -45,7 +45,7 @@ class BareLayer:
         self.steps = 0
         self.area = np.full(n, fill.volume / (2.0 * math.pi * chamber.height * radius**2))
         self.momentum = -np.square(self.area)
-        law, coefficient = friction.at(fill.liquid.viscosity, whirl.slip, radius)
+        law, coefficient = friction.at(fill.liquid.viscosity, drag_frequency(fill, whirl), radius)
         # The quadratic coefficient is a pure number, the others are rates.
         scaled = coefficient if law == QUADRATIC else coefficient / spin
         self.wall = Wall(law, scaled, 2.0 * radius / chamber.height, numerics.dispersion)

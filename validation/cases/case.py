@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import asdict, dataclass
 from typing import Any, Literal, get_args
 
@@ -10,6 +11,7 @@ from meshes.errors import InputError
 
 Verdict = Literal["agrees", "erratum", "trend", "differs"]
 Value = float | str | None
+Origins = Literal["printed", "measured", "second code", "scan", "closed form"]
 
 # By how much the size of an effect may be off while its shape is still called the same.
 _FACTOR = 2.0
@@ -59,13 +61,43 @@ def shape_verdict(same: bool, effect: Effect | None = None) -> Verdict:
 
 
 @dataclass(frozen=True)
+class Origin:
+    """Where the value comes from that the computed one stands beside.
+
+    Raises
+    ------
+    InputError : an unknown kind, or a code, scan or closed form without its name
+    """
+
+    #: `printed` in a source, as a number or a statement; `measured` by a source's authors or others; by a
+    #: `second code`; a `scan` of our own; a `closed form`, a limit or a conservation law
+    kind: Origins
+    name: str = ""  #: of the code, the scan or the closed form
+
+    def __post_init__(self) -> None:
+        if self.kind not in get_args(Origins):
+            raise InputError("origin.kind", self.kind, "one of " + ", ".join(get_args(Origins)))
+        if self.kind not in ("printed", "measured") and not self.name:
+            raise InputError("origin.name", self.name, f"the name of the {self.kind}")
+
+    def __str__(self) -> str:
+        return f"{self.kind}: {self.name}" if self.name else self.kind
+
+
+PRINTED, MEASURED = Origin("printed"), Origin("measured")
+COMPUTED_FLOW = Origin("second code", "interFoam of OpenFOAM, two-phase flow computed for this comparison")
+_KEY = re.compile(r"[A-Z][A-Za-z]*\d{2}\b")  # of a source in references.bib
+
+
+@dataclass(frozen=True)
 class Case:
     """A published claim beside the computed one.
 
     Raises
     ------
     InputError : an unknown verdict, a number that is not finite, a `trend` whose effect is off by more than a
-        factor of two, or is not told though the source prints a number or nothing
+        factor of two, or is not told though the source prints a number or nothing; a value called printed
+        without a source of the references
     """
 
     name: str  #: group and name, `errata/dr-eq-18`
@@ -79,10 +111,15 @@ class Case:
     verdict: Verdict
     note: str = ""  #: what a reader must know to judge
     effect: Effect | None = None  #: how large it is, where the source gives its size
+    origin: Origin = PRINTED  #: of the value in `printed`
 
     def __post_init__(self) -> None:
         if self.verdict not in get_args(Verdict):
             raise InputError("verdict", self.verdict, "one of " + ", ".join(get_args(Verdict)))
+        if self.origin == PRINTED and not _KEY.match(self.source):
+            raise InputError(
+                "origin", "printed", f"another: {self.source!r} names no source of the references"
+            )
         for field in ("printed", "computed", "difference"):
             value = getattr(self, field)
             if isinstance(value, float) and not math.isfinite(value):
@@ -115,12 +152,13 @@ def compare(
     tolerance: float,
     otherwise: Verdict = "differs",
     note: str = "",
+    origin: Origin = PRINTED,
 ) -> Case:
     """Case of two numbers; whether they agree is decided here.
 
     Parameters
     ----------
-    name, source, quantity, note : as in `Case`
+    name, source, quantity, note, origin : as in `Case`
     printed, computed : the two values
     tolerance : relative difference up to which they agree
     otherwise : verdict if they do not; a `trend` only within a factor of two
@@ -149,6 +187,5 @@ def compare(
     effect = Effect(quantity, printed, computed) if otherwise == "trend" else None
     if not agrees and effect is not None:
         otherwise = shape_verdict(True, effect)
-    return Case(
-        name, source, quantity, printed, computed, difference, "agrees" if agrees else otherwise, note, effect
-    )
+    verdict: Verdict = "agrees" if agrees else otherwise
+    return Case(name, source, quantity, printed, computed, difference, verdict, note, effect, origin)

@@ -41,7 +41,10 @@
 # %%
 import math
 
+from scipy.integrate import quad
+
 import leblanc as lb
+from fluid.pool import pool_of, sloshing_number
 from leblanc.figures.response import amplitude_figure, liquid_figure
 from leblanc.studies.run import run_scene
 from validation.cases.rotors import rigs, vector_model
@@ -78,6 +81,33 @@ rows += [
     for ramp in ramps
 ]
 Table(("Liquid behind the unbalance, deg", *(f"{speed} rpm" for speed in measured["speed_rpm"])), tuple(rows))
+
+# %% [markdown]
+# ## At rest
+#
+# Before the rig turns the water lies at the bottom of both chambers, and a run-up from rest begins with that
+# pool (`docs/theory/pool.md`). Its shape follows from the volume alone, here summed up over the widths of a
+# circle. A shallow pool slides to and fro like a point on the wall, and the half full cylinder has the
+# slowest frequency of the literature, `omega^2 R/g = 1.3557`.
+
+# %%
+lying = []
+for fill in rigs.horizontal_rig():
+    pool, radius = pool_of(fill), fill.chamber.radius
+    assert pool is not None
+    level = radius * math.cos(pool.half_angle)
+    area, _ = quad(lambda y, r=radius: 2.0 * math.sqrt(r**2 - y**2), level, radius)
+    moment, _ = quad(lambda y, r=radius: 2.0 * y * math.sqrt(r**2 - y**2), level, radius)
+    lying.append((area * fill.chamber.height / fill.volume, pool.arm / (moment / area), pool.length / radius))
+sloshing = {share: sloshing_number(share * math.pi) for share in (0.01, 0.02, 0.5)}
+Table(
+    ("Chamber, mm", "volume summed up over that filled in", "arm over that summed up", "pendulum over R"),
+    tuple(
+        (f"{2e3 * fill.chamber.radius:g}", *(f"{number:.6f}" for number in row))
+        for fill, row in zip(rigs.horizontal_rig(), lying, strict=True)
+    ),
+    f"Slowest frequency of the half full cylinder: {sloshing[0.5]:.6f}.",
+)
 
 # %% [markdown]
 # ## The vertical rig
@@ -133,4 +163,12 @@ assert verdicts(horizontal) == {
 }
 assert verdicts(vertical) == {"trend": {"90-rad-s"}, "differs": {"8-rad-s", "12.5-rad-s"}}
 assert verdicts(vector) == {"agrees": {"eq-24", "eq-26"}, "erratum": {"eq-25"}}
+# While the wall is wet the liquid is an added mass: solved with it, the rotor has the damping of a bare one.
+alone = next(case for case in horizontal if case.name == "horizontal_rig/lag-alone")
+assert isinstance(alone.computed, float) and abs(damping_ratio / alone.computed - 1.0) < 1e-6
+# Quadrature is right to 1e-8 at the ends of its widths, which have a root there.
+assert all(abs(volume - 1.0) < 1e-7 and abs(arm - 1.0) < 1e-7 for volume, arm, _ in lying)
+# The printed digits of the literature; of a shallow pool the first term of a series in its half angle.
+assert abs(sloshing[0.5] - 1.3557) < 5e-5
+assert all(0.0 < sloshing[share] - 1.0 < 0.2 * (share * math.pi) ** 2 for share in (0.01, 0.02))
 assert all(ramp.converged for ramp in ramps) and math.degrees(ramps[0].angles[0]) > 100.0

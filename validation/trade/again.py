@@ -6,13 +6,14 @@ import math
 from typing import Any
 
 from leblanc.scene.examples import example
-from validation.cases.case import Case, compare
+from validation.cases.case import Case, Origin, compare
 from validation.trade import kept, names
 from validation.trade.cases import Question, questions, refined_to
 from validation.trade.judge import Comparison, Row
 from validation.trade.trade import TradeRecord, error_table
 
 # Errors are made again on two scenes, up to so many cells.
+_KEPT = Origin("second code", "this package, as `make trade` ran it last")
 _SCENES, _CELLS = ("centrifuge", "runup"), 32
 # Another order of sums changes an answer by some 1e-13; below that an error is rounding.
 _TOLERANCE, _ROUNDING = 1e-6, 1e-11
@@ -50,8 +51,8 @@ def _error(where: str, label: str, name: str, printed: float, error: float) -> C
         f"error of {label}: {where.replace('-', ', ')}",
     )
     if max(printed, error) <= _ROUNDING:
-        return Case(*text, printed, error, "rounding", "agrees", "exact here")
-    return compare(*text, printed, error, tolerance=_TOLERANCE)
+        return Case(*text, printed, error, "rounding", "agrees", "exact here", origin=_KEPT)
+    return compare(*text, printed, error, tolerance=_TOLERANCE, origin=_KEPT)
 
 
 def _default(name: str, comparison: Comparison) -> Case:
@@ -65,6 +66,7 @@ def _default(name: str, comparison: Comparison) -> Case:
         ", ".join(beaten) or "none",
         f"the default's error is {comparison.default.error:.1e}",
         "differs" if beaten else "agrees",
+        origin=_KEPT,
     )
 
 

@@ -65,6 +65,7 @@ class RunupCode(NoteCode):
     STANDING = "standing"
     NO_DRAG = "no_drag"
     COAST_NOT_ENDED = "coast_not_ended"
+    STOOD = "stood"
     MOTOR_LIMITED = "motor_limited"
     UNBALANCE_LEFT = "unbalance_left"
     LOADS = "loads"
@@ -127,6 +128,19 @@ def coast_not_ended(step: int, wanted: float, reached: float, limit: float) -> N
         f"{in_rpm(reached)} instead of {in_rpm(wanted)}."
     )
     return Note(RunupCode.COAST_NOT_ENDED, {"step": step, "wanted": wanted, "reached": reached}, text)
+
+
+def stood(step: int, time: float, reached: float) -> Note:
+    """A coast that ended with the drum at a stand before its speed was followed down.
+
+    Parameters
+    ----------
+    step : its number, from 1
+    time : s
+    reached : the last speed, rad/s
+    """
+    text = f"Step {step}: the drum stands at {with_unit(time, TIME)}, at once from {in_rpm(reached)}."
+    return Note(RunupCode.STOOD, {"step": step, "time": time, "reached": reached}, text)
 
 
 def motor_limited(step: int, time: float, low: float, high: float, wanted: float | None) -> Note:

@@ -27,6 +27,7 @@ _LONGEST = 0.4  # rad, that a ball moves in a round
 _RESTS = 1e-11  # of the pull on a ball of the bare rotor: what a state may leave
 _NEWTON = 60  # rounds
 _CREEPS, _LOCAL = 2000, 1e-5  # steps of a way of creeping balls, at most; rad, error of each
+_CREPT = 1e-9  # pull at which they are there: from a smaller one rounding leads along a family
 _RANK = 1e-7  # of the largest: smaller singular values are none
 
 
@@ -291,7 +292,7 @@ class RotorWithBalls:
         for _ in range(_CREEPS):
             at, h = found[going], length[going, None]
             pull, slope = _pulls(bare[going], each[going], at)
-            busy = np.abs(pull).max(axis=1) > _RESTS
+            busy = np.abs(pull).max(axis=1) > _CREPT
             if not busy.all():
                 going = going[busy]
                 if not going.size:

@@ -183,14 +183,14 @@ def test_what_is_not_known_of_the_peak_is_not_called_unstable() -> None:
     whirl = replace(record.whirl, growth=np.where(some(at, at), np.nan, -1.0))
     r = replace(record.response, stable=~some(at, at))
     lost = replace(record, response=r, whirl=whirl)
-    assert words.comparisons(lost)[0].label == "Largest amplitude (mm, stability not known)"
+    assert words.comparisons(lost)[0].label == "Largest amplitude (mm 0-p, stability not known)"
     grows = replace(lost, whirl=record.whirl)
-    assert words.comparisons(grows)[0].label == "Largest amplitude (mm, unstable)"
+    assert words.comparisons(grows)[0].label == "Largest amplitude (mm 0-p, unstable)"
     # What is unstable against slow disturbances is known, and so is a whirl that grows.
     fails = replace(lost, response=replace(r, branch_stable=~np.ones_like(r.branch_stable)))
     inside = replace(lost, whirl=replace(whirl, bands=((0.0, 1e3),)))
     for known in (fails, inside):
-        assert words.comparisons(known)[0].label == "Largest amplitude (mm, unstable)"
+        assert words.comparisons(known)[0].label == "Largest amplitude (mm 0-p, unstable)"
 
 
 @pytest.mark.parametrize(
@@ -216,7 +216,7 @@ def test_numbers_are_those_of_the_json(name: str, tmp_path: Path, capsys) -> Non
     assert most["amplitude"] == max(size for size, inside in holds if inside)
     assert most_dry["amplitude"] == max(curve["amplitude_dry"])
     sizes = most["amplitude"], most_dry["amplitude"]
-    (label,) = (row[0] for row in page.rows if row and row[0].startswith("Largest amplitude (mm"))
+    (label,) = (row[0] for row in page.rows if row and row[0].startswith("Largest amplitude (mm 0-p"))
     assert page.row(label) == [printed(x) for x in (sizes[0] * 1e3, sizes[1] * 1e3, sizes[0] / sizes[1])]
     loose = most["speed"] <= (answer["capture_speed"] or 0.0)
     grows = any(low <= most["speed"] <= high for low, high in answer["whirl_bands"])

@@ -9,62 +9,73 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 import leblanc as lb
 from leblanc.cli import main
-from leblanc.results.fit import FitCode
-from leblanc.studies.fit import Measurement, _answer, _uncertainty, fit_scene, read_measured
+from leblanc.results.fit import FitCode, Noise
+from leblanc.scene.scene import scene_from_table
+from leblanc.studies.fit import fit_scene
+from leblanc.studies.fitting.errors import averaged, curvature
+from leblanc.studies.fitting.measured import Measurement, read_measured
+from leblanc.studies.fitting.noise import Judged, alike_by_chance
+from leblanc.studies.fitting.problem import answer as _answer
+from meshes.arrays import Array
 from meshes.errors import InputError
+from tests.leblanc.studies.random_fits import DRY, covered, drawn
 from tests.mutants import kills
 from validation.cases.rotors.rigs import _fit, _liquid_angle, data, horizontal_rig
 
 RIG = lb.example("horizontal_rig")
-SPEED = np.linspace(60.0, 180.0, 30)
-UNKNOWN = ("rotor.mass", "rotor.damping_ratio")
-TRUTH = np.array([4.0, 0.1])
+# Most of these tests are of statistics: a machine without liquid answers ten times sooner.
+MACHINE = scene_from_table(DRY)
+SPEED = np.linspace(10.0, 60.0, 30)
+UNKNOWN = ("rotor.stiffness", "rotor.damping")
+TRUTH = np.array([18750.0, 90.0])
+LIKELY = 2.0 * math.log(3.0)  # minus twice the logarithm of a likelihood of a third
+GUESS = MACHINE.replace({"rotor.stiffness": 15e3, "rotor.damping": 60.0})
+
+
+def over_speed(amplitude: Array, speed: Array = SPEED) -> Measurement:
+    return Measurement("speed", speed, (("amplitude", amplitude),))
 
 
 def measured(noise: float, seed: int, scale: float = 1.0) -> Measurement:
-    (amplitude,) = _answer(RIG, "speed", SPEED, ["amplitude"])
+    (amplitude,) = _answer(MACHINE, "speed", SPEED, ["amplitude"])
     random = np.random.default_rng(seed)
     size = noise * np.sqrt(np.mean(np.square(amplitude)))
-    return Measurement(
-        "speed", SPEED, (("amplitude", scale * (amplitude + size * random.standard_normal(30))),)
-    )
+    return over_speed(scale * (amplitude + size * random.standard_normal(30)))
 
 
-@kills("leblanc.studies.fit:_uncertainty", "max(count - unknowns, 1)", "count**2")
-@kills("leblanc.studies.fit:_Problem.result", "value, self.spans", "9.0 * value, self.spans")
+@kills("leblanc.studies.fitting.noise:_noise", "np.sqrt(mean / share)", "np.sqrt(9.0 * mean / share)")
+@kills("leblanc.studies.fit:_result", "value, problem.spans)", "9.0 * value, problem.spans)")
 def test_truth_within_its_errors() -> None:
-    """Errors are as large as they are said to be: over twelve sets of noise their squares average to one."""
-    guess = RIG.replace({"rotor.mass": 5.0, "rotor.damping_ratio": 0.07})
+    """Errors are as large as they are said to be: over eight sets of noise their squares average to one."""
     squares = []
-    for seed in range(12):
-        found = fit_scene(guess, measured(0.02, seed), UNKNOWN, starts=1)
-        assert found.converged
+    for seed in range(8):
+        found = fit_scene(GUESS, measured(0.02, seed), UNKNOWN, starts=1)
+        assert found.converged and found.accepted
         squares.append(np.square((found.value - TRUTH) / found.std))
-    # Of 24 squares of a normal variable: a mean of 1, give or take sqrt(2/24) = 0.29; four of those.
-    assert 0.3 < np.mean(squares) < 2.2
+    # Of 16 squares of a normal variable: a mean of 1, give or take sqrt(2/16) = 0.35; 2.2 of those below
+    # (the mean is skewed: a chance of 1e-3) and four above.
+    assert 0.22 < np.mean(squares) < 2.4
 
 
 def test_without_noise() -> None:
-    """The truth to rounding, from several starts, whatever the seed; and no errors without noise."""
+    """The truth to rounding, whatever the seed; no errors without noise, and the same answer again."""
     for seed in (0, 1):
-        guess = RIG.replace({"rotor.mass": 6.0, "rotor.damping_ratio": 0.05})
-        found = fit_scene(guess, measured(0.0, 0), UNKNOWN, starts=3, seed=seed)
+        found = fit_scene(GUESS, measured(0.0, 0), UNKNOWN, starts=3, seed=seed)
         # The search ends where a step changes the sum by 1e-8 of it, or the values by 1e-8.
         np.testing.assert_allclose(found.value, TRUTH, rtol=1e-5)
-        assert found.residual_rms < 1e-5
-    again = fit_scene(guess, measured(0.02, 3), UNKNOWN, starts=2, seed=5)
-    assert again.parameters == fit_scene(guess, measured(0.02, 3), UNKNOWN, starts=2, seed=5).parameters
+        assert found.residual_rms < 1e-5 and found.accepted
+    again = fit_scene(GUESS, measured(0.02, 3), UNKNOWN, starts=2, seed=5)
+    assert again.parameters == fit_scene(GUESS, measured(0.02, 3), UNKNOWN, starts=2, seed=5).parameters
 
 
 def test_a_free_scale() -> None:
     """A sensor in its own units: the same values, and its scale."""
-    plain = fit_scene(RIG, measured(0.02, 1), UNKNOWN, starts=1)
-    found = fit_scene(RIG, measured(0.02, 1, 8192.0), UNKNOWN, starts=1, scale="free")
+    plain = fit_scene(GUESS, measured(0.02, 1), UNKNOWN, starts=1)
+    found = fit_scene(GUESS, measured(0.02, 1, 8192.0), UNKNOWN, starts=1, scale="free")
+    # The factor takes up noise that the values would have to: a standard error or two, about 1 % each.
     assert found.scale == pytest.approx(8192.0, rel=0.05)
     np.testing.assert_allclose(found.value, plain.value, rtol=0.05)
     assert FitCode.SCALE in [note.code for note in found.notes]
@@ -72,78 +83,84 @@ def test_a_free_scale() -> None:
 
 
 def test_what_the_data_cannot_tell() -> None:
-    """Stiffness and mass far above the resonance, unbalance in a free scale: said in words."""
+    """Far above the resonance damping does nothing, and mass and unbalance only by their ratio: said so."""
     fast = np.linspace(600.0, 900.0, 12)
-    (amplitude,) = _answer(RIG, "speed", fast, ["amplitude"])
+    (amplitude,) = _answer(MACHINE, "speed", fast, ["amplitude"])
     random = np.random.default_rng(0)
-    table = Measurement(
-        "speed", fast, (("amplitude", amplitude * (1.0 + 0.01 * random.standard_normal(12))),)
-    )
-    found = fit_scene(RIG, table, ("rotor.mass", "rotor.damping_ratio"), starts=1)
+    table = over_speed(amplitude * (1.0 + 0.01 * random.standard_normal(12)), fast)
+    found = fit_scene(MACHINE, table, ("rotor.damping",), starts=1)
     told = {note.code for note in found.notes}
-    # Damping does nothing there.
-    assert told & {FitCode.VAGUE, FitCode.NOT_TOLD, FitCode.AT_BOUND}
-    together = fit_scene(RIG, measured(0.02, 0), ("rotor.mass", "rotor.unbalance"), starts=1)
-    assert abs(together.correlation[0, 1]) > 0.8
+    assert told & {FitCode.VAGUE, FitCode.NOT_TOLD, FitCode.AT_BOUND, FitCode.PLATEAU}
+    assert math.isnan(found.std[0]) and found.accepted
+    together = fit_scene(MACHINE, table, ("rotor.mass", "rotor.unbalance"), starts=1)
+    (flat,) = [note for note in together.notes if note.code == FitCode.FLAT]
+    # The stiffness is 1e-3 of the mass's force there.
+    np.testing.assert_allclose(np.array(flat.data["powers"]), [math.sqrt(0.5)] * 2, rtol=5e-3)
+    assert np.isnan(together.std).all()
+    assert together.value[1] / together.value[0] == pytest.approx(0.004 / 30.0, rel=0.02)
 
 
-@kills("leblanc.results.fit:FitResult.interval", "stdtrit(self.freedom, _UPPER)", "stdtrit(99, _UPPER)")
+@kills("leblanc.results.fit:quantile", "stdtrit(freedom, _UPPER)", "stdtrit(99, _UPPER)")
 @kills("leblanc.results.fit:FitResult.interval", "self.value / factor", "self.value - factor")
 def test_interval() -> None:
     """Student's t of the table, 2.306 for eight degrees of freedom, about the logarithm; wider for fewer."""
-    speed = np.linspace(60.0, 180.0, 10)
-    (amplitude,) = _answer(RIG, "speed", speed, ["amplitude"])
-    noisy = amplitude * (1.0 + 0.1 * np.random.default_rng(1).standard_normal(10))
-    found = fit_scene(RIG, Measurement("speed", speed, (("amplitude", noisy),)), UNKNOWN, starts=1)
+    speed = np.linspace(12.0, 50.0, 10)
+    (amplitude,) = _answer(MACHINE, "speed", speed, ["amplitude"])
+    noisy = over_speed(amplitude * (1.0 + 0.1 * np.random.default_rng(1).standard_normal(10)), speed)
+    found = fit_scene(GUESS, noisy, UNKNOWN, starts=1)
     assert found.freedom == 8
-    ends = np.log(found.interval / found.value[:, None]) * (found.value / found.std)[:, None]
+    bent = replace(found, profile=None)
+    ends = np.log(bent.interval / bent.value[:, None]) * (bent.value / bent.std)[:, None]
     # The table has four digits.
     np.testing.assert_allclose(ends, [[-2.306, 2.306]] * 2, rtol=2e-4)
-    vague = replace(found, std=9.0 * found.value)
+    vague = replace(bent, std=9.0 * found.value)
     np.testing.assert_allclose(vague.interval / vague.first[:, None], [[0.01, 100.0]] * 2, rtol=1e-12)
-    scaled = fit_scene(RIG, Measurement("speed", speed, (("amplitude", noisy),)), UNKNOWN, 1, scale="free")
-    assert scaled.freedom == 7
+    assert fit_scene(GUESS, noisy, UNKNOWN, 1, scale="free").freedom == 7
+    # The normal distribution's where the noise is known.
+    assert fit_scene(GUESS, noisy, UNKNOWN, 1, noise="10 %").quantile == pytest.approx(1.95996, rel=1e-5)
 
 
 @pytest.mark.slow
-def test_coverage_of_200_trials() -> None:
-    """The truth lies in its interval in 95 % of 200 sets of noise, for each unknown.
+@pytest.mark.parametrize("kind", ["absolute", "relative", "estimate"])
+def test_coverage_of_60_trials(kind: str) -> None:
+    """The truth lies in its interval in 95 % of 60 sets of noise of each kind, for each of three unknowns.
 
-    Of 200 trials 190 +- sqrt(200 * 0.95 * 0.05) = 3.1 are inside; four of those below. Errors a fifth too
-    small would leave 177.
+    Of 60 trials 57 +- sqrt(60 * 0.95 * 0.05) = 1.7 are inside; four of those below. All points weighted
+    alike leave 24 of relative noise. `random_fits.py --coverage 400` counts more.
     """
-    guess = RIG.replace({"rotor.mass": 5.0, "rotor.damping_ratio": 0.07})
-    inside = np.zeros(2, dtype=int)
-    for seed in range(1000, 1200):
-        found = fit_scene(guess, measured(0.02, seed), UNKNOWN, starts=1)
-        low, high = found.interval.T
-        inside += (low < TRUTH) & (high > TRUTH)
-    assert (inside >= 178).all(), inside
+    inside = np.sum([covered(kind, seed) for seed in range(1000, 1060)], axis=0)
+    assert (inside >= 50).all(), inside
+
+
+@pytest.mark.slow
+def test_ten_random_fits() -> None:
+    """Of ten machines drawn at random none is wrong without a note; `random_fits.py --count` draws more."""
+    verdicts = [drawn(seed).verdict for seed in range(10)]
+    assert verdicts.count("silent") == 0 and verdicts.count("noted") <= 3, verdicts
 
 
 def test_liquid_added() -> None:
     """What was in the ring before, from amplitudes with more and more liquid, in units of the sensor."""
     scene = lb.example("runup").replace({"speeds.stop": 21.0, "chambers.0.volume": "60 ml"})
-    added = np.linspace(0.0, 3e-4, 7)
+    added = np.linspace(0.0, 2e-4, 5)
     (amplitude,) = _answer(scene, "added", added, ["amplitude"])
     exact = lb.run(scene.replace({"chambers.0.volume": "160 ml", "speeds.start": 20.0, "speeds.count": 2}))
     assert amplitude[2] == pytest.approx(exact.amplitude[-1], rel=1e-9)
     guess = scene.replace({"chambers.0.volume": "80 ml"})
-    for scale, factor in (("given", 1.0), ("free", 7.0), ("each", 7.0)):
-        table = Measurement("added", added, (("amplitude", factor * amplitude),))
-        found = fit_scene(guess, table, ("chambers.0.volume",), starts=1, scale=scale)
-        # The search ends where a step changes the sum, or the value, by 1e-8 of it.
-        assert found.value[0] == pytest.approx(60e-6, rel=1e-4)
-        assert found.scale == pytest.approx(factor, rel=1e-4)
+    table = Measurement("added", added, (("amplitude", 7.0 * amplitude),))
+    found = fit_scene(guess, table, ("chambers.0.volume",), starts=1, scale="each")
+    # The search ends where a step changes the sum, or the value, by 1e-8 of it.
+    assert found.value[0] == pytest.approx(60e-6, rel=1e-4)
+    assert found.scale == pytest.approx(7.0, rel=1e-4)
 
 
-@kills("leblanc.studies.fit:_factor", "own @ value", "own @ own")
+@kills("leblanc.studies.fitting.problem:_factor", "own @ value", "own @ own")
 def test_a_factor_for_each_quantity() -> None:
     """Two sensors in two units: both factors are found, and angles have none."""
-    names = ["amplitude", "liquid_offset", "liquid_angle"]
-    parts = _answer(RIG, "speed", SPEED, names)
+    names, speed = ["amplitude", "liquid_offset", "liquid_angle"], np.linspace(60.0, 180.0, 8)
+    parts = _answer(RIG, "speed", speed, names)
     sensors = zip(names, parts, (3.0, 50.0, 1.0), strict=True)
-    table = Measurement("speed", SPEED, tuple((name, factor * part) for name, part, factor in sensors))
+    table = Measurement("speed", speed, tuple((name, factor * part) for name, part, factor in sensors))
     guess = RIG.replace({"rotor.damping_ratio": 0.07})
     found = fit_scene(guess, table, ("rotor.damping_ratio",), starts=1, scale="each")
     assert found.value[0] == pytest.approx(0.1, rel=1e-5)
@@ -151,25 +168,49 @@ def test_a_factor_for_each_quantity() -> None:
     assert note.data["scale"] == pytest.approx({"amplitude": 3.0, "liquid_offset": 50.0}, rel=1e-5)
 
 
-@kills("leblanc.studies.fit:_uncertainty", "np.square(inverse)", "inverse")
+@kills("leblanc.studies.fitting.errors:curvature", "np.square(inverse)", "inverse")
 def test_uncertainty_of_a_straight_line() -> None:
     """The textbook's covariance, and nan for what no row of the Jacobian knows."""
     x = np.linspace(0.0, 1.0, 20)
     jacobian = np.stack([np.ones(20), x], axis=1)
-    std, correlation = _uncertainty(jacobian, 18.0 * 0.04, 20)
+    bent = curvature(jacobian / 0.2)
     exact = 0.04 * np.linalg.inv(jacobian.T @ jacobian)
-    np.testing.assert_allclose(std, np.sqrt(np.diag(exact)), rtol=1e-12)
-    assert correlation[0, 1] == pytest.approx(exact[0, 1] / np.sqrt(exact[0, 0] * exact[1, 1]), rel=1e-12)
-    blind, _ = _uncertainty(np.stack([np.ones(20), np.zeros(20)], axis=1), 1.0, 20)
-    assert math.isfinite(blind[0]) and math.isnan(blind[1])
+    np.testing.assert_allclose(bent.std, np.sqrt(np.diag(exact)), rtol=1e-12)
+    assert bent.correlation[0, 1] == pytest.approx(
+        exact[0, 1] / np.sqrt(exact[0, 0] * exact[1, 1]), rel=1e-12
+    )
+    assert not bent.flat
+    blind = curvature(np.stack([np.ones(20), np.zeros(20)], axis=1))
+    assert math.isfinite(blind.std[0]) and math.isnan(blind.std[1])
+    np.testing.assert_allclose(np.abs(blind.flat[0]), [0.0, 1.0], atol=1e-12)
+
+
+@kills("leblanc.studies.fitting.errors:averaged", "0.5 * min", "2.0 * min")
+@kills("leblanc.studies.fitting.errors:averaged", " + np.square(other.x - best.x)", "")
+def test_two_kinds_of_noise() -> None:
+    """Chances of 3 to 1: the variance of a mixture of two normal distributions about the likelier mean."""
+    noise, none = Noise("absolute", False, (), ()), (np.ones(1),)
+    best, other = (Judged(np.array([x]), noise, none, u, True) for x, u in ((0.0, 4.0), (0.3, 4.0 + LIKELY)))
+    mixed = averaged(curvature(np.eye(1) / 0.1), best, curvature(np.eye(1) / 0.2), other)
+    random = np.random.default_rng(0)
+    trials = np.where(
+        random.random(200_000) < 0.25,
+        0.3 + 0.2 * random.standard_normal(200_000),
+        0.1 * random.standard_normal(200_000),
+    )
+    # Four standard errors of a mean square of 200 000, whose own scatter is about twice its size.
+    assert mixed.std[0] ** 2 == pytest.approx(np.mean(np.square(trials)), rel=0.018)
+    assert mixed.unsure is not None and mixed.unsure[0] == pytest.approx(10.0 * mixed.std[0])
+    # An error that the other kind tells better is kept.
+    assert averaged(curvature(np.eye(1)), best, curvature(np.eye(1) / 0.2), other).std[0] == 1.0
 
 
 def test_over_time() -> None:
     """A run-up: the stiffness and the damping of a dry machine from its amplitude over time."""
     scene = lb.example("runup").replace(
-        {"chambers.0.volume": 0.0, "runup.duration": "6 s", "runup.samples": 400}
+        {"chambers.0.volume": 0.0, "runup.duration": "2 s", "runup.samples": 200}
     )
-    time = np.linspace(0.5, 6.0, 60)
+    time = np.linspace(0.2, 2.0, 40)
     (amplitude,) = _answer(scene, "time", time, ["amplitude"])
     paths = tuple(path for path in ("rotor.critical_speed", "rotor.stiffness") if _stands(scene, path))
     guess = scene.replace({paths[0]: 1.05 * _value(scene, paths[0])})
@@ -184,29 +225,37 @@ def _loaded(position: float, angle: float) -> lb.Scene:
     return lb.example("tub").replace(changes)
 
 
-@kills("leblanc.studies.fit:_Problem.values", "np.isnan(spans)", "spans == spans")
-@kills("leblanc.studies.fit:_Problem.result", "value, self.spans", "value, value")
+@kills("leblanc.studies.fitting.problem:Problem.values", "np.isnan(spans)", "spans == spans")
+@kills("leblanc.studies.fit:_result", "value, problem.spans)", "value, value)")
 @kills(
     "leblanc.results.fit:FitResult.interval", "self.value - wide, self.value + wide", "ends[:, 0], ends[:, 1]"
 )
 def test_where_a_load_lies() -> None:
-    """Position and angle, from a guess of 0 and of the other sign; intervals of even arms."""
-    speed = np.linspace(20.0, 90.0, 16)
+    """Position and angle, from a guess of 0 and of the other sign; errors of linear least squares."""
+    speed, truth, step = np.linspace(20.0, 90.0, 10), np.array([0.02, 0.1]), 1e-3
     names = ["amplitude", "phase"]
     paths = ("rotor.loads.0.position", "rotor.loads.0.angle")
-    columns = tuple(zip(names, _answer(_loaded(0.08, 0.6), "speed", speed, names), strict=True))
-    found = fit_scene(_loaded(0.0, -0.2), Measurement("speed", speed, columns), paths, starts=1)
-    np.testing.assert_allclose(found.value, [0.08, 0.6], rtol=1e-5)
+    amplitude, phase = _answer(_loaded(0.02, 0.1), "speed", speed, names)
     random = np.random.default_rng(5)
-    noisy = tuple((name, value * (1.0 + 0.02 * random.standard_normal(16))) for name, value in columns)
-    off = fit_scene(_loaded(0.05, 0.5), Measurement("speed", speed, noisy), paths, starts=1)
-    # A chance of 1e-4 each that a normal variable is further off.
-    assert np.all(np.abs(off.value - [0.08, 0.6]) < 4.0 * off.std)
+    columns = (
+        ("amplitude", amplitude * (1.0 + 0.02 * random.standard_normal(10))),
+        ("phase", phase + 0.02 * random.standard_normal(10)),
+    )
+    off = fit_scene(_loaded(0.0, -0.2), Measurement("speed", speed, columns), paths, starts=1)
+    slopes = []
+    for move in step * np.eye(2):
+        size, turn = _answer(_loaded(*(truth + move)), "speed", speed, names)
+        slopes.append(np.concatenate([size / amplitude - 1.0, np.angle(np.exp(1j * (turn - phase)))]) / step)
+    exact = 0.02 * np.sqrt(np.diag(np.linalg.inv(np.array(slopes) @ np.array(slopes).T)))
+    # A chance of 1e-4 each that a normal variable is further off; the noise of each quantity is known from
+    # ten values, to 1 over the root of 20: three of those.
+    assert np.all(np.abs(off.value - truth) < 4.0 * off.std)
+    np.testing.assert_allclose(off.std, exact, rtol=0.67)
     assert off.signed == paths
     middle = off.interval.mean(axis=1)
     np.testing.assert_allclose(middle, off.value, rtol=1e-12)
-    # Student's t of the table for 30 degrees of freedom.
-    np.testing.assert_allclose(np.diff(off.interval, axis=1)[:, 0], 2.0 * 2.042 * off.std, rtol=3e-4)
+    # Student's t of the table for 18 degrees of freedom.
+    np.testing.assert_allclose(np.diff(off.interval, axis=1)[:, 0], 2.0 * 2.101 * off.std, rtol=3e-4)
 
 
 @pytest.mark.slow
@@ -227,13 +276,10 @@ def test_water_that_leaves_a_load() -> None:
     assert np.all(found.std < [0.004, 0.1])
 
 
-@kills("leblanc.studies.fit:_others", "[told]", "")
 def test_measured_angles_of_a_rig() -> None:
-    """The rig's six angles: what a least squares of its own finds, and friction that they do not tell."""
+    """The rig's six angles: what a least squares of its own finds."""
     angles = read_measured(Path("docs/examples/rig_angles.csv"), ("x", "y"))
-    wall = RIG.replace({"model.friction": {"wall": {"roughness": 5e-5}}})
-    paths = ("rotor.damping_ratio", "rotor.critical_speed", "model.friction.wall.roughness")
-    found = fit_scene(wall, angles, paths, starts=3)
+    found = fit_scene(RIG, angles, ("rotor.damping_ratio", "rotor.critical_speed"), starts=1)
     seen = data("dr18_fig24.json")
     speed = np.array(seen["speed_rpm"]) * math.pi / 30.0
     np.testing.assert_allclose(angles.at, speed)
@@ -245,17 +291,162 @@ def test_measured_angles_of_a_rig() -> None:
     # There the liquid's added mass counts as the rotor's; the square of the speed goes as 1 over the mass.
     heavier = math.sqrt(1.0 + sum(fill.full_mass for fill in horizontal_rig()) / 4.0)
     dry = wet * heavier * np.array([1.0, 1000.0 * math.pi / 30.0])
-    np.testing.assert_allclose(found.value[:2], dry, rtol=1e-3)
-    assert np.isfinite(found.std[:2]).all() and math.isnan(found.std[2])
-    # Searches that differ in what is not told alone are no other answer.
+    np.testing.assert_allclose(found.value, dry, rtol=1e-3)
+    # Four values more than unknowns scatter as noise does; that 0.19 rad is much for noise is said.
+    assert found.accepted and np.isfinite(found.std).all()
+    assert [note.code for note in found.notes] == [FitCode.LARGE]
+
+
+@kills("leblanc.studies.fit:_is_near", "[told]", "")
+def test_an_unknown_that_nothing_tells() -> None:
+    """An empty chamber's radius: not told; searches that differ in it alone are no other answer."""
+    chamber = {"radius": 0.1, "height": 0.05, "volume": 0.0, "liquid": "water"}
+    scene = scene_from_table({**DRY, "chambers": [chamber], "model": {"liquid": "linear"}})
+    found = fit_scene(scene, measured(0.02, 2), ("rotor.stiffness", "chambers.0.radius"), starts=3)
+    assert abs(found.value[0] - TRUTH[0]) < 4.0 * found.std[0]
+    assert math.isnan(found.std[1])
     assert {note.code for note in found.notes} == {FitCode.NOT_TOLD}
+
+
+def test_too_few_values_to_judge() -> None:
+    """Three values more than unknowns do not show whether a few per cent are noise; stated noise does."""
+    speed = np.array([15.0, 22.0, 26.0, 32.0, 45.0])
+    (amplitude,) = _answer(MACHINE, "speed", speed, ["amplitude"])
+    table = over_speed(amplitude * (1.0 + 0.03 * np.array([1.0, -1.0, -0.5, 1.0, -1.0])), speed)
+    found = fit_scene(GUESS, table, UNKNOWN, starts=1)
+    assert found.freedom == 3 and not found.accepted and np.isnan(found.std).all()
+    assert FitCode.FEW in {note.code for note in found.notes}
+    assert fit_scene(GUESS, table, UNKNOWN, starts=1, noise="3 %").accepted
+    exact = fit_scene(GUESS, over_speed(amplitude, speed), UNKNOWN, starts=1)
+    assert exact.accepted
+    np.testing.assert_allclose(exact.value, TRUTH, rtol=1e-5)
+
+
+@kills("leblanc.studies.fitting.noise:alike_by_chance", "trace / freedom,", "-trace / freedom,")
+@kills("leblanc.studies.fitting.noise:alike_by_chance", "both - trace**2", "both + trace**2")
+@kills("leblanc.studies.fitting.noise:alike_by_chance", "- 2.0 * float", "- float")
+def test_how_alike_neighbours_are_by_chance() -> None:
+    """Mean and variance of the neighbours' correlation: traces of the written-out matrices, and trials."""
+    random = np.random.default_rng(0)
+    basis, _ = np.linalg.qr(random.standard_normal((16, 3)))
+    mean, variance = alike_by_chance(basis, 8)
+    beside = np.kron(np.eye(2), 0.5 * (np.eye(8, k=1) + np.eye(8, k=-1)))
+    left = np.eye(16) - basis @ basis.T
+    product = left @ beside
+    trace = float(np.trace(product))
+    assert mean == pytest.approx(trace / 13, rel=1e-12)
+    exact = 2.0 * (13 * np.trace(product @ product) - trace**2) / (13**2 * 15)
+    assert variance == pytest.approx(exact, rel=1e-12)
+    trials = random.standard_normal((20_000, 16)) @ left
+    ratio = np.einsum("ij,jk,ik->i", trials, beside, trials) / np.sum(np.square(trials), axis=1)
+    # Four standard errors of a mean, and of a variance, of 20 000.
+    assert abs(ratio.mean() - mean) < 4.0 * math.sqrt(variance / 20_000)
+    assert ratio.var() == pytest.approx(variance, rel=4.0 * math.sqrt(2.0 / 20_000))
+
+
+def test_a_wrong_scene_is_not_accepted() -> None:
+    """Damping that the search may not touch is wrong by a half: a few per cent are left, and are no noise."""
+    wrong = MACHINE.replace({"rotor.damping": 110.0})
+    table = measured(0.005, 4)
+    paths = ("rotor.stiffness", "rotor.unbalance")
+    found = fit_scene(wrong, table, paths, starts=1)
+    assert 0.02 < found.residual_rms < 0.2  # far below what no sensor has
+    assert not found.accepted and np.isnan(found.std).all()
+    assert FitCode.POOR in {note.code for note in found.notes}
+    size = 0.005 * found.measured[0].value.std() * 1e3
+    assert not fit_scene(wrong, table, paths, starts=1, noise=f"{size} mm").accepted
+    assert fit_scene(wrong, table, (*paths, "rotor.damping"), starts=1).accepted
+
+
+def test_rows_that_repeat_tell_their_noise() -> None:
+    """Readings that repeat to 0.1 % and lie 10 % off the scene, up and down as noise would."""
+    speed = np.repeat(np.linspace(15.0, 45.0, 8), 2)
+    (amplitude,) = _answer(MACHINE, "speed", speed, ["amplitude"])
+    off = np.repeat([0.1, -0.05, -0.1, 0.1, 0.05, -0.1, -0.05, 0.1], 2)
+    twin = 1.0 + off + 1e-3 * np.random.default_rng(0).standard_normal(16)
+    found = fit_scene(MACHINE, over_speed(amplitude * twin, speed), UNKNOWN, starts=1)
+    (note,) = [note for note in found.notes if note.code == FitCode.POOR]
+    assert not found.accepted and "repeat" in note.text
+
+
+def test_a_plateau_has_one_end() -> None:
+    """More liquid than keeps the wall wet does nothing: the data bound the volume from below alone.
+
+    The wall falls dry where the deflection e reaches the layer's thickness: V = pi h (R^2 - (R - e)^2).
+    """
+    table = RIG.table()
+    table.pop("assumed")
+    machine = table | {"chambers": table["chambers"][:1], "model": {"liquid": "statics"}}
+    scene, speed = scene_from_table(machine), np.linspace(80.0, 140.0, 8)
+    (amplitude,) = _answer(scene, "speed", speed, ["amplitude"])
+    radius, height, most = 0.065, 0.02, float(amplitude.max())
+    edge = math.pi * height * (radius**2 - (radius - most) ** 2)
+    found = fit_scene(scene, over_speed(amplitude, speed), ("chambers.0.volume",), starts=1)
+    (note,) = [note for note in found.notes if note.code == FitCode.PLATEAU]
+    # Just below the edge the answer changes as the power 3/2 of the distance: 1e-6 of it at 2e-3.
+    assert note.data["edge"] == pytest.approx(edge, rel=5e-3)
+    assert found.interval[0, 0] == note.data["edge"]
+    assert math.isnan(found.std[0]) and found.accepted
+
+
+@kills("leblanc.studies.fitting.search:search", "enough and _again(problem, found) > 1", "True or enough")
+def test_a_guess_in_the_wrong_valley() -> None:
+    """Two modes, guesses three times off: a first search ends at 4 % where the truth leaves half of that."""
+    speed, random = np.linspace(43.0, 143.0, 10), np.random.default_rng(0)
+    (amplitude,) = _answer(_two_modes(), "speed", speed, ["amplitude"])
+    table = over_speed(amplitude * (1.0 + 0.01 * random.standard_normal(10)), speed)
+    truth = {
+        "rotor.unbalances.0.size": 1.757e-3,
+        "rotor.transverse_inertia": 1.631,
+        "rotor.supports.0.damping": 600.0,
+    }
+    off = dict(zip(truth, (2.8 * 1.757e-3, 4.0 * 1.631, 8.3 * 600.0), strict=True))
+    found = fit_scene(_two_modes().replace(off), table, tuple(truth), starts=1)
+    assert found.accepted
+    # A chance of 1e-4 each that a normal variable is further off.
+    assert np.all(np.abs(found.value - list(truth.values())) < 4.0 * found.std)
+    assert np.all(found.std < 0.05 * found.value)
+
+
+@kills("leblanc.studies.fitting.problem:Problem.with_values", "for path in group", "for path in group[:1]")
+def test_tied_supports() -> None:
+    """Two springs that are alike are one unknown."""
+    alike = ("rotor.supports.0.stiffness", "rotor.supports.1.stiffness")
+    speed = np.linspace(43.0, 143.0, 8)
+    even = dict.fromkeys(alike, 2e5)
+    (amplitude,) = _answer(_two_modes().replace(even), "speed", speed, ["amplitude"])
+    guess = _two_modes().replace(dict(zip(alike, (1e5, 4e5), strict=True)))
+    found = fit_scene(guess, over_speed(amplitude, speed), ("=".join(alike),), starts=1)
+    assert found.value[0] == pytest.approx(2e5, rel=1e-5)
+    assert found.unknown == alike[:1] and found.tied == (alike[1:],)
+    for wrong in ("rotor.mass=rotor.mass", "rotor.mass=rotor.masse", "=rotor.mass"):
+        with pytest.raises(InputError):
+            fit_scene(guess, over_speed(amplitude, speed), (wrong,))
+
+
+def _two_modes() -> lb.Scene:
+    """A dry rotor on two supports, both of whose modes lie within 43 to 143 rad/s."""
+    supports = [
+        {"position": -0.2, "stiffness": 1.673e5, "damping": 600.0},
+        {"position": 0.25, "stiffness": 2.509e5, "damping": 600.0},
+    ]
+    rotor = {
+        "kind": "two_plane",
+        "mass": 81.5,
+        "transverse_inertia": 1.631,
+        "polar_inertia": 0.815,
+        "axis": "horizontal",
+        "supports": supports,
+        "unbalances": [{"position": 0.05, "size": 1.757e-3, "angle": 0.4}],
+    }
+    return scene_from_table({"name": "two modes", "rotor": rotor, "speeds": DRY["speeds"]})
 
 
 def test_data_that_the_scene_cannot_meet() -> None:
     """A curve that rises and falls without sense is not met, and the answer says so."""
-    table = Measurement("speed", SPEED, (("amplitude", 1e-3 * (1.0 + np.arange(30) % 2 * 4.0)),))
-    found = fit_scene(RIG, table, UNKNOWN, starts=1)
+    found = fit_scene(MACHINE, over_speed(1e-3 * (1.0 + np.arange(30) % 2 * 4.0)), UNKNOWN[:1], starts=1)
     assert found.residual_rms > 0.3 and FitCode.POOR in {note.code for note in found.notes}
+    assert not found.accepted
 
 
 def _value(scene: lb.Scene, path: str) -> float:
@@ -273,71 +464,68 @@ def _stands(scene: lb.Scene, path: str) -> bool:
     return True
 
 
+SCENE = """name = "Dry"
+[rotor]
+kind = "jeffcott"
+mass = "30 kg"
+stiffness = "15 N/mm"
+damping = "90 N*s/m"
+unbalance = "4 kg*mm"
+axis = "vertical"
+[speeds]
+start = "80 rpm"
+stop = "900 rpm"
+count = 5
+"""
+
+
+def _size(data: Measurement) -> float:
+    """One per cent of the size of a measurement, mm."""
+    return 10.0 * float(np.sqrt(np.mean(np.square(data.columns[0][1]))))
+
+
 def table(folder: Path, text: str) -> Path:
     (folder / "m.csv").write_text(text, encoding="utf-8")
     return folder / "m.csv"
 
 
-def test_tables(tmp_path: Path) -> None:
-    """Units of the header, any order of columns and rows, comments."""
-    text = "# a run\namplitude [um], speed (rpm), liquid_angle [deg]\n2, 300, 90\n1, 60, -45\n"
-    found = read_measured(table(tmp_path, text), ("x", "y"))
-    np.testing.assert_allclose(found.at, [2 * math.pi, 10 * math.pi])
-    assert [name for name, _ in found.columns] == ["amplitude", "liquid_angle"]
-    np.testing.assert_allclose(found.columns[0][1], [1e-6, 2e-6])
-    np.testing.assert_allclose(found.columns[1][1], [-math.pi / 4, math.pi / 2])
-    free = read_measured(table(tmp_path, "speed [rpm], amplitude [LSB]\n60, 5\n120, 7\n"), (), True)
-    np.testing.assert_allclose(free.columns[0][1], [5.0, 7.0])
-
-
-@pytest.mark.parametrize(
-    ("text", "words"),
-    [
-        ("", "a header"),
-        ("speed [rpm], amplitude [kg]\n1, 2\n3, 4\n", "length"),
-        ("speed [rpm], amplitde [mm]\n1, 2\n3, 4\n", "one of"),
-        ("speed [rpm], time [s], amplitude [mm]\n1, 2, 3\n3, 4, 5\n", "speed, time or added"),
-        ("speed [rpm], amplitude [mm]\n1, 2\n3, x\n", "numbers"),
-        ("speed [rpm], amplitude [mm]\n1, 2\n3\n", "2 finite numbers"),
-        ("speed [rpm], amplitude [mm]\n0, 2\n3, 4\n", "above 0"),
-        ("added [ml], peak [mm]\n-1, 2\n3, 4\n", "at least 0"),
-    ],
-)
-def test_faulty_tables(tmp_path: Path, text: str, words: str) -> None:
-    with pytest.raises(InputError) as fault:
-        read_measured(table(tmp_path, text), ("x", "y"))
-    assert words in str(fault.value)
-
-
-@given(st.text(max_size=200))
-def test_any_text_is_refused_or_read(text: str) -> None:
-    import tempfile
-
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "m.csv"
-        path.write_bytes(text.encode("utf-8", "surrogatepass"))
-        try:
-            found = read_measured(path, ("x",))
-            assert (np.diff(found.at) >= 0.0).all() and np.isfinite(found.at).all()
-        except InputError:
-            return
-
-
 def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """JSON keys that scripts rely on, files, and wrong unknowns in one line each."""
-    scene = str(Path(lb.__file__).parents[1] / "examples" / "horizontal_rig.toml")
-    data = measured(0.02, 0)
-    lines = [f"{s * 30 / math.pi}, {a * 1e3}" for s, a in zip(SPEED, data.columns[0][1], strict=True)]
-    path = str(table(tmp_path, "speed [rpm], amplitude [mm]\n" + "\n".join(lines)))
+    """JSON keys that scripts rely on, files, units of the scene, and wrong inputs in one line each."""
+    scene = str(tmp_path / "dry.toml")
+    Path(scene).write_text(SCENE, encoding="utf-8")
+    data = measured(0.01, 0)
+    lines = [f"{s * 30 / math.pi};{a * 2e6}" for s, a in zip(SPEED, data.columns[0][1], strict=True)]
+    path = str(table(tmp_path, "Drehzahl [rpm];Schwingweg [um pp]\n" + "\n".join(lines)))
     out = tmp_path / "out"
-    words = ["fit", scene, path, "--starts", "1", "--out", str(out)]
-    assert main([*words, "--unknown", "rotor.mass", "--json"]) == 0
+    words = ["fit", scene, path, "--starts", "1", "--out", str(out), "--column", "speed=Drehzahl [rpm]"]
+    asked = [*words, "--column", "amplitude=Schwingweg [um pp]", "--noise", f"{_size(data)} mm"]
+    assert main([*asked, "--unknown", UNKNOWN[0], "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
-    assert set(found["parameters"]["rotor.mass"]) == {"value", "std"}
-    assert {"residual_rms", "correlation"} <= found.keys()
+    assert set(found["parameters"][UNKNOWN[0]]) == {"value", "std"}
+    assert {"residual_rms", "correlation", "accepted"} <= found.keys()
+    assert found["accepted"] is True and found["noise"] == "absolute"
+    assert found["parameters"][UNKNOWN[0]]["value"] == pytest.approx(TRUTH[0], rel=0.01)
     assert {"fit.nc", "fit.png", "fit.svg"} <= {file.name for file in out.iterdir()}
     for unknown in ("rotor.masse", "name", "rotor"):
-        assert main([*words, "--unknown", unknown]) == 2
+        assert main([*asked, "--unknown", unknown]) == 2
         assert capsys.readouterr().err.count("\n") == 1
-    assert main([*words, "--unknown", "rotor.mass"]) == 0
-    assert "rotor.mass" in capsys.readouterr().out
+    for wrong in (["--noise", "3 kg"], ["--column", "amplitude"], ["--column", "amplitude=Weg"]):
+        assert main([*words, "--unknown", UNKNOWN[0], *wrong]) == 2
+        assert capsys.readouterr().err.count("\n") == 1
+    assert main([*asked, "--unknown", UNKNOWN[0]]) == 0
+    shown = capsys.readouterr().out
+    # 18 750 N/m in the unit of the file, and the conversion said.
+    assert "N/mm" in shown and "18.7" in shown and "peak to peak" in shown
+
+
+def test_the_fitted_curve() -> None:
+    """A curve between the points with its peak: of the dry machine u w^2/(k |1 - r^2 + 2 i d r|)."""
+    found = fit_scene(GUESS, measured(0.0, 0), UNKNOWN, starts=1)
+    assert found.curve is not None
+    speed = found.curve.at
+    stiffness, damping = TRUTH
+    exact = 0.004 * speed**2 / np.abs(stiffness - 30.0 * speed**2 + 1j * damping * speed)
+    # The search ends within 1e-5 of the values.
+    np.testing.assert_allclose(found.curve.values[0], exact, rtol=1e-4)
+    assert found.curve.values[0].max() > 1.02 * found.measured[0].value.max()
+    assert set(found.at) <= set(speed)

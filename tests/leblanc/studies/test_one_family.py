@@ -126,7 +126,7 @@ def test_where_no_wave_stands_the_answer_says_so(tmp_path: Path, capsys: Capture
     assert answer["state"].count("not_settled") >= 2 and answer["dry_patch"].count(True) == 2
     assert (tmp_path / "out" / "response.nc").exists()
     assert main(["run", str(scene), "--out", str(tmp_path / "out")]) == 3
-    assert "Largest amplitude (mm, out of range, not converged, unstable)" in capsys.readouterr().out
+    assert "Largest amplitude (mm 0-p, out of range, not converged, unstable)" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(

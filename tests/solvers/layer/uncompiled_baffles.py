@@ -127,6 +127,30 @@ def test_a_wall_bears_its_liquid_beside_dry_cells() -> None:
     assert max(gaps[3:]) < (2.0 * np.pi / 64) ** 2 / 6.0
 
 
+@kills("solvers.layer.baffles:obstruct", "min(max(flow_r, 0.0), after[4, i])", "flow_r")
+@kills("solvers.layer.baffles:obstruct", "min(max(flow_l, 0.0), before[4, i])", "flow_l")
+@kills("solvers.layer.baffles:obstruct", "min(max(flow_r, 0.0), after[4, i])", "after[4, i]")
+def test_a_wall_neither_pulls_nor_drives_away() -> None:
+    """On liquid that runs away a closed baffle presses by no more than at rest, and never pulls.
+
+    A film at the foot of a steep bed, whose state at the face is much deeper, is the case where more came.
+    """
+    n, faces = 32, [8, 16, 20, 24, 28, 0]
+    for deep, pull in ((0.05, 0.0), (3e-4, 0.5), (3e-4, 0.0)):
+        for way in (1, -1):
+            presses = []
+            for speed in (-1.0, 0.0, 0.05, 1.0, 10.0, 100.0):
+                area, plates = np.zeros(n), table(faces, 0.6)
+                area[slice(8, 16) if way > 0 else slice(0, 8)] = 0.05
+                area[8 if way > 0 else 7] = deep
+                rates(area, way * speed * area - SPIN * area**2, plates, pull * way)
+                presses.append(-way * plates[0, baffles.TORQUE])
+            rest = presses[1]
+            assert presses[0] > rest > 0.0
+            assert max(presses[2:]) <= rest and min(presses) >= 0.0
+            assert deep < 0.05 or presses[-1] == 0.0
+
+
 @kills("solvers.layer.baffles:take", "-= table[k, TORQUE]", "+= table[k, TORQUE]")
 @kills("solvers.layer.baffles:obstruct", "flow_r = own_r", "flow_r = own_l")
 def test_compartments_rest() -> None:

@@ -32,7 +32,7 @@ from fluid.liquid import Liquid
 from meshes.chamber import Chamber
 from meshes.errors import InputError
 from solvers.layer.state import Numerics
-from solvers.liquid_model import Whirl
+from solvers.liquid_model import Whirl, drag_frequency
 from solvers.pypde.grid import circle
 from solvers.pypde.long_wave import AnnularLongWavePDE, FiniteVolumeSolver
 from solvers.pypde.settle import simulate
@@ -79,10 +79,11 @@ def made(law: str) -> tuple[Any, ...]:
     q = R * u * area - spin * area**2
     flux = u**2 * R**2 / 2 * (log + area / surface**2) + spin**2 * area**2 / 2
     flux += push * (arm - surface * area)
+    stokes = sympy.sqrt(OIL.viscosity * drag_frequency(layer(), MADE) / 2) * (1 / depth + 2 / H)
     shear = {
         "none": sympy.Integer(0),
         "linear": LAWS["linear"] * depth * u,
-        "stokes": sympy.sqrt(OIL.viscosity * 10 / 2) * (1 / depth + 2 / H) * depth * u,
+        "stokes": stokes * depth * u,
         "quadratic": LAWS["quadratic"] * u * u,
     }[law]
     mass = sympy.diff(area, t) + sympy.diff(R * u * log, theta)

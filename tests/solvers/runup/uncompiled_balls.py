@@ -8,15 +8,17 @@ import numpy as np
 import pytest
 
 from fluid.friction.laws import Friction
-from solvers.layer.records import Outcome
+from solvers.layer.records import Outcome, records
 from solvers.rotor.balls.balancers import BallRace, simulate
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import RotorSystem
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
 from solvers.runup.balls import Balls, ball_records, balls_energy, balls_inertia, race_planes
+from solvers.runup.kernel import tally_ball
 from solvers.runup.long_wave import Coupled, couple
 from solvers.runup.machine import Motor, Ramp
 from solvers.runup.runup import RunupNumerics, run_up
+from solvers.runup.state import BALL, SUMS
 from tests.mutants import kills
 
 _ADD = "solvers.runup.kernel:add_ball"
@@ -129,6 +131,19 @@ def test_the_energy_is_accounted_for_to_second_order(drive: Ramp | Motor) -> Non
         left.append(run.audit.closure)
     assert left[1] < 2e-3
     assert left[0] / left[1] > 3.0
+
+
+@kills("solvers.runup.kernel:tally_ball", "spins, dt), 0.0)", "spins, dt), -1.0)")
+def test_a_ball_whose_slip_turns_round_makes_no_cold() -> None:
+    """Slip 1, then -0.4: the resistance is that of the end and pushes against the mean; no heat, none lost.
+
+    Where the slip only falls, to 0.4, its heat is the resistance times the mean slip.
+    """
+    for change, heat in ((1.4, 0.0), (0.6, 0.01 * 2.0 * 0.4 * 0.7)):
+        ball, sums = records(BALL)[0], records(SUMS)[0]
+        ball.mass, ball.radius = 1.0, 1.0
+        tally_ball(ball, 2.0, np.zeros(2), (0.0, 0.0), change, np.ones(2), 0.01, sums)
+        assert sums.friction == pytest.approx(heat, abs=1e-15)
 
 
 @kills("solvers.runup.balls:balls_inertia", "whole - np", "whole + np")

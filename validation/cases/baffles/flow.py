@@ -18,7 +18,7 @@ from meshes.chamber import Chamber
 from solvers.layer.baffles import TORQUE
 from solvers.layer.inside import Inside, inside_of
 from solvers.sloshing.blocked import blocked_share
-from validation.cases.case import Case, Effect, compare
+from validation.cases.case import COMPUTED_FLOW, Case, Effect, compare
 from validation.cases.rotors.rigs import data
 
 _SOURCE = "interFoam, baffles.json"
@@ -168,6 +168,7 @@ def _decay(name: str, smeared: bool = False) -> Case:
     return Case(
         name=f"baffles/{name}{'_sink' * smeared}",
         source=_SOURCE,
+        origin=COMPUTED_FLOW,
         quantity=f"lag {time[k]:.3g} s after 0.25, where it differs most; {plates}{_SINK * smeared}",
         printed=float(lag[k]),
         computed=float(lag[k] + off[k]),
@@ -188,6 +189,7 @@ def _driven(name: str, smeared: bool = False) -> Case:
         run["fits"][0]["zeta_torque"],
         loss(name, smeared),
         tolerance=_LOSS,
+        origin=COMPUTED_FLOW,
         note="the reference is known to 10 %; its quarters differ by 5 to 20 %",
     )
 
@@ -204,6 +206,7 @@ def _struck(name: str) -> Case:
         stroke / (run["Omega"] * fill.mass * run["r_mean"] ** 2 * run["lag0"]),
         blocked_share(fill),
         tolerance=_STROKE,
+        origin=COMPUTED_FLOW,
         note="potential flow of the stroke; the bound of 25 % was set after looking",
     )
 
@@ -220,6 +223,7 @@ def _behind() -> Case:
     return Case(
         name="baffles/d6s",
         source=_SOURCE,
+        origin=COMPUTED_FLOW,
         quantity=f"lag after {end:.2g} s of a spin-up of 40 rad/s^2, from {run['lag0']:g}; 6 mm",
         printed=float(lag[-1]),
         computed=mine,
@@ -237,6 +241,7 @@ def _slosh() -> Case:
     return Case(
         name="baffles/s6",
         source=_SOURCE,
+        origin=COMPUTED_FLOW,
         quantity="loss coefficient in sloshing without a lag, from the loss of energy; 6 mm",
         printed=float(run["fits"][4]["zeta_osc_from_energy"]),
         computed=float(baffle_torque(plane_ring(run), run["Omega"], np.array([1e-3])).loss[0]),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from meshes.arrays import Array
-from validation.cases.case import Case, Effect, shape_verdict
+from validation.cases.case import MEASURED, Case, Effect, shape_verdict
 from validation.cases.fill_sweep.contact import of_kept
 from validation.cases.fill_sweep.fitted import SCATTER, bands, kept, measured, ratios
 from validation.cases.rotors.rigs import data
@@ -55,6 +55,7 @@ def _curve(name: str, text: str, added: Array, seen: Array, own: Array, band: Ar
     return Case(
         name=f"{_GROUP}/{name}",
         source=_SOURCE,
+        origin=MEASURED,
         quantity=f"{text}, {', '.join(f'{ml:g}' for ml in added[1:])} ml added over 0 ml",
         printed=_words(seen),
         computed=_words(own),
@@ -89,6 +90,7 @@ def _clearance(added: Array, seen: Array) -> Case:
     return Case(
         name=f"{_GROUP}/clearance",
         source=_SOURCE,
+        origin=MEASURED,
         quantity="largest shaking at the resonance over 0 ml, of a tub that touches its cabinet",
         printed=_words(seen),
         computed=_words(own),
@@ -113,6 +115,7 @@ def _coast(computed: float) -> Case:
     return Case(
         name=f"{_GROUP}/coast-down",
         source=_SOURCE,
+        origin=MEASURED,
         quantity="largest shaking at the resonance with the motor off over that with the motor on, 0 ml",
         printed=float(seen[0]),
         computed=computed,
@@ -132,6 +135,7 @@ def _order(added: Array, seen: tuple[Array, Array], own: tuple[Array, Array]) ->
     return Case(
         name=f"{_GROUP}/order",
         source=_SOURCE,
+        origin=MEASURED,
         quantity="best volumes added for the resonance and for the cruise, ml",
         printed=", ".join(map(_volume, best)),
         computed=", ".join(map(_volume, found)),
@@ -153,6 +157,7 @@ def _columns() -> Case:
     return Case(
         name=f"{_GROUP}/columns",
         source=_SOURCE,
+        origin=MEASURED,
         quantity="the source's resonance peak with 0, 50 and 100 ml, LSB",
         printed=", ".join(f"{value}" for value in column[:3]) + ": largest from 28 to 32 s",
         computed=", ".join(f"{value}" for value in logs["passage_peak"][:3]) + ": largest at the resonance",

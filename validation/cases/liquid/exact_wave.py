@@ -18,7 +18,7 @@ from solvers.potential.model import Potential
 from solvers.potential.steady import SteadyWave, follow, forced, free, linear_detuning, on_more_nodes
 from solvers.potential.unsteady import Surface, force, invariants, started
 from validation.breaking import kept
-from validation.cases.case import Case, Value, Verdict
+from validation.cases.case import COMPUTED_FLOW, Case, Origin, Value, Verdict
 from validation.cases.liquid.layer import bore_reference, plane_layer
 from validation.cases.rotors.rigs import data
 from validation.exact.long_wave import steady_long_wave
@@ -26,6 +26,13 @@ from validation.exact.long_wave import steady_long_wave
 _SOURCE = "two other codes, exact_wave.json"
 _FLOW = "interFoam, openfoam_layer.json"
 _CLOSED = "closed form"
+_ORIGINS = {
+    _SOURCE: Origin(
+        "second code", "two codes in numpy of the same equations, with even nodes and by a Moebius map"
+    ),
+    _FLOW: COMPUTED_FLOW,
+}
+_EXACT = Origin("closed form", "circles, twins and what is conserved")
 # Newton's method, on matrices of some hundred rows, and the last of twelve digits, which is not sure.
 _ROUNDING = 3e-12
 # By its file the flow is right to this; the absolute part is the gas.
@@ -116,7 +123,8 @@ def _case(
 ) -> Case:
     """A case of this group; its values are what is printed, what is computed and the difference."""
     verdict: Verdict = "agrees" if agrees else "differs"
-    return Case(f"exact_wave/{name}", source, quantity, *values, verdict, note)
+    origin = _ORIGINS.get(source, _EXACT)
+    return Case(f"exact_wave/{name}", source, quantity, *values, verdict, note, origin=origin)
 
 
 def _digits(

@@ -12,7 +12,7 @@ from leblanc.studies.models.choose import axial_gravity
 from leblanc.studies.optimise.optimise import optimise_scene
 from leblanc.studies.optimise.wetting import wetting_volumes
 from leblanc.units import MM
-from validation.cases.case import Case, compare
+from validation.cases.case import Case, Origin, compare
 
 _ML = 1e6
 # Values within 1e-6 count as equal, and the least volume of these is the answer. What is missing costs its
@@ -37,6 +37,7 @@ def cases() -> list[Case]:
                 volume * _ML,
                 float(answer.volume[0]) * _ML,
                 tolerance=tolerance,
+                origin=Origin("closed form", "best volume of an upright machine"),
                 note="printed is the closed form; the search takes the least volume within a small margin "
                 f"of the best: agrees within {100.0 * tolerance:g} %",
             ),
@@ -47,6 +48,7 @@ def cases() -> list[Case]:
                 deflection * MM,
                 answer.value * MM,
                 tolerance=_VALUE,
+                origin=Origin("closed form", "rotor with the mass of a full chamber"),
                 note="printed is the closed form of a rotor with the added mass of a full chamber",
             ),
         ]

@@ -26,7 +26,7 @@ from solvers.liquid_model import Whirl
 from solvers.pypde.settle import settle, simulate
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.runup.long_wave import couple
-from validation.cases.case import Case, Effect, compare, shape_verdict
+from validation.cases.case import COMPUTED_FLOW, Case, Effect, Origin, compare, shape_verdict
 from validation.cases.rotors.rigs import data
 
 _SOURCE = "interFoam, openfoam_layer.json"
@@ -68,6 +68,7 @@ def _steady(run: dict[str, Any]) -> Case:
     return Case(
         name=f"layer/{run['name']}",
         source=_SOURCE,
+        origin=COMPUTED_FLOW,
         quantity=f"force ratio at whirl ratio {whirl.speed / whirl.spin:g}",
         printed=reference.real,
         computed=whitham.real,
@@ -124,6 +125,7 @@ def _force_cases(
         Case(
             name=f"layer/{run}-{variant}",
             source=_SOURCE,
+            origin=COMPUTED_FLOW,
             quantity="force of the bore, three whirl periods, deviation over the reference's modulus",
             printed=0.0,
             computed=float(np.max(early)),
@@ -134,6 +136,7 @@ def _force_cases(
         Case(
             name=f"layer/{run}-{variant}-late",
             source=_SOURCE,
+            origin=COMPUTED_FLOW,
             quantity="the same in the six periods after those, where the reference depends on its mesh",
             printed=0.0,
             computed=float(np.max(late)),
@@ -158,6 +161,7 @@ def _rotation_case(run: dict[str, Any], time: NDArray[np.float64], rotation: NDA
     return Case(
         name=f"layer/{run['name']}-mean-rotation",
         source=_SOURCE,
+        origin=COMPUTED_FLOW,
         quantity="mean rotation of the liquid against the drum, deviation at each of the reference's times",
         printed=0.0,
         computed=float(off.max()),
@@ -211,6 +215,7 @@ def rotor_cases() -> list[Case]:
         Case(
             name=f"layer/rotor-{cells}-cells",
             source="py-pde, Runge-Kutta of the rates of rotor and layer",
+            origin=Origin("second code", "py-pde's own Runge-Kutta of the rates of rotor and layer"),
             quantity=f"deflection of a rotor with its layer after a turn from rest, mm, {cells} cells",
             printed=1e3 * abs(first),
             computed=1e3 * abs(second),
@@ -224,5 +229,9 @@ def rotor_cases() -> list[Case]:
     what = "order in which the two come together, from the two finest meshes"
     return [
         *found,
-        compare("layer/rotor-order", "second order of both schemes", what, 2.0, order, tolerance=0.1),
+        compare(
+            *("layer/rotor-order", "second order of both schemes", what, 2.0, order),
+            tolerance=0.1,
+            origin=Origin("closed form", "order of both schemes"),
+        ),
     ]

@@ -6,7 +6,7 @@ from leblanc.studies.volume import answer_volume
 from meshes.chamber import Chamber
 from solvers.statics.hydrostatics import optimal_volume
 from solvers.synchronous.models import Statics
-from validation.cases.case import Case, compare
+from validation.cases.case import Case, Origin, compare
 
 _GRAVITY = 9.81
 _ML = 1e6
@@ -30,6 +30,7 @@ def cases() -> list[Case]:
                     answer.optimal_volume_fem * _ML,
                     answer.optimal_volume * _ML,
                     tolerance=1e-6,
+                    origin=Origin("second code", "scikit-fem, quadratic triangles"),
                     note="the mesh's wall runs inside the circle by the amount it was chosen for",
                 )
             )
@@ -84,4 +85,5 @@ def _bend() -> Case:
         float(bend[0]) * 1e3,
         tolerance=1e-8,
         note="no gravity along the axis",
+        origin=Origin("closed form", "volume that touches the wall, turned round"),
     )

@@ -24,7 +24,7 @@ from meshes.chamber import Chamber
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.vector_model import deflection_lag
 from solvers.synchronous.response import critical_speed, response
-from validation.cases.case import Case, Effect, shape_verdict
+from validation.cases.case import MEASURED, Case, Effect, shape_verdict
 
 
 def data(name: str) -> dict[str, Any]:
@@ -130,6 +130,7 @@ def _summary(name: str, what: str, angle: Array, parameters: Array, residual: Ar
         verdict=shape_verdict(bool(np.all(np.diff(turned) > 0.0)), effect),
         note="the damping is not given; the angles are read to 30 deg",
         effect=effect,
+        origin=MEASURED,
     )
 
 
@@ -144,6 +145,7 @@ def _points(rpm: list[float], angle: Array, residual: Array) -> list[Case]:
             difference=f"{-off:+.1f} deg",
             verdict="agrees" if abs(off) <= _READING else "differs",
             note="with the fitted damping ratio; agrees within half the step of the readings, 15 deg",
+            origin=MEASURED,
         )
         for at, given, off in zip(rpm, angle, residual, strict=True)
     ]
@@ -190,6 +192,7 @@ def vertical_cases() -> list[Case]:
                 verdict=shape_verdict(helps),
                 note=f"mass, heights, damping and radius of the 30 g are assumed; critical speed with liquid "
                 f"{wet:.1f} rad/s; equilibrium compensates above it only",
+                origin=MEASURED,
             )
         )
     return found

@@ -21,7 +21,7 @@ from solvers.runup.runup import RunupNumerics, run_up
 from solvers.statics.hydrostatics import optimal_volume
 from solvers.synchronous.response import response
 from solvers.whirl.edges import unstable_bands
-from validation.cases.case import Case, compare
+from validation.cases.case import Case, Origin, compare
 
 _MASS, _NATURAL, _UNBALANCE, _GRAVITY = 30.0, 25.0, 0.1, 9.81
 ROTOR = Jeffcott(_MASS, _MASS * _NATURAL**2, 2.0 * 0.06 * _MASS * _NATURAL, _UNBALANCE)
@@ -149,6 +149,9 @@ def cases() -> list[Case]:
                     printed,
                     value,
                     tolerance=_TOLERANCE,
+                    origin=Origin(
+                        "second code", "run-ups written before the package had them, with its own friction"
+                    ),
                     note=_FRICTION if volume else "",
                 )
             )

@@ -1,7 +1,7 @@
 """Self-excited whirl of a planar rotor with one layer: known bands and growth rates, limits.
 
-The printed values come from a scan of the characteristic equation in steps of 5e-4 of the natural frequency:
-an edge is known to one step, a growth rate to its last digit.
+The values beside bands and growth rates come from a scan of our own of the characteristic equation, in steps
+of 5e-4 of the natural frequency: an edge is known to one step, a growth rate to its last digit.
 """
 
 from __future__ import annotations
@@ -22,10 +22,13 @@ from solvers.rotor.two_plane import Support, TwoPlane
 from solvers.runup.runup import RunupNumerics
 from solvers.whirl.edges import unstable_bands
 from solvers.whirl.growth import asynchronous_growth
-from validation.cases.case import Case, compare
+from validation.cases.case import Case, Origin, compare
 from validation.whirl_in_time import Passage, large_whirl_in_time, passage, whirl_in_time
 
 _SOURCE = "Wolf's problem, scan in steps of 5e-4"
+_SCAN = Origin("scan", "characteristic equation in steps of 5e-4 of the natural frequency")
+_LINEAR = Origin("closed form", "root of the characteristic equation of small whirls")
+_BALANCE = Origin("second code", "limit cycles by Newton's method on the balance of rotor and wave")
 NATURAL = 100.0  # rad/s
 _STEP, _DIGIT = 5e-4, 5e-4
 _BANDS = ((0.1, 0.1, 1.1225, 1.475), (0.5, 0.2, 0.969, 1.699))
@@ -49,6 +52,7 @@ def cases() -> list[Case]:
                     edge / NATURAL,
                     tolerance=1.2 * _STEP,
                     note="agrees within a step of the scan",
+                    origin=_SCAN,
                 )
             )
     return [*found, *_peaks(), _weak(), *_limits(), *_in_time(), *_limit_cycles(), *_run_ups()]
@@ -82,6 +86,7 @@ def _in_time() -> list[Case]:
                 # What a run-up was asked to keep; 256 cells with dispersion keep it far better.
                 tolerance=0.02,
                 note="printed is the characteristic equation's root, computed the coupled long waves in time",
+                origin=_LINEAR,
             )
         )
     return found
@@ -117,6 +122,7 @@ def _limit_cycles() -> list[Case]:
                 tolerance=0.01,
                 note="printed is the branch by Newton's method, computed rotor and layers in time, kicked; "
                 f"whirl speed {seen.whirl_speed:.5g} rad/s",
+                origin=_BALANCE,
             )
         )
     return found
@@ -164,6 +170,7 @@ def _run_ups() -> list[Case]:
                 # What is left is of second order in the lag, which is 7 % at most.
                 tolerance=0.005,
                 note="printed is the branch by Newton's method, computed a line through two run-ups",
+                origin=_BALANCE,
             )
         )
         apart = [abs(end / size - 1.0) for end in ends]
@@ -176,6 +183,7 @@ def _run_ups() -> list[Case]:
                 math.log2(apart[0] / apart[1]),
                 tolerance=0.1,
                 note=f"{apart[0]:.2%} at {_RATES[0]:g} rad/s^2, {apart[1]:.2%} at {_RATES[1]:g}",
+                origin=_BALANCE,
             )
         )
     return [*found, _beginning()]
@@ -200,6 +208,7 @@ def _beginning() -> Case:
         tolerance=0.02,
         note="printed is the growth rate over the time at the liquid's own speed, which lags by "
         f"{seen.lag[first]:.3g} rad/s; at the drum's it would be {float(np.trapezoid(by_drum, time)):.4g}",
+        origin=_LINEAR,
     )
 
 
@@ -243,6 +252,7 @@ def _peaks() -> list[Case]:
             float(growth_over_speed(zeta).max()),
             # Half of the last digit.
             tolerance=_DIGIT / printed,
+            origin=_SCAN,
         )
         for zeta, printed in _PEAKS
     ]
@@ -255,6 +265,7 @@ def _weak() -> Case:
     return Case(
         name="whirl/damping-alone",
         source=_SOURCE,
+        origin=_SCAN,
         quantity="share of unstable speeds from 0.3 to 4 natural frequencies, damping ratio 0.05, no liquid "
         "friction",
         printed=1.0,
@@ -283,6 +294,7 @@ def _limits() -> list[Case]:
             Case(
                 name=f"whirl/{name}",
                 source="limit",
+                origin=Origin("closed form", "nothing drives a whirl there"),
                 quantity="largest growth of a whirl, 1/s",
                 printed=0.0,
                 computed=largest,

@@ -77,7 +77,7 @@ def _short(monkeypatch: pytest.MonkeyPatch) -> None:
 @kills(f"{ROOM}.design:total_mass", "race.count * race.each", "race.each")
 @kills(f"{ROOM}.search:_lightest", 'variable.name in ("mass", "diameter")', 'variable.name in ("diameter",)')
 @pytest.mark.parametrize("count", [2, 3])
-def test_least_mass_is_the_unbalance_over_the_radius(count: int) -> None:
+def test_least_mass_is_the_unbalance_over_the_radius(count: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """Of a planar rotor: the mass of all balls times the radius holds all but what the limit allows.
 
     Balls that hold less stand where the deflection is: for the unbalance U, that of the balls B and what is
@@ -85,6 +85,7 @@ def test_least_mass_is_the_unbalance_over_the_radius(count: int) -> None:
     |w| = Omega^2 r/|D| [theory: balls, eq. 22].
     """
     limit = 2e-6
+    monkeypatch.setattr(search, "_ROUNDS", 1)  # enough for a single race
     task = Optimisation(
         objective="least_mass",
         vibration_limit=limit,
@@ -105,9 +106,12 @@ def test_least_mass_is_the_unbalance_over_the_radius(count: int) -> None:
 
 @kills(f"{ROOM}.search:_quickest", "min([begin, float(found.x)], key=growth)", "begin")
 @kills(f"{ROOM}.problem:_limits", "-margin if margin > 0.0", "-0.5 * margin if margin > 0.0")
-def test_the_leading_root_is_the_margin() -> None:
+def test_the_leading_root_is_the_margin(monkeypatch: pytest.MonkeyPatch) -> None:
     """Lightest balls with a margin: the roots of rotor and balls, by another code, fade with just that."""
     margin = 4.0
+    monkeypatch.setattr(search, "_ROUNDS", 1)  # enough for a single race
+    monkeypatch.setattr(search, "_FOUND", 1e-4)
+    monkeypatch.setattr(search, "_DRAG_FOUND", 1e-3)
     task = Optimisation(
         objective="least_mass",
         stability_margin=margin,
@@ -120,7 +124,8 @@ def test_the_leading_root_is_the_margin() -> None:
     found = scene.balls[0].altered(mass=race.mass, drag=race.drag)
     system = dry_rotor(scene).system()
     stability = balanced_stability(system, [found.race()], SPEED)
-    assert stability.growth == pytest.approx(-margin, rel=1e-5)
+    # The logarithm of the mass is looked for to 1e-4, with which the growth changes about as the mass does.
+    assert stability.growth == pytest.approx(-margin, rel=1e-3)
     # The drag is the best one: another by a tenth fades more slowly, the balls being so heavy.
     for factor in (0.9, 1.1):
         other = found.altered(drag=factor * race.drag)

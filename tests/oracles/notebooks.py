@@ -1,0 +1,168 @@
+"""Wrong formulas, and the notebooks that lean on them: each must fail at one of its claims.
+
+`python -m tests.oracles.notebooks` breaks all of them, one after the other, and prints a table.
+"""
+
+from __future__ import annotations
+
+import argparse
+import ast
+import os
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from tests.mutants import Mutant, seeded
+from validation.run_notebooks import FOLDER
+
+ROOT = Path(__file__).parents[2]
+_DRAWING = {"picture", "drawn"}  # what draws claims nothing
+_COMPILED = "fluid.long_wave:"
+
+# Five per cent each, but where a sign or a power is what can be mistaken.
+BROKEN: tuple[tuple[str, Mutant], ...] = (
+    ("1_paraboloid", Mutant("fluid.paraboloid:steepness", "2.0 * g * h", "2.1 * g * h")),
+    ("2_wave", Mutant("fluid.kdv:coefficients", "log**3 / 3.0", "log**3 / 3.15")),
+    ("2_wave", Mutant("fluid.long_wave:wall_pressure", "2.0 * spin * log", "2.1 * spin * log")),
+    ("2_wave", Mutant("fluid.long_wave:pressure_force", "0.5 * spin * spin", "0.525 * spin * spin")),
+    (
+        "3_rigs",
+        Mutant(
+            "solvers.rotor.jeffcott:Jeffcott.dynamic_stiffness", "1j * self.damping", "1.05j * self.damping"
+        ),
+    ),
+    ("3_rigs", Mutant("fluid.pool:pool_of", "hole.moment) / area", "hole.moment) / (1.05 * area)")),
+    ("3_rigs", Mutant("fluid.pool:sloshing_number", "return 1.0 /", "return 1.05 /")),
+    (
+        "4_self_excited_whirl",
+        Mutant(
+            "solvers.rotor.jeffcott:Jeffcott.system", "damping=self.damping", "damping=1.05 * self.damping"
+        ),
+    ),
+    (
+        "5_washing_machine",
+        Mutant("solvers.rotor.tub:Tub.system", "self.unbalance * (centre", "1.05 * self.unbalance * (centre"),
+    ),
+    ("5_washing_machine", Mutant("solvers.rotor.system:cage_speed", "0.5 * shaft", "0.525 * shaft")),
+    (
+        "6_balls",
+        Mutant(
+            "solvers.rotor.exciter.machine:shaft_speed", "np.square(2.0 * h * q)", "np.square(2.1 * h * q)"
+        ),
+    ),
+    (
+        "7_fill_volume",
+        Mutant(
+            "solvers.rotor.jeffcott:Jeffcott.system", "damping=self.damping", "damping=1.05 * self.damping"
+        ),
+    ),
+    (
+        "8_accuracy_and_cost",
+        Mutant("fluid.fill:Fill.full_mass", "* math.pi * self", "* 1.05 * math.pi * self"),
+    ),
+    ("9_the_exact_wave", Mutant("solvers.potential.steady:SteadyWave.centre", "/ 3.0", "/ 3.15")),
+    (
+        "10_blood_pump",
+        Mutant(
+            "solvers.rotor.magnetic.machine:MagneticRotor.gyroscopic",
+            "self.polar_inertia, -self.polar_inertia",
+            "1.05 * self.polar_inertia, -1.05 * self.polar_inertia",
+        ),
+    ),
+    (
+        "11_balls_two_planes_damping",
+        Mutant(
+            "solvers.rotor.balls.stability:_turning_motions",
+            "np.diag(balls[:, 2] *",
+            "np.diag(1.05 * balls[:, 2] *",
+        ),
+    ),
+)
+
+
+def claims(path: Path) -> str:
+    """Code of a notebook without the lines that only draw.
+
+    Parameters
+    ----------
+    path : Python whose comments are the text
+    """
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    tree.body = [node for node in tree.body if not _draws(node)]
+    return ast.unparse(tree)
+
+
+def _draws(node: ast.stmt) -> bool:
+    """A line that is nothing but the call of what shows a figure."""
+    return (
+        isinstance(node, ast.Expr)
+        and isinstance(node.value, ast.Call)
+        and isinstance(node.value.func, ast.Name)
+        and node.value.func.id in _DRAWING
+    )
+
+
+def failed(number: int) -> str:
+    """Claim at which a notebook fails with a wrong formula, empty if it passes.
+
+    In a process of its own, where nothing has been computed before, and if the formula is one of compiled
+    code, with machine code of its own.
+
+    Parameters
+    ----------
+    number : in `BROKEN`
+    """
+    compiled = BROKEN[number][1].function.startswith(_COMPILED)
+    with TemporaryDirectory() as folder:
+        done = subprocess.run(
+            [sys.executable, "-m", "tests.oracles.notebooks", "--one", str(number)],
+            capture_output=True,
+            text=True,
+            cwd=ROOT,
+            check=False,
+            env=os.environ | ({"NUMBA_CACHE_DIR": folder} if compiled else {}),
+        )
+    if done.returncode not in (0, 1):
+        raise RuntimeError(done.stderr)
+    return done.stdout.strip().splitlines()[-1] if done.returncode else ""
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Table of all, or one of them in this process: exit code 1 at a claim that does not hold.
+
+    Parameters
+    ----------
+    arguments : instead of those of the process
+    """
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--one", type=int, help="number of one formula, to be broken in this process")
+    number = parser.parse_args(arguments).one
+    if number is not None:
+        return _one(*BROKEN[number])
+    found = [failed(number) for number in range(len(BROKEN))]
+    for (name, mutant), claim in zip(BROKEN, found, strict=True):
+        print(f"| {mutant} | {name} | {claim or 'PASSED'} |", flush=True)
+    return 0 if all(found) else 1
+
+
+def _one(name: str, mutant: Mutant) -> int:
+    text = claims(FOLDER / f"{name}.py")
+    with seeded(mutant):
+        try:
+            exec(compile(text, name, "exec"), {"__name__": "__main__"})
+        except AssertionError as error:
+            trace = error.__traceback__
+            lines = []
+            while trace is not None:
+                if trace.tb_frame.f_code.co_filename == name:
+                    lines.append(text.splitlines()[trace.tb_lineno - 1].strip())
+                trace = trace.tb_next
+            print(lines[-1])
+            return 1
+    return 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
