@@ -18,6 +18,7 @@ from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import Rotor
 from solvers.rotor.tub import Mount, Tub
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
+from solvers.whirl import looks as whirl_looks
 from solvers.whirl.edges import undamped_edges, unstable_bands
 from solvers.whirl.growth import asynchronous_growth, planar_layers
 from solvers.whirl.looks import _changes, _first_speeds, looks
@@ -112,6 +113,7 @@ def test_no_band_lost_in_200() -> None:
     no_band_lost(range(200))
 
 
+@kills("solvers.whirl.looks:_unsure", "[gap_there[:, None], rises", "[gap_there[:, None] & False, rises")
 @kills("solvers.whirl.looks:_handed_over", "0.5 * (ceases + begins)", "0.0 * begins")
 @kills("solvers.whirl.looks:_handed_over", "~(first & last).any(axis=1)", "(first & last).any(axis=1)")
 def test_gap_between_two_modes() -> None:
@@ -170,6 +172,22 @@ def test_films() -> None:
         mass, layers = planar_layers(6.0, [fill], NO_FRICTION)
         # Each edge to the half of the digits that a double root leaves.
         np.testing.assert_allclose(np.ravel(bands), undamped_edges(mass, 6e4, layers), rtol=1e-7)
+
+
+@kills("solvers.whirl.looks:_gone_to", "for _ in range(_STEPS)", "for _ in range(0)")
+@kills("solvers.whirl.looks:_meetings", "first * last < 0.0", "first * last < -np.inf")
+@kills("solvers.whirl.looks:_pairs", "np.where(both, ", "np.where(~both, ")
+def test_films_from_even_speeds(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where no speed at which a wave meets a mode is known before, each meeting is gone to from between."""
+    rotor = Jeffcott(6.0, 6e4, 0.0, 0.0)
+    monkeypatch.setattr(whirl_looks, "_first_speeds", lambda *_: np.geomspace(31.0, 401.0, 33))
+    for depth in (1e-4, 1e-6):
+        fill = Fill(Chamber(0.1, 0.02), WATER, math.pi * 0.02 * (0.1**2 - (0.1 - 0.1 * depth) ** 2))
+        (bands,) = unstable_bands(rotor, [[fill]], np.array([31.0, 401.0]))
+        mass, layers = planar_layers(6.0, [fill], NO_FRICTION)
+        edges = undamped_edges(mass, 6e4, layers)
+        assert len(bands) == 1
+        np.testing.assert_allclose(np.ravel(bands), edges, rtol=1e-7)
 
 
 @kills("solvers.whirl.looks:_first_speeds", "mass=ratio**2 * mass", "mass=ratio * mass")
