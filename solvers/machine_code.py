@@ -23,6 +23,7 @@ import platformdirs
 
 _UNUSED = 30.0 * 86400.0  # s, after which the folder of other sources is removed
 _choosing = threading.Lock()
+_config: Any = numba.config
 
 
 def machine_code(**options: Any) -> Callable[[Callable[..., Any]], Any]:
@@ -38,13 +39,13 @@ def machine_code(**options: Any) -> Callable[[Callable[..., Any]], Any]:
         if folder is not None:
             with _choosing:
                 # Read as the cache is made, and for nobody else's functions.
-                given, numba.config.CACHE_DIR = numba.config.CACHE_DIR, str(folder)
+                given, _config.CACHE_DIR = _config.CACHE_DIR, str(folder)
                 try:
                     made.enable_caching()
                 except RuntimeError:  # the folder has become one that cannot be written
                     cache_folder.cache_clear()
                 finally:
-                    numba.config.CACHE_DIR = given
+                    _config.CACHE_DIR = given
         return made
 
     return compiled
@@ -53,8 +54,8 @@ def machine_code(**options: Any) -> Callable[[Callable[..., Any]], Any]:
 @cache
 def cache_folder() -> Path | None:
     """Where machine code is kept: NUMBA_CACHE_DIR, or below the user's caches; None where neither can be."""
-    if numba.config.CACHE_DIR:
-        folder = Path(numba.config.CACHE_DIR)
+    if _config.CACHE_DIR:
+        folder = Path(_config.CACHE_DIR)
         return folder if _writable(folder) else None
     root = Path(__file__).parent.parent
     sources = sorted(path for name in ("fluid", "solvers") for path in (root / name).rglob("*.py"))
