@@ -21,7 +21,7 @@ from validation.notebook_page import Table, picture
 from validation.run_notebooks import texts
 
 ROOT = Path(__file__).parents[2]
-PACKAGES = {"scipy", "meshes", "fluid", "solvers", "leblanc", "validation"}
+PACKAGES = {"numpy", "scipy", "meshes", "fluid", "solvers", "leblanc", "validation"}
 SECTIONS = ("## Who measured or printed what", "## Assumed", "## What does not agree", "## Asserted")
 NOTEBOOKS = texts()
 
