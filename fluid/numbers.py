@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fluid.fill import Fill
-from fluid.paraboloid import steepness
+from fluid.paraboloid import CYLINDER_STEEPNESS, steepness
 from fluid.waves import free_wave_speeds
 from meshes.arrays import Array
 
@@ -22,7 +22,8 @@ class LayerNumbers:
     relative_depth: float  #: mean depth over radius, h0/R
     curvature: float  #: (R/a)^2, kappa
     centrifuge: Array  #: centrifugal acceleration at the free surface over gravity, Omega^2 a/g
-    steepness: Array  #: rise of the surface over the chamber's radius in chamber heights, beta R^2/h
+    #: rise of the surface over the chamber's radius in chamber heights, beta R^2/h; infinite for a cylinder
+    steepness: Array
     reynolds: Array  #: Omega R^2/nu
     skin: Array  #: depth of the laminar wall layer over the mean depth, sqrt(nu/Omega)/h0
 
@@ -44,12 +45,13 @@ def layer_numbers(fill: Fill, speed: ArrayLike, gravity: float, axial_gravity: f
     spin = np.asarray(speed, dtype=float)
     radius, viscosity = fill.chamber.radius, fill.liquid.viscosity
     surface = fill.surface_radius
+    steep = steepness(spin, axial_gravity, radius, fill.chamber.height)
     return LayerNumbers(
         fill=fill.volume / fill.chamber.capacity,
         relative_depth=fill.depth / radius,
         curvature=(radius / surface) ** 2 if surface > 0.0 else np.inf,
         centrifuge=np.square(spin) * surface / gravity if gravity > 0.0 else np.full(spin.shape, np.inf),
-        steepness=steepness(spin, axial_gravity, radius, fill.chamber.height),
+        steepness=np.where(steep < CYLINDER_STEEPNESS, steep, np.inf),
         reynolds=spin * radius**2 / viscosity if viscosity > 0.0 else np.full(spin.shape, np.inf),
         skin=np.sqrt(viscosity / spin) / fill.depth if fill.depth > 0.0 else np.full(spin.shape, np.inf),
     )

@@ -127,6 +127,42 @@ def free_surface_term(
     return np.asarray(density * gravity * np.pi * integral)
 
 
+def cylinder_terms(
+    chamber: Chamber, floor: float, volume: ArrayLike, speed: ArrayLike, density: float
+) -> tuple[FrozenLiquid, Array]:
+    """Both without gravity, where the surface is a cylinder [theory: statics, eq. 20 and below eq. 21].
+
+    a = rho pi Omega^2 a_s^2 int z^2 dz over the chamber's height, a_s the surface's radius: the limit of
+    (19) for g to 0.
+
+    Parameters
+    ----------
+    chamber, floor, speed, density : see `free_surface_term`
+    volume : of the liquid, m^3, shape (...,), from 0 to the capacity
+
+    Raises
+    ------
+    InputError : a density that is not positive, a value that is not finite or out of its range
+    """
+    require_positive("density", density)
+    amount, omega = np.broadcast_arrays(np.asarray(volume, dtype=float), np.asarray(speed, dtype=float))
+    for field, value in (("floor", floor), ("speed", omega)):
+        if not np.all(np.isfinite(value)):
+            raise InputError(field, value, "finite")
+    if not np.all((amount >= 0.0) & (amount <= chamber.capacity)):
+        raise InputError("volume", volume, f"from 0 to the capacity, {chamber.capacity:g} m^3")
+    low, high = chamber.inner_radius**2, chamber.radius**2
+    ring = amount / (np.pi * chamber.height)  # R^2 - a_s^2
+    # A full chamber has no free surface, an empty one no liquid to move.
+    free = (amount > 0.0) & (amount < chamber.capacity)
+    inner = np.maximum(high - ring, low)
+    squared = np.pi * density * ((floor + chamber.height) ** 3 - floor**3) / 3.0  # rho pi int z^2 dz
+    polar = 0.5 * density * amount * (high + inner)
+    static = density * amount * (floor + 0.5 * chamber.height)
+    taken = np.where(free, squared * np.square(omega) * inner, 0.0)
+    return FrozenLiquid(polar, 0.5 * polar + squared * ring, static), taken
+
+
 def _surface(
     floor: float, surface_constant: ArrayLike, speed: ArrayLike, gravity: float, density: float
 ) -> tuple[Array, Array]:

@@ -207,7 +207,7 @@ class Scene(Part):
     assumed: Annotated[tuple[_Path, ...], entries(0, MAX_ASSUMED, "field paths")] = Field(
         (), description="paths of the values that the source does not give"
     )
-    gravity: Annotated[float, quantity(units.ACCELERATION, 1e-6, 1e6)] = Field(
+    gravity: Annotated[float, quantity(units.ACCELERATION, 1e-6, 1e6, or_zero=True)] = Field(
         9.81, description="acceleration of gravity"
     )
     rotor: AnyRotor = Field(discriminator="kind", description="the machine without its liquid")

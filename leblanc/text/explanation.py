@@ -33,7 +33,6 @@ from meshes.arrays import Array
 
 Rows = list[tuple[str, str]]
 
-_CYLINDER = 1e20  # steepness from which the surface is drawn as a cylinder
 _HZ = 60.0  # rpm in one hertz
 
 REFUSED = "does not answer"
@@ -94,7 +93,7 @@ def layer_rows(layer: LayerExplanation | None) -> Rows:
         return [("fill", "empty")]
     n = layer.numbers
     steepness = f"{_ends(n.steepness)}: rise of the surface over the radius in chamber heights"
-    if n.steepness[0] > _CYLINDER:
+    if math.isinf(n.steepness[0]):
         steepness = "a cylinder: no gravity along the axis"
     covers = "not known for such a chamber"
     if not math.isnan(layer.optimal_volume):

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fluid.fill import Fill
-from fluid.upright import free_surface_term, frozen_liquid
+from fluid.upright import cylinder_terms, free_surface_term, frozen_liquid
 from meshes.arrays import Array
 from meshes.errors import InputError, require_not_negative, require_positive
 from solvers.roots import bracketed_root
@@ -65,12 +65,12 @@ def upright_margin(
     fills : circular chambers without baffles; their planes are heights above the body's centre of mass
     share : of each fill's volume that is in its chamber, shape (...,); 1 as it stands
     speed : spin speed Omega, rad/s, shape (...,), above 0
-    gravity : m/s^2, above 0
+    gravity : m/s^2, 0 or above
 
     Raises
     ------
-    InputError : a chamber with baffles or a section of its own, a volume above the capacity, a speed or
-        gravity that is not positive
+    InputError : a chamber with baffles or a section of its own, a volume above the capacity, a speed that is
+        not positive, a negative gravity
 
     Examples
     --------
@@ -79,7 +79,7 @@ def upright_margin(
     >>> print(f"{float(margin.left):.4f} N m")
     0.2595 N m
     """
-    require_positive("gravity", gravity)
+    require_not_negative("gravity", gravity)
     part, omega = np.broadcast_arrays(np.asarray(share, dtype=float), np.asarray(speed, dtype=float))
     if not np.all(np.isfinite(omega) & (omega > 0.0)):
         raise InputError("speed", speed, "finite numbers above 0")
@@ -91,11 +91,15 @@ def upright_margin(
         if chamber.section is not None or chamber.baffles is not None:
             raise InputError("chambers", chamber, "circular and without baffles for this")
         floor = top.centre + chamber.plane - 0.5 * chamber.height
-        constant = equilibrium(chamber, part * fill.volume, 0.0, omega, gravity).surface_constant
-        at = chamber, floor, constant, omega, gravity, fill.liquid.density
-        liquid = frozen_liquid(*at)
+        volume, density = part * fill.volume, fill.liquid.density
+        if gravity > 0.0:
+            constant = equilibrium(chamber, volume, 0.0, omega, gravity).surface_constant
+            at = chamber, floor, constant, omega, gravity, density
+            liquid, taken = frozen_liquid(*at), free_surface_term(*at)
+        else:
+            liquid, taken = cylinder_terms(chamber, floor, volume, omega, density)
         frozen = frozen + (liquid.polar - liquid.transverse) * np.square(omega) - liquid.static * gravity
-        surface = surface + free_surface_term(*at)
+        surface = surface + taken
     return Margin(np.asarray(frozen), surface)
 
 

@@ -211,14 +211,14 @@ class Spans:
             raise Refused(self.allowed) from refused
 
 
-def quantity(dimension: Dimension, low: float, high: float) -> PlainValidator:
+def quantity(dimension: Dimension, low: float, high: float, *, or_zero: bool = False) -> PlainValidator:
     """Rule of a number with a unit, for an annotation.
 
     Parameters
     ----------
-    dimension, low, high : as in `Quantity`
+    dimension, low, high, or_zero : as in `Quantity`
     """
-    return PlainValidator(Quantity(dimension, low, high))
+    return PlainValidator(Quantity(dimension, low, high, or_zero))
 
 
 def entries(low: int, high: int, what: str) -> BeforeValidator:

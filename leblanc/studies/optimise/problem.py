@@ -231,10 +231,18 @@ def _whirl_speeds(scene: Scene, task: Optimisation, speed: float) -> tuple[Array
     """
     if task.stability_margin is not None or task.operating is not None:
         return growth_speeds(scene, task), "at the operating speeds"
-    if task.objective == "mean" and task.duty:
-        speeds = np.unique([speed, *(stage.speed for stage in task.duty)])
-        return speeds, "at the working speed and those of the duty cycle"
+    if task.objective == "mean":
+        return np.unique([speed, *_duty(scene, task)[0]]), "at the working speed and those of the duty cycle"
     return np.array([speed]), "at the working speed"
+
+
+def _duty(scene: Scene, task: Optimisation) -> tuple[Array, Array]:
+    """Speeds of the duty cycle, rad/s, and their weights; the scene's, all alike, where none is given."""
+    if task.duty:
+        speeds, weights = np.array([(stage.speed, stage.weight) for stage in task.duty]).T
+        return speeds, weights
+    speeds = scene.speed_array()
+    return speeds, np.ones(speeds.size)
 
 
 _Make = Callable[[Scene, Optimisation, FilledMachine, Problem, Callable[[Problem], Found]], Problem]
@@ -266,12 +274,9 @@ def _resonances(scene: Scene) -> tuple[float, ...]:
 
 
 def _mean(scene: Scene, task: Optimisation, machine: FilledMachine, problem: Problem, _: object) -> Problem:
-    if task.duty:
-        speeds, weights = np.array([(stage.speed, stage.weight) for stage in task.duty]).T
-        text, notes = f"mean amplitude over a duty cycle of {len(task.duty)} speeds", problem.notes
-    else:
-        speeds = scene.speed_array()
-        weights = np.ones(speeds.size)
+    speeds, weights = _duty(scene, task)
+    text, notes = f"mean amplitude over a duty cycle of {speeds.size} speeds", problem.notes
+    if not task.duty:
         text = f"mean amplitude over {speeds.size} speeds, all alike"
         notes = (*problem.notes, optimum.no_duty())
     evaluate = replace(problem.evaluate, vibration=AtSpeed(machine, speeds, weights))

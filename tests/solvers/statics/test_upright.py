@@ -60,7 +60,7 @@ def test_liquid_adds_what_tilting_it_costs(name: str) -> None:
 
 
 @kills("solvers.statics.upright:upright_margin", "- 0.5 * chamber.height", "")
-@kills("solvers.statics.upright:upright_margin", "surface = surface + free", "surface = surface - free")
+@kills("solvers.statics.upright:upright_margin", "surface = surface + taken", "surface = surface - taken")
 @kills("solvers.statics.upright:upright_margin", "- liquid.static * gravity", "")
 def test_liquid_from_floor_to_lid() -> None:
     assert_added(BOWLS["surface from floor to lid"])
@@ -117,6 +117,28 @@ def test_signs() -> None:
     assert sign_changes(lambda x: np.square(x - 1.0), np.linspace(0.0, 4.0, 5)) == ()
 
 
+@kills("fluid.upright:cylinder_terms", "squared * ring", "ring")
+@kills("fluid.upright:cylinder_terms", "(high + inner)", "(high - inner)")
+@kills("fluid.upright:cylinder_terms", "np.square(omega) * inner", "np.square(omega) * high")
+@kills("fluid.upright:cylinder_terms", "(amount < chamber.capacity)", "(amount <= chamber.capacity)")
+def test_without_gravity_it_is_the_limit_of_little_gravity() -> None:
+    """What is left goes linearly with a small g, so that twice the half less the whole is the limit."""
+    speed, share = 30.0, np.array([0.02, 0.4, 1.0])
+    for inner in (0.0, 0.05):
+        chamber = Chamber(0.2, 0.1, inner_radius=inner, plane=0.03)
+        for part in (0.7, 1.0):  # at 1 the last share fills the chamber: no free surface
+            fill = Fill(chamber, WATER, part * chamber.capacity)
+            weak, weaker = (upright_margin(DISC, (fill,), share, speed, g) for g in (2e-3, 1e-3))
+            without = upright_margin(DISC, (fill,), share, speed, 0.0)
+            for name in ("frozen", "surface", "left"):
+                whole, half, at = (getattr(margin, name) for margin in (weak, weaker, without))
+                # Of second order: (2 g h/(Omega R)^2)^2 is 1e-10 of each; eight digits cancel nowhere.
+                np.testing.assert_allclose(at, 2.0 * half - whole, rtol=1e-7, atol=1e-9)
+    # Every term goes with the square of the speed: without springs nothing depends on it.
+    left = upright_margin(DISC, (fill,), 0.5, np.array([1.0, 1e3]), 0.0).left
+    assert left[1] == pytest.approx(1e6 * left[0], rel=1e-12)
+
+
 @pytest.mark.parametrize(
     ("change", "field"),
     [
@@ -138,7 +160,7 @@ def test_speed_gravity_and_walls_are_checked() -> None:
     chamber = Chamber(0.15, 0.04, baffles=Baffles(count=3, tip_radius=0.1))
     for fills, speed, gravity, field in (
         ((), 0.0, GRAVITY, "speed"),
-        ((), 1.0, 0.0, "gravity"),
+        ((), 1.0, -1.0, "gravity"),
         ((Fill(chamber, WATER, 1e-4),), 1.0, GRAVITY, "chambers"),
     ):
         with pytest.raises(InputError) as caught:

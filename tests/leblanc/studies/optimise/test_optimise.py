@@ -19,6 +19,7 @@ from leblanc.studies.optimise.answers import FilledMachine
 from leblanc.studies.optimise.constraints import growth, stability
 from leblanc.studies.optimise.objectives import AtSpeed, PeakOver
 from leblanc.studies.optimise.optimise import not_dominated, optimise_scene
+from leblanc.studies.optimise.problem import Problem, problem_of
 from leblanc.studies.optimise.robust import operating_conditions, unbalance_range
 from leblanc.studies.optimise.wetting import (
     full_volume,
@@ -29,7 +30,7 @@ from leblanc.studies.run import run_scene
 from meshes.arrays import Array
 from meshes.chamber import Chamber
 from meshes.errors import InputError
-from solvers.search import Judgement, SearchPlan, search
+from solvers.search import Found, Judgement, SearchPlan, search
 from solvers.statics.hydrostatics import equilibrium
 from tests.mutants import kills
 from tests.oracles.optimise import amplitudes, brute_force, random_scene, random_task
@@ -314,6 +315,37 @@ def test_constraints_bind() -> None:
     assert calm.feasible and calm.growth <= -0.1
     assert calm.volume[0] < free.volume[0]
     assert free.growth > -0.1
+
+
+def test_a_duty_taken_for_granted_is_held_to_as_one_written_out() -> None:
+    """Without `duty` the mean is over the scene's speeds: a whirl that grows at any of them breaks it."""
+    rotor = {"kind": "jeffcott", "mass": 10.0, "stiffness": 10700.0, "damping": 13.7, "unbalance": 0.063}
+    layers = [
+        {"radius": 0.173, "height": 0.148, "volume": 6.89e-4, "liquid": "water"},
+        {"radius": 0.1667, "height": 0.0321, "volume": 1.04e-4, "liquid": "water"},
+    ]
+    scene = Scene(
+        name="Two layers",
+        rotor=rotor | {"axis": "vertical"},
+        chambers=layers,
+        speeds={"start": 51.8, "stop": 87.5, "count": 6},
+    )
+    duty = [{"speed": speed, "weight": 1.0} for speed in scene.speed_array()]
+    volumes = np.array([[6.89e-4, 1.04e-4]])
+    taken, written = (
+        problem_of(scene, task, FilledMachine(scene), _no_search).evaluate(volumes)
+        for task in (Optimisation(objective="mean"), Optimisation(objective="mean", duty=duty))
+    )
+    assert taken.details.keys() == written.details.keys()
+    for name, value in taken.details.items():
+        np.testing.assert_array_equal(value, written.details[name])
+    stable = run_scene(scene).stable
+    assert stable[-1] and not stable.all()  # it stays at the working speed alone
+    assert taken.details["stability"][0] > 0.0 and taken.excess[0] > 0.0
+
+
+def _no_search(problem: Problem) -> Found:
+    raise AssertionError(problem.meaning)
 
 
 def test_nothing_allowed_is_said() -> None:
