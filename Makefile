@@ -8,7 +8,7 @@ study: $(BIN)/.installed
 	$(BIN)/leblanc run examples/horizontal_rig.toml
 
 test: $(BIN)/.installed-test
-	$(BIN)/python -m pytest -n 2 -m "not slow"
+	$(BIN)/python -m pytest -n 2 --dist worksteal -m "not slow"
 
 # All commands on all example scenes beside the answers kept in tests/net/kept, some minutes.
 net: $(BIN)/.installed-test
