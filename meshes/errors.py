@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 
+MOST_NODES = 1_000_000  # of a mesh
+
 
 class InputError(ValueError):
     """A value that a model cannot take.
@@ -33,6 +35,13 @@ def require_positive(field: str, value: float) -> None:
     """Raise `InputError` unless `value` is finite and above zero."""
     if not (math.isfinite(value) and value > 0.0):
         raise InputError(field, value, "a finite number above 0")
+
+
+def require_few_nodes(field: str, value: object, nodes: float) -> None:
+    """Raise `InputError` for a mesh of more than `MOST_NODES` nodes, which asks before it is made."""
+    if not nodes <= MOST_NODES:
+        asked = f"{nodes:.1e}" if math.isfinite(nodes) else "endless"
+        raise InputError(field, value, f"such that the mesh has at most a million nodes, not about {asked}")
 
 
 def require_not_negative(field: str, value: float) -> None:

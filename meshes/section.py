@@ -9,12 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from meshes.arrays import Array, Indices
-from meshes.errors import InputError, require_not_negative, require_positive
+from meshes.errors import MOST_NODES, InputError, require_few_nodes, require_not_negative, require_positive
 from meshes.quality import EDGES, jacobians, triangle_areas
 
 _FULL_DEPTH = math.sqrt(3.0) / 2.0  # a ring of equilateral triangles is that deep, over their width
-
-_MOST_NODES = 1_000_000
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,7 +77,8 @@ def disc(
 
     Raises
     ------
-    InputError : a length that is not positive, fewer than 8 segments, another order, growth out of range
+    InputError : a length that is not positive, fewer than 8 segments, another order, growth out of range,
+        above a million nodes
     """
     return annulus(radius, 0.0, segments, order=order, wall_layer=wall_layer, growth=growth)
 
@@ -112,6 +111,7 @@ def annulus(
     """
     _check_request(radius, inner_radius, segments, order, wall_layer, growth)
     radii, counts = _rings(radius, inner_radius, segments, wall_layer, growth)
+    require_few_nodes("segments", segments, order**2 * float(counts.sum()))
     # Rings of equal count stay aligned, which keeps thin layers free of inverted triangles; where the
     # count changes, every other ring is turned by half a step.
     turns = np.cumsum(np.diff(counts, prepend=counts[0]) != 0) % 2 * 0.5
@@ -157,7 +157,7 @@ def _rings(
         depths.append(min(depth, _FULL_DEPTH * inner_width + 0.3 * left))
         left -= depths[-1]
         depth *= growth
-        if len(depths) * segments > _MOST_NODES:
+        if 8 * len(depths) + segments > MOST_NODES:
             raise InputError("segments", segments, "fewer, or growth larger: above a million nodes")
     widths = np.maximum(width, np.array([depths[0], *depths]) / _FULL_DEPTH)
     layers = np.logical_and.accumulate(widths <= width * (1.0 + 1e-9)) & (wall_layer is not None)

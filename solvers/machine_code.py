@@ -35,7 +35,7 @@ def machine_code(**options: Any) -> Callable[[Callable[..., Any]], Any]:
 
     def compiled(function: Callable[..., Any]) -> Any:
         made = compile_it(function)
-        folder = None if "inline" in options else cache_folder()
+        folder = None if "inline" in options or _config.DISABLE_JIT else cache_folder()
         if folder is not None:
             with _choosing:
                 # Read as the cache is made, and for nobody else's functions.

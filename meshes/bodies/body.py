@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshes.arrays import Array, Indices
+from meshes.errors import require_few_nodes
 
 # Most that the depth halfway along an edge may differ from the mean of its ends, over that mean.
 _BEND = 0.45
@@ -85,7 +86,12 @@ def columns(
     Returns
     -------
     The body.
+
+    Raises
+    ------
+    InputError : above a million nodes
     """
+    require_few_nodes("layers", layers, len(points) * (2.0 * layers + 1.0))
     depth = depth.copy()
     ends, middle = triangles[:, [[0, 1], [1, 2], [2, 0]]], triangles[:, 3:]
     # An edge without depth at both ends has none between; where a mesh is too coarse for the bend of the

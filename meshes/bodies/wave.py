@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from meshes.arrays import Array, Indices
 from meshes.bodies.body import Body, columns
-from meshes.errors import InputError, require_positive
+from meshes.errors import InputError, require_few_nodes, require_positive
 from meshes.rings.triangles import polar_triangles
 
 # Most that a quadratic edge leaves its chord by, over the smaller thickness at its ends.
@@ -48,7 +48,7 @@ def wave_body(
 
     Raises
     ------
-    InputError : a value out of its range, no liquid at all
+    InputError : a value out of its range, no liquid at all, above a million nodes
     """
     inner = np.array(surface_radius, dtype=np.float64)
     count = inner.size
@@ -58,6 +58,7 @@ def wave_body(
         else np.array(angles, dtype=np.float64)
     )
     _check(radius, height, inner, theta, across, layers, order)
+    require_few_nodes("across", across, 2.0 * count * (2.0 * across + 1.0))
     thickness = np.where(inner > radius * (1.0 - _DRY), 0.0, radius - inner)
     if not thickness.any():
         raise InputError("surface_radius", radius, "below radius somewhere: there is no liquid")

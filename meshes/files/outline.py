@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from meshes.arrays import Array, Indices
-from meshes.errors import InputError, require_positive
+from meshes.errors import InputError, require_few_nodes, require_positive
 from meshes.files.drawing import MEET, Curve, closed_loops, meet, read_drawing
 from meshes.files.foreign import require_file
 from meshes.quality import cell_areas
@@ -96,8 +96,8 @@ def outline_section(
 
     Raises
     ------
-    InputError : a value out of its range, a file that cannot be read, an outline that is open or crossed, or
-        lies outside the largest
+    InputError : a value out of its range, above a million nodes, a file that cannot be read, an outline that
+        is open or crossed, or lies outside the largest
     ImportError : Gmsh or ezdxf is not installed: `pip install leblanc[cad]`
     """
     file = _check(path, wall_size, inside_size, growth, order)
@@ -117,7 +117,7 @@ def outline_section(
             _import(path, gmsh, file, height)
         at_wall = _default_size(gmsh) if wall_size is None else wall_size / metre
         sizes = (at_wall, max(at_wall, inside_size / metre), math.log(growth))
-        points, triangles, ends = _mesh(gmsh, sizes, order, cracks)
+        points, triangles, ends = _mesh(gmsh, sizes, order, cracks, metre)
     try:
         points, triangles = open_slits(metre * points, triangles, ends)
         return Section(points, triangles)
@@ -363,12 +363,25 @@ def _import(path: str | Path, gmsh: Any, file: Path, height: float | None) -> No
 
 
 def _mesh(
-    gmsh: Any, sizes: tuple[float, float, float], order: int, cracks: list[int]
+    gmsh: Any, sizes: tuple[float, float, float], order: int, cracks: list[int], metre: float
 ) -> tuple[Array, Indices, Indices]:
     """Mesh the model's faces; points, triangles, and ends of the lines on cracks."""
     at_wall, inside, slope = sizes
-    boundary = gmsh.model.getBoundary(gmsh.model.getEntities(2), combined=True, oriented=False)
+    faces = gmsh.model.getEntities(2)
+    boundary = gmsh.model.getBoundary(faces, combined=True, oriented=False)
     near = sorted({tag for _, tag in boundary} | set(cracks))
+    area, length = (
+        sum(gmsh.model.occ.getMass(*one) for one in ones) for ones in (faces, [(1, k) for k in near])
+    )
+    # Equilateral triangles, as large as the field below has them on a strip along the walls, whose own nodes
+    # are a row more.
+    strip = min(area / length, (inside - at_wall) / slope)
+    graded = (
+        length / slope * (1.0 / at_wall - 1.0 / (at_wall + slope * strip))
+        + (area - length * strip) / inside**2
+    )
+    vertices = 2.0 / math.sqrt(3.0) * graded + length / at_wall
+    require_few_nodes("wall_size", at_wall * metre, vertices * order**2)
     field = gmsh.model.mesh.field
     distance, size = field.add("Distance"), field.add("MathEval")
     field.setNumbers(distance, "CurvesList", near)

@@ -8,12 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshes.arrays import Array, Indices
-from meshes.errors import InputError
+from meshes.errors import MOST_NODES, InputError
 from meshes.liquid_section import LiquidSection, free_sides, liquid_section
 from meshes.quality import EDGES, cell_areas
 from meshes.section import Section
-
-_MOST_NODES = 1_000_000
 
 # Turns a triangle so that its edge 0, 1 or 2 comes first.
 TURNED = np.array([[0, 1, 2, 3, 4, 5], [1, 2, 0, 4, 5, 3], [2, 0, 1, 5, 3, 4]])
@@ -69,7 +67,7 @@ def refine(points: Array, triangles: Indices, size: Callable[[Array], Array]) ->
     while True:
         _, edges = edge_numbers(triangles)
         wanted = cell_areas(points, triangles[:, :3]) / size(points[triangles[:, :3]].mean(axis=1)) ** 2
-        if max(float(wanted.sum()), len(points)) > _MOST_NODES:
+        if max(float(wanted.sum()), len(points)) > MOST_NODES:
             raise InputError("size", float(wanted.sum()), "coarser: above a million nodes")
         length = np.hypot(*(points[edges[:, 1]] - points[edges[:, 0]]).T)
         # Chords of curved edges shrink by a little less than half.
@@ -110,7 +108,7 @@ def bisect(points: Array, triangles: Indices, marked: NDArray[np.bool_]) -> tupl
         if not more.any():
             break
         marked[base[more]] = True
-    if len(points) + 4 * int(marked.sum()) > _MOST_NODES:
+    if len(points) + 4 * int(marked.sum()) > MOST_NODES:
         raise InputError("size", len(points) + 4 * int(marked.sum()), "coarser: above a million nodes")
     triangles = np.take_along_axis(triangles, TURNED[longest], axis=1)
     number = np.take_along_axis(number, TURNED[longest, :3], axis=1)

@@ -14,7 +14,7 @@ import numpy as np
 
 from meshes.arrays import Array, Indices
 from meshes.baffles import Baffles
-from meshes.errors import InputError, require_positive
+from meshes.errors import InputError, require_few_nodes, require_positive
 from meshes.liquid_section import LiquidSection, liquid_section
 from meshes.rings.triangles import open_slits
 
@@ -27,8 +27,6 @@ _AT_EDGE = 8
 
 # Longest step in the logarithm of the radius: a cell's middle node stays near its middle.
 _LONGEST = 0.5
-
-_MOST_NODES = 2_000_000
 
 
 def ring(
@@ -61,9 +59,13 @@ def ring(
 
     Raises
     ------
-    InputError : a value out of its range, above two million nodes
+    InputError : a value out of its range, above a million nodes
     """
     _check(radius, surface_radius, around, across, order, times)
+    least = around * order**2
+    require_few_nodes("around", around, least)
+    require_few_nodes("across", across, least * across)
+    require_few_nodes("times", times, least * across * times**2)
     for name, value in (("towards_surface", towards_surface), ("towards_wall", towards_wall)):
         if not 1.0 <= value <= 6.0:
             raise InputError(name, value, "1 to 6")
@@ -75,8 +77,7 @@ def ring(
     log_radii = _circles(marks, across, times, power)
     depth, gap = marks[-1][0], min(np.diff([mark for mark, _ in marks]))
     angles = _rays(baffles if span else None, around, times, power, depth, gap)
-    if len(log_radii) * len(angles) * order**2 > _MOST_NODES:
-        raise InputError("around", around, "fewer: above two million nodes")
+    require_few_nodes("around", around, len(log_radii) * len(angles) * order**2)
     radii = surface_radius * np.exp(log_radii)
     radii[0], radii[-1] = surface_radius, radius
     points, cells = _grid(radii, angles, order)

@@ -8,7 +8,7 @@ import numpy as np
 
 from meshes.arrays import Indices
 from meshes.baffles import Baffles
-from meshes.errors import InputError, require_not_negative, require_positive
+from meshes.errors import InputError, require_few_nodes, require_not_negative, require_positive
 from meshes.quality import EDGES
 from meshes.section import Section
 
@@ -71,9 +71,10 @@ def sector(
 
     Raises
     ------
-    InputError : a value out of its range, edges of more than 60 degrees
+    InputError : a value out of its range, edges of more than 60 degrees, above a million nodes
     """
     _check(radius, start, angle, inner_radius, segments, order)
+    require_few_nodes("segments", segments, segments * order**2)
     width, gap = radius * angle / segments, radius - inner_radius
     # The triangles of a narrow sector are longer than wide.
     rows = max(1, min(round(gap / width), 4 * segments))
@@ -83,6 +84,7 @@ def sector(
     counts = np.maximum(counts, math.ceil(angle / (math.pi / 3.0)))
     counts = np.full(rows + 1, segments) if gap < width else counts
     counts[-1] = 0 if inner_radius == 0.0 else counts[-1]
+    require_few_nodes("segments", segments, order**2 * float(counts.sum()))
     first = np.concatenate([[0], np.cumsum(counts + 1)])
     turn = np.concatenate([np.linspace(0.0, 1.0, n + 1) for n in counts])
     r, theta = np.repeat(radii, counts + 1), start + angle * turn

@@ -11,7 +11,7 @@ from scipy.sparse.csgraph import connected_components
 
 from meshes.arrays import Array, Indices
 from meshes.baffles import Baffles
-from meshes.errors import InputError, require_positive
+from meshes.errors import InputError, require_few_nodes, require_positive
 from meshes.liquid_section import SIDES, LiquidSection, liquid_section
 
 
@@ -117,6 +117,7 @@ def graded(
     level = (fall - rise) / largest
     falling = math.log1p(slope * (length - fall) / end) / slope
     total = rising + level + falling
+    require_few_nodes("growth", growth, total)
     steps = max(least, math.ceil(total * (1.0 - 1e-9)))
     at = total * np.arange(steps + 1) / steps
     x = rise + (at - rising) * largest
@@ -125,9 +126,6 @@ def graded(
     x = np.where(total - at < falling, length - end * np.expm1(slope * back) / slope, x)
     x[0], x[-1] = 0.0, length
     return np.asarray(x)
-
-
-_MOST_NODES = 2_000_000
 
 
 def ring(
@@ -165,12 +163,14 @@ def ring(
 
     Raises
     ------
-    InputError : a value out of its range, above two million nodes
+    InputError : a value out of its range, above a million nodes
     """
     _check(radius, surface_radius, segments, order, layers, growth)
     for name, value in (("wall_depth", wall_depth), ("surface_depth", surface_depth)):
         if not value > 0.0:
             raise InputError(name, value, "above 0")
+    require_few_nodes("segments", segments, segments * order**2)
+    require_few_nodes("layers", layers, segments * order**2 * layers)
     span = baffles.wetted_span(radius, surface_radius) if baffles else None
     depth = radius - surface_radius
     tip = depth / 20.0 if tip_size is None else tip_size
@@ -185,8 +185,7 @@ def ring(
         radius, surface_radius, span, deepest, (surface_depth, at_inner, at_outer, wall_depth), growth
     )
     angles = _angles(segments, baffles if span else None, min(at_inner, at_outer) / radius, growth)
-    if len(radii) * len(angles) * order**2 > _MOST_NODES:
-        raise InputError("segments", segments, "fewer, or coarser grading: above two million nodes")
+    require_few_nodes("segments", segments, len(radii) * len(angles) * order**2)
     points, cells = _grid(radii, angles, order)
     if span is not None and baffles is not None:
         points, cells = open_slits(points, cells, _baffle_sides(radii, angles, span, baffles, order))

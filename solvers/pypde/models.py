@@ -43,6 +43,8 @@ from solvers.waves.modes import WaveTerms
 if TYPE_CHECKING:
     from solvers.pypde.family_law import Standing
 
+_MOST_POINTS = 65536
+
 Progress = Callable[[float], object] | None
 
 
@@ -183,7 +185,7 @@ class OneFamily(WaveModel):
 
     Raises
     ------
-    InputError : quadratic friction
+    InputError : quadratic friction, another number of points
     """
 
     friction: Friction = NO_FRICTION
@@ -203,6 +205,8 @@ class OneFamily(WaveModel):
             raise InputError(
                 "friction", self.friction.law, "none, linear, stokes or wall for one family of waves"
             )
+        if not 8 <= self.points <= _MOST_POINTS:
+            raise InputError("cells", self.points, f"from 8 to {_MOST_POINTS}")
 
     def at_rest(self, fills: Fills, whirls: Whirls) -> LiquidAnswer:
         """See `WaveModel`; the error is the distance from the exact pull on a wet wall [theory: kdv, eq. 33].
