@@ -139,8 +139,10 @@ def margins(cabinet: Cabinet, floor: FloorForce, rest: FloorForce) -> Margins:
 
     Raises
     ------
-    InputError : a foot that carries nothing at rest
+    InputError : a foot that carries nothing at rest, no gravity
     """
+    if not rest.vertical.any():
+        raise InputError("gravity", 0.0, "above 0 with a cabinet: without weight no foot holds to the floor")
     if not np.all(rest.vertical > 0.0):
         # Feet that press alike to rounding are told by the first of them, on any processor.
         alike = _ALIKE * float(np.abs(rest.vertical).max())

@@ -216,6 +216,8 @@ def test_feet_that_do_not_carry() -> None:
     """What only the whole machine tells is an input fault as well."""
     with pytest.raises(InputError, match=r"cabinet\.feet\.0"):
         lb.run(_rig(cabinet=PARTS["cabinet"] | {"centre_of_mass": [0.0, -3.0, 0.0]}))
+    with pytest.raises(InputError, match="above 0 with a cabinet"):
+        lb.run(_rig(gravity=0.0))
     with pytest.raises(SceneError, match="bearings"):
         lb.example("tub").replace({"rotor.bearings": [{"position": 0.1}, {"position": 0.1}]})
 

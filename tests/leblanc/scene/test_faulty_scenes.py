@@ -118,7 +118,7 @@ CASES = (
     case("count = 20", f"count = {BITS}", "speeds.count", "bits", "a whole number"),
     case('"14 s"', '"0 s"', "runup.duration", "a time"),
     case('"14 s"', '"14 s"\ncells = 4', "runup.cells", "= 4", "from 8 to 65536"),
-    case("assumed", "gravity = -1\nassumed", "gravity", "= -1", "an acceleration"),
+    case("assumed", "gravity = -9.81\nassumed", "gravity", "= -9.81", ", 0, or from"),
     # values that do not go together
     case('"10 ml"', '"2 l"', "chambers.0.volume", '"2 l"', "at most what the chamber holds, 0.259181 l"),
     case(

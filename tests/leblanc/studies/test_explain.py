@@ -72,8 +72,19 @@ def test_numbers() -> None:
     assert n.curvature == pytest.approx(1.0 / 0.36)
     np.testing.assert_allclose(n.centrifuge, [12.0, 1200.0])
     np.testing.assert_allclose(n.steepness, [40.0, 4000.0])
+    assert np.isinf(layer_numbers(fill, np.array([10.0]), gravity=10.0, axial_gravity=0.0).steepness).all()
     np.testing.assert_allclose(n.reynolds, [1e3, 1e4])
     np.testing.assert_allclose(n.skin, np.sqrt([4e-3, 4e-4]) / 0.8)
+
+
+@pytest.mark.parametrize("axis", ["horizontal", "vertical"])
+def test_no_gravity_is_the_limit_of_little(axis: str) -> None:
+    """On either axis, and there is no speed below which it holds no ring."""
+    made = scene().replace({"rotor.axis": axis, "speeds.count": 5})
+    without, little = (made.replace({"gravity": gravity}) for gravity in (0.0, 1e-6))
+    assert choose(without).captured_from is None
+    # What gravity changes is of first order in g/(Omega^2 a), below 1e-6 here.
+    np.testing.assert_allclose(run_scene(without).amplitude, run_scene(little).amplitude, rtol=1e-6)
 
 
 @kills("leblanc.studies.models.choose:_carried", "speed > captured_from", "speed < captured_from")
@@ -139,7 +150,9 @@ def test_words_and_json(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> N
     assert "chamber 3" in words and "statics" in words and "kappa" in words
     assert main(["explain", "examples/horizontal_rig.toml", "--json"]) == 0
     answer = json.loads(capsys.readouterr().out)
-    assert answer["layers"][0]["numbers"]["relative_depth"] == pytest.approx(0.01902, rel=1e-3)
+    numbers = answer["layers"][0]["numbers"]
+    assert numbers["relative_depth"] == pytest.approx(0.01902, rel=1e-3)
+    assert numbers["steepness"] == [None, None]  # a cylinder
 
 
 def test_the_wall_is_told_how_it_carries_the_liquid_along() -> None:

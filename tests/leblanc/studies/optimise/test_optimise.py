@@ -344,6 +344,27 @@ def test_a_duty_taken_for_granted_is_held_to_as_one_written_out() -> None:
     assert taken.details["stability"][0] > 0.0 and taken.excess[0] > 0.0
 
 
+def test_a_nearly_empty_chamber_beside_baffles_is_an_empty_one() -> None:
+    """Liquid that a film of atoms would hold changes nothing, neither of the amplitude nor of the growth."""
+    room = {"radius": 0.1, "height": 0.05, "liquid": "water"}
+    rotor = {"kind": "jeffcott", "mass": 10.0, "stiffness": 4e4, "damping": 100.0, "unbalance": 1e-3}
+    scene = Scene(
+        name="A nearly empty chamber beside one with baffles",
+        rotor=rotor | {"axis": "vertical"},
+        chambers=[
+            room | {"volume": 1e-4, "baffles": {"count": 8, "tip_radius": 0.08}},
+            room | {"volume": 1e-11},
+        ],
+        speeds={"start": 80.0, "stop": 120.0, "count": 2},
+    )
+    judge = problem_of(scene, Optimisation(objective="mean"), FilledMachine(scene), _no_search).evaluate
+    found = judge(np.array([[1e-4, volume] for volume in (0.0, 1e-17, 1e-14, 1e-11)])).details
+    for name in ("stability", "vibration"):
+        assert np.isfinite(found[name]).all()
+        # Of the mass of liquid over the rotor's, 1e-9, by far the most that so little could do.
+        np.testing.assert_allclose(found[name], found[name][0], rtol=1e-8)
+
+
 def _no_search(problem: Problem) -> Found:
     raise AssertionError(problem.meaning)
 
