@@ -262,24 +262,6 @@ def damped_waves(layer_tanh: ArrayLike, spin: ArrayLike, rate: ArrayLike) -> tup
     return np.asarray(centre + root), np.asarray(centre - root)
 
 
-def neutral_stiffness(whirl_ratio: ArrayLike, mass: float, liquid: ArrayLike, layer_tanh: ArrayLike) -> Array:
-    """Support stiffness over Omega^2 for which an undamped rotor whirls neutrally at a given whirl ratio, kg.
-
-    Y(r) = r^2 [M + sum m_l (1 + d/w)], the layers without friction [theory: whirl, eq. 16].
-
-    Parameters
-    ----------
-    whirl_ratio : r = omega/Omega, shape (...,), not at a free wave
-    mass : M, kg, with all liquid that has no free surface
-    liquid, layer_tanh : masses m_l, kg, and T of the layers, shape (n,)
-    """
-    r = np.asarray(whirl_ratio, dtype=float)
-    total = np.full(r.shape, mass)
-    for own, t in zip(np.atleast_1d(liquid), np.atleast_1d(layer_tanh), strict=True):
-        total = total + own * (1.0 + offset_with_friction(t, 1.0, r, 0.0).real)
-    return np.asarray(np.square(r) * total)
-
-
 def covering_speed(fill: Fill, gravity: float) -> float:
     """Spin speed above which the layer in an upright chamber covers the wall and clears the inner one.
 

@@ -21,6 +21,8 @@ from typing import Any
 import numba
 import platformdirs
 
+# Options of what only compiled code calls: it needs no wrappers.
+BARE: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 _UNUSED = 30.0 * 86400.0  # s, after which the folder of other sources is removed
 _choosing = threading.Lock()
 _config: Any = numba.config

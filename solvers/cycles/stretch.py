@@ -1,7 +1,4 @@
-"""Many states of a layer through the same time at once: what derivatives by differences take most of.
-
-Compiled.
-"""
+"""Many states of a layer through the same time at once: what derivatives by differences take most of."""
 
 from __future__ import annotations
 

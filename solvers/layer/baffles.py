@@ -19,16 +19,14 @@ from fluid.friction import baffles
 from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.layer.places import FEWEST_CELLS, is_smeared
-from solvers.machine_code import machine_code
+from solvers.machine_code import BARE, machine_code
 
 _OPTIONS: dict[str, Any] = {
     "fastmath": {"contract", "arcp", "nsz"},
     "error_model": "numpy",
     "_nrt": False,
-    "no_cpython_wrapper": True,
-    "no_cfunc_wrapper": True,
 }
-_jit: Any = machine_code(**_OPTIONS)
+_jit: Any = machine_code(**(_OPTIONS | BARE))
 
 # Columns of a layer's table of baffles, one row each: the face, below 0 in rows that are not used; distances
 # of the edges from the wall over R; a loss coefficient given over the mean depth, below 0 for the law; then

@@ -1,7 +1,7 @@
 """One time step of the law of the wall: the mean flow's friction, then that of the waves [theory: friction].
 
 Unconditionally stable and of second order, cell by cell; the waves' part leaves the angular momentum of the
-layer to rounding. Lengths over R, times in the unit of the law's rates. Compiled.
+layer to rounding. Lengths over R, times in the unit of the law's rates.
 """
 
 from __future__ import annotations
@@ -11,12 +11,11 @@ from typing import Any
 import numpy as np
 
 from solvers.layer.finite_volume import COMPILED, DRY, SUMMED
-from solvers.machine_code import machine_code
+from solvers.machine_code import BARE, machine_code
 
-_bare: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 _part: Any = machine_code(**COMPILED)
-_inner_part: Any = machine_code(**(COMPILED | _bare))
-_sum_part: Any = machine_code(**(SUMMED | _bare))
+_inner_part: Any = machine_code(**(COMPILED | BARE))
+_sum_part: Any = machine_code(**(SUMMED | BARE))
 
 
 @_inner_part

@@ -18,10 +18,10 @@ import numpy as np
 
 from fluid import long_wave
 from solvers.layer.baffles import FACE, OPEN, obstruct, shut, slope_aside, smear, straighten, take
-from solvers.machine_code import machine_code
+from solvers.machine_code import BARE, machine_code
 
 # Products and sums may be contracted, zeros lose their signs; the order of sums stays. Views of arrays need
-# no reference counts here, and what only compiled code calls no wrappers: less to compile.
+# no reference counts here: less to compile.
 COMPILED: dict[str, Any] = {
     "fastmath": {"contract", "arcp", "nsz"},
     "error_model": "numpy",
@@ -30,13 +30,13 @@ COMPILED: dict[str, Any] = {
 # Where a gap is full speeds count twice for the step. A ramp within a cell stays within its neighbours in
 # steps of half a cell: with longer ones, as of a Courant number of 0.8, a gap that fills and empties rings.
 PRESSED = 2.0
-_face_jit: Any = machine_code(**(COMPILED | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}))
+_face_jit: Any = machine_code(**(COMPILED | BARE))
 # What becomes part of its callers.
 _inlined: Any = machine_code(inline="always")
 # Sums and largest values over a ring, in parts that the compiler chooses once and for all: the same numbers
 # give the same sum.
 SUMMED: dict[str, Any] = COMPILED | {"fastmath": {"contract", "arcp", "nsz", "reassoc", "nnan"}}
-_sum_jit: Any = machine_code(**(SUMMED | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}))
+_sum_jit: Any = machine_code(**(SUMMED | BARE))
 
 _surface = _face_jit(long_wave.free_surface_radius)
 _head = _face_jit(long_wave.static_head)

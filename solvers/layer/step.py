@@ -3,7 +3,6 @@
 Heun's method in two stages between two half steps of friction, exact but for the law of the wall
 [theory: long_wave, eq. 11]. The coupled
 machine takes the parts and puts its own forces to them. Lengths over R, times in the unit of the spin given.
-Compiled.
 """
 
 from __future__ import annotations
@@ -34,14 +33,12 @@ from solvers.layer.finite_volume import (
 )
 from solvers.layer.inside import NOTHING, Inside
 from solvers.layer.records import PACE, Drive, Outcome, Record, Wall, records
-from solvers.machine_code import machine_code
+from solvers.machine_code import BARE, machine_code
 from solvers.slices import FASTEST, RUNAWAY, compiled, slices, step_budget
 
 _jit: Any = machine_code(**COMPILED)
-# What only compiled code calls needs no wrappers.
-_bare: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-_part: Any = machine_code(**(COMPILED | _bare))
-_sum_part: Any = machine_code(**(SUMMED | _bare))
+_part: Any = machine_code(**(COMPILED | BARE))
+_sum_part: Any = machine_code(**(SUMMED | BARE))
 _sum_jit: Any = machine_code(**SUMMED)
 # Parts of one function: compiled one by one and linked they would cost twice the time to compile.
 _inner: Any = machine_code(inline="always")

@@ -2,7 +2,7 @@
 
 Each step looks for the mean acceleration of every chamber's axis that makes the layers' change of momentum
 and the rotor's trapezium agree: momentum is handed over to rounding, and the rotor's part is stable for any
-stiffness. SI units; layers over their wall radius. Compiled.
+stiffness. SI units; layers over their wall radius.
 """
 
 from __future__ import annotations
@@ -32,11 +32,11 @@ from solvers.layer.step import (
     profile,
     stage_rates,
 )
-from solvers.machine_code import machine_code
+from solvers.machine_code import BARE, machine_code
 
 _jit: Any = machine_code(**COMPILED)
-_unwrapped: Any = machine_code(**(COMPILED | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}))
-_summed: Any = machine_code(**(SUMMED | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}))
+_unwrapped: Any = machine_code(**(COMPILED | BARE))
+_summed: Any = machine_code(**(SUMMED | BARE))
 # Parts of one function: compiled one by one and linked they would cost twice the time to compile.
 _inner: Any = machine_code(inline="always")
 

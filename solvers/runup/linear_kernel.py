@@ -1,6 +1,6 @@
 """Rotor and linear layers through time by the trapezium [theory: coupling, eq. 11-13].
 
-SI units. Compiled.
+SI units.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """The liquid between an outer and an inner wall, state by state: its integrals, and its surface for a volume.
 
 Of every state, arrays of shape (n,): radius, inner and height of the chamber, m; e, eccentricity, m; steep,
-beta R^2/h; zeta, wetted height over h. Compiled [theory: statics, eq. 12].
+beta R^2/h; zeta, wetted height over h [theory: statics, eq. 12].
 """
 
 from __future__ import annotations
@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 
 from meshes.arrays import Array, Flags
-from solvers.machine_code import machine_code
+from solvers.machine_code import BARE, machine_code
 from solvers.statics import wall
 
 _jit: Any = machine_code(**wall.COMPILED)
-_inner_jit: Any = machine_code(**(wall.COMPILED | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}))
+_inner_jit: Any = machine_code(**(wall.COMPILED | BARE))
 
 _ITERATIONS = 200
 _STEEP, _GUESSES = 3.0, 60  # above which a surface is nearly a cylinder, and steps to find that

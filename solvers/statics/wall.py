@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from solvers.machine_code import machine_code
+from solvers.machine_code import BARE, machine_code
 
 # Products and sums may be contracted; no arrays are made here, so that nothing needs reference counts.
 COMPILED: dict[str, Any] = {
@@ -24,7 +24,7 @@ COMPILED: dict[str, Any] = {
     "error_model": "numpy",
     "_nrt": False,
 }
-_jit: Any = machine_code(**(COMPILED | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}))
+_jit: Any = machine_code(**(COMPILED | BARE))
 
 # The wall is divided at v = pi - psi = pi/4. Far part: the nearest singularity (v = 0 when the rotation axis
 # touches the wall) is pi/4 beyond the end of a panel of half-length 3/8 pi: the error falls as 3**(-2 n).

@@ -5,12 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.polynomial import Polynomial
 from numpy.typing import ArrayLike
 
 from fluid.fill import Fill
 from fluid.friction.laws import NO_FRICTION, Friction
-from fluid.whirl import Layer, neutral_stiffness
 from meshes.arrays import Array, Flags, Index
 from solvers.rotor.system import Rotor
 from solvers.whirl.growth import growth_at
@@ -166,44 +164,3 @@ def _refine(
         low[:, active] = points[beyond - 1, at], rates[beyond - 1, at]
         high[:, active] = points[beyond, at], rates[beyond, at]
     return np.asarray(0.5 * (low[0] + high[0]))
-
-
-def undamped_edges(mass: float, stiffness: float, layers: Sequence[Layer]) -> Array:
-    """Speeds at which an undamped rotor with frictionless layers gains or loses a pair of neutral whirls.
-
-    The stiffness that a neutral whirl of ratio r needs is Omega^2 Y(r); where Y has an extremum two whirls
-    merge, so that the edges follow from the zeros of a polynomial [theory: whirl, eq. 17].
-
-    Parameters
-    ----------
-    mass : M with all liquid that has no free surface, kg
-    stiffness : K, N/m
-    layers : at least one, all different
-
-    Returns
-    -------
-    Omega, rad/s, rising
-    """
-    free = [layer for layer in layers if layer.mass > 0.0]
-    # In u = r - 1, in which the waves of a thin layer stand apart.
-    ratio = Polynomial([1.0, 1.0])
-    waves = [Polynomial([-layer.layer_tanh, -2.0 * layer.layer_tanh, 1.0]) for layer in free]
-    bottom = _product(waves)
-    top = (mass + sum(layer.mass for layer in free)) * bottom
-    for k, layer in enumerate(free):
-        share = 0.5 * (1.0 - layer.layer_tanh) * layer.mass
-        top = top - share * ratio**2 * _product(waves[:k] + waves[k + 1 :])
-    # Y = r^2 top/bottom; the zero of Y' at r = 0 belongs to an infinite speed.
-    extrema = (2.0 * top + ratio * top.deriv()) * bottom - ratio * top * bottom.deriv()
-    roots = extrema.roots()
-    real = roots.real[np.abs(roots.imag) <= 1e-9 * np.abs(roots)] + 1.0
-    masses, tanh = (np.array([getattr(layer, name) for layer in free]) for name in ("mass", "layer_tanh"))
-    needed = neutral_stiffness(real, mass, masses, tanh)
-    return np.sort(np.sqrt(stiffness / needed[needed > 0.0]))
-
-
-def _product(factors: Sequence[Polynomial]) -> Polynomial:
-    total = Polynomial([1.0])
-    for factor in factors:
-        total = total * factor
-    return total

@@ -21,7 +21,6 @@ from fluid.whirl import (
     force_with_friction,
     is_full,
     layer_rate,
-    neutral_stiffness,
     offset_with_friction,
     plane_layer,
     plate_rate,
@@ -251,17 +250,6 @@ def test_wall_layer() -> None:
         # Second order: (step/thickness)^2 of some 4e-5.
         drag = math.sqrt(nu) * plate_rate(-1.0, spin, slip) if turn else stokes_rate(math.sqrt(nu), slip)
         assert complex(drag) == pytest.approx(shear, rel=1e-4)
-
-
-@kills("fluid.whirl:neutral_stiffness", "total + own * (1.0 + offset", "total + own * (1.0 - offset")
-@kills("fluid.whirl:neutral_stiffness", "np.square(r) * total", "r * total")
-def test_neutral_stiffness() -> None:
-    """K - (M + m_f G) omega^2 = 0 for the rotor without damping."""
-    r = np.array([-1.5, -0.3, 0.4, 0.8, 1.0, 2.5])
-    kappa, full = np.array([1.2, 4.0]), np.array([0.3, 0.8])
-    wanted = r**2 * (2.0 + sum(m * force_ratio(k, r) for k, m in zip(kappa, full, strict=True)))
-    liquid, t = full * (1.0 - 1.0 / kappa), (kappa - 1.0) / (kappa + 1.0)
-    np.testing.assert_allclose(neutral_stiffness(r, 2.0, liquid, t), wanted, rtol=1e-12)
 
 
 @kills("fluid.whirl:covering_speed", "min(outer, inner)", "max(outer, inner)")

@@ -1,4 +1,4 @@
-"""Time steps of a rotor with ball balancers, compiled."""
+"""Time steps of a rotor with ball balancers."""
 
 from __future__ import annotations
 

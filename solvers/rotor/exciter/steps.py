@@ -1,4 +1,4 @@
-"""Time steps of the dual-frequency exciter, compiled."""
+"""Time steps of the dual-frequency exciter."""
 
 from __future__ import annotations
 

@@ -19,11 +19,12 @@ from solvers.rotor.system import Rotor
 from solvers.rotor.tub import Mount, Tub
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
 from solvers.whirl import looks as whirl_looks
-from solvers.whirl.edges import undamped_edges, unstable_bands
+from solvers.whirl.edges import unstable_bands
 from solvers.whirl.growth import asynchronous_growth, planar_layers
 from solvers.whirl.looks import _changes, _first_speeds, looks
 from solvers.whirl.system import coupled_matrices, linear_modes
 from tests.mutants import kills
+from tests.oracles.edges import undamped_edges
 
 WATER = known_liquid("water")
 Machine = tuple[Rotor, list[Fill], Friction, float, float]

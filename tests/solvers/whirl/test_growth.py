@@ -23,7 +23,7 @@ from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import RotorSystem
 from solvers.synchronous.response import response
 from solvers.whirl import edges as whirl_edges
-from solvers.whirl.edges import undamped_edges, unstable_bands
+from solvers.whirl.edges import unstable_bands
 from solvers.whirl.growth import (
     asynchronous_growth,
     dominant,
@@ -36,6 +36,7 @@ from solvers.whirl.laminar import _eliminate, _layer_waves, _Problem
 from solvers.whirl.planar import PlanarProblem, planar_modes
 from solvers.whirl.system import coupled_matrices
 from tests.mutants import kills
+from tests.oracles.edges import undamped_edges
 
 WATER = Liquid("water", 1000.0, 1e-6)
 RADIUS, HEIGHT, NATURAL = 0.1, 0.02, 100.0
@@ -167,10 +168,6 @@ def exact_edge(mu: float, depth: float, low: float, high: float) -> float:
         return float(low)
 
 
-@kills("solvers.whirl.edges:undamped_edges", "top - share * ratio**2", "top + share * ratio**2")
-@kills("solvers.whirl.edges:undamped_edges", "(2.0 * top + ratio", "(1.0 * top + ratio")
-@kills("solvers.whirl.edges:undamped_edges", "stiffness / needed[needed", "needed[needed")
-@kills("solvers.whirl.edges:undamped_edges", "-2.0 * layer.layer_tanh, 1.0", "2.0 * layer.layer_tanh, 1.0")
 def test_refined_edges() -> None:
     """To 1e-8 against the sign of the discriminant in 40 digits, and by the extrema of the stiffness."""
     speeds = np.linspace(30.0, 400.0, 75)
