@@ -1,5 +1,6 @@
 """Session settings: floating-point faults raise, hypothesis is pinned; oracles meet their mutants."""
 
+import gc
 import os
 import sys
 from collections.abc import Iterator
@@ -45,6 +46,13 @@ def pytest_configure(config: pytest.Config) -> None:
             config.failures_db.get_test_reruns = lambda test: config.option.reruns
     config.addinivalue_line("markers", "kills(mutant): the test fails with this mutant in place")
     config.addinivalue_line("markers", "mutant: a run of an oracle with a mutant, which must fail")
+
+
+def pytest_collection_finish() -> None:
+    """What was imported and collected stays: the garbage collector need not look through it again."""
+    gc.collect()
+    gc.freeze()
+    gc.set_threshold(10_000)
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
