@@ -4,6 +4,8 @@ import gc
 import os
 import sys
 from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
 
 # Even where the environment says not to keep bytecode: without it each worker collects for 20 s instead of 8,
 # and each process that a test starts compiles what it imports anew.
@@ -17,7 +19,7 @@ os.environ.setdefault("MPLBACKEND", "Agg")
 
 import numpy as np  # noqa: E402
 import pytest  # noqa: E402
-from hypothesis import HealthCheck, settings  # noqa: E402
+from hypothesis import HealthCheck, Phase, settings  # noqa: E402
 from pytest_rerunfailures import StatusDB  # noqa: E402
 
 from tests.mutants import CAUGHT, seeded  # noqa: E402
@@ -71,6 +73,21 @@ def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> Iterator[None]:
     mutant = params.get("mutant")
     if mutant is None:
         return (yield)
-    with seeded(mutant), pytest.raises(CAUGHT):
+    with seeded(mutant), _noticed_once(pyfuncitem.function), pytest.raises(CAUGHT):
         yield
     return True
+
+
+@contextmanager
+def _noticed_once(test: Any) -> Iterator[None]:
+    """Hypothesis seeks no smaller example of a failure that is wanted."""
+    drawn = getattr(test, "_hypothesis_internal_use_settings", None)
+    if drawn is None:
+        yield
+        return
+    phases = (Phase.explicit, Phase.generate)
+    test._hypothesis_internal_use_settings = settings(drawn, phases=phases, report_multiple_bugs=False)
+    try:
+        yield
+    finally:
+        test._hypothesis_internal_use_settings = drawn
