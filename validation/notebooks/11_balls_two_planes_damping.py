@@ -58,9 +58,9 @@ case_table(damped)
 #
 # Two checks of the drag, on which all of this hangs. On a rotor 1000 times as heavy, with supports as much
 # stiffer, a ball feels its race alone: its speed in the race falls with `b/(kappa m)`, the drag over what the
-# ball has for inertia on its way round. And the disturbance that grows most must grow in time, where nothing is
-# linear, as its root says. With 8000 N s/m the roots are so small that in four seconds nothing is to be seen;
-# that damping is left out.
+# ball has for inertia on its way round. And the disturbance that grows most must grow in time, where nothing
+# is linear, as its root says. With 8000 N s/m the roots are so small that in four seconds nothing is to be
+# seen; that damping is left out.
 
 # %%
 HEAVIER = 1000.0

@@ -96,8 +96,8 @@ case_table(cases)
 # A long wave has the velocity `u R/r` along circles. What holds it there is the pressure, which grows
 # outwards by `(Omega r + u R/r)^2/r` and by the acceleration of the drum. Summed up from the surface to the
 # wall by quadrature it must be the closed form that the models take, at troughs and crests, with the spin and
-# against it. Without a velocity the pressure also has a moment about the axis, over a section through the layer,
-# which the models take in closed form as well. In units of R, Omega and the density.
+# against it. Without a velocity the pressure also has a moment about the axis, over a section through the
+# layer, which the models take in closed form as well. In units of R, Omega and the density.
 
 # %%
 pressures, moments = [], []
