@@ -1,7 +1,16 @@
 """Session settings: floating-point faults raise, hypothesis is pinned; oracles meet their mutants."""
 
+import gc
 import os
+import sys
 from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+# Even where the environment says not to keep bytecode: without it each worker collects for 20 s instead of 8,
+# and each process that a test starts compiles what it imports anew.
+sys.dont_write_bytecode = False
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
 # Small matrices get many times slower when the BLAS spreads them over threads.
 for _variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
@@ -10,7 +19,8 @@ os.environ.setdefault("MPLBACKEND", "Agg")
 
 import numpy as np  # noqa: E402
 import pytest  # noqa: E402
-from hypothesis import HealthCheck, settings  # noqa: E402
+from hypothesis import HealthCheck, Phase, settings  # noqa: E402
+from pytest_rerunfailures import StatusDB  # noqa: E402
 
 from tests.mutants import CAUGHT, seeded  # noqa: E402
 
@@ -22,10 +32,29 @@ settings.register_profile(
 settings.load_profile("pinned")
 
 
+@pytest.hookimpl(trylast=True)
 def pytest_configure(config: pytest.Config) -> None:
-    """The marks of tests/mutants.py."""
+    """The marks of tests/mutants.py; workers count tries of a test by themselves.
+
+    The plugin that tries hanging tests once more has every worker ask the first process before each test,
+    through a socket: up to 45 ms, longer than most tests take. The answer matters only where a worker died,
+    and there the first process asks itself.
+    """
+    if hasattr(config, "failures_db") and config.option.reruns:
+        if hasattr(config, "workerinput"):
+            config.failures_db.sock.close()
+            config.failures_db = StatusDB()
+        else:
+            config.failures_db.get_test_reruns = lambda test: config.option.reruns
     config.addinivalue_line("markers", "kills(mutant): the test fails with this mutant in place")
     config.addinivalue_line("markers", "mutant: a run of an oracle with a mutant, which must fail")
+
+
+def pytest_collection_finish() -> None:
+    """What was imported and collected stays: the garbage collector need not look through it again."""
+    gc.collect()
+    gc.freeze()
+    gc.set_threshold(10_000)
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
@@ -44,6 +73,21 @@ def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> Iterator[None]:
     mutant = params.get("mutant")
     if mutant is None:
         return (yield)
-    with seeded(mutant), pytest.raises(CAUGHT):
+    with seeded(mutant), _noticed_once(pyfuncitem.function), pytest.raises(CAUGHT):
         yield
     return True
+
+
+@contextmanager
+def _noticed_once(test: Any) -> Iterator[None]:
+    """Hypothesis seeks no smaller example of a failure that is wanted."""
+    drawn = getattr(test, "_hypothesis_internal_use_settings", None)
+    if drawn is None:
+        yield
+        return
+    phases = (Phase.explicit, Phase.generate)
+    test._hypothesis_internal_use_settings = settings(drawn, phases=phases, report_multiple_bugs=False)
+    try:
+        yield
+    finally:
+        test._hypothesis_internal_use_settings = drawn
