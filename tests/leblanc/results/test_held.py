@@ -149,6 +149,9 @@ def test_notes_count_what_was_held() -> None:
     assert "at 195 rpm: the motion still changes after 1024 turns" in restless.text
     settled = replace(held, state=np.where(held.not_settled, "periodic", held.state))
     assert [note.code for note in notes.held_motions(settled, speed)] == [RunCode.HELD]
+    leaky = replace(settled, energy_error=np.where(held.limit_cycle, 4e-3, np.nan))
+    assert [note.code for note in notes.held_motions(leaky, speed)] == [RunCode.HELD, RunCode.ENERGY]
+    assert "leaves up to 0.4%" in notes.held_motions(leaky, speed)[-1].text
 
 
 def test_what_has_not_settled_on_the_way_down_is_no_hysteresis() -> None:
