@@ -183,8 +183,10 @@ def unexplained(problem: Problem, judged: Judged) -> Note | None:
             size = np.sqrt(squares / max(problem.freedom, 1))
             return poor_note(rms, f"it is {units.number(float(size))} times the noise that was stated")
         return None
-    if rms > POOR:
-        return poor_note(rms, "no sensor has so much noise")
+    if rms > POOR and _replicates(problem) <= _FEW:
+        # Few values let a resonance in the wrong place pass for noise of a half, and the intervals of noise
+        # like that hold the truth too rarely.
+        return poor_note(rms, "so much is noise only if it is stated (--noise) or rows that repeat show it")
     if problem.freedom <= _FEW:
         return few_note(rms, problem.freedom)
     for reason in (
@@ -234,6 +236,12 @@ def _basis(problem: Problem, judged: Judged) -> Array:
     return np.asarray(turn[:, singular > 1e-7 * singular[0]])
 
 
+def _replicates(problem: Problem) -> int:
+    """Degrees of freedom of rows that repeat about their means."""
+    at = problem.measurement.at
+    return len(problem.names) * (at.size - np.unique(at).size)
+
+
 def _repeated(problem: Problem, white: Sequence[Array]) -> str:
     """Rows of one speed scatter less than what is left: their noise is known without the scene."""
     from scipy.special import fdtrc
@@ -244,7 +252,7 @@ def _repeated(problem: Problem, white: Sequence[Array]) -> str:
         means = np.bincount(where, each) / counts
         own += float(np.sum(np.square(each - means[where])))
         squares += float(np.sum(np.square(each)))
-    inside = len(white) * int(np.sum(counts - 1))
+    inside = _replicates(problem)
     outside = problem.freedom - inside
     if inside < 1 or outside < 1:
         return ""

@@ -399,6 +399,30 @@ def test_rows_that_repeat_tell_their_noise() -> None:
     assert not found.accepted and "repeat" in note.text
 
 
+@pytest.mark.usefixtures("one_valley")
+@kills("leblanc.studies.fitting.noise:unexplained", "rms > POOR and", "0 and")
+@kills("leblanc.studies.fitting.noise:unexplained", "and _replicates(problem) <= _FEW", "")
+def test_noise_of_a_half() -> None:
+    """A resonance in the wrong place passes for it: it must be stated, or shown by rows that repeat."""
+    speed = np.linspace(12.0, 55.0, 7)
+    (amplitude,) = _answer(
+        MACHINE.replace({"rotor.stiffness": 2.2 * TRUTH[0]}), "speed", speed, ["amplitude"]
+    )
+    wrong = over_speed(amplitude * (1.0 + 0.02 * np.random.default_rng(0).standard_normal(7)), speed)
+    found = fit_scene(MACHINE, wrong, ("rotor.damping", "rotor.unbalance"), starts=1)
+    assert found.residual_rms > 0.3 and not found.accepted
+    each = np.repeat(SPEED[::5], 4)
+    (amplitude,) = _answer(MACHINE, "speed", each, ["amplitude"])
+    size = 0.4 * math.sqrt(float(np.mean(np.square(amplitude))))
+    noisy = np.abs(amplitude + size * np.random.default_rng(0).standard_normal(24))
+    shown = fit_scene(MACHINE, over_speed(noisy, each), UNKNOWN[:1], starts=1)
+    assert shown.residual_rms > 0.3 and shown.accepted
+    # The same readings at speeds that do not repeat.
+    apart = over_speed(noisy, each * (1.0 + 1e-6 * np.arange(24)))
+    assert not fit_scene(MACHINE, apart, UNKNOWN[:1], starts=1).accepted
+    assert fit_scene(MACHINE, apart, UNKNOWN[:1], starts=1, noise=f"{1e3 * size} mm").accepted
+
+
 def test_a_plateau_has_one_end() -> None:
     """More liquid than keeps the wall wet does nothing: the data bound the volume from below alone.
 
