@@ -68,7 +68,7 @@ class Judged:
     x: Array  #: logarithms or steps, shape (p,)
     noise: Noise
     sigma: tuple[Array, ...]  #: standard deviation of each value of each quantity, shape (n,)
-    unlikely: float  #: minus twice the logarithm of the likelihood
+    unlikely: float  #: minus twice the logarithm of the likelihood, nan without a search
     ended: bool  #: the last search came to its end
 
 
@@ -140,9 +140,15 @@ def kinds_of(problem: Problem, stated: tuple[str, float]) -> tuple[str, ...]:
 
 
 def unlikely(problem: Problem, x: Array, sigma: Sequence[Array]) -> float:
-    """Minus twice the logarithm of the likelihood of what was measured, but for a constant."""
-    squares = float(np.sum(np.square(problem.weighted(sigma)(x))))
-    return squares + 2.0 * sum(float(np.sum(np.log(each))) for each in sigma)
+    """Minus twice the logarithm of the likelihood of some noise, whatever the values [theory: fit, eq. 13].
+
+    The likelihood at the best values alone prefers noise by which a few readings, met by the values, count.
+    """
+    residual = problem.weighted(sigma)
+    jacobian = problem.jacobian(residual, x)
+    squares = float(np.sum(np.square(residual(x))))
+    _, told = np.linalg.slogdet(np.eye(x.size) + jacobian.T @ jacobian)
+    return squares + 2.0 * sum(float(np.sum(np.log(each))) for each in sigma) + float(told)
 
 
 def refine(problem: Problem, x: Array, stated: tuple[str, float], kind: str) -> Judged:
@@ -162,7 +168,7 @@ def refine(problem: Problem, x: Array, stated: tuple[str, float], kind: str) -> 
 def here(problem: Problem, x: Array, stated: tuple[str, float], kind: str) -> Judged:
     """Noise of one kind by what some values leave, without a search."""
     noise, sigma = _noise(problem, x, stated, kind)
-    return Judged(x, noise, tuple(sigma), unlikely(problem, x, sigma), True)
+    return Judged(x, noise, tuple(sigma), np.nan, True)
 
 
 def unexplained(problem: Problem, judged: Judged) -> Note | None:

@@ -17,7 +17,8 @@ from leblanc.scene.scene import scene_from_table
 from leblanc.studies.fit import fit_scene
 from leblanc.studies.fitting.errors import averaged, curvature
 from leblanc.studies.fitting.measured import Measurement, read_measured
-from leblanc.studies.fitting.noise import Judged, alike_by_chance
+from leblanc.studies.fitting.noise import Judged, alike_by_chance, refine
+from leblanc.studies.fitting.problem import Problem
 from leblanc.studies.fitting.problem import answer as _answer
 from meshes.arrays import Array
 from meshes.errors import InputError
@@ -226,6 +227,24 @@ def test_two_kinds_of_noise() -> None:
     assert mixed.unsure is not None and mixed.unsure[0] == pytest.approx(10.0 * mixed.std[0])
     # An error that the other kind tells better is kept.
     assert averaged(curvature(np.eye(1)), best, curvature(np.eye(1) / 0.2), other).std[0] == 1.0
+
+
+@kills("leblanc.studies.fitting.noise:unlikely", " + float(told)", "")
+def test_likelihood_of_a_kind() -> None:
+    """That of the readings whatever the value: its integral, the value known to a factor of e before."""
+    paths, table = ("rotor.stiffness",), measured(0.02, 3)
+    problem = Problem(MACHINE, (paths,), TRUTH[:1], table, "given")
+    judged = refine(problem, np.zeros(1), ("estimate", 0.0), "absolute")
+    residual = problem.weighted(judged.sigma)
+    places = judged.x + np.linspace(-0.02, 0.02, 101)[:, None]
+    problem.ahead(list(places))
+    sums = [float(np.sum(np.square(residual(x)))) for x in places]
+    chance = np.exp(-0.5 * np.array(sums)) / math.sqrt(2.0 * math.pi)
+    whole = 2.0 * sum(float(np.log(each).sum()) for each in judged.sigma) - 2.0 * math.log(
+        float(np.trapezoid(chance, places[:, 0]))
+    )
+    # The value is told to 1e-3, over which the answer bends by some per cent at most.
+    assert judged.unlikely == pytest.approx(whole, abs=0.05)
 
 
 @pytest.mark.usefixtures("one_valley")
