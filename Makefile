@@ -74,6 +74,6 @@ figures: $(BIN)/.installed
 docs: $(BIN)/.installed-docs
 	$(BIN)/python docs/build.py --out out/docs
 
-# Accuracy against cost of every model on every example: kept in validation/trade, drawn in docs/images.
+# Accuracy against cost of every model on the examples kept in validation/trade, two of them drawn in docs/images.
 trade: $(BIN)/.installed
 	$(BIN)/python -m validation.trade --out docs/images

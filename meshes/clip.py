@@ -143,11 +143,11 @@ def outside_circle(loops: tuple[Complex, ...], radius: float) -> Remainder:
         kept += whole
         parts += cut
     if not parts:
-        if not _holds(loops, radius):
+        if radius == 0.0 or not _holds(loops, radius):
             return Remainder(tuple(kept), ())
         circle = radius * np.exp(-1j * np.linspace(0.0, 2.0 * math.pi, math.ceil(2.0 * math.pi / ARC) + 1))
         return Remainder((*kept, circle[:-1]), (circle,))
-    joined, arcs = _joined(parts, radius)
+    joined, arcs = _joined(parts, radius, loops)
     return Remainder((*kept, *joined), arcs)
 
 
@@ -176,16 +176,20 @@ def _outer_parts(loop: Complex, radius: float) -> tuple[list[Complex], list[Comp
         lines[0] = [*open_, *lines[0]]
     elif open_:
         lines.append(open_)
-    return [], [np.array(line, dtype=complex) for line in lines if len(line) > 1]
+    parts = [np.array(line, dtype=complex) for line in lines if len(line) > 1]
+    # A corner that only just reaches out of the disc bounds nothing; its arc looks like the whole circle.
+    return [], [part for part in parts if np.abs(part - part[0]).max() > _TINY * radius]
 
 
-def _holds(loops: tuple[Complex, ...], radius: float) -> bool:
-    """A circle that crosses no wall lies in the section."""
-    turn = sum(float(np.sum(np.angle((np.roll(loop, -1) - radius) / (loop - radius)))) for loop in loops)
-    return radius > 0.0 and turn > math.pi
+def _holds(loops: tuple[Complex, ...], point: complex) -> bool:
+    """A point lies in the section."""
+    turn = sum(float(np.sum(np.angle((np.roll(loop, -1) - point) / (loop - point)))) for loop in loops)
+    return turn > math.pi
 
 
-def _joined(parts: list[Complex], radius: float) -> tuple[tuple[Complex, ...], tuple[Complex, ...]]:
+def _joined(
+    parts: list[Complex], radius: float, walls: tuple[Complex, ...]
+) -> tuple[tuple[Complex, ...], tuple[Complex, ...]]:
     """Pieces of walls joined to loops by arcs along the circle, against the clock inside out."""
     starts, ends = (np.array([np.angle(part[k]) for part in parts]) for k in (0, -1))
     free = set(range(len(parts)))
@@ -199,6 +203,8 @@ def _joined(parts: list[Complex], radius: float) -> tuple[tuple[Complex, ...], t
             after = _next(ends[k], starts, free | {first})
             span = float(np.mod(ends[k] - starts[after], 2.0 * math.pi))
             span = 2.0 * math.pi if span < _TINY else span
+            if not _holds(walls, radius * np.exp(1j * (ends[k] - 0.5 * span))):
+                break  # the disc touches the walls from without: this piece closes by itself
             turn = ends[k] - np.linspace(0.0, span, max(2, math.ceil(span / ARC) + 1))
             arcs.append(radius * np.exp(1j * turn))
             line.append(arcs[-1][1:-1])

@@ -1,7 +1,13 @@
 """Session settings: floating-point faults raise, hypothesis is pinned; oracles meet their mutants."""
 
 import os
+import sys
 from collections.abc import Iterator
+
+# Even where the environment says not to keep bytecode: without it each worker collects for 20 s instead of 8,
+# and each process that a test starts compiles what it imports anew.
+sys.dont_write_bytecode = False
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
 # Small matrices get many times slower when the BLAS spreads them over threads.
 for _variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
@@ -11,6 +17,7 @@ os.environ.setdefault("MPLBACKEND", "Agg")
 import numpy as np  # noqa: E402
 import pytest  # noqa: E402
 from hypothesis import HealthCheck, settings  # noqa: E402
+from pytest_rerunfailures import StatusDB  # noqa: E402
 
 from tests.mutants import CAUGHT, seeded  # noqa: E402
 
@@ -22,8 +29,20 @@ settings.register_profile(
 settings.load_profile("pinned")
 
 
+@pytest.hookimpl(trylast=True)
 def pytest_configure(config: pytest.Config) -> None:
-    """The marks of tests/mutants.py."""
+    """The marks of tests/mutants.py; workers count tries of a test by themselves.
+
+    The plugin that tries hanging tests once more has every worker ask the first process before each test,
+    through a socket: up to 45 ms, longer than most tests take. The answer matters only where a worker died,
+    and there the first process asks itself.
+    """
+    if hasattr(config, "failures_db") and config.option.reruns:
+        if hasattr(config, "workerinput"):
+            config.failures_db.sock.close()
+            config.failures_db = StatusDB()
+        else:
+            config.failures_db.get_test_reruns = lambda test: config.option.reruns
     config.addinivalue_line("markers", "kills(mutant): the test fails with this mutant in place")
     config.addinivalue_line("markers", "mutant: a run of an oracle with a mutant, which must fail")
 

@@ -45,6 +45,8 @@ CHORD = (2.0 * math.pi / 36 / PIECES) ** 2
 @example("ring", 0.7, 0j)
 @example("ring", 0.2, 0j)
 @example("ring", 1.2, 0j)
+@example("disc", 0.5, 1.66e-6 + 0.5j)  # touches the wall from within, where a corner only just reaches out
+@example("disc", 0.2043540934012485, 0.9054813497193132 - 0.7940858313827505j)  # and from without
 def test_area_and_outline(name: str, radius: float, moved: complex) -> None:
     section, circle, away = SECTIONS[name], radius * RADIUS, moved * RADIUS
     loops = tuple(loop + away for loop in wall_loops(section))

@@ -1,4 +1,4 @@
-"""`python -m validation.trade`: measure every shipped scene again and keep the results."""
+"""`python -m validation.trade`: measure the scenes whose results are kept again, and keep the new ones."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def main(arguments: list[str] | None = None) -> int:
     """
     parser = argparse.ArgumentParser(prog="python -m validation.trade", description=__doc__)
     parser.add_argument("--examples", type=Path, default=Path("examples"), help="folder of the scenes")
-    parser.add_argument("--only", nargs="*", help="stems of scenes [default: all]")
+    parser.add_argument("--only", nargs="*", help="stems of scenes [default: those that are kept]")
     parser.add_argument("--question", help="measure this one alone; the others stay as they are kept")
     parser.add_argument(
         "--table", action="store_true", help="print the table of what is kept, measure nothing"
@@ -44,9 +44,8 @@ def main(arguments: list[str] | None = None) -> int:
     if not chosen.table:
         for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
             os.environ[variable] = "1"
-        for path in sorted(chosen.examples.glob("*.toml")):
-            if not chosen.only or path.stem in chosen.only:
-                keep(path, chosen.out, chosen.question)
+        for name in chosen.only or names():
+            keep(chosen.examples / f"{name}.toml", chosen.out, chosen.question)
     print("\n".join(table()))
     return 0
 

@@ -128,10 +128,11 @@ def recommendation(comparison: Comparison, tolerance: float) -> str:
 
 def _undecided(comparison: Comparison, tolerance: float, kept: str) -> str:
     """Why nothing can be advised but the default."""
-    if not any(math.isfinite(row.error) for row in comparison.rows):
-        return f"nothing has answered; {kept}"
     default, own = comparison.default, comparison.reference_error
     best = next(row for row in comparison.rows if row.label == comparison.reference)
+    if not any(math.isfinite(row.error) for row in comparison.rows):
+        why = f": {best.note}" if best.note else ""
+        return f"cannot decide: {kept}: the reference, {best.label}, has no answer{why}"
     size = _share(own) if math.isfinite(own) else "an unknown amount"
     off = f"the reference, {best.label}, is itself off by {size}"
     if not own <= tolerance:

@@ -40,7 +40,7 @@ def state(n: int) -> tuple[np.ndarray, np.ndarray]:
 def measured(area: np.ndarray, q: np.ndarray) -> np.record:
     out = records(MEASURES)[0]
     spare = coupled_layer.layer_scratch(1, area.size)[0]
-    coupled_layer.measure(area, q, SPIN, ring(area.size), spare, out)
+    coupled_layer.measure(area, q, SPIN, ring(area.size), NOTHING.plates, spare, out)
     return out
 
 
@@ -235,7 +235,7 @@ def test_energy() -> None:
     for cells in (8, 16):
         found = machine(cells, 0.5)
         before = found.energy()
-        assert found.advance(0.1, 20.0, 0.3, 1000) == Outcome.DONE
+        assert found.advance(0.05, 20.0, 0.3, 1000) == Outcome.DONE
         s = found.sums
         gained = s.unbalance + s.drive + s.gravity
         lost = s.support + s.friction + s.lost + s.profile
@@ -291,7 +291,7 @@ def test_order() -> None:
     ends = []
     for courant in (0.4, 0.2, 0.1):
         found = machine(12)
-        assert found.advance(0.1, 20.0, courant, 4000) == Outcome.DONE
+        assert found.advance(0.05, 20.0, courant, 4000) == Outcome.DONE
         ends.append(complex(*found.state.place[:]))
     ratio = abs(ends[0] - ends[1]) / abs(ends[1] - ends[2])
     assert 3.0 < ratio < 5.5
