@@ -414,8 +414,8 @@ def self_excited_on_the_way(
         size, speed = whirl
         found |= {"amplitude": size, "speed": speed}
         text += (
-            f" Given time, it grows to about {with_unit(size, LENGTH)} at {in_rpm(speed)} by an estimate, "
-            "and may be carried beyond the band; `leblanc map --cycles` solves for it."
+            f" Given time, it grows to about {with_unit(size, LENGTH)} at {in_rpm(speed)}, the middle of the "
+            "band, by an estimate, and may be carried beyond the band; `leblanc map --cycles` solves for it."
         )
     return Note(RunupCode.SELF_EXCITED, found, text)
 

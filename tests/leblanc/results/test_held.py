@@ -62,12 +62,14 @@ def test_json_and_data_file_have_the_same_motions(tmp_path: Path) -> None:
         "held_error",
         "held_wave_error",
         "held_whirl_speed",
+        "energy_error",
         "amplitude_down",
         "amplitude_min",
         "amplitude_max",
     ):
         np.testing.assert_array_equal(np.array(found[key], dtype=float), data[key].values)
         np.testing.assert_array_equal(np.array(found[key], dtype=float), getattr(result, key))
+    assert [error is not None for error in found["energy_error"]] == held.at.tolist()
     for key in ("liquid_mean", "liquid_ripple"):
         assert [row != [None] and row != [[None, None]] for row in found[key]] == held.at.tolist()
     assert data["held_solver"].item() == found["held_solver"] == result.held_solver == "coupled"
