@@ -9,16 +9,19 @@ import numpy as np
 import pytest
 
 from fluid.fill import Fill
-from fluid.friction.laws import Friction, layer_thickness
+from fluid.friction.laws import Friction, FrictionLaw, layer_thickness
 from fluid.liquid import Liquid
 from fluid.whirl import Layer, damped_waves, drag_power, layer_rate, plane_layer
 from meshes.chamber import Chamber
+from solvers.cycles.balance import circular
+from solvers.cycles.edges import small_whirl_edges
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.whirl.growth import asynchronous_growth
 from tests.mutants import kills
 from tests.oracles.viscous import Machine, liquid_answer, whirl
 
 RADIUS, NATURAL = 0.15, 40.0
+LAMINAR = Friction(FrictionLaw.STOKES)
 TALL = 1e6  # of the chamber, m: no floor and lid to speak of
 FULL = 1000.0 * math.pi * RADIUS**2  # kg/m
 ROTOR = Jeffcott(10.0 * FULL * TALL, 10.0 * FULL * NATURAL**2 * TALL, 0.0, 0.0)
@@ -31,7 +34,7 @@ def changes(depth: float, viscosity: float, points: int = 96) -> tuple[float, fl
     volume = math.pi * (RADIUS**2 - surface**2) * TALL
     fill = Fill(Chamber(RADIUS, TALL), Liquid("of a test", 1000.0, viscosity), volume)
     free = asynchronous_growth(ROTOR, [fill], [spin])[0][0]
-    growth, speed = (x[0] for x in asynchronous_growth(ROTOR, [fill], [spin], Friction("stokes")))
+    growth, speed = (x[0] for x in asynchronous_growth(ROTOR, [fill], [spin], LAMINAR))
     machine = Machine(ROTOR.mass / TALL, ROTOR.stiffness / TALL, 0.0, RADIUS, surface, 1000.0, viscosity)
     slip = whirl(machine, spin, complex(speed - spin, -growth), points)
     thin = float(layer_thickness(viscosity, slip.real)) / (depth * RADIUS)
@@ -132,7 +135,7 @@ def weakly(depth: float, viscosity: float) -> tuple[Fill, Layer]:
     """Liquid of next to no viscosity in a low chamber."""
     volume = math.pi * RADIUS**2 * (1.0 - (1.0 - depth) ** 2) * HEIGHT
     fill = Fill(Chamber(RADIUS, HEIGHT), Liquid("of a test", 1000.0, viscosity), volume)
-    layer = plane_layer(fill, Friction("stokes"))
+    layer = plane_layer(fill, LAMINAR)
     assert layer is not None
     return fill, layer
 
@@ -150,7 +153,7 @@ def test_weak_friction_takes_its_heat_from_the_whirl(depth: float) -> None:
     fill, _ = weakly(depth, viscosity)
     share = HEIGHT / TALL
     rotor = Jeffcott(ROTOR.mass * share, ROTOR.stiffness * share, 0.0, 0.0)
-    growth, speed = (float(x[0]) for x in asynchronous_growth(rotor, [fill], [spin], Friction("stokes")))
+    growth, speed = (float(x[0]) for x in asynchronous_growth(rotor, [fill], [spin], LAMINAR))
     found = motion(fill.surface_radius, HEIGHT, spin, speed, 1.0)
     # It is the mode: Newton's law for rotor and liquid, to the root of the viscosity.
     pull = rotor.mass + fill.mass * (1.0 + found.centre)
@@ -180,3 +183,21 @@ def test_heat_of_weak_friction(depth: float) -> None:
         rate = float(layer_rate(layer, spin, slip).real)
         decay = complex(damped_waves(layer.layer_tanh, spin, rate)[0 if slip > 0.0 else 1]).imag
         assert decay == pytest.approx(math.sqrt(viscosity) * free.heat / (2.0 * free.energy), rel=1e-5)
+
+
+@kills("solvers.cycles.edges:_rates", "layer_rate(place.layer, spin, slip).real", "place.layer.rate")
+def test_edges_of_limit_cycles_balance_the_heat() -> None:
+    """A whirl that neither grows nor decays: the supports' torque, times the slip, is the liquid's heat."""
+    viscosity, zeta, share = 1e-8, 0.002, HEIGHT / TALL
+    fill, _ = weakly(0.3, viscosity)
+    mass = ROTOR.mass * share
+    rotor = Jeffcott(mass, ROTOR.stiffness * share, 2.0 * zeta * mass * NATURAL, 0.0)
+    edges = small_whirl_edges(circular(rotor.system(), [fill], LAMINAR), (1.0 * NATURAL, 2.0 * NATURAL))
+    assert len(edges) == 2
+    for edge in edges:
+        heat = motion(fill.surface_radius, HEIGHT, edge.spin, edge.whirl_speed, 1.0).heat
+        torque = rotor.damping * edge.whirl_speed
+        # The motion is that without friction, a thousandth of the frequency, and edges lie on a line
+        # between two of 201 spins.
+        found = 1000.0 * HEIGHT * math.sqrt(viscosity) * heat
+        assert found == pytest.approx(torque * (edge.spin - edge.whirl_speed), rel=4e-3)
