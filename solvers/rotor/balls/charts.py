@@ -20,7 +20,7 @@ from solvers.continuation import Curve, End, follow
 from solvers.roots import bracketed_root
 from solvers.rotor.balls.balancers import BallRace, race_arrays
 from solvers.rotor.balls.stability import HalfTurn, Linearised, small_motions
-from solvers.rotor.balls.states import RotorWithBalls
+from solvers.rotor.balls.states import RotorWithBalls, turning
 from solvers.rotor.system import RotorSystem
 
 NONE = -1  # in counts of growing roots: the state is not there, or its half turn did not settle
@@ -251,6 +251,11 @@ def _looks(at: Callable[[float], Rest | None], first: float, last: float) -> Arr
     speeds at which a root stands on the axis are eigenvalues. Elsewhere parabolas follow it over shorter
     ranges, or speeds a fiftieth apart are looked at.
     """
+    start = at(first)
+    if start is not None and turning(start.machine.system) is None:
+        # The map of half a turn is no parabola, and costs much.
+        between = np.geomspace(first, last, 1 + int(np.ceil(np.log(last / first) / _APART)))[1:-1]
+        return np.concatenate(([first], between, [last]))
     found, waiting = [first, last], [(first, last)]
     while waiting:
         low, high = waiting.pop()
