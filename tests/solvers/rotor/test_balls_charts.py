@@ -308,9 +308,10 @@ def _turned(machine: Machine, speed: float, _: float) -> Machine:
     return replace(machine, speed=speed)
 
 
-BALANCES = (3, 9)  # machines at random whose balls balance them
+BALANCES = (3, 21)  # machines at random whose balls balance them, one in a band of 1.6 rad/s as well
 
 
+@kills("solvers.rotor.balls.charts:_looks", "np.unique(found)", "np.unique([first, last])")
 @pytest.mark.parametrize("seeds", [BALANCES, pytest.param(tuple(range(200)), marks=pytest.mark.slow)])
 def test_bands_are_the_same_from_any_number_of_speeds(seeds: tuple[int, ...]) -> None:
     """From two speeds, and as growth at speeds between says."""
