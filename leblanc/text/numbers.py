@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -26,14 +28,31 @@ def ranges(speed: NDArray[np.float64], mask: NDArray[np.bool_]) -> str:
     if mask.all():
         return "all speeds"
     order = np.argsort(speed, kind="stable")
-    rpm, holds = speed[order] * RPM, mask[order]
+    own, holds = speed[order], mask[order]
     change = np.flatnonzero(np.diff(np.concatenate(([False], holds, [False]))))
-    first, last = rpm[change[::2]], rpm[change[1::2] - 1]
-    if first.size > MOST_RANGES:
-        return f"{first.size} ranges between {number(first[0])} and {number(last[-1])} rpm"
-    pairs = zip(first.tolist(), last.tolist(), strict=True)
-    parts = [number(a) if a == b else f"{number(a)} to {number(b)}" for a, b in pairs]
-    return "; ".join(parts) + " rpm"
+    return _listed(list(zip(own[change[::2]].tolist(), own[change[1::2] - 1].tolist(), strict=True)))
+
+
+def band_ranges(speed: NDArray[np.float64], bands: Sequence[tuple[float, float]]) -> str:
+    """Bands of speed in words, alike.
+
+    Parameters
+    ----------
+    speed : asked for, rad/s, shape (n,)
+    bands : first and last speed of each, rad/s
+    """
+    if not bands:
+        return "none"
+    whole = len(bands) == 1 and bands[0][0] <= speed.min() and bands[0][1] >= speed.max()
+    return "all speeds" if whole else _listed(bands)
+
+
+def _listed(bands: Sequence[tuple[float, float]]) -> str:
+    if len(bands) > MOST_RANGES:
+        first, last = number(bands[0][0] * RPM), number(bands[-1][1] * RPM)
+        return f"{len(bands)} ranges between {first} and {last} rpm"
+    ends = [(number(low * RPM), number(high * RPM)) for low, high in bands]
+    return "; ".join(low if low == high else f"{low} to {high}" for low, high in ends) + " rpm"
 
 
 def amplitudes_are(place: str = "") -> tuple[str, str]:

@@ -17,6 +17,7 @@ from leblanc.results.netcdf import NamedArrays, Variable, finite, flags
 from leblanc.results.netcdf import variable as var
 from leblanc.results.races.balls import GravityOnBalls, RaceOfBalls, ball_moment
 from meshes.arrays import Array, Complex, Flags, Index
+from solvers.rotor.balls.bands import Bands
 from solvers.rotor.balls.steady import GROWS, BallKind, BallStates
 
 _EQUAL = 1e-7  # relative; of amplitudes, and of growth over the spin
@@ -43,6 +44,22 @@ def reported_state(states: BallStates, sizes: Array) -> Index:
     least = np.argmax(growth <= growth.min(axis=1, keepdims=True) + slack, axis=1)
     found = np.where(states.stable.any(axis=1), largest, least)
     return np.where((states.kind > 0).any(axis=1), found, -1)
+
+
+def _runs(speed: Array, mask: Flags) -> Bands:
+    """First and last speed of each run of speeds at which a condition holds."""
+    change = np.flatnonzero(np.diff(np.concatenate(([False], mask, [False]))))
+    return tuple(zip(speed[change[::2]].tolist(), speed[change[1::2] - 1].tolist(), strict=True))
+
+
+@dataclass(frozen=True)
+class StableBands:
+    """Bands of speed, (first, last), rad/s, by rising speed; inside the range edges are solved."""
+
+    balanced: Bands  #: the balanced state is stable
+    unstable: Bands  #: there are states, none of which is stable, nor a member of the family reported
+    elsewhere: Bands  #: only other members of the family reported are stable
+    lost: Bands  #: no state was found
 
 
 @dataclass(frozen=True)
@@ -86,6 +103,7 @@ class BallsResult(Result):
     #: least and largest growth of small motions over the members of the reported state's family, 1/s, twice
     #: its own growth where it is the only member, shape (s, 2); None where it was not asked for
     growth_range: Array | None = None
+    bands: StableBands | None = None  #: where states are stable; None where edges were not solved
     #: forces and clearances of the state reported where it is stable; None where the scene asks for none
     loads: MachineLoads | None = None
     #: what the sources' closed forms say of the rotor
@@ -220,11 +238,18 @@ class BallsResult(Result):
         return np.asarray((wanted & self.states.stable).any(axis=1))
 
     @property
+    def ranges(self) -> StableBands:
+        """Bands in which states are stable: those solved, else by the speeds asked for."""
+        if self.bands is not None:
+            return self.bands
+        masks = self.balanced, self.unstable & self.converged, self.elsewhere, ~self.converged
+        return StableBands(*(_runs(self.speed, mask) for mask in masks))
+
+    @property
     def balanced_from(self) -> float:
-        """Lowest speed of the scene from which on the balanced state is stable, rad/s; nan if at none."""
-        failing = np.flatnonzero(~self.balanced)
-        first = 0 if not failing.size else int(failing[-1]) + 1
-        return float(self.speed[first]) if first < self.speed.size else float("nan")
+        """Speed from which on the balanced state is stable up to the last one, rad/s; nan if at none."""
+        bands = self.ranges.balanced
+        return bands[-1][0] if bands and bands[-1][1] >= self.speed[-1] else float("nan")
 
     @property
     def unstable(self) -> Flags:
@@ -238,6 +263,8 @@ class BallsResult(Result):
         over += ["ball_unbalance", "converged", "capacity", "can_balance", "sticking", "position", "name"]
         return {name: getattr(self, name) for name in (*over, "digest", "assumed")} | {
             "balanced_from": number_or_none(self.balanced_from),
+            "balanced_bands": [list(band) for band in self.ranges.balanced],
+            "unstable_bands": [list(band) for band in self.ranges.unstable],
             "growth_range": None if self.growth_range is None else finite(self.growth_range),
             "family_dimension": [None if size < 0 else size for size in self.family_dimension.tolist()],
             "states": [self._states_at(k) for k in range(self.speed.size)],

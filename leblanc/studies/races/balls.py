@@ -12,7 +12,7 @@ from leblanc.results.machine.loads import MachineLoads
 from leblanc.results.notes import balls as notes
 from leblanc.results.notes import response as response_notes
 from leblanc.results.races.balls import RaceOfBalls
-from leblanc.results.races.states import BallsResult
+from leblanc.results.races.states import BallsResult, StableBands, reported_state
 from leblanc.scene.inputs import input_rows
 from leblanc.scene.races import BallRace
 from leblanc.scene.scene import Scene
@@ -22,13 +22,14 @@ from leblanc.studies.models.choose import Prepared, axial_gravity, carried_from,
 from leblanc.studies.models.validity import doubts
 from leblanc.studies.races.estimates import carried_balls, gravity_on_balls, liquid_errors
 from leblanc.studies.races.states import liquid_beside
-from meshes.arrays import Array
+from meshes.arrays import Array, Flags, Index
 from meshes.errors import InputError
 from solvers.liquid_model import LiquidModel
 from solvers.rotor.balls.balancers import BallRace as Race
+from solvers.rotor.balls.bands import beside, common, critical_looks, stable_bands_between
 from solvers.rotor.balls.families import Member, growth_ranges
 from solvers.rotor.balls.states import RotorWithBalls, turning
-from solvers.rotor.balls.steady import BallKind
+from solvers.rotor.balls.steady import GROWS, BallKind, BallStates
 from solvers.rotor.system import RotorSystem
 from solvers.rotor.vibration import orbit
 from solvers.runup.balls import Balls
@@ -75,13 +76,14 @@ def _places(race: BallRace) -> list[float]:
     return [math.pi + apart * (k - 0.5 * (race.count - 1)) for k in range(race.count)]
 
 
-def run_balls(scene: Scene, families: bool = True) -> BallsResult:
+def run_balls(scene: Scene, families: bool = True, edges: bool = True) -> BallsResult:
     """States in which the balls of a scene rest in the drum, at each of its speeds [theory: races, eq. 5-8].
 
     Parameters
     ----------
     scene : with races, and chambers with liquid or none
     families : look for the least and the largest growth over families of states, which takes some time
+    edges : solve the speeds at which states become stable and cease to be
 
     Raises
     ------
@@ -127,7 +129,10 @@ def run_balls(scene: Scene, families: bool = True) -> BallsResult:
         tolerance=scene.model.tolerance,
     )
     if families:
-        answer = replace(answer, growth_range=_growth_range(scene, system, races, answer, model))
+        ranges = _growth_range(scene, system, races, answer.states, answer.chosen, model)
+        answer = replace(answer, growth_range=ranges)
+    if edges and answer.speed.max() > answer.speed.min():
+        answer = replace(answer, bands=_stable_bands(scene, system, races, answer, model))
     answer, waves = _estimated(machine, races, answer)
     answer = replace(answer, loads=_loads(scene, answer))
     alike = turning(system) is not None
@@ -135,17 +140,22 @@ def run_balls(scene: Scene, families: bool = True) -> BallsResult:
 
 
 def _growth_range(
-    scene: Scene, system: RotorSystem, races: list[Race], answer: BallsResult, model: LiquidModel
+    scene: Scene,
+    system: RotorSystem,
+    races: list[Race],
+    states: BallStates,
+    chosen: Index,
+    model: LiquidModel,
 ) -> Array:
-    """Least and largest growth over the family of each state reported, 1/s, shape (s, 2)."""
-    found = np.repeat(answer.growth[:, None], 2, axis=1)
-    rows, chosen, states = np.arange(answer.speed.size), answer.chosen, answer.states
-    still = states.still[rows, chosen]
+    """Least and largest growth over the family of one state at each speed, 1/s, shape (s, 2)."""
+    rows = np.arange(states.speed.size)
+    there, still = chosen >= 0, states.still[rows, chosen]
+    found = np.repeat(np.where(there, states.growth[rows, chosen], np.nan)[:, None], 2, axis=1)
     # All members of a family that only turns in the drum are alike.
-    wide = np.flatnonzero((answer.family_dimension > 0) & still.any(axis=1))
+    wide = np.flatnonzero(there & (states.dimension[rows, chosen] > 0) & still.any(axis=1))
     gravity, members = axial_gravity(scene), []
     for k in wide.tolist():
-        speed, own = float(answer.speed[k]), chosen[k]
+        speed, own = float(states.speed[k]), chosen[k]
         machine = RotorWithBalls(in_step(system, scene.fills, speed, gravity, model), tuple(races))
         places, coordinates = states.places[k, own], states.coordinates[k, own]
         members.append(Member(machine, speed, places, coordinates, still[k]))
@@ -154,6 +164,51 @@ def _growth_range(
         found[wide, 0] = np.fmin(found[wide, 0], ranges[:, 0])
         found[wide, 1] = np.fmax(found[wide, 1], ranges[:, 1])
     return found
+
+
+def _stable_bands(
+    scene: Scene, system: RotorSystem, races: list[Race], answer: BallsResult, model: LiquidModel
+) -> StableBands:
+    """Bands of speed in which states are stable, between the first and the last speed of the scene.
+
+    States are sought at speeds of its own choice, more of them next to critical speeds of the rotor with its
+    balls held, and edges are solved.
+    """
+    gravity, families = axial_gravity(scene), answer.growth_range is not None
+
+    def told(states: BallStates, least_of_family: Array | None) -> Array:
+        there = states.kind != BallKind.NONE
+        rate = np.where(there, np.nan_to_num(states.growth / states.speed[:, None], nan=np.inf), np.inf)
+        rate -= GROWS
+        least = rate.min(axis=1)
+        balanced = np.where(states.kind == BallKind.BALANCED, rate, np.inf).min(axis=1)
+        anywhere = (
+            least if least_of_family is None else np.fmin(least, least_of_family / states.speed - GROWS)
+        )
+        return np.array([balanced, least, anywhere, np.where(there.any(axis=1), -1.0, 1.0)])
+
+    def rates(speed: Array, wanted: Flags) -> Array:
+        states = wet_states(system, scene.fills, races, speed, gravity, model).states
+        if not families:
+            return told(states, None)
+        # Where no state is stable the sizes do not choose; to go over a family takes long.
+        chosen = reported_state(states, np.zeros(states.kind.shape))
+        chosen = np.where(states.stable.any(axis=1) | ~wanted[2], -1, chosen)
+        return told(states, _growth_range(scene, system, races, states, chosen, model)[:, 0])
+
+    first, last = float(answer.speed.min()), float(answer.speed.max())
+    heavy = in_step(system, scene.fills, math.sqrt(first * last), gravity, model)
+    held = replace(heavy, mass=RotorWithBalls(heavy, tuple(races)).mass)
+    known = told(answer.states, None if answer.growth_range is None else answer.growth_range[:, 0])
+    looks = critical_looks(held, first, last)
+    balanced, stable, anywhere, found = stable_bands_between(rates, first, last, looks, (answer.speed, known))
+    unstable = beside(stable, first, last)
+    return StableBands(
+        balanced=balanced,
+        unstable=common(beside(anywhere, first, last), found),
+        elsewhere=common(unstable, anywhere),
+        lost=beside(found, first, last),
+    )
 
 
 def _estimated(
@@ -193,18 +248,18 @@ def _run_notes(
 ) -> tuple[Note, ...]:
     """What was assumed, and what is not told."""
     found = [notes.capacity(answer.can_balance, sum(answer.capacity)), notes.points()]
-    if answer.unstable.any():
-        first, last = answer.speed[answer.unstable][[0, -1]].tolist()
-        found.append(notes.runs_on(first, last, bool(answer.converged[answer.unstable].any())))
+    own = answer.ranges
+    if own.unstable or own.lost:
+        ends = [end for band in (*own.unstable, *own.lost) for end in band]
+        found.append(notes.runs_on(min(ends), max(ends), bool(own.unstable)))
     wide = (answer.family_dimension > 0) & answer.converged
     if answer.growth_range is not None and wide.any():
         least, largest = answer.growth_range[wide].min(), answer.growth_range[wide].max()
         first, last = answer.speed[wide][[0, -1]].tolist()
         most = int(answer.family_dimension.max())
         found.append(notes.family(first, last, most, float(least), float(largest)))
-    if answer.elsewhere.any():
-        first, last = answer.speed[answer.elsewhere][[0, -1]].tolist()
-        found.append(notes.elsewhere(first, last))
+    if own.elsewhere:
+        found.append(notes.elsewhere(own.elsewhere[0][0], own.elsewhere[-1][1]))
     if any(answer.sticking):
         found.append(notes.sticks(max(answer.sticking)))
     if answer.gravity is not None:

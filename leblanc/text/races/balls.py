@@ -8,7 +8,7 @@ import numpy as np
 
 from leblanc.results.notes.response import plane_words
 from leblanc.results.races.states import BallsResult
-from leblanc.text.numbers import NOT_FOUND, amplitudes_are, ranges
+from leblanc.text.numbers import NOT_FOUND, amplitudes_are, band_ranges, ranges
 from leblanc.text.run import Limit
 from leblanc.units import LENGTH, UNBALANCE, in_rpm, number, with_unit
 
@@ -55,7 +55,7 @@ def facts(result: BallsResult) -> list[tuple[str, str]]:
     places = ", ".join(number(math.degrees(angle)) for angle in result.ball_angle[-1])
     rows = [
         ("Unbalance that the balls of each race hold", held),
-        ("Balanced state stable at", ranges(result.speed, result.balanced)),
+        ("Balanced state stable at", band_ranges(result.speed, result.ranges.balanced)),
         (f"Balls at {last}", f"{result.state[-1]}, at {places} deg" if known else NOT_FOUND),
         (f"Amplitude at {last}", with_unit(float(result.amplitude[-1]), LENGTH)),
         (f"Without balls at {last}", with_unit(float(result.amplitude_without[-1]), LENGTH)),
@@ -85,10 +85,14 @@ def limits(result: BallsResult) -> list[Limit]:
     missed = np.zeros(result.speed.shape, dtype=bool)
     if result.error_estimate is not None and result.tolerance is not None:
         missed = result.converged & ~(result.error_estimate <= result.tolerance)
+    own = result.ranges
+    solved = [
+        ("No state found", own.lost),
+        ("No state is stable", own.unstable),
+        ("Stable only elsewhere in the family", own.elsewhere),
+    ]
+    found = [Limit(label, band_ranges(result.speed, bands), bool(bands)) for label, bands in solved]
     checks = [
-        ("No state found", ~result.converged),
-        ("No state is stable", result.unstable & result.converged),
-        ("Stable only elsewhere in the family", result.elsewhere),
         ("Several states are stable, the largest is told", several),
         ("More amplitude than without balls", result.amplitude > result.amplitude_without),
     ]
@@ -100,7 +104,7 @@ def limits(result: BallsResult) -> list[Limit]:
             ("Gravity outweighs the spin", ~result.in_range),
             (f"Balls swing by more than {number(math.degrees(FAR))} deg", far & result.in_range),
         ]
-    return [Limit(label, ranges(result.speed, mask), bool(mask.any())) for label, mask in checks]
+    return [*found, *(Limit(label, ranges(result.speed, mask), bool(mask.any())) for label, mask in checks)]
 
 
 def alt(result: BallsResult) -> str:

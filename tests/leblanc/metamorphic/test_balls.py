@@ -25,7 +25,7 @@ COARSE, MOST = 1e3 * SIZE, 1e-3
 
 def told(table: Table) -> dict[str, Any]:
     """Discrete and continuous answers of `run`, the latter over their scales."""
-    result = run_balls(Scene(**table))
+    result = run_balls(Scene(**table), edges=False)
     states, speed = result.states, result.speed[:, None]
     bare = np.nanmax(result.amplitude_without)
     assert result.growth_range is not None
@@ -67,6 +67,16 @@ def changed_by(table: Table, seed: int) -> list[str]:
     return found
 
 
+def bands_change(seed: int, counts: tuple[int, ...]) -> bool:
+    """Whether bands of stable states depend on the number of speeds asked for."""
+    table = machine_with_balls(seed)
+    found = []
+    for count in counts:
+        scene = Scene(**table | {"speeds": table["speeds"] | {"count": count}})
+        found.append(run_balls(scene, families=False).bands)
+    return any(other != found[0] for other in found[1:])
+
+
 @pytest.mark.parametrize("seed", [0, 1, 4, 7, 9, 92])
 def test_a_few_machines_with_balls(seed: int) -> None:
     assert changed_by(machine_with_balls(seed), seed) == []
@@ -76,3 +86,14 @@ def test_a_few_machines_with_balls(seed: int) -> None:
 @pytest.mark.parametrize("seed", range(FIRST, FIRST + COUNT))
 def test_many_machines_with_balls(seed: int) -> None:
     assert changed_by(machine_with_balls(seed), seed) == []
+
+
+@pytest.mark.parametrize("seed", [0, 3, 6])
+def test_bands_of_a_few_machines_do_not_change_with_the_speeds(seed: int) -> None:
+    assert not bands_change(seed, (5, 60))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(FIRST, FIRST + COUNT))
+def test_bands_of_many_machines_do_not_change_with_the_speeds(seed: int) -> None:
+    assert not bands_change(seed, (60, 201, 2001))

@@ -12,6 +12,7 @@ import pytest
 import leblanc as lb
 from leblanc.cli import main
 from leblanc.results.races.states import BallsResult
+from leblanc.studies.races.balls import run_balls
 from meshes.errors import InputError
 from solvers.rotor.balls.swing import ball_swing
 from tests.mutants import kills
@@ -46,8 +47,7 @@ def test_races_fit_rotors_that_tilt(name: str) -> None:
     table["chambers"] = [*table["chambers"], race]
     table["runup"] = {"start": 5.0, "stop": 20.0, "rate": 10.0, "duration": 2.0, "cells": 16}
     both = lb.Scene(**table).replace({"speeds.count": 5})
-    result = lb.run(both)
-    assert isinstance(result, BallsResult)
+    result = run_balls(both, edges=False)
     assert result.converged.all()
     run = lb.run_up(both, samples=40, check=False)
     assert run.converged
@@ -196,7 +196,9 @@ def test_a_race_for_each_ball_does_as_one_race() -> None:
     apart = scene.replace({"chambers": [race.model_dump(exclude_none=True) | {"count": 1}] * 2})
     one, two = lb.run(scene), lb.run(apart)
     assert isinstance(one, BallsResult) and isinstance(two, BallsResult)
-    assert two.can_balance and two.balanced_from == one.balanced_from
+    assert two.can_balance
+    # Edges are solved to 1e-5.
+    assert two.balanced_from == pytest.approx(one.balanced_from, rel=1e-5)
     np.testing.assert_allclose(two.amplitude, one.amplitude, atol=1e-12)
     np.testing.assert_allclose(two.growth, one.growth, rtol=1e-7, atol=1e-9 * scene.speeds.stop)
 
