@@ -17,10 +17,10 @@ Rates = Callable[[Array, Flags], Array]
 _APART, _FEWEST = 0.06, 9  # first distance of speeds, relative; how many there are at least
 _BESIDE = 0.01  # relative: on either side of a critical speed, where growth changes fast
 _ROUNDS = 4  # towards an extremum next to zero
-_WIDTH = 1e-5  # relative, of the bracket an edge is left in
+_WIDTH = 2e-4  # relative, of the bracket an edge is left in; the secant in it is far closer
 _PARTS, _NEAR = 18, 1e-3  # of a bracket: even parts, and how closely the secant's zero is looked at
 _STEPS = 60
-_AT_EDGE = 2e-5  # relative: speeds that near an edge do not contradict it
+_AT_EDGE = 2e-4  # relative: speeds that near an edge do not contradict it
 
 
 def critical_looks(system: RotorSystem, first: float, last: float) -> Array:
@@ -197,4 +197,7 @@ def _solved(rates: Rates, count: int, row: Indices, low: Array, high: Array) -> 
         beyond, at = np.argmax((values <= 0.0) != first[active], axis=0), np.arange(active.size)
         low[:, active] = points[beyond - 1, at], values[beyond - 1, at]
         high[:, active] = points[beyond, at], values[beyond, at]
-    return np.asarray(0.5 * (low[0] + high[0]))
+    smooth = np.isfinite(low[1]) & np.isfinite(high[1]) & (low[1] != high[1])
+    share = np.full(row.size, 0.5)
+    np.divide(low[1], low[1] - high[1], out=share, where=smooth)
+    return np.asarray(low[0] + share * (high[0] - low[0]))
