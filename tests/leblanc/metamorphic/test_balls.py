@@ -88,7 +88,7 @@ def test_many_machines_with_balls(seed: int) -> None:
     assert changed_by(machine_with_balls(seed), seed) == []
 
 
-@pytest.mark.parametrize("seed", [0, 3, 6])
+@pytest.mark.parametrize("seed", [0, 4, 5])
 def test_bands_of_a_few_machines_do_not_change_with_the_speeds(seed: int) -> None:
     assert not bands_change(seed, (5, 60))
 
