@@ -13,7 +13,7 @@ from validation.trade.judge import Comparison, Row
 from validation.trade.trade import TradeRecord, error_table
 
 # Errors are made again on two scenes, up to so many cells.
-_KEPT = Origin("second code", "this package, as `make trade` ran it last")
+_KEPT = Origin("second code", "this package, as make trade ran it last")
 _SCENES, _CELLS = ("centrifuge", "runup"), 32
 # Another order of sums changes an answer by some 1e-13; below that an error is rounding.
 _TOLERANCE, _ROUNDING = 1e-6, 1e-11
