@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, ClassVar
@@ -86,6 +87,9 @@ class BallsResult(Result):
     #: least and largest growth of small motions over the members of the reported state's family, 1/s, twice
     #: its own growth where it is the only member, shape (s, 2); None where it was not asked for
     growth_range: Array | None = None
+    #: bands of speed in which the balanced state is stable, rad/s, their edges solved; None where they were
+    #: not, as of a family of such states
+    balanced_bands: tuple[tuple[float, float], ...] | None = None
     #: forces and clearances of the state reported where it is stable; None where the scene asks for none
     loads: MachineLoads | None = None
     #: what the sources' closed forms say of the rotor
@@ -221,7 +225,13 @@ class BallsResult(Result):
 
     @property
     def balanced_from(self) -> float:
-        """Lowest speed of the scene from which on the balanced state is stable, rad/s; nan if at none."""
+        """Lowest speed from which on the balanced state is stable, rad/s; nan if at none.
+
+        Of the scene's own speeds where the edges of bands were not solved.
+        """
+        if self.balanced_bands is not None:
+            last = self.balanced_bands[-1] if self.balanced_bands else (math.nan, math.nan)
+            return last[0] if last[1] >= self.speed.max() else math.nan
         failing = np.flatnonzero(~self.balanced)
         first = 0 if not failing.size else int(failing[-1]) + 1
         return float(self.speed[first]) if first < self.speed.size else float("nan")

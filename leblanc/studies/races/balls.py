@@ -15,17 +15,19 @@ from leblanc.results.races.balls import RaceOfBalls
 from leblanc.results.races.states import BallsResult
 from leblanc.scene.inputs import input_rows
 from leblanc.scene.races import BallRace
-from leblanc.scene.scene import Scene
+from leblanc.scene.scene import Scene, dry_rotor
 from leblanc.studies.closed_forms.told import closed_forms
 from leblanc.studies.machine import loaded_machine, loads_over_speed
 from leblanc.studies.models.choose import Prepared, axial_gravity, carried_from, choose_all, prepare
 from leblanc.studies.models.validity import doubts
+from leblanc.studies.races.chart import own_family
 from leblanc.studies.races.estimates import carried_balls, gravity_on_balls, liquid_errors
 from leblanc.studies.races.states import liquid_beside
 from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.liquid_model import LiquidModel
 from solvers.rotor.balls.balancers import BallRace as Race
+from solvers.rotor.balls.charts import stable_bands
 from solvers.rotor.balls.families import Member, growth_ranges
 from solvers.rotor.balls.states import RotorWithBalls, turning
 from solvers.rotor.balls.steady import BallKind
@@ -75,13 +77,14 @@ def _places(race: BallRace) -> list[float]:
     return [math.pi + apart * (k - 0.5 * (race.count - 1)) for k in range(race.count)]
 
 
-def run_balls(scene: Scene, families: bool = True) -> BallsResult:
+def run_balls(scene: Scene, families: bool = True, edges: bool = True) -> BallsResult:
     """States in which the balls of a scene rest in the drum, at each of its speeds [theory: races, eq. 5-8].
 
     Parameters
     ----------
     scene : with races, and chambers with liquid or none
     families : look for the least and the largest growth over families of states, which takes some time
+    edges : solve the speeds between which the balanced state is stable
 
     Raises
     ------
@@ -128,10 +131,21 @@ def run_balls(scene: Scene, families: bool = True) -> BallsResult:
     )
     if families:
         answer = replace(answer, growth_range=_growth_range(scene, system, races, answer, model))
+    if edges:
+        answer = replace(answer, balanced_bands=_balanced_bands(scene, answer))
     answer, waves = _estimated(machine, races, answer)
     answer = replace(answer, loads=_loads(scene, answer))
     alike = turning(system) is not None
     return replace(answer, notes=_run_notes(scene, answer, alike, waves))
+
+
+def _balanced_bands(scene: Scene, answer: BallsResult) -> tuple[tuple[float, float], ...] | None:
+    """Bands of speed in which the balanced state is stable; None for a family, and on unlike supports."""
+    states, (low, high) = answer.states, (float(answer.speed.min()), float(answer.speed.max()))
+    family = (states.dimension > 0) & (states.kind == BallKind.BALANCED)
+    if low == high or family.any() or turning(dry_rotor(scene).system()) is None:
+        return None
+    return tuple(stable_bands(own_family(scene), np.array([low, high]), 0.0)[1])
 
 
 def _growth_range(

@@ -104,8 +104,7 @@ def chart_scene(
     chosen = State() if state == "balanced" else gathered(rotor, races, state == "light")
     chart = stability_chart(_told(family, speeds * values, progress), speed, second, chosen)
     bounds = existence_bounds(family, float(speed[0]), second) if state == "balanced" else []
-    own = _parts(scene)
-    growth, bands = stable_bands(lambda at, _: _machine(own, at), speed, 0.0, chosen)
+    growth, bands = stable_bands(own_family(scene), speed, 0.0, chosen)
     answer = BallChart(
         name=scene.name,
         source=scene.source,
@@ -234,6 +233,12 @@ def _machine(parts: _Parts, speed: float) -> Machine:
     """At a speed, with the liquid in step [theory: races, eq. 8]."""
     require_positive("speed", speed)  # a curve that is followed may lead out of the chart
     return Machine(in_step(parts.system, parts.fills, speed, parts.gravity, parts.model), parts.races, speed)
+
+
+def own_family(scene: Scene) -> Family:
+    """The scene's machine at each speed, as it stands."""
+    own = _parts(scene)
+    return lambda speed, _: _machine(own, speed)
 
 
 def _family(scene: Scene, varied: _Varied, log: bool) -> Family:

@@ -143,7 +143,7 @@ def ball_view(
         if not (math.isfinite(spin) and spin > 0.0):
             raise InputError("--speed", spin, "a finite number above 0")
         scene = scene.altered(speeds=Speeds.at(spin))
-    result, rings = run_balls(scene, families=False), ringed(scene)
+    result, rings = run_balls(scene, families=False, edges=False), ringed(scene)
     places, moved = places_of(rings)
     rows, chosen = np.arange(result.speed.size), np.maximum(result.chosen, 0)
     # Without a state the machine is drawn where it rests.

@@ -8,9 +8,9 @@ import numpy as np
 
 from leblanc.results.notes.response import plane_words
 from leblanc.results.races.states import BallsResult
-from leblanc.text.numbers import NOT_FOUND, amplitudes_are, ranges
+from leblanc.text.numbers import MOST_RANGES, NOT_FOUND, amplitudes_are, ranges
 from leblanc.text.run import Limit
-from leblanc.units import LENGTH, UNBALANCE, in_rpm, number, with_unit
+from leblanc.units import LENGTH, UNBALANCE, in_rpm, number, rpm_bands, with_unit
 
 FAR = math.radians(15.0)  # swing of a ball up to which small swings tell it
 
@@ -42,6 +42,15 @@ def answer(result: BallsResult) -> str:
     return f"{first}; the largest amplitude of a stable state is {peak}, without balls {without}."
 
 
+def _balanced_at(result: BallsResult) -> str:
+    """Speeds at which the balanced state is stable."""
+    bands = result.balanced_bands
+    if not bands or len(bands) > MOST_RANGES:
+        return ranges(result.speed, result.balanced)
+    whole = bands[0][0] <= result.speed.min() and bands[0][1] >= result.speed.max()
+    return "all speeds" if whole else rpm_bands(bands)
+
+
 def facts(result: BallsResult) -> list[tuple[str, str]]:
     """What the balls can hold, where they balance, and the state at the last speed: label and value.
 
@@ -55,7 +64,7 @@ def facts(result: BallsResult) -> list[tuple[str, str]]:
     places = ", ".join(number(math.degrees(angle)) for angle in result.ball_angle[-1])
     rows = [
         ("Unbalance that the balls of each race hold", held),
-        ("Balanced state stable at", ranges(result.speed, result.balanced)),
+        ("Balanced state stable at", _balanced_at(result)),
         (f"Balls at {last}", f"{result.state[-1]}, at {places} deg" if known else NOT_FOUND),
         (f"Amplitude at {last}", with_unit(float(result.amplitude[-1]), LENGTH)),
         (f"Without balls at {last}", with_unit(float(result.amplitude_without[-1]), LENGTH)),

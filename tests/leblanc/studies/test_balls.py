@@ -12,6 +12,7 @@ import pytest
 import leblanc as lb
 from leblanc.cli import main
 from leblanc.results.races.states import BallsResult
+from leblanc.studies.races.balls import run_balls
 from meshes.errors import InputError
 from solvers.rotor.balls.swing import ball_swing
 from tests.mutants import kills
@@ -60,6 +61,16 @@ def test_races_fit_rotors_that_tilt(name: str) -> None:
         if told is not None:
             assert np.isfinite(told.worst.walking).all()
             assert told.worst.bearing.shape[1] == 2
+
+
+@kills("leblanc.studies.races.balls:_balanced_bands", "np.array([low, high])", "np.array([low, 0.9 * high])")
+def test_the_speed_from_which_balls_balance_does_not_hang_on_the_speeds() -> None:
+    """Its edge is solved: the balanced state grows next to it on one side and decays on the other."""
+    found = [lb.run(lb.example("balls").replace({"speeds.count": n})).balanced_from for n in (7, 60)]
+    assert found[0] == found[1]
+    for share, stable in ((0.999, False), (1.001, True)):
+        near = lb.example("balls").replace({"speeds.start": share * found[0], "speeds.count": 2})
+        assert bool(run_balls(near, edges=False).balanced[0]) is stable
 
 
 def test_balls_that_resist_leave_a_band() -> None:
@@ -196,7 +207,7 @@ def test_a_race_for_each_ball_does_as_one_race() -> None:
     apart = scene.replace({"chambers": [race.model_dump(exclude_none=True) | {"count": 1}] * 2})
     one, two = lb.run(scene), lb.run(apart)
     assert isinstance(one, BallsResult) and isinstance(two, BallsResult)
-    assert two.can_balance and two.balanced_from == one.balanced_from
+    assert two.can_balance and two.balanced_from == pytest.approx(one.balanced_from, rel=1e-9)
     np.testing.assert_allclose(two.amplitude, one.amplitude, atol=1e-12)
     np.testing.assert_allclose(two.growth, one.growth, rtol=1e-7, atol=1e-9 * scene.speeds.stop)
 
