@@ -37,7 +37,6 @@ if TYPE_CHECKING:
     from leblanc.results.races.states import BallsResult
     from leblanc.results.response import RunResult
     from leblanc.results.runup import RunupResult
-    from leblanc.results.spindles.bearing import BearingResult
     from leblanc.results.spindles.unit import SpindleResult
     from leblanc.results.sweep import SweepResult
     from leblanc.results.whirl_map import WhirlMap
@@ -628,48 +627,6 @@ def volume(
     with _keywords():
         question = ask(volume_question, given)
         return answer_volume(**question)
-
-
-def bearing(
-    *,
-    speed: Quantity,
-    balls: int | None = None,
-    ball_diameter: Quantity | None = None,
-    pitch_diameter: Quantity | None = None,
-    contact_angle: Quantity | None = None,
-    ftf: float | None = None,
-    bpfo: float | None = None,
-    bpfi: float | None = None,
-    bsf: float | None = None,
-    cage: Quantity | None = None,
-) -> BearingResult:
-    """Frequencies of a rolling bearing from its dimensions, or the bearing that is nearest to frequencies.
-
-    Parameters
-    ----------
-    speed : of the shaft, rad/s; the outer ring is at rest
-    balls : how many in one row; sought if None and frequencies are given
-    ball_diameter, pitch_diameter : of a ball, of the circle of the balls' centres, m
-    contact_angle : rad; sought if None and `bsf` is given, else 0
-    ftf, bpfo, bpfi, bsf : frequencies of cage, outer ring, inner ring, ball over the shaft's
-    cage : measured speed of the cage, rad/s; adds its slip
-
-    Raises
-    ------
-    InputError : a value out of its range, dimensions beside frequencies, too few of either
-
-    Examples
-    --------
-    >>> import leblanc as lb
-    >>> lb.bearing(speed="33 Hz", ftf=0.38475, bpfi=5.5369, bsf=2.0497).balls
-    9
-    """
-    given = locals()
-    from leblanc.questions import ask, bearing_question
-    from leblanc.studies.spindles.bearing import answer_bearing
-
-    with _keywords():
-        return answer_bearing(**ask(bearing_question, given))
 
 
 def _scene(scene: SceneOrPath) -> Scene:

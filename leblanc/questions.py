@@ -19,7 +19,6 @@ from leblanc.scene.scene import Scene
 from leblanc.scene.tasks import OBJECTIVES, Optimisation
 from leblanc.units import (
     ACCELERATION,
-    ANGLE,
     ANGULAR_SPEED,
     LENGTH,
     TIME,
@@ -264,65 +263,6 @@ def volume_question(
         require_not_negative(f"--{name}", value)
     amount = None if volume is None else parse_option(volume, VOLUME, "--volume")
     return {"chamber": chamber, **conditions, "volume": amount}
-
-
-def bearing_question(
-    *,
-    speed: Quantity,
-    balls: int | None = None,
-    ball_diameter: Quantity | None = None,
-    pitch_diameter: Quantity | None = None,
-    contact_angle: Quantity | None = None,
-    ftf: float | None = None,
-    bpfo: float | None = None,
-    bpfi: float | None = None,
-    bsf: float | None = None,
-    cage: Quantity | None = None,
-) -> dict[str, Any]:
-    """The question of `bearing`, by the names of `leblanc.studies.spindles.bearing.answer_bearing`.
-
-    The parameters are those of `leblanc.api.bearing`.
-
-    Raises
-    ------
-    InputError : a value that cannot be read or is out of its range, dimensions beside frequencies, neither
-    """
-    from solvers.rotor.rolling_bearing import ORDERS, Bearing, fit_bearing
-
-    rate = parse_option(speed, ANGULAR_SPEED, "--speed")
-    turning = None if cage is None else parse_option(cage, ANGULAR_SPEED, "--cage")
-    angle = None if contact_angle is None else parse_option(contact_angle, ANGLE, "--contact-angle")
-    lengths = {"--ball-diameter": ball_diameter, "--pitch-diameter": pitch_diameter}
-    orders = dict(zip(ORDERS, (ftf, bpfo, bpfi, bsf), strict=True))
-    given = {name: value for name, value in orders.items() if value is not None}
-    question: dict[str, Any] = {"speed": rate, "cage_measured": turning}
-    with _options_named():
-        if given:
-            for name, length in lengths.items():
-                if length is not None:
-                    raise InputError(name, length, "left out where frequencies are given, which tell it")
-            fit = fit_bearing(given, balls, angle if angle is not None or "bsf" in given else 0.0)
-            return question | {"bearing": fit.bearing, "given": given, "fit": fit}
-        for name, value in {"--balls": balls, **lengths}.items():
-            if value is None:
-                raise InputError(name, None, "given, or frequencies such as --ftf in place of dimensions")
-        ball, pitch = (parse_option(str(value), LENGTH, name) for name, value in lengths.items())
-        require_positive("--pitch-diameter", pitch)
-        if not 0.0 < ball < pitch:
-            raise InputError("--ball-diameter", ball, f"above 0 and below the pitch diameter, {pitch:g} m")
-        assert balls is not None
-        return question | {"bearing": Bearing(balls, ball / pitch, angle or 0.0)}
-
-
-@contextmanager
-def _options_named() -> Iterator[None]:
-    """Faults of a bearing name the option."""
-    try:
-        yield
-    except InputError as error:
-        options = {"balls", "contact_angle", "ftf", "bpfo", "bpfi", "bsf"}
-        names = {name: f"--{name.replace('_', '-')}" for name in options} | {"given": "--ftf"}
-        raise InputError(names.get(error.field, error.field), error.value, error.allowed) from error
 
 
 def optimisation_of(

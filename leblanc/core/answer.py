@@ -1,0 +1,33 @@
+"""An answer to a question: declared quantities, blocks to be shown, one main figure."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from leblanc.core import quantities
+from leblanc.core.blocks import Block
+from leblanc.results.base import Result
+
+if TYPE_CHECKING:
+    from leblanc.results.netcdf import NamedArrays
+
+
+class Answer(Result):
+    """Base of a frozen dataclass whose fields and properties are declared by `Q`."""
+
+    attributes: Mapping[str, Any] = {}  #: of its data file, besides the quantities
+    summary: ClassVar[str] = "leblanc.core.terminal:rows"
+
+    @abstractmethod
+    def blocks(self) -> Sequence[Block]:
+        """What is shown of it, in the order of reading."""
+
+    def to_json(self) -> dict[str, Any]:
+        """Its quantities by name: SI, radians, complex numbers as [re, im], None for what is not there."""
+        return quantities.to_json(self)
+
+    def named_arrays(self) -> NamedArrays:
+        """Its quantities as arrays with named dimensions, units in their attributes."""
+        return quantities.named_arrays(self, self.attributes)
