@@ -1,8 +1,11 @@
 """Session settings: floating-point faults raise, hypothesis is pinned; oracles meet their mutants."""
 
+import gc
 import os
 import sys
 from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
 
 # Even where the environment says not to keep bytecode: without it each worker collects for 20 s instead of 8,
 # and each process that a test starts compiles what it imports anew.
@@ -16,7 +19,7 @@ os.environ.setdefault("MPLBACKEND", "Agg")
 
 import numpy as np  # noqa: E402
 import pytest  # noqa: E402
-from hypothesis import HealthCheck, settings  # noqa: E402
+from hypothesis import HealthCheck, Phase, settings  # noqa: E402
 from pytest_rerunfailures import StatusDB  # noqa: E402
 
 from tests.mutants import CAUGHT, seeded  # noqa: E402
@@ -47,6 +50,13 @@ def pytest_configure(config: pytest.Config) -> None:
     config.addinivalue_line("markers", "mutant: a run of an oracle with a mutant, which must fail")
 
 
+def pytest_collection_finish() -> None:
+    """What was imported and collected stays: the garbage collector need not look through it again."""
+    gc.collect()
+    gc.freeze()
+    gc.set_threshold(10_000)
+
+
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     """An oracle runs as it stands and once for each of its mutants."""
     mutants = [mark.args[0] for mark in metafunc.definition.iter_markers("kills")]
@@ -63,6 +73,21 @@ def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> Iterator[None]:
     mutant = params.get("mutant")
     if mutant is None:
         return (yield)
-    with seeded(mutant), pytest.raises(CAUGHT):
+    with seeded(mutant), _noticed_once(pyfuncitem.function), pytest.raises(CAUGHT):
         yield
     return True
+
+
+@contextmanager
+def _noticed_once(test: Any) -> Iterator[None]:
+    """Hypothesis seeks no smaller example of a failure that is wanted."""
+    drawn = getattr(test, "_hypothesis_internal_use_settings", None)
+    if drawn is None:
+        yield
+        return
+    phases = (Phase.explicit, Phase.generate)
+    test._hypothesis_internal_use_settings = settings(drawn, phases=phases, report_multiple_bugs=False)
+    try:
+        yield
+    finally:
+        test._hypothesis_internal_use_settings = drawn

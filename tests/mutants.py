@@ -6,6 +6,7 @@ it must notice. `pytest -m mutant` runs the mutants alone, `-m "not mutant"` the
 """
 
 from __future__ import annotations
+import __future__
 
 import ast
 import importlib
@@ -59,7 +60,7 @@ def seeded(mutant: Mutant) -> Iterator[None]:
     found = _found(importlib.import_module(module), name)
     function = _function(found)
     right = function.__code__
-    wrong = _wrong_code(mutant, name, Path(inspect.getfile(function)), right.co_firstlineno)
+    wrong = _wrong_code(mutant, name, Path(inspect.getfile(function)), right)
     forget = getattr(found, "cache_clear", lambda: None)
     forget()
     function.__code__ = wrong
@@ -92,27 +93,36 @@ def _function(found: object) -> types.FunctionType:
 
 
 @cache
-def _parsed(path: Path) -> tuple[list[str], ast.Module]:
+def _parsed(path: Path) -> tuple[list[str], dict[tuple[str, int], tuple[ast.FunctionDef, int, int]]]:
+    """Lines, and functions by name and first line: each with the lines of the whole statement around it."""
     source = path.read_text(encoding="utf-8")
-    return source.splitlines(keepends=True), ast.parse(source)
+    functions = {}
+    for statement in ast.parse(source).body:
+        around = _first_line(statement) - 1, statement.end_lineno
+        for node in ast.walk(statement):
+            if isinstance(node, ast.FunctionDef):
+                functions[node.name, _first_line(node)] = node, *around
+    return source.splitlines(keepends=True), functions
 
 
-def _wrong_code(mutant: Mutant, name: str, path: Path, first_line: int) -> types.CodeType:
-    """Compile the module with the mutant in the function that begins on that line."""
-    lines, tree = _parsed(path)
-    last_name = name.rpartition(".")[2]
-    (node,) = (
-        node
-        for node in ast.walk(tree)
-        if isinstance(node, ast.FunctionDef)
-        and node.name == last_name
-        and min([node.lineno, *(d.lineno for d in node.decorator_list)]) == first_line
-    )
+def _first_line(node: ast.stmt) -> int:
+    return min([node.lineno, *(d.lineno for d in getattr(node, "decorator_list", []))])
+
+
+def _wrong_code(mutant: Mutant, name: str, path: Path, right: types.CodeType) -> types.CodeType:
+    """Compile the function, or the class it stands in, with the mutant in place."""
+    lines, functions = _parsed(path)
+    last_name, first_line = name.rpartition(".")[2], right.co_firstlineno
+    node, begin, end = functions[last_name, first_line]
     first, last = node.lineno - 1, node.end_lineno
     source = "".join(lines[first:last])
     assert source.count(mutant.right) == 1, f"{mutant}: stands there {source.count(mutant.right)} times"
-    text = "".join([*lines[:first], source.replace(mutant.right, mutant.wrong), *lines[last:]])
-    whole = compile(text, str(path), "exec", dont_inherit=True)
+    # Empty lines before it, so that numbers of lines stay.
+    text = "".join(
+        ["\n" * begin, *lines[begin:first], source.replace(mutant.right, mutant.wrong), *lines[last:end]]
+    )
+    future = right.co_flags & __future__.annotations.compiler_flag
+    whole = compile(text, str(path), "exec", future, dont_inherit=True)
     return next(c for c in _codes(whole) if c.co_name == last_name and c.co_firstlineno == first_line)
 
 

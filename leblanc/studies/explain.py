@@ -43,7 +43,6 @@ from leblanc.studies.models.choose import (
 from leblanc.studies.models.liquid import synchronous_model
 from leblanc.studies.races.numbers import ball_numbers
 from leblanc.studies.run import rest_modes
-from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.cycles.estimate import largest_estimate
 from solvers.rotor.exciter.machine import characteristic_speeds
@@ -128,7 +127,7 @@ def explain_scene(scene: Scene) -> Explanation:
         tolerance=choice.tolerance,
         modes=bare.modes,
         runup=runup_outlook(scene),
-        whirl=_whirl(machine, growth),
+        whirl=_whirl(machine),
         held=held_cost(machine, choice, growth),
         source=scene.source,
         assumed=scene.assumed,
@@ -154,12 +153,12 @@ def explain_balls(scene: Scene) -> BallExplanation:
     return ball_numbers(scene, machine)
 
 
-def _whirl(machine: Prepared, growth: Array) -> WhirlOutlook | None:
-    """How large a whirl grows by itself at the scene's speeds, 1/s the growth there; None where none does."""
-    scene, (speed, at) = machine.scene, np.unique(machine.speed, return_index=True)
-    if not scene.fills or speed.size < 2:
+def _whirl(machine: Prepared) -> WhirlOutlook | None:
+    """How large a whirl grows by itself within the scene's speeds; None where none does."""
+    scene, low, high = machine.scene, float(machine.speed.min()), float(machine.speed.max())
+    if not scene.fills or low == high:
         return None
-    most = largest_estimate(machine.rotor, scene.fills, speed, scene.model.friction, growth[at])
+    most = largest_estimate(machine.rotor, scene.fills, [(low, high)], scene.model.friction)
     if most is None:
         return None
     return WhirlOutlook(most.spin, most.amplitude, most.whirl_speed, most.lag)

@@ -283,7 +283,6 @@ def _judged_by(found: LinearRunError) -> str:
 
 STEADY_SPEEDS = 401  # of the steady response drawn behind the run-up
 BAND_SPEEDS = 201  # at which self-excited whirl is looked for
-WHIRL_SPEEDS = 21  # of a band, at which its size is estimated
 
 
 def runup_scene(
@@ -591,8 +590,7 @@ def whirl_on_the_way(scene: Scene, bands: Bands | None) -> tuple[float, float] |
 
     if not bands or across_gravity(scene) > 0.0:
         return None
-    speeds = np.unique(np.concatenate([np.linspace(*band, WHIRL_SPEEDS) for band in bands]))
-    found = largest_estimate(dry_rotor(scene), scene.fills, speeds, scene.model.friction)
+    found = largest_estimate(dry_rotor(scene), scene.fills, bands, scene.model.friction)
     return None if found is None else (found.amplitude, found.spin)
 
 

@@ -24,6 +24,7 @@ _DRAGGED = 0.955
 # fitted to limit cycles of 74 random machines.
 _WHOLE, _WEAKENING = 0.75, 1.4
 _GRID = 241  # speeds among which bands are looked for
+_SAMPLES = 33  # speeds within a band, among which the largest whirl is
 _BELOW, _ABOVE = 0.6, 1.5  # of the first and of the last speed, where edges of bands are looked for
 
 
@@ -118,12 +119,8 @@ def whirl_estimate(
     -------
     An estimate for each speed; None outside the bands, and where the whirl is no circle or nothing bounds it
     """
-    system = rotor.system()
-    try:
-        machine = circular(system, fills, friction)
-    except NotCircularError:
-        return (None,) * len(speeds)
-    if unsettled(machine, friction):
+    machine = _bounded(rotor, fills, friction)
+    if machine is None:
         return (None,) * len(speeds)
     bands = list(undamped_bands(rotor, fills, (_BELOW * float(speeds[0]), _ABOVE * float(speeds[-1]))))
     whirls: dict[int, Estimate] = {}
@@ -143,6 +140,15 @@ def whirl_estimate(
     return tuple(found)
 
 
+def _bounded(rotor: Rotor, fills: Sequence[Fill], friction: Friction) -> Circular | None:
+    """The machine whose whirls are circles of a certain size; None where they are not."""
+    try:
+        machine = circular(rotor.system(), fills, friction)
+    except NotCircularError:
+        return None
+    return None if unsettled(machine, friction) else machine
+
+
 def _shares(rotor: Rotor, fills: Sequence[Fill], speeds: Array, friction: Friction) -> Array:
     """Share of the whole whirl that weak growth leaves at speeds inside undamped bands, shape (n,).
 
@@ -157,21 +163,30 @@ def _shares(rotor: Rotor, fills: Sequence[Fill], speeds: Array, friction: Fricti
 
 
 def largest_estimate(
-    rotor: Rotor, fills: Sequence[Fill], speeds: Array, friction: Friction, growth: Array | None = None
+    rotor: Rotor, fills: Sequence[Fill], ranges: Sequence[tuple[float, float]], friction: Friction
 ) -> Estimate | None:
-    """The largest of the whirls that grow by themselves at some speeds, by rule; None where none does.
+    """The largest of the whirls that grow by themselves, by rule; None where none does.
+
+    Of evenly spaced speeds within the bands without friction and damping, outside of which the rule has none.
 
     Parameters
     ----------
     rotor, fills, friction : as for `solvers.cycles.cycles.limit_cycles`
-    speeds : rad/s, rising, shape (n,)
-    growth : of the whirl that grows most at each of them, 1/s, shape (n,); computed if None
+    ranges : first and last speed of each, rad/s
     """
-    found = whirl_estimate(rotor, fills, speeds, friction)
-    if not any(found):
+    if _bounded(rotor, fills, friction) is None:
         return None
-    if growth is None:
-        growth = asynchronous_growth(rotor, fills, speeds, friction)[0]
+    asked = []
+    for low, high in ranges:
+        for lower, upper, _ in undamped_bands(rotor, fills, (_BELOW * low, _ABOVE * high)):
+            first, last = max(low, lower), min(high, upper)
+            if first < last:
+                asked.append(np.linspace(first, last, _SAMPLES + 2)[1:-1])
+    if not asked:
+        return None
+    speeds = np.unique(np.concatenate(asked))
+    growth = asynchronous_growth(rotor, fills, speeds, friction)[0]
+    found = whirl_estimate(rotor, fills, speeds, friction)
     rising = zip(found, (growth > 0.0).tolist(), strict=True)
     known = [whirl for whirl, grows in rising if grows and whirl is not None and whirl.lag > 0.0]
     return max(known, key=lambda estimate: estimate.amplitude, default=None)

@@ -85,7 +85,7 @@ def table_of(fill: Fill, cells: int, smeared: bool | None = None) -> Array:
     found[:, DENSITY] = plates.count / (2.0 * math.pi) if smears else 0.0
     found[:, TIP], found[:, GAP] = 1.0 - plates.tip_radius / radius, plates.wall_gap / radius
     found[:, LOSS] = -1.0 if plates.loss is None or fill.depth == 0.0 else plates.loss * radius / fill.depth
-    found[:, OPEN] = 1.0
+    found[:, OPEN] = 0.0 if fill.compartments > 1 else 1.0
     return found
 
 

@@ -25,6 +25,7 @@ from fluid.friction.laws import NO_FRICTION, STOKES, WALL, Friction, damping_rat
 from fluid.friction.wall import WallDrag, wall_shear
 from meshes.arrays import Array, Complex, Flags
 from meshes.errors import InputError
+from solvers.layer.baffles import FACE, OPEN
 from solvers.layer.finite_volume import DRY, GHOSTS, WORK, rates
 from solvers.layer.inside import SLOT_SPEED, Inside
 from solvers.layer.places import fewest_cells
@@ -266,11 +267,18 @@ class _Layer:
         self.angles, self.mass = ring(area.size), float(layer.mass)
         self.u = faded_velocity(self.a, self.q, spin)
         self.surface, self.log = long_wave.free_surface_radius(self.a), long_wave.layer_log(self.a)
-        ray = self.surface * (self.angles[0] + 1j * self.angles[1])
-        self.across = 0.5 * (np.roll(ray, -1) - np.roll(ray, 1))
+        self.across = self._across(self.surface * (self.angles[0] + 1j * self.angles[1]))
         self.inertia = self._flow_inertia()
         self.shear = self._shear(machine.machine.tables[j])
         self.d_area, self.d_momentum, self.momentum_rate = area, momentum, np.zeros(2)
+
+    def _across(self, ray: Complex) -> Complex:
+        """Half the difference of the two neighbours of each cell, where no closed baffle stands between."""
+        faces = ray - np.roll(ray, 1)
+        for row in self.inside.plates:
+            if row[FACE] >= 0.0 and row[OPEN] == 0.0:
+                faces[int(row[FACE])] = 0.0
+        return np.asarray(0.5 * (faces + np.roll(faces, -1)))
 
     def _flow_inertia(self) -> Array:
         """Of the flow under a body force, standing frame, kg, shape (2, 2) [theory: coupling, eq. 4]."""
@@ -327,12 +335,11 @@ class _Layer:
         d_u += np.where(wet, self.spin * d_a, 0.0)
         d_flow = d_u * self.log + self.u * d_a / np.square(self.surface)
         rays = self.angles[0] + 1j * self.angles[1]
-        d_ray = -d_a / self.surface * rays
-        d_across = 0.5 * (np.roll(d_ray, -1) - np.roll(d_ray, 1))
+        across, d_across = self._across(self.surface * rays), self._across(-d_a / self.surface * rays)
         step = 2.0 * math.pi / self.a.size
-        d_flowing = np.sum(d_flow * self.across + self.u * self.log * d_across)
+        d_flowing = np.sum(d_flow * across + self.u * self.log * d_across)
         d_moment = np.sum(self.surface * d_a * rays) * step
-        flowing = np.sum(self.u * self.log * self.across)
+        flowing = np.sum(self.u * self.log * across)
         relative, changed = flowing + 1j * self.spin * self.moment, d_flowing + 1j * self.spin * d_moment
         found = (changed + 1j * self.spin * relative) * self.turn * self.layer.weight * self.layer.radius**3
         return np.array([found.real, found.imag])

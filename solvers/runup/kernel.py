@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fluid.friction.laws import NONE, STOKES, WALL
-from solvers.layer.baffles import taken
+from solvers.layer.baffles import FACE, OPEN, taken
 from solvers.layer.drag import wall_kept
 from solvers.layer.finite_volume import COMPILED, GHOSTS, LOG, NEAREST, SUMMED, SURFACE, VELOCITY, WORK
 from solvers.layer.inside import SLOT_SPEED, Inside
@@ -174,15 +174,18 @@ def layer_scratch(layers: int, cells: int) -> NDArray[np.float64]:
 
 
 @_jit
-def measure(area, q, spin, angles, spare, out):
-    """Fill `out`, a record MEASURES, for a layer [theory: coupling, eq. 2, 4 and 7]."""
+def measure(area, q, spin, angles, plates, spare, out):
+    """Fill `out`, a record MEASURES, for a layer [theory: coupling, eq. 2, 4 and 7].
+
+    `plates` is the layer's table of baffles as the last evaluation of its rates left it.
+    """
     n = area.size
     profile(area, q, spin, spare[_VELOCITY, :n], spare[_SURFACE, :n], spare[_LOG, :n])
-    measure_profile(area, q, spin, angles, spare, out)
+    measure_profile(area, q, spin, angles, plates, spare, out)
 
 
 @_unwrapped
-def measure_profile(area, q, spin, angles, spare, out):
+def measure_profile(area, q, spin, angles, plates, spare, out):
     """The same of a layer whose profile stands in its scratch, as `layer_step` leaves it."""
     n = area.size
     velocity, surface, log = spare[_VELOCITY, :n], spare[_SURFACE, :n], spare[_LOG, :n]
@@ -197,6 +200,7 @@ def measure_profile(area, q, spin, angles, spare, out):
     flow = _flows(velocity, log, across, along)
     out.flow_x, out.flow_y = flow[0], flow[1]
     out.xx, out.xy, out.yy = flow[2] / step, flow[3] / step, flow[4] / step
+    _held_back(plates, velocity, log, across, along, step, out)
 
 
 @_summed
@@ -232,6 +236,33 @@ def _flows(velocity, log, across, along):
         xy += log[i] * x * y
         yy += log[i] * y * y
     return flow_x, flow_y, xx, xy, yy
+
+
+@_unwrapped
+def _held_back(plates, velocity, log, across, along, step, out):
+    """Take from flow and inertia in `out`, a record MEASURES, what would pass closed baffles.
+
+    Nothing passes there, and the liquid's momentum is the rate of its first moment [theory: coupling, eq. 2].
+    """
+    n = velocity.size
+    for k in range(plates.shape[0]):
+        i = int(plates[k, FACE])
+        if i < 0 or plates[k, OPEN] > 0.0:
+            continue
+        x, y = across[i + 1] - across[i], along[i + 1] - along[i]
+        for side in range(2):
+            # The cell before the face and the one after it: half of either's flow would pass.
+            j = (i - 1 + side) % n
+            flow = 0.5 * velocity[j] * log[j]
+            out.flow_x -= flow * x
+            out.flow_y -= flow * y
+            whole_x = 0.5 * (across[j + 2] - across[j])
+            whole_y = 0.5 * (along[j + 2] - along[j])
+            # The other half passes, of a cell whose slope is that of its own side.
+            rest_x, rest_y, share = whole_x - 0.5 * x, whole_y - 0.5 * y, log[j] / step
+            out.xx += share * (2.0 * rest_x * rest_x - whole_x * whole_x)
+            out.xy += share * (2.0 * rest_x * rest_y - whole_x * whole_y)
+            out.yy += share * (2.0 * rest_y * rest_y - whole_y * whole_y)
 
 
 @_summed
@@ -477,7 +508,7 @@ def _measure_layers(machine, state, room):
         layer = machine.layers[j]
         # Their steps have left the profiles at the end.
         area, q = state.area[j], state.momentum[j]
-        measure_profile(area, q, spins[1], machine.angles, room.spare[j], room.end[j])
+        measure_profile(area, q, spins[1], machine.angles, machine.plates[j], room.spare[j], room.end[j])
         relative_momentum(room.begin[j], layer, spins[0], turn[0], turn[1], room.before[j])
         relative_momentum(room.end[j], layer, spins[1], turn[2], turn[3], room.after[j])
         flow_inertia(room.begin[j], layer, cosine / size, sine / size, room.inertia[j])
@@ -830,7 +861,8 @@ def advance(machine, state, room, stop, courant, most, resumed):
     if not resumed:
         for j in range(room.begin.shape[0]):
             measure(
-                *(state.area[j], state.momentum[j], shaft.spin, machine.angles, room.spare[j]), room.begin[j]
+                *(state.area[j], state.momentum[j], shaft.spin, machine.angles, machine.plates[j]),
+                *(room.spare[j], room.begin[j]),
             )
     while shaft.time < stop:
         if shaft.spin <= 0.0:

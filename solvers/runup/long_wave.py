@@ -204,7 +204,8 @@ class Coupled(CoupledRotor):
         for j in range(self.machine.layers.size):
             layer, measures, momentum = self.machine.layers[j], records(MEASURES)[0], np.zeros(2)
             spare, angles = self.room.spare[j], self.machine.angles
-            measure(self.state.area[j], self.state.momentum[j], shaft.spin, angles, spare, measures)
+            state, plates = self.state, self.machine.plates[j]
+            measure(state.area[j], state.momentum[j], shaft.spin, angles, plates, spare, measures)
             relative_momentum(measures, layer, shaft.spin, cosine, sine, momentum)
             found.append((layer, self.machine.planes[j], measures, momentum))
         return found

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import ast
 import json
 import math
+from dataclasses import fields
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,11 +18,13 @@ from solvers.rotor.jeffcott import Jeffcott
 from solvers.synchronous.response import response
 from tests.mutants import kills
 from tests.oracles.cases import kept_cases
-from validation.cases.case import PRINTED, Origin, compare
+from validation.cases.case import PRINTED, Case, Origin, compare
 from validation.cases.liquid.layer import rotor_cases
 from validation.cases.rotors import turning
 from validation.cases.rotors.rigs import horizontal_rig, horizontal_rotor, vertical_rig, vertical_rotor
 from validation.command import GROUPS, all_cases
+
+FOLDER = Path(__file__).parents[2] / "validation" / "cases"
 
 
 def test_every_group_has_cases() -> None:
@@ -115,6 +120,49 @@ def test_a_value_of_another_code_is_not_told_as_printed(capsys: pytest.CaptureFi
     assert main(["validate", "turning"]) == 0
     shown = capsys.readouterr().out
     assert shown.count("    measured one of three resonances") == 3 and "    printed 5000 |" in shown
+
+
+def test_a_verdict_hangs_on_what_is_computed() -> None:
+    """One that is written down stands beside words alone: two statements of a source that exclude each other.
+
+    And what is compared with a number is no number that is written down as well.
+    """
+    found, words, lists = 0, [], []
+    for path in sorted(FOLDER.rglob("*.py")):
+        for call in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if not (isinstance(call, ast.Call) and isinstance(call.func, ast.Name)):
+                continue
+            if call.func.id not in ("Case", "compare"):
+                continue
+            given = {word.arg: word.value for word in call.keywords}
+            given |= dict(zip((field.name for field in fields(Case)), call.args, strict=False))
+            written = call.func.id == "compare" or isinstance(given.get("verdict"), ast.Constant)
+            if not written or "computed" not in given:
+                continue
+            found += 1
+            if not any(isinstance(node, ast.Name) for node in ast.walk(given["computed"])):
+                assert call.func.id == "Case", ast.unparse(call)
+                words.append(ast.literal_eval(given["name"]))
+            elif call.func.id == "Case":
+                lists.append(ast.unparse(given["name"]))
+    assert found > 50
+    assert words == [
+        *("blood_pump/eq-39-order", "blood_pump/numbering", "horizontal_rig/gravity", "spindle/discussion"),
+        *("turning/modulation", "turning/amplitude"),
+    ]
+    # Of these lists of coefficients those are made cases of that are not the printed ones.
+    assert lists == ["f'errata/dr-a{row}{column}'", "f'errata/dr-{_NAMES[term.row]}-equation-{kind}'"]
+
+
+def test_a_value_half_as_large_again_does_not_agree() -> None:
+    for printed, wrong in ((2.0, 3.0), (-2.0, -3.0), (2.0, -2.0), (2.0, 4.0 / 3.0)):
+        words = "group/a", "DR18", "a quantity"
+        widest = float(np.nextafter(1.0 / 3.0, 0.0))
+        assert compare(*words, printed, printed, tolerance=widest).verdict == "agrees"
+        assert compare(*words, printed, wrong, tolerance=widest).verdict == "differs"
+    for tolerance in (1.0 / 3.0, 1.0, -0.1, math.nan):
+        with pytest.raises(InputError, match="tolerance"):
+            compare("group/a", "DR18", "a quantity", 1.0, 1.0, tolerance=tolerance)
 
 
 @kills("validation.cases.rotors.turning:single_mode_damping", "2.0 * ratio *", "2.0 *")

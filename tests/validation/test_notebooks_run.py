@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import json
 import re
 import subprocess
@@ -10,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.oracles.notebooks import BROKEN, claims, failed
+from tests.oracles.notebooks import BROKEN, claims, earliest, failed, made, statements, used
 from validation.run_notebooks import FOLDER, texts
 
 for _module in ("jupytext", "nbclient", "nbconvert", "ipykernel"):
@@ -79,6 +80,18 @@ def test_claims_without_pictures(path: Path) -> None:
         > 0
     )
     assert not re.search(r"^(picture|drawn)\(", kept, re.MULTILINE)
+
+
+@pytest.mark.parametrize("path", texts(), ids=lambda path: path.stem)
+def test_claims_that_come_early_mean_the_same(path: Path) -> None:
+    """A statement that gives or changes a value stays on its side of all that take it."""
+    body = statements(path)
+    place = {k: at for at, k in enumerate(earliest(body))}
+    takes, gives = [used(node) for node in body], [made(node, body) for node in body]
+    for k in range(len(body)):
+        for later in range(k + 1, len(body)):
+            if gives[k] & (takes[later] | gives[later]) or takes[k] & gives[later]:
+                assert place[k] < place[later], (ast.unparse(body[k]), ast.unparse(body[later]))
 
 
 @pytest.mark.slow

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from tests.mutants import kills
 from validation.cases.rotors import spindle, turning
 
 
@@ -18,6 +19,14 @@ def test_table_of_the_bearing() -> None:
     computed = {name: found[f"spindle/{name}"].computed for name in ("bpfo", "bsf", "bsf-15-degrees")}
     # By hand: 33/(9 33/85.77) = 9.530; d/D = 0.2305.
     assert list(computed.values()) == pytest.approx([9.530, 16.07, 16.63], abs=5e-3)
+
+
+@kills("leblanc.units:_scaled", "else number * factor", "else 1.05 * number * factor")
+@kills("solvers.rotor.shaft.natural:natural_frequencies", "return _found", "return 1.05 * _found")
+def test_multiples_of_the_speed() -> None:
+    """The example's first natural frequency is the 33 Hz of the table, and 660 rpm are a third of it."""
+    found = {case.name.partition("/")[2]: case.verdict for case in spindle._multiples()}
+    assert found == dict.fromkeys(("harmonic-1", "harmonic-2", "harmonic-3", "speed"), "agrees")
 
 
 def test_speeds_of_turning() -> None:

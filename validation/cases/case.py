@@ -169,13 +169,16 @@ def compare(
 
     Raises
     ------
-    InputError : a number that is not finite
+    InputError : a number that is not finite; a tolerance that half as much again would be within
 
     Examples
     --------
     >>> compare("errata/a", "X20, eq. 1", "mass, kg", 2.0, 1.0, tolerance=0.01, otherwise="erratum").verdict
     'erratum'
     """
+    # At a third the computed value may be half as large again, and no change of it would be noticed.
+    if not 0.0 <= tolerance < 1.0 / 3.0:
+        raise InputError("tolerance", tolerance, "from 0 to below a third")
     printed, computed = float(printed), float(computed)
     difference: float | str
     if computed != 0.0:

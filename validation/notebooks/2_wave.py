@@ -96,19 +96,27 @@ case_table(cases)
 # A long wave has the velocity `u R/r` along circles. What holds it there is the pressure, which grows
 # outwards by `(Omega r + u R/r)^2/r` and by the acceleration of the drum. Summed up from the surface to the
 # wall by quadrature it must be the closed form that the models take, at troughs and crests, with the spin and
-# against it. In units of R, Omega and the density.
+# against it. Without a velocity the pressure also has a moment about the axis, over a section through the
+# layer, which the models take in closed form as well. In units of R, Omega and the density.
 
 # %%
-pressures = []
+pressures, moments = [], []
 for depth, along, pull in ((0.05, -0.1, 0.02), (0.1, 0.0, 0.02), (0.15, 0.1, -0.02), (0.3, 0.2, 0.0)):
     surface = 1.0 - depth
     area = 0.5 * (1.0 - surface**2)
     summed, _ = quad(lambda r, u=along, f=pull: (r + u / r) ** 2 / r + f, surface, 1.0)
     closed = float(long_wave.wall_pressure(along, long_wave.layer_log(area), area, surface, 1.0, pull))
     pressures.append((depth, along, summed, closed))
+    # Each ring adds its pressure to all that lies outside it, whose moment is (1 - r^2)/2.
+    turned, _ = quad(lambda r, f=pull: (r + f) * 0.5 * (1.0 - r * r), surface, 1.0)
+    moments.append((depth, pull, turned, float(long_wave.pressure_force(area, surface, 1.0, pull))))
 Table(
-    ("Depth", "Velocity", "Summed up", "Closed form"),
-    tuple((f"{depth:g}", f"{u:g}", f"{one:.12f}", f"{other:.12f}") for depth, u, one, other in pressures),
+    ("On", "Depth", "Velocity or pull", "Summed up", "Closed form"),
+    tuple(
+        (what, f"{depth:g}", f"{given:g}", f"{one:.12f}", f"{other:.12f}")
+        for what, rows in (("the wall", pressures), ("a section", moments))
+        for depth, given, one, other in rows
+    ),
 )
 
 # %% [markdown]
@@ -176,7 +184,7 @@ assert verdicts(cases) == {
 }
 assert verdicts(together) == {"agrees": {*(f"rotor-{cells}-cells" for cells in layer.CELLS), "rotor-order"}}
 # Quadrature and the closed form are one to rounding.
-assert max(abs(one - other) for *_, one, other in pressures) < 1e-12
+assert max(abs(one - other) for *_, one, other in [*pressures, *moments]) < 1e-12
 # The first term that the equation leaves out, and the order of what is left.
 assert all(abs(off) < depth**2 for (_, depth), off in lags.items())
 assert all(3.5 < lags[family, 0.1] / lags[family, 0.05] < 4.5 for family in (1, -1))

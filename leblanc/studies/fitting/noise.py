@@ -72,9 +72,8 @@ class Judged:
     ended: bool  #: the last search came to its end
 
 
-def _shapes(problem: Problem, x: Array, kind: str) -> list[Array]:
+def _shapes(problem: Problem, found: Sequence[Array] | None, kind: str) -> list[Array]:
     """Standard deviations of the readings but for one factor of each quantity."""
-    found = problem.scaled(x)
     shapes = []
     for k, (name, value) in enumerate(problem.measurement.columns):
         own = np.abs(value if found is None else found[k])
@@ -85,10 +84,19 @@ def _shapes(problem: Problem, x: Array, kind: str) -> list[Array]:
     return shapes
 
 
-def _noise(problem: Problem, x: Array, stated: tuple[str, float], kind: str) -> tuple[Noise, list[Array]]:
-    """Size of the noise of each quantity and the deviations by it [theory: fit, eq. 7]."""
-    shapes = _shapes(problem, x, kind)
-    found = problem.scaled(x)
+def _noise(
+    problem: Problem,
+    x: Array,
+    stated: tuple[str, float],
+    kind: str,
+    before: Sequence[Array] | None = None,
+) -> tuple[Noise, list[Array]]:
+    """Size of the noise of each quantity and the deviations by it [theory: fit, eq. 7].
+
+    A free scale is that by deviations found before, at first by the sizes of the quantities.
+    """
+    found = problem.scaled(x, problem.plain() if before is None else before)
+    shapes = _shapes(problem, found, kind)
     left = problem.left(found) if found is not None else [np.ones(shape.shape) for shape in shapes]
     share = max(problem.freedom, 1) / problem.count
     sizes, sigma = [], []
@@ -145,7 +153,7 @@ def refine(problem: Problem, x: Array, stated: tuple[str, float], kind: str) -> 
         valley = descend(problem, problem.weighted(sigma), x)
         moved = float(np.abs(valley.x - x).max())
         x, ended = valley.x, valley.ended
-        noise, sigma = _noise(problem, x, stated, kind)
+        noise, sigma = _noise(problem, x, stated, kind, sigma)
         if moved < 1e-5 or (kind == "absolute" and len(problem.names) == 1):
             break
     return Judged(x, noise, tuple(sigma), unlikely(problem, x, sigma), ended)
@@ -159,7 +167,7 @@ def here(problem: Problem, x: Array, stated: tuple[str, float], kind: str) -> Ju
 
 def unexplained(problem: Problem, judged: Judged) -> Note | None:
     """Why what is left is not noise; None where it may be [theory: fit, eq. 8, 9]."""
-    found = problem.scaled(judged.x)
+    found = problem.scaled(judged.x, judged.sigma)
     if found is None:
         return poor_note(1.0, "the scene has no answer with these values")
     left = problem.left(found)

@@ -80,7 +80,8 @@ def leblanc(folder: Path, *arguments: str, module: bool = False) -> subprocess.C
         ("run", "horizontal_rig.toml"),
         ("layer", *LAYER, "--cells", "16", "--model", "long_wave", "--animate", "layer.mp4"),
         ("sweep", "sweep.toml", "--workers", "2"),
-        ("trade", "vibratory_table.toml", "--quick", "--repeats", "2"),
+        # Each model in two processes of its own.
+        pytest.param(("trade", "vibratory_table.toml", "--quick", "--repeats", "2"), marks=pytest.mark.slow),
         ("validate", "vector_model"),
         pytest.param(("notebooks", "own.py"), marks=pytest.mark.notebook),
     ],

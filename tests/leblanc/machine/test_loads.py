@@ -304,7 +304,7 @@ def test_search_and_run_up_agree() -> None:
 
 def test_optimise_over_the_run_up() -> None:
     """A limit of the passage alone is one that the steady answer would not keep; an objective falls."""
-    scene = _passing()
+    scene = _passing().replace({"runup.samples": 60, "speeds.count": 21})
     volumes = np.array([[scene.chambers[0].volume], [0.0]])
     runs = Passages(scene, loaded=True)
     with_liquid, without = LoadsOver(FilledMachine(scene), None, 0.0, runs).of("floor_force", volumes)

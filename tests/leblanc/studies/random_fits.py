@@ -2,7 +2,7 @@
 
 `python -m tests.leblanc.studies.random_fits --count 300` fits 2 to 4 unknowns from guesses that are off by
 up to a factor e, to data with noise of 0 to 2 %; `--coverage 400` counts the intervals that hold the truth,
-for each kind of noise.
+for each kind of noise. A miss that least squares from the truth shares is counted by itself: noise alone.
 """
 
 from __future__ import annotations
@@ -12,13 +12,15 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import chdtrc
 
 from leblanc.results.fit import FitResult
 from leblanc.scene.scene import Scene, scene_from_table
 from leblanc.scene.schema.load import SceneError
 from leblanc.studies.fit import fit_scene
 from leblanc.studies.fitting.measured import Measurement
-from leblanc.studies.fitting.problem import answer
+from leblanc.studies.fitting.problem import Problem, answer
+from leblanc.studies.fitting.search import descend
 from meshes.arrays import Array
 from meshes.errors import InputError
 
@@ -42,8 +44,10 @@ DRY = {
     "speeds": {"start": "80 rpm", "stop": "900 rpm", "count": 40},
     "model": {"liquid": "linear"},
 }
-# Of the interval of 95 %: within it in 2000 unknowns of normal noise one is not.
+# Of the interval of 95 %: of normal noise that is estimated from 28 degrees of freedom, one in 1000 unknowns
+# is beyond 1.8 * 2.048 standard errors (Student's t).
 _WIDE = 1.8
+_SHARED = 0.125  # of the interval, half a standard error: the best values from the truth are the ones found
 _EXACT = 1e-3  # of a value without noise
 
 
@@ -54,6 +58,8 @@ class Fitted:
     truth: Array  #: SI, shape (p,)
     result: FitResult
     noise: float  #: of the readings, relative
+    best: Array  #: where least squares from the truth ends, weighted by the noise as drawn, SI, shape (p,)
+    rise: float  #: of that sum of squares from there to the truth, chi squared of p
 
     @property
     def near(self) -> bool:
@@ -67,9 +73,12 @@ class Fitted:
 
     @property
     def verdict(self) -> str:
-        """Right, wrong with a note, or wrong without one."""
+        """Right, missed by noise alone, wrong with a note, or wrong without one."""
         if self.near and self.result.accepted:
             return "right"
+        low, high = self.result.interval.T
+        if (np.abs(np.log(self.result.value / self.best)) <= _SHARED * np.log(high / low)).all():
+            return "noise"
         return "noted" if self.result.notes or not self.result.accepted else "silent"
 
 
@@ -143,7 +152,8 @@ def drawn(seed: int) -> Fitted:
     noise = float(random.choice([0.0, 0.005, 0.01, 0.02]))
     speed = scene.speed_array()
     (amplitude,) = answer(scene, "speed", speed, ["amplitude"])
-    size = noise * (amplitude if random.random() < 0.5 else np.sqrt(np.mean(np.square(amplitude))))
+    typical = np.full(speed.size, np.sqrt(np.mean(np.square(amplitude))))
+    size = noise * (amplitude if random.random() < 0.5 else typical)
     seen = np.abs(amplitude + size * random.standard_normal(speed.size))
     guess = scene
     for _ in range(20):
@@ -153,7 +163,19 @@ def drawn(seed: int) -> Fitted:
             break
         except (InputError, SceneError):  # a chamber that would overflow: another guess
             continue
-    return Fitted(truth, fit_scene(guess, Measurement("speed", speed, (("amplitude", seen),)), paths), noise)
+    table = Measurement("speed", speed, (("amplitude", seen),))
+    return Fitted(truth, fit_scene(guess, table, paths), noise, *_from_truth(scene, table, paths, size))
+
+
+def _from_truth(scene: Scene, table: Measurement, paths: tuple[str, ...], size: Array) -> tuple[Array, float]:
+    """Best values from the truth with the weights that the noise has, and the rise to the truth."""
+    truth = np.array([value_at(scene, path) for path in paths])
+    if not size.any():
+        return truth, 0.0
+    problem = Problem(scene, tuple((path,) for path in paths), truth, table, "given")
+    residual = problem.weighted([size])
+    valley = descend(problem, residual, np.zeros(truth.size))
+    return problem.values(valley.x), float(np.sum(np.square(residual(np.zeros(truth.size))))) - valley.cost
 
 
 def dry(random: np.random.Generator, kind: str, share: float = 0.03) -> FitResult:
@@ -184,12 +206,14 @@ def _main() -> None:
     parser.add_argument("--coverage", type=int, default=0)
     parser.add_argument("--seed", type=int, default=0)
     asked = parser.parse_args()
-    counts = {"right": 0, "noted": 0, "silent": 0}
+    counts = {"right": 0, "noise": 0, "noted": 0, "silent": 0}
     for seed in range(asked.seed, asked.seed + asked.count):
         one = drawn(seed)
         counts[one.verdict] += 1
         codes = " ".join(note.code.value for note in one.result.notes)
-        print(seed, one.verdict, one.result.value / one.truth, codes, counts, flush=True)
+        chance = chdtrc(one.truth.size, one.rise)
+        told = f"{seed} {one.verdict} {one.result.value / one.truth} {codes} {counts}"
+        print(told, f"chance of such noise {chance:.2g}", flush=True)
     inside = {kind: np.zeros(len(DRY_TRUTH), dtype=int) for kind in ("relative", "absolute", "estimate")}
     for k in range(asked.coverage):
         for kind, held in inside.items():

@@ -12,7 +12,7 @@ from pytest import approx
 from leblanc.cli import main
 from leblanc.figures.whirl_map import cycles_figure
 from leblanc.results.whirl_map import WhirlMap
-from leblanc.scene.scene import Scene, load_scene
+from leblanc.scene.scene import Scene, dry_rotor, load_scene
 from leblanc.scene.tasks import Optimisation
 from leblanc.studies.explain import explain_scene
 from leblanc.studies.optimise.constraints import whirl_size
@@ -21,6 +21,7 @@ from leblanc.studies.whirl_map import map_scene
 from leblanc.text.explanation import facts as explained
 from leblanc.text.whirl_map import answer, facts
 from meshes.errors import InputError
+from solvers.cycles.estimate import undamped_bands, whirl_estimate
 
 SCENE = """
 name = "Whirl"
@@ -140,6 +141,21 @@ def test_a_run_up_says_how_large_the_whirl_on_its_way_becomes(machine: Scene, fo
     assert "map --cycles" in note.text
     lying = whirl_on_the_way(ramped.replace({"rotor.axis": "horizontal"}), ((112.4, 140.0),))
     assert lying is None and whirl_on_the_way(ramped, ()) is None
+
+
+def test_the_largest_whirl_by_rule_does_not_hang_on_the_speeds(machine: Scene) -> None:
+    """It is the largest within the band without friction and damping, at or between the speeds."""
+    found = [
+        explain_scene(machine.replace({"speeds.start": 60.0, "speeds.stop": 180.0, "speeds.count": n})).whirl
+        for n in (4, 60)
+    ]
+    assert found[0] is not None and found[0] == found[1]
+    rotor, fills, friction = dry_rotor(machine), machine.fills, machine.model.friction
+    ((lower, upper, _),) = undamped_bands(rotor, fills, (60.0, 180.0))
+    assert lower < found[0].speed < upper
+    rules = whirl_estimate(rotor, fills, np.linspace(lower, upper, 12), friction)
+    sizes = [whirl.amplitude for whirl in rules if whirl is not None]
+    assert 0.97 * max(sizes) <= found[0].amplitude < 1.1 * max(sizes)
 
 
 def test_a_limit_of_the_whirl(machine: Scene) -> None:

@@ -40,7 +40,7 @@ def state(n: int) -> tuple[np.ndarray, np.ndarray]:
 def measured(area: np.ndarray, q: np.ndarray) -> np.record:
     out = records(MEASURES)[0]
     spare = coupled_layer.layer_scratch(1, area.size)[0]
-    coupled_layer.measure(area, q, SPIN, ring(area.size), spare, out)
+    coupled_layer.measure(area, q, SPIN, ring(area.size), NOTHING.plates, spare, out)
     return out
 
 

@@ -197,7 +197,7 @@ def with_discs(system: RotorSystem, discs: list[tuple[float, float]]) -> RotorSy
 )
 def test_added_mass() -> None:
     """Walls wet all over in isotropic supports: the mass of full chambers, at each plane its own."""
-    system, speed = two_plane().system(), np.linspace(10.0, 300.0, 60)
+    system, speed = two_plane().system(), np.linspace(10.0, 300.0, 15)
     wet = [at_plane(-0.25, 1.2e-4), at_plane(0.2, 1e-4, radius=0.08)]
     found = response(system, wet, speed, 0.0)
     assert not found.dry_patch.any() and found.converged.all()

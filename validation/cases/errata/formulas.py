@@ -142,8 +142,8 @@ def _oblate() -> Case:
         "height over radius of a cylinder with C_0 > A_0",
         "much greater than 1",
         float(limit),
-        "the opposite",
-        "erratum",
+        "the opposite" if limit < 10 else "the same",
+        "erratum" if limit < 10 else "agrees",
         "upper limit for a full chamber about its centre; a fixed point elsewhere lowers it",
     )
 

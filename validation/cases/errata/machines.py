@@ -47,8 +47,8 @@ def _products_of_inertia() -> Case:
         "dW/d(gamma_2) over omega^2 of the upright body, without gravity",
         "E",
         str(computed),
-        "another moment",
-        "erratum",
+        "none" if computed == e else "another moment",
+        "agrees" if computed == e else "erratum",
         "the first line has E in its place; eq. 15, D = E = 0, needs both",
     )
 
@@ -74,8 +74,8 @@ def _peak_shift() -> Case:
         "speed of the largest deflection under an unbalance over the natural frequency, damping ratio 0.2",
         "below 1: to lower speeds as damping grows",
         shift,
-        "the opposite",
-        "erratum",
+        "the opposite" if shift > 1.0 else "the same",
+        "erratum" if shift > 1.0 else "agrees",
         f"1/sqrt(1 - 2 zeta^2) = {1.0 / math.sqrt(1.0 - 2.0 * 0.2**2):.4f}; a force of one size "
         "at all speeds has its peak below",
     )

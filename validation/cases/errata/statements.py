@@ -26,14 +26,15 @@ def _angle_range() -> Case:
     """The angle of the liquid below resonance, for an unbalance that outweighs the liquid."""
     lag, ratio = math.radians(30.0), 2.0
     first, _ = balance_angles(lag, ratio)
+    angle = math.degrees(float(first))
     return Case(
         "errata/dr-alpha-range",
         "DR18, below eq. 25; DG21, below eq. 4",
         "alpha_0, deg (delta = 30 deg, k = 2)",
         "from 90 to 180 for every delta from 0 to 90 deg",
-        math.degrees(float(first)),
-        "below 90 deg",
-        "erratum",
+        angle,
+        "none" if 90.0 <= angle <= 180.0 else f"{'below 90' if angle < 90.0 else 'above 180'} deg",
+        "agrees" if 90.0 <= angle <= 180.0 else "erratum",
         "for k >= 1 the one equilibrium is delta + arcsin(sin(delta)/k); the range is that of the second "
         "root, of which the misprinted arccosine is the angle",
     )
@@ -51,8 +52,8 @@ def _any_speed() -> Case:
         "deflection with liquid over that without at half the critical speed, horizontal rig",
         "below 1: balancing at any speed",
         with_liquid / without,
-        "the opposite",
-        "erratum",
+        "the same" if with_liquid < without else "the opposite",
+        "agrees" if with_liquid < without else "erratum",
         "the surface is a circle about the rotation axis: the liquid lies along the deflection, which lags "
         f"the unbalance by {lag:.0f} deg here; section 6 says so",
     )
@@ -86,8 +87,8 @@ def _forces() -> Case:
         "forces that a static unbalance exerts on a tub whose centre lies on the axis",
         "Q_x and Q_y, Q_y being 0 in the same sentence",
         " and ".join(f"Q_{name}" for name in acting),
-        "another force",
-        "erratum",
+        "none" if acting == ["x", "y"] else "another force",
+        "agrees" if acting == ["x", "y"] else "erratum",
         "the drum spins about y",
     )
 

@@ -318,7 +318,7 @@ def _groups(matrices: TubMatrices) -> Case:
         "places of the static moments of rigidity in the stiffness matrix",
         "i, j <= 3 and i different from j",
         f"i <= 3 < j: {len(static) - inside} of them, and {inside} with i, j <= 3",
-        "another block",
-        "erratum",
+        "another block" if inside < len(static) else "none",
+        "erratum" if inside < len(static) else "agrees",
         "with i, j <= 3 all but the diagonal are 0 for springs along the axes",
     )

@@ -243,7 +243,7 @@ def _stability(loop: Loop) -> list[Case]:
             computed=f"{slow.real:.2f} +- {abs(slow.imag):.2f} i",
             difference="a pair that swings with a damping ratio of "
             f"{-slow.real / abs(slow):.3f}, for two that do not",
-            verdict="erratum",
+            verdict="erratum" if abs(slow / promised + 1.0) > 0.05 else "agrees",
             note="the estimate is taken off as if it were a load of the rotor; it is one of the controller, "
             f"and what it adds is feedback. The fastest pole, {fast:.2g} 1/s, asks for coils that nobody has",
         ),
