@@ -23,7 +23,6 @@ if TYPE_CHECKING:
         run,
         run_up,
         sweep,
-        volume,
     )
     from leblanc.scene.examples import example
     from leblanc.scene.magnetic import MagneticRotor
@@ -32,6 +31,7 @@ if TYPE_CHECKING:
     from leblanc.scene.schema.load import SceneError
     from leblanc.scene.spindle import Spindle
     from leblanc.studies.bearing import bearing
+    from leblanc.studies.volume import volume
     from meshes.chamber import Chamber
     from meshes.errors import InputError
 
@@ -80,10 +80,10 @@ _HOMES = {
     "Spindle": ("leblanc.scene.spindle", "Spindle"),
     "TubRotor": ("leblanc.scene.rotors", "TubRotor"),
     "TwoPlaneRotor": ("leblanc.scene.rotors", "TwoPlaneRotor"),
-    "bearing": ("leblanc.studies.bearing", "bearing"),
+    **{name: (f"leblanc.studies.{name}", name) for name in ("bearing", "volume")},
     "example": ("leblanc.scene.examples", "example"),
     "load_scene": ("leblanc.scene.scene", "load_scene"),
-    **{name: (_API, name) for name in __all__ if name.islower() and name not in ("bearing", "example", "load_scene")},
+    **{name: (_API, name) for name in __all__ if name.islower() and name not in ("bearing", "example", "load_scene", "volume")},
 }
 
 

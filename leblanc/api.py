@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from leblanc.results.explanation import ExciterExplanation, Explanation
     from leblanc.results.fit import FitResult
     from leblanc.results.layer import FreeWaveResult, LayerPeriodsResult, LayerResult
-    from leblanc.results.liquid import ModesResult, VolumeResult
+    from leblanc.results.liquid import ModesResult
     from leblanc.results.machine.layout import LayoutResult
     from leblanc.results.magnetic.control import MagneticResult
     from leblanc.results.magnetic.explanation import MagneticExplanation
@@ -587,46 +587,6 @@ def modes(
     with _keywords():
         question = ask(modes_question, given)
         return answer_modes(**question)
-
-
-def volume(
-    *,
-    radius: Quantity,
-    height: Quantity,
-    eccentricity: Quantity,
-    speed: Quantity,
-    volume: Quantity | None = None,
-    gravity: Quantity = 9.81,
-    inner_radius: Quantity = 0.0,
-) -> VolumeResult:
-    """Volume that just covers the wall at a deflection, and the free surface of a given volume.
-
-    Parameters
-    ----------
-    radius, inner_radius, height : of the chamber, m
-    eccentricity : distance of the rotation axis from the chamber's, m
-    speed : of the spin, rad/s
-    volume : of liquid whose free surface is computed as well, m^3
-    gravity : along the axis, m/s^2
-
-    Raises
-    ------
-    InputError : a value out of its range
-
-    Examples
-    --------
-    >>> import leblanc as lb
-    >>> best = lb.volume(radius=0.2, height=0.05, eccentricity="1 mm", speed=90.0)
-    >>> f"{1e6 * best.optimal_volume:.4f} ml"
-    '54.4396 ml'
-    """
-    given = locals()
-    from leblanc.questions import ask, volume_question
-    from leblanc.studies.volume import answer_volume
-
-    with _keywords():
-        question = ask(volume_question, given)
-        return answer_volume(**question)
 
 
 def _scene(scene: SceneOrPath) -> Scene:

@@ -231,40 +231,6 @@ def modes_question(
     }
 
 
-def volume_question(
-    *,
-    radius: Quantity,
-    height: Quantity,
-    eccentricity: Quantity,
-    speed: Quantity,
-    volume: Quantity | None = None,
-    gravity: Quantity = 9.81,
-    inner_radius: Quantity = 0.0,
-) -> dict[str, Any]:
-    """The question of `volume`, by the names of `leblanc.studies.volume.answer_volume`.
-
-    The parameters are those of `leblanc.api.volume`.
-
-    Raises
-    ------
-    InputError : a value that cannot be read, or is out of its range
-    """
-    chamber = Chamber(
-        parse_option(radius, LENGTH, "--radius"),
-        parse_option(height, LENGTH, "--height"),
-        parse_option(inner_radius, LENGTH, "--inner-radius"),
-    )
-    conditions = {
-        "eccentricity": parse_option(eccentricity, LENGTH, "--eccentricity"),
-        "speed": parse_option(speed, ANGULAR_SPEED, "--speed"),
-        "gravity": parse_option(gravity, ACCELERATION, "--gravity"),
-    }
-    for name, value in conditions.items():
-        require_not_negative(f"--{name}", value)
-    amount = None if volume is None else parse_option(volume, VOLUME, "--volume")
-    return {"chamber": chamber, **conditions, "volume": amount}
-
-
 def optimisation_of(
     scene: Scene,
     objective: str | None = None,

@@ -17,7 +17,8 @@ class Q:
     name: str = ""  #: what it is, a noun phrase that stands alone; from this the name of a variable is made out
     text: str = ""  #: what else a reader needs: "zero to peak", from where an angle counts
     over: tuple[str, ...] = ()  #: names of its dimensions; a quantity over itself alone is a coordinate
-    parts: tuple[str, str] | None = None  #: of a complex number: along which axes its two parts are
+    axes: tuple[str, str] | None = None  #: of a complex number: what lies along its two axes
+    part: bool = False  #: a record, whose own quantities are the answer's as well
     error: str = ""  #: the quantity that is its error
     by: str = ""  #: its equation, as in "rotor, eq. 28"
     flags: str = ""  #: names of the states of a truth value or a code, the last being 1

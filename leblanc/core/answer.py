@@ -18,7 +18,16 @@ class Answer(Result):
     """Base of a frozen dataclass whose fields and properties are declared by `Q`."""
 
     attributes: Mapping[str, Any] = {}  #: of its data file, besides the quantities
+    failed = ""  #: why there is no answer, or none to rely on; empty where there is one
     summary: ClassVar[str] = "leblanc.core.terminal:rows"
+
+    def __getattr__(self, name: str) -> Any:
+        """A quantity of one of its parts; None where it has no such part."""
+        part = quantities.part_with(type(self), name)
+        if part is None:
+            raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+        record = getattr(self, part)
+        return None if record is None else getattr(record, name)
 
     @abstractmethod
     def blocks(self) -> Sequence[Block]:

@@ -11,7 +11,7 @@ from importlib import import_module
 from inspect import Parameter, signature
 from typing import Annotated, Any, TypeVar, get_args, get_origin
 
-from leblanc.units import Dimension, parse
+from leblanc.units import Dimension, parse_option
 from meshes.errors import InputError
 
 Quantity = str | float  # a number in SI units, or a text with its unit
@@ -57,7 +57,7 @@ def ask(question: Callable[..., A], study: str, given: Mapping[str, Any]) -> A:
     values = dict(given)
     for one in parameters(question):
         if one.dimension is not None and values[one.name] is not None:
-            values[one.name] = parse(values[one.name], one.dimension, one.name)
+            values[one.name] = parse_option(values[one.name], one.dimension, one.name)
     module, _, name = study.partition(":")
     answer: A = getattr(import_module(module), name)(**values)
     return answer
@@ -89,6 +89,7 @@ def command(question: Callable[..., Any]) -> Callable[..., None]:
     def run(json: bool, **given: Any) -> None:
         from leblanc.cli.terminal.output import print_json
         from leblanc.core.terminal import show
+        from leblanc.scene.schema.load import NotConverged
 
         try:
             answer = question(**given)
@@ -98,6 +99,8 @@ def command(question: Callable[..., Any]) -> Callable[..., None]:
             print_json(answer.to_json())
         else:
             show(answer.blocks())
+        if answer.failed:
+            raise NotConverged([f"leblanc {question.__name__}: {answer.failed}"])
 
     run.__doc__ = (question.__doc__ or "").partition("\n")[0]
     run.__signature__ = signature(question).replace(parameters=options, return_annotation=None)
