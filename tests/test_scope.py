@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 import re
 from collections import Counter
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -74,21 +75,27 @@ def test_every_row_is_whole() -> None:
         assert cells[2] in STATES, (source, cells)
 
 
-def _leads(cell: str, cases: set[str]) -> list[tuple[str, bool]]:
-    """Where a cell leads, and whether that exists."""
+@cache
+def _commands() -> frozenset[str]:
+    """Names of the commands."""
     from typer.main import get_command
 
     from leblanc.cli import application
+
+    return frozenset(get_command(application()).commands)  # type: ignore[attr-defined]
+
+
+def _leads(cell: str, cases: set[str]) -> list[tuple[str, bool]]:
+    """Where a cell leads, and whether that exists."""
     from validation.command import GROUPS
 
-    commands = get_command(application()).commands  # type: ignore[attr-defined]
     links = re.findall(r"\]\(([^)\s]+)\)", cell)
     found = [(target, (PAGE.parent / target.partition("#")[0]).exists()) for target in links]
     for code in re.findall(r"`([^`]+)`", cell):
         words = code.split()
         if words[0] == "leblanc":
             groups = words[2:3] if words[1] == "validate" else []
-            found.append((code, words[1] in commands and set(groups) <= set(GROUPS)))
+            found.append((code, words[1] in _commands() and set(groups) <= set(GROUPS)))
         elif re.fullmatch(r"[a-z_]+/[\w.-]+", code) and code.partition("/")[0] in GROUPS:
             found.append((code, code in cases))
         elif re.fullmatch(r"(solvers|fluid|leblanc|validation)(\.\w+)+", code):

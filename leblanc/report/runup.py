@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 from leblanc.report.page import About, models, notes, write_page
 from leblanc.report.parts import Cell, Table, doubt, load_part, picture, table
 from leblanc.results.base import one_line, percent
-from leblanc.results.notes.runup import CLOSURE, ERROR, IN_TABLES
+from leblanc.results.notes.response import CLOSURE
+from leblanc.results.notes.runup import ERROR, IN_TABLES
 from leblanc.results.response import peak
 from leblanc.results.runup import RunupResult
 from leblanc.text.numbers import MOST_RANGES, number

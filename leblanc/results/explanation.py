@@ -77,8 +77,8 @@ class LayerExplanation:
 class WhirlOutlook:
     """How large a self-excited whirl may grow, by rule and not by solving for it [theory: whirl, eq. 29]."""
 
-    speed: float  #: spin speed of the scene inside a band of self-excited whirl at which it is largest, rad/s
-    #: of the axis at the chambers, m; mostly within 10 %, up to half of it off next to an edge
+    speed: float  #: spin speed, the middle of the band of self-excited whirl that has the largest one, rad/s
+    #: of the axis at the chambers there, m; mostly within a factor of 1.5
     amplitude: float
     whirl_speed: float  #: in space, rad/s
     lag: float  #: of the liquid behind the drum, rad/s

@@ -334,6 +334,7 @@ class RunResult(Loaded, Result):
     held_whirl_speed = carried("held.whirl_speed")
     held_reason = carried("held.reason")
     held_solver = carried("held.solver")
+    energy_error = carried("held.energy_error")
     liquid_mean = carried("held.liquid")
     liquid_ripple = carried("held.ripple")
     amplitude_down = carried("held.amplitude_down")

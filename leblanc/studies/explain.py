@@ -154,11 +154,11 @@ def explain_balls(scene: Scene) -> BallExplanation:
 
 
 def _whirl(machine: Prepared) -> WhirlOutlook | None:
-    """How large a whirl grows by itself within the scene's speeds; None where none does."""
-    scene, low, high = machine.scene, float(machine.speed.min()), float(machine.speed.max())
-    if not scene.fills or low == high:
+    """How large a whirl grows by itself between the scene's first and last speed; None where none does."""
+    scene, range_ = machine.scene, (float(machine.speed.min()), float(machine.speed.max()))
+    if not scene.fills or range_[0] == range_[1]:
         return None
-    most = largest_estimate(machine.rotor, scene.fills, [(low, high)], scene.model.friction)
+    most = largest_estimate(machine.rotor, scene.fills, range_, scene.model.friction)
     if most is None:
         return None
     return WhirlOutlook(most.spin, most.amplitude, most.whirl_speed, most.lag)

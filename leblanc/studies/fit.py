@@ -74,7 +74,7 @@ def fit_scene(
     noise: str = ESTIMATE,
     file: str | PathLike[str] | None = None,
 ) -> FitResult:
-    """Values of a scene that bring its answer closest to what was measured [theory: fit, eq. 1-12].
+    """Values of a scene that bring its answer closest to what was measured [theory: fit, eq. 1-13].
 
     Parameters
     ----------

@@ -60,8 +60,8 @@ def machine_rows(answer: Explanation) -> Rows:
     if answer.whirl is not None:
         size, speed = with_unit(answer.whirl.amplitude, LENGTH), in_rpm(answer.whirl.speed)
         turning = in_rpm(answer.whirl.whirl_speed)
-        text = f"grows by itself to about {size} at {speed}, turning at {turning}: an estimate"
-        rows.append(("whirl", f"{text}, see `map --cycles`"))
+        text = f"grows by itself to about {size} at {speed}, the middle of its band, turning at {turning}"
+        rows.append(("whirl", f"{text}: an estimate, see `map --cycles`"))
     if answer.held is not None:
         rows.append(("held in time", _held_words(answer.held, answer.tolerance)))
     return rows

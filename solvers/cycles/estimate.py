@@ -15,8 +15,8 @@ from meshes.arrays import Array, Complex
 from solvers.cycles.balance import Circular, NotCircularError, Place, circular
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import Rotor
-from solvers.whirl.edges import unstable_bands
-from solvers.whirl.growth import asynchronous_growth, growth_at
+from solvers.whirl.edges import Bands, unstable_bands
+from solvers.whirl.growth import growth_at
 
 # The whirl drags the liquid back until it turns at about this share of the speed where whirls begin to grow.
 _DRAGGED = 0.955
@@ -24,7 +24,6 @@ _DRAGGED = 0.955
 # fitted to limit cycles of 74 random machines.
 _WHOLE, _WEAKENING = 0.75, 1.4
 _GRID = 241  # speeds among which bands are looked for
-_SAMPLES = 33  # speeds within a band, among which the largest whirl is
 _BELOW, _ABOVE = 0.6, 1.5  # of the first and of the last speed, where edges of bands are looked for
 
 
@@ -119,10 +118,31 @@ def whirl_estimate(
     -------
     An estimate for each speed; None outside the bands, and where the whirl is no circle or nothing bounds it
     """
-    machine = _bounded(rotor, fills, friction)
+    machine = _settling(rotor, fills, friction)
     if machine is None:
         return (None,) * len(speeds)
     bands = list(undamped_bands(rotor, fills, (_BELOW * float(speeds[0]), _ABOVE * float(speeds[-1]))))
+    return _by_rule(rotor, fills, machine, bands, speeds, friction)
+
+
+def _settling(rotor: Rotor, fills: Sequence[Fill], friction: Friction) -> Circular | None:
+    """A rotor's circles, if its whirls are circles and something bounds them."""
+    try:
+        machine = circular(rotor.system(), fills, friction)
+    except NotCircularError:
+        return None
+    return None if unsettled(machine, friction) else machine
+
+
+def _by_rule(
+    rotor: Rotor,
+    fills: Sequence[Fill],
+    machine: Circular,
+    bands: Sequence[tuple[float, float, float]],
+    speeds: Array,
+    friction: Friction,
+) -> tuple[Estimate | None, ...]:
+    """`whirl_estimate` with its circles and the bands without friction and damping, see `undamped_bands`."""
     whirls: dict[int, Estimate] = {}
     for k, speed in enumerate(speeds.tolist()):
         here = [(lower, near) for lower, upper, near in bands if lower < speed < upper]
@@ -140,15 +160,6 @@ def whirl_estimate(
     return tuple(found)
 
 
-def _bounded(rotor: Rotor, fills: Sequence[Fill], friction: Friction) -> Circular | None:
-    """The machine whose whirls are circles of a certain size; None where they are not."""
-    try:
-        machine = circular(rotor.system(), fills, friction)
-    except NotCircularError:
-        return None
-    return None if unsettled(machine, friction) else machine
-
-
 def _shares(rotor: Rotor, fills: Sequence[Fill], speeds: Array, friction: Friction) -> Array:
     """Share of the whole whirl that weak growth leaves at speeds inside undamped bands, shape (n,).
 
@@ -163,33 +174,33 @@ def _shares(rotor: Rotor, fills: Sequence[Fill], speeds: Array, friction: Fricti
 
 
 def largest_estimate(
-    rotor: Rotor, fills: Sequence[Fill], ranges: Sequence[tuple[float, float]], friction: Friction
+    rotor: Rotor,
+    fills: Sequence[Fill],
+    range_: tuple[float, float],
+    friction: Friction,
+    bands: Bands | None = None,
 ) -> Estimate | None:
-    """The largest of the whirls that grow by themselves, by rule; None where none does.
+    """The largest of the whirls in the middles of the bands, by rule; None where nothing grows by itself.
 
-    Of evenly spaced speeds within the bands without friction and damping, outside of which the rule has none.
+    A middle is that of what a band has in common with one without friction and damping. Next to the upper
+    edge of that one [theory: whirl, eq. 31] leaps, as the undamped growth goes to nothing there.
 
     Parameters
     ----------
     rotor, fills, friction : as for `solvers.cycles.cycles.limit_cycles`
-    ranges : first and last speed of each, rad/s
+    range_ : first and last speed, rad/s
+    bands : in which some whirl grows, rad/s; solved for if None
     """
-    if _bounded(rotor, fills, friction) is None:
+    machine = _settling(rotor, fills, friction)
+    if machine is None:
         return None
-    asked = []
-    for low, high in ranges:
-        for lower, upper, _ in undamped_bands(rotor, fills, (_BELOW * low, _ABOVE * high)):
-            first, last = max(low, lower), min(high, upper)
-            if first < last:
-                asked.append(np.linspace(first, last, _SAMPLES + 2)[1:-1])
-    if not asked:
-        return None
-    speeds = np.unique(np.concatenate(asked))
-    growth = asynchronous_growth(rotor, fills, speeds, friction)[0]
-    found = whirl_estimate(rotor, fills, speeds, friction)
-    rising = zip(found, (growth > 0.0).tolist(), strict=True)
-    known = [whirl for whirl, grows in rising if grows and whirl is not None and whirl.lag > 0.0]
-    return max(known, key=lambda estimate: estimate.amplitude, default=None)
+    if bands is None:
+        (bands,) = unstable_bands(rotor, [fills], np.array(range_), friction)
+    free = list(undamped_bands(rotor, fills, (_BELOW * range_[0], _ABOVE * range_[1]))) if bands else []
+    shared = [(max(low, lower), min(high, upper)) for low, high in bands for lower, upper, _ in free]
+    middles = np.array(sorted(0.5 * (low + high) for low, high in shared if low < high))
+    found = _by_rule(rotor, fills, machine, free, middles, friction)
+    return max((whirl for whirl in found if whirl), key=lambda whirl: whirl.amplitude, default=None)
 
 
 def unsettled(machine: Circular, friction: Friction) -> str:

@@ -27,7 +27,7 @@ from solvers.potential.coupled import (
     rough,
 )
 from solvers.potential.unsteady import answer, laid, levelled, node_angles, resampled, seen
-from solvers.runup.state import layer_capture, planes_of
+from solvers.runup.state import WORKS, layer_capture, planes_of
 
 MOST = 512  # nodes, beyond which a wave that wants more is none that can be told
 _DAMPING = 1.0  # of the shortest waves
@@ -207,7 +207,10 @@ def _told(exact: ExactMachine, ends: tuple[Array, Array], course: Course, watch:
     steps = _steps(exact, exact.parts(before), course, turn)
     steps[:, 0] += watch.count * turn
     steps[:, 1] += 2.0 * math.pi * watch.count
-    watch.heats.append(float(np.mean(course.heat)) * turn)
+    unbalance, gravity, drive, support, friction, gained = course.balance.tolist()
+    works = {"unbalance": unbalance, "gravity": gravity, "drive": drive, "support": support}
+    works["friction"] = friction
+    watch.balances.append(np.array([*(works.get(name, 0.0) for name in WORKS), gained]))
     enough = watch.turn(steps, areas, turning)
     if not np.array_equal(known, turning.data):
         n = parts.place.size

@@ -243,7 +243,7 @@ def _march(
     tracker = TurnTracker(equation, turn, watch.turn, marks)
     options = {"solver": numerics.solver, **_stepping(equation, state.grid, numerics, turn / marks)}
     state, outcome = run(equation, state, stretch, [tracker, *trackers], **options)
-    watch.heats = tracker.heats
+    watch.balances = tracker.balances
     area, momentum, place, rate = (part.copy() for part in equation.parts(state))
     return Moment(moment.spin, place, rate, area, momentum, moment.layers), outcome
 

@@ -122,6 +122,9 @@ class HeldState:
     #: mean power that supports, friction, baffles and bores turn into heat, W; nan where the solver does not
     #: tell it
     heat: float = math.nan
+    #: what the balance of energy of the last turns leaves, over the largest of the works of unbalance and
+    #: drive and of the heats; nan where the solver does not tell it
+    energy_error: float = math.nan
 
     @property
     def settled(self) -> bool:

@@ -17,7 +17,8 @@ from solvers.held.state import SHORT, HeldKind, HeldMachine, HeldState, HoldNume
 from solvers.layer.inside import full_area
 from solvers.layer.records import Outcome
 from solvers.runup.path import FINE, apart, evenly, fastest_frequency
-from solvers.runup.state import mean_area, planes_of
+from solvers.runup.runup import EnergyAudit
+from solvers.runup.state import WORKS, mean_area, planes_of
 
 # Turns after which a motion may be called periodic; a limit cycle is judged over windows from `_LONG` on.
 _FEW, _LONG = 4, 32
@@ -37,6 +38,7 @@ _NUDGE, _PROBED, _SURE, _LEFT = 0.002, 16, 1.1, 0.2
 _NOISE, _FAR = 1e-3, 1e3  # what counts as noise there; weights beyond which a guess is none
 _DIES = 0.8  # of the spread of a window's means in the next, where the motion dies
 _ALIKE = 0.02  # of the amplitude, by which the extremes of two windows of a limit cycle may differ
+_ELASTIC, _ROUNDING = 1e-3, 1e-12  # of the elastic and of the spun energy: no balance is measured by less
 _SWING = 0.1  # of the way between the extremes, by which that may
 _MEANS = 5.0  # times the tolerance, by which their means may
 _LIES = 0.5  # of the spin, by which liquid that has filled its gap lags where it lies at the bottom
@@ -70,7 +72,9 @@ class Watch:
         self.window = min(self.window, numerics.turns // 2)
         self.quick = abs(self.slowest) * _LONG > _QUICK
         self.count, self.steps = 0, 0
-        self.heats: list[float] = []  # of each turn, J, where they are told
+        #: of each turn, where they are told: works and heats as `WORKS`, "bores" with what the scheme gives
+        #: back, and what the energy gains, J
+        self.balances: list[Array] = []
         self.forget(begin.layers)
 
     def forget(self, layers: Flags) -> None:
@@ -292,12 +296,14 @@ class Watch:
         dry[which] = np.min(areas, axis=0) <= 0.0
         turning = np.zeros(len(machine.fills))
         turning[which] = _mean_rotation(machine, spin, moment.area, moment.momentum, which)
-        reason = outcome.message
+        balance = self._balance(turns, steps)
+        faults = "; ".join((*balance.pop("faults", ()), *self._beyond(steps)))
+        reason = "; ".join(filter(None, (outcome.message, faults)))
         if self.kind is HeldKind.NOT_SETTLED and not reason:
             reason = f"the motion still changes after {self.count} turns"
         return HeldState(
             spin=spin,
-            kind=self.kind if outcome is Outcome.DONE else HeldKind.NOT_SETTLED,
+            kind=self.kind if outcome is Outcome.DONE and not faults else HeldKind.NOT_SETTLED,
             amplitude=float(weight @ np.abs(deflection)),
             crest=float(sizes[:, 2].mean()),
             least=float(sizes[:, 1].min()),
@@ -317,8 +323,41 @@ class Watch:
             moment=moment,
             reason=reason,
             path=self._path(_SHORT if short else turns),
-            heat=float(np.mean(self.heats[-turns:])) * spin / (2.0 * math.pi) if self.heats else math.nan,
+            **balance,
         )
+
+    def _balance(self, turns: int, steps: Array) -> dict[str, Any]:
+        """Heat, energy error and violations of the balance in the last turns; nothing where none is known."""
+        told = self.balances[-turns:]
+        if not told:
+            return {}
+        *works, change = np.sum(told, axis=0).tolist()
+        known = dict(zip(WORKS, works, strict=True))
+        # Bores give nothing back: what the scheme does is no heat, the balance leaves it.
+        audit = EnergyAudit(**known | {"bores": max(known["bores"], 0.0)}, captured=0.0, change=change)
+        # Undamped motion turns nothing into heat: its own energy is the measure then.
+        n = self.begin.coordinates.size
+        place = steps[:, 2 : 2 + n] - steps[:, 2 : 2 + n].mean(axis=0)
+        elastic = 0.5 * float(np.einsum("ki,ij,kj->k", place, self.machine.system.stiffness, place).max())
+        # A liquid that turns by a rounding of its energy does not move.
+        fills, spin = self.machine.fills, self.begin.spin
+        turning = sum(fill.mass * (spin * fill.chamber.radius) ** 2 for fill in fills)
+        scale = max(audit.scale, _ELASTIC * elastic, _ROUNDING * turning)
+        error = abs(audit.remainder) / scale if scale > 0.0 else 0.0
+        return {
+            "heat": audit.dissipated * spin / (2.0 * math.pi * len(told)),
+            "energy_error": error if math.isfinite(error) else math.inf,
+            "faults": audit.faults_beside(scale),
+        }
+
+    def _beyond(self, steps: Array) -> list[str]:
+        """Chambers whose axis is deflected beyond their wall."""
+        found, n = [], self.begin.coordinates.size
+        for j, (plane, fill) in enumerate(zip(self.planes, self.machine.fills, strict=True)):
+            size, wall = float(np.hypot(*(plane @ steps[:, 2 : 2 + n].T)).max()), fill.chamber.radius
+            if not size <= wall:
+                found.append(f"the axis of chamber {j + 1} is deflected by {size:.3g} m, beyond {wall:.3g} m")
+        return found
 
     def _path(self, turns: int) -> Array:
         """Time and coordinates of the last turns, at moments evenly apart."""

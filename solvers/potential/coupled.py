@@ -10,7 +10,7 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import astuple, dataclass, replace
 from enum import StrEnum
 
 import numpy as np
@@ -233,7 +233,8 @@ class Course:
     moment: Complex
     momentum: Complex
     state: Array  #: at the end
-    heat: Array  #: power of supports and friction, W, shape (m,)
+    #: integrals over time of the powers, J, in the order of `Powers`, and what the energy has gained
+    balance: Array
     ended: Ended  #: why it went no further
 
 
@@ -314,7 +315,8 @@ def advance(
         max_step=longest,
         first_step=min(longest, stretch[1] - stretch[0]),
     )
-    rows: list[tuple[float, Array, Array, list[complex], list[complex], float]] = []
+    rows: list[tuple[float, Array, Array, list[complex], list[complex], Array]] = []
+    powers = np.array([astuple(machine.powers(stretch[0], begin))])
     volumes, ended = _volumes(machine, begin), Ended.DONE
     while solver.status == "running" and ended is Ended.DONE:
         with np.errstate(all="ignore"):
@@ -327,8 +329,10 @@ def advance(
         parts, power = machine.parts(solver.y), machine.powers(solver.t, solver.y)
         answers = [answer(wave) for wave in parts.waves]
         moment, momentum = ([getattr(found, name) for found in answers] for name in ("moment", "momentum"))
-        heat = power.support + power.friction
-        rows.append((solver.t, parts.place.copy(), parts.rate.copy(), moment, momentum, heat))
+        own = solver.t, parts.place.copy(), parts.rate.copy(), moment, momentum
+        rows.append((*own, np.array(astuple(power))))
+    powers = np.vstack((powers, *(row[5] for row in rows)))
+    whole = np.trapezoid(powers, [stretch[0], *(row[0] for row in rows)], axis=0)
     return Course(
         time=np.array([row[0] for row in rows]),
         place=np.array([row[1] for row in rows]).reshape(-1, n),
@@ -336,7 +340,7 @@ def advance(
         moment=np.array([row[3] for row in rows], dtype=complex).reshape(len(rows), len(machine.layers)),
         momentum=np.array([row[4] for row in rows], dtype=complex).reshape(len(rows), len(machine.layers)),
         state=solver.y.copy(),
-        heat=np.array([row[5] for row in rows]),
+        balance=np.append(whole, machine.energy(solver.y) - machine.energy(begin)),
         ended=ended,
     )
 

@@ -399,17 +399,20 @@ class CoupledSolver(SolverBase):  # type: ignore[no-untyped-call]
         self.equation.parts(state)
         self._select_backend(state)
         self.info |= {"dt": None, "dt_adaptive": True, "stochastic": False, "steps": 0}
-        self.info |= {"courant": self.courant, "outcome": Outcome.DONE, "followed": None, "heat": 0.0}
+        self.info |= {"courant": self.courant, "outcome": Outcome.DONE, "followed": None}
         machine = self.equation.machine(state.grid.shape[0])
+        self.info["balance"] = np.zeros(machine.works().size + 1)
         machine.follow(_ROWS if self.follow else 0)
         left: Array | None = None
+        begun = 0.0
 
         def advance(state: Any, start: float, stop: float) -> float:
-            nonlocal left
+            nonlocal left, begun
             # Where nobody has touched the state the steps go on as if there had been no stop.
             if left is None or not np.array_equal(left, state.data):
                 self._load(machine, state, start)
-            steps = machine.sums.steps
+                begun = machine.energy()
+            steps, before = machine.sums.steps, machine.works()
             most = _budget(machine, stop, self.courant)
             outcome = machine.advance(stop, 0.0, self.courant, most)
             self.info["outcome"] = outcome
@@ -419,8 +422,9 @@ class CoupledSolver(SolverBase):  # type: ignore[no-untyped-call]
             left = state.data.copy()
             self.info["steps"] += int(machine.sums.steps - steps)
             self.info["followed"] = machine.followed() if self.follow else None
-            sums = machine.sums
-            self.info["heat"] = float(sums.support + sums.friction + sums.baffles + sums.lost)
+            done, energy = machine.works() - before, machine.energy()
+            self.info["balance"] = self.info["balance"] + np.append(done, energy - begun)
+            begun = energy
             return stop
 
         return advance
@@ -499,7 +503,8 @@ class TurnTracker(TrackerBase):  # type: ignore[no-untyped-call]
 
     Attributes
     ----------
-    heats : what each turn has turned into heat, J; none where the solver does not tell it
+    balances : works and heats of each turn, as `solvers.runup.state.WORKS`, and last what the energy of
+        rotor and liquid has gained, J; none where the solver does not tell them
     """
 
     def __init__(
@@ -513,8 +518,8 @@ class TurnTracker(TrackerBase):  # type: ignore[no-untyped-call]
         self.equation, self.enough, self.marks = equation, enough, marks
         self.steps: list[Array] = []
         self.layers: list[Array] = []
-        self.heats: list[float] = []
-        self._heat = 0.0
+        self.balances: list[Array] = []
+        self._balance: Array | float = 0.0
 
     def initialize(self, field: Any, info: dict[str, Any] | None = None) -> float:
         """Keep a hand on what the solver tells."""
@@ -531,9 +536,9 @@ class TurnTracker(TrackerBase):  # type: ignore[no-untyped-call]
         self.layers.append(self.equation.parts(field)[0].copy())
         if len(self.layers) < self.marks:
             return
-        if "heat" in told:
-            self.heats.append(told["heat"] - self._heat)
-            self._heat = told["heat"]
+        if "balance" in told:
+            self.balances.append(told["balance"] - self._balance)
+            self._balance = told["balance"]
         turn, layers = np.concatenate(self.steps), np.stack(self.layers)
         self.steps, self.layers = [], []
         if self.enough(turn, layers, field):

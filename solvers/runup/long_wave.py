@@ -26,6 +26,7 @@ from solvers.runup.state import (
     PACE,
     POOL,
     SUMS,
+    WORKS,
     CoupledRotor,
     Machine,
     Room,
@@ -172,6 +173,10 @@ class Coupled(CoupledRotor):
                 self.balls, self.machine.races, v, self.state.roll, self.state.roll_rate, self.spin
             )
         )
+
+    def works(self) -> Array:
+        """Works and heats so far, J, in the order of `WORKS`; of bores with what the scheme gives back."""
+        return np.array([self.sums["lost" if name == "bores" else name] for name in WORKS], dtype=float)
 
     def _pressed(self) -> float:
         """Energy of what full gaps hold beyond their room, J [theory: long_wave, eq. 19]."""

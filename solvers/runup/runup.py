@@ -33,6 +33,7 @@ from solvers.runup.machine import (
 )
 from solvers.runup.path import Recorder, RotorPath, fastest_frequency
 from solvers.runup.shedding import Shedding
+from solvers.runup.state import WORKS
 from solvers.slices import step_budget
 
 
@@ -113,15 +114,19 @@ class EnergyAudit:
     @property
     def faults(self) -> tuple[str, ...]:
         """Violations of the energy balance: energy unaccounted for, heat below zero; each with its term."""
+        return self.faults_beside(self.scale)
+
+    def faults_beside(self, scale: float) -> tuple[str, ...]:
+        """The same beside another scale, J."""
         found = [
             f"the heat of {text} is {heat:.3g} J, below zero"
             for name, text in HEATS.items()
-            if (heat := getattr(self, name)) < -COLD * self.scale
+            if (heat := getattr(self, name)) < -COLD * scale
         ]
-        if self.closure > OPEN:
-            found.append(
-                f"the energy balance leaves {self.remainder:.3g} J, {self.closure:.1%} of its largest term"
-            )
+        left = self.remainder
+        if not abs(left) <= OPEN * scale:
+            share = abs(left) / scale if scale > 0.0 else math.inf
+            found.append(f"the energy balance leaves {left:.3g} J, {share:.1%} of its largest term")
         return tuple(found)
 
 
@@ -376,7 +381,7 @@ def _march(
     audit = EnergyAudit(
         captured=captured + shedding.brought,
         change=machine.energy() - energy,
-        **{name: float(sums[name]) for name in _WORKS},
+        **{name: float(sums[name]) for name in WORKS},
     )
     shots = LayerSnapshots(np.array(kept, dtype=np.intp), machine.theta, np.array(depths)) if wanted else None
     read: dict[str, Any] = {
@@ -403,9 +408,6 @@ def _march(
         handover=numerics.handover,
         path=None if recorder is None else recorder.path([each.time for each in machine.transfers]),
     )
-
-
-_WORKS = ("unbalance", "drive", "gravity", "support", "friction", "bores", "baffles", "profile", "motor")
 
 
 def _advance(

@@ -178,6 +178,10 @@ SUMS = floats(
 )
 
 
+# Works and heats among them, J.
+WORKS = ("unbalance", "drive", "gravity", "support", "friction", "bores", "baffles", "profile", "motor")
+
+
 class Machine(NamedTuple):
     """Rotor and layers; n coordinates, l layers, c cells.
 

@@ -46,6 +46,9 @@ class Held:
     #: ones, relative; nan where there is no whirl or no estimate, shape (n,); no entry where that is not
     #: known
     wave_error: Array = field(default_factory=lambda: np.zeros(0))
+    #: what the balance of energy of the last turns leaves, over the largest of the works of unbalance and
+    #: drive and of the heats; nan where the solver does not tell it, shape (n,); no entry where not known
+    energy_error: Array = field(default_factory=lambda: np.zeros(0))
 
     @property
     def limit_cycle(self) -> Flags:
@@ -86,6 +89,7 @@ class Held:
             "state_down": self.state_down.tolist(),
             "held_reason": self.reason.tolist(),
             "held_solver": self.solver,
+            "energy_error": finite(self.energy_error),
         }
 
     def variables(self) -> dict[str, Variable]:
@@ -95,6 +99,9 @@ class Held:
         if self.wave_error.size:
             text = "of long waves beside exact ones, under the whirl of a limit cycle"
             more["held_wave_error"] = var(over, self.wave_error, "1", "estimated error of the waves", text)
+        if self.energy_error.size:
+            text = "what the balance of energy of the last turns leaves"
+            more["energy_error"] = var(over, self.energy_error, "1", "energy error", text)
         if self.reason.size:
             text = "why the motion has not settled"
             more["held_reason"] = var(over, self.reason, "1", text, "empty where it has, or was not held")

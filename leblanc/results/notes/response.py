@@ -46,12 +46,14 @@ class RunCode(NoteCode):
     HELD = "held"
     ONE_FAMILY = "one_family"
     NOT_SETTLED = "not_settled"
+    ENERGY = "energy"
     LARGE_WHIRL = "large_whirl"
     THICK_WALL_LAYER = "thick_wall_layer"
     UNBALANCE_LEAVES = "unbalance_leaves"
     LOADS = "loads"
 
 
+CLOSURE = 1e-3  # of the work: what the energy balance may leave
 # What a page that shows the table of models says there already.
 OF_MODELS = (RunCode.LIQUID_MODEL, RunCode.TOLERANCE_MISSED)
 
@@ -264,6 +266,10 @@ def held_motions(held: Held, speed: Array) -> list[Note]:
             f"{_between(speed[lost])}{f': {why}' if why else ''}. Do not rely on the numbers there."
         )
         found.append(Note(RunCode.NOT_SETTLED, {"speed": tuple(speed[lost].tolist())}, text))
+    left = float(held.energy_error[~np.isnan(held.energy_error)].max(initial=0.0))
+    if left > CLOSURE:
+        text = f"The energy balance of the motions held leaves up to {left:.1%} of the work unaccounted for."
+        found.append(Note(RunCode.ENERGY, {"energy_error": left}, text))
     return found
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from fluid.friction.laws import Friction
 from leblanc.results.base import Note, NoteCode, percent
-from leblanc.results.notes.response import STANDS
+from leblanc.results.notes.response import CLOSURE, STANDS
 from leblanc.results.response import peak
 from leblanc.units import (
     LENGTH,
@@ -31,7 +31,6 @@ if TYPE_CHECKING:
     from solvers.synchronous.response import Response
 
 
-CLOSURE = 1e-3  # of the work: what the energy balance may leave
 SETTLED = 1e-6  # of the largest amplitude: what rounding may change without being spoken of
 ERROR = 0.02  # of the largest amplitude: an error estimate to speak of
 # Round a wall: on front loaders with 0.2 to 1.4 l in each ring 32 cells change the largest amplitude by up to
@@ -414,8 +413,8 @@ def self_excited_on_the_way(
         size, speed = whirl
         found |= {"amplitude": size, "speed": speed}
         text += (
-            f" Given time, it grows to about {with_unit(size, LENGTH)} at {in_rpm(speed)} by an estimate, "
-            "and may be carried beyond the band; `leblanc map --cycles` solves for it."
+            f" Given time, it grows to about {with_unit(size, LENGTH)} at {in_rpm(speed)}, the middle of the "
+            "band, by an estimate, and may be carried beyond the band; `leblanc map --cycles` solves for it."
         )
     return Note(RunupCode.SELF_EXCITED, found, text)
 

@@ -68,7 +68,7 @@ class Judged:
     x: Array  #: logarithms or steps, shape (p,)
     noise: Noise
     sigma: tuple[Array, ...]  #: standard deviation of each value of each quantity, shape (n,)
-    unlikely: float  #: minus twice the logarithm of the likelihood
+    unlikely: float  #: minus twice the logarithm of the likelihood, nan without a search
     ended: bool  #: the last search came to its end
 
 
@@ -140,9 +140,15 @@ def kinds_of(problem: Problem, stated: tuple[str, float]) -> tuple[str, ...]:
 
 
 def unlikely(problem: Problem, x: Array, sigma: Sequence[Array]) -> float:
-    """Minus twice the logarithm of the likelihood of what was measured, but for a constant."""
-    squares = float(np.sum(np.square(problem.weighted(sigma)(x))))
-    return squares + 2.0 * sum(float(np.sum(np.log(each))) for each in sigma)
+    """Minus twice the logarithm of the likelihood of some noise, whatever the values [theory: fit, eq. 13].
+
+    The likelihood at the best values alone prefers noise by which a few readings, met by the values, count.
+    """
+    residual = problem.weighted(sigma)
+    jacobian = problem.jacobian(residual, x)
+    squares = float(np.sum(np.square(residual(x))))
+    _, told = np.linalg.slogdet(np.eye(x.size) + jacobian.T @ jacobian)
+    return squares + 2.0 * sum(float(np.sum(np.log(each))) for each in sigma) + float(told)
 
 
 def refine(problem: Problem, x: Array, stated: tuple[str, float], kind: str) -> Judged:
@@ -162,7 +168,7 @@ def refine(problem: Problem, x: Array, stated: tuple[str, float], kind: str) -> 
 def here(problem: Problem, x: Array, stated: tuple[str, float], kind: str) -> Judged:
     """Noise of one kind by what some values leave, without a search."""
     noise, sigma = _noise(problem, x, stated, kind)
-    return Judged(x, noise, tuple(sigma), unlikely(problem, x, sigma), True)
+    return Judged(x, noise, tuple(sigma), np.nan, True)
 
 
 def unexplained(problem: Problem, judged: Judged) -> Note | None:
@@ -183,8 +189,10 @@ def unexplained(problem: Problem, judged: Judged) -> Note | None:
             size = np.sqrt(squares / max(problem.freedom, 1))
             return poor_note(rms, f"it is {units.number(float(size))} times the noise that was stated")
         return None
-    if rms > POOR:
-        return poor_note(rms, "no sensor has so much noise")
+    if rms > POOR and _replicates(problem) <= _FEW:
+        # Few values let a resonance in the wrong place pass for noise of a half, and the intervals of noise
+        # like that hold the truth too rarely.
+        return poor_note(rms, "so much is noise only if it is stated (--noise) or rows that repeat show it")
     if problem.freedom <= _FEW:
         return few_note(rms, problem.freedom)
     for reason in (
@@ -234,6 +242,12 @@ def _basis(problem: Problem, judged: Judged) -> Array:
     return np.asarray(turn[:, singular > 1e-7 * singular[0]])
 
 
+def _replicates(problem: Problem) -> int:
+    """Degrees of freedom of rows that repeat about their means."""
+    at = problem.measurement.at
+    return len(problem.names) * (at.size - np.unique(at).size)
+
+
 def _repeated(problem: Problem, white: Sequence[Array]) -> str:
     """Rows of one speed scatter less than what is left: their noise is known without the scene."""
     from scipy.special import fdtrc
@@ -244,7 +258,7 @@ def _repeated(problem: Problem, white: Sequence[Array]) -> str:
         means = np.bincount(where, each) / counts
         own += float(np.sum(np.square(each - means[where])))
         squares += float(np.sum(np.square(each)))
-    inside = len(white) * int(np.sum(counts - 1))
+    inside = _replicates(problem)
     outside = problem.freedom - inside
     if inside < 1 or outside < 1:
         return ""

@@ -302,4 +302,5 @@ def held_result(found: HeldBranches, machine: Prepared, at: Index, solver: str) 
         solver=OWN_STEPS if model == "potential" else solver,
         model=model,
         wave_error=spread(wave_errors(machine, up)),
+        energy_error=spread([state.energy_error for state in up]),
     )

@@ -103,7 +103,13 @@ def walls_of(chamber: FilledChamber) -> list[np.ndarray]:
     if chamber.section is None:
         turn = np.exp(1j * np.linspace(0.0, 2.0 * math.pi, 7201))
         return [radius * turn for radius in (chamber.radius, chamber.inner_radius) if radius > 0.0]
-    mesh = chamber.section.mesh
+    return section_walls(chamber.section)
+
+
+@cache
+def section_walls(section: ChamberSection) -> list[np.ndarray]:
+    """Sides that one triangle has alone, in eight pieces each, m."""
+    mesh = section.mesh
     count: dict[tuple[int, ...], list[int]] = {}
     for nodes in mesh.triangles.tolist():
         for a, b, middle in ((0, 1, 3), (1, 2, 4), (2, 0, 5)):
@@ -131,10 +137,10 @@ def outside(chamber: FilledChamber, points: np.ndarray) -> float:
         end.real - start.real, end.imag - start.imag, where=crossed, out=np.zeros(crossed.shape)
     )
     inside = np.sum(crossed & (at > z.real), axis=1) % 2 == 1
-    along = end - start
+    # Those inside are on the right side; of the others, how far they are.
+    along, z = end - start, z[~inside]
     share = np.clip(((z - start) * along.conj()).real / np.abs(along) ** 2, 0.0, 1.0)
-    near = np.abs(z - start - share * along).min(axis=1)
-    return float(near[~inside].max(initial=0.0))
+    return float(np.abs(z - start - share * along).min(axis=1).max(initial=0.0))
 
 
 def check(chambers: tuple[FilledChamber, ...], *deflections: complex, slowest: float = 0.0) -> None:
@@ -232,7 +238,7 @@ def gap(here: FilledChamber, z: np.ndarray) -> float:
 
 def touches(here: FilledChamber, moved: complex) -> bool:
     """In truth: a circle about the axis of rotation, found by counting points of a grid."""
-    side = np.linspace(-1.05, 1.05, 1201) * here.radius
+    side = np.linspace(-1.05, 1.05, 601) * here.radius  # the area to 1e-4 of it
     grid = (side[:, None] + 1j * side[None, :]).ravel()
     if here.section is None:
         inside = (np.abs(grid) < here.radius) & (np.abs(grid) > here.inner_radius)

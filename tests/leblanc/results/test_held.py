@@ -62,12 +62,14 @@ def test_json_and_data_file_have_the_same_motions(tmp_path: Path) -> None:
         "held_error",
         "held_wave_error",
         "held_whirl_speed",
+        "energy_error",
         "amplitude_down",
         "amplitude_min",
         "amplitude_max",
     ):
         np.testing.assert_array_equal(np.array(found[key], dtype=float), data[key].values)
         np.testing.assert_array_equal(np.array(found[key], dtype=float), getattr(result, key))
+    assert [error is not None for error in found["energy_error"]] == held.at.tolist()
     for key in ("liquid_mean", "liquid_ripple"):
         assert [row != [None] and row != [[None, None]] for row in found[key]] == held.at.tolist()
     assert data["held_solver"].item() == found["held_solver"] == result.held_solver == "coupled"
@@ -147,6 +149,9 @@ def test_notes_count_what_was_held() -> None:
     assert "at 195 rpm: the motion still changes after 1024 turns" in restless.text
     settled = replace(held, state=np.where(held.not_settled, "periodic", held.state))
     assert [note.code for note in notes.held_motions(settled, speed)] == [RunCode.HELD]
+    leaky = replace(settled, energy_error=np.where(held.limit_cycle, 4e-3, np.nan))
+    assert [note.code for note in notes.held_motions(leaky, speed)] == [RunCode.HELD, RunCode.ENERGY]
+    assert "leaves up to 0.4%" in notes.held_motions(leaky, speed)[-1].text
 
 
 def test_what_has_not_settled_on_the_way_down_is_no_hysteresis() -> None:

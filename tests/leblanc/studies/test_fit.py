@@ -17,7 +17,8 @@ from leblanc.scene.scene import scene_from_table
 from leblanc.studies.fit import fit_scene
 from leblanc.studies.fitting.errors import averaged, curvature
 from leblanc.studies.fitting.measured import Measurement, read_measured
-from leblanc.studies.fitting.noise import Judged, alike_by_chance
+from leblanc.studies.fitting.noise import Judged, alike_by_chance, refine
+from leblanc.studies.fitting.problem import Problem
 from leblanc.studies.fitting.problem import answer as _answer
 from meshes.arrays import Array
 from meshes.errors import InputError
@@ -228,6 +229,24 @@ def test_two_kinds_of_noise() -> None:
     assert averaged(curvature(np.eye(1)), best, curvature(np.eye(1) / 0.2), other).std[0] == 1.0
 
 
+@kills("leblanc.studies.fitting.noise:unlikely", " + float(told)", "")
+def test_likelihood_of_a_kind() -> None:
+    """That of the readings whatever the value: its integral, the value known to a factor of e before."""
+    paths, table = ("rotor.stiffness",), measured(0.02, 3)
+    problem = Problem(MACHINE, (paths,), TRUTH[:1], table, "given")
+    judged = refine(problem, np.zeros(1), ("estimate", 0.0), "absolute")
+    residual = problem.weighted(judged.sigma)
+    places = judged.x + np.linspace(-0.02, 0.02, 101)[:, None]
+    problem.ahead(list(places))
+    sums = [float(np.sum(np.square(residual(x)))) for x in places]
+    chance = np.exp(-0.5 * np.array(sums)) / math.sqrt(2.0 * math.pi)
+    whole = 2.0 * sum(float(np.log(each).sum()) for each in judged.sigma) - 2.0 * math.log(
+        float(np.trapezoid(chance, places[:, 0]))
+    )
+    # The value is told to 1e-3, over which the answer bends by some per cent at most.
+    assert judged.unlikely == pytest.approx(whole, abs=0.05)
+
+
 @pytest.mark.usefixtures("one_valley")
 def test_over_time() -> None:
     """A run-up: the stiffness and the damping of a dry machine from its amplitude over time."""
@@ -397,6 +416,30 @@ def test_rows_that_repeat_tell_their_noise() -> None:
     found = fit_scene(MACHINE, over_speed(amplitude * twin, speed), UNKNOWN, starts=1)
     (note,) = [note for note in found.notes if note.code == FitCode.POOR]
     assert not found.accepted and "repeat" in note.text
+
+
+@pytest.mark.usefixtures("one_valley")
+@kills("leblanc.studies.fitting.noise:unexplained", "rms > POOR and", "0 and")
+@kills("leblanc.studies.fitting.noise:unexplained", "and _replicates(problem) <= _FEW", "")
+def test_noise_of_a_half() -> None:
+    """A resonance in the wrong place passes for it: it must be stated, or shown by rows that repeat."""
+    speed = np.linspace(12.0, 55.0, 7)
+    (amplitude,) = _answer(
+        MACHINE.replace({"rotor.stiffness": 2.2 * TRUTH[0]}), "speed", speed, ["amplitude"]
+    )
+    wrong = over_speed(amplitude * (1.0 + 0.02 * np.random.default_rng(0).standard_normal(7)), speed)
+    found = fit_scene(MACHINE, wrong, ("rotor.damping", "rotor.unbalance"), starts=1)
+    assert found.residual_rms > 0.3 and not found.accepted
+    each = np.repeat(SPEED[::5], 4)
+    (amplitude,) = _answer(MACHINE, "speed", each, ["amplitude"])
+    size = 0.4 * math.sqrt(float(np.mean(np.square(amplitude))))
+    noisy = np.abs(amplitude + size * np.random.default_rng(0).standard_normal(24))
+    shown = fit_scene(MACHINE, over_speed(noisy, each), UNKNOWN[:1], starts=1)
+    assert shown.residual_rms > 0.3 and shown.accepted
+    # The same readings at speeds that do not repeat.
+    apart = over_speed(noisy, each * (1.0 + 1e-6 * np.arange(24)))
+    assert not fit_scene(MACHINE, apart, UNKNOWN[:1], starts=1).accepted
+    assert fit_scene(MACHINE, apart, UNKNOWN[:1], starts=1, noise=f"{1e3 * size} mm").accepted
 
 
 def test_a_plateau_has_one_end() -> None:

@@ -147,7 +147,7 @@ def names_of_film(film: Film, monkeypatch: pytest.MonkeyPatch, folder: Path) -> 
 
 def short_runup(name: str) -> Film:
     machine = scene(name)
-    short = machine.replace({"runup.duration": "4 s", "runup.cells": 32})
+    short = machine.replace({"runup.duration": "4 s", "runup.cells": 32, "runup.samples": 250})
     return runup_film(runup_view(short, 13))
 
 

@@ -124,7 +124,9 @@ def test_one_unit_in_a_picture() -> None:
 
 
 def run_up(name: str, frames: int = 13) -> RunupView:
-    return runup_view(scene(name).replace({"runup.duration": "4 s", "runup.cells": 32}), frames)
+    return runup_view(
+        scene(name).replace({"runup.duration": "4 s", "runup.cells": 32, "runup.samples": 250}), frames
+    )
 
 
 def test_spin_is_slowed_down_evenly() -> None:

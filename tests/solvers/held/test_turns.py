@@ -15,6 +15,7 @@ from solvers.held.hold import start
 from solvers.held.state import HeldKind, HeldMachine, HoldNumerics
 from solvers.held.turns import _NUDGE, _PROBED, Watch, _limit, _Probe
 from solvers.rotor.jeffcott import Jeffcott
+from solvers.runup.state import WORKS
 from tests.mutants import kills
 
 SPIN, SIZE, NUMERICS = 100.0, 1e-3, HoldNumerics(cells=8)
@@ -133,3 +134,36 @@ def test_a_guessed_orbit_that_is_kept() -> None:
     assert enough
     assert found.kind is HeldKind.PERIODIC
     assert (pushed.data == 1.0).all()
+
+
+@kills("solvers.held.turns:Watch._balance", "self.balances[-turns:]", "self.balances")
+@kills("solvers.held.turns:Watch._balance", 'max(known["bores"], 0.0)', 'known["bores"]')
+@kills("solvers.held.turns:Watch._balance", "max(audit.scale, ", "max(")
+@kills("solvers.held.turns:Watch._balance", "_ROUNDING * turning", "0.0 * turning")
+@kills("solvers.held.turns:Watch._beyond", "size <= wall", "size >= 0.0")
+def test_the_balance_of_the_last_turns() -> None:
+    """What comes in goes out: gaps, heats below zero and deflections beyond the wall are violations."""
+    found = watch(-0.1)
+    assert found._balance(2, np.zeros((2, 6))) == {}
+    rest = np.array([[0.0, 0.0, SIZE, 0.0, 0.0, 0.0]] * 2)
+
+    def told(**known: float) -> tuple[float, tuple[str, ...]]:
+        """Energy error and violations of two such turns, after one that does not count."""
+        one = np.array([known.get(name, 0.0) for name in (*WORKS, "change")])
+        found.balances = [np.full(one.size, 7.0), one, one]
+        answer = found._balance(2, rest)
+        return answer["energy_error"], answer["faults"]
+
+    assert told(drive=3.0, support=1.0, friction=1.0, bores=0.5, change=0.5) == (0.0, ())
+    # Two of 50 parts are left: within what may be.
+    assert told(unbalance=50.0, support=48.0) == (pytest.approx(0.04), ())
+    assert told(unbalance=50.0, support=40.0)[0] == pytest.approx(0.2)
+    assert "leaves 20 J" in told(unbalance=50.0, support=40.0)[1][0]
+    # What the scheme gives is no heat of bores, and is left.
+    assert told(drive=1.0, friction=1.5, bores=-0.5)[0] == pytest.approx(0.5 / 1.5)
+    assert "supports" in told(unbalance=1.0, friction=1.1, support=-0.1)[1][0]
+    # Where nothing moves rounding is no energy.
+    error, faults = told(drive=1e-31, change=-1e-31)
+    assert error < 1e-12 and faults == ()
+    assert found._beyond(rest) == []
+    assert "chamber 1" in "; ".join(found._beyond(rest * 0.066 / SIZE))

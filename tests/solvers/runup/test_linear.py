@@ -59,13 +59,14 @@ def test_small_waves_are_those_of_the_long_wave_model(friction: Friction, apart:
     np.testing.assert_allclose(linear.mean_rotation, waves.mean_rotation, atol=0.02 * 60.0)
 
 
-def grown(spin: float, rate: float, duration: float) -> tuple[complex, complex]:
+def grown(
+    spin: float, friction: Friction, duration: float, damping: float = 0.0, liquid: Liquid = WATER
+) -> tuple[complex, complex]:
     """Growth and whirl speed of a machine let go, and of its dominant mode by the characteristic equation."""
     chamber = Chamber(0.1, 0.05)
-    fill = Fill(chamber, WATER, 0.19 * chamber.capacity)
+    fill = Fill(chamber, liquid, 0.19 * chamber.capacity)
     mass = fill.full_mass / 0.1
-    rotor = Jeffcott(mass, mass, 0.04 * mass * (rate > 0.0), 0.0)
-    friction = Friction("linear", rate)
+    rotor = Jeffcott(mass, mass, damping * mass, 0.0)
     machine = couple_linear(rotor.system(), [fill], spin, friction, 0.0, 256, False)
     machine.machine.place[0] = 1e-6
     times, seen = np.linspace(0.0, duration, 801)[1:], []
@@ -75,16 +76,27 @@ def grown(spin: float, rate: float, duration: float) -> tuple[complex, complex]:
     last = slice(400, None)
     growth = np.polyfit(times[last], np.log(np.abs(seen))[last], 1)[0]
     turning = np.polyfit(times[last], np.unwrap(np.angle(seen))[last], 1)[0]
-    wanted, whirl = asynchronous_growth(rotor, [fill], [spin], Friction("linear", rate))
+    wanted, whirl = asynchronous_growth(rotor, [fill], [spin], friction)
     return complex(growth, turning), complex(wanted[0], whirl[0])
 
 
 @pytest.mark.parametrize("spin, rate, duration", [(1.15, 0.0, 200.0), (1.3, 0.0, 200.0), (1.0, 0.3, 400.0)])
 def test_growth_is_that_of_the_characteristic_equation(spin: float, rate: float, duration: float) -> None:
-    found, wanted = grown(spin, rate, duration)
+    found, wanted = grown(spin, Friction("linear", rate), duration, 0.04 * (rate > 0.0))
     # The trapezium's phase error (Omega tau)^2/12, tau a fiftieth of a radian: 3e-5; the fit's rest.
     assert found.real == pytest.approx(wanted.real, rel=3e-3)
     assert abs(found.imag) == pytest.approx(abs(wanted.imag), rel=1e-3)
+
+
+@kills("solvers.runup.linear:_layer", "rate = float(layer_rate(", "assert float(layer_rate(")
+def test_laminar_friction_takes_as_much_growth() -> None:
+    """Wall, floor and lid with the Coriolis force; without it they have two thirds of the drag."""
+    liquid = Liquid("of a test", 1000.0, 1e-7)
+    free = grown(1.3, Friction(), 200.0, 0.0, liquid)
+    held = grown(1.3, Friction("stokes"), 200.0, 0.0, liquid)
+    found, wanted = ((with_ - without).real for with_, without in zip(held, free, strict=True))
+    # The rate is that of the slower free wave, and has no inertia: a layer's thickness over the depth, 8 %.
+    assert found == pytest.approx(wanted, rel=0.08)
 
 
 @kills("solvers.runup.linear:LinearCoupled._offset", "first + 1j * second", "first - 1j * second")

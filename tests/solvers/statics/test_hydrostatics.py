@@ -62,7 +62,7 @@ def check_state(radius: float, height: float, fill: float, e: float, speed: floa
 @example(log_speed=5.0, eps=1.0, fill=1e-9, slenderness=0.0)
 @example(log_speed=-2.0, eps=2.0, fill=1e-9, slenderness=0.0)
 @example(log_speed=5.0, eps=0.005, fill=0.0087, slenderness=-0.6)
-@settings(max_examples=40)
+@settings(max_examples=25)
 def test_whole_box_against_high_precision(
     log_speed: float, eps: float, fill: float, slenderness: float
 ) -> None:

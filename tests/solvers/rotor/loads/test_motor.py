@@ -106,8 +106,8 @@ def _held(spin: float, gravity: float, cells: int, growth: float) -> HeldState:
     return hold(machine, start(machine, spin, numerics, steady), numerics, growth)
 
 
-@kills("solvers.held.turns:Watch.answer", "* spin / (2.0 * math.pi)", "/ (2.0 * math.pi)")
-@kills("solvers.pypde.coupled:TurnTracker.handle", 'told["heat"] - self._heat', 'told["heat"]')
+@kills("solvers.held.turns:Watch._balance", "dissipated * spin /", "dissipated /")
+@kills("solvers.pypde.coupled:TurnTracker.handle", 'told["balance"] - self._balance', 'told["balance"]')
 def test_heat_of_a_held_motion() -> None:
     """Dampers by the motion, liquid by the closed form of small waves that gravity drives."""
     spin = 60.0
