@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import html
 import io
+import math
 from abc import ABC, abstractmethod
 from base64 import b64encode
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields, is_dataclass
 from enum import StrEnum
 from functools import cache
 from importlib import import_module, metadata
 from operator import attrgetter
+from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
@@ -161,6 +163,27 @@ def carried(path: str) -> Any:
     path : from the result, as "history.time"; where a part of it is None the result does not have the name
     """
     return property(attrgetter(path))
+
+
+def plain(value: Any) -> Any:
+    """The same in what JSON has: a complex number as [re, im], null for what is not finite."""
+    if value is None or isinstance(value, str | bool | int):
+        return value
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if isinstance(value, complex):
+        return [plain(value.real), plain(value.imag)]
+    if isinstance(value, Mapping):
+        return {str(key): plain(entry) for key, entry in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(entry) for entry in value]
+    if isinstance(value, Path):
+        return str(value)
+    if is_dataclass(value) and not isinstance(value, type):
+        return {one.name: plain(getattr(value, one.name)) for one in fields(value)}
+    if hasattr(value, "tolist"):  # arrays and their scalars
+        return plain(value.tolist())
+    raise TypeError(f"{type(value).__name__} has no form in JSON")
 
 
 class Result(ABC):

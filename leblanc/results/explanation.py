@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from fluid.numbers import LayerNumbers
-from leblanc.results.base import Result, attributes, carried
+from leblanc.results.base import Result, attributes, carried, plain
 from leblanc.results.choice import HeldCost, ModelSpan, SpeedEstimate
 from leblanc.results.exciter import named_speeds, number_or_none
 from leblanc.results.motion.closed_forms import ClosedForms
@@ -136,11 +136,14 @@ class Explanation(Result):
     not_told = carried("closed_forms.lacking")
 
     def to_json(self) -> dict[str, Any]:
-        """What `explain` prints for scripts, SI; what is not finite becomes null when it is printed."""
+        """What `explain` prints for scripts, SI; null for what is not finite."""
         own = {name: value for name, value in asdict(self).items() if name not in _ABOUT}
         if not self.layers:
             own["critical_speed_wet"] = None
-        return {**own, **self.closed_forms.to_json(), "not_told": list(self.closed_forms.lacking)}
+        answer: dict[str, Any] = plain(
+            {**own, **self.closed_forms.to_json(), "not_told": list(self.closed_forms.lacking)}
+        )
+        return answer
 
     def named_arrays(self) -> NamedArrays:
         """Arrays over the dimensions `chamber`, `end` (first and last speed) and `span` (of one model)."""

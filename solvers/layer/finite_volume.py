@@ -735,4 +735,5 @@ def _drain(area, step, dt, plates, mass, flow, push_l, push_r, share):
         # Where nothing passes, as at a closed baffle, there is nothing to cut.
         kept = 1.0 if plates > 0 and mass[face] == 0.0 else kept
         mass[face] *= kept
-        flow[face] -= (1.0 - kept) * (flow[face] - 0.5 * (push_l[face] + push_r[face]))
+        push_l[face] = flow[face] - kept * (flow[face] - push_l[face])
+        push_r[face] = flow[face] - kept * (flow[face] - push_r[face])

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import json
-import math
 import os
 import sys
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from contextlib import suppress
-from dataclasses import fields, is_dataclass
 from io import TextIOWrapper
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, TextIO
+from typing import TYPE_CHECKING, Literal, TextIO
 
 if TYPE_CHECKING:
     from leblanc.scene.scene import Scene
@@ -122,29 +120,10 @@ def print_json(value: object) -> None:
     value : dataclasses, mappings, sequences, arrays and numbers; a complex number becomes [re, im], and what
         is not finite becomes null
     """
-    sys.stdout.write(json.dumps(_plain(value), allow_nan=False) + "\n")
+    from leblanc.results.base import plain
+
+    sys.stdout.write(json.dumps(plain(value), allow_nan=False) + "\n")
     sys.stdout.flush()
-
-
-def _plain(value: Any) -> Any:
-    """The same in what JSON knows."""
-    if value is None or isinstance(value, str | bool | int):
-        return value
-    if isinstance(value, float):
-        return value if math.isfinite(value) else None
-    if isinstance(value, complex):
-        return [_plain(value.real), _plain(value.imag)]
-    if isinstance(value, Mapping):
-        return {str(key): _plain(entry) for key, entry in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(entry) for entry in value]
-    if isinstance(value, Path):
-        return str(value)
-    if is_dataclass(value) and not isinstance(value, type):
-        return {field.name: _plain(getattr(value, field.name)) for field in fields(value)}
-    if hasattr(value, "tolist"):  # arrays and their scalars, without importing numpy for it
-        return _plain(value.tolist())
-    raise TypeError(f"{type(value).__name__} has no form in JSON")
 
 
 def processes(wanted: int | None) -> int:

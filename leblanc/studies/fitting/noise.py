@@ -190,8 +190,7 @@ def unexplained(problem: Problem, judged: Judged) -> Note | None:
             return poor_note(rms, f"it is {units.number(float(size))} times the noise that was stated")
         return None
     if rms > POOR and _replicates(problem) <= _FEW:
-        # Few values let a resonance in the wrong place pass for noise of a half, and the intervals of noise
-        # like that hold the truth too rarely.
+        # Few values let a resonance in the wrong place pass for noise of a half.
         return poor_note(rms, "so much is noise only if it is stated (--noise) or rows that repeat show it")
     if problem.freedom <= _FEW:
         return few_note(rms, problem.freedom)

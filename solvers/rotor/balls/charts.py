@@ -20,7 +20,7 @@ from solvers.continuation import Curve, End, follow
 from solvers.roots import bracketed_root
 from solvers.rotor.balls.balancers import BallRace, race_arrays
 from solvers.rotor.balls.stability import HalfTurn, Linearised, small_motions
-from solvers.rotor.balls.states import RotorWithBalls
+from solvers.rotor.balls.states import RotorWithBalls, turning
 from solvers.rotor.system import RotorSystem
 
 NONE = -1  # in counts of growing roots: the state is not there, or its half turn did not settle
@@ -28,6 +28,10 @@ _HALVINGS = 40
 _MEETS = 1e-5  # of the spin: a root below this next to the end of a state tells that two states meet there
 _NEAR = 0.03  # of a cell of the chart: a crossing this close to a known curve lies on it
 _STILL = 1e-6  # of the spin: a root slower than that is real
+_LARGEST = 24  # matrix whose sums of roots are looked at: twice 276 of them
+_PARABOLA = 1e-9  # of the largest entry: how well a parabola follows the matrix
+_APART = 0.02  # relative distance of speeds where none does
+_MEET = 1e-4  # of half a range: roots this near the real speeds count as there
 
 
 @dataclass(frozen=True)
@@ -195,37 +199,118 @@ def stability_chart(family: Family, first: ArrayLike, second: ArrayLike, state: 
 def stable_bands(
     family: Family, first: ArrayLike, second: float, state: State | None = None
 ) -> tuple[Array, list[tuple[float, float]]]:
-    """Growth over the first parameter at one value of the second, and the bands of it without growth.
+    """Growth over the speed at one value of the second parameter, and the bands of speed without growth.
+
+    The bands are looked for between the first and the last speed at speeds of their own, so that none is lost
+    between two of those given and none depends on their number [theory: balls, eq. 32-34].
 
     Parameters
     ----------
-    family : machine for each pair of values
-    first : values that rise, shape (a,)
+    family : machine for each pair of values, its first the speed
+    first : speeds that rise, rad/s, shape (a,)
     second : the other parameter
     state : whose stability; None: the balanced one
 
     Returns
     -------
     growth : largest real part, 1/s; nan where the state does not exist, shape (a,)
-    bands : ends of each; between two values they are where the growth changes its sign, to rounding
+    bands : ends of each, where the growth changes its sign, or the state ends, to rounding
     """
-    x, chosen = np.asarray(first, dtype=float), state or State()
+    asked, chosen = np.asarray(first, dtype=float), state or State()
 
     def largest(at: Array, _: Indices) -> Array:
         return np.array([_counted(chosen, family(float(value), second))[1] for value in at])
 
-    growth = largest(x, np.zeros(0, dtype=np.int64))
+    none = np.zeros(0, dtype=np.int64)
+    x = _looks(lambda speed: chosen.at(family(speed, second)), float(asked[0]), float(asked[-1]))
+    growth = largest(x, none)
     stable = growth <= 0.0
     changes = np.flatnonzero(stable[1:] != stable[:-1])
-    # Where the state ends there is no sign to change: the last value that has it stands.
+    # Where the state ends there is no sign to change: its end is halved.
     known = changes[np.isfinite(growth[changes]) & np.isfinite(growth[changes + 1])]
-    ends = {k: float(x[k] if stable[k] else x[k + 1]) for k in changes.tolist()}
+    ends: dict[int, float] = {}
+    for k in np.setdiff1d(changes, known).tolist():
+        has, lacks = (x[k], x[k + 1]) if stable[k] else (x[k + 1], x[k])
+        for _ in range(_HALVINGS):
+            middle = 0.5 * (has + lacks)
+            there = bool(largest(np.array([middle]), none)[0] <= 0.0)
+            has, lacks = (middle, lacks) if there else (has, middle)
+        ends[k] = float(has)
     if known.size:
         found = bracketed_root(largest, x[known], x[known + 1])[0]
         ends |= dict(zip(known.tolist(), found.tolist(), strict=True))
     edges = [ends[k] for k in changes.tolist()]
     edges = ([float(x[0])] if stable[0] else []) + edges + ([float(x[-1])] if stable[-1] else [])
-    return growth, list(zip(edges[::2], edges[1::2], strict=True))
+    return largest(asked, none), list(zip(edges[::2], edges[1::2], strict=True))
+
+
+def _looks(at: Callable[[float], Rest | None], first: float, last: float) -> Array:
+    """Speeds, the ends among them, between which no more than one edge of a band lies.
+
+    About balls that stay where they are the matrix of small motions is a parabola over the spin, so that all
+    speeds at which a root stands on the axis are eigenvalues. Elsewhere parabolas follow it over shorter
+    ranges, or speeds a fiftieth apart are looked at.
+    """
+    start = at(first)
+    if start is not None and turning(start.machine.system) is None:
+        # The map of half a turn is no parabola, and costs much.
+        between = np.geomspace(first, last, 1 + int(np.ceil(np.log(last / first) / _APART)))[1:-1]
+        return np.concatenate(([first], between, [last]))
+    found, waiting = [first, last], [(first, last)]
+    while waiting:
+        low, high = waiting.pop()
+        rests = [at(low + share * (high - low)) for share in (0.0, 0.25, 0.5, 0.75, 1.0)]
+        motions = [rest.motions() for rest in rests if rest is not None]
+        parts = [own.lasting(0.0, last).real for own in motions if isinstance(own, Linearised)]
+        size = max((len(part) for part in parts), default=0)
+        if len(parts) == 5 and all(len(part) == size for part in parts) and 0 < size <= _LARGEST:
+            a, before, b, after, c = parts
+            rise, bend = 0.5 * (c - a), 0.5 * (a + c) - b
+            off = np.stack((before - b + 0.5 * rise - 0.25 * bend, after - b - 0.5 * rise - 0.25 * bend))
+            if np.abs(off).max() <= _PARABOLA * np.abs(b).max():
+                shares = np.concatenate(([-1.0], _on_axis(b, rise, bend), [1.0]))
+                found += (low + 0.5 * (high - low) * (1.0 + 0.5 * (shares[1:] + shares[:-1]))).tolist()
+                found += [low, high]
+                continue
+        if high - low <= _APART * high:
+            found += [low, high]
+            continue
+        middle = 0.5 * (low + high)
+        waiting += [(low, middle), (middle, high)]
+    return np.unique(found)
+
+
+def _on_axis(middle: Array, rise: Array, bend: Array) -> Array:
+    """Rising t in (-1, 1) at which A = middle + t rise + t^2 bend has two roots of sum 0, or one at 0.
+
+    Sums of two roots are the roots of what A makes of the areas x ^ y: A x ^ y + x ^ A y.
+    """
+    one, other = np.triu_indices(len(middle), 1)
+    unit = np.eye(len(middle))
+
+    def on_areas(matrix: Array) -> Array:
+        terms = [(matrix, unit), (unit, matrix)]
+        return np.asarray(
+            sum(
+                p[np.ix_(one, one)] * q[np.ix_(other, other)] - p[np.ix_(one, other)] * q[np.ix_(other, one)]
+                for p, q in terms
+            )
+        )
+
+    found = [np.zeros(0)]
+    for parts in ((middle, rise, bend), tuple(on_areas(part) for part in (middle, rise, bend))):
+        # With t = far + 1/y the roots y of y^2 A(far) + y A'(far) + bend are those of a plain matrix.
+        far, size = -1.7, len(parts[0])
+        whole = np.linalg.inv(parts[0] + far * parts[1] + far**2 * parts[2])
+        companion = np.zeros((2 * size, 2 * size))
+        companion[:size, size:] = np.eye(size)
+        companion[size:, :size] = -whole @ parts[2]
+        companion[size:, size:] = -whole @ (parts[1] + 2.0 * far * parts[2])
+        root = np.linalg.eigvals(companion)
+        root = far + 1.0 / root[np.abs(root) > 0.1]
+        # Two that meet part by the square root of rounding.
+        found.append(root.real[(np.abs(root.imag) <= _MEET) & (np.abs(root.real) < 1.0)])
+    return np.unique(np.concatenate(found))
 
 
 def existence_bounds(

@@ -19,8 +19,9 @@ from tests.oracles.random_balls import machine_with_balls
 # that a closed baffle drove away (11, 293) or that were pushed as the deep state at their face (33),
 # gravity's work by a momentum that was not that of the centre of mass (25, 278), the drive's work at the mean
 # spin beside stiff friction (45), heat of bores below zero by what the scheme gives back (238), momentum
-# of flow that a closed baffle holds back (149).
-SEEDS = (11, 13, 17, 19, 25, 33, 42, 45, 61, 149, 238, 278, 293)
+# of flow that a closed baffle holds back (149), films that ran dry pushed as the deep state at their face
+# (190).
+SEEDS = (11, 13, 17, 19, 25, 33, 42, 45, 61, 149, 190, 238, 278, 293)
 
 
 @pytest.mark.parametrize("seed", SEEDS)

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import os
+from typing import Any
 
 import numpy as np
 import pytest
 
 from tests.leblanc.metamorphic.random_scenes import COMMANDS, Violation, changes, expected, search, violations
 from tests.oracles.alike import differences
+from tests.oracles.machines import Table
 from tests.oracles.random_machines import KINDS, machine
 
 # The machines of a slow run, and in how many processes.
@@ -42,7 +44,7 @@ def test_a_wrong_answer_is_a_violation(monkeypatch: pytest.MonkeyPatch) -> None:
     honest = COMMANDS["run"]
     calls = []
 
-    def forgetful(table: dict) -> dict:
+    def forgetful(table: Table) -> dict[str, Any]:
         calls.append(table)
         answer = honest(table)
         return answer | ({"liquid_mass": 1.01 * answer["liquid_mass"]} if len(calls) == 3 else {})
@@ -51,7 +53,7 @@ def test_a_wrong_answer_is_a_violation(monkeypatch: pytest.MonkeyPatch) -> None:
     # The third call is the second change: the similar machine.
     assert [(one.change, one.key) for one in violations(4, "run")] == [("scaled", "liquid_mass")]
 
-    def failing(table: dict) -> dict:
+    def failing(table: Table) -> dict[str, Any]:
         raise ZeroDivisionError
 
     monkeypatch.setitem(COMMANDS, "run", failing)

@@ -14,7 +14,7 @@ from fluid.liquid import Liquid
 from fluid.numbers import layer_numbers
 from fluid.pool import balance_speed, pool_of
 from leblanc.cli import main
-from leblanc.scene.scene import Scene, scene_from_table
+from leblanc.scene.scene import Scene, load_scene, scene_from_table
 from leblanc.studies.explain import explain_scene
 from leblanc.studies.models.choose import carried_from, choose
 from leblanc.studies.run import run_scene
@@ -178,3 +178,11 @@ def test_the_wall_is_told_how_it_carries_the_liquid_along() -> None:
     del given["runup"]
     still = explain_scene(scene_from_table(given)).layers[0]
     assert still is not None and still.spin_up is not None and still.spin_up.lag == pytest.approx(200.0)
+
+
+def test_an_answer_says_in_python_what_the_command_prints(capsys: pytest.CaptureFixture[str]) -> None:
+    """Byte for byte: lists, and null for what is not finite, before anything is printed."""
+    scene = "examples/horizontal_rig.toml"
+    assert main(["explain", scene, "--json"]) == 0
+    answer = explain_scene(load_scene(scene)).to_json()
+    assert json.dumps(answer, allow_nan=False) + "\n" == capsys.readouterr().out

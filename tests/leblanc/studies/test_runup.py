@@ -598,8 +598,8 @@ def test_capture_is_marked_over_time() -> None:
     assert "0.2011" in str(report.events(record)) and "0.9011" in str(report.events(record))
 
 
-@kills("solvers.runup.runup:EnergyAudit.faults", "self.closure > OPEN", "self.closure > 2.0 * OPEN")
-@kills("solvers.runup.runup:EnergyAudit.faults", "< -COLD", "< -2.0 * COLD")
+@kills("solvers.runup.runup:EnergyAudit.faults_beside", "abs(left) <= OPEN", "abs(left) <= 2.0 * OPEN")
+@kills("solvers.runup.runup:EnergyAudit.faults_beside", "< -COLD", "< -2.0 * COLD")
 @kills("leblanc.results.runup:run_faults", "not size <= chamber.radius", "size > 1.1 * chamber.radius")
 def test_what_is_not_physical_is_no_answer() -> None:
     """A balance that does not close, a heat below zero, a deflection beyond the wall: each by its term."""

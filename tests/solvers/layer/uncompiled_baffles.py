@@ -50,6 +50,31 @@ def rates(
     return d_area, d_q, work[finite_volume._MASS, : n + 1].copy()
 
 
+@kills(
+    "solvers.layer.finite_volume:_drain",
+    "push_l[face] = flow[face] - kept * (",
+    "push_l[face] = push_l[face] - 0.0 * (",
+)
+@kills(
+    "solvers.layer.finite_volume:_drain",
+    "push_r[face] = flow[face] - kept * (",
+    "push_r[face] = push_r[face] - 0.0 * (",
+)
+def test_a_film_that_runs_dry_is_no_faster_than_its_front() -> None:
+    """On a steep bed a film's state at a face is deep; it pushes with the share of it that there is.
+
+    In the step that empties the film it gets no more than the speed of that state's front, twice its waves'.
+    """
+    n, dt, spin_pull = 48, 2e-3, 2.5 * SPIN**2
+    area = np.zeros(n)
+    area[6:8] = 5e-5
+    deepest = spin_pull / SPIN**2 * np.pi / n
+    front = 2.0 * lw.wave_celerity(0.0, -0.5 * np.log(1.0 - 2.0 * deepest), SPIN)[1]
+    for turned in np.arange(8) * 0.25 * np.pi:
+        d_q = rates(area, -SPIN * area**2, table([], 0.05), spin_pull * np.exp(1j * turned), dt)[1]
+        assert np.abs(d_q[6:8]).max() * dt < front * 5e-5
+
+
 def wild(n: int) -> tuple[np.ndarray, np.ndarray]:
     theta = middles(n)
     area = 0.06 + 0.03 * np.cos(2 * theta) + np.where(np.arange(n) % 7 == 0, 0.02, 0.0)

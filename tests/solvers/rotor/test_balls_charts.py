@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
 
+from leblanc.scene.scene import Scene, dry_rotor
 from meshes.errors import InputError
 from solvers.continuation import End, follow
 from solvers.rotor.balls.balancers import BallRace, race_arrays
@@ -15,6 +17,7 @@ from solvers.rotor.balls.charts import (
     Crossing,
     Machine,
     State,
+    _on_axis,
     existence_bounds,
     follow_edge,
     stability_chart,
@@ -26,6 +29,7 @@ from solvers.rotor.balls.steps import advance
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
 from tests.mutants import kills
+from tests.oracles.random_balls import machine_with_balls
 from validation.figures.rotors.ball_charts import reference
 
 RACE = BallRace(0.0, 0.08, (0.015, 0.015), 0.3)
@@ -277,6 +281,59 @@ def test_bands_of_one_value_end_where_the_growth_is_nothing() -> None:
     found = balanced_stability(machine.system, machine.races, machine.speed).growth
     assert abs(found) < 1e-9 * machine.speed
     assert stable_bands(family, [30.0, 40.0], 1.0)[1] == []
+
+
+ON_AXIS = "solvers.rotor.balls.charts:_on_axis"
+
+
+@kills(ON_AXIS, "-whole @ parts[2]", "whole @ parts[2]")
+@kills(ON_AXIS, "2.0 * far * parts[2]", "far * parts[2]")
+@kills(ON_AXIS, "terms = [(matrix, unit), (unit, matrix)]", "terms = [(matrix, unit), (matrix, unit)]")
+def test_roots_on_the_axis_are_found_however_narrow_the_band() -> None:
+    """A pair w^2 - (t - 0.3)^2 +- 2 i grows over a width of 2 w alone; a third root is t + 0.5."""
+    for width in (1e-2, 1e-4, 1e-6):
+        middle, rise, bend = (np.zeros((3, 3)) for _ in range(3))
+        middle[:2, :2] = [[width**2 - 0.09, 2.0], [-2.0, width**2 - 0.09]]
+        rise[:2, :2], bend[:2, :2] = 0.6 * np.eye(2), -np.eye(2)
+        middle[2, 2], rise[2, 2] = 0.5, 1.0
+        turn = np.random.default_rng(1).uniform(-1.0, 1.0, (3, 3)) + 2.0 * np.eye(3)
+        alike = (turn @ part @ np.linalg.inv(turn) for part in (middle, rise, bend))
+        found = _on_axis(*alike)
+        for exact in (-0.5, 0.3 - width, 0.3 + width):
+            # Of two roots this near to one another rounding leaves its square root.
+            assert np.abs(found - exact).min() < 1e-12 / width + 1e-12
+
+
+def _turned(machine: Machine, speed: float, _: float) -> Machine:
+    return replace(machine, speed=speed)
+
+
+BALANCES = (3, 21)  # machines at random whose balls balance them, one in a band of 1.6 rad/s as well
+
+
+@kills("solvers.rotor.balls.charts:_looks", "np.unique(found)", "np.unique([first, last])")
+@pytest.mark.parametrize("seeds", [BALANCES, pytest.param(tuple(range(200)), marks=pytest.mark.slow)])
+def test_bands_are_the_same_from_any_number_of_speeds(seeds: tuple[int, ...]) -> None:
+    """From two speeds, and as growth at speeds between says."""
+    count = 0
+    for seed in seeds:
+        scene = Scene(**machine_with_balls(seed))
+        system, races = dry_rotor(scene).system(), tuple(race.race() for race in scene.balls)
+        if RotorWithBalls(system, races).balanced() is None:
+            continue
+        turning = partial(_turned, Machine(system, races, 1.0))
+        ends = [scene.speeds.start, scene.speeds.stop]
+        few = stable_bands(turning, ends, 0.0)[1]
+        asked = np.linspace(*ends, 41)
+        growth, many = stable_bands(turning, asked, 0.0)
+        assert few == many
+        inside = np.zeros(asked.shape, dtype=bool)
+        for low, high in few:
+            inside |= (asked >= low) & (asked <= high)
+        clear = np.abs(growth) > 1e-9 * asked
+        assert (inside == (growth <= 0.0))[clear].all(), seed
+        count += bool(few)
+    assert count >= len(seeds) // 10
 
 
 def test_a_start_where_the_state_is_not_there_gives_no_curve() -> None:
