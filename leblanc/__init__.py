@@ -83,7 +83,11 @@ _HOMES = {
     **{name: (f"leblanc.studies.{name}", name) for name in ("bearing", "volume")},
     "example": ("leblanc.scene.examples", "example"),
     "load_scene": ("leblanc.scene.scene", "load_scene"),
-    **{name: (_API, name) for name in __all__ if name.islower() and name not in ("bearing", "example", "load_scene", "volume")},
+    **{
+        name: (_API, name)
+        for name in __all__
+        if name.islower() and name not in ("bearing", "example", "load_scene", "volume")
+    },
 }
 
 

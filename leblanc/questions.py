@@ -5,8 +5,7 @@ Quantities are numbers in SI units or texts with a unit. Faults name the option,
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from inspect import signature
 from pathlib import Path
@@ -29,7 +28,7 @@ from leblanc.units import (
 )
 from meshes.baffles import Baffles
 from meshes.chamber import Chamber
-from meshes.errors import InputError, require_not_negative, require_positive
+from meshes.errors import InputError
 
 if TYPE_CHECKING:
     from leblanc.studies.models.whirling import AutoWave

@@ -14,7 +14,9 @@ class Q:
     """
 
     unit: str = ""  #: as CF writes it ("rad s-1", "1"); empty for texts, truth values and records
-    name: str = ""  #: what it is, a noun phrase that stands alone; from this the name of a variable is made out
+    name: str = (
+        ""  #: what it is, a noun phrase that stands alone; from this the name of a variable is made out
+    )
     text: str = ""  #: what else a reader needs: "zero to peak", from where an angle counts
     over: tuple[str, ...] = ()  #: names of its dimensions; a quantity over itself alone is a coordinate
     axes: tuple[str, str] | None = None  #: of a complex number: what lies along its two axes

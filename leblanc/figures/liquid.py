@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.figures.chambers import liquid_outline
-from leblanc.figures.drawing.page import Caption, Figure, Frame, lay_out, number, style
+from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, style
 from leblanc.figures.drawing.page import save as save  # a figure is drawn and written together
-from leblanc.results.base import FilledChamber
 from leblanc.results.drawn.machine import rounded_down
-from leblanc.results.liquid import ModesResult, VolumeResult
-from leblanc.text.liquid import facts, question
+from leblanc.results.liquid import ModesResult
 from leblanc.units import MM, RPM
 from meshes.arrays import Array
 from meshes.liquid_section import LiquidSection

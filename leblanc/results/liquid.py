@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import asdict, dataclass
-from enum import IntEnum
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.results.base import Note, NoteCode, Result, carried, one_line, texts, versions
+from leblanc.results.base import Note, NoteCode, Result, one_line, texts, versions
 from leblanc.results.netcdf import NamedArrays, variable
-from leblanc.results.netcdf import variable as var
 from leblanc.units import LENGTH, with_unit
 from meshes.arrays import Array
-from meshes.chamber import Chamber
 from meshes.findings import Finding
 from meshes.liquid_section import LiquidSection
 from solvers.sloshing.modes import SloshingModes

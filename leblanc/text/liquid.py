@@ -19,7 +19,7 @@ from leblanc.results.layer import (
 )
 from leblanc.results.liquid import ModesResult
 from leblanc.text.numbers import number
-from leblanc.units import LENGTH, ML, MM, NUMBER, VOLUME, Dimension, Unit, in_rpm, unit_for, with_unit
+from leblanc.units import LENGTH, NUMBER, Dimension, in_rpm, unit_for, with_unit
 
 
 def whirl_words(case: LayerCase) -> str:

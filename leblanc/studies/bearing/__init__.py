@@ -16,7 +16,9 @@ def bearing(
     speed: Annotated[Quantity, ANGULAR_SPEED, "Speed of the shaft; the outer ring is at rest."],
     balls: Annotated[int | None, "Balls or rollers in one row [default: sought from frequencies]."] = None,
     ball_diameter: Annotated[Quantity | None, LENGTH, "Diameter of a ball."] = None,
-    pitch_diameter: Annotated[Quantity | None, LENGTH, "Diameter of the circle of the balls' centres."] = None,
+    pitch_diameter: Annotated[
+        Quantity | None, LENGTH, "Diameter of the circle of the balls' centres."
+    ] = None,
     contact_angle: Annotated[
         Quantity | None, ANGLE, "Contact angle [default: 0; sought where bsf is given]."
     ] = None,

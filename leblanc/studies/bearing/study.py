@@ -29,7 +29,9 @@ def answer_bearing(
         for name, length in lengths.items():
             if length is not None:
                 raise InputError(name, length, "left out where frequencies are given, which tell it")
-        fit = fit_bearing(given, balls, contact_angle if contact_angle is not None or bsf is not None else 0.0)
+        fit = fit_bearing(
+            given, balls, contact_angle if contact_angle is not None or bsf is not None else 0.0
+        )
         found = fit.bearing
     else:
         for name, value in {"balls": balls, **lengths}.items():

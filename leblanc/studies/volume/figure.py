@@ -77,5 +77,3 @@ def _surface(answer: VolumeAnswer, x: Array) -> Array:
     if answer.surface is not None and answer.surface.surface_constant is not None:
         constant = answer.surface.surface_constant
     return np.asarray(beta * np.square(x) + constant)
-
-
