@@ -14,6 +14,7 @@ from meshes.clip import ARC, PIECES, area_within, outside_circle, radius_for, wa
 from meshes.refine.waterline import area_outside
 from meshes.rings.sectors import compartment
 from meshes.section import Section, annulus, disc, section_area
+from tests.mutants import kills
 
 RADIUS = 0.1
 
@@ -35,6 +36,8 @@ SECTIONS = {
 CHORD = (2.0 * math.pi / 36 / PIECES) ** 2
 
 
+@kills("meshes.clip:_outer_parts", "> _TINY * radius", ">= 0.0")
+@kills("meshes.clip:_joined", "not _holds(walls", "False and not _holds(walls")
 @settings(max_examples=60, deadline=None)
 @given(
     st.sampled_from(sorted(SECTIONS)),

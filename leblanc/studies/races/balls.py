@@ -15,7 +15,7 @@ from leblanc.results.races.balls import RaceOfBalls
 from leblanc.results.races.states import BallsResult
 from leblanc.scene.inputs import input_rows
 from leblanc.scene.races import BallRace
-from leblanc.scene.scene import Scene, dry_rotor
+from leblanc.scene.scene import Scene
 from leblanc.studies.closed_forms.told import closed_forms
 from leblanc.studies.machine import loaded_machine, loads_over_speed
 from leblanc.studies.models.choose import Prepared, axial_gravity, carried_from, choose_all, prepare
@@ -132,18 +132,20 @@ def run_balls(scene: Scene, families: bool = True, edges: bool = True) -> BallsR
     if families:
         answer = replace(answer, growth_range=_growth_range(scene, system, races, answer, model))
     if edges:
-        answer = replace(answer, balanced_bands=_balanced_bands(scene, answer))
+        answer = replace(answer, balanced_bands=_balanced_bands(scene, system, answer))
     answer, waves = _estimated(machine, races, answer)
     answer = replace(answer, loads=_loads(scene, answer))
     alike = turning(system) is not None
     return replace(answer, notes=_run_notes(scene, answer, alike, waves))
 
 
-def _balanced_bands(scene: Scene, answer: BallsResult) -> tuple[tuple[float, float], ...] | None:
+def _balanced_bands(
+    scene: Scene, system: RotorSystem, answer: BallsResult
+) -> tuple[tuple[float, float], ...] | None:
     """Bands of speed in which the balanced state is stable; None for a family, and on unlike supports."""
     states, (low, high) = answer.states, (float(answer.speed.min()), float(answer.speed.max()))
     family = (states.dimension > 0) & (states.kind == BallKind.BALANCED)
-    if low == high or family.any() or turning(dry_rotor(scene).system()) is None:
+    if low == high or family.any() or turning(system) is None:
         return None
     return tuple(stable_bands(own_family(scene), np.array([low, high]), 0.0)[1])
 

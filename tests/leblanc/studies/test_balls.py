@@ -73,6 +73,15 @@ def test_the_speed_from_which_balls_balance_does_not_hang_on_the_speeds() -> Non
         assert bool(run_balls(near, edges=False).balanced[0]) is stable
 
 
+@kills("leblanc.studies.races.balls:_balanced_bands", "family.any()", "False")
+def test_a_family_of_balanced_states_has_no_edge_of_one() -> None:
+    """More balls than a balance needs stand in many ways, of unlike stability: the speeds asked for tell."""
+    many = lb.example("balls_and_liquid").replace({"speeds.count": 2})
+    found = run_balls(many, families=False)
+    assert (found.family_dimension > 0).any() and found.balanced_bands is None
+    assert found.balanced_from in found.speed
+
+
 def test_balls_that_resist_leave_a_band() -> None:
     scene = lb.example("balls").replace({"chambers.0.rolling_resistance": 1e-3, "speeds.count": 3})
     result = lb.run(scene)

@@ -21,6 +21,7 @@ from leblanc.studies.whirl_map import map_scene
 from leblanc.text.explanation import facts as explained
 from leblanc.text.whirl_map import answer, facts
 from meshes.errors import InputError
+from tests.mutants import kills
 
 SCENE = """
 name = "Whirl"
@@ -117,6 +118,7 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     ).read_text()
 
 
+@kills("solvers.cycles.estimate:largest_estimate", "0.5 * (low + high)", "0.1 * low + 0.9 * high")
 def test_explain_estimates_it(machine: Scene, found: WhirlMap) -> None:
     explanation = explain_scene(machine)
     assert explanation.whirl is not None
