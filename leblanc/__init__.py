@@ -12,7 +12,6 @@ if TYPE_CHECKING:
     from fluid.fill import Fill
     from fluid.liquid import Liquid
     from leblanc.api import (
-        bearing,
         compare,
         explain,
         fit,
@@ -24,7 +23,6 @@ if TYPE_CHECKING:
         run,
         run_up,
         sweep,
-        volume,
     )
     from leblanc.scene.examples import example
     from leblanc.scene.magnetic import MagneticRotor
@@ -32,6 +30,8 @@ if TYPE_CHECKING:
     from leblanc.scene.scene import Scene, load_scene
     from leblanc.scene.schema.load import SceneError
     from leblanc.scene.spindle import Spindle
+    from leblanc.studies.bearing import bearing
+    from leblanc.studies.volume import volume
     from meshes.chamber import Chamber
     from meshes.errors import InputError
 
@@ -80,9 +80,14 @@ _HOMES = {
     "Spindle": ("leblanc.scene.spindle", "Spindle"),
     "TubRotor": ("leblanc.scene.rotors", "TubRotor"),
     "TwoPlaneRotor": ("leblanc.scene.rotors", "TwoPlaneRotor"),
+    **{name: (f"leblanc.studies.{name}", name) for name in ("bearing", "volume")},
     "example": ("leblanc.scene.examples", "example"),
     "load_scene": ("leblanc.scene.scene", "load_scene"),
-    **{name: (_API, name) for name in __all__ if name.islower() and name not in ("example", "load_scene")},
+    **{
+        name: (_API, name)
+        for name in __all__
+        if name.islower() and name not in ("bearing", "example", "load_scene", "volume")
+    },
 }
 
 

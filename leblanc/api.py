@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from leblanc.results.explanation import ExciterExplanation, Explanation
     from leblanc.results.fit import FitResult
     from leblanc.results.layer import FreeWaveResult, LayerPeriodsResult, LayerResult
-    from leblanc.results.liquid import ModesResult, VolumeResult
+    from leblanc.results.liquid import ModesResult
     from leblanc.results.machine.layout import LayoutResult
     from leblanc.results.magnetic.control import MagneticResult
     from leblanc.results.magnetic.explanation import MagneticExplanation
@@ -37,7 +37,6 @@ if TYPE_CHECKING:
     from leblanc.results.races.states import BallsResult
     from leblanc.results.response import RunResult
     from leblanc.results.runup import RunupResult
-    from leblanc.results.spindles.bearing import BearingResult
     from leblanc.results.spindles.unit import SpindleResult
     from leblanc.results.sweep import SweepResult
     from leblanc.results.whirl_map import WhirlMap
@@ -588,88 +587,6 @@ def modes(
     with _keywords():
         question = ask(modes_question, given)
         return answer_modes(**question)
-
-
-def volume(
-    *,
-    radius: Quantity,
-    height: Quantity,
-    eccentricity: Quantity,
-    speed: Quantity,
-    volume: Quantity | None = None,
-    gravity: Quantity = 9.81,
-    inner_radius: Quantity = 0.0,
-) -> VolumeResult:
-    """Volume that just covers the wall at a deflection, and the free surface of a given volume.
-
-    Parameters
-    ----------
-    radius, inner_radius, height : of the chamber, m
-    eccentricity : distance of the rotation axis from the chamber's, m
-    speed : of the spin, rad/s
-    volume : of liquid whose free surface is computed as well, m^3
-    gravity : along the axis, m/s^2
-
-    Raises
-    ------
-    InputError : a value out of its range
-
-    Examples
-    --------
-    >>> import leblanc as lb
-    >>> best = lb.volume(radius=0.2, height=0.05, eccentricity="1 mm", speed=90.0)
-    >>> f"{1e6 * best.optimal_volume:.4f} ml"
-    '54.4396 ml'
-    """
-    given = locals()
-    from leblanc.questions import ask, volume_question
-    from leblanc.studies.volume import answer_volume
-
-    with _keywords():
-        question = ask(volume_question, given)
-        return answer_volume(**question)
-
-
-def bearing(
-    *,
-    speed: Quantity,
-    balls: int | None = None,
-    ball_diameter: Quantity | None = None,
-    pitch_diameter: Quantity | None = None,
-    contact_angle: Quantity | None = None,
-    ftf: float | None = None,
-    bpfo: float | None = None,
-    bpfi: float | None = None,
-    bsf: float | None = None,
-    cage: Quantity | None = None,
-) -> BearingResult:
-    """Frequencies of a rolling bearing from its dimensions, or the bearing that is nearest to frequencies.
-
-    Parameters
-    ----------
-    speed : of the shaft, rad/s; the outer ring is at rest
-    balls : how many in one row; sought if None and frequencies are given
-    ball_diameter, pitch_diameter : of a ball, of the circle of the balls' centres, m
-    contact_angle : rad; sought if None and `bsf` is given, else 0
-    ftf, bpfo, bpfi, bsf : frequencies of cage, outer ring, inner ring, ball over the shaft's
-    cage : measured speed of the cage, rad/s; adds its slip
-
-    Raises
-    ------
-    InputError : a value out of its range, dimensions beside frequencies, too few of either
-
-    Examples
-    --------
-    >>> import leblanc as lb
-    >>> lb.bearing(speed="33 Hz", ftf=0.38475, bpfi=5.5369, bsf=2.0497).balls
-    9
-    """
-    given = locals()
-    from leblanc.questions import ask, bearing_question
-    from leblanc.studies.spindles.bearing import answer_bearing
-
-    with _keywords():
-        return answer_bearing(**ask(bearing_question, given))
 
 
 def _scene(scene: SceneOrPath) -> Scene:

@@ -5,8 +5,7 @@ Quantities are numbers in SI units or texts with a unit. Faults name the option,
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from inspect import signature
 from pathlib import Path
@@ -19,7 +18,6 @@ from leblanc.scene.scene import Scene
 from leblanc.scene.tasks import OBJECTIVES, Optimisation
 from leblanc.units import (
     ACCELERATION,
-    ANGLE,
     ANGULAR_SPEED,
     LENGTH,
     TIME,
@@ -30,7 +28,7 @@ from leblanc.units import (
 )
 from meshes.baffles import Baffles
 from meshes.chamber import Chamber
-from meshes.errors import InputError, require_not_negative, require_positive
+from meshes.errors import InputError
 
 if TYPE_CHECKING:
     from leblanc.studies.models.whirling import AutoWave
@@ -230,99 +228,6 @@ def modes_question(
         "resolution": Resolution(segments, layers, order),
         "source": _source(mesh, mesh_unit, mesh_size),
     }
-
-
-def volume_question(
-    *,
-    radius: Quantity,
-    height: Quantity,
-    eccentricity: Quantity,
-    speed: Quantity,
-    volume: Quantity | None = None,
-    gravity: Quantity = 9.81,
-    inner_radius: Quantity = 0.0,
-) -> dict[str, Any]:
-    """The question of `volume`, by the names of `leblanc.studies.volume.answer_volume`.
-
-    The parameters are those of `leblanc.api.volume`.
-
-    Raises
-    ------
-    InputError : a value that cannot be read, or is out of its range
-    """
-    chamber = Chamber(
-        parse_option(radius, LENGTH, "--radius"),
-        parse_option(height, LENGTH, "--height"),
-        parse_option(inner_radius, LENGTH, "--inner-radius"),
-    )
-    conditions = {
-        "eccentricity": parse_option(eccentricity, LENGTH, "--eccentricity"),
-        "speed": parse_option(speed, ANGULAR_SPEED, "--speed"),
-        "gravity": parse_option(gravity, ACCELERATION, "--gravity"),
-    }
-    for name, value in conditions.items():
-        require_not_negative(f"--{name}", value)
-    amount = None if volume is None else parse_option(volume, VOLUME, "--volume")
-    return {"chamber": chamber, **conditions, "volume": amount}
-
-
-def bearing_question(
-    *,
-    speed: Quantity,
-    balls: int | None = None,
-    ball_diameter: Quantity | None = None,
-    pitch_diameter: Quantity | None = None,
-    contact_angle: Quantity | None = None,
-    ftf: float | None = None,
-    bpfo: float | None = None,
-    bpfi: float | None = None,
-    bsf: float | None = None,
-    cage: Quantity | None = None,
-) -> dict[str, Any]:
-    """The question of `bearing`, by the names of `leblanc.studies.spindles.bearing.answer_bearing`.
-
-    The parameters are those of `leblanc.api.bearing`.
-
-    Raises
-    ------
-    InputError : a value that cannot be read or is out of its range, dimensions beside frequencies, neither
-    """
-    from solvers.rotor.rolling_bearing import ORDERS, Bearing, fit_bearing
-
-    rate = parse_option(speed, ANGULAR_SPEED, "--speed")
-    turning = None if cage is None else parse_option(cage, ANGULAR_SPEED, "--cage")
-    angle = None if contact_angle is None else parse_option(contact_angle, ANGLE, "--contact-angle")
-    lengths = {"--ball-diameter": ball_diameter, "--pitch-diameter": pitch_diameter}
-    orders = dict(zip(ORDERS, (ftf, bpfo, bpfi, bsf), strict=True))
-    given = {name: value for name, value in orders.items() if value is not None}
-    question: dict[str, Any] = {"speed": rate, "cage_measured": turning}
-    with _options_named():
-        if given:
-            for name, length in lengths.items():
-                if length is not None:
-                    raise InputError(name, length, "left out where frequencies are given, which tell it")
-            fit = fit_bearing(given, balls, angle if angle is not None or "bsf" in given else 0.0)
-            return question | {"bearing": fit.bearing, "given": given, "fit": fit}
-        for name, value in {"--balls": balls, **lengths}.items():
-            if value is None:
-                raise InputError(name, None, "given, or frequencies such as --ftf in place of dimensions")
-        ball, pitch = (parse_option(str(value), LENGTH, name) for name, value in lengths.items())
-        require_positive("--pitch-diameter", pitch)
-        if not 0.0 < ball < pitch:
-            raise InputError("--ball-diameter", ball, f"above 0 and below the pitch diameter, {pitch:g} m")
-        assert balls is not None
-        return question | {"bearing": Bearing(balls, ball / pitch, angle or 0.0)}
-
-
-@contextmanager
-def _options_named() -> Iterator[None]:
-    """Faults of a bearing name the option."""
-    try:
-        yield
-    except InputError as error:
-        options = {"balls", "contact_angle", "ftf", "bpfo", "bpfi", "bsf"}
-        names = {name: f"--{name.replace('_', '-')}" for name in options} | {"given": "--ftf"}
-        raise InputError(names.get(error.field, error.field), error.value, error.allowed) from error
 
 
 def optimisation_of(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +14,7 @@ from meshes.arrays import Array
 from meshes.baffles import Baffles
 from meshes.chamber_section import ChamberSection
 from meshes.errors import InputError, require_not_negative, require_positive
+from meshes.quantity import Q
 
 
 @dataclass(frozen=True)
@@ -30,9 +32,11 @@ class Chamber:
     6.283
     """
 
-    radius: float  #: outer wall radius R, m; with a section the distance of its farthest point
-    height: float  #: extent along the axis h_c, m
-    inner_radius: float = 0.0  #: inner wall radius R_i, m; 0 if there is no inner wall
+    #: R; with a section the distance of its farthest point
+    radius: Annotated[float, Q("m", "radius", "of the wall")]
+    height: Annotated[float, Q("m", "height", "of the chamber")]  #: extent along the axis h_c
+    #: R_i; 0 if there is no inner wall
+    inner_radius: Annotated[float, Q("m", "inner radius", "of the chamber")] = 0.0
     plane: float = 0.0  #: axial position of the chamber on the rotor, m
     baffles: Baffles | None = None  #: thin radial plates over the whole height; None without any
     section: ChamberSection | None = None  #: any other section; None for circular walls

@@ -11,6 +11,7 @@ import os
 import sys
 from collections.abc import Callable, Sequence
 from functools import wraps
+from importlib import import_module
 from importlib.metadata import EntryPoint, PackageNotFoundError, distributions, version
 from pathlib import Path
 from typing import Annotated, Any
@@ -19,7 +20,6 @@ import typer
 from typer.main import get_command
 
 from leblanc.cli import (
-    bearing,
     compare,
     explain,
     fit,
@@ -32,7 +32,6 @@ from leblanc.cli import (
     runup,
     sweep,
     view,
-    volume,
 )
 from leblanc.cli.terminal.output import drop, ready_streams, say
 from leblanc.contents import recording
@@ -43,7 +42,8 @@ from meshes.errors import InputError
 DONE, UNREAD, WRONG_INPUT, NOT_CONVERGED = 0, 1, 2, 3
 
 # Modules with one command each, a function of the module's name, in the order of the help.
-COMMANDS = (new, explain, run, compare, fit, volume, layer, modes, map, runup, optimise, sweep, view, bearing)
+COMMANDS = (new, explain, run, compare, fit, layer, modes, map, runup, optimise, sweep, view)
+QUESTIONS = ("bearing", "volume")  # whose command is made from the signature of their call
 
 # The current folder may hold a stranger's files: a pickle.py is not for the processes that are started from
 # here, nor is the .numba_config.yaml to say where compiled code is kept, which numba would unpickle.
@@ -190,14 +190,22 @@ def application(wanted: str = "") -> typer.Typer:
     ) -> None:
         """Passive liquid balancers: from the free surface to the machine."""
 
-    own = {module.__name__.rpartition(".")[2]: module for module in COMMANDS}
+    own = {module.__name__.rpartition(".")[2]: module for module in COMMANDS} | dict.fromkeys(QUESTIONS)
     for name in [wanted] if wanted in own else own:
-        found.command(name)(_as_typed(getattr(own[name], name)))
+        module = own[name]
+        found.command(name)(_as_typed(_asked(name) if module is None else getattr(module, name)))
     if wanted not in own:
         others = {name: entry for name, entry in _announcements().items() if name not in own}
         for name in [wanted] if wanted in others else sorted(others):
             _add_announced(found, others[name])
     return found
+
+
+def _asked(name: str) -> Callable[..., object]:
+    """The command of a question."""
+    from leblanc.core.question import command
+
+    return command(getattr(import_module(f"leblanc.studies.{name}"), name))
 
 
 def _as_typed(command: Callable[..., object]) -> Callable[..., object]:

@@ -2,127 +2,19 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import asdict, dataclass
-from enum import IntEnum
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.results.base import Note, NoteCode, Result, carried, one_line, texts, versions
+from leblanc.results.base import Note, NoteCode, Result, one_line, texts, versions
 from leblanc.results.netcdf import NamedArrays, variable
-from leblanc.results.netcdf import variable as var
 from leblanc.units import LENGTH, with_unit
 from meshes.arrays import Array
-from meshes.chamber import Chamber
 from meshes.findings import Finding
 from meshes.liquid_section import LiquidSection
 from solvers.sloshing.modes import SloshingModes
-
-
-class Coverage(IntEnum):
-    """How much liquid there is beside the optimal volume; the numbers are the cases of DR18, section 5."""
-
-    MORE = 1
-    AS_MUCH = 2
-    LESS = 3
-
-    @property
-    def message(self) -> str:
-        """The case as text."""
-        return {
-            Coverage.MORE: "more than just covers the wall: wet all round",
-            Coverage.AS_MUCH: "just covers the wall",
-            Coverage.LESS: "less than covers the wall: dry in part",
-        }[self]
-
-
-@dataclass(frozen=True)
-class Surface:
-    """Free surface that holds a given volume."""
-
-    surface_constant: float | None  #: C of z = beta r^2 + C, m; None without gravity along the axis
-    unbalance_volume: float  #: first moment of the liquid about the rotation axis over its density, m^4
-    unbalance_volume_fem: float  #: the same by finite elements, m^4
-    case: Coverage  #: against the optimal volume
-    converged: bool  #: both surfaces hold the given volume
-
-
-@dataclass(frozen=True)
-class VolumeResult(Result):
-    """Optimal volume of a chamber at a deflection and a speed.
-
-    Examples
-    --------
-    >>> import leblanc as lb
-    >>> best = lb.volume(radius=0.2, height=0.05, eccentricity="1 mm", speed=90.0)
-    >>> f"{1e6 * best.optimal_volume:.4f} ml, {best.fem_error < 1e-3}"
-    '54.4396 ml, True'
-    """
-
-    figure: ClassVar[str] = "leblanc.figures.liquid:surface_figure"
-    summary: ClassVar[str] = "leblanc.text.liquid:facts"
-
-    chamber: Chamber  #: its walls
-    eccentricity: float  #: deflection, m; spin speed, rad/s; gravity along the axis, m/s^2
-    speed: float
-    gravity: float
-    optimal_volume: float  #: exact, m^3
-    optimal_volume_fem: float  #: by finite elements, m^3
-    fem_error: float  #: of the latter, relative
-    printed_eq18: float | None  #: as the source prints it, m^3; None where the formula has no value
-    corrected_eq18: float | None  #: with its moment corrected, m^3; None where the formula has no value
-    volume: float | None = None  #: that was given, m^3; None without one
-    surface: Surface | None = None  #: of that volume
-
-    @property
-    def converged(self) -> bool:
-        """The surface of the given volume was found."""
-        return self.surface is None or self.surface.converged
-
-    surface_constant = carried("surface.surface_constant")
-    unbalance_volume = carried("surface.unbalance_volume")
-    unbalance_volume_fem = carried("surface.unbalance_volume_fem")
-    case = carried("surface.case")
-
-    def to_json(self) -> dict[str, Any]:
-        """What `volume` prints for scripts, SI; the surface only where a volume was given."""
-        found: dict[str, Any] = {
-            "optimal_volume": self.optimal_volume,
-            "optimal_volume_fem": self.optimal_volume_fem,
-            "fem_error": self.fem_error,
-            "printed_eq18": self.printed_eq18,
-            "corrected_eq18": self.corrected_eq18,
-        }
-        return found if self.surface is None else found | asdict(self.surface)
-
-    def named_arrays(self) -> NamedArrays:
-        """Single numbers, nan where a formula has none."""
-        units = {"surface_constant": "m", "unbalance_volume": "m4", "unbalance_volume_fem": "m4"}
-        units |= {"fem_error": "1", "case": "1", "converged": "1"}
-        given = {
-            "radius": var((), self.chamber.radius, "m", "radius", "of the wall"),
-            "inner_radius": var((), self.chamber.inner_radius, "m", "inner radius", "of the chamber"),
-            "height": var((), self.chamber.height, "m", "height", "of the chamber"),
-            "eccentricity": var((), self.eccentricity, "m", "deflection", "of the geometric axis"),
-            "speed": var((), self.speed, "rad s-1", "spin speed"),
-            "gravity": var((), self.gravity, "m s-2", "gravity", "along the axis"),
-        }
-        found = {
-            name: var(
-                (), math.nan if value is None else float(value), units.get(name, "m3"), name.replace("_", " ")
-            )
-            for name, value in self.to_json().items()
-        }
-        return NamedArrays(
-            given | found,
-            coords={},
-            attrs={
-                "history": "written by leblanc volume",
-                **{f"version_{package}": version for package, version in versions().items()},
-            },
-        )
 
 
 class ModesCode(NoteCode):

@@ -17,53 +17,9 @@ from leblanc.results.layer import (
     LayerResult,
     Number,
 )
-from leblanc.results.liquid import ModesResult, VolumeResult
+from leblanc.results.liquid import ModesResult
 from leblanc.text.numbers import number
-from leblanc.units import LENGTH, ML, MM, NUMBER, VOLUME, Dimension, Unit, in_rpm, unit_for, with_unit
-
-
-def question(result: VolumeResult) -> str:
-    """What was understood, in engineers' units."""
-    chamber = result.chamber
-    inner = f", inner radius {with_unit(chamber.inner_radius, LENGTH)}" if chamber.inner_radius > 0.0 else ""
-    return (
-        f"Chamber of radius {with_unit(chamber.radius, LENGTH)}{inner}, height "
-        f"{with_unit(chamber.height, LENGTH)}; deflection {with_unit(result.eccentricity, LENGTH)} at "
-        f"{in_rpm(result.speed)}"
-    )
-
-
-def facts(result: VolumeResult) -> list[tuple[str, str]]:
-    """The answer: label and value with its unit."""
-    unit = unit_for(VOLUME, result.optimal_volume)
-    rows = [
-        ("optimal volume", _volume(result.optimal_volume, unit)),
-        ("by finite elements", _volume(result.optimal_volume_fem, unit)),
-        ("relative difference", f"{result.fem_error:.2g}"),
-        ("as printed, DR18 eq. 18", _volume(result.printed_eq18, unit)),
-        ("the same, corrected", _volume(result.corrected_eq18, unit)),
-    ]
-    surface = result.surface
-    if surface is None:
-        return rows
-    constant = surface.surface_constant
-    return [
-        *rows,
-        ("surface constant", "none" if constant is None else f"{constant:.10g} m"),
-        ("unbalance volume", f"{surface.unbalance_volume * _ML_MM:.10g} ml mm"),
-        ("by finite elements", f"{surface.unbalance_volume_fem * _ML_MM:.10g} ml mm"),
-        ("case", f"{surface.case.value}: {surface.case.message}"),
-        ("converged", "yes" if surface.converged else "no"),
-    ]
-
-
-_ML_MM = ML * MM  # millilitres times millimetres in one m^4
-
-
-def _volume(value: float | None, unit: Unit) -> str:
-    if value is None:
-        return "none"
-    return f"{value * unit.count:.10g} {unit.name}"  # digits that show how near the finite elements come
+from leblanc.units import LENGTH, NUMBER, Dimension, in_rpm, unit_for, with_unit
 
 
 def whirl_words(case: LayerCase) -> str:

@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
 from meshes.arrays import Array
 from meshes.errors import InputError, require_positive
+from meshes.quantity import Q
 from solvers.rotor.system import cage_speed
 
 ORDERS = ("ftf", "bpfo", "bpfi", "bsf")
@@ -83,13 +85,16 @@ class BearingFit:
     """A bearing whose frequencies are nearest to some that are given."""
 
     bearing: Bearing  #: the best
-    projected_ratio: float  #: d cos(theta)/D
-    projected_ratio_std: float  #: its standard error, nan where no more is given than is sought
-    cosine: float  #: of the contact angle; nan where that was given or is 0, the end of its range
-    cosine_std: float
-    residual_rms: float  #: root mean square of computed over given less 1
-    next_balls: int  #: the second best number of balls and its residual; 0 and nan where it was given
-    next_rms: float
+    projected_ratio: Annotated[float, Q("1", "d cos(theta)/D")]
+    #: nan where no more is given than is sought
+    projected_ratio_std: Annotated[float, Q("1", "standard error of d cos(theta)/D")]
+    #: nan where the angle was given or is 0, the end of its range
+    cosine: Annotated[float, Q("1", "cosine of the contact angle")]
+    cosine_std: Annotated[float, Q("1", "standard error of that cosine")]
+    residual_rms: Annotated[float, Q("1", "root mean square of computed over given less 1")]
+    #: None and nan where the number of balls was given
+    next_balls: Annotated[int | None, Q("1", "second best number of balls")]
+    next_rms: Annotated[float, Q("1", "residual with that number")]
 
 
 def fit_bearing(
@@ -140,7 +145,7 @@ def fit_bearing(
         cosine=cosine,
         cosine_std=spread[1],
         residual_rms=rms,
-        next_balls=0 if other is None else int(other[0][2]),
+        next_balls=None if other is None else int(other[0][2]),
         next_rms=math.nan if other is None else other[1],
     )
 

@@ -18,9 +18,7 @@ from leblanc.api import layer, modes, optimise, run_up
 from leblanc.cli import main
 from leblanc.cli.terminal.output import print_json
 from leblanc.figures.drawing.page import Figure
-from leblanc.figures.liquid import surface_figure
 from leblanc.results.base import Result
-from leblanc.results.liquid import Coverage
 from leblanc.results.response import RunResult
 from leblanc.scene.scene import Scene, load_scene
 from leblanc.scene.tasks import Optimisation
@@ -31,12 +29,13 @@ from leblanc.studies.magnetic.explain import explain_magnetic
 from leblanc.studies.magnetic.run import run_magnetic
 from leblanc.studies.models.choose import choose_all, prepare
 from leblanc.studies.run import run_scene
-from leblanc.studies.volume import answer_volume
+from leblanc.studies.volume import volume
+from leblanc.studies.volume.answer import Coverage
+from leblanc.studies.volume.figure import surface_figure
 from leblanc.studies.whirl_map import map_scene
-from meshes.chamber import Chamber
 from tests.oracles.data_files import assert_read_back
 
-CHAMBER = Chamber(0.065, 0.02)
+CHAMBER = {"radius": 0.065, "height": 0.02}
 LAYER: dict[str, Any] = {"radius": 0.15, "volume": "671 ml", "height": 0.05, "speed": 40.0}
 ROOT = Path(__file__).parents[3]
 
@@ -75,7 +74,7 @@ RESULTS = {
         **LAYER, whirl_speed=32.0, whirl_amplitude="0.15 mm", model="long_wave", cells=32, duration=2.0
     ),
     "modes": lambda: modes(**LAYER, count=3, segments=32),
-    "volume": lambda: answer_volume(CHAMBER, 1e-3, 20.0, 9.81, 3e-5),
+    "volume": lambda: volume(**CHAMBER, eccentricity=1e-3, speed=20.0, volume=3e-5),
     "exciter": lambda: run_exciter(scene("vibratory_table")),
     "magnetic": lambda: run_magnetic(
         scene("blood_pump").replace({"speeds.count": 3, "rotor.trial.duration": 0.02})
@@ -189,7 +188,7 @@ def test_models_are_chosen_once_a_command(command: str, tmp_path: Path) -> None:
 
 def test_the_optimal_surface_touches_the_near_wall_at_the_floor() -> None:
     """What is drawn of the optimal volume begins at the floor where the wall is nearest to the axis."""
-    best = answer_volume(CHAMBER, 2e-3, 60.0, 9.81)
+    best = volume(**CHAMBER, eccentricity=2e-3, speed=60.0)
     (liquid,) = surface_figure(best).axes[0].collections
     x, z = np.concatenate([path.vertices for path in liquid.get_paths()]).T
     left, right = (2.0 - 65.0), (2.0 + 65.0)
@@ -202,7 +201,7 @@ def test_the_optimal_surface_touches_the_near_wall_at_the_floor() -> None:
     ("factor", "case"), [(1.2, Coverage.MORE), (1.0, Coverage.AS_MUCH), (0.8, Coverage.LESS)]
 )
 def test_the_case_says_how_much_there_is(factor: float, case: Coverage) -> None:
-    best = answer_volume(CHAMBER, 1e-3, 60.0, 9.81).optimal_volume
-    surface = answer_volume(CHAMBER, 1e-3, 60.0, 9.81, factor * best).surface
+    best = volume(**CHAMBER, eccentricity=1e-3, speed=60.0).optimal_volume
+    surface = volume(**CHAMBER, eccentricity=1e-3, speed=60.0, volume=factor * best).surface
     assert surface is not None and surface.case is case
     assert ("dry" in case.message) == (case is Coverage.LESS)

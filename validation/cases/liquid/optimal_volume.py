@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from leblanc.studies.volume import answer_volume
+from leblanc.studies.volume.study import answer_volume
 from meshes.chamber import Chamber
 from solvers.statics.hydrostatics import optimal_volume
 from solvers.synchronous.models import Statics
@@ -19,7 +19,7 @@ def cases() -> list[Case]:
     for (radius, height), speed in _SETS:
         chamber = Chamber(radius, height)
         for e in (1e-3, 3e-3, 10e-3):
-            answer = answer_volume(chamber, e, speed, _GRAVITY)
+            answer = answer_volume(radius, height, e, speed, gravity=_GRAVITY)
             at = f"R {radius:g} m, h {height:g} m, {speed:g} rad/s, e {e * 1e3:g} mm"
             name = f"{radius * 1e3:g}-{speed:g}-{e * 1e3:g}"
             found.append(

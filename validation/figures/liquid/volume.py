@@ -9,7 +9,7 @@ import numpy as np
 from fluid.fill import Fill, Fills
 from fluid.liquid import known_liquid
 from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, style
-from leblanc.studies.volume import answer_volume
+from leblanc.studies.volume.study import answer_volume
 from leblanc.units import MM
 from meshes.chamber import Chamber
 from solvers.statics.hydrostatics import equilibrium, optimal_volume
@@ -36,7 +36,7 @@ def volume_figure() -> Figure:
             exact = np.asarray(optimal_volume(CHAMBER, fine, speed, GRAVITY)) * _ML
             look = {"color": _COLORS[k], "linestyle": _DASHES[k]}
             axes.plot(fine * MM, exact, **look, label=f"exact, {speed:g} rad/s")
-            answers = [answer_volume(CHAMBER, e, speed, GRAVITY) for e in few]
+            answers = [answer_volume(CHAMBER.radius, CHAMBER.height, e, speed, gravity=GRAVITY) for e in few]
             points = {"linestyle": "none", "color": _COLORS[k], "markerfacecolor": "white"}
             found = [answer.optimal_volume_fem * _ML for answer in answers]
             label = f"elements, {speed:g} rad/s"
@@ -68,7 +68,10 @@ def volume_figure() -> Figure:
 
 def _as_printed(axes: Any, speed: float, k: int, deflection: Any) -> None:
     """The printed formula and its correction, which still takes a disc for the lens."""
-    answers = [answer_volume(CHAMBER, float(e), speed, GRAVITY) for e in deflection[::10]]
+    answers = [
+        answer_volume(CHAMBER.radius, CHAMBER.height, float(e), speed, gravity=GRAVITY)
+        for e in deflection[::10]
+    ]
     some = deflection[::10] * MM
     printed = [np.nan if answer.printed_eq18 is None else answer.printed_eq18 * _ML for answer in answers]
     # At slow spin the disc that stands for the lens leaves a negative volume.

@@ -8,9 +8,9 @@ from collections.abc import Callable
 import numpy as np
 
 from fluid.printed import optimal_volume_as_printed, optimal_volume_disc_corrected
-from leblanc.results.liquid import Coverage, Surface, VolumeResult
+from leblanc.studies.volume.answer import Coverage, Surface, VolumeAnswer
 from meshes.chamber import Chamber
-from meshes.errors import InputError
+from meshes.errors import InputError, require_not_negative
 from solvers.statics.hydrostatics import equilibrium, optimal_volume
 
 # The volume counts as the optimal one when it is that to the digits that people pass on.
@@ -18,24 +18,20 @@ _SAME = 1e-8
 
 
 def answer_volume(
-    chamber: Chamber, eccentricity: float, speed: float, gravity: float, volume: float | None = None
-) -> VolumeResult:
-    """Optimal volume, exact, by finite elements, and as printed [theory: statics, eq. 8].
-
-    Parameters
-    ----------
-    chamber : the chamber
-    eccentricity : deflection e, m
-    speed : spin speed Omega, rad/s
-    gravity : along the axis, m/s^2
-    volume : of liquid whose surface is computed as well, m^3
-
-    Raises
-    ------
-    InputError : a value out of its range, more liquid than the chamber holds
-    """
+    radius: float,
+    height: float,
+    eccentricity: float,
+    speed: float,
+    volume: float | None = None,
+    gravity: float = 9.81,
+    inner_radius: float = 0.0,
+) -> VolumeAnswer:
+    """Optimal volume, exact, by finite elements, and as printed [theory: statics, eq. 8]."""
     from solvers.statics.free_surface import optimal_volume_fem
 
+    chamber = Chamber(radius, height, inner_radius)
+    for name, value in {"eccentricity": eccentricity, "speed": speed, "gravity": gravity}.items():
+        require_not_negative(name, value)
     exact = float(optimal_volume(chamber, eccentricity, speed, gravity))
     elements = optimal_volume_fem(
         chamber.radius,
@@ -44,7 +40,7 @@ def answer_volume(
         _beta(speed, gravity),
         inner_radius=chamber.inner_radius,
     )
-    return VolumeResult(
+    return VolumeAnswer(
         chamber=chamber,
         eccentricity=eccentricity,
         speed=speed,

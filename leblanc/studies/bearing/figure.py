@@ -2,24 +2,22 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 from leblanc.figures.drawing.page import Caption, Figure, Frame, lay_out, number, style
-from leblanc.results.spindles.bearing import BearingResult
-from leblanc.text.spindles.bearing import NAMES, bearing_words, frequency_rows
+from leblanc.studies.bearing.answer import HERTZ, NAMES, BearingAnswer, bearing_words, frequency_rows
 
 FRAME = Frame(left=1.3, top=0.15, between=0.1, below=0.42)
 
 
-def bearing_figure(result: BearingResult) -> Figure:
+def bearing_figure(result: BearingAnswer) -> Figure:
     """Each frequency as a bar, those that were given as marks.
 
     Parameters
     ----------
     result : the answer
     """
-    hertz = result.speed / (2.0 * math.pi)
+    hertz = result.speed * HERTZ
     with style():
         figure = Figure()
         figure.alt = "; ".join(f"{row[0]} {row[1]} Hz" for row in frequency_rows(result))

@@ -1,0 +1,29 @@
+"""What a number of an answer is, said once: beside it, in its type."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Q:
+    """A quantity of an answer: `amplitude: Annotated[Array, Q("m", "amplitude", over=("speed",))]`.
+
+    It stands at a field of a dataclass or at what a property returns; JSON, data files, tables and the page of
+    outputs are made from it.
+    """
+
+    unit: str = ""  #: as CF writes it ("rad s-1", "1"); empty for texts, truth values and records
+    name: str = (
+        ""  #: what it is, a noun phrase that stands alone; from this the name of a variable is made out
+    )
+    text: str = ""  #: what else a reader needs: "zero to peak", from where an angle counts
+    over: tuple[str, ...] = ()  #: names of its dimensions; a quantity over itself alone is a coordinate
+    axes: tuple[str, str] | None = None  #: of a complex number: what lies along its two axes
+    part: bool = False  #: a record, whose own quantities are the answer's as well
+    error: str = ""  #: the quantity that is its error
+    by: str = ""  #: its equation, as in "rotor, eq. 28"
+    flags: str = ""  #: names of the states of a truth value or a code, the last being 1
+    json: bool = True  #: it stands in the JSON
+    data: bool = True  #: it is a variable of the data file
+    coordinate: bool = False  #: a scalar that the others belong to, as the one speed of an answer
