@@ -19,8 +19,8 @@ import numpy as np
 from fluid.fill import Fill
 from fluid.friction.laws import Friction, FrictionLaw
 from fluid.liquid import known_liquid
+from leblanc.core.units import RPM
 from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save, style
-from leblanc.units import RPM
 from meshes.arrays import Array, Complex
 from meshes.chamber import Chamber
 from solvers.ross import liquid_layer

@@ -11,7 +11,7 @@ if __name__ == "__main__" and not sys.flags.safe_path and sys.path[:1] == [_FIRS
 
 import signal  # noqa: E402
 
-from leblanc.interrupts import Terminated, heard, leave, said  # noqa: E402
+from leblanc.core.interrupts import Terminated, heard, leave, said  # noqa: E402
 
 
 def main(arguments: list[str] | None = None) -> int:

@@ -217,9 +217,9 @@ def map_whirl(
     (3, 5)
     """
     machine = _scene(scene)
+    from leblanc.core.units import VOLUME, parse_option
     from leblanc.questions import friction_of
     from leblanc.studies.whirl_map import map_scene
-    from leblanc.units import VOLUME, parse_option
 
     with _keywords():
         most = None if max_volume is None else parse_option(max_volume, VOLUME, "--max-volume")
@@ -453,7 +453,7 @@ def sweep(
     >>> import leblanc as lb
     >>> found = lb.sweep("study.toml", workers=0)  # doctest: +SKIP
     """
-    from leblanc.files import out_dir
+    from leblanc.core.files import out_dir
     from leblanc.studies.sweep.study import load_sweep
     from leblanc.studies.sweep.summary import sweep_result
 

@@ -14,9 +14,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from fluid.fill import Fill
 from fluid.friction.laws import Friction
 from fluid.liquid import Liquid, known_liquid
-from leblanc.scene.scene import Scene
-from leblanc.scene.tasks import OBJECTIVES, Optimisation
-from leblanc.units import (
+from leblanc.core.units import (
     ACCELERATION,
     ANGULAR_SPEED,
     LENGTH,
@@ -26,6 +24,8 @@ from leblanc.units import (
     parse_friction,
     parse_option,
 )
+from leblanc.scene.scene import Scene
+from leblanc.scene.tasks import OBJECTIVES, Optimisation
 from meshes.baffles import Baffles
 from meshes.chamber import Chamber
 from meshes.errors import InputError

@@ -9,14 +9,12 @@ from dataclasses import dataclass
 class Q:
     """A quantity of an answer: `amplitude: Annotated[Array, Q("m", "amplitude", over=("speed",))]`.
 
-    It stands at a field of a dataclass or at what a property returns; JSON, data files, tables and the page of
-    outputs are made from it.
+    It stands at a field of a dataclass or at what a property returns; JSON, data files, tables and the page
+    of outputs are made from it.
     """
 
     unit: str = ""  #: as CF writes it ("rad s-1", "1"); empty for texts, truth values and records
-    name: str = (
-        ""  #: what it is, a noun phrase that stands alone; from this the name of a variable is made out
-    )
+    name: str = ""  #: what it is, a noun phrase that stands alone
     text: str = ""  #: what else a reader needs: "zero to peak", from where an angle counts
     over: tuple[str, ...] = ()  #: names of its dimensions; a quantity over itself alone is a coordinate
     axes: tuple[str, str] | None = None  #: of a complex number: what lies along its two axes

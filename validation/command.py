@@ -25,8 +25,8 @@ def validate(
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of a table.")] = False,
 ) -> None:
     """Published cases beside what the package computes."""
-    from leblanc.cli.terminal.output import print_json
-    from leblanc.cli.terminal.progress import working
+    from leblanc.core.progress import working
+    from leblanc.core.terminal import print_json
 
     with working("cases") as update:
         found = all_cases(case, update)

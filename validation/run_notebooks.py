@@ -64,8 +64,8 @@ def notebooks(
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> int:
     """Execute the validation notebooks. With outputs as .ipynb and HTML; exit code 1 if one fails."""
-    from leblanc.cli.terminal.output import print_json, say
-    from leblanc.files import out_dir
+    from leblanc.core.files import out_dir
+    from leblanc.core.terminal import print_json, say
 
     chosen = [_text(name) for name in names] if names else texts()
     require_jupyter()
@@ -191,7 +191,7 @@ def write_pages(book: Any, stem: str, out: Path) -> None:
     import nbformat
     from nbconvert import HTMLExporter
 
-    from leblanc.files import writing
+    from leblanc.core.files import writing
 
     out.mkdir(parents=True, exist_ok=True)
     with writing(out / f"{stem}.ipynb") as part:

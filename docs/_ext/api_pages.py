@@ -207,7 +207,7 @@ def _public_page(found: list[Module], answers: list[Member]) -> str:
     lines = [title, "=" * len(title), "", "After ``import leblanc as lb``, each is ``lb.NAME``.", ""]
     for section, introduction, names in SECTIONS:
         lines += _section(section, introduction, [members[f"leblanc.{name}"] for name in names])
-    text = "What calls return. All inherit from :py:obj:`Result <leblanc.results.base.Result>`."
+    text = "What calls return. All inherit from :py:obj:`Result <leblanc.core.answer.Result>`."
     return "\n".join(lines + _section("Results", text, answers))
 
 

@@ -33,10 +33,11 @@ from leblanc.cli import (
     sweep,
     view,
 )
-from leblanc.cli.terminal.output import drop, ready_streams, say
-from leblanc.contents import recording
-from leblanc.interrupts import INTERRUPTED, TERMINATED, Terminated, behind, heard, leave, said
-from leblanc.scene.schema.load import NotConverged, SceneError, escaped
+from leblanc.core.answer import NotConverged
+from leblanc.core.contents import recording
+from leblanc.core.interrupts import INTERRUPTED, TERMINATED, Terminated, behind, heard, leave, said
+from leblanc.core.terminal import drop, ready_streams, say
+from leblanc.scene.schema.load import SceneError, escaped
 from meshes.errors import InputError
 
 DONE, UNREAD, WRONG_INPUT, NOT_CONVERGED = 0, 1, 2, 3
@@ -203,7 +204,7 @@ def application(wanted: str = "") -> typer.Typer:
 
 def _asked(name: str) -> Callable[..., object]:
     """The command of a question."""
-    from leblanc.core.question import command
+    from leblanc.cli.command import command
 
     return command(getattr(import_module(f"leblanc.studies.{name}"), name))
 

@@ -7,9 +7,10 @@ from typing import Annotated
 
 import typer
 
-from leblanc.cli.terminal.output import load, print_json, print_table, processes, say
-from leblanc.cli.terminal.progress import working
-from leblanc.contents import results_dir
+from leblanc.cli.terminal.output import load, processes
+from leblanc.core.contents import results_dir
+from leblanc.core.progress import working
+from leblanc.core.terminal import print_json, print_table, say
 
 
 def compare(
@@ -38,8 +39,8 @@ def compare(
         names = [name.strip() for name in models.split(",")]
         found = compare_models(machine, names, Holding(processes(workers), folder, fresh))
 
+    from leblanc.core.netcdf import write_netcdf
     from leblanc.figures.comparison import comparison_figure, save
-    from leblanc.results.netcdf import write_netcdf
     from leblanc.text.explanation import basis, comparison_head, comparison_rows, refusals
     from leblanc.text.run import unanswered
 
@@ -54,7 +55,7 @@ def compare(
 
     lost = [f"{name}: {text}" for name, result in found.results.items() for text in unanswered(result)]
     if lost:
-        from leblanc.scene.schema.load import NotConverged
+        from leblanc.core.answer import NotConverged
 
         raise NotConverged([f"{scene}: {text}" for text in lost])
     say(f"{found.name}: {len(found.results)} of {len(found.models)} models answered")

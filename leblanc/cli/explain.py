@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from leblanc.cli.terminal.output import load, print_json, print_table
+from leblanc.cli.terminal.output import load
+from leblanc.core.terminal import print_json, print_table
 
 if TYPE_CHECKING:
     from leblanc.results.explanation import Explanation
@@ -70,7 +71,7 @@ def _print_balls(answer: BallExplanation) -> None:
 
 def _print(answer: Explanation) -> None:
     """The explanation as text; of the liquid only where there is any."""
-    from leblanc.results.base import percent
+    from leblanc.core.notes import percent
     from leblanc.text.closed_forms import closed_form_rows
     from leblanc.text.explanation import (
         ESTIMATES,

@@ -7,9 +7,10 @@ from typing import Annotated
 
 import typer
 
-from leblanc.cli.terminal.output import load, print_json, print_table, say
-from leblanc.cli.terminal.progress import working
-from leblanc.contents import results_dir
+from leblanc.cli.terminal.output import load
+from leblanc.core.contents import results_dir
+from leblanc.core.progress import working
+from leblanc.core.terminal import print_json, print_table, say
 
 
 def fit(
@@ -65,8 +66,8 @@ def fit(
             machine, table, unknown, starts, seed, scale, lambda part: update(part, 1.0), noise, scene
         )
 
+    from leblanc.core.netcdf import write_netcdf
     from leblanc.figures.fit import write_figures
-    from leblanc.results.netcdf import write_netcdf
     from leblanc.text.fit import HEAD, fit_rows, left_words, noise_words
 
     write_netcdf(found.named_arrays(), folder / "fit.nc")
@@ -81,7 +82,7 @@ def fit(
             print(f"note: {note}")
         print(f"See {files.png}; the data are in {folder / 'fit.nc'}")
     if not found.converged:
-        from leblanc.scene.schema.load import NotConverged
+        from leblanc.core.answer import NotConverged
 
         raise NotConverged([f"{scene}: the search for {', '.join(unknown)} did not come to its end"])
     say(f"{found.name}: {len(unknown)} unknowns, {found.evaluations} answers")

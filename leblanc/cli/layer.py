@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from leblanc.cli.terminal.output import print_json, print_table, say
-from leblanc.cli.terminal.progress import working
-from leblanc.files import out_dir, require_writable
+from leblanc.core.files import out_dir, require_writable
+from leblanc.core.progress import working
+from leblanc.core.terminal import print_json, print_table, say
 
 if TYPE_CHECKING:
     from leblanc.questions import LayerQuestion
@@ -90,9 +90,9 @@ def layer(
     With --free the speeds of the wave that runs round the drum by itself.
     """
     given = locals()
+    from leblanc.core.answer import NotConverged
     from leblanc.questions import ask, layer_question
     from leblanc.results.layer import LayerPeriodsResult
-    from leblanc.scene.schema.load import NotConverged
     from leblanc.studies.layer import answer_layer, free_wave, layer_history
 
     question = ask(layer_question, given)

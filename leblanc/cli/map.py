@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from leblanc.cli.terminal.output import load, print_json, print_table, say
-from leblanc.cli.terminal.progress import working
-from leblanc.contents import results_dir
+from leblanc.cli.terminal.output import load
+from leblanc.core.contents import results_dir
+from leblanc.core.progress import working
+from leblanc.core.terminal import print_json, print_table, say
 
 if TYPE_CHECKING:
     from leblanc.scene.scene import Scene
@@ -76,7 +77,7 @@ def map(
 
     Points at which the growth is not known are marked; the command fails where they are more than one in 100.
     """
-    from leblanc.units import VOLUME, in_rpm, parse_friction, parse_option
+    from leblanc.core.units import VOLUME, in_rpm, parse_friction, parse_option
 
     machine = load(scene)
     if machine.balls:
@@ -114,10 +115,10 @@ def map(
 
         found = map_scene(machine, volumes, speeds, most, law, progress, cycles, whirls)
 
+    from leblanc.core.netcdf import write_netcdf
     from leblanc.figures.whirl_map import cycles_figure, map_figure, save
     from leblanc.report.page import about, command_line
     from leblanc.report.run import write_map_report
-    from leblanc.results.netcdf import write_netcdf
 
     write_netcdf(found.named_arrays(), folder / "map.nc")
     files = [save(map_figure(found), folder, "map", "Self-excited whirl over speed and volume")]
@@ -146,7 +147,7 @@ def map(
         print(f"Read {folder / 'map.html'}; the data are in {folder / 'map.nc'}")
 
     if found.not_known > MOST_LOST * found.growth.size:
-        from leblanc.scene.schema.load import NotConverged
+        from leblanc.core.answer import NotConverged
 
         lost = f"{found.not_known} of {found.growth.size} points"
         raise NotConverged([f"{scene}: growth not known at {lost}, marked in the map"])
@@ -192,10 +193,10 @@ def _map_balls(
             progress=lambda done, total: update(done, total, "points" if done < total else "curves"),
         )
 
+    from leblanc.core.netcdf import write_netcdf
     from leblanc.figures.races.chart import write_chart_figure
     from leblanc.report.chart import write_chart_report
     from leblanc.report.page import about, command_line
-    from leblanc.results.netcdf import write_netcdf
     from leblanc.text.races.chart import HEAD, answer, curves, facts
 
     write_netcdf(found.named_arrays(), folder / "map.nc")

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from leblanc.cli.terminal.output import print_json, say
-from leblanc.cli.terminal.progress import working
-from leblanc.files import out_dir
+from leblanc.core.files import out_dir
+from leblanc.core.progress import working
+from leblanc.core.terminal import print_json, say
 
 if TYPE_CHECKING:
     from leblanc.results.liquid import ModesResult
@@ -47,11 +47,11 @@ def modes(
     Frequencies are relative to the drum, positive with the spin.
     """
     given = locals()
+    from leblanc.core.answer import NotConverged
+    from leblanc.core.units import LENGTH, with_unit
     from leblanc.questions import ask, modes_question
-    from leblanc.scene.schema.load import NotConverged
     from leblanc.studies.modes import answer_modes
     from leblanc.text.liquid import modes_table
-    from leblanc.units import LENGTH, with_unit
 
     question = ask(modes_question, given)
     folder = None if out is None else out_dir("modes", out)

@@ -10,8 +10,8 @@ from typing import Annotated
 
 import typer
 
-from leblanc.cli.terminal.output import say
-from leblanc.files import writing
+from leblanc.core.files import writing
+from leblanc.core.terminal import say
 
 
 def new(

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from leblanc.cli.terminal.output import load, print_json, processes, say
-from leblanc.contents import results_dir
+from leblanc.cli.terminal.output import load, processes
+from leblanc.core.contents import results_dir
+from leblanc.core.terminal import print_json, say
 
 if TYPE_CHECKING:
     from leblanc.results.optimum import OptimumResult
@@ -75,9 +76,9 @@ def optimise(
         return
     result = _run(machine, task, not no_front, emulator)
 
+    from leblanc.core.netcdf import write_netcdf
     from leblanc.figures.optimise import write_figures
     from leblanc.report.optimise import write_optimise_report
-    from leblanc.results.netcdf import write_netcdf
 
     write_netcdf(result.named_arrays(), folder / "optimum.nc")
     files = write_figures(result, folder)
@@ -106,13 +107,13 @@ def optimise(
 
 def _layout(machine: Scene, scene: Path, task: Optimisation, folder: Path, json: bool) -> None:
     """Where the mounts of a tub sit best."""
-    from leblanc.cli.terminal.output import print_table
-    from leblanc.cli.terminal.progress import working
+    from leblanc.core.netcdf import write_netcdf
+    from leblanc.core.progress import working
+    from leblanc.core.terminal import print_table
     from leblanc.figures.drawing.page import save
     from leblanc.figures.machine import layout_figure, places_figure
     from leblanc.report.layout import write_layout_report
     from leblanc.report.page import about, command_line
-    from leblanc.results.netcdf import write_netcdf
     from leblanc.studies.optimise.layout import optimise_layout
     from leblanc.text.layout import MOUNTS, PAIR_HEAD, answer, coupling_rows, facts, mount_rows
 
@@ -137,7 +138,7 @@ def _layout(machine: Scene, scene: Path, task: Optimisation, folder: Path, json:
         print_table(coupling_rows(result), PAIR_HEAD)
         print(f"Read {folder / 'layout.html'}; the data are in {folder / 'layout.nc'}")
     if not result.feasible:
-        from leblanc.scene.schema.load import NotConverged
+        from leblanc.core.answer import NotConverged
 
         raise NotConverged([f"{machine.name}: {answer(result)}"])
     say(f"{result.name}: {result.evaluations} layouts judged")
@@ -147,12 +148,12 @@ def _balls(
     machine: Scene, task: Optimisation, scene: Path, folder: Path, command: str, workers: int, json: bool
 ) -> None:
     """The best balls of a scene's races."""
-    from leblanc.cli.terminal.output import print_table
-    from leblanc.cli.terminal.progress import working
+    from leblanc.core.netcdf import write_netcdf
+    from leblanc.core.progress import working
+    from leblanc.core.terminal import print_table
     from leblanc.figures.races.design import write_design_figure
     from leblanc.report.design import write_design_report
     from leblanc.report.page import about
-    from leblanc.results.netcdf import write_netcdf
     from leblanc.studies.optimise.balls.search import optimise_balls
     from leblanc.text.races.design import RACE_HEAD, answer, constraint_rows, facts, nearest, paste, race_rows
 
@@ -181,7 +182,7 @@ def _balls(
     if result.interrupted:
         raise KeyboardInterrupt
     if not result.feasible:
-        from leblanc.scene.schema.load import NotConverged
+        from leblanc.core.answer import NotConverged
 
         raise NotConverged([f"{scene}: no balls meet every constraint: {nearest(result)}"])
     say(f"{result.name}: {result.evaluations} designs judged")
@@ -189,7 +190,7 @@ def _balls(
 
 def _finish(result: OptimumResult, scene: Path) -> None:
     """Say what the answer is not, after all that was found is written."""
-    from leblanc.scene.schema.load import NotConverged
+    from leblanc.core.answer import NotConverged
     from leblanc.text.optimum import nearest
 
     if result.interrupted:

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from leblanc.cli.terminal.output import load, print_json, print_table, processes, say
-from leblanc.cli.terminal.progress import working
-from leblanc.contents import results_dir
+from leblanc.cli.terminal.output import load, processes
+from leblanc.core.contents import results_dir
+from leblanc.core.progress import working
+from leblanc.core.terminal import print_json, print_table, say
 
 if TYPE_CHECKING:
     from leblanc.scene.scene import Scene
@@ -55,10 +56,10 @@ def run(
         holding = Holding(processes(workers), folder, fresh, solver or COUPLED)
         result = run_scene(machine, lambda what: update(what=what), holding, cycles)
 
+    from leblanc.core.netcdf import write_netcdf
     from leblanc.figures.response import write_figures
     from leblanc.report.page import about, command_line
     from leblanc.report.run import write_run_report
-    from leblanc.results.netcdf import write_netcdf
     from leblanc.results.notes.baffles import BaffleCode
     from leblanc.results.notes.response import RunCode
     from leblanc.text.closed_forms import closed_form_rows
@@ -96,7 +97,7 @@ def run(
         print(f"Read {folder / 'summary.html'}; the data are in {folder / 'response.nc'}")
 
     if not result.converged.all():
-        from leblanc.scene.schema.load import NotConverged
+        from leblanc.core.answer import NotConverged
 
         failed = [f"{scene}: {text}" for text in unanswered(result)]
         if result.held is not None and result.held.not_settled.any():
@@ -110,10 +111,10 @@ def run(
 
 def _run_balls(machine: Scene, scene: Path, folder: Path, json: bool) -> None:
     """Where the balls of a rotor rest in the drum."""
+    from leblanc.core.netcdf import write_netcdf
     from leblanc.figures.races.balls import write_balls_figures
     from leblanc.report.page import about, command_line
     from leblanc.report.run import write_balls_report
-    from leblanc.results.netcdf import write_netcdf
     from leblanc.studies.races.balls import run_balls
     from leblanc.text.closed_forms import closed_form_rows
     from leblanc.text.machine import load_table
@@ -143,7 +144,7 @@ def _run_balls(machine: Scene, scene: Path, folder: Path, json: bool) -> None:
             print(f"note: {note.text}")
         print(f"Read {folder / 'summary.html'}; the data are in {folder / 'response.nc'}")
     if not result.converged.all():
-        from leblanc.scene.schema.load import NotConverged
+        from leblanc.core.answer import NotConverged
 
         raise NotConverged([f"{scene}: no state of the balls was found at some speeds; they are empty"])
     say(f"{result.name}: {result.speed.size} speeds done")
@@ -170,7 +171,7 @@ def _run_exciter(machine: Scene, scene: Path, folder: Path, json: bool) -> None:
         print_table([(limit.label, limit.where) for limit in limits(result)], indent=2)
         print(f"Read {folder / 'summary.html'}")
     if not result.converged:
-        from leblanc.scene.schema.load import NotConverged
+        from leblanc.core.answer import NotConverged
 
         raise NotConverged([f"{result.name}: a time integration beside the formulas did not stay finite"])
     say(f"{result.name}: {result.speed.size} speeds done")
@@ -183,10 +184,10 @@ def _run_magnetic(machine: Scene, scene: Path, folder: Path, json: bool) -> None
 
         result = run_magnetic(machine, lambda what: update(what=what))
 
+    from leblanc.core.netcdf import write_netcdf
     from leblanc.figures.magnetic.control import write_magnetic_figure
     from leblanc.report.page import about, command_line
     from leblanc.report.run import write_magnetic_report
-    from leblanc.results.netcdf import write_netcdf
     from leblanc.text.magnetic import heads, limits, lines, rows
 
     write_netcdf(result.named_arrays(), folder / "response.nc")
@@ -204,7 +205,7 @@ def _run_magnetic(machine: Scene, scene: Path, folder: Path, json: bool) -> None
         print_table([(limit.label, limit.where) for limit in limits(result)], indent=2)
         print(f"Read {folder / 'summary.html'}; the data are in {folder / 'response.nc'}")
     if not result.converged:
-        from leblanc.scene.schema.load import NotConverged
+        from leblanc.core.answer import NotConverged
 
         raise NotConverged([f"{result.name}: the trial in time did not come to its end"])
     say(f"{result.name}: {result.speed.size} speeds done")
@@ -212,10 +213,10 @@ def _run_magnetic(machine: Scene, scene: Path, folder: Path, json: bool) -> None
 
 def _run_spindle(machine: Scene, scene: Path, folder: Path, json: bool) -> None:
     """Compliances and natural frequencies of a spindle unit."""
+    from leblanc.core.netcdf import write_netcdf
     from leblanc.figures.spindles.unit import write_figures
     from leblanc.report.page import about, command_line
     from leblanc.report.spindle import write_spindle_report
-    from leblanc.results.netcdf import write_netcdf
     from leblanc.studies.spindles.unit import run_spindle
     from leblanc.text.spindles.unit import HEAD, answer, cage_rows, compliance_rows, limits
 

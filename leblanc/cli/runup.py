@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from leblanc.cli.terminal.output import load, print_json, print_table, processes, say
-from leblanc.cli.terminal.progress import working
-from leblanc.contents import results_dir
-from leblanc.files import require_writable
+from leblanc.cli.terminal.output import load, processes
+from leblanc.core.contents import results_dir
+from leblanc.core.files import require_writable
+from leblanc.core.progress import working
+from leblanc.core.terminal import print_json, print_table, say
 
 if TYPE_CHECKING:
     from leblanc.results.runup import RunupResult
@@ -64,10 +65,10 @@ def runup(
             *(ensemble, seed, processes(workers)),
         )
 
+    from leblanc.core.netcdf import write_netcdf
     from leblanc.figures.runup import write_figures
     from leblanc.report.page import about, command_line
     from leblanc.report.runup import write_runup_report
-    from leblanc.results.netcdf import write_netcdf
 
     write_netcdf(result.named_arrays(), folder / "runup.nc")
     figures = write_figures(result, folder)
@@ -115,7 +116,7 @@ def _tell(result: RunupResult, folder: Path) -> None:
 
 def _finish(result: RunupResult, scene: Path) -> None:
     """Say what did not come to its end, after all that was reached is written."""
-    from leblanc.scene.schema.load import NotConverged
+    from leblanc.core.answer import NotConverged
     from solvers.layer.records import Outcome
 
     cut = result.spread is not None and result.spread.members < result.spread.asked

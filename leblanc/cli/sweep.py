@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from leblanc.cli.terminal.output import print_json, say
-from leblanc.contents import results_dir
+from leblanc.core.contents import results_dir
+from leblanc.core.terminal import print_json, say
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -54,7 +54,7 @@ def sweep(
 
     result = _run(plan, folder, workers, scheduler, fresh)
     if netcdf:
-        from leblanc.results.netcdf import write_netcdf
+        from leblanc.core.netcdf import write_netcdf
 
         write_netcdf(result.named_arrays(), folder / "sweep.nc")
     emulators = None
@@ -120,7 +120,8 @@ def _run(plan: Sweep, folder: Path, workers: int | None, scheduler: str | None, 
 
 def _finish(found: SweepResult) -> None:
     """Say on stderr how it went; with no sample done at all that is a failure."""
-    from leblanc.scene.schema.load import NotConverged, SceneError, SceneFault
+    from leblanc.core.answer import NotConverged
+    from leblanc.scene.schema.load import SceneError, SceneFault
 
     for reason, count in found.reasons[:_SHOWN]:
         say(f"{found.name}: {count} of {found.samples} samples: {reason}")

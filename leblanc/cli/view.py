@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Annotated, cast
 
 import typer
 
-from leblanc.cli.terminal.output import load, print_json, say
-from leblanc.cli.terminal.progress import working
-from leblanc.contents import results_dir
-from leblanc.files import require_writable
+from leblanc.cli.terminal.output import load
+from leblanc.core.contents import results_dir
+from leblanc.core.files import require_writable
+from leblanc.core.progress import working
+from leblanc.core.terminal import print_json, say
 
 if TYPE_CHECKING:
     from leblanc.results.drawn.machine import ModeView
@@ -65,7 +66,7 @@ def view(
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> None:
     """Three-dimensional picture, film or browser page."""
-    from leblanc.units import ANGULAR_SPEED, parse_option
+    from leblanc.core.units import ANGULAR_SPEED, parse_option
 
     machine = load(scene)
     spin = None if speed is None else parse_option(speed, ANGULAR_SPEED, "--speed")

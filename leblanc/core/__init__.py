@@ -1,1 +1,1 @@
-"""What every question and answer has: declared quantities, their JSON and data, blocks and their renderers."""
+"""Quantities, answers, questions, blocks and their renderers; units, files, interrupts."""

@@ -1,4 +1,4 @@
-"""What an answer shows, in the order of reading: words, tables, pictures; renderers make text or HTML of them."""
+"""What an answer shows, in the order of reading; renderers make text or HTML of it."""
 
 from __future__ import annotations
 

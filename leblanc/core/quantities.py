@@ -8,12 +8,13 @@ import sys
 from collections.abc import Iterator, Mapping
 from dataclasses import fields, is_dataclass
 from functools import cache
+from pathlib import Path
 from types import MappingProxyType
 from typing import Annotated, Any, get_args, get_origin
 
 import numpy as np
 
-from leblanc.results.netcdf import NamedArrays, Variable, flags, variable
+from leblanc.core.netcdf import NamedArrays, Variable, flags, variable
 from meshes.quantity import Q
 
 
@@ -54,7 +55,7 @@ def _declared(kind: type) -> dict[str, tuple[Q, tuple[type, ...]]]:
             if get_origin(hint) is Annotated:
                 said, *beside = get_args(hint)
                 types = tuple(one for one in (said, *get_args(said)) if isinstance(one, type))
-                found |= {name: (each, types) for each in beside if isinstance(each, Q)}
+                found |= [(name, (each, types)) for each in beside if isinstance(each, Q)]
     return found
 
 
@@ -72,9 +73,11 @@ def plain(value: Any) -> Any:
         return [plain(each) for each in value]
     if is_dataclass(value) and not isinstance(value, type):
         return to_json(value)
-    if hasattr(value, "tolist"):
+    if hasattr(value, "tolist"):  # arrays and their scalars
         return plain(value.tolist())
-    return str(value)
+    if isinstance(value, Path):
+        return str(value)
+    raise TypeError(f"{type(value).__name__} has no form in JSON")
 
 
 def to_json(record: Any) -> dict[str, Any]:

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from leblanc.core.units import DEGREE, LENGTH, MINUS, MM, TIMES, in_rpm, number, with_unit
 from leblanc.figures.drawing.page import (
     MOST_LINES,
     RIGHT,
@@ -28,7 +29,6 @@ from leblanc.results.drawn.machine import chord, rounded_down
 from leblanc.results.motion.held import HELD_MODELS
 from leblanc.results.response import RunResult, peak, phase
 from leblanc.text.run import alts, amplitude_place
-from leblanc.units import DEGREE, LENGTH, MINUS, MM, TIMES, in_rpm, number, with_unit
 from meshes.arrays import Array, Complex
 from meshes.baffles import Baffles
 from meshes.clip import Remainder, area_within, outside_circle, wall_loops

@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from leblanc.core.notes import one_line
+from leblanc.core.units import MM, MM_PEAK, RPM
 from leblanc.figures.drawing.curves import COLUMNS, Span, spans, thin, windows
 from leblanc.figures.drawing.page import (
     Caption,
@@ -20,12 +22,10 @@ from leblanc.figures.drawing.page import (
 )
 from leblanc.figures.drawing.page import save as save  # a figure is drawn and written together
 from leblanc.figures.response import DRY, OUT_OF_RANGE, SHADE, SHARE, value_axis, wider_words
-from leblanc.results.base import one_line
 from leblanc.results.models.comparison import Comparison
 from leblanc.results.notes.response import plane_label
 from leblanc.results.response import RunResult
 from leblanc.text.explanation import comparison_alt
-from leblanc.units import MM, MM_PEAK, RPM
 from meshes.arrays import Array
 
 Axes = Any  # matplotlib's, which no module that only draws imports

@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from leblanc.core.notes import one_line
+from leblanc.core.units import MM, MM_PEAK, RPM
 from leblanc.figures.drawing.page import (
     Caption,
     Figure,
@@ -19,10 +21,8 @@ from leblanc.figures.drawing.page import (
     save,
     style,
 )
-from leblanc.results.base import one_line
 from leblanc.results.exciter import ExciterResult
 from leblanc.text.exciter import alt
-from leblanc.units import MM, MM_PEAK, RPM
 
 FRAME = Frame(left=0.72, top=0.46, between=0.14, below=0.42)
 TITLE = "Stuck speeds of the balls and vibration of the platform"

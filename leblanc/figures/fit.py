@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
+from leblanc.core.notes import one_line
+from leblanc.core.units import MM, MM_PEAK, RPM, Unit
 from leblanc.figures.drawing.page import Caption, Figure, FigureFiles, Frame, lay_out, number, save, style
-from leblanc.results.base import one_line
 from leblanc.results.fit import FitResult, Measured
-from leblanc.units import MM, MM_PEAK, RPM, Unit
 from meshes.arrays import Array
 
 Axes = Any  # matplotlib's, which no module that only draws imports

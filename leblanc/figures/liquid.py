@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from leblanc.core.units import MM, RPM
 from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, style
 from leblanc.figures.drawing.page import save as save  # a figure is drawn and written together
 from leblanc.results.drawn.machine import rounded_down
 from leblanc.results.liquid import ModesResult
-from leblanc.units import MM, RPM
 from meshes.arrays import Array
 from meshes.liquid_section import LiquidSection
 

@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
+from leblanc.core.units import MM, RPM
 from leblanc.figures.drawing.page import Caption, Figure, Frame, add_rate_axis, lay_out, number, style
 from leblanc.results.machine.layout import LayoutResult, MountPlace, pair_names
 from leblanc.results.machine.loads import MachineLoads
 from leblanc.text.layout import answer
 from leblanc.text.machine import verdict
-from leblanc.units import MM, RPM
 from meshes.arrays import Array
 
 Axes = Any  # matplotlib's, which no module that only draws imports

@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 
 from fluid.temperature import CELSIUS
+from leblanc.core.notes import one_line, texts
+from leblanc.core.units import DEGREE, LENGTH, MM, MM_PEAK, UNBALANCE, VOLUME, in_rpm, unit_for, with_unit
 from leblanc.figures.drawing.page import (
     RIGHT,
     WIDTH,
@@ -21,11 +23,9 @@ from leblanc.figures.drawing.page import (
     save,
     style,
 )
-from leblanc.results.base import one_line, texts
 from leblanc.results.notes.response import plane_label
 from leblanc.results.optimum import ConditionTable, OptimumResult
 from leblanc.text.optimum import amplitude_plane, load_words, worst_condition
-from leblanc.units import DEGREE, LENGTH, MM, MM_PEAK, UNBALANCE, VOLUME, in_rpm, unit_for, with_unit
 from meshes.arrays import Array, Flags
 
 Axes = Any  # matplotlib's, which no module that only draws imports

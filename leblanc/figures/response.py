@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from leblanc.core.units import MM, MM_PEAK, RPM, in_rpm
 from leblanc.figures.chambers import chamber_figure
 from leblanc.figures.drawing.curves import (
     NARROW,
@@ -41,7 +42,6 @@ from leblanc.figures.machine import machine_figure
 from leblanc.results.notes.response import plane_label
 from leblanc.results.response import RunResult
 from leblanc.text.run import alts, amplitude_place
-from leblanc.units import MM, MM_PEAK, RPM, in_rpm
 from meshes.arrays import Array, Flags
 
 Draw = Callable[[Any, Curves, RunResult], None]

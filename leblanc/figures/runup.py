@@ -11,6 +11,8 @@ from typing import Any
 
 import numpy as np
 
+from leblanc.core.notes import one_line, percent
+from leblanc.core.units import LENGTH, MM, MM_PEAK, RPM, friction_words, with_unit
 from leblanc.figures.drawing.curves import gapped, joined, lag_degrees, link, spans, widened
 from leblanc.figures.drawing.page import (
     WIDTH,
@@ -25,12 +27,10 @@ from leblanc.figures.drawing.page import (
 )
 from leblanc.figures.machine import machine_figure
 from leblanc.figures.response import DRY, SHADE, UNSTABLE, WET
-from leblanc.results.base import one_line, percent
 from leblanc.results.notes.response import plane_label
 from leblanc.results.races.balls import in_race
 from leblanc.results.runup import RunupResult
 from leblanc.text.runup import describe_model, largest, largest_dry
-from leblanc.units import LENGTH, MM, MM_PEAK, RPM, friction_words, with_unit
 from meshes.arrays import Array, Flags
 
 Axes = Any  # matplotlib's, which no module that only draws imports

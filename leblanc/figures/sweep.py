@@ -6,6 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from leblanc.core.notes import one_line
+from leblanc.core.units import MM, MM_PEAK, RPM
 from leblanc.figures.drawing.curves import COLUMNS, Span, thin, windows
 from leblanc.figures.drawing.page import (
     Caption,
@@ -18,11 +20,9 @@ from leblanc.figures.drawing.page import (
     style,
 )
 from leblanc.figures.response import DRY, SHARE, WET, value_axis, wider_words
-from leblanc.results.base import one_line
 from leblanc.results.notes.response import plane_label
 from leblanc.results.sweep import SweepResult
 from leblanc.text.sweep import alt
-from leblanc.units import MM, MM_PEAK, RPM
 from meshes.arrays import Array
 
 Axes = Any  # matplotlib's, which no module that only draws imports

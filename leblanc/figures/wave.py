@@ -11,6 +11,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from leblanc.core.notes import one_line
+from leblanc.core.units import DEGREE, LENGTH, MINUS, MM, RPM, TIMES, with_unit
 from leblanc.figures.drawing.page import (
     FILM_DPI,
     RIGHT,
@@ -25,10 +27,8 @@ from leblanc.figures.drawing.page import (
     write_film,
 )
 from leblanc.figures.response import STRIP
-from leblanc.results.base import one_line
 from leblanc.results.drawn.machine import FILLED, LARGEST_FACTOR, rounded_down
 from leblanc.results.layer import FreeWaveResult, LayerPeriodsResult, LayerResult, Wave, WaveFrames
-from leblanc.units import DEGREE, LENGTH, MINUS, MM, RPM, TIMES, with_unit
 from meshes.arrays import Array
 
 RAYS = 721  # half a degree apart, closed

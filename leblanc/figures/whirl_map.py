@@ -6,6 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from leblanc.core.notes import one_line
+from leblanc.core.units import ML, MM, MM_PEAK, RPM, VOLUME, with_unit
 from leblanc.figures.drawing.page import (
     RIGHT,
     WIDTH,
@@ -19,10 +21,8 @@ from leblanc.figures.drawing.page import (
     style,
 )
 from leblanc.figures.drawing.page import save as save  # a figure is drawn and written together
-from leblanc.results.base import one_line
 from leblanc.results.whirl_map import WhirlMap
 from leblanc.text.whirl_map import alt, cycles_alt
-from leblanc.units import ML, MM, MM_PEAK, RPM, VOLUME, with_unit
 from meshes.arrays import Array
 
 Axes = Any  # matplotlib's, which no module that only draws imports

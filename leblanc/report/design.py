@@ -5,10 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from leblanc.core.notes import texts
 from leblanc.report.page import About, write_page
 from leblanc.report.parts import Cell, Table, doubt, picture, table
 from leblanc.report.run import limit_checks
-from leblanc.results.base import texts
 from leblanc.results.races.design import BallDesignResult
 from leblanc.text.races.design import RACE_HEAD, answer, constraint_rows, facts, limits, paste, race_rows
 

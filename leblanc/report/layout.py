@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from leblanc.core.units import LENGTH, with_unit
 from leblanc.report.page import About, write_page
 from leblanc.report.parts import Cell, Table, doubt, picture, table
 from leblanc.results.machine.layout import LayoutResult
@@ -20,7 +21,6 @@ from leblanc.text.layout import (
     mount_rows,
     remarks,
 )
-from leblanc.units import LENGTH, with_unit
 
 if TYPE_CHECKING:
     from leblanc.figures.drawing.page import FigureFiles

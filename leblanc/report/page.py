@@ -12,10 +12,10 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from leblanc.files import path_text, writing
+from leblanc.core.files import path_text, writing
+from leblanc.core.notes import Note, NoteCode, one_line
 from leblanc.report.parts import Inputs, Table, scene_inputs, table
 from leblanc.results import base as provenance
-from leblanc.results.base import Note, NoteCode, one_line
 from leblanc.results.choice import ModelSpan
 from leblanc.scene.scene import Scene
 from leblanc.scene.tasks import Optimisation

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from leblanc.results.base import one_line
+from leblanc.core.notes import one_line
 from leblanc.results.machine.loads import MachineLoads
 from leblanc.scene.inputs import inputs_of
 from leblanc.scene.rows import Value

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from leblanc.core.units import LENGTH, RPM, VOLUME, in_peak, unit_for
 from leblanc.report.page import About, models, notes, why, write_page
 from leblanc.report.parts import Cell, Table, doubt, load_part, picture, table
 from leblanc.results.exciter import ExciterResult
@@ -44,7 +45,6 @@ from leblanc.text.run import (
 from leblanc.text.whirl_map import answer as whirl_map_answer
 from leblanc.text.whirl_map import band_words
 from leblanc.text.whirl_map import facts as whirl_map_facts
-from leblanc.units import LENGTH, RPM, VOLUME, in_peak, unit_for
 from meshes.arrays import Array, Flags, Index
 
 if TYPE_CHECKING:

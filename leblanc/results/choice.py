@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.results.base import EXACT, percent
+from leblanc.core.notes import EXACT, percent
+from leblanc.core.units import TIME, with_unit
 from leblanc.results.motion.held import HELD_MODELS
-from leblanc.units import TIME, with_unit
 from meshes.arrays import Array, Flags, Index
 
 if TYPE_CHECKING:

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.results.base import Result, attributes, carried
-from leblanc.results.netcdf import NamedArrays, flags
-from leblanc.results.netcdf import variable as var
+from leblanc.core.answer import Result, attributes, carried
+from leblanc.core.netcdf import NamedArrays, flags
+from leblanc.core.netcdf import variable as var
 from meshes.arrays import Array, Flags
 
 if TYPE_CHECKING:

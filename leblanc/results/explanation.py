@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from fluid.numbers import LayerNumbers
-from leblanc.results.base import Result, attributes, carried, plain
+from leblanc.core.answer import Result, attributes, carried
+from leblanc.core.netcdf import NamedArrays, Variable, flags
+from leblanc.core.netcdf import variable as var
+from leblanc.core.quantities import plain
 from leblanc.results.choice import HeldCost, ModelSpan, SpeedEstimate
 from leblanc.results.exciter import named_speeds, number_or_none
 from leblanc.results.motion.closed_forms import ClosedForms
 from leblanc.results.motion.tilting import RestMode
-from leblanc.results.netcdf import NamedArrays, Variable, flags
-from leblanc.results.netcdf import variable as var
 
 if TYPE_CHECKING:
     from solvers.rotor.exciter.machine import Dimensionless

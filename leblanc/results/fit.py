@@ -9,9 +9,10 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from leblanc.results.base import Note, NoteCode, Result, attributes, texts
-from leblanc.results.netcdf import NamedArrays, variable
-from leblanc.units import Unit, number
+from leblanc.core.answer import Result, attributes
+from leblanc.core.netcdf import NamedArrays, variable
+from leblanc.core.notes import Note, NoteCode, texts
+from leblanc.core.units import Unit, number
 from meshes.arrays import Array
 
 REACH = 100.0  # of the first guess: how far the search looks

@@ -12,8 +12,9 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.results.base import Note, NoteCode, Result, carried, one_line, percent, texts, versions
-from leblanc.results.netcdf import NamedArrays, variable
+from leblanc.core.answer import Result, carried, versions
+from leblanc.core.netcdf import NamedArrays, variable
+from leblanc.core.notes import Note, NoteCode, one_line, percent, texts
 from meshes.arrays import Array, Complex
 from meshes.errors import InputError, require_not_negative, require_positive
 from solvers.liquid_history import LayerHistory

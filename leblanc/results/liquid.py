@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.results.base import Note, NoteCode, Result, one_line, texts, versions
-from leblanc.results.netcdf import NamedArrays, variable
-from leblanc.units import LENGTH, with_unit
+from leblanc.core.answer import Result, versions
+from leblanc.core.netcdf import NamedArrays, variable
+from leblanc.core.notes import Note, NoteCode, one_line, texts
+from leblanc.core.units import LENGTH, with_unit
 from meshes.arrays import Array
 from meshes.findings import Finding
 from meshes.liquid_section import LiquidSection

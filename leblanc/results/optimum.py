@@ -10,13 +10,15 @@ from typing import Any
 import numpy as np
 
 from fluid.friction.laws import Friction
-from leblanc.results.base import ConstraintValue, Note, NoteCode, Result, attributes, texts
+from leblanc.core.answer import Result, attributes
+from leblanc.core.netcdf import NamedArrays, Variable, flags
+from leblanc.core.netcdf import variable as var
+from leblanc.core.notes import Note, NoteCode, texts
+from leblanc.core.units import LENGTH, VOLUME, in_rpm, with_unit
+from leblanc.results.base import ConstraintValue
 from leblanc.results.choice import ModelSpan
-from leblanc.results.netcdf import NamedArrays, Variable, flags
-from leblanc.results.netcdf import variable as var
 from leblanc.results.response import RunResult
 from leblanc.results.sweep import EmulatorError
-from leblanc.units import LENGTH, VOLUME, in_rpm, with_unit
 from meshes.arrays import Array, Flags
 
 

@@ -10,7 +10,11 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.results.base import FilledChamber, Note, Result, attributes, carried, one_line, texts
+from leblanc.core.answer import Result, attributes, carried
+from leblanc.core.netcdf import NamedArrays, Variable, finite, flags, pair
+from leblanc.core.netcdf import variable as var
+from leblanc.core.notes import Note, one_line, texts
+from leblanc.results.base import FilledChamber
 from leblanc.results.choice import ModelSpan
 from leblanc.results.machine.keys import Loaded
 from leblanc.results.machine.loads import MachineLoads
@@ -18,8 +22,6 @@ from leblanc.results.motion.closed_forms import ClosedForms
 from leblanc.results.motion.held import HELD_MODELS, MOTIONS, Held, numbered
 from leblanc.results.motion.self_excited import SelfExcited
 from leblanc.results.motion.tilting import Motion
-from leblanc.results.netcdf import NamedArrays, Variable, finite, flags, pair
-from leblanc.results.netcdf import variable as var
 from meshes.arrays import Array, Complex, Flags
 from meshes.errors import InputError
 from solvers.rotor.balance_quality import GRADES, grade_name, grade_of

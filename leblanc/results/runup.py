@@ -12,15 +12,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fluid.friction.laws import Friction
-from leblanc.results.base import FilledChamber, Note, Result, attributes, one_line, texts
+from leblanc.core.answer import Result, attributes
+from leblanc.core.netcdf import NamedArrays, flags, variable
+from leblanc.core.notes import Note, one_line, texts
+from leblanc.core.units import LENGTH, ZERO_TO_PEAK, friction_words, with_unit
+from leblanc.results.base import FilledChamber
 from leblanc.results.machine.keys import Loaded
 from leblanc.results.machine.loads import MachineLoads
 from leblanc.results.motion.passages import Passage, falling, pieces
-from leblanc.results.netcdf import NamedArrays, flags, variable
 from leblanc.results.notes.response import plane_words
 from leblanc.results.races.balls import RaceOfBalls, ball_moment, in_race
 from leblanc.results.response import phase
-from leblanc.units import LENGTH, ZERO_TO_PEAK, friction_words, with_unit
 from meshes.arrays import Array, Complex, Flags
 from solvers.layer.records import Outcome
 from solvers.runup.ensemble import Spread

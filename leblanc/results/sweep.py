@@ -10,8 +10,8 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.results.base import Result, carried
-from leblanc.results.netcdf import NamedArrays
+from leblanc.core.answer import Result, carried
+from leblanc.core.netcdf import NamedArrays
 from meshes.arrays import Array
 
 QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)

@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from leblanc.results.base import Note, Result, attributes, texts
+from leblanc.core.answer import Result, attributes
+from leblanc.core.netcdf import NamedArrays, flags
+from leblanc.core.netcdf import variable as var
+from leblanc.core.notes import Note, texts
 from leblanc.results.motion.cycles import cycle_arrays, cycle_rows, fold_rows
-from leblanc.results.netcdf import NamedArrays, flags
-from leblanc.results.netcdf import variable as var
 from meshes.arrays import Array, Flags
 
 if TYPE_CHECKING:

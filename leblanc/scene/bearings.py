@@ -8,11 +8,11 @@ from typing import Annotated, Any, Protocol
 
 from pydantic import Field
 
-from leblanc import units
+from leblanc.core import units
+from leblanc.core.units import MM, number
 from leblanc.scene.rows import Value, degrees
 from leblanc.scene.schema.part import Conflict
 from leblanc.scene.schema.rules import LENGTH, quantity
-from leblanc.units import MM, number
 
 ROLLING = ("ball_diameter", "pitch_diameter", "contact_angle")
 

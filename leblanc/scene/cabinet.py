@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import Field, PlainValidator
 
-from leblanc import units
+from leblanc.core import units
+from leblanc.core.units import MASS, MM, number, with_unit
 from leblanc.scene.rows import Row, RowTable, Value, mm, row, three
 from leblanc.scene.schema.part import Conflict, Part
 from leblanc.scene.schema.rules import Place, Text, entries, one_of, quantity
-from leblanc.units import MASS, MM, number, with_unit
 
 if TYPE_CHECKING:
     from solvers.rotor.loads.floor import Cabinet as Standing

@@ -24,8 +24,8 @@ from fluid.temperature import (
     Vogel,
     Walther,
 )
-from leblanc import units
-from leblanc.files import path_text
+from leblanc.core import units
+from leblanc.core.files import path_text
 from leblanc.scene.schema.load import meant
 from leblanc.scene.schema.part import Conflict, Part, allowed_at
 from leblanc.scene.schema.rules import (

@@ -8,13 +8,7 @@ from dataclasses import dataclass
 from fluid.fill import Fill
 from fluid.liquid import KNOWN_LIQUIDS, Liquid
 from fluid.temperature import Expansion, GivenLaw, PropertyLaw, Tabulated, Vogel, Walther
-from leblanc.scene.cabinet import point_table
-from leblanc.scene.rotors import JeffcottRotor
-from leblanc.scene.rows import Row, RowTable, Value, curve_words, degrees, mm, row, rpm, three
-from leblanc.scene.scene import Model, Scene
-from leblanc.scene.schema.load import escaped
-from leblanc.scene.tasks import BallRanges, Layout, Optimisation, Runup, pairs_of
-from leblanc.units import (
+from leblanc.core.units import (
     ANGULAR_SPEED,
     LENGTH,
     MASS,
@@ -31,6 +25,12 @@ from leblanc.units import (
     number,
     unit_for,
 )
+from leblanc.scene.cabinet import point_table
+from leblanc.scene.rotors import JeffcottRotor
+from leblanc.scene.rows import Row, RowTable, Value, curve_words, degrees, mm, row, rpm, three
+from leblanc.scene.scene import Model, Scene
+from leblanc.scene.schema.load import escaped
+from leblanc.scene.tasks import BallRanges, Layout, Optimisation, Runup, pairs_of
 from meshes.baffles import Baffles
 from meshes.chamber_section import ChamberSection
 

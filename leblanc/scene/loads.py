@@ -7,11 +7,11 @@ from typing import Annotated
 
 from pydantic import Field
 
-from leblanc import units
+from leblanc.core import units
+from leblanc.core.units import MASS, MM, UNBALANCE, in_rpm, number, unit_for, with_unit
 from leblanc.scene.rows import RowTable, Value, degrees
 from leblanc.scene.schema.part import Part
 from leblanc.scene.schema.rules import SPEED, Position, Unbalance, quantity
-from leblanc.units import MASS, MM, UNBALANCE, in_rpm, number, unit_for, with_unit
 
 
 class Sheds(Part):

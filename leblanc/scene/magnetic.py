@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
-from leblanc import units
+from leblanc.core import units
+from leblanc.core.units import CURRENT, LENGTH, MASS, TIME, number, with_unit
 from leblanc.scene.rows import Row, RowTable, Value, mm, row, rpm
 from leblanc.scene.schema.part import Conflict, Part
 from leblanc.scene.schema.rules import (
@@ -26,7 +27,6 @@ from leblanc.scene.schema.rules import (
     quantity,
     whole,
 )
-from leblanc.units import CURRENT, LENGTH, MASS, TIME, number, with_unit
 
 if TYPE_CHECKING:
     from solvers.rotor.magnetic.control import Controller

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 from pydantic import Field, PlainValidator
 
 from fluid.liquid import Liquid
-from leblanc import units
+from leblanc.core import units
 from leblanc.scene.chambers import LiquidRule
 from leblanc.scene.schema.part import Conflict, Part, allowed_at
 from leblanc.scene.schema.rules import (

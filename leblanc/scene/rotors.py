@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, PlainValidator
 
-from leblanc import units
+from leblanc.core import units
+from leblanc.core.units import MASS, MM, in_rpm, number, with_unit
 from leblanc.scene.bearings import (
     BallDiameter,
     CagedBearing,
@@ -48,7 +49,6 @@ from leblanc.scene.schema.rules import (
     whole,
 )
 from leblanc.scene.spindle import Spindle
-from leblanc.units import MASS, MM, in_rpm, number, with_unit
 
 if TYPE_CHECKING:
     from solvers.rotor.exciter.machine import Exciter as ExciterMachine

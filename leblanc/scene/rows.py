@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
-from leblanc.units import LENGTH, UNBALANCE, in_rpm, number, with_unit
+from leblanc.core.units import LENGTH, UNBALANCE, in_rpm, number, with_unit
 from meshes.baffles import Baffles
 
 _UNIT = re.compile(r"(.*?)(?: \((.*)\))?")

@@ -14,7 +14,8 @@ from pydantic import Discriminator, Field, PlainValidator, Tag, ValidationError
 
 from fluid.fill import Fill
 from fluid.friction.laws import Friction, FrictionLaw
-from leblanc import units
+from leblanc.core import units
+from leblanc.core.units import allowed_as_typed
 from leblanc.scene.cabinet import MAX_POINTS, Cabinet, Point, cabinet_conflicts
 from leblanc.scene.chambers import Chamber
 from leblanc.scene.magnetic import MagneticRotor as MagneticRotor
@@ -35,7 +36,6 @@ from leblanc.scene.spindle import without_liquid
 from leblanc.scene.tasks import Optimisation
 from leblanc.scene.tasks import Runup as Runup
 from leblanc.scene.unbalances import polar_inertia_of, sheds_of
-from leblanc.units import allowed_as_typed
 from meshes.errors import InputError
 
 if TYPE_CHECKING:

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, PlainValidator
 
-from leblanc import units
+from leblanc.core import units
+from leblanc.core.units import MASS, MM, in_rpm, number, with_unit
 from leblanc.scene.bearings import (
     ROLLING,
     BallDiameter,
@@ -23,7 +24,6 @@ from leblanc.scene.bearings import (
 from leblanc.scene.rows import Row, RowTable, Value, row
 from leblanc.scene.schema.part import Conflict, Part
 from leblanc.scene.schema.rules import SPEED, Axis, Length, Mass, Refused, entries, one_of, quantity
-from leblanc.units import MASS, MM, in_rpm, number, with_unit
 
 if TYPE_CHECKING:
     from solvers.rotor.shaft.structure import Coordinate, Station, Structure

@@ -10,7 +10,7 @@ from typing import Annotated, Any
 
 from pydantic import Field, PlainValidator
 
-from leblanc import units
+from leblanc.core import units
 from leblanc.scene.schema.part import Conflict, Part
 from leblanc.scene.schema.rules import (
     SPEED,

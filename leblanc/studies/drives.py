@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from leblanc.results.base import Note
+from leblanc.core.notes import Note
 from leblanc.results.motion.passages import Passage
 from leblanc.results.notes import runup as notes
 from leblanc.scene.programme.steps import Step

@@ -7,8 +7,8 @@ from os import PathLike
 
 import numpy as np
 
-from leblanc import units
-from leblanc.results.base import Note
+from leblanc.core import units
+from leblanc.core.notes import Note
 from leblanc.results.fit import (
     LARGE,
     FitCode,

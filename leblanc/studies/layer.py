@@ -12,7 +12,7 @@ import numpy as np
 
 from fluid import waves
 from fluid.fill import Fill
-from leblanc.results.base import Note
+from leblanc.core.notes import Note
 from leblanc.results.layer import (
     ExactPeriods,
     ExactWave,

@@ -13,7 +13,8 @@ import numpy as np
 from fluid.fill import Fill
 from fluid.liquid import Liquid
 from fluid.waves import free_wave_frequencies
-from leblanc.results.base import Note
+from leblanc.core.notes import Note
+from leblanc.core.units import LENGTH, with_unit
 from leblanc.results.liquid import (
     ModesResult,
     baffles_clear,
@@ -25,7 +26,6 @@ from leblanc.results.liquid import (
     thick_layers,
 )
 from leblanc.scene.chambers import is_outline, section_of_any_file
-from leblanc.units import LENGTH, with_unit
 from meshes.arrays import Array
 from meshes.baffles import Baffles
 from meshes.chamber import Chamber

@@ -10,7 +10,9 @@ from numpy.typing import NDArray
 
 from fluid.fill import Fill
 from fluid.whirl import plane_layer, slower_slip
-from leblanc.results.base import FilledChamber, Note
+from leblanc.core.notes import Note
+from leblanc.core.units import small_whirl_friction
+from leblanc.results.base import FilledChamber
 from leblanc.results.choice import Choice, model_spans
 from leblanc.results.machine.loads import MachineLoads
 from leblanc.results.motion.held import HELD_MODELS, Held
@@ -41,7 +43,6 @@ from leblanc.studies.models.liquid import element_model, synchronous_model
 from leblanc.studies.models.validity import doubts
 from leblanc.studies.peaks import responses_between
 from leblanc.studies.whirl_map import large_whirl
-from leblanc.units import small_whirl_friction
 from meshes.arrays import Array, Complex
 from meshes.chamber_section import liquid_of
 from meshes.errors import InputError

@@ -14,7 +14,8 @@ from fluid.fill import Fill
 from fluid.pool import balance_speed, pool_of
 from fluid.waves import capture_speed
 from fluid.whirl import covering_speed, is_full
-from leblanc.results.base import FilledChamber, Note, percent
+from leblanc.core.notes import Note, percent
+from leblanc.results.base import FilledChamber
 from leblanc.results.motion.passages import passages_of
 from leblanc.results.notes import runup as notes
 from leblanc.results.notes.baffles import smeared_baffles
@@ -473,7 +474,7 @@ def _each(tasks: list[EnsembleTask], workers: int) -> Iterator[Member]:
     if workers <= 1:
         yield from map(run_member, tasks)
         return
-    from leblanc.processes import processes
+    from leblanc.core.processes import processes
 
     with processes(min(workers, len(tasks))) as pool:
         yield from pool.map(run_member, tasks)

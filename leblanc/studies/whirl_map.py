@@ -12,14 +12,14 @@ from fluid.fill import Fill
 from fluid.friction.laws import Friction
 from fluid.waves import capture_speed
 from fluid.whirl import covering_speed, is_full
-from leblanc.results.base import Note
+from leblanc.core.notes import Note
+from leblanc.core.units import small_whirl_friction
 from leblanc.results.motion.cycles import DEEP, FAST_LAG, LargeWhirl
 from leblanc.results.notes import whirl_map as notes
 from leblanc.results.whirl_map import WhirlMap
 from leblanc.scene.scene import Scene, require_no_balls, require_whirl
 from leblanc.studies.models.choose import Prepared, prepare
 from leblanc.studies.models.validity import doubts
-from leblanc.units import small_whirl_friction
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
 from solvers.liquid_model import THIN_LAYERS

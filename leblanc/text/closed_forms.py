@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 
-from leblanc.results.base import EXACT
+from leblanc.core.notes import EXACT
+from leblanc.core.units import RPM, in_rpm
 from leblanc.results.motion.closed_forms import Cage, ClosedForms, Upright, VectorModel
 from leblanc.text.numbers import NOT_FOUND, number
-from leblanc.units import RPM, in_rpm
 from meshes.arrays import Array
 
 Rows = list[tuple[str, str]]

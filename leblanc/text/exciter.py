@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 
+from leblanc.core.units import LENGTH, in_rpm, over_rpm, with_unit
 from leblanc.results.exciter import ExciterResult
 from leblanc.text.numbers import NOT_FOUND, ranges
 from leblanc.text.run import Limit
-from leblanc.units import LENGTH, in_rpm, over_rpm, with_unit
 
 NUMBERS = {
     "smallness": "Share of the balls in the moving mass, over their rolling inertia",

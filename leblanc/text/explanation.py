@@ -4,7 +4,19 @@ from __future__ import annotations
 
 import math
 
-from leblanc.results.base import EXACT, WHOLE, one_line, percent
+from leblanc.core.notes import EXACT, WHOLE, one_line, percent
+from leblanc.core.units import (
+    LENGTH,
+    RPM,
+    TORQUE,
+    VOLUME,
+    ZERO_TO_PEAK,
+    Unit,
+    in_rpm,
+    over_rpm,
+    unit_for,
+    with_unit,
+)
 from leblanc.results.choice import HeldCost, ModelSpan, SpeedEstimate
 from leblanc.results.explanation import (
     BaffleOutlook,
@@ -17,18 +29,6 @@ from leblanc.results.models.comparison import Comparison, ModelAnswer
 from leblanc.results.motion.tilting import RestMode
 from leblanc.text.numbers import NOT_FOUND, number
 from leblanc.text.run import amplitude_place, error_words, speeds_words
-from leblanc.units import (
-    LENGTH,
-    RPM,
-    TORQUE,
-    VOLUME,
-    ZERO_TO_PEAK,
-    Unit,
-    in_rpm,
-    over_rpm,
-    unit_for,
-    with_unit,
-)
 from meshes.arrays import Array
 
 Rows = list[tuple[str, str]]

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
+from leblanc.core.units import MM, Unit
 from leblanc.results.fit import FitResult
-from leblanc.units import MM, Unit
 
 HEAD = ("Unknown", "unit", "first guess", "found", "standard error", "of it", "95 % from", "to")
 

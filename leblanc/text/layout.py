@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 
-from leblanc.results.base import one_line
+from leblanc.core.notes import one_line
+from leblanc.core.units import LENGTH, MM, with_unit
 from leblanc.results.machine.layout import LayoutResult, MountPlace, pair_names
 from leblanc.text.numbers import number
-from leblanc.units import LENGTH, MM, with_unit
 
 Rows = list[tuple[str, ...]]
 

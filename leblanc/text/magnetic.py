@@ -7,12 +7,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from leblanc.results.base import one_line
+from leblanc.core.notes import one_line
+from leblanc.core.units import CURRENT, LENGTH, NOT_FOUND, TIME, in_rpm, number, with_unit
 from leblanc.results.magnetic.control import Controlled, LoadAnswer, MagneticResult
 from leblanc.results.magnetic.explanation import MagneticExplanation
 from leblanc.text.numbers import ranges
 from leblanc.text.run import Limit
-from leblanc.units import CURRENT, LENGTH, NOT_FOUND, TIME, in_rpm, number, with_unit
 
 SENSITIVE = 3.0  # largest sensitivity of a new machine by ISO 14839-3
 FASTEST = 1e5  # poles beyond it ask for more than coils and amplifiers give, 1/s

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.units import MINUS as MINUS
-from leblanc.units import NOT_FOUND as NOT_FOUND
-from leblanc.units import RPM, ZERO_TO_PEAK
-from leblanc.units import number as number
+from leblanc.core.units import MINUS as MINUS
+from leblanc.core.units import NOT_FOUND as NOT_FOUND
+from leblanc.core.units import RPM, ZERO_TO_PEAK
+from leblanc.core.units import number as number
 
 MOST_RANGES = 4  # listed one by one
 

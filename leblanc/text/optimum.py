@@ -6,11 +6,22 @@ import math
 
 import numpy as np
 
-from leblanc.results.base import texts
+from leblanc.core.notes import texts
+from leblanc.core.units import (
+    LENGTH,
+    MASS,
+    ML,
+    UNBALANCE,
+    VOLUME,
+    celsius,
+    in_peak,
+    in_rpm,
+    unit_for,
+    with_unit,
+)
 from leblanc.results.optimum import ConditionTable, OptimumCode, OptimumResult
 from leblanc.text.numbers import amplitude_sentence, number
 from leblanc.text.run import amplitude_place, quality_words
-from leblanc.units import LENGTH, MASS, ML, UNBALANCE, VOLUME, celsius, in_peak, in_rpm, unit_for, with_unit
 
 _DIMENSIONS = {dimension.unit.replace("*", " "): dimension for dimension in (LENGTH, MASS, UNBALANCE)}
 

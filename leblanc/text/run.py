@@ -8,13 +8,24 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from leblanc.results.base import one_line, percent
+from leblanc.core.notes import one_line, percent
+from leblanc.core.units import (
+    LENGTH,
+    MASS,
+    RPM,
+    VOLUME,
+    in_peak,
+    in_rpm,
+    over_rpm,
+    rpm_bands,
+    unit_for,
+    with_unit,
+)
 from leblanc.results.choice import ModelSpan
 from leblanc.results.motion.held import HELD_MODELS, Held
 from leblanc.results.notes.response import plane_words
 from leblanc.results.response import RunResult, grade_words
 from leblanc.text.numbers import NOT_FOUND, amplitudes_are, number, ranges
-from leblanc.units import LENGTH, MASS, RPM, VOLUME, in_peak, in_rpm, over_rpm, rpm_bands, unit_for, with_unit
 from meshes.arrays import Array, Flags
 
 AGAINST = 0.5  # from here on a whirl counts as one with or against the spin

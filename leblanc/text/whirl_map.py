@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from leblanc.core.units import LENGTH, RPM, VOLUME, in_rpm, with_unit
 from leblanc.results.whirl_map import WhirlMap
 from leblanc.text.numbers import number
-from leblanc.units import LENGTH, RPM, VOLUME, in_rpm, with_unit
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 
-from leblanc.results.base import one_line
+from leblanc.core.notes import one_line
+from leblanc.core.units import LENGTH, MM, in_rpm, unit_for
 from leblanc.results.drawn.machine import TableView
-from leblanc.units import LENGTH, MM, in_rpm, unit_for
 from leblanc.view.machine import cylinder, damper, spring, tube
 from leblanc.view.parts import NO_CELLS, Label, Picture, Piece, bar_length, circle, line
 from meshes.arrays import Array, Indices

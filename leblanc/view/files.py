@@ -21,7 +21,7 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.files import writing
+from leblanc.core.files import writing
 from leblanc.results.drawn.machine import DrawnLiquid, MachineMotion, Scale
 from leblanc.view.gate import address_of, gate
 from leblanc.view.parts import Picture

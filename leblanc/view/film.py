@@ -12,8 +12,9 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from leblanc.files import writing
-from leblanc.results.base import one_line
+from leblanc.core.files import writing
+from leblanc.core.notes import one_line
+from leblanc.core.units import DEGREE, LENGTH, RPM, in_rpm, unit_for, with_unit
 from leblanc.results.drawn.balls import BallView
 from leblanc.results.drawn.machine import (
     DrawnLiquid,
@@ -24,7 +25,6 @@ from leblanc.results.drawn.machine import (
     RunupView,
     Scale,
 )
-from leblanc.units import DEGREE, LENGTH, RPM, in_rpm, unit_for, with_unit
 from leblanc.view.balls import ball_still, with_balls
 from leblanc.view.inset import with_inset
 from leblanc.view.parts import Inset, Instant, Picture, Stage

@@ -7,10 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from leblanc.results.base import one_line
+from leblanc.core.notes import one_line
+from leblanc.core.units import LENGTH, MM, in_rpm, number, unit_for, with_unit
 from leblanc.results.drawn.magnetic import MagneticView
 from leblanc.text.magnetic import NAMES
-from leblanc.units import LENGTH, MM, in_rpm, number, unit_for, with_unit
 from leblanc.view.film import Film
 from leblanc.view.machine import cylinder
 from leblanc.view.parts import Inset, Label, Picture, Piece, bar_length, circle, line

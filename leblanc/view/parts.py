@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from fluid.fill import Fill
+from leblanc.core.units import MM
 from leblanc.results.drawn.machine import Liquid, MachineParts, Scale
-from leblanc.units import MM
 from meshes.arrays import Array, Complex, Indices
 
 ROUND = 181  # points of a circle

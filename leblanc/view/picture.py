@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.files import writing
-from leblanc.interrupts import held
+from leblanc.core.files import writing
+from leblanc.core.interrupts import held
 from leblanc.view.parts import Label, Picture, Piece, line
 from leblanc.view.sight import (
     BOTTOM,

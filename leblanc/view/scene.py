@@ -11,12 +11,12 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from leblanc.core.notes import one_line
+from leblanc.core.units import DEGREE, LENGTH, MINUS, Unit, in_rpm, unit_for
 from leblanc.figures.chambers import plates
 from leblanc.figures.drawing.page import zero_of
-from leblanc.results.base import one_line
 from leblanc.results.drawn.machine import DrawnLiquid, LiquidBodies, LiquidShape, MachineMotion, Scale, strips
 from leblanc.text.run import amplitude_place
-from leblanc.units import DEGREE, LENGTH, MINUS, Unit, in_rpm, unit_for
 from leblanc.view.cabinet import around, corners
 from leblanc.view.machine import ground_end, machine
 from leblanc.view.parts import (

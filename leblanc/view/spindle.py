@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 
-from leblanc.results.base import one_line
+from leblanc.core.notes import one_line
+from leblanc.core.units import MM, number
 from leblanc.results.drawn.spindle import DrawnBeam, DrawnJoint, SpindleView
-from leblanc.units import MM, number
 from leblanc.view.film import Film
 from leblanc.view.machine import cylinder, ground, spring
 from leblanc.view.parts import NO_CELLS, Label, Picture, Piece, bar_length, line

@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from leblanc import files
 from leblanc.cli import main
-from leblanc.contents import NAME, recording, results_dir
+from leblanc.core import files
+from leblanc.core.contents import NAME, recording, results_dir
 
 Capture = pytest.CaptureFixture[str]
 EXAMPLES = Path(__file__).parents[2] / "examples"

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from leblanc import files
 from leblanc.cli import exit_code
+from leblanc.core import files
 
 Capture = pytest.CaptureFixture[str]
 

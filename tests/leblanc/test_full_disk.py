@@ -15,13 +15,13 @@ ROOT = Path(__file__).parents[2]
 # Files that grow beyond the limit are refused as on a disk without room, by whatever library writes them.
 WRITERS = {
     "netcdf": """
-from leblanc.results.netcdf import NamedArrays, variable, write_netcdf
+from leblanc.core.netcdf import NamedArrays, variable, write_netcdf
 import numpy as np
 arrays = {"x": variable(("k",), np.random.default_rng(1).normal(size=50_000), "m", "x")}
 write = lambda path: write_netcdf(NamedArrays(arrays, {}, {}), path)
 """,
     "text": """
-from leblanc.files import writing
+from leblanc.core.files import writing
 def write(path):
     with writing(path) as part:
         part.write_text("x" * 400_000)

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from leblanc.cli import exit_code
-from leblanc.interrupts import INTERRUPTED, TERMINATED, Terminated, heard, held
+from leblanc.core.interrupts import INTERRUPTED, TERMINATED, Terminated, heard, held
 from solvers.slices import compiled
 from tests.mutants import kills
 
@@ -51,8 +51,8 @@ def ended(code: str, number: int, cwd: Path) -> tuple[int, str, str]:
 DEAF = """
 import sys
 from leblanc.cli import exit_code
-from leblanc.files import writing
-from leblanc.interrupts import heard, leave
+from leblanc.core.files import writing
+from leblanc.core.interrupts import heard, leave
 from pathlib import Path
 
 def work():
@@ -84,7 +84,7 @@ def test_compiled_code_is_not_waited_for(number: int, tmp_path: Path) -> None:
 
 def test_a_process_is_ended_though_nobody_reads() -> None:
     """What is to be said cannot be written: the thread that ends the process must not die of it."""
-    code = "import os; from leblanc.interrupts import _end; os.close(2); _end(15)"
+    code = "import os; from leblanc.core.interrupts import _end; os.close(2); _end(15)"
     assert subprocess.run([sys.executable, "-c", code], cwd=ROOT, check=False).returncode == 143
 
 
@@ -92,7 +92,7 @@ def test_a_process_is_ended_though_nobody_reads() -> None:
 THROUGH_EXEC = """
 import sys, threading, time
 from leblanc.cli import exit_code
-from leblanc.interrupts import heard, leave
+from leblanc.core.interrupts import heard, leave
 
 threading.Thread(target=time.sleep, args=[900.0]).start()
 with heard():
@@ -153,7 +153,7 @@ def test_codes_are_those_of_shells() -> None:
 @pytest.mark.parametrize(
     ("number", "raised"), [(signal.SIGINT, KeyboardInterrupt), (signal.SIGTERM, Terminated)]
 )
-@kills("leblanc.interrupts:heard", "if _Holding.depth:", "if False:")
+@kills("leblanc.core.interrupts:heard", "if _Holding.depth:", "if False:")
 def test_what_breaks_by_an_interrupt_is_left_first(number: int, raised: type[BaseException]) -> None:
     """VTK crashes, or an import of it fails, where an interrupt is raised inside of it."""
     done = []

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import xarray as xr
 
-from leblanc.results.netcdf import NamedArrays, write_netcdf
+from leblanc.core.netcdf import NamedArrays, write_netcdf
 
 
 def assert_read_back(found: NamedArrays, path: Path) -> None:

@@ -7,9 +7,9 @@ import math
 from html.parser import HTMLParser
 from pathlib import Path
 
+from leblanc.core.notes import one_line
 from leblanc.report.page import About
 from leblanc.report.parts import Cell, Entry, Inputs
-from leblanc.results.base import one_line
 from leblanc.results.response import RunResult
 from leblanc.scene.rows import Value
 

@@ -21,7 +21,7 @@ def test_table_of_the_bearing() -> None:
     assert list(computed.values()) == pytest.approx([9.530, 16.07, 16.63], abs=5e-3)
 
 
-@kills("leblanc.units:_scaled", "else number * factor", "else 1.05 * number * factor")
+@kills("leblanc.core.units:_scaled", "else number * factor", "else 1.05 * number * factor")
 @kills("solvers.rotor.shaft.natural:natural_frequencies", "return _found", "return 1.05 * _found")
 def test_multiples_of_the_speed() -> None:
     """The example's first natural frequency is the 33 Hz of the table, and 660 rpm are a third of it."""

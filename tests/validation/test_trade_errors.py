@@ -19,7 +19,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from fluid.waves import capture_speed
 from leblanc.cli import main
-from leblanc.results.base import versions
+from leblanc.core.answer import versions
 from leblanc.scene.scene import Scene, load_scene
 from leblanc.studies.run import run_scene
 from leblanc.studies.runup import planned

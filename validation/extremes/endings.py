@@ -26,7 +26,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from leblanc.results.netcdf import read_values
+from leblanc.core.netcdf import read_values
 
 _EXAMPLES = Path(__file__).parents[2] / "examples"
 _RIG = _EXAMPLES / "vertical_rig.toml"

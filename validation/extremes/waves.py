@@ -14,7 +14,7 @@ import numpy as np
 from fluid.fill import Fill
 from fluid.friction.laws import Friction, FrictionLaw
 from fluid.liquid import Liquid
-from leblanc.results.base import texts
+from leblanc.core.notes import texts
 from leblanc.studies.layer import answer_layer, wave_notes
 from meshes.chamber import Chamber
 from solvers.layer.state import Numerics

@@ -8,9 +8,9 @@ from typing import Annotated
 
 import typer
 
-from leblanc.cli.terminal.output import print_json, say
-from leblanc.contents import results_dir
-from leblanc.files import writing
+from leblanc.core.contents import results_dir
+from leblanc.core.files import writing
+from leblanc.core.terminal import print_json, say
 
 
 def trade(

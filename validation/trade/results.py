@@ -7,7 +7,8 @@ from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any
 
-from leblanc.results.base import one_line, versions
+from leblanc.core.answer import versions
+from leblanc.core.notes import one_line
 from validation.trade.judge import Comparison, Row
 from validation.trade.trade import TradeRecord
 

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from leblanc.results.base import one_line
+from leblanc.core.notes import one_line
 from leblanc.scene.scene import Scene, require_chambers, require_clear
 from validation.trade.answers import Answer, Case, answer, taste
 from validation.trade.cases import Question, finer, questions

@@ -1,57 +1,14 @@
-"""What commands print and write: JSON on stdout, messages on stderr, files that are whole or not there."""
+"""What commands have in common: the scene they read, how many processes they start."""
 
 from __future__ import annotations
 
-import json
-import os
-import sys
-from collections.abc import Iterable, Sequence
-from contextlib import suppress
-from io import TextIOWrapper
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal, TextIO
+from typing import TYPE_CHECKING
+
+from leblanc.core.terminal import say
 
 if TYPE_CHECKING:
     from leblanc.scene.scene import Scene
-
-_WIDTH = 110  # characters of a line where there is no terminal
-
-
-def ready_streams() -> None:
-    """Let every text be printed, whatever the terminal.
-
-    A stream that is closed becomes the void: the next file that is opened would take its number, and what a
-    library prints would end up in that file. What an encoding lacks is printed as an escape.
-    """
-    for number in range(3):
-        try:
-            os.fstat(number)
-        except OSError:
-            os.set_inheritable(os.open(os.devnull, os.O_RDWR), True)  # the lowest number that is free
-    for name, number in (("stdout", 1), ("stderr", 2)):
-        if getattr(sys, name) is None:
-            setattr(sys, name, open(number, "w", encoding="utf-8", closefd=False))  # noqa: SIM115
-        if isinstance(stream := getattr(sys, name), TextIOWrapper):
-            stream.reconfigure(errors="backslashreplace")
-
-
-def drop(stream: TextIO) -> None:
-    """Let the interpreter's last flush of a stream that nobody reads go nowhere.
-
-    Parameters
-    ----------
-    stream : stdout or stderr
-    """
-    try:
-        stream.flush()
-    except OSError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
-
-
-def say(text: str) -> None:
-    """Print a line of progress or a fault on stderr, if anybody reads that."""
-    with suppress(OSError):
-        print(text, file=sys.stderr, flush=True)
 
 
 def load(path: Path) -> Scene:
@@ -79,51 +36,6 @@ def load(path: Path) -> Scene:
         _, _, line = given_at(path, str(note.data["field"]))
         say(f"{escaped(str(path))}{f':{line}' if line else ''}: warning: {note.text}")
     return scene
-
-
-def print_table(
-    rows: Iterable[Sequence[str]], head: Sequence[str] = (), right: bool = False, indent: int = 0
-) -> None:
-    """Print a table on stdout; on a terminal its texts are wrapped to fit, elsewhere to 110 characters.
-
-    Parameters
-    ----------
-    rows : texts of the cells
-    head : of the columns; none for labels and values
-    right : all columns but the first are aligned to the right
-    indent : blanks before each line
-    """
-    from rich.console import Console
-    from rich.padding import Padding
-    from rich.table import Table
-    from rich.text import Text
-
-    lines = [tuple(row) for row in rows]
-    table = Table(box=None, show_header=bool(head), pad_edge=False, padding=(0, 2, 0, 0), header_style="")
-    side: Literal["left", "right"] = "right" if right else "left"
-    for k, name in enumerate(head or [""] * len(lines[0])):
-        table.add_column(Text(name), justify=side if k else "left", no_wrap=k == 0, overflow="fold")
-    for row in lines:
-        table.add_row(*map(Text, row))
-    terminal = sys.stdout.isatty()
-    console = Console(file=sys.stdout, width=None if terminal else _WIDTH, highlight=False, emoji=False)
-    with console.capture() as printed:
-        console.print(Padding(table, (0, 0, 0, indent), expand=False))
-    sys.stdout.writelines(f"{line.rstrip()}\n" for line in printed.get().splitlines())
-
-
-def print_json(value: object) -> None:
-    """Print one JSON object on stdout.
-
-    Parameters
-    ----------
-    value : dataclasses, mappings, sequences, arrays and numbers; a complex number becomes [re, im], and what
-        is not finite becomes null
-    """
-    from leblanc.results.base import plain
-
-    sys.stdout.write(json.dumps(plain(value), allow_nan=False) + "\n")
-    sys.stdout.flush()
 
 
 def processes(wanted: int | None) -> int:

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from leblanc.core.units import MM, RPM
 from leblanc.results.motion.held import HELD_MODELS, Held
 from leblanc.results.response import RunResult, phase
-from leblanc.units import MM, RPM
 from meshes.arrays import Array, Complex, Flags, Index
 
 Span = tuple[float, float]

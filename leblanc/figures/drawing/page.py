@@ -26,10 +26,10 @@ from matplotlib.ticker import MaxNLocator
 from matplotlib.ticker import MultipleLocator as MultipleLocator  # handed on: this is the only door
 from numpy.typing import ArrayLike
 
-from leblanc.files import writing
-from leblanc.results.base import one_line
+from leblanc.core.files import writing
+from leblanc.core.notes import one_line
+from leblanc.core.units import LENGTH, MASS, RPM, VOLUME, unit_for, units_of
 from leblanc.results.response import RunResult
-from leblanc.units import LENGTH, MASS, RPM, VOLUME, unit_for, units_of
 from meshes.arrays import Complex
 from meshes.errors import InputError
 

@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from leblanc.core.notes import one_line
+from leblanc.core.units import RPM, in_rpm
 from leblanc.figures.drawing.page import (
     Caption,
     Figure,
@@ -17,10 +19,8 @@ from leblanc.figures.drawing.page import (
     save,
     style,
 )
-from leblanc.results.base import one_line
 from leblanc.results.magnetic.control import MagneticResult
 from leblanc.text.magnetic import NAMES, alt
-from leblanc.units import RPM, in_rpm
 
 TITLE = "Rotor in magnetic bearings"
 UM, MA = 1e6, 1e3

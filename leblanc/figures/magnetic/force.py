@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
+from leblanc.core.notes import one_line
+from leblanc.core.units import LENGTH, with_unit
 from leblanc.figures.drawing.page import Caption, Figure, Frame, lay_out, style
-from leblanc.results.base import one_line
 from leblanc.results.magnetic.explanation import MagneticExplanation
-from leblanc.units import LENGTH, with_unit
 
 UM = 1e6
 

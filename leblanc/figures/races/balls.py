@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from leblanc.core.notes import one_line
+from leblanc.core.units import MM, MM_PEAK, RPM
 from leblanc.figures.drawing.curves import gapped
 from leblanc.figures.drawing.page import (
     Caption,
@@ -21,11 +23,9 @@ from leblanc.figures.drawing.page import (
 )
 from leblanc.figures.machine import machine_figure
 from leblanc.figures.response import DRY, WET
-from leblanc.results.base import one_line
 from leblanc.results.races.balls import in_race
 from leblanc.results.races.states import BallsResult
 from leblanc.text.races.balls import alt, answer
-from leblanc.units import MM, MM_PEAK, RPM
 
 FRAME = Frame(left=0.72, top=0.46, between=0.14, below=0.42)
 TITLE = "Amplitude with balls and where they rest"

@@ -9,6 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from leblanc.core.notes import one_line
+from leblanc.core.units import RPM, unit_for
 from leblanc.figures.drawing.page import (
     Caption,
     Figure,
@@ -20,10 +22,8 @@ from leblanc.figures.drawing.page import (
     save,
     style,
 )
-from leblanc.results.base import one_line
 from leblanc.results.races.chart import BallChart
 from leblanc.text.races.chart import CURVES, STATES, alt, answer, what
-from leblanc.units import RPM, unit_for
 from meshes.arrays import Array, Flags, Indices
 
 Axes = Any  # matplotlib's

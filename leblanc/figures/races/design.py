@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
+from leblanc.core.notes import one_line
+from leblanc.core.units import MM, MM_PEAK, RPM
 from leblanc.figures.drawing.curves import gapped
 from leblanc.figures.drawing.page import Caption, Figure, FigureFiles, Frame, lay_out, number, save, style
 from leblanc.figures.response import DRY, WET
-from leblanc.results.base import one_line
 from leblanc.results.races.design import BallDesignResult
 from leblanc.text.races.design import alt, answer
-from leblanc.units import MM, MM_PEAK, RPM
 from meshes.arrays import Flags
 
 FRAME = Frame(left=0.72, top=0.14, between=0.14, below=0.42, gaps=(0.14, 0.56))

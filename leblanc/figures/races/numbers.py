@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 
+from leblanc.core.notes import one_line
+from leblanc.core.units import RPM
 from leblanc.figures.drawing.page import Caption, Figure, Frame, add_rate_axis, lay_out, number, style
 from leblanc.figures.response import DRY, WET
-from leblanc.results.base import one_line
 from leblanc.results.races.numbers import BallExplanation
 from leblanc.text.races.numbers import alt
-from leblanc.units import RPM
 
 FRAME = Frame(left=0.72, top=0.46, between=0.14, below=0.42)
 

@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
+from leblanc.core.notes import one_line
+from leblanc.core.units import MM
 from leblanc.figures.drawing.page import Caption, Figure, FigureFiles, Frame, lay_out, number, save, style
-from leblanc.results.base import one_line
 from leblanc.results.spindles.unit import SpindleResult
 from leblanc.text.spindles.unit import PER_NEWTON, THEORIES, alt, hertz, shapes_alt
-from leblanc.units import MM
 from meshes.arrays import Complex
 
 FRAME = Frame(left=0.72, top=0.2, between=0.12, below=0.42)

@@ -7,9 +7,10 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from leblanc.results.base import ConstraintValue, Result, attributes
-from leblanc.results.netcdf import NamedArrays
-from leblanc.results.netcdf import variable as var
+from leblanc.core.answer import Result, attributes
+from leblanc.core.netcdf import NamedArrays
+from leblanc.core.netcdf import variable as var
+from leblanc.results.base import ConstraintValue
 from meshes.arrays import Array
 from solvers.rotor.layout import COORDINATES, PAIRS
 

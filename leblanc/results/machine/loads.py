@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.results.netcdf import Variable, finite
-from leblanc.results.netcdf import variable as var
+from leblanc.core.netcdf import Variable, finite
+from leblanc.core.netcdf import variable as var
 from meshes.arrays import Array, Flags, Index
 from solvers.rotor.loads.turn import Extremes
 

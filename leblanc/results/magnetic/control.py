@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.results.base import Result, attributes, carried
+from leblanc.core.answer import Result, attributes, carried
+from leblanc.core.netcdf import NamedArrays, Variable, flags
+from leblanc.core.netcdf import variable as var
 from leblanc.results.exciter import number_or_none
-from leblanc.results.netcdf import NamedArrays, Variable, flags
-from leblanc.results.netcdf import variable as var
 from meshes.arrays import Array, Complex, Flags
 
 if TYPE_CHECKING:

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from leblanc.results.base import Result, attributes, carried
+from leblanc.core.answer import Result, attributes, carried
+from leblanc.core.netcdf import NamedArrays
+from leblanc.core.netcdf import variable as var
 from leblanc.results.exciter import number_or_none
-from leblanc.results.netcdf import NamedArrays
-from leblanc.results.netcdf import variable as var
 from meshes.arrays import Array
 
 if TYPE_CHECKING:

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from leblanc.results.base import Result, attributes
+from leblanc.core.answer import Result, attributes
+from leblanc.core.netcdf import NamedArrays, Variable, flags
+from leblanc.core.netcdf import variable as var
 from leblanc.results.motion.held import MOTIONS
-from leblanc.results.netcdf import NamedArrays, Variable, flags
-from leblanc.results.netcdf import variable as var
 from leblanc.results.response import RunResult
 from meshes.arrays import Array
 from meshes.errors import InputError

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from leblanc.results.netcdf import Variable, finite, flags
-from leblanc.results.netcdf import variable as var
+from leblanc.core.netcdf import Variable, finite, flags
+from leblanc.core.netcdf import variable as var
 from meshes.arrays import Array, Flags
 
 if TYPE_CHECKING:

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.results.netcdf import Variable, finite, flags, pair
-from leblanc.results.netcdf import variable as var
+from leblanc.core.netcdf import Variable, finite, flags, pair
+from leblanc.core.netcdf import variable as var
 from meshes.arrays import Array, Complex, Flags
 from solvers.held.state import COUPLED
 

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from leblanc.core.netcdf import Variable, finite
+from leblanc.core.netcdf import variable as var
 from leblanc.results.motion.cycles import LargeWhirl
-from leblanc.results.netcdf import Variable, finite
-from leblanc.results.netcdf import variable as var
 from meshes.arrays import Array, Flags
 
 

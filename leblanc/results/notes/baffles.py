@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from fluid.fill import Fill
-from leblanc.results.base import Note, NoteCode, percent
-from leblanc.units import LENGTH, with_unit
+from leblanc.core.notes import Note, NoteCode, percent
+from leblanc.core.units import LENGTH, with_unit
 from solvers.layer.places import is_smeared
 
 

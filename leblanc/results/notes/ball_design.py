@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from leblanc.results.base import Note, NoteCode
-from leblanc.units import LENGTH, in_rpm, with_unit
+from leblanc.core.notes import Note, NoteCode
+from leblanc.core.units import LENGTH, in_rpm, with_unit
 
 
 class DesignCode(NoteCode):

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from leblanc.results.base import Note, NoteCode, percent
-from leblanc.units import LENGTH, UNBALANCE, in_rpm, number, over_rpm, with_unit
+from leblanc.core.notes import Note, NoteCode, percent
+from leblanc.core.units import LENGTH, UNBALANCE, in_rpm, number, over_rpm, with_unit
 
 
 class BallCode(NoteCode):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from leblanc.results.base import Note, NoteCode
+from leblanc.core.notes import Note, NoteCode
 
 if TYPE_CHECKING:
     pass

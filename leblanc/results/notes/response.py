@@ -7,12 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from leblanc.results.base import Note, NoteCode, percent
-from leblanc.results.choice import Choice, HeldCost
-from leblanc.results.motion.cycles import LargeWhirl
-from leblanc.results.motion.held import HELD_MODELS, Held
-from leblanc.results.motion.self_excited import SelfExcited
-from leblanc.units import (
+from leblanc.core.notes import Note, NoteCode, percent
+from leblanc.core.units import (
     LENGTH,
     RPM,
     VOLUME,
@@ -22,6 +18,10 @@ from leblanc.units import (
     rpm_range,
     with_unit,
 )
+from leblanc.results.choice import Choice, HeldCost
+from leblanc.results.motion.cycles import LargeWhirl
+from leblanc.results.motion.held import HELD_MODELS, Held
+from leblanc.results.motion.self_excited import SelfExcited
 from meshes.arrays import Array
 
 if TYPE_CHECKING:

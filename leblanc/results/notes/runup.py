@@ -9,10 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fluid.friction.laws import Friction
-from leblanc.results.base import Note, NoteCode, percent
-from leblanc.results.notes.response import CLOSURE, STANDS
-from leblanc.results.response import peak
-from leblanc.units import (
+from leblanc.core.notes import Note, NoteCode, percent
+from leblanc.core.units import (
     LENGTH,
     TIME,
     in_rpm,
@@ -22,6 +20,8 @@ from leblanc.units import (
     small_whirl_friction,
     with_unit,
 )
+from leblanc.results.notes.response import CLOSURE, STANDS
+from leblanc.results.response import peak
 from meshes.arrays import Flags
 
 if TYPE_CHECKING:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from leblanc.results.base import Note, NoteCode, percent
-from leblanc.units import (
+from leblanc.core.notes import Note, NoteCode, percent
+from leblanc.core.units import (
     VOLUME,
     rpm_bands,
     with_unit,

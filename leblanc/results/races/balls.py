@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.results.netcdf import Variable, finite, variable
+from leblanc.core.netcdf import Variable, finite, variable
 from meshes.arrays import Array, Complex
 
 

@@ -7,11 +7,12 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from leblanc.results.base import Note, Result, attributes, texts
+from leblanc.core.answer import Result, attributes
+from leblanc.core.netcdf import NamedArrays
+from leblanc.core.netcdf import variable as var
+from leblanc.core.notes import Note, texts
+from leblanc.core.units import Dimension
 from leblanc.results.exciter import number_or_none
-from leblanc.results.netcdf import NamedArrays
-from leblanc.results.netcdf import variable as var
-from leblanc.units import Dimension
 from meshes.arrays import Array, Flags, Indices
 from solvers.rotor.balls.charts import NONE
 

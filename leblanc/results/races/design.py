@@ -8,10 +8,12 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from leblanc.results.base import ConstraintValue, Note, Result, attributes, texts
+from leblanc.core.answer import Result, attributes
+from leblanc.core.netcdf import NamedArrays
+from leblanc.core.netcdf import variable as var
+from leblanc.core.notes import Note, texts
+from leblanc.results.base import ConstraintValue
 from leblanc.results.exciter import number_or_none
-from leblanc.results.netcdf import NamedArrays
-from leblanc.results.netcdf import variable as var
 from leblanc.results.races.states import BallsResult
 from meshes.arrays import Array
 

@@ -8,11 +8,11 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from leblanc.results.base import Result, attributes
+from leblanc.core.answer import Result, attributes
+from leblanc.core.netcdf import NamedArrays, finite, flags
+from leblanc.core.netcdf import variable as var
 from leblanc.results.exciter import number_or_none
 from leblanc.results.explanation import Explanation
-from leblanc.results.netcdf import NamedArrays, finite, flags
-from leblanc.results.netcdf import variable as var
 from meshes.arrays import Array, Flags
 from solvers.rotor.balls.two_plane_balance import Balancing
 

@@ -10,12 +10,13 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.results.base import Note, Result, attributes, carried, one_line, texts
+from leblanc.core.answer import Result, attributes, carried
+from leblanc.core.netcdf import NamedArrays, Variable, finite, flags
+from leblanc.core.netcdf import variable as var
+from leblanc.core.notes import Note, one_line, texts
 from leblanc.results.exciter import number_or_none
 from leblanc.results.machine.loads import MachineLoads
 from leblanc.results.motion.closed_forms import ClosedForms
-from leblanc.results.netcdf import NamedArrays, Variable, finite, flags
-from leblanc.results.netcdf import variable as var
 from leblanc.results.races.balls import GravityOnBalls, RaceOfBalls, ball_moment
 from meshes.arrays import Array, Complex, Flags, Index
 from solvers.rotor.balls.steady import GROWS, BallKind, BallStates

@@ -8,10 +8,10 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from leblanc.results.base import Result, attributes
+from leblanc.core.answer import Result, attributes
+from leblanc.core.netcdf import NamedArrays
+from leblanc.core.netcdf import variable as var
 from leblanc.results.motion.closed_forms import Cage
-from leblanc.results.netcdf import NamedArrays
-from leblanc.results.netcdf import variable as var
 from meshes.arrays import Array, Complex
 
 RECIPROCITY, WAYS = 1e-9, 1e-6  # relative differences up to which two ways to one answer agree

@@ -6,10 +6,10 @@ import re
 from dataclasses import dataclass
 from typing import Literal
 
-from leblanc import units
+from leblanc.core import units
+from leblanc.core.units import RPM, in_rpm, number
 from leblanc.scene.schema.load import meant
 from leblanc.scene.schema.rules import Entries, Quantity, Refused
-from leblanc.units import RPM, in_rpm, number
 from meshes.errors import InputError
 
 MAX_STEPS = 1000

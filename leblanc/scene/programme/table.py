@@ -8,13 +8,13 @@ from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field, PlainValidator
 
-from leblanc import units
+from leblanc.core import units
+from leblanc.core.units import in_rpm, number
 from leblanc.scene.programme.steps import MAX_STEPS, SPEED, Step, StepList, StepRule
 from leblanc.scene.rows import Row, curve_words, row, rpm
 from leblanc.scene.schema.part import Conflict, Part
 from leblanc.scene.schema.rules import Inertia, Truth, one_of, quantity, whole
 from leblanc.scene.tasks import BORES, CAPTURES, TorqueCurve
-from leblanc.units import in_rpm, number
 
 _STEPS = StepList(1, MAX_STEPS, 'steps such as "to 90 rpm in 4 s"')
 

@@ -13,7 +13,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from leblanc.files import native
+from leblanc.core.files import native
 from leblanc.scene.schema.lines import Place, line_of, places
 from meshes.files.foreign import open_regular
 
@@ -58,19 +58,6 @@ class SceneError(ValueError):
     def __init__(self, faults: Sequence[SceneFault]) -> None:
         super().__init__("\n".join(map(str, faults)))
         self.faults = tuple(faults)
-
-
-class NotConverged(RuntimeError):  # noqa: N818 - it names a state, not a mistake
-    """A solver did not converge everywhere; what did is kept.
-
-    Parameters
-    ----------
-    failed : what did not converge, one line each
-    """
-
-    def __init__(self, failed: Sequence[str]) -> None:
-        super().__init__("\n".join(failed))
-        self.failed = tuple(failed)
 
 
 def field_path(keys: Sequence[str | int]) -> str:

@@ -17,9 +17,9 @@ from pydantic import (
 from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails, InitErrorDetails, PydanticCustomError
 
+from leblanc.core.units import allowed_as_typed
 from leblanc.scene.schema.load import SceneError, SceneFault, field_path, meant, shown
 from leblanc.scene.schema.rules import OneOf, Refused
-from leblanc.units import allowed_as_typed
 from meshes.errors import InputError
 
 MAX_FAULTS = 100  # that are told; a file of another kind has millions

@@ -7,9 +7,9 @@ from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, PlainValidator
 
-from leblanc import units
+from leblanc.core import units
+from leblanc.core.units import Dimension, parse, written_out
 from leblanc.scene.schema.load import meant
-from leblanc.units import Dimension, parse, written_out
 
 
 class Refused(ValueError):  # noqa: N818 - it says what became of the value

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Annotated
 
 from leblanc.core.question import Quantity, ask
-from leblanc.units import ANGLE, ANGULAR_SPEED, LENGTH
+from leblanc.core.units import ANGLE, ANGULAR_SPEED, LENGTH
 
 if TYPE_CHECKING:
     from leblanc.studies.bearing.answer import BearingAnswer

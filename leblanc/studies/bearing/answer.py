@@ -8,7 +8,7 @@ from typing import Annotated
 
 from leblanc.core.answer import Answer
 from leblanc.core.blocks import Block, Picture, Table, Words
-from leblanc.units import in_rpm, number
+from leblanc.core.units import in_rpm, number
 from meshes.quantity import Q
 from solvers.rotor.rolling_bearing import Bearing, BearingFit
 

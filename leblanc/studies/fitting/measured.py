@@ -12,10 +12,10 @@ from pathlib import Path
 
 import numpy as np
 
-from leblanc import units
-from leblanc.results.base import Note
+from leblanc.core import units
+from leblanc.core.notes import Note
+from leblanc.core.units import Dimension
 from leblanc.results.fit import FitCode
-from leblanc.units import Dimension
 from meshes.arrays import Array
 from meshes.errors import InputError
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from leblanc import units
-from leblanc.results.base import Note
+from leblanc.core import units
+from leblanc.core.notes import Note
 from leblanc.results.fit import POOR, Noise, few_note, poor_note
 from leblanc.studies.fitting.measured import ANGLES, SIZES
 from leblanc.studies.fitting.problem import Problem, is_turn, model_error

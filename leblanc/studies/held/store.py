@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 
 import fluid
-from leblanc.files import writing
-from leblanc.results.base import versions
+from leblanc.core.answer import versions
+from leblanc.core.files import writing
 from solvers.held.branch import HeldTask, Runner
 from solvers.held.state import HeldKind, HeldMachine, HeldState, HoldNumerics, Moment
 

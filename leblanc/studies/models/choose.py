@@ -15,7 +15,7 @@ from fluid.friction.laws import Friction, FrictionLaw
 from fluid.pool import balance_speed, pool_of
 from fluid.waves import capture_speed
 from fluid.whirl import covering_speed
-from leblanc.results.base import percent
+from leblanc.core.notes import percent
 from leblanc.results.choice import Choice, HeldCost
 from leblanc.results.motion.held import HELD_MODELS
 from leblanc.scene.scene import Scene, dry_rotor, require_no_balls

@@ -13,12 +13,22 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.results.base import Note
+from leblanc.core.notes import Note
+from leblanc.core.units import (
+    DENSITY,
+    LENGTH,
+    MASS,
+    UNBALANCE,
+    VISCOSITY,
+    in_rpm,
+    number,
+    rpm_range,
+    with_unit,
+)
 from leblanc.results.layer import Number
 from leblanc.results.notes.doubts import DoubtCode, doubt
 from leblanc.scene.rotors import JeffcottRotor, TubRotor, TwoPlaneRotor
 from leblanc.scene.scene import WITHOUT_CHAMBERS, Exciter, MagneticRotor, Scene
-from leblanc.units import DENSITY, LENGTH, MASS, UNBALANCE, VISCOSITY, in_rpm, number, rpm_range, with_unit
 from meshes.errors import InputError
 from solvers.liquid_model import Range
 from solvers.rotor.system import RotorSystem

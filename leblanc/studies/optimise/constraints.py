@@ -9,13 +9,13 @@ import numpy as np
 
 from fluid.fill import Fill
 from fluid.friction.laws import Friction, FrictionLaw
+from leblanc.core.units import LENGTH, with_unit
 from leblanc.results.base import ConstraintValue
 from leblanc.scene.scene import Scene, dry_rotor
 from leblanc.studies.optimise.answers import FilledMachine, with_volumes
 from leblanc.studies.optimise.balance import QualityAtSpeed
 from leblanc.studies.optimise.objectives import PeakOver, Vibration
 from leblanc.studies.optimise.robust import Robust
-from leblanc.units import LENGTH, with_unit
 from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.cycles.balance import not_circular

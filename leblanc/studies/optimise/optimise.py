@@ -14,8 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fluid.whirl import is_full
+from leblanc.core.notes import Note
+from leblanc.core.units import in_rpm
 from leblanc.results import optimum
-from leblanc.results.base import ConstraintValue, Note
+from leblanc.results.base import ConstraintValue
 from leblanc.results.choice import ModelSpan
 from leblanc.results.notes.baffles import compartment_notes
 from leblanc.results.optimum import (
@@ -56,7 +58,6 @@ from leblanc.studies.optimise.search import (
 from leblanc.studies.optimise.walls import freeing_volumes, require_known_walls
 from leblanc.studies.optimise.wetting import WettedWalls, wet_walls, wetting_volumes
 from leblanc.studies.run import run_scene
-from leblanc.units import in_rpm
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
 from solvers.liquid_model import LONG

@@ -8,8 +8,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from leblanc.core.notes import Note
+from leblanc.core.units import LENGTH, in_rpm, over_rpm, with_unit
 from leblanc.results import optimum
-from leblanc.results.base import Note
 from leblanc.scene.scene import JeffcottRotor, Scene, Speeds
 from leblanc.scene.tasks import LOADS, OBJECTIVES, Optimisation
 from leblanc.scene.unbalances import unbalances_of
@@ -55,7 +56,6 @@ from leblanc.studies.optimise.robust import (
     unbalance_range,
 )
 from leblanc.studies.optimise.walls import most_cells
-from leblanc.units import LENGTH, in_rpm, over_rpm, with_unit
 from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.search import Found, Judgement

@@ -7,9 +7,9 @@ import math
 import numpy as np
 
 from fluid.fill import Fill
+from leblanc.core.units import VOLUME, with_unit
 from leblanc.scene.scene import Scene
 from leblanc.scene.tasks import Optimisation
-from leblanc.units import VOLUME, with_unit
 from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.layer.places import FEWEST_CELLS

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from fluid.fill import Fill
-from leblanc.results.base import ConstraintValue, Note
+from leblanc.core.notes import Note
+from leblanc.results.base import ConstraintValue
 from leblanc.results.optimum import WettingVolumes, given_deflection
 from leblanc.scene.scene import Scene
 from leblanc.studies.models.choose import axial_gravity

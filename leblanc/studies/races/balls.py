@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from leblanc.results.base import Note
+from leblanc.core.notes import Note
 from leblanc.results.machine.loads import MachineLoads
 from leblanc.results.notes import balls as notes
 from leblanc.results.notes import response as response_notes

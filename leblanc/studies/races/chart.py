@@ -11,7 +11,8 @@ from typing import NamedTuple
 import numpy as np
 
 from fluid.fill import Fill
-from leblanc.results.base import Note
+from leblanc.core.notes import Note
+from leblanc.core.units import parse_option
 from leblanc.results.notes import balls as notes
 from leblanc.results.races.chart import BallChart, Curve
 from leblanc.scene.scene import Scene, dry_rotor
@@ -21,7 +22,6 @@ from leblanc.scene.schema.rules import Quantity, Refused
 from leblanc.studies.models.choose import axial_gravity
 from leblanc.studies.models.validity import doubts
 from leblanc.studies.races.states import liquid_beside
-from leblanc.units import parse_option
 from meshes.arrays import Array
 from meshes.errors import InputError, require_positive
 from solvers.liquid_model import LiquidModel

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import ValidationError
 
-from leblanc.results.base import versions
+from leblanc.core.answer import versions
 from leblanc.scene.scene import Scene, scene_from_table
 from leblanc.scene.schema.load import SceneError, escaped
 from leblanc.scene.schema.part import Part, rule_of

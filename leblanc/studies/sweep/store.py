@@ -24,8 +24,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.results.base import one_line, versions
-from leblanc.results.netcdf import NamedArrays, variable
+from leblanc.core.answer import versions
+from leblanc.core.netcdf import NamedArrays, variable
+from leblanc.core.notes import one_line
 from leblanc.scene.schema.load import shown
 from leblanc.studies.sweep.block import FLAG, NUMBER, PENDING, STATUS, TEXT, Output, outputs_of
 from leblanc.studies.sweep.study import Sweep, VariedField

@@ -14,8 +14,9 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import Field, PlainValidator, ValidationError
 
-from leblanc import units
-from leblanc.files import native, path_text
+from leblanc.core import units
+from leblanc.core.files import native, path_text
+from leblanc.core.units import allowed_as_typed
 from leblanc.scene.scene import WITHOUT_CHAMBERS, Scene, scene_from_table
 from leblanc.scene.schema.load import (
     SceneError,
@@ -29,7 +30,6 @@ from leblanc.scene.schema.load import (
 from leblanc.scene.schema.part import Conflict, Part, allowed_at, faults_of
 from leblanc.scene.schema.paths import Keys, keys_of, rule_at
 from leblanc.scene.schema.rules import Entries, Quantity, Refused, Text, Whole, one_of, whole
-from leblanc.units import allowed_as_typed
 from meshes.arrays import Array
 from meshes.errors import InputError
 

@@ -22,8 +22,9 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.interrupts import held
-from leblanc.scene.schema.load import NotConverged, SceneError, SceneFault, shown
+from leblanc.core.answer import NotConverged
+from leblanc.core.interrupts import held
+from leblanc.scene.schema.load import SceneError, SceneFault, shown
 from leblanc.studies.held.holding import cores
 from leblanc.studies.sweep.block import Block, BlockAnswer, answer_block, own_versions, reason_of
 from leblanc.studies.sweep.sampling import Rows, sample_rows
@@ -297,7 +298,9 @@ def _interrupts() -> Iterator[threading.Event]:
             before(number, frame)
 
     if callable(before):
-        note = functools.wraps(before)(note)  # tells `leblanc.interrupts` that it passes on what it hears
+        note = functools.wraps(before)(
+            note
+        )  # tells `leblanc.core.interrupts` that it passes on what it hears
 
     def drop(what: sys.UnraisableHookArgs) -> None:
         if what.exc_type is not KeyboardInterrupt:

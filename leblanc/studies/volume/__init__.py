@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Annotated
 
 from leblanc.core.question import Quantity, ask
-from leblanc.units import ACCELERATION, ANGULAR_SPEED, LENGTH, VOLUME
+from leblanc.core.units import ACCELERATION, ANGULAR_SPEED, LENGTH, VOLUME
 
 if TYPE_CHECKING:
     from leblanc.studies.volume.answer import VolumeAnswer

@@ -1,4 +1,4 @@
-"""What `volume` answers: optimal volume of a chamber at a deflection and a speed, surface of a given volume."""
+"""What `volume` answers: optimal volume at a deflection and a speed, surface of a given volume."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Annotated
 
 from leblanc.core.answer import Answer
 from leblanc.core.blocks import Block, Picture, Table, Words
-from leblanc.units import LENGTH, ML, MM, VOLUME, Unit, in_rpm, unit_for, with_unit
+from leblanc.core.units import LENGTH, ML, MM, VOLUME, Unit, in_rpm, unit_for, with_unit
 from meshes.chamber import Chamber
 from meshes.quantity import Q
 

@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
+from leblanc.core.units import MM
 from leblanc.figures.chambers import liquid_outline
 from leblanc.figures.drawing.page import Caption, Figure, Frame, lay_out, number, style
 from leblanc.results.base import FilledChamber
 from leblanc.studies.volume.answer import VolumeAnswer, facts, question_words
-from leblanc.units import MM
 from meshes.arrays import Array
 
 FRAME = Frame(left=0.72, top=0.2, between=0.12, below=0.42)

@@ -6,11 +6,11 @@ import math
 
 import numpy as np
 
+from leblanc.core.units import LENGTH, UNBALANCE, in_rpm, number, rpm_bands, with_unit
 from leblanc.results.notes.response import plane_words
 from leblanc.results.races.states import BallsResult
 from leblanc.text.numbers import MOST_RANGES, NOT_FOUND, amplitudes_are, ranges
 from leblanc.text.run import Limit
-from leblanc.units import LENGTH, UNBALANCE, in_rpm, number, rpm_bands, with_unit
 
 FAR = math.radians(15.0)  # swing of a ball up to which small swings tell it
 

@@ -6,11 +6,11 @@ import math
 
 import numpy as np
 
-from leblanc.results.base import one_line
+from leblanc.core.notes import one_line
+from leblanc.core.units import LENGTH, MASS, MM, RPM, UNBALANCE, in_rpm, with_unit
 from leblanc.results.races.numbers import BallExplanation, RaceNumbers
 from leblanc.text.explanation import machine_rows
 from leblanc.text.numbers import number, ranges
-from leblanc.units import LENGTH, MASS, MM, RPM, UNBALANCE, in_rpm, with_unit
 
 Rows = list[tuple[str, str]]
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import cmath
 import math
 
+from leblanc.core.units import LENGTH, in_rpm, with_unit
 from leblanc.results.spindles.unit import RECIPROCITY, WAYS, SpindleResult
 from leblanc.text.numbers import number
 from leblanc.text.run import Limit
-from leblanc.units import LENGTH, in_rpm, with_unit
 
 PER_NEWTON = 1e9  # nm/N in one m/N
 THEORIES = {

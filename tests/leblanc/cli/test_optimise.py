@@ -11,8 +11,8 @@ import h5py
 import numpy as np
 import pytest
 
-from leblanc import units
 from leblanc.cli import main
+from leblanc.core import units
 from leblanc.figures.optimise import write_figures
 from leblanc.results.optimum import OptimumResult
 from leblanc.scene.scene import load_scene, scene_from_table

@@ -14,8 +14,9 @@ import typer
 
 from leblanc import cli
 from leblanc.cli import exit_code, main
+from leblanc.core.answer import NotConverged
 from leblanc.scene.scene import load_scene
-from leblanc.scene.schema.load import NotConverged, SceneError, SceneFault
+from leblanc.scene.schema.load import SceneError, SceneFault
 from meshes.errors import InputError
 
 Capture = pytest.CaptureFixture[str]

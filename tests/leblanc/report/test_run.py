@@ -14,11 +14,12 @@ import numpy as np
 import pytest
 
 from leblanc.cli import main
+from leblanc.core.notes import Note
 from leblanc.figures.drawing.page import FigureFiles
 from leblanc.report import page as report
 from leblanc.report import run as report_run
 from leblanc.report.parts import LIGHT, picture
-from leblanc.results.base import FilledChamber, Note
+from leblanc.results.base import FilledChamber
 from leblanc.results.motion.self_excited import SelfExcited
 from leblanc.results.notes.response import OF_MODELS, RunCode
 from leblanc.results.response import RunResult

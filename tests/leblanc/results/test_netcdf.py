@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import leblanc as lb
-from leblanc.results.netcdf import NamedArrays, Variable, read_values, variable, write_netcdf
+from leblanc.core.netcdf import NamedArrays, Variable, read_values, variable, write_netcdf
 from meshes.errors import InputError
 from tests.oracles.data_files import assert_read_back
 

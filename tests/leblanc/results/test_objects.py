@@ -16,9 +16,9 @@ import pytest
 
 from leblanc.api import layer, modes, optimise, run_up
 from leblanc.cli import main
-from leblanc.cli.terminal.output import print_json
+from leblanc.core.answer import Result
+from leblanc.core.terminal import print_json
 from leblanc.figures.drawing.page import Figure
-from leblanc.results.base import Result
 from leblanc.results.response import RunResult
 from leblanc.scene.scene import Scene, load_scene
 from leblanc.scene.tasks import Optimisation

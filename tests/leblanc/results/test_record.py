@@ -36,7 +36,7 @@ def test_peak_is_the_largest() -> None:
     assert peak(np.array([np.nan + 0j])) is None
 
 
-@kills("leblanc.results.netcdf:finite", "[values.real, values.imag]", "[values.imag, values.real]")
+@kills("leblanc.core.netcdf:finite", "[values.real, values.imag]", "[values.imag, values.real]")
 @kills(
     "leblanc.results.response:RunResult.to_json",
     '"liquid_angle": finite(r.liquid_angle)',
@@ -60,9 +60,9 @@ def test_json_is_the_record() -> None:
 
 
 @kills("leblanc.results.response:_variables", 'phase(r.deflection_dry), "rad"', 'phase(r.deflection), "rad"')
-@kills("leblanc.results.netcdf:pair", 'values.imag, "m", imag', 'values.real, "m", imag')
+@kills("leblanc.core.netcdf:pair", 'values.imag, "m", imag', 'values.real, "m", imag')
 @kills(
-    "leblanc.results.netcdf:flags",
+    "leblanc.core.netcdf:flags",
     "np.arange(2 - len(meanings.split()), 2",
     "np.arange(3 - len(meanings.split()), 3",
 )

@@ -11,8 +11,8 @@ import pytest
 import xarray as xr
 
 import leblanc as lb
-from leblanc.files import writing
-from leblanc.results.netcdf import write_netcdf
+from leblanc.core.files import writing
+from leblanc.core.netcdf import write_netcdf
 from leblanc.results.response import RunResult
 from leblanc.text.numbers import amplitude_sentence
 from leblanc.text.run import summary

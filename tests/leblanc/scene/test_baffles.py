@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from fluid.fill import Fills
-from leblanc.results.base import percent
+from leblanc.core.notes import percent
 from leblanc.results.notes.baffles import BaffleCode
 from leblanc.scene.scene import Scene, jeffcott, load_scene, scene_from_table
 from leblanc.scene.schema.load import SceneError, read_toml

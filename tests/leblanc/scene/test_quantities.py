@@ -8,7 +8,7 @@ import tomllib
 import numpy as np
 import pytest
 
-from leblanc import units
+from leblanc.core import units
 from leblanc.scene.scene import jeffcott, scene_from_table
 from tests.mutants import kills
 
@@ -50,9 +50,9 @@ def test_free_vibration() -> None:
     np.testing.assert_allclose(-roots.real / np.abs(roots), 0.1, rtol=1e-12)
 
 
-@kills("leblanc.units:_scaled", "return number / parts", "return number * parts")
-@kills("leblanc.units:_scaled", "return number * (whole", "return number / (whole")
-@kills("leblanc.units:_base", r"(\1turn/s)", r"(\1rad/s)")
+@kills("leblanc.core.units:_scaled", "return number / parts", "return number * parts")
+@kills("leblanc.core.units:_scaled", "return number * (whole", "return number / (whole")
+@kills("leblanc.core.units:_base", r"(\1turn/s)", r"(\1rad/s)")
 def test_one_box_in_three_units() -> None:
     """A litre is a cube of ten centimetres; a hertz is a turn, 60 rpm."""
     units._factor.cache_clear()

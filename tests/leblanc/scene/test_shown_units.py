@@ -11,12 +11,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from leblanc import units
-from leblanc.scene.scene import Scene
-from leblanc.scene.schema.part import Part, allowed_at, parts_of, rule_of
-from leblanc.scene.schema.rules import Quantity
-from leblanc.studies.sweep.study import Study
-from leblanc.units import (
+from leblanc.core import units
+from leblanc.core.units import (
     ANGULAR_SPEED,
     LENGTH,
     MASS,
@@ -35,6 +31,10 @@ from leblanc.units import (
     with_unit,
     written_out,
 )
+from leblanc.scene.scene import Scene
+from leblanc.scene.schema.part import Part, allowed_at, parts_of, rule_of
+from leblanc.scene.schema.rules import Quantity
+from leblanc.studies.sweep.study import Study
 
 # The bounds of what a scene may say, in SI.
 BOUNDS = {

@@ -11,8 +11,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from leblanc import units
-from leblanc.units import Dimension, parse, parse_option
+from leblanc.core import units
+from leblanc.core.units import Dimension, parse, parse_option
 from meshes.errors import InputError
 
 TURN = 2.0 * math.pi

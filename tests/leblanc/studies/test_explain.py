@@ -14,12 +14,12 @@ from fluid.liquid import Liquid
 from fluid.numbers import layer_numbers
 from fluid.pool import balance_speed, pool_of
 from leblanc.cli import main
+from leblanc.core.units import in_rpm
 from leblanc.scene.scene import Scene, load_scene, scene_from_table
 from leblanc.studies.explain import explain_scene
 from leblanc.studies.models.choose import carried_from, choose
 from leblanc.studies.run import run_scene
 from leblanc.text.explanation import layer_rows
-from leblanc.units import in_rpm
 from meshes.chamber import Chamber
 from meshes.errors import InputError
 from tests.mutants import kills

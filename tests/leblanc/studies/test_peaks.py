@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import leblanc as lb
+from leblanc.core.units import RPM
 from leblanc.results.notes.response import RunCode
 from leblanc.results.response import RunResult
 from leblanc.scene.scene import Scene, load_scene
@@ -25,7 +26,6 @@ from leblanc.studies.optimise.optimise import optimise_scene
 from leblanc.studies.peaks import _distinct, responses_between
 from leblanc.studies.run import run_scene
 from leblanc.text.run import alts, answer, remarks, summary
-from leblanc.units import RPM
 from meshes.arrays import Array
 from solvers.synchronous.response import Response, by_speed, response
 from tests.mutants import kills

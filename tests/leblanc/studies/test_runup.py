@@ -19,15 +19,16 @@ from fluid.fill import Fill
 from fluid.liquid import known_liquid
 from leblanc.cli import main
 from leblanc.cli.runup import runup
+from leblanc.core.answer import NotConverged
+from leblanc.core.netcdf import write_netcdf
+from leblanc.core.units import LENGTH, with_unit
 from leblanc.figures import films as film_figures
 from leblanc.figures import runup as figures
 from leblanc.report import runup as report
 from leblanc.results.drawn.machine import film_factor, half_angle
-from leblanc.results.netcdf import write_netcdf
 from leblanc.results.notes.runup import RunupCode
 from leblanc.results.runup import RunupFrames, RunupResult, turn_mean
 from leblanc.scene.scene import Scene, scene_from_table
-from leblanc.scene.schema.load import NotConverged
 from leblanc.studies.runup import (
     drive_of,
     held_from,
@@ -38,7 +39,6 @@ from leblanc.studies.runup import (
     steady_response,
     whirl_bands,
 )
-from leblanc.units import LENGTH, with_unit
 from meshes.chamber import Chamber
 from meshes.errors import InputError
 from solvers.layer.records import Outcome
@@ -422,7 +422,7 @@ def test_json(capsys: pytest.CaptureFixture[str] | None = None) -> None:
 
 
 def test_json_is_one_object_of_lists(capsys: pytest.CaptureFixture[str], record: RunupResult) -> None:
-    from leblanc.cli.terminal.output import print_json
+    from leblanc.core.terminal import print_json
 
     print_json(record.to_json())
     got = json.loads(capsys.readouterr().out)

@@ -18,8 +18,8 @@ from fluid.friction.laws import Friction
 from fluid.whirl import covering_speed
 from leblanc.cli import main
 from leblanc.cli.map import map as map_command
+from leblanc.core.netcdf import write_netcdf
 from leblanc.figures.whirl_map import map_figure, signed_distance
-from leblanc.results.netcdf import write_netcdf
 from leblanc.results.notes.whirl_map import MapCode
 from leblanc.results.whirl_map import WhirlMap
 from leblanc.scene.scene import Scene, dry_rotor, load_scene

@@ -6,12 +6,12 @@ machine has with a full chamber's mass added to it: both follow without a search
 
 from __future__ import annotations
 
+from leblanc.core.units import MM
 from leblanc.scene.examples import example
 from leblanc.scene.scene import Scene, jeffcott
 from leblanc.studies.models.choose import axial_gravity
 from leblanc.studies.optimise.optimise import optimise_scene
 from leblanc.studies.optimise.wetting import wetting_volumes
-from leblanc.units import MM
 from validation.cases.case import Case, Origin, compare
 
 _ML = 1e6

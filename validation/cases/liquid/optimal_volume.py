@@ -17,7 +17,6 @@ def cases() -> list[Case]:
     """Finite elements against closed form, the printed formula, the layer of 2 e, and the law's bend."""
     found = []
     for (radius, height), speed in _SETS:
-        chamber = Chamber(radius, height)
         for e in (1e-3, 3e-3, 10e-3):
             answer = answer_volume(radius, height, e, speed, gravity=_GRAVITY)
             at = f"R {radius:g} m, h {height:g} m, {speed:g} rad/s, e {e * 1e3:g} mm"

@@ -12,7 +12,7 @@ import numpy as np
 from fluid.fill import Fill
 from fluid.friction.laws import Friction, FrictionLaw
 from fluid.liquid import known_liquid
-from leblanc.units import LITRE, MM
+from leblanc.core.units import LITRE, MM
 from meshes.arrays import Array
 from meshes.chamber import Chamber
 from solvers.rotor.jeffcott import Jeffcott

@@ -7,9 +7,9 @@ import math
 
 import numpy as np
 
+from leblanc.core.units import ANGULAR_SPEED, parse
 from leblanc.scene.examples import example
 from leblanc.scene.spindle import Spindle
-from leblanc.units import ANGULAR_SPEED, parse
 from solvers.rotor.rolling_bearing import Bearing, fit_bearing
 from solvers.rotor.shaft.natural import natural_frequencies
 from solvers.rotor.shaft.structure import Coordinate, Structure, compliances

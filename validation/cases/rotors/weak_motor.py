@@ -9,10 +9,10 @@ import argparse
 from pathlib import Path
 from typing import Any
 
+from leblanc.core.units import MM, RPM
 from leblanc.scene.examples import example
 from leblanc.scene.scene import Scene
 from leblanc.studies.runup import runup_scene
-from leblanc.units import MM, RPM
 from solvers.runup.runup import RunupHistory
 
 

@@ -8,9 +8,9 @@ import numpy as np
 
 from fluid.fill import Fill, Fills
 from fluid.liquid import known_liquid
+from leblanc.core.units import MM
 from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, style
 from leblanc.studies.volume.study import answer_volume
-from leblanc.units import MM
 from meshes.chamber import Chamber
 from solvers.statics.hydrostatics import equilibrium, optimal_volume
 from solvers.synchronous.models import Statics

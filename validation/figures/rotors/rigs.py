@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from leblanc.core.units import RPM
 from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, style
-from leblanc.units import RPM
 from validation.cases.rotors.rigs import data
 from validation.figures.rotors.runup_lag import steady
 

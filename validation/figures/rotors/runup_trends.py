@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.units import LITRE, MM, RPM
+from leblanc.core.units import LITRE, MM, RPM
 from validation.cases.rotors.runup import GIVEN, Point, band, best_volume, run, steady_end, sweep
 
 _LOOKS: tuple[tuple[str, str, Any], ...] = (

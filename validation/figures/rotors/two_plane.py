@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from leblanc.core.units import MM
 from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save, style
-from leblanc.units import MM
 from solvers.rotor.balls.balancers import simulate
 from solvers.rotor.balls.two_plane_balance import dynamic_balancing, of_two_planes
 from solvers.rotor.two_plane import TwoPlane

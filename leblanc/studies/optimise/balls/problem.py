@@ -12,7 +12,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from leblanc.results.base import ConstraintValue, Note
+from leblanc.core.notes import Note
+from leblanc.core.units import in_rpm, rpm_range
+from leblanc.results.base import ConstraintValue
 from leblanc.results.notes import ball_design as notes
 from leblanc.scene.scene import Runup, Scene, dry_rotor, require_clear, require_whirl
 from leblanc.scene.tasks import Optimisation
@@ -31,7 +33,6 @@ from leblanc.studies.optimise.problem import operating_speeds, working_speed
 from leblanc.studies.optimise.robust import DOUBLE, operating_conditions, unbalance_range
 from leblanc.studies.races.states import WorstStates, planes_of, worst_states
 from leblanc.studies.runup import chosen_run
-from leblanc.units import in_rpm, rpm_range
 from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.rotor.balance_quality import balance_quality

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from leblanc.results.base import Note
+from leblanc.core.notes import Note
 from leblanc.results.notes import ball_design as notes
 from leblanc.results.races.design import BallDesignResult, DesignedRace, TriedDesigns
 from leblanc.scene.races import BallRace
@@ -134,7 +134,7 @@ def _pool(workers: int) -> Iterator[Callable[..., Iterable[Verdict]]]:
     if workers == 1:
         yield map
         return
-    from leblanc.processes import processes
+    from leblanc.core.processes import processes
 
     with processes(workers) as pool:
         yield pool.map

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from leblanc.cli.terminal.output import print_json
+from leblanc.core.terminal import print_json
 from leblanc.figures.comparison import LOOKS
 from leblanc.results.models.comparison import Comparison, ModelAnswer
 from leblanc.results.motion.held import Held

@@ -12,7 +12,7 @@ import pytest
 import xarray as xr
 
 from leblanc.cli import main
-from leblanc.cli.terminal.output import print_json
+from leblanc.core.terminal import print_json
 from leblanc.figures.sweep import sweep_figure
 from leblanc.results.sweep import QUANTILES, SweepResult
 from leblanc.studies.run import run_scene

@@ -11,7 +11,7 @@ import pytest
 
 from fluid.friction.laws import Friction, FrictionLaw
 from leblanc.cli import main
-from leblanc.results.base import percent
+from leblanc.core.notes import percent
 from leblanc.results.choice import model_spans, seconds_words
 from leblanc.results.notes.response import RunCode
 from leblanc.scene.scene import Scene, dry_rotor, jeffcott, load_scene

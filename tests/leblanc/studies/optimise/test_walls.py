@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from leblanc.core.units import LENGTH, with_unit
 from leblanc.results.notes.baffles import BaffleCode
 from leblanc.scene.examples import example
 from leblanc.scene.scene import Scene, scene_from_table
@@ -18,7 +19,6 @@ from leblanc.studies.optimise.objectives import RunupPeak
 from leblanc.studies.optimise.optimise import optimise_scene
 from leblanc.studies.optimise.walls import freeing_volumes, most_cells
 from leblanc.studies.run import run_scene
-from leblanc.units import LENGTH, with_unit
 from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.rotor.jeffcott import Jeffcott

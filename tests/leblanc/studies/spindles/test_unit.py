@@ -12,8 +12,8 @@ import pytest
 
 import leblanc as lb
 from leblanc.cli import main
+from leblanc.core.netcdf import read_values
 from leblanc.figures.spindles.unit import compliance_figure, shapes_figure
-from leblanc.results.netcdf import read_values
 from leblanc.results.spindles.unit import SpindleResult
 from leblanc.scene.examples import example, example_path
 from leblanc.scene.schema.load import SceneError

@@ -12,7 +12,7 @@ from contextvars import ContextVar
 from functools import partial
 from pathlib import Path
 
-from leblanc.interrupts import at_forced_end
+from leblanc.core.interrupts import at_forced_end
 
 _WATCHES: ContextVar[tuple[Callable[[Path], None], ...]] = ContextVar("watches", default=())
 _LONGEST_NAME = 200  # bytes; file systems allow 255

@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.files import writing
-from leblanc.units import ZERO_TO_PEAK
+from leblanc.core.files import writing
+from leblanc.core.units import ZERO_TO_PEAK
 from meshes.errors import InputError
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-from leblanc.interrupts import at_forced_end
+from leblanc.core.interrupts import at_forced_end
 
 _SHOW_CURSOR = b"\x1b[?25h\n"
 

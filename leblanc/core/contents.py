@@ -18,7 +18,7 @@ from itertools import count
 from pathlib import Path
 from typing import Any
 
-from leblanc.files import chosen_dir, native, out_dir, path_text, watched, writing
+from leblanc.core.files import chosen_dir, native, out_dir, path_text, watched, writing
 from meshes.files.foreign import open_regular
 
 NAME = "contents.json"
@@ -143,7 +143,7 @@ def recording(command: str) -> Iterator[Record]:
 
 
 def results_dir(name: str, out: Path | None, source: Path, state: str, *files: str) -> Path:
-    """Folder for what a command makes of a scene, as `leblanc.files.out_dir`.
+    """Folder for what a command makes of a scene, as `leblanc.core.files.out_dir`.
 
     Where `out` is not given and the folder holds what another scene of the same name gave, whose file is
     still there, that folder is moved aside first: to its name with the next free number behind it.
