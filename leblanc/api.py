@@ -14,6 +14,8 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from leblanc.core.question import called
+from leblanc.registry import answerer
 from leblanc.scene.scene import Scene, dry_rotor, load_scene
 from meshes.errors import InputError
 
@@ -21,8 +23,7 @@ if TYPE_CHECKING:
     from fluid.friction.laws import Friction
     from fluid.liquid import Liquid
     from leblanc.questions import Quantity
-    from leblanc.results.exciter import ExciterResult
-    from leblanc.results.explanation import ExciterExplanation, Explanation
+    from leblanc.results.explanation import Explanation
     from leblanc.results.fit import FitResult
     from leblanc.results.layer import FreeWaveResult, LayerPeriodsResult, LayerResult
     from leblanc.results.liquid import ModesResult
@@ -40,6 +41,7 @@ if TYPE_CHECKING:
     from leblanc.results.spindles.unit import SpindleResult
     from leblanc.results.sweep import SweepResult
     from leblanc.results.whirl_map import WhirlMap
+    from leblanc.wings.exciter.answer import ExciterAnswer, ExciterExplanation
 
 SceneOrPath = Scene | str | PathLike[str]
 
@@ -48,7 +50,7 @@ _OPTION = re.compile(r"--([a-z][a-z-]*)")
 
 def run(
     scene: SceneOrPath, *, workers: int = 1, solver: str | None = None, cycles: bool = False
-) -> RunResult | ExciterResult | MagneticResult | SpindleResult | BallsResult:
+) -> RunResult | ExciterAnswer | MagneticResult | SpindleResult | BallsResult:
     """Response and the liquid's centre of mass at each speed of a scene.
 
     Parameters
@@ -82,10 +84,9 @@ def run(
     if workers < 1:
         raise InputError("workers", workers, "1 or more")
     machine = _scene(scene)
-    if machine.rotor.kind == "exciter":
-        from leblanc.studies.exciter import run_exciter
-
-        return run_exciter(machine)
+    if (address := answerer("run", machine.rotor.kind)) is not None:
+        answer: ExciterAnswer = called(address)(machine)
+        return answer
     if machine.rotor.kind == "magnetic":
         from leblanc.studies.magnetic.run import run_magnetic
 
@@ -127,6 +128,9 @@ def explain(
     True
     """
     machine = _scene(scene)
+    if (address := answerer("explain", machine.rotor.kind)) is not None:
+        answer: ExciterExplanation = called(address)(machine)
+        return answer
     if machine.rotor.kind == "magnetic":
         from leblanc.studies.magnetic.explain import explain_magnetic
 
@@ -135,9 +139,9 @@ def explain(
         from leblanc.studies.explain import explain_balls
 
         return explain_balls(machine)
-    from leblanc.studies.explain import explain_exciter, explain_scene
+    from leblanc.studies.explain import explain_scene
 
-    return explain_exciter(machine) if machine.rotor.kind == "exciter" else explain_scene(machine)
+    return explain_scene(machine)
 
 
 def run_up(

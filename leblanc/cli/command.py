@@ -1,56 +1,114 @@
-"""A command made from the signature of a question."""
+"""The one way through: a command is made from a question, asks it, writes and shows the answer."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import shlex
+import sys
+from collections.abc import Callable, Mapping, Sequence
 from inspect import Parameter, signature
-from typing import Annotated, Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from leblanc.core.answer import NotConverged
-from leblanc.core.question import Asked, parameters
-from leblanc.core.terminal import print_json, show
+from leblanc.cli.terminal.output import load, processes
+from leblanc.core.answer import Answer, NotConverged
+from leblanc.core.contents import results_dir
+from leblanc.core.files import out_dir, path_text
+from leblanc.core.progress import working
+from leblanc.core.question import SCENE, Asked, called, parameters
+from leblanc.core.terminal import print_json, say, show
 from meshes.errors import InputError
+
+if TYPE_CHECKING:
+    from leblanc.scene.scene import Scene
+
+_OUT = "Folder for the files [default: out/<scene name>]."
+_JSON = "Print one JSON object instead of words."
 
 
 def command(question: Callable[..., Any]) -> Callable[..., None]:
-    """The command of a question: its parameters as options, its answer printed in words or as JSON."""
+    """The command of a question: its parameters as arguments and options, its answer in words or as JSON.
 
-    options = [
-        Parameter(
-            one.name,
-            Parameter.KEYWORD_ONLY,
-            default=one.default,
-            annotation=Annotated[_typed(one), typer.Option(help=one.text)],
-        )
-        for one in parameters(question)
-    ]
-    text = "Print one JSON object instead of words."
-    options.append(
-        Parameter(
-            "json",
-            Parameter.KEYWORD_ONLY,
-            default=False,
-            annotation=Annotated[bool, typer.Option("--json", help=text)],
-        )
-    )
+    The module of the question may name the `FILES` that its answer writes, the last being the data.
+    """
+    asked = {one.name: one for one in parameters(question)}
+    files: tuple[str, ...] = getattr(sys.modules[question.__module__], "FILES", ())
+    options = [_typed(one) for one in asked.values()]
+    if files:
+        options.append(_parameter("out", Path | None, typer.Option(help=_OUT), None))
+    options.append(_parameter("json", bool, typer.Option("--json", help=_JSON), False))
 
-    def run(json: bool, **given: Any) -> None:
-        try:
-            answer = question(**given)
-        except InputError as error:
-            raise _of_option(error, given) from error
-        if json:
-            print_json(answer.to_json())
-        else:
-            show(answer.blocks())
-        if answer.failed:
-            raise NotConverged([f"leblanc {question.__name__}: {answer.failed}"])
+    def run(json: bool, out: Path | None = None, **given: Any) -> None:
+        source = given.get("scene")
+        machine, folder, where = None, None, f"leblanc {question.__name__}"
+        if source is not None:
+            machine, where = load(source), str(source)
+            if files:
+                folder = results_dir(machine.name, out, source, machine.digest, *files)
+        elif out is not None:
+            folder = out_dir(question.__name__, out)
+        values = {name: _value(asked[name], value) for name, value in given.items()}
+        with working("preparing"):
+            try:
+                answer: Answer = question(**values | ({} if machine is None else {"scene": machine}))
+            except InputError as error:
+                raise _of_option(error, given) from error
+        line = _command_line(question.__name__, list(asked.values()), given)
+        finish(answer, where, json, folder, machine, line)
 
     run.__doc__ = (question.__doc__ or "").partition("\n")[0]
-    run.__signature__ = signature(question).replace(parameters=options, return_annotation=None)
+    made = signature(question).replace(parameters=options, return_annotation=None)
+    run.__signature__ = made  # type: ignore[attr-defined]  # what typer reads
     return run
+
+
+def finish(
+    answer: Answer,
+    where: str,
+    json: bool,
+    folder: Path | None = None,
+    machine: Scene | None = None,
+    line: str = "",
+) -> None:
+    """Write the files of an answer into a folder, show it, and end as it asks for.
+
+    Faults name `where` they are; `line` is the command that makes the answer again.
+    """
+    if folder is not None:
+        write(answer, folder, machine, line)
+    if json:
+        print_json(answer.to_json())
+    else:
+        show(answer.blocks())
+        if folder is not None:
+            print(_closing(answer, folder))
+    if answer.interrupted:
+        raise KeyboardInterrupt
+    if answer.failed:
+        raise NotConverged([f"{where}: {fault}" for fault in answer.failed])
+    if answer.done:
+        say(answer.done)
+
+
+def _parameter(name: str, kind: Any, option: Any, default: Any) -> Parameter:
+    return Parameter(name, Parameter.KEYWORD_ONLY, default=default, annotation=Annotated[kind, option])
+
+
+def _typed(one: Asked) -> Parameter:
+    """A parameter as typer takes it: a scene is the path of its file, quantities are texts."""
+    if one.read is SCENE:
+        return _parameter(one.name, Path, typer.Argument(help="Scene file (TOML)."), Parameter.empty)
+    kind = one.kind
+    if one.read is not None:
+        kind = str if one.default is Parameter.empty else str | None
+    if one.name == "workers":
+        return _parameter(one.name, int | None, typer.Option(help=one.text), None)
+    return _parameter(one.name, kind, typer.Option(*one.option.names, help=one.text), one.default)
+
+
+def _value(one: Asked, value: Any) -> Any:
+    return processes(value) if one.name == "workers" else value
 
 
 def _of_option(error: InputError, given: Mapping[str, Any]) -> InputError:
@@ -60,8 +118,52 @@ def _of_option(error: InputError, given: Mapping[str, Any]) -> InputError:
     return InputError(f"--{error.field.replace('_', '-')}", error.value, error.allowed)
 
 
-def _typed(one: Asked) -> Any:
-    """The type of an option: quantities are texts."""
-    if one.dimension is None:
-        return one.kind
-    return str if one.default is Parameter.empty else str | None
+def _command_line(name: str, asked: Sequence[Asked], given: Mapping[str, Any]) -> str:
+    """The command that makes the same answer again, wherever its files go."""
+    parts = ["leblanc", name]
+    for one in asked:
+        value = given[one.name]
+        option = (
+            one.option.names[-1].rpartition("/")[2] if one.option.names else f"--{one.name.replace('_', '-')}"
+        )
+        if one.read is SCENE:
+            parts.append(path_text(value))
+        elif one.option.same or value == one.default:
+            continue
+        elif isinstance(value, bool):
+            parts.append(option)
+        else:
+            for each in value if isinstance(value, list | tuple) else (value,):
+                parts += [option, str(each)]
+    return " ".join(map(shlex.quote, parts))
+
+
+def write(answer: Answer, folder: Path, machine: Scene | None = None, line: str = "") -> None:
+    """All files of an answer: data, pictures, report."""
+    from leblanc.core.blocks import Picture, flat
+    from leblanc.core.netcdf import write_netcdf
+    from leblanc.core.page import write_page
+
+    if answer.data:
+        write_netcdf(answer.named_arrays(), folder / answer.data)
+    pictures = (block for block in flat(answer.blocks(), "page") if isinstance(block, Picture))
+    figures = {one.name: _drawn(answer, one, folder) for one in pictures}
+    if answer.page:
+        assert machine is not None
+        from leblanc.scene.inputs import about
+
+        what = about(machine, line, answer.data, answer.task, answer.unused)
+        write_page(answer.title, answer.blocks(), what, figures, folder / answer.page)
+
+
+def _drawn(answer: Answer, picture: Any, folder: Path) -> Any:
+    from leblanc.figures.drawing.page import save
+
+    return save(called(picture.draw)(answer), folder, picture.name, picture.title)
+
+
+def _closing(answer: Answer, folder: Path) -> str:
+    """Where to look now."""
+    first = f"Read {folder / answer.page}" if answer.page else ""
+    data = f"the data are in {folder / answer.data}" if answer.data else ""
+    return "; ".join(part for part in (first, data) if part)

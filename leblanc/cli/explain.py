@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from leblanc.cli.command import finish
 from leblanc.cli.terminal.output import load
 from leblanc.core.terminal import print_json, print_table
 
@@ -20,17 +21,13 @@ def explain(
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> None:
     """Key numbers of the machine; which liquid model answers, and why."""
-    from leblanc.studies.explain import explain_balls, explain_exciter, explain_scene
-    from leblanc.text.explanation import exciter_rows
+    from leblanc.core.question import called
+    from leblanc.registry import answerer
+    from leblanc.studies.explain import explain_balls, explain_scene
 
     machine = load(scene)
-    if machine.rotor.kind == "exciter":
-        table = explain_exciter(machine)
-        if json:
-            print_json(table.to_json())
-        else:
-            print(table.name)
-            print_table(exciter_rows(table), indent=2)
+    if (address := answerer("explain", machine.rotor.kind)) is not None:
+        finish(called(address)(machine), str(scene), json)
         return
     if machine.rotor.kind == "magnetic":
         from leblanc.studies.magnetic.explain import explain_magnetic

@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from leblanc.cli.command import finish
 from leblanc.cli.terminal.output import load, processes
 from leblanc.core.contents import results_dir
 from leblanc.core.progress import working
+from leblanc.core.question import called
 from leblanc.core.terminal import print_json, print_table, say
 
 if TYPE_CHECKING:
@@ -38,9 +40,17 @@ def run(
 
     machine = load(scene)
     kind = machine.rotor.kind
+    from leblanc.registry import answerer
+    from leblanc.report.page import about, command_line
+
     files = ["summary.html", *([] if kind == "exciter" else ["response.nc"])]
     folder = results_dir(machine.name, out, scene, machine.digest, *files)
 
+    if (address := answerer("run", kind)) is not None:
+        with working("preparing"):
+            answer = called(address)(machine)
+        finish(answer, str(scene), json, folder, machine, command_line("run", scene))
+        return
     if kind in _OTHERS:
         _OTHERS[kind](machine, scene, folder, json)
         return
@@ -57,14 +67,13 @@ def run(
         result = run_scene(machine, lambda what: update(what=what), holding, cycles)
 
     from leblanc.core.netcdf import write_netcdf
+    from leblanc.core.units import amplitude_sentence
     from leblanc.figures.response import write_figures
-    from leblanc.report.page import about, command_line
     from leblanc.report.run import write_run_report
     from leblanc.results.notes.baffles import BaffleCode
     from leblanc.results.notes.response import RunCode
     from leblanc.text.closed_forms import closed_form_rows
     from leblanc.text.machine import load_table
-    from leblanc.text.numbers import amplitude_sentence
     from leblanc.text.run import amplitude_place, comparison_table, limit_rows, unanswered
 
     write_netcdf(result.named_arrays(), folder / "response.nc")
@@ -150,33 +159,6 @@ def _run_balls(machine: Scene, scene: Path, folder: Path, json: bool) -> None:
     say(f"{result.name}: {result.speed.size} speeds done")
 
 
-def _run_exciter(machine: Scene, scene: Path, folder: Path, json: bool) -> None:
-    """Stuck speeds and vibration of a table with balls."""
-    from leblanc.figures.exciter import write_exciter_figure
-    from leblanc.report.page import about, command_line
-    from leblanc.report.run import write_exciter_report
-    from leblanc.studies.exciter import run_exciter
-    from leblanc.text.exciter import limits, lines
-
-    with working("motion in time"):
-        result = run_exciter(machine)
-    figure = write_exciter_figure(result, folder)
-    what = about(machine, command_line("run", scene), unused=("model", "runup", "optimise"))
-    write_exciter_report(result, what, figure, folder / "summary.html")
-    if json:
-        print_json(result.to_json())
-    else:
-        print("\n".join(lines(result)))
-        print("\nLimits of the answer")
-        print_table([(limit.label, limit.where) for limit in limits(result)], indent=2)
-        print(f"Read {folder / 'summary.html'}")
-    if not result.converged:
-        from leblanc.core.answer import NotConverged
-
-        raise NotConverged([f"{result.name}: a time integration beside the formulas did not stay finite"])
-    say(f"{result.name}: {result.speed.size} speeds done")
-
-
 def _run_magnetic(machine: Scene, scene: Path, folder: Path, json: bool) -> None:
     """Poles, margins, deflections and a trial in time of a rotor in magnetic bearings."""
     with working("control") as update:
@@ -242,4 +224,4 @@ def _run_spindle(machine: Scene, scene: Path, folder: Path, json: bool) -> None:
 
 
 # Kinds with an answer of their own.
-_OTHERS = {"exciter": _run_exciter, "magnetic": _run_magnetic, "spindle": _run_spindle}
+_OTHERS = {"magnetic": _run_magnetic, "spindle": _run_spindle}

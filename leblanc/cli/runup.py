@@ -99,8 +99,8 @@ def _film(result: RunupResult, path: Path) -> None:
 
 def _tell(result: RunupResult, folder: Path) -> None:
     """The run as text."""
+    from leblanc.core.units import amplitude_sentence
     from leblanc.text.machine import load_table
-    from leblanc.text.numbers import amplitude_sentence
     from leblanc.text.runup import answer_rows, ball_rows, passage_rows
 
     print_table([*answer_rows(result), *ball_rows(result), *passage_rows(result)])

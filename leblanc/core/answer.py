@@ -6,15 +6,15 @@ import html
 import io
 from abc import ABC, abstractmethod
 from base64 import b64encode
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cache
-from importlib import import_module, metadata
+from importlib import metadata
 from operator import attrgetter
-from typing import TYPE_CHECKING, Any, ClassVar, Protocol
+from typing import TYPE_CHECKING, Any, ClassVar
 
-from leblanc.core import quantities
-from leblanc.core.blocks import Block, Table
+from leblanc.core.blocks import Block, Headline, Table, flat
 from leblanc.core.notes import Note, one_line
+from leblanc.core.question import called
 
 if TYPE_CHECKING:
     from leblanc.core.netcdf import Dataset, NamedArrays
@@ -41,52 +41,26 @@ def _version(package: str) -> str:
         return "not installed"
 
 
-class OfScene(Protocol):
-    """An answer that says which scene it belongs to."""
-
-    @property
-    def name(self) -> str:
-        """Name of the scene."""
-
-    @property
-    def source(self) -> str:
-        """Where its values come from."""
-
-    @property
-    def assumed(self) -> tuple[str, ...]:
-        """Paths of the values that no source gives."""
-
-    @property
-    def digest(self) -> str:
-        """Fingerprint of the scene."""
-
-
 def attributes(
-    result: OfScene, command: str, own: Mapping[str, str], notes: Iterable[Note | str]
-) -> dict[str, str]:
+    result: Any, command: str, own: Mapping[str, Any], notes: Iterable[Note | str]
+) -> dict[str, Any]:
     """Attributes of the data file that a command writes: scene, what this kind alone has, notes, versions."""
     said = [one_line(note if isinstance(note, str) else note.text) for note in notes]
+    scene = {}
+    if hasattr(result, "digest"):
+        scene = {
+            "title": one_line(result.name),
+            "source": one_line(result.source) or "not stated",
+            "digest": result.digest,
+            "assumed": "; ".join(map(one_line, result.assumed)) or "nothing",
+        }
     return {
-        "title": one_line(result.name),
-        "source": one_line(result.source) or "not stated",
-        "digest": result.digest,
-        "assumed": "; ".join(map(one_line, result.assumed)) or "nothing",
+        **scene,
         **own,
         "notes": "\n".join(said) or "none",
         "history": f"written by leblanc {command}",
         **{f"version_{package}": version for package, version in versions().items()},
     }
-
-
-def presented_by(address: str) -> Callable[[Any], Any]:
-    """The function at "module:function" that presents an answer, loaded when it is first used.
-
-    Answers import no figures. They name them, and this is the only place that follows such a name:
-    `answer.plot()` works without an import that runs upward.
-    """
-    module, _, name = address.partition(":")
-    found: Callable[[Any], Any] = getattr(import_module(module), name)
-    return found
 
 
 def carried(path: str) -> Any:
@@ -121,34 +95,67 @@ class Result(ABC):
 
     def plot(self) -> Any:
         """The main figure, a `matplotlib.figure.Figure`."""
-        return presented_by(self.figure)(self)
+        return called(self.figure)(self)
 
     def _repr_html_(self) -> str:
         """The main numbers and the main figure, for a notebook."""
-        rows = "".join(
-            f'<tr><th scope="row" style="text-align: left">{html.escape(label)}</th>'
-            f"<td>{html.escape(value)}</td></tr>"
-            for label, value in self._rows()
-        )
         drawing, figure = io.BytesIO(), self.plot()
         figure.savefig(drawing, format="svg")
         address = b64encode(drawing.getvalue()).decode("ascii")
         alt = html.escape(getattr(figure, "alt", ""))
-        return f'<table>{rows}</table><img alt="{alt}" src="data:image/svg+xml;base64,{address}">'
+        return f'{self._tables()}<img alt="{alt}" src="data:image/svg+xml;base64,{address}">'
 
-    def _rows(self) -> Sequence[tuple[str, str]]:
-        rows: Sequence[tuple[str, str]] = presented_by(self.summary)(self)
-        return rows
+    def _tables(self) -> str:
+        return _table(called(self.summary)(self))
+
+
+def _table(rows: Sequence[Sequence[Any]], head: Sequence[str] = ()) -> str:
+    """A table of texts and cells as HTML."""
+
+    def line(row: Sequence[Any], first: str, tag: str) -> str:
+        texts = [html.escape(cell if isinstance(cell, str) else cell.text) for cell in row]
+        cells = "".join(f"<{tag}>{text}</{tag}>" for text in texts[1:])
+        return f'<tr><th scope="{first}" style="text-align: left">{texts[0]}</th>{cells}</tr>'
+
+    lines = ([line(head, "col", "th")] if head else []) + [line(row, "row", "td") for row in rows]
+    return f"<table>{''.join(lines)}</table>"
 
 
 class Answer(Result):
     """Base of a frozen dataclass whose fields and properties are declared by `Q`."""
 
-    attributes: Mapping[str, Any] = {}  #: of its data file, besides the quantities
-    failed: str = ""  #: why there is no answer, or none to rely on; empty where there is one
+    command: ClassVar[str]  #: that asks for it
+    title: ClassVar[str] = ""  #: of its report
+    data: ClassVar[str] = ""  #: file of its numbers; empty where there is none
+    page: ClassVar[str] = ""  #: file of its report
+    unused: tuple[str, ...] = ()  #: tables of the scene on which its numbers do not depend
+    task: Any = None  #: of an optimisation, in place of the scene's
+    interrupted = False  #: it was ended before its time; what is there is whole
+
+    @property
+    def attributes(self) -> Mapping[str, Any]:
+        """Of its data file, besides the quantities: scene, notes, versions."""
+        return attributes(self, self.command, self.own, getattr(self, "notes", ()))
+
+    @property
+    def own(self) -> Mapping[str, Any]:
+        """Attributes that only this kind of answer has."""
+        return {}
+
+    @property
+    def failed(self) -> Sequence[str]:
+        """Why there is no answer, or none to rely on, a line each."""
+        return ()
+
+    @property
+    def done(self) -> str:
+        """What was done, for the end of a command."""
+        return ""
 
     def __getattr__(self, name: str) -> Any:
         """A quantity of one of its parts; None where it has no such part."""
+        from leblanc.core import quantities
+
         part = quantities.part_with(type(self), name)
         if part is None:
             raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
@@ -161,13 +168,17 @@ class Answer(Result):
 
     def to_json(self) -> dict[str, Any]:
         """Its quantities by name: SI, radians, complex numbers as [re, im], None for what is not there."""
-        return quantities.to_json(self)
+        from leblanc.core.quantities import to_json
+
+        return to_json(self)
 
     def named_arrays(self) -> NamedArrays:
         """Its quantities as arrays with named dimensions, units in their attributes."""
-        return quantities.named_arrays(self, self.attributes)
+        from leblanc.core.quantities import named_arrays
 
-    def _rows(self) -> Sequence[tuple[str, str]]:
-        """First and last text of each row of its tables."""
-        tables = (block for block in self.blocks() if isinstance(block, Table))
-        return [(row[0], row[1]) for table in tables for row in table.rows]
+        return named_arrays(self, self.attributes)
+
+    def _tables(self) -> str:
+        shown = list(flat(self.blocks(), "page"))
+        words = [f"<p>{html.escape(block.text)}</p>" for block in shown if isinstance(block, Headline)]
+        return "".join(words + [_table(one.rows, one.head) for one in shown if isinstance(one, Table)])

@@ -1,4 +1,7 @@
-"""What a command is doing while it takes its time: on stderr, on a terminal only."""
+"""What a command is doing while it takes its time: on stderr, on a terminal only.
+
+A study says how far it has come by `update`; who listens, if anybody does, is the business of who asked.
+"""
 
 from __future__ import annotations
 
@@ -6,12 +9,31 @@ import os
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from contextvars import ContextVar
 
 from leblanc.core.interrupts import at_forced_end
 
 _SHOW_CURSOR = b"\x1b[?25h\n"
 
 Update = Callable[..., None]
+_LISTENER: ContextVar[Update | None] = ContextVar("listener", default=None)
+
+
+def update(done: float | None = None, total: float | None = None, what: str | None = None) -> None:
+    """Say how far the work has come, in any unit, and what is done now; all may be left out."""
+    listener = _LISTENER.get()
+    if listener is not None:
+        listener(done, total, what)
+
+
+@contextmanager
+def told(listener: Update) -> Iterator[None]:
+    """Let a function of `done`, `total` and `what` hear the updates within the block."""
+    token = _LISTENER.set(listener)
+    try:
+        yield
+    finally:
+        _LISTENER.reset(token)
 
 
 @contextmanager
@@ -53,12 +75,11 @@ def working(what: str) -> Iterator[Update]:
         with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
             task = bar.add_task(what, total=None)
 
-            def update(
-                done: float | None = None, total: float | None = None, what: str | None = None
-            ) -> None:
+            def show(done: float | None = None, total: float | None = None, what: str | None = None) -> None:
                 # Something new is shown at once, however short it is.
                 bar.update(task, completed=done, total=total, description=what, refresh=what is not None)
 
-            yield update
+            with told(show):
+                yield show
     finally:
         at_forced_end.remove(show_cursor)

@@ -6,8 +6,7 @@ import builtins
 import math
 import sys
 from collections.abc import Iterator, Mapping
-from dataclasses import fields, is_dataclass
-from functools import cache
+from dataclasses import fields, is_dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import Annotated, Any, get_args, get_origin
@@ -25,13 +24,15 @@ class _Names(dict[str, Any]):
         return getattr(builtins, name, Any)
 
 
-@cache
+_Declared = dict[str, tuple[Q, tuple[type, ...]]]
+_FOUND: dict[type, _Declared] = {}
+
+
 def quantities(kind: type) -> Mapping[str, Q]:
     """Declared quantities of an answer by name: those of its bases first, fields before properties."""
-    return MappingProxyType({name: q for name, (q, _) in _declared(kind).items()})
+    return {name: q for name, (q, _) in _declared(kind).items()}
 
 
-@cache
 def part_with(kind: type, name: str) -> str | None:
     """The part of an answer whose record declares a quantity; None where none does."""
     for part, (q, types) in _declared(kind).items():
@@ -40,22 +41,24 @@ def part_with(kind: type, name: str) -> str | None:
     return None
 
 
-def _declared(kind: type) -> dict[str, tuple[Q, tuple[type, ...]]]:
-    """The same with the classes that stand in its type."""
-    found: dict[str, tuple[Q, tuple[type, ...]]] = {}
+def _declared(kind: type) -> _Declared:
+    """The same with the classes that stand in its type; read once a class."""
+    if kind in _FOUND:
+        return _FOUND[kind]
+    found: _Declared = {}
     for base in reversed(kind.__mro__):
-        written = dict(vars(base).get("__annotations__", {}))
+        written: dict[str, Any] = dict(vars(base).get("__annotations__", {}))
         for name, value in vars(base).items():
             if isinstance(value, property) and value.fget is not None:
                 written[name] = value.fget.__annotations__.get("return", "")
         names = _Names(vars(sys.modules[base.__module__]))
         for name, hint in written.items():
-            if isinstance(hint, str) and "Q(" in hint:
-                hint = eval(hint, {}, names)
-            if get_origin(hint) is Annotated:
-                said, *beside = get_args(hint)
-                types = tuple(one for one in (said, *get_args(said)) if isinstance(one, type))
+            said: Any = eval(hint, {}, names) if isinstance(hint, str) and "Q(" in hint else hint
+            if get_origin(said) is Annotated:
+                what, *beside = get_args(said)
+                types = tuple(one for one in (what, *get_args(what)) if isinstance(one, type))
                 found |= [(name, (each, types)) for each in beside if isinstance(each, Q)]
+    _FOUND[kind] = found
     return found
 
 
@@ -101,17 +104,24 @@ def named_arrays(record: Any, attrs: Mapping[str, Any] = MappingProxyType({})) -
         if not q.data or not (q.unit or q.flags) or (value is None and q.over):
             continue
         place = coordinates if q.coordinate or q.over == (name,) else arrays
-        place |= _variables(name, q, math.nan if value is None else value)
+        place |= _variables(q.variable or name, q, math.nan if value is None else value)
     return NamedArrays(arrays, coordinates, attrs)
 
 
 def _with_parts(record: Any) -> Iterator[tuple[str, Q, Any]]:
+    """Quantities of a record, of its parts, and of the records in rows."""
     for name, q in quantities(type(record)).items():
         value = getattr(record, name)
-        if not q.part:
-            yield name, q, value
-        elif value is not None and q.data:
+        if not q.data or (value is None and (q.part or q.rows)):
+            continue
+        if q.part:
             yield from _with_parts(value)
+        elif q.rows:
+            for inner, each in quantities(type(value[0])).items() if value else ():
+                column = np.array([getattr(row, inner) for row in value])
+                yield f"{q.rows}_{inner}", replace(each, over=(q.rows, *each.over), variable=""), column
+        else:
+            yield name, q, value
 
 
 def _variables(name: str, q: Q, value: Any) -> dict[str, Variable]:

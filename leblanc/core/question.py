@@ -18,6 +18,24 @@ A = TypeVar("A")
 
 
 @dataclass(frozen=True)
+class Reader:
+    """What reads a value that is no quantity."""
+
+    address: str  #: "module:function" of the value and the name of its keyword
+
+
+SCENE = Reader("leblanc.scene.scene:scene_of")  # a scene, or the path of its file
+
+
+@dataclass(frozen=True)
+class Option:
+    """How a parameter is typed where that is not --its-name."""
+
+    names: tuple[str, ...] = ()  #: as typer takes them: "--from", "/--no-check"
+    same: bool = False  #: the answer does not depend on it
+
+
+@dataclass(frozen=True)
 class Asked:
     """One parameter of a question."""
 
@@ -25,7 +43,8 @@ class Asked:
     kind: Any  #: its type
     default: Any  #: `Parameter.empty` where it must be given
     text: str  #: what it is, a sentence
-    dimension: Dimension | None  #: what it measures; None for what is no quantity
+    read: Dimension | Reader | None  #: what it measures, or what reads it; None for what is taken as it is
+    option: Option
 
 
 def parameters(question: Callable[..., Any]) -> Iterator[Asked]:
@@ -35,19 +54,23 @@ def parameters(question: Callable[..., Any]) -> Iterator[Asked]:
         if isinstance(kind, str):
             kind = eval(kind, question.__globals__)
         said = get_args(kind) if get_origin(kind) is Annotated else (kind,)
-        text = next((one for one in said[1:] if isinstance(one, str)), "")
-        dimension = next((one for one in said[1:] if isinstance(one, Dimension)), None)
-        yield Asked(each.name, said[0], each.default, text, dimension)
+        yield Asked(
+            *(each.name, said[0], each.default),
+            text=next((one for one in said[1:] if isinstance(one, str)), ""),
+            read=next((one for one in said[1:] if isinstance(one, Dimension | Reader)), None),
+            option=next((one for one in said[1:] if isinstance(one, Option)), Option()),
+        )
+
+
+def called(address: str) -> Callable[..., Any]:
+    """The function at "module:function", loaded when it is first used."""
+    module, _, name = address.partition(":")
+    found: Callable[..., Any] = getattr(import_module(module), name)
+    return found
 
 
 def ask(question: Callable[..., A], study: str, given: Mapping[str, Any]) -> A:
-    """The answer of a study to the values of a question, its quantities in SI units.
-
-    Parameters
-    ----------
-    question : whose signature says what each value is
-    study : what answers, as "module:function"
-    given : by name, as `locals()` of the question
+    """The answer of a study, "module:function", to the values of a question, as `locals()` of it has them.
 
     Raises
     ------
@@ -55,8 +78,9 @@ def ask(question: Callable[..., A], study: str, given: Mapping[str, Any]) -> A:
     """
     values = dict(given)
     for one in parameters(question):
-        if one.dimension is not None and values[one.name] is not None:
-            values[one.name] = parse_option(values[one.name], one.dimension, one.name)
-    module, _, name = study.partition(":")
-    answer: A = getattr(import_module(module), name)(**values)
+        if isinstance(one.read, Reader):
+            values[one.name] = called(one.read.address)(values[one.name], one.name)
+        elif one.read is not None and values[one.name] is not None:
+            values[one.name] = parse_option(values[one.name], one.read, one.name)
+    answer: A = called(study)(**values)
     return answer

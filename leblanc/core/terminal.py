@@ -10,20 +10,27 @@ from contextlib import suppress
 from io import TextIOWrapper
 from typing import Literal, TextIO
 
-from leblanc.core.blocks import Block, Table, Words
+from leblanc.core.blocks import Block, Checks, Headline, Notes, Table, Words, flat
 
 _WIDTH = 110  # characters of a line where there is no terminal
 
 
 def show(blocks: Iterable[Block]) -> None:
     """Print blocks on stdout; pictures are no text."""
-    for block in blocks:
-        if isinstance(block, Words):
+    for block in flat(blocks, "text"):
+        if isinstance(block, Words | Headline):
             print(block.text)
+        elif isinstance(block, Notes):
+            for text in block.texts:
+                print(f"note: {text}")
+        elif isinstance(block, Checks):
+            print(f"\n{block.title}")
+            print_table([(one.label, one.where) for one in block.rows], indent=2)
         elif isinstance(block, Table) and block.rows:
             if block.title:
                 print(f"\n{block.title}")
-            print_table(block.rows, block.head, block.right, indent=2 if block.title else 0)
+            rows = [[cell if isinstance(cell, str) else cell.text for cell in row] for row in block.rows]
+            print_table(rows, block.head, block.right, block.indent or 2 * bool(block.title))
 
 
 def ready_streams() -> None:

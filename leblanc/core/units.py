@@ -16,10 +16,13 @@ from dataclasses import dataclass
 from decimal import Decimal
 from functools import partial
 from numbers import Real
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from fluid.friction.laws import Friction, FrictionLaw
 from meshes.errors import InputError, require_not_negative
+
+if TYPE_CHECKING:
+    from fluid.friction.laws import Friction
+    from meshes.arrays import Array, Flags
 
 _LONGEST = 64  # characters; no quantity needs more, and pint evaluates what it is given
 
@@ -586,6 +589,8 @@ def parse_friction(text: str, field: str) -> Friction:
     InputError : no such law, a coefficient missing, misplaced or negative
     """
     law, colon, coefficient = text.partition(":")
+    from fluid.friction.laws import Friction, FrictionLaw
+
     if law in (FrictionLaw.NONE, FrictionLaw.STOKES, FrictionLaw.WALL) and not colon:
         return Friction(FrictionLaw(law))
     if law == FrictionLaw.WALL and coefficient:
@@ -602,6 +607,8 @@ def parse_friction(text: str, field: str) -> Friction:
 
 def friction_words(friction: Friction) -> str:
     """Law of the liquid's friction with its coefficient."""
+    from fluid.friction.laws import FrictionLaw
+
     return {
         FrictionLaw.NONE: "none",
         FrictionLaw.STOKES: "laminar (Stokes)",
@@ -615,6 +622,8 @@ def friction_words(friction: Friction) -> str:
 
 def small_whirl_friction(friction: Friction) -> str:
     """Law of friction as a small whirl meets it, in words."""
+    from fluid.friction.laws import FrictionLaw
+
     if friction.law is FrictionLaw.QUADRATIC:
         return "none (the quadratic law does not act on small whirls)"
     if friction.law.laminar:
@@ -625,3 +634,35 @@ def small_whirl_friction(friction: Friction) -> str:
 def in_peak(unit: str) -> str:
     """A unit of amplitudes as heads of tables name it."""
     return MM_PEAK.replace("mm", unit)
+
+
+MOST_RANGES = 4  # listed one by one
+
+
+def ranges(speed: Array, mask: Flags) -> str:
+    """Speeds (rad/s, in any order) at which a condition holds, in words."""
+    import numpy as np
+
+    if not mask.any():
+        return "none"
+    if mask.all():
+        return "all speeds"
+    order = np.argsort(speed, kind="stable")
+    rpm, holds = speed[order] * RPM, mask[order]
+    change = np.flatnonzero(np.diff(np.concatenate(([False], holds, [False]))))
+    first, last = rpm[change[::2]], rpm[change[1::2] - 1]
+    if first.size > MOST_RANGES:
+        return f"{first.size} ranges between {number(first[0])} and {number(last[-1])} rpm"
+    pairs = zip(first.tolist(), last.tolist(), strict=True)
+    parts = [number(a) if a == b else f"{number(a)} to {number(b)}" for a, b in pairs]
+    return "; ".join(parts) + " rpm"
+
+
+def amplitudes_are(place: str = "") -> tuple[str, str]:
+    """What the amplitudes of an answer are, and where along the axis where that matters: label and value."""
+    return "Amplitudes", f"{ZERO_TO_PEAK}{', ' if place else ''}{place}"
+
+
+def amplitude_sentence(place: str = "") -> str:
+    """The same as a sentence."""
+    return f"{' are '.join(amplitudes_are(place))}."

@@ -8,7 +8,7 @@ from typing import Any
 from leblanc.core.notes import EXACT, one_line
 from leblanc.core.units import RPM
 from leblanc.figures.drawing.page import Caption, Figure, Frame, add_rate_axis, lay_out, number, style
-from leblanc.results.explanation import ExciterExplanation, Explanation
+from leblanc.results.explanation import Explanation
 from leblanc.text.run import error_words, speeds_words
 
 FRAME = Frame(left=0.72, top=0.46, between=0.12, below=0.42)
@@ -61,41 +61,4 @@ def model_figure(answer: Explanation) -> Figure:
         largest = max(answer.models, key=lambda span: span.error if math.isfinite(span.error) else -1.0)
         text = f"Liquid model at each speed and its estimated error, {error_words(largest)} at most."
         lay_out(figure, [[axes]], [2.4], FRAME, Caption(text, origin))
-    return figure
-
-
-def stuck_range_figure(answer: ExciterExplanation) -> Figure:
-    """Speeds of the shaft at which the balls have three stuck speeds, beside the speeds of the scene.
-
-    Parameters
-    ----------
-    answer : the vibrating table in numbers
-    """
-    begin, through, end = (speed * RPM for speed in answer.characteristic)
-    unit = answer.natural_frequency * RPM
-    low, high = (ratio * unit for ratio in answer.speed_ratio)
-    with style():
-        figure = Figure()
-        axes: Any = figure.add_axes((0, 0, 1, 1))
-        axes.plot([low, high], [1.0, 1.0], color="0.3", linewidth=6, label="speeds of the scene")
-        if math.isfinite(begin):
-            axes.plot([begin, end], [0.0, 0.0], color="#0072B2", linewidth=6, label="three stuck speeds")
-        for speed, look, name in (
-            (unit, ":", "natural frequency"),
-            (through, "-.", "slowest stuck speed at the resonance"),
-            (answer.critical_speed_printed * RPM, "--", "critical speed, the source's regression"),
-        ):
-            if math.isfinite(speed):
-                axes.axvline(speed, color="black", linestyle=look, linewidth=0.9, label=name)
-        axes.set_ylim(-0.7, 1.7)
-        axes.set_yticks([])
-        axes.set_xlabel("Shaft speed (rpm)")
-        axes.xaxis.set_major_formatter(number)
-        add_rate_axis(axes, "Shaft speed (rad/s)")
-        figure.alt = (
-            f"Ranges of the shaft's speed: the scene from {low:.5g} to {high:.5g} rpm, three stuck speeds of "
-            f"the balls from {begin:.5g} to {end:.5g} rpm."
-        )
-        text = "Speeds of the shaft at which the balls can stick together at three speeds."
-        lay_out(figure, [[axes]], [1.2], FRAME, Caption(text, f"Scene: {one_line(answer.name)}."))
     return figure

@@ -5,11 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from leblanc.core.units import RPM
+from leblanc.core.units import RPM, number
 from leblanc.report.page import About, notes, write_page
 from leblanc.report.parts import Cell, doubt, picture, table
 from leblanc.results.races.chart import BallChart
-from leblanc.text.numbers import number
 from leblanc.text.races.chart import HEAD, STATES, answer, curves, facts, limits, what
 
 if TYPE_CHECKING:

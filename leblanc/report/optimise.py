@@ -10,12 +10,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from leblanc.core.notes import texts
-from leblanc.core.units import LENGTH, MASS, ML, VOLUME, in_rpm, unit_for, with_unit
+from leblanc.core.units import LENGTH, MASS, ML, VOLUME, in_rpm, number, unit_for, with_unit
 from leblanc.report.page import About, models, notes, why, write_page
 from leblanc.report.parts import Cell, Table, doubt, load_part, picture, table
 from leblanc.report.run import response_checks as response_checks
 from leblanc.results.optimum import OptimumResult
-from leblanc.text.numbers import number
 from leblanc.text.optimum import amplitude_plane, answer, over_conditions, quality, shown, worst_condition
 
 if TYPE_CHECKING:

@@ -12,10 +12,10 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
+from leblanc.core.answer import versions as of_packages
 from leblanc.core.files import path_text, writing
 from leblanc.core.notes import Note, NoteCode, one_line
 from leblanc.report.parts import Inputs, Table, scene_inputs, table
-from leblanc.results import base as provenance
 from leblanc.results.choice import ModelSpan
 from leblanc.scene.scene import Scene
 from leblanc.scene.tasks import Optimisation
@@ -86,7 +86,7 @@ def command_line(name: str, scene: Path, *options: tuple[str, object, object]) -
 
 def versions() -> dict[str, str]:
     """Versions of Python and of what the numbers, files and figures come from."""
-    return {"Python": platform.python_version()} | provenance.versions(PACKAGES)
+    return {"Python": platform.python_version()} | of_packages(PACKAGES)
 
 
 def citation() -> str:

@@ -10,10 +10,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.core.units import LENGTH, RPM, VOLUME, in_peak, unit_for
+from leblanc.core.units import LENGTH, NOT_FOUND, RPM, VOLUME, in_peak, number, ranges, unit_for
 from leblanc.report.page import About, models, notes, why, write_page
 from leblanc.report.parts import Cell, Table, doubt, load_part, picture, table
-from leblanc.results.exciter import ExciterResult
 from leblanc.results.magnetic.control import MagneticResult
 from leblanc.results.notes.response import OF_MODELS, RunCode
 from leblanc.results.races.states import STATE_NAMES, BallsResult
@@ -22,16 +21,10 @@ from leblanc.results.whirl_map import WhirlMap
 from leblanc.text import magnetic
 from leblanc.text.closed_forms import HEAD as VECTOR
 from leblanc.text.closed_forms import closed_form_rows, vector_rows
-from leblanc.text.exciter import NUMBERS
-from leblanc.text.exciter import answer as exciter_answer
-from leblanc.text.exciter import facts as exciter_facts
-from leblanc.text.exciter import limits as exciter_limits
-from leblanc.text.numbers import NOT_FOUND, number, ranges
 from leblanc.text.races.balls import answer as balls_answer
 from leblanc.text.races.balls import facts as balls_facts
 from leblanc.text.races.balls import limits as balls_limits
 from leblanc.text.run import (
-    BALLS,
     WHIRL,
     Limit,
     answer,
@@ -172,70 +165,10 @@ def _used(result: RunResult) -> Table:
     return table("", ("Model", "Speeds"), rows, True)
 
 
-def exciter_numbers(result: ExciterResult) -> Table:
-    """Dimensionless numbers of the machine."""
-    rows = [(text, number(getattr(result.numbers, name))) for name, text in NUMBERS.items()]
-    return table("", ("Dimensionless numbers", ""), rows)
-
-
-def integrations(result: ExciterResult) -> Table:
-    """Time integrations beside the formulas."""
-    rows: list[Sequence[str | Cell]] = []
-    unit = unit_for(LENGTH, *(size for check in result.checks for size in (check.slow, check.fast)))
-    for check in result.checks:
-        stay = Cell("stay" if check.holds else "leave", warning=not check.converged)
-        stuck = number(check.stuck_speed * RPM) if check.holds else ""
-        both = [unit.number(x) if check.holds and math.isfinite(x) else "" for x in (check.slow, check.fast)]
-        rows.append((number(check.speed * RPM), stay, stuck, *both))
-    head = (
-        "Shaft (rpm)",
-        "balls",
-        "at (rpm)",
-        f"platform with them ({unit.name})",
-        f"with the shaft ({unit.name})",
-    )
-    return table("Integrated in time", head, rows)
-
-
 def limit_checks(found: Iterable[Limit]) -> Table:
     """Where an answer of a rotor without layers is not what it seems."""
     rows = [(limit.label, Cell(limit.where, warning=limit.failed)) for limit in found]
     return table("", ("Limits of the answer", "at"), rows)
-
-
-def write_exciter_report(result: ExciterResult, what: About, figure: FigureFiles, path: Path) -> None:
-    """Write the report.
-
-    Parameters
-    ----------
-    result : the answer
-    what : it is about
-    figure : of it
-    path : the file to write or replace
-    """
-    low, high = number(float(result.speed[0]) * RPM), number(float(result.speed[-1]) * RPM)
-    start = result.start
-    machine = (
-        f"A platform with {result.machine.ball_count} balls in the track of its shaft, shaken from {low} to "
-        f"{high} rpm in {result.speed.size} speeds."
-    )
-    began = (
-        f"The critical speed depends on the start: here {start.kind}, {number(start.separation)} rad apart."
-    )
-    parts = {
-        "title": "Stuck speeds of the balls and vibration of the platform",
-        "machine": machine,
-        "answer": exciter_answer(result),
-        "doubt": doubt(limit_checks(exciter_limits(result))),
-        "facts": table("", (), exciter_facts(result)),
-        "numbers": exciter_numbers(result),
-        "integrations": integrations(result),
-        "checks": limit_checks(exciter_limits(result)),
-        "pictures": [picture(figure)],
-        "models": [("balls", " ".join(BALLS))],
-        "remarks": [began, "The numbers over speed are printed by the same command with --json."],
-    }
-    write_page("exciter", what, parts, path)
 
 
 def write_magnetic_report(result: MagneticResult, what: About, figure: FigureFiles, path: Path) -> None:

@@ -12,14 +12,25 @@ import numpy as np
 from numpy.typing import NDArray
 
 from leblanc.core.notes import one_line, percent
-from leblanc.core.units import LENGTH, MASS, MINUS, RPM, in_peak, rpm_bands, rpm_range, unit_for, with_unit
+from leblanc.core.units import (
+    LENGTH,
+    MASS,
+    MINUS,
+    MOST_RANGES,
+    RPM,
+    in_peak,
+    number,
+    rpm_bands,
+    rpm_range,
+    unit_for,
+    with_unit,
+)
 from leblanc.report.page import About, models, notes, write_page
 from leblanc.report.parts import Cell, Table, doubt, load_part, picture, table
 from leblanc.results.notes.response import CLOSURE
 from leblanc.results.notes.runup import ERROR, IN_TABLES
 from leblanc.results.response import peak
 from leblanc.results.runup import RunupResult
-from leblanc.text.numbers import MOST_RANGES, number
 from leblanc.text.runup import answer, ball_rows, describe_model, largest_dry, rounding
 from leblanc.text.runup import moments as main_moments
 

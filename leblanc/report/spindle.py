@@ -7,10 +7,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from leblanc.core.units import number
 from leblanc.report.page import About, write_page
 from leblanc.report.parts import Cell, doubt, picture, table
 from leblanc.results.spindles.unit import SpindleResult
-from leblanc.text.numbers import number
 from leblanc.text.spindles.unit import HEAD, answer, cage_rows, compliance_rows, limits, remarks
 
 if TYPE_CHECKING:

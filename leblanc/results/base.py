@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from meshes.baffles import Baffles
@@ -40,3 +41,8 @@ class FilledChamber:
         if self.section is not None and 0.0 < area < self.section.area:
             return layer_depth(self.section, area)
         return self.radius - self.mean_surface_radius
+
+
+def number_or_none(value: float) -> float | None:
+    """The number, None where it is not finite."""
+    return float(value) if math.isfinite(value) else None

@@ -14,12 +14,11 @@ from leblanc.core.netcdf import NamedArrays, Variable, flags
 from leblanc.core.netcdf import variable as var
 from leblanc.core.quantities import plain
 from leblanc.results.choice import HeldCost, ModelSpan, SpeedEstimate
-from leblanc.results.exciter import named_speeds, number_or_none
 from leblanc.results.motion.closed_forms import ClosedForms
 from leblanc.results.motion.tilting import RestMode
 
 if TYPE_CHECKING:
-    from solvers.rotor.exciter.machine import Dimensionless
+    pass
 
 
 @dataclass(frozen=True)
@@ -243,68 +242,3 @@ def _layer_variables(layers: tuple[LayerExplanation | None, ...]) -> dict[str, V
         table = np.array(values, dtype=float).reshape(-1, 2)
         found[each.name] = var(("chamber", "end"), table, "1", each.name.replace("_", " "))
     return found
-
-
-@dataclass(frozen=True)
-class ExciterExplanation(Result):
-    """Numbers that determine how a vibrating table with balls behaves, without any integration in time.
-
-    Examples
-    --------
-    >>> import leblanc as lb
-    >>> explanation = lb.explain(lb.example("vibratory_table"))
-    >>> [f"{speed:.4g} rad/s" for speed in explanation.characteristic]
-    ['70.8 rad/s', '1540 rad/s', '1542 rad/s']
-    """
-
-    figure: ClassVar[str] = "leblanc.figures.explanation:stuck_range_figure"
-    summary: ClassVar[str] = "leblanc.text.explanation:exciter_facts"
-
-    name: str  #: of the scene
-    natural_frequency: float  #: of the platform, rad/s
-    speed_ratio: tuple[float, float]  #: first and last shaft speed over it
-    dimensionless: Dimensionless  #: numbers of the machine
-    #: shaft speeds between which there are three stuck speeds and, second, where the slowest passes the
-    #: resonance, rad/s; nan if there is one at every speed
-    characteristic: tuple[float, float, float]
-    critical_speed_printed: float  #: by the source's regression, rad/s; nan outside its ranges
-    source: str = ""  #: of the scene
-    assumed: tuple[str, ...] = ()
-    digest: str = ""
-
-    @property
-    def characteristic_speeds(self) -> dict[str, float | None]:
-        """Shaft speeds where the stuck speeds change, rad/s, by name."""
-        return named_speeds(self.characteristic)
-
-    def to_json(self) -> dict[str, Any]:
-        """What `explain` prints for scripts, SI, null for what is not there."""
-        return {
-            "name": self.name,
-            "natural_frequency": self.natural_frequency,
-            "speed_ratio": list(self.speed_ratio),
-            "dimensionless": asdict(self.dimensionless),
-            "characteristic_speeds": self.characteristic_speeds,
-            "critical_speed_printed": number_or_none(self.critical_speed_printed),
-        }
-
-    def named_arrays(self) -> NamedArrays:
-        """Single numbers."""
-        rate = "rad s-1"
-        numbers = {
-            name: var((), value, "1", name.replace("_", " "))
-            for name, value in asdict(self.dimensionless).items()
-        }
-        first, through, last = self.characteristic
-        return NamedArrays(
-            {
-                "natural_frequency": var((), self.natural_frequency, rate, "natural frequency"),
-                "second_pair": var((), first, rate, "shaft speed", "from here on three stuck speeds"),
-                "through_resonance": var((), through, rate, "shaft speed", "slowest at the resonance"),
-                "merger": var((), last, rate, "shaft speed", "up to here three stuck speeds"),
-                "critical_speed_printed": var((), self.critical_speed_printed, rate, "critical speed"),
-                **numbers,
-            },
-            coords={},
-            attrs=attributes(self, "explain", {}, ()),
-        )

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from fluid.fill import Fill
 from fluid.liquid import KNOWN_LIQUIDS, Liquid
 from fluid.temperature import Expansion, GivenLaw, PropertyLaw, Tabulated, Vogel, Walther
+from leblanc.core.page import About
 from leblanc.core.units import (
     ANGULAR_SPEED,
     LENGTH,
@@ -75,6 +76,39 @@ def inputs_of(scene: Scene, optimise: Optimisation | None = None) -> SceneInputs
         for table in (*scene.rotor.tables(), *_around(scene), *_chambers(scene), *_races(scene))
     ]
     return SceneInputs(tuple(marked), tuple(tables))
+
+
+def about(
+    scene: Scene,
+    command: str = "",
+    data: str = "",
+    task: Optimisation | None = None,
+    unused: tuple[str, ...] = (),
+) -> About:
+    """What a report of a scene is about.
+
+    The task is that of an optimisation in place of the scene's; `unused` are tables of the scene that the
+    report's numbers do not depend on.
+    """
+    found = inputs_of(scene, task)
+    aside = tuple(row for row in found.rows if row.path.partition(".")[0] in unused)
+    tabled = (value for table in found.tables for line in table.rows for value in line)
+    values = (*(value for row in found.rows for value in row.values), *tabled)
+    paths = [value.path for value in values if value.assumed]
+    elsewhere = tuple(
+        path
+        for path in scene.assumed
+        if not any(own == path or own.startswith(f"{path}.") or path.startswith(f"{own}.") for own in paths)
+    )
+    return About(
+        *(scene.name, scene.source, scene.digest),
+        rows=tuple(row for row in found.rows if row not in aside),
+        tables=found.tables,
+        unused=aside,
+        elsewhere=elsewhere,
+        command=command,
+        data=data,
+    )
 
 
 def input_rows(

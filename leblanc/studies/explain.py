@@ -17,7 +17,6 @@ from fluid.whirl import is_full
 from leblanc.results.choice import model_spans, speed_estimates
 from leblanc.results.explanation import (
     BaffleOutlook,
-    ExciterExplanation,
     Explanation,
     LayerExplanation,
     SpinUp,
@@ -26,11 +25,9 @@ from leblanc.results.explanation import (
 from leblanc.results.motion.tilting import RestMode
 from leblanc.results.notes.baffles import closed_compartments
 from leblanc.results.races.numbers import BallExplanation
-from leblanc.scene.rotors import Exciter as ExciterOfScene
 from leblanc.scene.rows import baffle_words
 from leblanc.scene.scene import Runup, Scene
 from leblanc.studies.closed_forms.told import closed_forms
-from leblanc.studies.exciter import printed_critical
 from leblanc.studies.models.choose import (
     Prepared,
     balance_from,
@@ -45,41 +42,11 @@ from leblanc.studies.races.numbers import ball_numbers
 from leblanc.studies.run import rest_modes
 from meshes.errors import InputError
 from solvers.cycles.estimate import largest_estimate
-from solvers.rotor.exciter.machine import characteristic_speeds
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.vibration import axis_is_free, critical_speeds, modes, orbit, unbalance_response
 from solvers.statics.hydrostatics import optimal_volume
 from solvers.synchronous.response import critical_speed, main_critical_speeds, wet_critical_speeds
 from solvers.whirl.growth import asynchronous_growth
-
-
-def explain_exciter(scene: Scene) -> ExciterExplanation:
-    """Numbers that determine how an exciter behaves, without any integration in time [YF17, eq. 2-7 and 13].
-
-    Parameters
-    ----------
-    scene : with a rotor of kind "exciter"
-
-    Raises
-    ------
-    InputError : its rotor is of another kind
-    """
-    if not isinstance(scene.rotor, ExciterOfScene):
-        raise InputError("rotor.kind", scene.rotor.kind, "exciter for this")
-    machine = scene.rotor.machine()
-    numbers, unit = machine.dimensionless(), machine.natural_frequency
-    known = characteristic_speeds(numbers)
-    return ExciterExplanation(
-        name=scene.name,
-        natural_frequency=unit,
-        speed_ratio=(scene.speeds.start / unit, scene.speeds.stop / unit),
-        dimensionless=numbers,
-        characteristic=(known.second_pair * unit, known.through_resonance * unit, known.merger * unit),
-        critical_speed_printed=printed_critical(numbers) * unit,
-        source=scene.source,
-        assumed=scene.assumed,
-        digest=scene.digest,
-    )
 
 
 def explain_scene(scene: Scene) -> Explanation:

@@ -7,9 +7,8 @@ import math
 import numpy as np
 
 from leblanc.core.notes import EXACT
-from leblanc.core.units import RPM, in_rpm
+from leblanc.core.units import NOT_FOUND, RPM, in_rpm, number
 from leblanc.results.motion.closed_forms import Cage, ClosedForms, Upright, VectorModel
-from leblanc.text.numbers import NOT_FOUND, number
 from meshes.arrays import Array
 
 Rows = list[tuple[str, str]]

@@ -7,12 +7,14 @@ import math
 from leblanc.core.notes import EXACT, WHOLE, one_line, percent
 from leblanc.core.units import (
     LENGTH,
+    NOT_FOUND,
     RPM,
     TORQUE,
     VOLUME,
     ZERO_TO_PEAK,
     Unit,
     in_rpm,
+    number,
     over_rpm,
     unit_for,
     with_unit,
@@ -20,14 +22,12 @@ from leblanc.core.units import (
 from leblanc.results.choice import HeldCost, ModelSpan, SpeedEstimate
 from leblanc.results.explanation import (
     BaffleOutlook,
-    ExciterExplanation,
     Explanation,
     LayerExplanation,
     SpinUp,
 )
 from leblanc.results.models.comparison import Comparison, ModelAnswer
 from leblanc.results.motion.tilting import RestMode
-from leblanc.text.numbers import NOT_FOUND, number
 from leblanc.text.run import amplitude_place, error_words, speeds_words
 from meshes.arrays import Array
 
@@ -195,32 +195,10 @@ def span_heading(span: ModelSpan) -> str:
     return f"{speeds_words(span)} rpm: {span.model}{'' if span.in_range else ' (out of range)'}"
 
 
-def exciter_rows(answer: ExciterExplanation) -> Rows:
-    """A vibrating table with balls; label and text."""
-    numbers, (begin, _, end) = answer.dimensionless, answer.characteristic
-    first, last = answer.speed_ratio
-    share = "share of the balls in the moving mass over their rolling inertia"
-    return [
-        ("natural frequency", _rpm(answer.natural_frequency)),
-        ("speeds", f"{first:.3g} to {last:.3g} times the natural frequency"),
-        ("smallness", f"{numbers.smallness:.4g}: {share}"),
-        ("drag", f"{numbers.drag:.4g}: drag of the balls"),
-        ("unbalance", f"{numbers.unbalance:.4g}: unbalance over that of the balls"),
-        ("damping", f"{numbers.damping:.4g}: damping ratio of the platform"),
-        ("three stuck speeds", f"from {_rpm(begin)} to {_rpm(end)}"),
-        ("printed critical", f"{_rpm(answer.critical_speed_printed)} by the source's regression"),
-    ]
-
-
 def facts(answer: Explanation) -> Rows:
     """Main numbers of a scene: label and value."""
     spans = [(f"{speeds_words(span)} rpm", f"{span.model}, {error_words(span)}") for span in answer.models]
     return [("Scene", one_line(answer.name)), *machine_rows(answer), *spans]
-
-
-def exciter_facts(answer: ExciterExplanation) -> Rows:
-    """Main numbers of a vibrating table: label and value."""
-    return [("Scene", one_line(answer.name)), *exciter_rows(answer)]
 
 
 def _ends(values: Array) -> str:

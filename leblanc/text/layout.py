@@ -7,9 +7,8 @@ import math
 import numpy as np
 
 from leblanc.core.notes import one_line
-from leblanc.core.units import LENGTH, MM, with_unit
+from leblanc.core.units import LENGTH, MM, number, with_unit
 from leblanc.results.machine.layout import LayoutResult, MountPlace, pair_names
-from leblanc.text.numbers import number
 
 Rows = list[tuple[str, ...]]
 

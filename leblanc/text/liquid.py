@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from leblanc.core.units import LENGTH, NUMBER, Dimension, in_rpm, unit_for, with_unit
+from leblanc.core.units import LENGTH, NUMBER, Dimension, in_rpm, number, unit_for, with_unit
 from leblanc.results.layer import (
     ExactPeriods,
     ExactWave,
@@ -19,7 +19,6 @@ from leblanc.results.layer import (
     Number,
 )
 from leblanc.results.liquid import ModesResult
-from leblanc.text.numbers import number
 
 
 def whirl_words(case: LayerCase) -> str:

@@ -7,9 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from leblanc.core.units import LENGTH, RPM, in_rpm, with_unit
+from leblanc.core.units import LENGTH, NOT_FOUND, RPM, in_rpm, number, with_unit
 from leblanc.results.machine.loads import MachineLoads, Worst
-from leblanc.text.numbers import NOT_FOUND, number
 
 LITTLE = 0.2  # of the friction or weight at rest: a machine with less is near walking
 

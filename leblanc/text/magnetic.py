@@ -8,10 +8,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from leblanc.core.notes import one_line
-from leblanc.core.units import CURRENT, LENGTH, NOT_FOUND, TIME, in_rpm, number, with_unit
+from leblanc.core.units import CURRENT, LENGTH, NOT_FOUND, TIME, in_rpm, number, ranges, with_unit
 from leblanc.results.magnetic.control import Controlled, LoadAnswer, MagneticResult
 from leblanc.results.magnetic.explanation import MagneticExplanation
-from leblanc.text.numbers import ranges
 from leblanc.text.run import Limit
 
 SENSITIVE = 3.0  # largest sensitivity of a new machine by ISO 14839-3

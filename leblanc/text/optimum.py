@@ -13,14 +13,15 @@ from leblanc.core.units import (
     ML,
     UNBALANCE,
     VOLUME,
+    amplitude_sentence,
     celsius,
     in_peak,
     in_rpm,
+    number,
     unit_for,
     with_unit,
 )
 from leblanc.results.optimum import ConditionTable, OptimumCode, OptimumResult
-from leblanc.text.numbers import amplitude_sentence, number
 from leblanc.text.run import amplitude_place, quality_words
 
 _DIMENSIONS = {dimension.unit.replace("*", " "): dimension for dimension in (LENGTH, MASS, UNBALANCE)}

@@ -12,11 +12,15 @@ from leblanc.core.notes import one_line, percent
 from leblanc.core.units import (
     LENGTH,
     MASS,
+    NOT_FOUND,
     RPM,
     VOLUME,
+    amplitudes_are,
     in_peak,
     in_rpm,
+    number,
     over_rpm,
+    ranges,
     rpm_bands,
     unit_for,
     with_unit,
@@ -25,7 +29,6 @@ from leblanc.results.choice import ModelSpan
 from leblanc.results.motion.held import HELD_MODELS, Held
 from leblanc.results.notes.response import plane_words
 from leblanc.results.response import RunResult, grade_words
-from leblanc.text.numbers import NOT_FOUND, amplitudes_are, number, ranges
 from meshes.arrays import Array, Flags
 
 AGAINST = 0.5  # from here on a whirl counts as one with or against the spin

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from leblanc.core.notes import one_line
-from leblanc.core.units import ANGULAR_SPEED, LENGTH, MASS, Unit, unit_for
+from leblanc.core.units import ANGULAR_SPEED, LENGTH, MASS, Unit, amplitude_sentence, amplitudes_are, unit_for
 from leblanc.results.sweep import SweepResult
-from leblanc.text.numbers import amplitude_sentence, amplitudes_are
 
 _SHARED = ("peak_amplitude", "last_amplitude", "peak_growth")  # whose sensitivities are shown
 

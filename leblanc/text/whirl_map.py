@@ -6,9 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from leblanc.core.units import LENGTH, RPM, VOLUME, in_rpm, with_unit
+from leblanc.core.units import LENGTH, RPM, VOLUME, in_rpm, number, with_unit
 from leblanc.results.whirl_map import WhirlMap
-from leblanc.text.numbers import number
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -346,7 +346,7 @@ def _capture(scene: Scene) -> float:
 
 def exciter_question(scene: Scene, quick: bool = False) -> Question:
     """Platform amplitudes of an exciter, by formulas and by time integration with ever finer steps."""
-    from leblanc.studies.exciter import run_exciter
+    from leblanc.wings.exciter.study import run_exciter
 
     found = run_exciter(scene)
     top = found.critical if math.isfinite(found.critical) else float(found.speed[-1])

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from leblanc.core.answer import Result, attributes, carried
 from leblanc.core.netcdf import NamedArrays, Variable, flags
 from leblanc.core.netcdf import variable as var
-from leblanc.results.exciter import number_or_none
+from leblanc.results.base import number_or_none
 from meshes.arrays import Array, Complex, Flags
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from leblanc.core.answer import Result, attributes, carried
 from leblanc.core.netcdf import NamedArrays
 from leblanc.core.netcdf import variable as var
-from leblanc.results.exciter import number_or_none
+from leblanc.results.base import number_or_none
 from meshes.arrays import Array
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from leblanc.core.netcdf import NamedArrays
 from leblanc.core.netcdf import variable as var
 from leblanc.core.notes import Note, texts
 from leblanc.core.units import Dimension
-from leblanc.results.exciter import number_or_none
+from leblanc.results.base import number_or_none
 from meshes.arrays import Array, Flags, Indices
 from solvers.rotor.balls.charts import NONE
 

@@ -12,8 +12,7 @@ from leblanc.core.answer import Result, attributes
 from leblanc.core.netcdf import NamedArrays
 from leblanc.core.netcdf import variable as var
 from leblanc.core.notes import Note, texts
-from leblanc.results.base import ConstraintValue
-from leblanc.results.exciter import number_or_none
+from leblanc.results.base import ConstraintValue, number_or_none
 from leblanc.results.races.states import BallsResult
 from meshes.arrays import Array
 

@@ -11,7 +11,7 @@ import numpy as np
 from leblanc.core.answer import Result, attributes
 from leblanc.core.netcdf import NamedArrays, finite, flags
 from leblanc.core.netcdf import variable as var
-from leblanc.results.exciter import number_or_none
+from leblanc.results.base import number_or_none
 from leblanc.results.explanation import Explanation
 from meshes.arrays import Array, Flags
 from solvers.rotor.balls.two_plane_balance import Balancing

@@ -14,7 +14,7 @@ from leblanc.core.answer import Result, attributes, carried
 from leblanc.core.netcdf import NamedArrays, Variable, finite, flags
 from leblanc.core.netcdf import variable as var
 from leblanc.core.notes import Note, one_line, texts
-from leblanc.results.exciter import number_or_none
+from leblanc.results.base import number_or_none
 from leblanc.results.machine.loads import MachineLoads
 from leblanc.results.motion.closed_forms import ClosedForms
 from leblanc.results.races.balls import GravityOnBalls, RaceOfBalls, ball_moment

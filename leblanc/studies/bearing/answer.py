@@ -34,6 +34,7 @@ class BearingAnswer(Answer):
     114.3
     """
 
+    command = "bearing"
     figure = "leblanc.studies.bearing.figure:bearing_figure"
 
     bearing: Bearing  #: number of balls, ratio of diameters, contact angle
@@ -79,7 +80,7 @@ class BearingAnswer(Answer):
             Words(bearing_words(self)),
             Table(rows, HEAD[:columns], right=True),
             Table(_more(self)),
-            Picture("bearing", self.figure),
+            Picture("bearing", "Frequencies of a rolling bearing", self.figure),
         )
 
 
@@ -94,7 +95,7 @@ def bearing_words(answer: BearingAnswer) -> str:
 
 def frequency_rows(answer: BearingAnswer) -> list[tuple[str, ...]]:
     """A row for each frequency: cells of `HEAD`."""
-    rows = []
+    rows: list[tuple[str, ...]] = []
     for name, text in NAMES.items():
         order, given = answer.orders[name], answer.given.get(name)
         off = ("", "") if given is None else (number(given), f"{100.0 * (order / given - 1.0):+.2f} %")

@@ -60,6 +60,7 @@ class VolumeAnswer(Answer):
     '54.4396 ml, True'
     """
 
+    command = "volume"
     figure = "leblanc.studies.volume.figure:surface_figure"
 
     chamber: Annotated[Chamber, Q(part=True, json=False)]
@@ -76,13 +77,16 @@ class VolumeAnswer(Answer):
     surface: Annotated[Surface | None, Q(part=True)] = None  #: of that volume
 
     @property
-    def failed(self) -> str:
-        """Why there is no answer; empty where there is one."""
+    def failed(self) -> tuple[str, ...]:
         lost = self.surface is not None and not self.surface.converged
-        return "no surface found that holds the volume asked for" if lost else ""
+        return ("no surface found that holds the volume asked for",) if lost else ()
 
     def blocks(self) -> tuple[Block, ...]:
-        return Words(question_words(self)), Table(facts(self)), Picture("surface", self.figure)
+        return (
+            Words(question_words(self)),
+            Table(facts(self)),
+            Picture("surface", "Free surface", self.figure),
+        )
 
 
 def question_words(answer: VolumeAnswer) -> str:

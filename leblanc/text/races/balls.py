@@ -6,10 +6,20 @@ import math
 
 import numpy as np
 
-from leblanc.core.units import LENGTH, UNBALANCE, in_rpm, number, rpm_bands, with_unit
+from leblanc.core.units import (
+    LENGTH,
+    MOST_RANGES,
+    NOT_FOUND,
+    UNBALANCE,
+    amplitudes_are,
+    in_rpm,
+    number,
+    ranges,
+    rpm_bands,
+    with_unit,
+)
 from leblanc.results.notes.response import plane_words
 from leblanc.results.races.states import BallsResult
-from leblanc.text.numbers import MOST_RANGES, NOT_FOUND, amplitudes_are, ranges
 from leblanc.text.run import Limit
 
 FAR = math.radians(15.0)  # swing of a ball up to which small swings tell it

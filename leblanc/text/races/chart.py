@@ -6,9 +6,8 @@ import math
 
 import numpy as np
 
-from leblanc.core.units import RPM, UNBALANCE, in_rpm, rpm_bands, unit_for, with_unit
+from leblanc.core.units import RPM, UNBALANCE, in_rpm, number, rpm_bands, unit_for, with_unit
 from leblanc.results.races.chart import BallChart, Curve
-from leblanc.text.numbers import number
 from leblanc.text.run import Limit
 
 STATES = {

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import math
 
-from leblanc.core.units import LENGTH, MASS, MM, UNBALANCE, in_rpm, with_unit
+from leblanc.core.units import LENGTH, MASS, MM, NOT_FOUND, UNBALANCE, in_rpm, number, with_unit
 from leblanc.results.races.design import BallDesignResult, DesignedRace
-from leblanc.text.numbers import NOT_FOUND, number
 from leblanc.text.optimum import shown
 from leblanc.text.run import Limit
 

@@ -7,10 +7,9 @@ import math
 import numpy as np
 
 from leblanc.core.notes import one_line
-from leblanc.core.units import LENGTH, MASS, MM, RPM, UNBALANCE, in_rpm, with_unit
+from leblanc.core.units import LENGTH, MASS, MM, RPM, UNBALANCE, in_rpm, number, ranges, with_unit
 from leblanc.results.races.numbers import BallExplanation, RaceNumbers
 from leblanc.text.explanation import machine_rows
-from leblanc.text.numbers import number, ranges
 
 Rows = list[tuple[str, str]]
 

@@ -5,9 +5,8 @@ from __future__ import annotations
 import cmath
 import math
 
-from leblanc.core.units import LENGTH, in_rpm, with_unit
+from leblanc.core.units import LENGTH, in_rpm, number, with_unit
 from leblanc.results.spindles.unit import RECIPROCITY, WAYS, SpindleResult
-from leblanc.text.numbers import number
 from leblanc.text.run import Limit
 
 PER_NEWTON = 1e9  # nm/N in one m/N

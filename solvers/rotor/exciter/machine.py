@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import astuple, dataclass
 from itertools import pairwise
+from typing import Annotated
 
 import numpy as np
 from numpy.polynomial import polynomial
@@ -12,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from meshes.arrays import Array
 from meshes.errors import InputError, require_not_negative, require_positive
+from meshes.quantity import Q
 from solvers.roots import bracketed_root
 from solvers.rotor.system import RotorSystem
 
@@ -55,12 +57,18 @@ class Dimensionless:
     InputError : a value that is not finite, smallness not between 0 and 1, a negative drag or damping
     """
 
-    smallness: float  #: eps = N m/(kappa M), share of the balls in the whole mass over their rolling inertia
-    drag: float  #: b, drag of the race over that share and the natural frequency
-    unbalance: float  #: delta, of the shaft over that of all balls together
-    damping: float  #: h, damping ratio of the platform
-    gravity: float = 0.0  #: sigma, static deflection over the unit of length
-    incline: float = 0.0  #: alpha, of the platform's line to the vertical, rad
+    #: eps = N m/(kappa M), share of the balls in the whole mass over their rolling inertia
+    smallness: Annotated[float, Q("1", "smallness", "share of the balls in the mass over their inertia")]
+    #: b, over the smallness and the natural frequency
+    drag: Annotated[float, Q("1", "drag", "of the balls")]
+    #: delta
+    unbalance: Annotated[float, Q("1", "unbalance", "of the shaft over that of all balls together")]
+    #: h
+    damping: Annotated[float, Q("1", "damping", "ratio of the platform")]
+    #: sigma
+    gravity: Annotated[float, Q("1", "gravity", "static deflection over the unit of length")] = 0.0
+    #: alpha
+    incline: Annotated[float, Q("1", "incline", "of the platform's line to the vertical, rad")] = 0.0
 
     def __post_init__(self) -> None:
         if not 0.0 < self.smallness < 1.0:

@@ -20,7 +20,7 @@ Capture = pytest.CaptureFixture[str]
 # What each command does first once it has read what it is given.
 WORK = (
     "leblanc.studies.run.run_scene",
-    "leblanc.studies.exciter.run_exciter",
+    "leblanc.wings.exciter.study.run_exciter",
     "leblanc.studies.compare.compare_models",
     "leblanc.studies.layer.answer_layer",
     "leblanc.studies.layer.layer_history",

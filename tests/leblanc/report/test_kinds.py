@@ -15,27 +15,26 @@ import numpy as np
 import pytest
 
 from leblanc.cli import main
-from leblanc.figures.exciter import write_exciter_figure
+from leblanc.cli.command import write
+from leblanc.core.blocks import Table, flat
 from leblanc.report import optimise as report_optimise
-from leblanc.report import run as report_exciter
 from leblanc.report import run as report_map
 from leblanc.report import runup as report_runup
 from leblanc.report.page import about
 from leblanc.results.base import ConstraintValue
-from leblanc.results.exciter import ExciterResult
 from leblanc.results.notes.runup import IN_TABLES
 from leblanc.results.optimum import Feasibility, OptimumResult
 from leblanc.results.runup import RunupResult
 from leblanc.results.whirl_map import WhirlMap
 from leblanc.scene.scene import scene_from_table
-from leblanc.studies.exciter import run_exciter
 from leblanc.studies.optimise.optimise import optimise_scene
 from leblanc.studies.run import run_scene
 from leblanc.studies.runup import runup_scene
 from leblanc.studies.whirl_map import map_scene
-from leblanc.text import exciter as text_exciter
 from leblanc.text import whirl_map as text_map
 from leblanc.text.run import MODELS
+from leblanc.wings.exciter.answer import NUMBERS, ExciterAnswer, facts, limits
+from leblanc.wings.exciter.study import run_exciter
 from solvers.layer.records import Outcome
 from tests.leblanc.studies.test_runup import lying
 from tests.leblanc.studies.test_runup import table as machine
@@ -504,13 +503,13 @@ def test_a_run_that_stopped_says_so(tmp_path: Path) -> None:
 
 
 @cache
-def exciter() -> ExciterResult:
+def exciter() -> ExciterAnswer:
     return run_exciter(scene_from_table(example("vibratory_table", 6)))
 
 
 def test_exciter_numbers() -> None:
     record = exciter()
-    found = dict(text_exciter.facts(record))
+    found = dict(facts(record))
     first, through, last = (one * RPM for one in record.characteristic)
     assert (
         found["Natural frequency of the platform"] == f"{printed(record.machine.natural_frequency * RPM)} rpm"
@@ -518,34 +517,32 @@ def test_exciter_numbers() -> None:
     assert found["Three stuck speeds, shaft from and to"] == f"{printed(first)} rpm to {printed(last)} rpm"
     assert found["Slowest stuck speed at the resonance, shaft at"] == f"{printed(through)} rpm"
     critical = found["Critical speed, up to which the balls stick"]
-    assert critical == f"{printed(record.critical * RPM)} rpm"
+    assert critical == f"{printed(record.critical_speed * RPM)} rpm"
     end = printed(record.speed[-1] * RPM)
-    assert found[f"Vibration with the shaft at {end} rpm"] == f"{printed(record.fast[-1] * 1e3)} mm"
+    assert found[f"Vibration with the shaft at {end} rpm"] == f"{printed(record.amplitude_fast[-1] * 1e3)} mm"
     below = replace(
         record,
         speed=record.speed[:3],
-        slow=record.slow[:3],
-        fast=record.fast[:3],
+        amplitude_slow=record.amplitude_slow[:3],
+        amplitude_fast=record.amplitude_fast[:3],
         dual_frequency=record.dual_frequency[:3],
     )
-    slow = dict(text_exciter.facts(below))[
-        f"Vibration with the balls at {printed(record.speed[2] * RPM)} rpm"
-    ]
-    assert slow == f"{printed(record.slow[2] * 1e3)} mm"
-    for row, one in zip(report_exciter.integrations(record).rows, record.checks, strict=True):
-        assert row[0].text == printed(one.speed * RPM) and row[1].text == ("stay" if one.holds else "leave")
+    slow = dict(facts(below))[f"Vibration with the balls at {printed(record.speed[2] * RPM)} rpm"]
+    assert slow == f"{printed(record.amplitude_slow[2] * 1e3)} mm"
+    tables = [block for block in flat(record.blocks(), "page") if isinstance(block, Table)]
+    integrated = next(table for table in tables if table.title == "Integrated in time")
+    for row, one in zip(integrated.rows, record.checks, strict=True):
+        assert row[0] == printed(one.speed * RPM) and row[1].text == ("stay" if one.holds else "leave")
         if one.holds:
-            assert row[2].text == printed(one.stuck_speed * RPM)
+            assert row[2] == printed(one.stuck_speed * RPM)
         if one.holds and math.isfinite(one.slow):
-            assert [row[3].text, row[4].text] == [printed(one.slow * 1e3), printed(one.fast * 1e3)]
+            assert [row[3], row[4]] == [printed(one.slow * 1e3), printed(one.fast * 1e3)]
 
 
 def test_exciter_warnings() -> None:
     record = exciter()
     calm = replace(record, dual_frequency=np.ones_like(record.dual_frequency))
-    assert not any(
-        cell.warning for row in report_exciter.limit_checks(text_exciter.limits(calm)).rows for cell in row
-    )
+    assert not any(check.grade for check in limits(calm))
     lost = tuple(replace(one, converged=k != 1) for k, one in enumerate(record.checks))
     at = f"{printed(record.checks[1].speed * RPM)} rpm"
     beyond = f"{printed(record.speed[-1] * RPM)} rpm"
@@ -553,25 +550,23 @@ def test_exciter_warnings() -> None:
     for heading, text, troubled in (
         ("Time integration not finite", at, replace(calm, checks=lost)),
         ("Balls do not stick", beyond, replace(calm, dual_frequency=few)),
-        ("Regression of the source", "outside its ranges", replace(calm, printed_critical=math.nan)),
+        ("Regression of the source", "outside its ranges", replace(calm, critical_speed_printed=math.nan)),
     ):
-        rows = report_exciter.limit_checks(text_exciter.limits(troubled)).rows
-        assert [(row[0].text, row[1].text) for row in rows if row[1].warning] == [(heading, text)]
+        failed = [(check.label, check.where) for check in limits(troubled) if check.grade]
+        assert failed == [(heading, text)]
 
 
 def test_exciter_report_is_the_json(tmp_path: Path) -> None:
     record = exciter()
     answer = json.loads(json.dumps(record.to_json()))
-    what = about(scene_from_table(example("vibratory_table", 6)), "leblanc run table.toml")
-    figure = write_exciter_figure(record, tmp_path)
-    report_exciter.write_exciter_report(record, what, figure, tmp_path / "summary.html")
+    write(record, tmp_path, scene_from_table(example("vibratory_table", 6)), "leblanc run table.toml")
     page = read_page(tmp_path / "summary.html")
     printed_critical, critical = answer["critical_speed_printed"] * RPM, answer["critical_speed"] * RPM
     assert page.row("The same by the source's regression") == [f"{printed(printed_critical)} rpm"]
     assert page.row("Critical speed, up to which the balls stick") == [f"{printed(critical)} rpm"]
     for name, value in answer["dimensionless"].items():
-        if name in text_exciter.NUMBERS:
-            assert page.row(text_exciter.NUMBERS[name]) == [printed(value)]
+        if name in NUMBERS:
+            assert page.row(NUMBERS[name]) == [printed(value)]
     assert ("Balls do not stick" in page.warnings()) == (not all(answer["dual_frequency"]))
     assert len(page.addresses) == 1
     check_command(page, "run", "")

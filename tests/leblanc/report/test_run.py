@@ -15,6 +15,7 @@ import pytest
 
 from leblanc.cli import main
 from leblanc.core.notes import Note
+from leblanc.core.units import number, ranges
 from leblanc.figures.drawing.page import FigureFiles
 from leblanc.report import page as report
 from leblanc.report import run as report_run
@@ -26,7 +27,6 @@ from leblanc.results.response import RunResult
 from leblanc.scene.scene import load_scene
 from leblanc.studies.run import run_scene
 from leblanc.text import run as words
-from leblanc.text.numbers import number, ranges
 from leblanc.text.run import MODELS
 from tests.oracles.pages import WARNING, Page, about_record, printed, read_page
 from tests.oracles.records import RPM, folded, record_of, response_of, rig

@@ -23,8 +23,7 @@ from leblanc.results.response import RunResult
 from leblanc.scene.scene import Scene, load_scene
 from leblanc.scene.tasks import Optimisation
 from leblanc.studies.compare import compare_models
-from leblanc.studies.exciter import run_exciter
-from leblanc.studies.explain import explain_exciter, explain_scene
+from leblanc.studies.explain import explain_scene
 from leblanc.studies.magnetic.explain import explain_magnetic
 from leblanc.studies.magnetic.run import run_magnetic
 from leblanc.studies.models.choose import choose_all, prepare
@@ -33,6 +32,7 @@ from leblanc.studies.volume import volume
 from leblanc.studies.volume.answer import Coverage
 from leblanc.studies.volume.figure import surface_figure
 from leblanc.studies.whirl_map import map_scene
+from leblanc.wings.exciter.study import explain_exciter, run_exciter
 from tests.oracles.data_files import assert_read_back
 
 CHAMBER = {"radius": 0.065, "height": 0.02}

@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from leblanc.figures.exciter import exciter_figure, write_exciter_figure
-from leblanc.results.exciter import ExciterResult
+from leblanc.core.blocks import Words, flat
 from leblanc.scene.scene import load_scene, scene_from_table
-from leblanc.studies.exciter import answer_exciter, run_exciter
-from leblanc.text import exciter as text_exciter
+from leblanc.wings.exciter.answer import ExciterAnswer
+from leblanc.wings.exciter.figure import exciter_figure
+from leblanc.wings.exciter.study import answer_exciter, run_exciter
 from meshes.errors import InputError
 from solvers.rotor.exciter.machine import Exciter
 from tests.mutants import kills
@@ -24,22 +24,25 @@ RPM = math.pi / 30.0
 MACHINE = Exciter(40.0, 4e4, 100.0, 0.02, 2, 1.0, 1.4, 0.08, 2.0)
 
 
+OF = {"name": "small", "assumed": ("rotor.unbalance",)}
+
+
 @pytest.fixture(scope="module")
-def record() -> ExciterResult:
-    return answer_exciter(MACHINE, np.linspace(10.0, 400.0, 40), "small", ("rotor.unbalance",), checks=4)
+def record() -> ExciterAnswer:
+    return answer_exciter(MACHINE, np.linspace(10.0, 400.0, 40), checks=4, of=OF)
 
 
 @kills(
-    "leblanc.studies.exciter:answer_exciter",
+    "leblanc.wings.exciter.study:answer_exciter",
     "np.abs(np.array(motions)).T * machine.length",
     "np.abs(np.array(motions)).T",
 )
 @kills(
-    "leblanc.studies.exciter:answer_exciter",
+    "leblanc.wings.exciter.study:answer_exciter",
     "platform_motion(numbers, n, q) for",
     "platform_motion(numbers, q, n) for",
 )
-@kills("leblanc.studies.exciter:answer_exciter", "stuck=stuck * unit", "stuck=stuck")
+@kills("leblanc.wings.exciter.study:answer_exciter", "stuck_speeds=stuck * unit", "stuck_speeds=stuck")
 def test_units() -> None:
     """Amplitudes in metres and speeds in rad/s solve the dimensional equations.
 
@@ -49,11 +52,11 @@ def test_units() -> None:
     speed = np.array([60.0, 200.0])
     found = answer_exciter(MACHINE, speed, checks=1)
     mass, k, c = 42.0, 4e4, 100.0
-    q = found.stuck[:, 0]
+    q = found.stuck_speeds[:, 0]
     slow = 2 * 1.0 * 0.08 * q**2 / np.abs(k - mass * q**2 + 1j * c * q)
     fast = 0.02 * speed**2 / np.abs(k - mass * speed**2 + 1j * c * speed)
-    assert found.slow == pytest.approx(slow, rel=1e-12)
-    assert found.fast == pytest.approx(fast, rel=1e-12)
+    assert found.amplitude_slow == pytest.approx(slow, rel=1e-12)
+    assert found.amplitude_fast == pytest.approx(fast, rel=1e-12)
     # Power: drag of two balls on the race takes from the shaft what the platform's damper eats, at speed q.
     drag_torque = 2 * 2.0 * 0.08**2 * (speed - q)
     eaten = 0.5 * c * (q * slow) ** 2
@@ -94,33 +97,33 @@ def test_the_start_of_a_pendulum_is_its_own_inertia() -> None:
     assert machine.rolling == pytest.approx(2.0, rel=1e-12) and machine.ball_count == 3
 
 
-def test_speeds_and_branches(record: ExciterResult) -> None:
+def test_speeds_and_branches(record: ExciterAnswer) -> None:
     first, through, last = record.characteristic
     three = (record.speed > first) & (record.speed < last)
-    assert np.array_equal(np.isfinite(record.stuck).all(axis=1), three)
+    assert np.array_equal(np.isfinite(record.stuck_speeds).all(axis=1), three)
     assert first < through < last
-    assert np.array_equal(record.dual_frequency, record.speed <= record.critical)
+    assert np.array_equal(record.dual_frequency, record.speed <= record.critical_speed)
     assert record.converged
 
 
-def test_integrations_stand_beside_the_formulas(record: ExciterResult) -> None:
+def test_integrations_stand_beside_the_formulas(record: ExciterAnswer) -> None:
     """Where the balls stay the lowest order is right to the balls' share of the mass, 3.4 %, a few times."""
     held = [one for one in record.checks if one.holds and one.speed > 1.5 * MACHINE.natural_frequency]
     assert held
     for one in held:
         k = int(np.argmin(np.abs(record.speed - one.speed)))
-        assert one.stuck_speed == pytest.approx(record.stuck[k, 0], rel=0.05)
-        assert one.slow == pytest.approx(record.slow[k], rel=0.15)
-        assert one.fast == pytest.approx(record.fast[k], rel=0.15)
-    assert any(not one.holds for one in record.checks if one.speed > record.critical)
+        assert one.stuck_speed == pytest.approx(record.stuck_speeds[k, 0], rel=0.05)
+        assert one.slow == pytest.approx(record.amplitude_slow[k], rel=0.15)
+        assert one.fast == pytest.approx(record.amplitude_fast[k], rel=0.15)
+    assert any(not one.holds for one in record.checks if one.speed > record.critical_speed)
 
 
-def test_json_holds_numbers_and_nulls_only(record: ExciterResult) -> None:
+def test_json_holds_numbers_and_nulls_only(record: ExciterAnswer) -> None:
     text = json.dumps(record.to_json(), allow_nan=False)
     found = json.loads(text)
     assert len(found["speed"]) == len(found["stuck_speeds"]) == len(found["amplitude_slow"]) == 40
     assert found["stuck_speeds"][0][1] is None
-    assert found["critical_speed"] == record.critical
+    assert found["critical_speed"] == record.critical_speed
     assert found["critical_speed_printed"] is None or math.isfinite(found["critical_speed_printed"])
 
 
@@ -128,20 +131,20 @@ def test_one_stuck_speed_at_every_speed() -> None:
     """Heavy damping: no critical speed, the motion is there at all speeds, the figure says so."""
     damped = Exciter(40.0, 4e4, 3000.0, 0.02, 2, 1.0, 1.4, 0.08, 20.0)
     found = answer_exciter(damped, [20.0, 60.0], checks=1)
-    assert math.isnan(found.critical) and found.dual_frequency.all()
+    assert math.isnan(found.critical_speed) and found.dual_frequency.all()
     answer = found.to_json()
     assert answer["critical_speed"] is None and answer["characteristic_speeds"]["merger"] is None
     assert "One stuck speed" in "".join(text.get_text() for text in exciter_figure(found).texts)
 
 
-def test_the_figure(record: ExciterResult, tmp_path: Path) -> None:
+def test_the_figure(record: ExciterAnswer) -> None:
     """Curves in rpm and mm, marks where the integrations stand, hatching beyond the critical speed."""
     figure = exciter_figure(record)
     above, below = figure.axes[:2]
     lines = {line.get_label(): line for line in above.get_lines()}
     slowest = lines["stuck together, slowest"]
     assert slowest.get_xdata() == pytest.approx(record.speed / RPM)
-    assert slowest.get_ydata() == pytest.approx(record.stuck[:, 0] / RPM)
+    assert slowest.get_ydata() == pytest.approx(record.stuck_speeds[:, 0] / RPM)
     assert set(lines) >= {"middle (unstable)", "fastest", "natural frequency", "time integration, balls stay"}
     styles = [
         lines[name].get_linestyle() for name in ("stuck together, slowest", "middle (unstable)", "fastest")
@@ -149,12 +152,10 @@ def test_the_figure(record: ExciterResult, tmp_path: Path) -> None:
     assert len(set(styles)) == 3  # told apart without colour
     slow = next(line for line in below.get_lines() if line.get_label().startswith("slow"))
     held = record.dual_frequency
-    assert slow.get_ydata()[held] == pytest.approx(record.slow[held] * 1e3)
+    assert slow.get_ydata()[held] == pytest.approx(record.amplitude_slow[held] * 1e3)
     assert np.isnan(slow.get_ydata()[~held]).all()
     caption = " ".join(text.get_text() for text in figure.texts)
     assert "small" in caption and "rotor.unbalance" in caption
-    files = write_exciter_figure(record, tmp_path)
-    assert files.png.stat().st_size > 10_000 and files.svg.exists()
 
 
 def test_bad_speeds_are_named() -> None:
@@ -169,15 +170,15 @@ def test_a_scene_is_run_over_its_speeds() -> None:
     found = run_exciter(scene)
     assert np.array_equal(found.speed, scene.speed_array()) and found.name == "Vibratory table"
     # The regression prints 11.38 natural frequencies for it, good to some per cent here.
-    assert found.critical == pytest.approx(found.printed_critical, rel=0.06)
-    assert found.printed_critical == pytest.approx(11.38 * found.machine.natural_frequency, rel=1e-3)
+    assert found.critical_speed == pytest.approx(found.critical_speed_printed, rel=0.06)
+    assert found.critical_speed_printed == pytest.approx(11.38 * found.machine.natural_frequency, rel=1e-3)
     with pytest.raises(InputError):
         run_exciter(load_scene(ROOT / "examples" / "centrifuge.toml"))
 
 
-def test_words(record: ExciterResult) -> None:
-    lines = text_exciter.lines(record)
-    assert f"{record.critical / RPM:.4g} rpm" in " ".join(lines)
+def test_words(record: ExciterAnswer) -> None:
+    lines = [block.text for block in flat(record.blocks(), "text") if isinstance(block, Words)]
+    assert f"{record.critical_speed / RPM:.4g} rpm" in " ".join(lines)
     assert sum(line.startswith("Integrated at") for line in lines) == len(record.checks)
     assert any("balls leave" in line for line in lines) and any("balls stay" in line for line in lines)
 
@@ -196,7 +197,7 @@ def test_the_command_answers_an_exciter(capsys: pytest.CaptureFixture[str], tmp_
     wanted = 0.0105 * speed**2 / (stiffness - whole * speed**2 + 1j * damping * speed)
     np.testing.assert_allclose(answer["amplitude_dry"], np.abs(wanted), rtol=1e-6)
     np.testing.assert_allclose(answer["phase"], np.angle(wanted), rtol=1e-6, atol=1e-9)
-    assert (tmp_path / "exciter.png").stat().st_size > 10_000
+    assert (tmp_path / "exciter.png").stat().st_size > 10_000 and (tmp_path / "exciter.svg").exists()
     assert "Vibratory table" in (tmp_path / "summary.html").read_text(encoding="utf-8")
 
 

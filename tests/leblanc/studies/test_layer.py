@@ -13,12 +13,12 @@ from fluid.fill import Fill
 from fluid.friction.laws import Friction
 from fluid.liquid import known_liquid
 from leblanc.cli import main
+from leblanc.core.units import number
 from leblanc.questions import layer_question
 from leblanc.results.layer import LayerCode, LayerResult
 from leblanc.studies.layer import answer_layer, steady_film
 from leblanc.studies.models.liquid import wave_model
 from leblanc.text.liquid import layer_summary
-from leblanc.text.numbers import number
 from meshes.chamber import Chamber
 from solvers.liquid_model import Whirl, drag_frequency
 from solvers.potential.steady import forced, linear_detuning

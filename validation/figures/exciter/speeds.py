@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 
 from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save, style
-from leblanc.figures.exciter import exciter_figure
-from leblanc.studies.exciter import answer_exciter
+from leblanc.wings.exciter.figure import exciter_figure
+from leblanc.wings.exciter.study import answer_exciter
 from meshes.arrays import Array
 from solvers.rotor.exciter.machine import Dimensionless, Exciter, characteristic_speeds
 from solvers.rotor.exciter.motion import Start, critical_speeds, printed_critical_speed
@@ -190,9 +190,8 @@ def machine_figure(directory: Path) -> Path:
     directory : where the PNG and SVG go
     """
     speed = np.linspace(100.0, 6000.0, 296) * math.pi / 30.0
-    record = answer_exciter(
-        vibratory_table(), speed, "vibratory table", ("speeds.start", "speeds.stop"), checks=8
-    )
+    of = {"name": "vibratory table", "assumed": ("speeds.start", "speeds.stop")}
+    record = answer_exciter(vibratory_table(), speed, checks=8, of=of)
     return save(exciter_figure(record), directory, "exciter_table", "Vibratory table").png
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,16 +12,13 @@ from leblanc.core.units import MM, MM_PEAK, RPM
 from leblanc.figures.drawing.page import (
     Caption,
     Figure,
-    FigureFiles,
     Frame,
     add_rate_axis,
     lay_out,
     number,
-    save,
     style,
 )
-from leblanc.results.exciter import ExciterResult
-from leblanc.text.exciter import alt
+from leblanc.wings.exciter.answer import ExciterAnswer, ExciterExplanation, alt
 
 FRAME = Frame(left=0.72, top=0.46, between=0.14, below=0.42)
 TITLE = "Stuck speeds of the balls and vibration of the platform"
@@ -35,7 +31,7 @@ _HELD = {"linestyle": "none", "marker": "o", "markerfacecolor": "white", "marker
 _LOST = {"linestyle": "none", "marker": "x", "markeredgecolor": "black", "markersize": 6.0}
 
 
-def exciter_figure(result: ExciterResult) -> Figure:
+def exciter_figure(result: ExciterAnswer) -> Figure:
     """Stuck speeds above, slow and fast vibration below, time integrations as marks.
 
     Parameters
@@ -65,22 +61,11 @@ def exciter_figure(result: ExciterResult) -> Figure:
     return figure
 
 
-def write_exciter_figure(result: ExciterResult, directory: Path) -> FigureFiles:
-    """Draw the figure and write it as PNG and SVG.
-
-    Parameters
-    ----------
-    result : the answer
-    directory : where the files go; made if it is missing
-    """
-    return save(exciter_figure(result), directory, "exciter", TITLE)
-
-
-def _draw_stuck(axes: Any, result: ExciterResult) -> None:
+def _draw_stuck(axes: Any, result: ExciterAnswer) -> None:
     """Branches, and where the time integrations stand on them."""
     for column, (label, look) in enumerate(_BRANCHES):
-        if np.isfinite(result.stuck[:, column]).any():
-            axes.plot(result.speed * RPM, result.stuck[:, column] * RPM, label=label, **look)
+        if np.isfinite(result.stuck_speeds[:, column]).any():
+            axes.plot(result.speed * RPM, result.stuck_speeds[:, column] * RPM, label=label, **look)
     axes.axhline(
         result.machine.natural_frequency * RPM, color="0.45", linewidth=0.7, label="natural frequency"
     )
@@ -89,19 +74,21 @@ def _draw_stuck(axes: Any, result: ExciterResult) -> None:
     axes.set_ylabel("Speed of the balls (rpm)")
 
 
-def _draw_vibration(axes: Any, result: ExciterResult) -> None:
+def _draw_vibration(axes: Any, result: ExciterAnswer) -> None:
     """Amplitudes with the balls and with the shaft; that of the balls only where they stay."""
-    slow = np.where(result.dual_frequency, result.slow, np.nan)
+    slow = np.where(result.dual_frequency, result.amplitude_slow, np.nan)
     axes.plot(result.speed * RPM, slow * MM, color="C0", label="slow vibration, with the balls")
-    if np.any(result.fast > 0.0):
+    if np.any(result.amplitude_fast > 0.0):
         look = {"color": "C3", "linestyle": "-."}
-        axes.plot(result.speed * RPM, result.fast * MM, label="fast vibration, with the shaft", **look)
+        axes.plot(
+            result.speed * RPM, result.amplitude_fast * MM, label="fast vibration, with the shaft", **look
+        )
     _draw_checks(axes, result, "slow", MM)
     _draw_checks(axes, result, "fast", MM)
     axes.set_ylabel(f"Amplitude ({MM_PEAK})")
 
 
-def _draw_checks(axes: Any, result: ExciterResult, quantity: str, unit: float) -> None:
+def _draw_checks(axes: Any, result: ExciterAnswer, quantity: str, unit: float) -> None:
     """Marks of the time integrations in which the balls stay."""
     mine = [check for check in result.checks if check.holds and math.isfinite(getattr(check, quantity))]
     mine = [check for check in mine if getattr(check, quantity) > 0.0]
@@ -112,27 +99,27 @@ def _draw_checks(axes: Any, result: ExciterResult, quantity: str, unit: float) -
         )
 
 
-def _draw_lost(axes: Any, result: ExciterResult) -> None:
+def _draw_lost(axes: Any, result: ExciterAnswer) -> None:
     """Crosses on the slowest branch where the balls leave it or do not come to it."""
     lost = [check.speed for check in result.checks if not check.holds]
     if lost:
-        places = np.interp(lost, result.speed, result.stuck[:, 0])
+        places = np.interp(lost, result.speed, result.stuck_speeds[:, 0])
         axes.plot(np.array(lost) * RPM, places * RPM, label="time integration, balls leave", **_LOST)
 
 
-def _mark_critical(axes: Any, result: ExciterResult) -> None:
+def _mark_critical(axes: Any, result: ExciterAnswer) -> None:
     """Line at the critical speed, hatched beyond."""
-    if not math.isfinite(result.critical) or result.critical >= float(result.speed.max()):
+    if not math.isfinite(result.critical_speed) or result.critical_speed >= float(result.speed.max()):
         return
     look = {"facecolor": "none", "edgecolor": "0.75", "hatch": "///", "linewidth": 0.0}
     end = axes.get_xlim()[1]
-    axes.axvspan(result.critical * RPM, end, label="beyond the critical speed", zorder=0, **look)
-    axes.axvline(result.critical * RPM, color="0.25", linewidth=0.9)
+    axes.axvspan(result.critical_speed * RPM, end, label="beyond the critical speed", zorder=0, **look)
+    axes.axvline(result.critical_speed * RPM, color="0.25", linewidth=0.9)
 
 
-def _caption(result: ExciterResult) -> Caption:
-    numbers, known = result.numbers, result.characteristic
-    critical = f"{result.critical * RPM:.0f} rpm" if math.isfinite(result.critical) else "none"
+def _caption(result: ExciterAnswer) -> Caption:
+    numbers, known = result.dimensionless, result.characteristic
+    critical = f"{result.critical_speed * RPM:.0f} rpm" if math.isfinite(result.critical_speed) else "none"
     three = (
         f"Three stuck speeds from {known[0] * RPM:.0f} to {known[2] * RPM:.0f} rpm. "
         if math.isfinite(known[0])
@@ -151,3 +138,40 @@ def _caption(result: ExciterResult) -> Caption:
         "gravity.",
         f"Scene: {one_line(result.name)}. Assumed: {assumed}.",
     )
+
+
+def stuck_range_figure(answer: ExciterExplanation) -> Figure:
+    """Speeds of the shaft at which the balls have three stuck speeds, beside the speeds of the scene.
+
+    Parameters
+    ----------
+    answer : the vibrating table in numbers
+    """
+    begin, through, end = (speed * RPM for speed in answer.characteristic)
+    unit = answer.natural_frequency * RPM
+    low, high = (ratio * unit for ratio in answer.speed_ratio)
+    with style():
+        figure = Figure()
+        axes: Any = figure.add_axes((0, 0, 1, 1))
+        axes.plot([low, high], [1.0, 1.0], color="0.3", linewidth=6, label="speeds of the scene")
+        if math.isfinite(begin):
+            axes.plot([begin, end], [0.0, 0.0], color="#0072B2", linewidth=6, label="three stuck speeds")
+        for speed, look, name in (
+            (unit, ":", "natural frequency"),
+            (through, "-.", "slowest stuck speed at the resonance"),
+            (answer.critical_speed_printed * RPM, "--", "critical speed, the source's regression"),
+        ):
+            if math.isfinite(speed):
+                axes.axvline(speed, color="black", linestyle=look, linewidth=0.9, label=name)
+        axes.set_ylim(-0.7, 1.7)
+        axes.set_yticks([])
+        axes.set_xlabel("Shaft speed (rpm)")
+        axes.xaxis.set_major_formatter(number)
+        add_rate_axis(axes, "Shaft speed (rad/s)")
+        figure.alt = (
+            f"Ranges of the shaft's speed: the scene from {low:.5g} to {high:.5g} rpm, three stuck speeds of "
+            f"the balls from {begin:.5g} to {end:.5g} rpm."
+        )
+        text = "Speeds of the shaft at which the balls can stick together at three speeds."
+        lay_out(figure, [[axes]], [1.2], FRAME, Caption(text, f"Scene: {one_line(answer.name)}."))
+    return figure

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from leblanc.results.exciter import Check, ExciterResult
+from leblanc.wings.exciter.answer import ExciterAnswer, ExciterExplanation, TimeCheck
 from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.rotor.exciter.machine import (
@@ -28,61 +28,58 @@ if TYPE_CHECKING:
 CHECKS = 5  # time integrations beside the formulas
 
 
-def run_exciter(scene: Scene) -> ExciterResult:
-    """Answer of a scene of kind "exciter" over its speeds.
+def run_exciter(scene: Scene) -> ExciterAnswer:
+    """Answer of a scene of kind "exciter" over its speeds."""
+    of = {"name": scene.name, "source": scene.source, "assumed": scene.assumed, "digest": scene.digest}
+    return answer_exciter(_machine(scene), scene.speed_array(), of=of)
 
-    Parameters
-    ----------
-    scene : the scene
 
-    Raises
-    ------
-    InputError : its rotor is of another kind, or has no damping
-    """
-    from leblanc.scene.rotors import Exciter as ExciterOfScene
+def _machine(scene: Scene) -> Exciter:
+    """The machine of a scene; an `InputError` where its rotor is of another kind."""
+    from leblanc.scene.rotors import Exciter as ExciterRotor
 
-    if not isinstance(scene.rotor, ExciterOfScene):
+    if not isinstance(scene.rotor, ExciterRotor):
         raise InputError("rotor.kind", scene.rotor.kind, "exciter for this")
-    answer = answer_exciter(scene.rotor.machine(), scene.speed_array(), scene.name, scene.assumed)
-    return replace(answer, source=scene.source, digest=scene.digest)
+    return scene.rotor.machine()
 
 
-def printed_critical(numbers: Dimensionless) -> float:
-    """Critical speed over the natural frequency by the source's regression, nan outside its ranges.
+def explain_exciter(scene: Scene) -> ExciterExplanation:
+    """Numbers that determine how an exciter behaves, without integration in time [YF17, eq. 2-7 and 13]."""
+    machine = _machine(scene)
+    unit = machine.natural_frequency
+    return ExciterExplanation(
+        *(scene.name, scene.source, scene.assumed, scene.digest),
+        **_known(machine),
+        speed_ratio=(scene.speeds.start / unit, scene.speeds.stop / unit),
+    )
 
-    Parameters
-    ----------
-    numbers : of the exciter
-    """
-    values = (numbers.smallness, numbers.drag, numbers.unbalance, numbers.damping)
+
+def _known(machine: Exciter) -> dict[str, Any]:
+    """What is known without any integration in time, by the names of the answer."""
+    numbers, unit = machine.dimensionless(), machine.natural_frequency
+    values, printed = (numbers.smallness, numbers.drag, numbers.unbalance, numbers.damping), math.nan
     if all(low <= x <= high for x, (low, high) in zip(values, RANGES.values(), strict=True)):
-        return float(printed_critical_speed(*values))
-    return math.nan
+        printed = float(printed_critical_speed(*values))
+    known = characteristic_speeds(numbers)
+    return {
+        "natural_frequency": unit,
+        "dimensionless": numbers,
+        "characteristic": (known.second_pair * unit, known.through_resonance * unit, known.merger * unit),
+        "critical_speed_printed": printed * unit,
+    }
 
 
 def answer_exciter(
     machine: Exciter,
     speed: ArrayLike,
-    name: str = "exciter",
-    assumed: tuple[str, ...] = (),
     start: Start | None = None,
     checks: int = CHECKS,
-) -> ExciterResult:
+    of: Mapping[str, Any] | None = None,
+) -> ExciterAnswer:
     """Stuck speeds, vibration and critical speed of an exciter [theory: balls, eq. 7-14] [YF17, eq. 8-9].
 
-    Gravity is left out, as in the source.
-
-    Parameters
-    ----------
-    machine : with some damping of the platform and of the balls
-    speed : of the shaft, rad/s, shape (n,), above 0
-    name, assumed : of the scene
-    start : of the time integrations
-    checks : how many time integrations, spread over the speeds up to a quarter beyond the critical one
-
-    Raises
-    ------
-    InputError : a speed that is not positive and finite, a machine without damping
+    The shaft speeds are above 0, rad/s, shape (n,); so many time integrations are spread over those up to a
+    quarter beyond the critical one. Gravity is left out, as in the source. `of` names the scene.
     """
     spin = np.array(speed, dtype=float).reshape(-1)
     if not np.all(np.isfinite(spin) & (spin > 0.0)):
@@ -91,24 +88,20 @@ def answer_exciter(
     stuck = stuck_speeds(spin / unit, numbers)
     motions = [platform_motion(numbers, n, q) for n, q in zip(spin / unit, stuck[:, 0], strict=True)]
     slow, fast = np.abs(np.array(motions)).T * machine.length
-    known = characteristic_speeds(numbers)
     critical = math.nan
-    if not math.isnan(known.merger):
+    if not math.isnan(characteristic_speeds(numbers).merger):
         critical = critical_speed(numbers, machine.ball_count, start).holds * unit
-    return ExciterResult(
-        name=name,
-        assumed=assumed,
+    return ExciterAnswer(
+        **{"name": "exciter", "source": "", "assumed": (), "digest": "", **(of or {})},
+        **_known(machine),
         machine=machine,
-        numbers=numbers,
         start=start,
         speed=spin,
-        stuck=stuck * unit,
-        slow=slow,
-        fast=fast,
+        stuck_speeds=stuck * unit,
+        amplitude_slow=slow,
+        amplitude_fast=fast,
         dual_frequency=spin <= critical if math.isfinite(critical) else np.ones(spin.shape, dtype=bool),
-        characteristic=(known.second_pair * unit, known.through_resonance * unit, known.merger * unit),
-        critical=critical,
-        printed_critical=printed_critical(numbers) * unit,
+        critical_speed=critical,
         checks=_checks(machine, numbers, _checked_speeds(spin, critical, checks), start),
     )
 
@@ -121,13 +114,13 @@ def _checked_speeds(speed: Array, critical: float, count: int) -> Array:
     return np.unique(speed[nearest])
 
 
-def _checks(machine: Exciter, numbers: Dimensionless, speeds: Array, start: Start) -> tuple[Check, ...]:
+def _checks(machine: Exciter, numbers: Dimensionless, speeds: Array, start: Start) -> tuple[TimeCheck, ...]:
     """Integrate at a few speeds."""
     unit, found = machine.natural_frequency, []
     for speed in speeds:
         motion = integrate(numbers, float(speed) / unit, machine.ball_count, start)
         found.append(
-            Check(
+            TimeCheck(
                 speed=float(speed),
                 stuck_speed=motion.stuck_speed * unit,
                 slow=motion.slow * machine.length,

@@ -1,0 +1,16 @@
+"""Which wing answers a question about a kind of machine: the one place that names wings."""
+
+from __future__ import annotations
+
+# "module:function" of a scene, by kind of rotor and by question.
+WINGS: dict[str, dict[str, str]] = {
+    "exciter": {
+        "run": "leblanc.wings.exciter.study:run_exciter",
+        "explain": "leblanc.wings.exciter.study:explain_exciter",
+    },
+}
+
+
+def answerer(question: str, kind: str) -> str | None:
+    """What answers a question about a kind of rotor; None where the core does."""
+    return WINGS.get(kind, {}).get(question)

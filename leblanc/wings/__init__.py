@@ -1,0 +1,1 @@
+"""Machines that bring an answer of their own; nothing imports them but the registry."""
