@@ -206,12 +206,12 @@ def test_options_take_units_too() -> None:
 def test_plain_numbers_need_no_unit_library() -> None:
     code = """if True:
         import sys
-        from leblanc import units
+        from leblanc.core import units
         units.parse(0.1, units.MASS)
         units.parse_option("0.1", units.MASS, "mass")
         sys.exit("pint" in sys.modules)
     """
-    root = Path(units.__file__).parents[1]
+    root = Path(units.__file__).parents[2]
     assert subprocess.run([sys.executable, "-c", code], cwd=root, check=False).returncode == 0
 
 
@@ -257,5 +257,5 @@ def test_usual_scenes_need_no_unit_library() -> None:
             name.startswith("studies/") or example(name)
         sys.exit("pint" in sys.modules)
     """
-    root = Path(units.__file__).parents[1]
+    root = Path(units.__file__).parents[2]
     assert subprocess.run([sys.executable, "-c", code], cwd=root, check=False).returncode == 0

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from leblanc.cli.terminal import output
+from leblanc.core import terminal as output
 
 Capture = pytest.CaptureFixture[str]
 
