@@ -36,11 +36,11 @@ if TYPE_CHECKING:
     from leblanc.results.races.design import BallDesignResult
     from leblanc.results.races.numbers import BallExplanation
     from leblanc.results.races.states import BallsResult
-    from leblanc.results.response import RunResult
     from leblanc.results.runup import RunupResult
     from leblanc.results.spindles.unit import SpindleResult
     from leblanc.results.sweep import SweepResult
     from leblanc.results.whirl_map import WhirlMap
+    from leblanc.studies.run.answer import RunResult
     from leblanc.wings.exciter.answer import ExciterAnswer, ExciterExplanation
 
 SceneOrPath = Scene | str | PathLike[str]
@@ -100,7 +100,7 @@ def run(
 
         return run_balls(machine)
     from leblanc.studies.held.holding import Holding
-    from leblanc.studies.run import run_scene
+    from leblanc.studies.run.study import run_scene
     from solvers.held.state import COUPLED
 
     return run_scene(machine, holding=Holding(workers, solver=solver or COUPLED), cycles=cycles)

@@ -60,7 +60,7 @@ def run(
 
     with working("preparing") as update:
         from leblanc.studies.held.holding import Holding
-        from leblanc.studies.run import run_scene
+        from leblanc.studies.run.study import run_scene
         from solvers.held.state import COUPLED
 
         holding = Holding(processes(workers), folder, fresh, solver or COUPLED)
@@ -68,13 +68,13 @@ def run(
 
     from leblanc.core.netcdf import write_netcdf
     from leblanc.core.units import amplitude_sentence
-    from leblanc.figures.response import write_figures
     from leblanc.report.run import write_run_report
     from leblanc.results.notes.baffles import BaffleCode
-    from leblanc.results.notes.response import RunCode
+    from leblanc.studies.run.figure import write_figures
+    from leblanc.studies.run.notes import RunCode
+    from leblanc.studies.run.words import amplitude_place, comparison_table, limit_rows, unanswered
     from leblanc.text.closed_forms import closed_form_rows
     from leblanc.text.machine import load_table
-    from leblanc.text.run import amplitude_place, comparison_table, limit_rows, unanswered
 
     write_netcdf(result.named_arrays(), folder / "response.nc")
     figures = write_figures(result, folder)

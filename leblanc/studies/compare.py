@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from leblanc.results.models.comparison import Comparison, ModelAnswer
 from leblanc.scene.scene import LIQUID_MODELS, WITHOUT_CHAMBERS, Scene, require_chambers, require_no_balls
 from leblanc.studies.held.holding import HERE, Holding
-from leblanc.studies.run import run_scene
+from leblanc.studies.run.study import run_scene
 from meshes.errors import InputError
 
 FIELD = "--models"

@@ -39,7 +39,7 @@ from leblanc.studies.models.choose import (
 )
 from leblanc.studies.models.liquid import synchronous_model
 from leblanc.studies.races.numbers import ball_numbers
-from leblanc.studies.run import rest_modes
+from leblanc.studies.run.study import rest_modes
 from meshes.errors import InputError
 from solvers.cycles.estimate import largest_estimate
 from solvers.rotor.jeffcott import Jeffcott

@@ -57,7 +57,7 @@ from leblanc.studies.optimise.search import (
 )
 from leblanc.studies.optimise.walls import freeing_volumes, require_known_walls
 from leblanc.studies.optimise.wetting import WettedWalls, wet_walls, wetting_volumes
-from leblanc.studies.run import run_scene
+from leblanc.studies.run.study import run_scene
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
 from solvers.liquid_model import LONG

@@ -10,7 +10,6 @@ import numpy as np
 from leblanc.core.notes import Note
 from leblanc.results.machine.loads import MachineLoads
 from leblanc.results.notes import balls as notes
-from leblanc.results.notes import response as response_notes
 from leblanc.results.races.balls import RaceOfBalls
 from leblanc.results.races.states import BallsResult
 from leblanc.scene.inputs import input_rows
@@ -23,6 +22,7 @@ from leblanc.studies.models.validity import doubts
 from leblanc.studies.races.chart import own_family
 from leblanc.studies.races.estimates import carried_balls, gravity_on_balls, liquid_errors
 from leblanc.studies.races.states import liquid_beside
+from leblanc.studies.run import notes as response_notes
 from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.liquid_model import LiquidModel

@@ -21,11 +21,11 @@ from leblanc.results.drawn.machine import (
     film_factor,
     rounded_down,
 )
-from leblanc.results.response import RunResult
 from leblanc.results.runup import RunupFrames, RunupResult
 from leblanc.scene.scene import Exciter, JeffcottRotor, Scene, Speeds, dry_rotor
 from leblanc.studies.models.choose import across_gravity, axial_gravity, choose, liquid_models
-from leblanc.studies.run import run_scene
+from leblanc.studies.run.answer import RunResult
+from leblanc.studies.run.study import run_scene
 from leblanc.studies.runup import runup_scene
 from leblanc.studies.shapes.balls import drawn_races, ringed, side_by_side
 from leblanc.studies.shapes.bodies import is_cut, wall_is_dry

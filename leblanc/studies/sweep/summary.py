@@ -10,8 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
-from leblanc.results.notes.response import plane_words
 from leblanc.results.sweep import QUANTILES, Sensitivity, Statistics, SweepResult
+from leblanc.studies.run.notes import plane_words
 from leblanc.studies.sweep.block import DONE, FAILED, NOT_CONVERGED, single_outputs
 from leblanc.studies.sweep.sampling import sample_rows
 from leblanc.studies.sweep.store import Store, read_arrays

@@ -7,7 +7,7 @@ import math
 
 from leblanc.core.units import LENGTH, in_rpm, number, with_unit
 from leblanc.results.spindles.unit import RECIPROCITY, WAYS, SpindleResult
-from leblanc.text.run import Limit
+from leblanc.studies.run.words import Limit
 
 PER_NEWTON = 1e9  # nm/N in one m/N
 THEORIES = {

@@ -18,9 +18,7 @@ from leblanc.results.machine.loads import MachineLoads
 from leblanc.results.motion.held import HELD_MODELS, Held
 from leblanc.results.motion.self_excited import SelfExcited
 from leblanc.results.motion.tilting import Motion, RestMode
-from leblanc.results.notes import response as notes
 from leblanc.results.notes.baffles import compartment_notes, smeared_baffles
-from leblanc.results.response import RunResult
 from leblanc.scene.inputs import input_rows
 from leblanc.scene.scene import Scene, TubRotor
 from leblanc.scene.unbalances import left_in_the_end, sheds_of
@@ -42,6 +40,8 @@ from leblanc.studies.models.choose import (
 from leblanc.studies.models.liquid import element_model, synchronous_model
 from leblanc.studies.models.validity import doubts
 from leblanc.studies.peaks import responses_between
+from leblanc.studies.run.answer import RunResult
+from leblanc.studies.run import notes as notes
 from leblanc.studies.whirl_map import large_whirl
 from meshes.arrays import Array, Complex
 from meshes.chamber_section import liquid_of
