@@ -76,10 +76,6 @@ def drag_frequency(fill: Fill, whirl: Whirl) -> float:
     The slip of a whirl, the spin under gravity across the axis. Under both, that at which the drag takes as
     much as from the two small waves apart: the roots of the frequencies weighted with their energies
     [theory: friction, eq. 11].
-
-    Parameters
-    ----------
-    fill, whirl : chamber and liquid, and what moves it
     """
     if whirl.gravity == 0.0:
         return abs(whirl.slip)
@@ -96,13 +92,7 @@ def drag_frequency(fill: Fill, whirl: Whirl) -> float:
 
 
 def grown(time: Array | float, ramp: float) -> Array:
-    """Share of its amplitude that a whirl has grown to, tau - sin(2 pi tau)/(2 pi), tau = time/ramp up to 1.
-
-    Parameters
-    ----------
-    time : s, any shape
-    ramp : time over which it grows, s; 0: it is there at once
-    """
+    """Share to which a whirl has grown, tau - sin(2 pi tau)/(2 pi), tau = time/ramp up to 1."""
     if ramp == 0.0:
         return np.ones_like(time, dtype=float)
     part = np.minimum(np.asarray(time) / ramp, 1.0)
@@ -327,12 +317,6 @@ def added_mass_answer(
     """Answer of small synchronous whirls, to which a layer adds a mass [theory: waves, eq. 8].
 
     It holds while the deflection is below the mean depth, or the least where a section is no circle.
-
-    Parameters
-    ----------
-    fills, whirls : what is asked
-    error : estimated relative error of the unbalance
-    added_mass : kg, shape (n,); that of the closed form if None
     """
     size = whirls.amplitude
     added = fills.added_mass if added_mass is None else added_mass
@@ -474,14 +458,7 @@ def whirl_answer(
 
 
 def require_crest(fill: Fill, crest: float, crests: int) -> None:
-    """Raise `InputError` unless a free wave may have such crests.
-
-    Parameters
-    ----------
-    fill : chamber and liquid
-    crest : depth at the crest over the mean depth
-    crests : round the drum
-    """
+    """Raise `InputError` unless a free wave may have such crests."""
     most = fill.chamber.radius / fill.depth
     if not 1.0 < crest < most:
         raise InputError("free", crest, f"above 1 and below {most:g}, where the crest reaches the axis")
@@ -490,13 +467,7 @@ def require_crest(fill: Fill, crest: float, crests: int) -> None:
 
 
 def no_free_wave(fill: Fill, ranges: Mapping[str, Range], reason: str) -> FreeWave:
-    """A free wave that was not found, and why.
-
-    Parameters
-    ----------
-    fill : chamber and liquid
-    ranges, reason : as of `FreeWave`
-    """
+    """A free wave that was not found, and why."""
     theta = angles()
     return FreeWave(
         whirl_speed=(math.nan, math.nan),
@@ -514,13 +485,7 @@ def no_free_wave(fill: Fill, ranges: Mapping[str, Range], reason: str) -> FreeWa
 
 
 def numbers_of(fill: Fill, whirl: Whirl, found: Mapping[str, float]) -> dict[str, float]:
-    """Dimensionless numbers of a whirl, and those that a model found.
-
-    Parameters
-    ----------
-    fill, whirl : what was asked
-    found : further ones, by name
-    """
+    """Dimensionless numbers of a whirl, and those that a model found."""
     given = whirl_numbers(fill, whirl.spin, whirl.speed, whirl.amplitude, whirl.gravity)
     return asdict(given) | dict(found)
 
@@ -528,14 +493,8 @@ def numbers_of(fill: Fill, whirl: Whirl, found: Mapping[str, float]) -> dict[str
 def smooth_whirl(fill: Fill, whirl: Whirl) -> dict[str, float]:
     """Size of a whirl over the largest that a smooth steady wave follows [theory: model_error, eq. 32-33].
 
-    Parameters
-    ----------
-    fill, whirl : what was asked, with a free surface
-
-    Returns
-    -------
     By its name among the numbers of a wave, 0 between the resonances of one and of two crests, where no end
-    is told; none in a synchronous whirl, under gravity and with baffles, whose waves are others
+    is told; none in a synchronous whirl, under gravity and with baffles.
     """
     if whirl.slip == 0.0 or whirl.gravity != 0.0 or fill.chamber.baffles is not None:
         return {}

@@ -65,15 +65,8 @@ class Circular:
 def circular(system: RotorSystem, fills: Sequence[Fill], friction: Friction) -> Circular:
     """A rotor's circles and the layers on them.
 
-    Parameters
-    ----------
-    system : the dry rotor
-    fills : of its chambers
-    friction : on their walls
-
-    Raises
-    ------
-    NotCircularError : supports that are not the same in all directions, baffles in the liquid, no layer
+    A `NotCircularError` for supports that are not the same in all directions, baffles in the liquid, no
+    layer.
     """
     if any(fill.uneven for fill in fills if fill.volume > 0.0):
         raise NotCircularError(
@@ -106,13 +99,7 @@ def circular(system: RotorSystem, fills: Sequence[Fill], friction: Friction) -> 
 
 
 def not_circular(rotor: Rotor, fills: Sequence[Fill], friction: Friction) -> str:
-    """Why a rotor's self-excited whirls are no circles, whatever its chambers hold; empty where they are.
-
-    Parameters
-    ----------
-    rotor : the dry rotor
-    fills, friction : as for `circular`
-    """
+    """Why a rotor's self-excited whirls are no circles, whatever its chambers hold; empty where they are."""
     half = [replace(fill, volume=0.5 * fill.chamber.capacity) for fill in fills if not fill.uneven]
     try:
         circular(rotor.system(), half if len(half) == len(fills) else fills, friction)

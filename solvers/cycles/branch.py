@@ -77,17 +77,11 @@ class _Left:
 
 
 class Follower:
-    """Finds limit cycles one after the other.
+    """Finds limit cycles one after the other, of `cells` to a layer; `speed` is the unit of spin and
+    frequency, rad/s.
 
-    Parameters
-    ----------
-    machine : the rotor and its layers
-    friction : on the walls
-    cells : of each layer
-    speed : unit of the spin and of the whirl's frequency, rad/s
-
-    Unknowns of the rotor are real and imaginary parts of the coordinates over `unit`, whirl speed over
-    0.05 `speed` and spin over 0.1 `speed`.
+    Unknowns of the rotor are real and imaginary parts of the coordinates over `unit`, whirl speed over 0.05
+    `speed` and spin over 0.1 `speed`.
     """
 
     def __init__(self, machine: Circular, friction: Friction, cells: int, speed: float) -> None:
@@ -151,15 +145,11 @@ class Follower:
         lag: float = 0.0,
         hold_size: bool = False,
     ) -> Cycle | None:
-        """A limit cycle at a spin, looked for near a whirl; None where none is found.
+        """A limit cycle at a spin, looked for near a whirl of a shape and size (over the layer's depth); None
+        if none is found.
 
-        Parameters
-        ----------
-        moved : shape of the whirl
-        whirl_speed, spin : rad/s
-        size : of the whirl over the depth of the layer
-        lag : of the liquid behind the drum at first, rad/s
-        hold_size : look for a limit cycle of that size, at whatever spin
+        `lag` of the liquid behind the drum at first, rad/s; with `hold_size` one of that size, at whatever
+        spin.
         """
         watched = complex(self._rows[self._watched] @ moved)
         shape = moved * (cmath.exp(-1j * cmath.phase(watched)) / float(np.abs(self._rows @ moved).max()))

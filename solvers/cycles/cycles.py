@@ -89,10 +89,6 @@ class Branch:
         """Amplitude, whirl speed, lag and stability of every whirl of the branch at a speed.
 
         Between two whirls of the branch values go along a smooth curve.
-
-        Parameters
-        ----------
-        speed : Omega, rad/s
         """
         found = []
         for k in range(self.speed.size - 1):
@@ -155,37 +151,9 @@ def limit_cycles(
 ) -> LimitCycles:
     """Self-excited whirls of finite size over a range of speeds [theory: whirl, eq. 21-28].
 
-    Without unbalance and gravity, in isotropic supports: the whirl is a circle.
-
-    Parameters
-    ----------
-    rotor : the dry rotor
-    fills : of its chambers
-    speeds : first and last spin speed, rad/s; branches are followed somewhat further below the
-        first one
-    friction : on the walls
-    cells : of each layer
-    progress : called with the number of whirls found and the speed of the last one
-
-    Returns
-    -------
-    LimitCycles; without branches, and with the reason, where the supports are not isotropic, the chambers
-    have baffles, or no friction or no damping settles how large the whirl is
-
-    Raises
-    ------
-    InputError : speeds out of order, too few cells
-
-    Examples
-    --------
-    >>> from fluid.liquid import Liquid
-    >>> from meshes.chamber import Chamber
-    >>> from solvers.rotor.jeffcott import Jeffcott
-    >>> fill = Fill(Chamber(0.1, 0.02), Liquid("water", 1000.0, 1e-6), 1.19e-4)
-    >>> rotor = Jeffcott(mass=6.28, stiffness=6.28e4, damping=25.1, unbalance=0.0)
-    >>> found = limit_cycles(rotor, [fill], (125.0, 135.0), Friction("linear", 3.0), cells=32)
-    >>> print(f"{1e3 * found.largest_stable(130.0):.1f} mm")
-    5.7 mm
+    Without unbalance and gravity, in isotropic supports: the whirl is a circle. Branches are followed
+    somewhat further below the first speed. Without branches, and with the reason, where the supports are not
+    isotropic, the chambers have baffles, or no friction or no damping settles how large the whirl is.
     """
     first, last = speeds
     if not 0.0 < first < last:
@@ -212,14 +180,7 @@ def largest_whirl(
     The largest whirl at a speed is a stable one, whether a small one grows there or a kick has to start it:
     the unstable branch lies below. A layer so thin that a whirl lays it dry is answered by the estimate.
 
-    Parameters
-    ----------
-    rotor, fills, friction, cells : as for `limit_cycles`
-    speeds : rad/s, rising, shape (n,)
-
-    Returns
-    -------
-    0 where no whirl grows by itself, infinite where nothing bounds one
+    0 where no whirl grows by itself, infinite where nothing bounds one.
     """
     if not any(plane_layer(fill, friction) for fill in fills):
         return 0.0
@@ -240,21 +201,11 @@ def largest_whirl(
 
 
 class _Finder:
-    """Branches of a machine within a range of speeds.
+    """Branches of a machine within a range of speeds; `judged`: find what becomes of disturbances.
 
-    Parameters
-    ----------
-    machine, friction, cells : as for `limit_cycles`
-    range_ : first and last speed, rad/s
-    progress : as for `limit_cycles`
-    judged : find what becomes of disturbances
-
-    Attributes
-    ----------
-    branches : what has been found
-    missed : bands of the undamped machine in which no whirl was found: their edges and a frequency, rad/s
-    lost : spins of edges from which no branch could be followed, rad/s
-    tried : starts, from edges and inside bands
+    `branches` is what has been found, `missed` bands of the undamped machine in which no whirl was found
+    (their edges and a frequency), `lost` spins of edges from which no branch could be followed, `tried`
+    starts, from edges and inside bands.
     """
 
     def __init__(

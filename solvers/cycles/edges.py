@@ -21,29 +21,17 @@ _NEUTRAL = 1e-9  # of the spin: a growth below it is that of a mode without any 
 
 
 class Edge(NamedTuple):
-    """A small whirl that neither grows nor dies.
+    """A small whirl that neither grows nor dies."""
 
-    Parameters
-    ----------
-    spin, whirl_speed : Omega and omega_w, rad/s
-    moved : the rotor's coordinates, largest deflection of a layer's axis 1 m, complex, shape (p,)
-    trough : of the deepest wave over the depth of its layer, for that deflection, 1/m
-    """
-
+    #: spin and whirl_speed: Omega and omega_w, rad/s
     spin: float
     whirl_speed: float
-    moved: Complex
-    trough: float
+    moved: Complex  #: the rotor's coordinates, largest deflection of a layer's axis 1 m, complex, shape (p,)
+    trough: float  #: of the deepest wave over the depth of its layer, for that deflection, 1/m
 
 
 def small_whirl_edges(machine: Circular, range_: tuple[float, float]) -> tuple[Edge, ...]:
-    """All small whirls with the spin that neither grow nor die, by rising spin.
-
-    Parameters
-    ----------
-    machine : the rotor and its layers
-    range_ : first and last spin, rad/s
-    """
+    """All small whirls with the spin that neither grow nor die, by rising spin."""
     spins = np.linspace(*range_, _GRID)
     found: list[Edge] = []
     last: tuple[Complex, Complex] | None = None

@@ -43,20 +43,10 @@ def estimated_whirl(
 ) -> Estimate:
     """Frequency, shape and size of a large whirl [theory: whirl, eq. 29].
 
-    It whirls as if the chambers were full of solid, drags the liquid back to about the band's lower edge,
-    and is as large as the torque of the lagging liquid on the wall can feed against the supports' damping.
-
-    Parameters
-    ----------
-    machine : the rotor and its layers
-    friction : on the walls
-    lower : edge of the band where whirls begin to grow, without friction and damping, rad/s
-    near : frequency of the whirl there, rad/s
-    spin : Omega, rad/s
-
-    Returns
-    -------
-    Estimate; its amplitude is 0 without friction and infinite without damping of the supports
+    It whirls as if the chambers were full of solid, drags the liquid back to about the band's lower edge
+    without friction and damping, and is as large as the torque of the lagging liquid on the wall can feed
+    against the supports' damping: 0 without friction, infinite without damping. `near` is the frequency at
+    that edge.
     """
     whirl_speed, shape = _full(machine, near, spin)
     rows = np.array([place.row for place in machine.places])
@@ -109,14 +99,7 @@ def whirl_estimate(
 ) -> tuple[Estimate | None, ...]:
     """Size of the whirl at each speed inside a band, without solving for it [theory: whirl, eq. 29, 31].
 
-    Parameters
-    ----------
-    rotor, fills, friction : as for `solvers.cycles.cycles.limit_cycles`
-    speeds : rad/s, rising, shape (n,)
-
-    Returns
-    -------
-    An estimate for each speed; None outside the bands, and where the whirl is no circle or nothing bounds it
+    None outside the bands, and where the whirl is no circle or nothing bounds it.
     """
     machine = _settling(rotor, fills, friction)
     if machine is None:
@@ -185,11 +168,7 @@ def largest_estimate(
     A middle is that of what a band has in common with one without friction and damping. Next to the upper
     edge of that one [theory: whirl, eq. 31] leaps, as the undamped growth goes to nothing there.
 
-    Parameters
-    ----------
-    rotor, fills, friction : as for `solvers.cycles.cycles.limit_cycles`
-    range_ : first and last speed, rad/s
-    bands : in which some whirl grows, rad/s; solved for if None
+    Bands in which some whirl grows, rad/s; solved for if None.
     """
     machine = _settling(rotor, fills, friction)
     if machine is None:
@@ -204,13 +183,7 @@ def largest_estimate(
 
 
 def unsettled(machine: Circular, friction: Friction) -> str:
-    """Why no whirl of a certain size can last; empty where one can.
-
-    Parameters
-    ----------
-    machine : the rotor and its layers
-    friction : on the walls
-    """
+    """Why no whirl of a certain size can last; empty where one can."""
     if friction.law is FrictionLaw.NONE or (not friction.law.laminar and friction.coefficient == 0.0):
         return "without friction of the liquid nothing keeps it turning: a whirl drags it back and dies down"
     if not np.abs(machine.damping).max() > 0.0:
@@ -221,13 +194,7 @@ def unsettled(machine: Circular, friction: Friction) -> str:
 def undamped_bands(
     rotor: Rotor, fills: Sequence[Fill], range_: tuple[float, float]
 ) -> Iterator[tuple[float, float, float]]:
-    """Bands without friction and damping: their edges, and the whirl speed at the lower one.
-
-    Parameters
-    ----------
-    rotor, fills : the machine
-    range_ : first and last speed, rad/s
-    """
+    """Bands without friction and damping: their edges, and the whirl speed at the lower one."""
     free = _undamped(rotor)
     (bands,) = unstable_bands(free, [fills], np.linspace(*range_, _GRID), NO_FRICTION)
     for lower, upper in bands:

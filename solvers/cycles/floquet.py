@@ -37,12 +37,6 @@ def disturbance_growth(machine: Circular, waves: Sequence[StandingWave], cycle: 
     """Growth of the disturbance of a limit cycle that grows most, 1/s; None where a layer breaks down.
 
     A turn of the whole whirl is no disturbance and left out.
-
-    Parameters
-    ----------
-    machine : rotor and layers
-    waves : the layers
-    cycle : the limit cycle
     """
     parts = []
     layers = zip(waves, cycle.given, cycle.state, cycle.force.tolist(), cycle.derivatives, strict=True)

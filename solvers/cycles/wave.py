@@ -36,34 +36,21 @@ _MEANS = ((1, 40), (4, 10), (12, 10))  # periods a mean is taken over, and how m
 
 
 class Whirling(NamedTuple):
-    """What drives a layer.
+    """What drives a layer."""
 
-    Parameters
-    ----------
-    ratio : r = omega_w/Omega
-    size : w = W/R
-    drag : of the friction, as `fluid.friction.laws.damping_rate` takes it, over Omega if it is a rate; under
-        the law of the wall 1/Omega, s, with which all of the law changes
-    """
-
-    ratio: float
-    size: float
+    ratio: float  #: r = omega_w/Omega
+    size: float  #: w = W/R
+    #: of the friction, as `fluid.friction.laws.damping_rate` takes it, over Omega if it is a rate; under the
+    #: law of the wall 1/Omega, s, with which all of the law changes
     drag: float
 
 
 class Answer(NamedTuple):
-    """A layer after some time.
+    """A layer after some time."""
 
-    Parameters
-    ----------
-    state : area and momentum of the cells, shape (2 n,)
-    force : G, mean over that time
-    turning : mean rotation of the liquid relative to the drum, over Omega
-    """
-
-    state: Array
-    force: complex
-    turning: float
+    state: Array  #: area and momentum of the cells, shape (2 n,)
+    force: complex  #: G, mean over that time
+    turning: float  #: mean rotation of the liquid relative to the drum, over Omega
 
 
 @dataclass(frozen=True)
@@ -77,14 +64,7 @@ class Derivatives:
 
 
 class StandingWave:
-    """A layer on its way to a standing wave.
-
-    Parameters
-    ----------
-    fill : chamber and liquid, with some liquid and a free surface
-    friction : on the wall
-    cells : finite volumes round the wall
-    """
+    """A layer on its way to a standing wave."""
 
     def __init__(self, fill: Fill, friction: Friction, cells: int) -> None:
         from solvers.layer.step import scratch
@@ -151,11 +131,7 @@ class StandingWave:
     def cell(self, state: Array, given: Whirling, turned: float = 0.0) -> Answer | None:
         """The map: a state after the time of one cell, moved back by it; None where the layer breaks down.
 
-        Parameters
-        ----------
-        state : shape (2 n,)
-        given : what drives it
-        turned : angle of the push ahead of the frame the state is in, rad
+        The push is ahead of the frame the state is in by `turned`, rad.
         """
         slip, n = given.ratio - 1.0, self.cells
         if not abs(slip) > _SLOWEST:

@@ -30,12 +30,7 @@ class HeldKind(StrEnum):
 
 @dataclass(frozen=True)
 class HoldNumerics:
-    """How a state is held.
-
-    Raises
-    ------
-    InputError : a value out of its range
-    """
+    """How a state is held."""
 
     #: finite volumes round each wall, from 8; nodes of the surface of an exact wave, even, from 16
     cells: int = 128
@@ -72,12 +67,7 @@ class Moment:
     wave: Array = field(default_factory=lambda: np.zeros((0, 0)))
 
     def at(self, spin: float) -> Moment:
-        """The same motion turn by turn at another spin: velocities go with it.
-
-        Parameters
-        ----------
-        spin : rad/s
-        """
+        """The same motion turn by turn at another spin: velocities go with it."""
         share = spin / self.spin
         return replace(self, spin=spin, rate=self.rate * share, momentum=self.momentum * share)
 

@@ -368,9 +368,8 @@ class Watch:
 
 
 def _limit(marks: list[Array], coordinates: int) -> Array | None:
-    """Where the states at the ends of some turns are bound for, by reduced rank extrapolation.
-
-    None where that is unsound.
+    """Where the states at the ends of some turns are bound for, by reduced rank extrapolation; None if
+    unsound.
 
     Its weights have the sum 1, so that no liquid is lost or made.
     """

@@ -115,18 +115,10 @@ class Moment:
 def course(
     begin: Surface, times: Array, push: Push | None = None, steps: Steps | None = None
 ) -> Iterator[Moment]:
-    """A wave at some times, the last of them at a step's end and the others from within the steps.
+    """A wave at some rising times in 1/Omega, the last at a step's end and the others from within the steps.
 
-    Parameters
-    ----------
-    begin : surface at time 0, taken to the nodes of `steps` where it has fewer
-    times : in 1/Omega, above 0 and rising, shape (m,)
-    push : f over time, as for `solvers.potential.unsteady.rates`; none if None
-    steps : how
-
-    Yields
-    ------
-    A moment at each time. A wave that breaks comes last, as it was found, and tells why.
+    The surface is taken to the nodes of `steps` where it has fewer; `push` is f over time, None: none. A wave
+    that breaks comes last, as it was found, and tells why.
     """
     if times.size == 0:
         return
@@ -162,27 +154,13 @@ def course(
 
 
 def advance(begin: Surface, time: float, push: Push | None = None, steps: Steps | None = None) -> Moment:
-    """A wave after a time, or where it broke.
-
-    Parameters
-    ----------
-    begin, push, steps : as for `course`
-    time : in 1/Omega
-    """
+    """A wave after a time, or where it broke."""
     *_, last = course(begin, np.array([time]), push, steps)
     return last
 
 
 def judged(now: Watch, nodes: int, most: int, breaking: float = BREAKING) -> tuple[WaveState, str]:
-    """What is known of a wave, and why it is broken or nothing [theory: potential, eq. 23].
-
-    Parameters
-    ----------
-    now : its shape
-    nodes : that it has
-    most : that it may have
-    breaking : as for `Steps`
-    """
+    """What is known of a wave, and why it is broken or nothing [theory: potential, eq. 23]."""
     broken = WaveState.BROKEN
     if now.slope > 0.5 * math.pi:
         return broken, "the surface overhangs"
@@ -194,14 +172,7 @@ def judged(now: Watch, nodes: int, most: int, breaking: float = BREAKING) -> tup
 
 
 def watched(state: Array, change: Array, volume: float) -> Watch:
-    """The shape of a wave.
-
-    Parameters
-    ----------
-    state : y and phi, shape (2n,)
-    change : its rates, shape (2n,)
-    volume : that it began with, over R^2
-    """
+    """The shape of a wave."""
     n = state.size // 2
     height, waves, depth = fft.rfft(state[:n]), wave_numbers(n), float(state[:n].mean())
     flux = np.concatenate(([0.0], waves.k[1:] / np.tanh(np.minimum(waves.k[1:] * depth, LARGE))))
@@ -256,10 +227,7 @@ def _crest_number(state: Array, change: Array) -> float:
 def carried(acceleration: Callable[[float], complex]) -> Push:
     """The force f of a drum whose axis moves anyhow, while it spins anyhow [theory: potential, eq. 24].
 
-    Parameters
-    ----------
-    acceleration : of the axis in space over time, over Omega^2 R, complex; gravity is one in its direction
-        with the other sign
+    The acceleration over Omega^2 R, complex; gravity is one in its direction with the other sign.
     """
     return lambda time: -acceleration(time) * complex(math.cos(time), -math.sin(time))
 

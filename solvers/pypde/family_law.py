@@ -39,10 +39,6 @@ class FamilyLaw:
         """Share of the exact offset, and slope of the offset over that of the exact one.
 
         Beyond reach both are the last share.
-
-        Parameters
-        ----------
-        deflection : in mean depths, shape (n,)
         """
         within = np.minimum(deflection, self.reach)
         share = self.share(within)
@@ -68,20 +64,8 @@ class FamilyLaw:
 
 @lru_cache(maxsize=4096)
 def family_law(surface: float, dispersion: bool) -> FamilyLaw:
-    """The law of a layer.
-
-    Parameters
-    ----------
-    surface : radius of the mean surface over that of the wall
-    dispersion : the exact one in place of KdV's
-
-    Returns
-    -------
-    FamilyLaw of the family whose resonance is nearer, the retrograde one
-
-    Raises
-    ------
-    InputError : no layer
+    """The law of a layer, by the radius of its mean surface over the wall's: of the family whose resonance is
+    nearer.
     """
     c = kdv.coefficients(1.0, surface, 1.0, -1)
     depth, whole = 1.0 - surface, surface**2 / (2.0 * c.mean_area)
@@ -124,14 +108,7 @@ class Standing:
 
 
 def standing(fills: Fills, deflection: Array, dispersion: bool) -> Standing:
-    """The waves of some layers, each law solved once.
-
-    Parameters
-    ----------
-    fills : shape (n,)
-    deflection : of the chambers' axes, m, shape (n,)
-    dispersion : the exact one in place of KdV's
-    """
+    """The waves of some layers, each law solved once."""
     radius, depth = fills.chamber.radius, fills.depth
     surface = 1.0 - depth / radius
     waves = (fills.volume > 0.0) & (fills.volume < FULL * fills.chamber.capacity) & (surface > 0.0)

@@ -90,15 +90,7 @@ def ensemble(
 ) -> list[EnsembleTask]:
     """Runs whose unbalance is changed by up to `CHANGE`, each by a number of its own.
 
-    Parameters
-    ----------
-    system, fills, drive, friction, gravity, numerics, model : as for `solvers.runup.runup.run_up`
-    count : how many, besides the run itself
-    seed : of the changes; what a run gets depends on this and its number alone
-
-    Raises
-    ------
-    InputError : a count or seed out of its range
+    What a run gets depends on the seed and its number alone.
     """
     if not 1 <= count <= MOST:
         raise InputError("ensemble", count, f"from 1 to {MOST}")
@@ -127,15 +119,7 @@ def member_of(history: RunupHistory) -> Member:
 
 
 def spread_over(members: Iterable[Member], asked: int, count: int, seed: int) -> Spread:
-    """The range of an ensemble.
-
-    Parameters
-    ----------
-    members : the unchanged run first
-    asked : runs that were wanted, this one among them
-    count : times of the unchanged run
-    seed : of the changes
-    """
+    """The range of an ensemble, the unchanged run first among its members."""
     runs = list(members)
     amplitude = np.full((len(runs), count), np.nan)
     for row, run in zip(amplitude, runs, strict=True):

@@ -104,14 +104,7 @@ def dragged(curve, inertia, slip, freely, dt):
     """Impulse of the drag on what slips past its walls, and how much of other torques it lets through.
 
     The drag is that of the mean slip, and can at most stop the slip: neither its heat is ever below zero nor
-    does it turn the slip round [theory: pool, eq. 13].
-
-    Parameters
-    ----------
-    curve : slip, rising from 0, and torque
-    inertia : of what slips
-    slip, freely : at the beginning, and at the end if there were no drag
-    dt : time step
+    does it turn the slip round [theory: pool, eq. 13]. `freely` is the slip at the end if there were no drag.
     """
     both = 0.5 * (slip + freely)
     mean, slope = resisted(curve, 0.5 * dt / inertia, abs(both))
@@ -125,12 +118,7 @@ def dragged(curve, inertia, slip, freely, dt):
 def driven(curve, shaft, load, dt):
     """Spin at the end of a step under the motor's torque at the middle, however steep its curve.
 
-    Parameters
-    ----------
-    curve : the motor's
-    shaft : record SHAFT
-    load : impulse of the torque of liquid and whirl on the drum
-    dt : time step
+    `load`: impulse of the torque of liquid and whirl on the drum.
     """
     weight = 0.5 / shaft.inertia
     middle, _ = resisted(curve, -dt * weight, shaft.spin - load * weight)
@@ -286,14 +274,11 @@ def _power(area, velocity, surface, log, rate_a, spin, x, y, cosine, sine):
 
 @_summed
 def _rub(area, q, held, velocity, log, kept, pushed, spin, full, slot):
-    """Let friction leave its share of the velocities and add to them; sums over the cells.
+    """Let friction leave its share of the velocities and add to them; sums over the cells, over rho h_c R^4.
 
-    `q` and `held` are their angular momenta after it and before it.
-
-    Returns
-    -------
-    Impulse of the wall's torque, heat, and the energy in the frame that does not turn before and after, all
-    over rho h_c R^4 [theory: coupling, eq. 7]; that of a full gap with it [theory: long_wave, eq. 19]
+    Impulse of the wall's torque, heat, and the energy in the frame that does not turn before and after
+    [theory: coupling, eq. 7]; that of a full gap with it [theory: long_wave, eq. 19]. `q` and `held` are
+    angular momenta after it and before it.
     """
     torque, heat, before, after = 0.0, 0.0, 0.0, 0.0
     for i in range(area.size):
@@ -345,24 +330,9 @@ def layer_step(
 ):
     """Advance a layer by one time step, in place; a step that fails leaves nothing to go on with.
 
-    Parameters
-    ----------
-    area, q : state, shape (n,)
-    rolling : A e of the fluctuations behind bores, shape (n,), or (0,) where they are left out
-    spins : spin at the beginning and at the end
-    force : body force over R in the drum frame at the beginning (two parts) and at the end (two)
-    layer : its record LAYER
-    coefficient : of its friction at these spins
-    thin, table : of the law of the wall at these spins, see `fluid.friction.wall.WallDrag`
-    dt : time step
-    angles : cosine and sine at the cells' middles and at their left faces, shape (4, n)
-    inside : its baffles and inner wall, a `solvers.layer.inside.Inside`
-    spare : scratch of this layer, from `layer_scratch`; the profile at the end is left in it
-    gains : results, a record GAINS
-
-    Returns
-    -------
-    Outcome.DONE, Outcome.TOO_LONG or Outcome.AT_AXIS; and the largest speed met
+    `spins` and `force` (body force over R in the drum frame, two parts each) at both ends; `coefficient`,
+    `thin` and `table` are those of the friction at these spins; the profile at the end is left in `spare`,
+    results in `gains`, a record GAINS. Returns Outcome.DONE, TOO_LONG or AT_AXIS, and the largest speed met.
     """
     n = area.size
     step, euler, dispersion = 2.0 * np.pi / n, (spins[1] - spins[0]) / dt, layer.dispersion
@@ -516,22 +486,12 @@ def _measure_layers(machine, state, room):
 
 @_unwrapped
 def add_ball(ball, b, gravity, row, moving, spins, dt, n, left, right):
-    """Row and column of a ball, on a straight line about its way so far [theory: races, eq. 2-3].
+    """Row and column of a ball, on a straight line about its way so far; its rolling resistance
+    [theory: races, eq. 2-3].
 
-    Parameters
-    ----------
-    ball : record BALL
-    b : displacement of the axis in its plane for unit coordinates, shape (2, n)
-    gravity : across the axis, shape (2,)
-    row : of its own equation
-    moving : its angle in the standing frame and its rate
-    spins : at both ends of the step
-    dt, n : of the step, coordinates of the rotor
-    left, right : equations, changed in place
-
-    Returns
-    -------
-    What it resists to rolling, as a drag
+    `b` is the displacement of the axis in its plane for unit coordinates, `row` its own equation, `moving`
+    its angle in the standing frame and its rate, `spins` those at both ends; returned is what it resists to
+    rolling, as a drag.
     """
     angle, rate = moving
     spin, gained = 0.5 * (spins[0] + spins[1]), spins[1] - spins[0]
@@ -562,12 +522,7 @@ def add_ball(ball, b, gravity, row, moving, spins, dt, n, left, right):
 def ball_dragged(ball, held, rate, change, spins, dt):
     """Impulse of the torque of the drum on a ball, by drag and by what it resists to rolling.
 
-    Parameters
-    ----------
-    ball : record BALL
-    held : as from `add_ball`
-    rate, change : of the ball, at the beginning and over the step
-    spins, dt : of the step
+    `held` as from `add_ball`; `change` of the ball's rate over the step.
     """
     slow = 0.5 * (spins[0] + spins[1]) - rate - 0.5 * change
     return dt * (ball.drag * slow + held * (spins[1] - rate - change))
@@ -575,23 +530,14 @@ def ball_dragged(ball, held, rate, change, spins, dt):
 
 @_unwrapped
 def ball_turned(ball, held, rate, change, spins, dt):
-    """Impulse of the torque that a ball takes from the drum [theory: races, eq. 1].
-
-    Parameters are those of `ball_dragged`.
-    """
+    """Impulse of the torque that a ball takes from the drum [theory: races, eq. 1]."""
     gained = spins[1] - spins[0]
     return ball_dragged(ball, held, rate, change, spins, dt) + ball.driven * gained - ball.carried * change
 
 
 @_unwrapped
 def tally_ball(ball, held, gravity, moving, change, spins, dt, sums):
-    """Add the works of one step of a ball to `sums`, a record SUMS.
-
-    Parameters
-    ----------
-    ball, held, gravity, moving, spins, dt : as in `add_ball`
-    change : of its rate over the step
-    """
+    """Add the works of one step of a ball to `sums`, a record SUMS."""
     angle, rate = moving
     spin, mean, middle = 0.5 * (spins[0] + spins[1]), rate + 0.5 * change, angle + 0.5 * dt * rate
     sums.drive += spin * ball_turned(ball, held, rate, change, spins, dt)
@@ -838,22 +784,12 @@ def _keep(state, room, row):
 
 @_jit
 def advance(machine, state, room, stop, courant, most, resumed):
-    """Advance rotor and layers to a time.
+    """Advance rotor and layers to a time, in place: Outcome, and the steps tried.
 
-    Parameters
-    ----------
-    machine, state, room : `solvers.runup.state`'s; the state is changed in place
-    stop : s
-    courant : Courant number; the rotor turns in a step by at most this share of a cell
-    most : most steps
-    resumed : the call before ended with RAN_OUT, and nothing has changed since
-
-    Every step is written down in the state's trace if that has rows: as many as there are steps.
-
-    Returns
-    -------
-    Outcome.DONE, AT_AXIS, RAN_OUT, TOO_LONG, NOT_COUPLED (the accelerations did not agree in the
-    shortest steps) or STOPPED (the motor stands); and the steps tried
+    The rotor turns in a step by at most the Courant number's share of a cell; `resumed`: the call before
+    ended with RAN_OUT, and nothing has changed since. Every step is written down in the state's trace if that
+    has rows: as many as there are steps. NOT_COUPLED: the accelerations did not agree in the shortest steps;
+    STOPPED: the motor stands.
     """
     shaft, pace, sums = state.shaft[0], state.pace[0], state.sums[0]
     cell, taken = 2.0 * np.pi / machine.angles.shape[1], 0

@@ -26,12 +26,7 @@ from solvers.runup.programme import Programme, require_curve
 
 @dataclass(frozen=True)
 class Ramp:
-    """Spin speed that rises at a rate, is held, and may fall again at the same rate.
-
-    Raises
-    ------
-    InputError : a value that is not positive, a stop that is not above the start
-    """
+    """Spin speed that rises at a rate, is held, and may fall again at the same rate."""
 
     start: float  #: rad/s
     stop: float
@@ -59,12 +54,7 @@ class Ramp:
 
 @dataclass(frozen=True)
 class Motor:
-    """A motor on the rotor's axis: the spin speed answers.
-
-    Raises
-    ------
-    InputError : a value that is not positive, a curve of less than two points or not ascending
-    """
+    """A motor on the rotor's axis: the spin speed answers."""
 
     start: float  #: spin speed at the beginning, rad/s
     inertia: float  #: of rotor and motor about the axis, kg m^2
@@ -192,14 +182,10 @@ class RunupMachine(Protocol):
         """Set the unbalance from here on, kg m and kg m^2, shape (n,)."""
 
     def lighten(self, mass: Array, inertia: float) -> float:
-        """Set what has left the drum by now; the energy that the last part has brought in, below 0, J.
+        """Set the mass matrix and spin inertia of what has left the drum by now; the energy brought in, below
+        0, J.
 
         What leaves keeps its velocity, so that no speed changes [theory: coupling, eq. 17].
-
-        Parameters
-        ----------
-        mass : its mass matrix, kg and kg m^2, shape (n, n)
-        inertia : about the spin axis, kg m^2
         """
 
     def advance(self, stop: float, rate: float, courant: float, most: int) -> Outcome:

@@ -220,39 +220,13 @@ def run_up(
 ) -> RunupHistory:
     """Run a rotor with liquid layers through its speeds; at first liquid and rotor are at rest in the drum.
 
-    Parameters
-    ----------
-    system : the dry rotor
-    fills : its chambers with their liquid; empty ones do nothing, full ones are a solid mass
-    drive : ramp or motor
-    friction : on the walls, none by default; the laminar law takes the frequency of the slower free wave
-    gravity : across the axis, against the first direction, m/s^2; liquid that it holds at the bottom is a
-        pool that the walls carry round, or, under the rule `riding`, a mass that moves with the axis
-    numerics : resolution
-    progress : called with the share of the time that is done
-    model : of the liquid through time: long waves, or `solvers.runup.linear.couple_linear` for small waves
-        at a hundredth of the cost
-    snapshots : times at which the layers are kept cell by cell, s, each at the recorded time next to it; they
-        change nothing in the run, so that a film needs no second one
-    follow : keep the path of the rotor, which changes nothing in the run either
-
-    Returns
-    -------
-    RunupHistory; what was reached if it did not come to the end
-
-    Raises
-    ------
-    InputError : a value out of its range
-
-    Examples
-    --------
-    Pictures of the layers, from the run itself; angles are in the drum, fewer where the run ended early:
-
-        history = run_up(system, fills, drive, snapshots=np.linspace(0.0, 14.0, 180))
-        kept = history.snapshots
-        time, depth = history.time[kept.sample], kept.depth  # (f,), (f, l, c)
-        seen = np.exp(-1j * history.angle[kept.sample])[:, None]
-        deflection = history.deflection[kept.sample] * seen  # in the drum's frame, (f, l)
+    Empty chambers do nothing, full ones are a solid mass. The laminar law takes the frequency of the slower
+    free wave. Gravity acts across the axis, against the first direction; liquid that it holds at the bottom
+    is a pool that the walls carry round, or, under the rule `riding`, a mass that moves with the axis.
+    `model` makes the liquid through time: long waves, or `solvers.runup.linear.couple_linear` at a hundredth
+    of the cost. `snapshots` are times at which the layers are kept cell by cell, each at the recorded time
+    next to it; `follow` keeps the path of the rotor; neither changes anything in the run. What was reached if
+    it did not come to the end.
     """
     numerics = numerics or RunupNumerics()
     start = drive.corners()[1, 0]
@@ -449,13 +423,7 @@ def largest_wave(tolerance: float) -> float:
 
 
 def linear_run_error(history: RunupHistory, fills: Sequence[Fill]) -> LinearRunError:
-    """Error of a run with linear layers from how large its waves were [theory: model_error, eq. 23].
-
-    Parameters
-    ----------
-    history : the run
-    fills : of its chambers
-    """
+    """Error of a run with linear layers from how large its waves were [theory: model_error, eq. 23]."""
     wave, lag, touches = 0.0, 0.0, False
     for k, fill in enumerate(fills):
         held = history.captured[:, k]

@@ -75,13 +75,7 @@ class Balance:
         return np.asarray(sum((fills.mass for fills in self.fills), np.zeros(self.speed.size)))
 
     def moved(self, which: Index, speed: Array) -> Balance:
-        """The same of some of its volumes at other speeds.
-
-        Parameters
-        ----------
-        which : of the pairs, shape (k,)
-        speed : Omega, rad/s, shape (k,)
-        """
+        """The same of some of its volumes at other speeds."""
         chambers = tuple(fills.at(which) for fills in self.fills)
         back, owner = self.backward_mass[which], self.owner[which]
         return _balance(self.system, self.plane, chambers, back, owner, speed, self.gravity, self.model)
@@ -91,25 +85,13 @@ class Balance:
         return np.asarray(0.5 * answer @ np.conj(self.plane).T)
 
     def linear(self, which: Index, share: Array | float = 1.0) -> Complex:
-        """Coordinates if each chamber adds a share of its full mass, shape (k, n).
-
-        Parameters
-        ----------
-        which : of the pairs, shape (k,)
-        share : shape (k,) or a number
-        """
+        """Coordinates if each chamber adds a share of its full mass, shape (k, n)."""
         size = (share * np.square(self.speed[which]))[:, None] * self.added_mass[which]
         added = 0.5 * np.einsum("kc,ci,cj->kij", size, self.plane, np.conj(self.plane))
         return solve_each(self.stiffness[which] - added, self.force[which])
 
     def liquid(self, which: Index, deflection: Array) -> Liquid:
-        """Law of each chamber at forward deflections.
-
-        Parameters
-        ----------
-        which : of the pairs, shape (k,)
-        deflection : m, shape (k, c)
-        """
+        """Law of each chamber at forward deflections."""
         shape = deflection.shape
         slope = self.added_mass[which]
         unbalance = slope * deflection
@@ -132,11 +114,6 @@ class Balance:
 
         A straight line says nothing of where it ends. What moves the surface most over a turn counts: the
         forward part, and the wave of the backward one [theory: rotor, eq. 28].
-
-        Parameters
-        ----------
-        which : of the pairs, shape (k,)
-        answer : coordinates, shape (k, n)
         """
         forward, backward = np.abs(self.forward(answer)), 0.5 * np.abs(answer @ self.plane.T)
         law = self.liquid(which, forward)
@@ -170,15 +147,7 @@ def harmonic_balance(
 ) -> Balance:
     """Terms of the harmonic balance [theory: rotor, eq. 28 and 29].
 
-    Parameters
-    ----------
-    system : the dry rotor
-    sets : its chambers, with other volumes in each set; those without liquid are left out, and have none in
-        any of the sets
-    owner : which set each pair has, rising, shape (s,)
-    speed : Omega, rad/s, shape (s,), above 0
-    gravity : along the axis, m/s^2
-    model : of the liquid
+    Sets have the same chambers with other volumes; `owner` is the set of each pair, rising.
     """
     wet = [[fill for fill in fills if fill.volume > 0.0] for fills in sets]
     chambers = tuple(Fills.of(column).at(owner) for column in zip(*wet, strict=True))

@@ -53,19 +53,6 @@ def wet_states(
 
     At each round the liquid counts as the mass that its unbalance is over the deflection, and the balls
     settle anew. States that do not come to an end so are left out.
-
-    Parameters
-    ----------
-    system : the dry rotor
-    fills : chambers with their liquid, any number
-    races : with their balls, one or more
-    speed : Omega, rad/s, above 0, shape (s,)
-    gravity : along the axis, m/s^2
-    model : of the liquid at rest in the drum, by default its exact equilibrium
-
-    Raises
-    ------
-    InputError : no race, a speed that is not positive and finite
     """
     spin = np.array(speed, dtype=float).reshape(-1)
     wet = [fill for fill in fills if fill.volume > 0.0]
@@ -114,14 +101,6 @@ def in_step(
     """The rotor with its liquid as a mass in step with the axis, for small motions about a balanced state.
 
     [theory: races, eq. 8]
-
-    Parameters
-    ----------
-    system : the dry rotor
-    fills : chambers with their liquid, any number
-    speed : Omega, rad/s
-    gravity : along the axis, m/s^2
-    model : of the liquid
     """
     wet = [fill for fill in fills if fill.volume > 0.0]
     if not wet:

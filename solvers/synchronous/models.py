@@ -80,12 +80,7 @@ class Statics(WaveModel):
         return np.asarray(fills.density * state.first_moment())
 
     def wave(self, fill: Fill, whirl: Whirl) -> LiquidWave:
-        """See `WaveModel`; no friction acts on liquid that is at rest in the drum.
-
-        Raises
-        ------
-        InputError : another whirl than the synchronous one, gravity across the axis
-        """
+        """See `WaveModel`; no friction acts on liquid that is at rest in the drum."""
         amplitude = whirl.amplitude
         if whirl.slip != 0.0:
             allowed = f"the spin speed ({whirl.spin:g} rad/s) for the static model"
@@ -190,12 +185,7 @@ class Linear(WaveModel):
         return added_mass_answer(fills, whirls, error)
 
     def wave(self, fill: Fill, whirl: Whirl) -> LiquidWave:
-        """See `WaveModel`; the error is that of small waves beside exact ones [theory: model_error, eq. 34].
-
-        Raises
-        ------
-        InputError : no free surface
-        """
+        """See `WaveModel`; the error is that beside exact waves [theory: model_error, eq. 34]."""
         chamber, surface, amplitude = fill.chamber, fill.surface_radius, whirl.amplitude
         if fill.depth >= chamber.radius * (1.0 - 1e-9) or surface <= chamber.inner_radius:
             allowed = "less than what fills the chamber, for a free surface"
@@ -234,19 +224,7 @@ class Linear(WaveModel):
         )
 
     def free_wave(self, fill: Fill, spin: float, crest: float, crests: int = 1) -> FreeWave:
-        """The free wave of n crests, whose speed does not depend on its height [theory: waves, eq. 7].
-
-        Parameters
-        ----------
-        fill : chamber and liquid
-        spin : Omega, rad/s
-        crest : depth at the crest over the mean depth, above 1
-        crests : n, round the drum
-
-        Raises
-        ------
-        InputError : no free surface, no crest
-        """
+        """The free wave of n crests, whose speed does not depend on its height [theory: waves, eq. 7]."""
         radius, surface = fill.chamber.radius, fill.surface_radius
         if fill.depth >= radius * (1.0 - 1e-9) or surface <= fill.chamber.inner_radius:
             raise InputError("volume", fill.volume, "less than what fills the chamber, for a free surface")

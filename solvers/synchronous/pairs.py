@@ -125,16 +125,7 @@ def _summed(rows: Index, values: Array, size: int) -> Array:
 def pair_machines(
     machines: Sequence[PlanarMachine], owner: Index, speed: Array, gravity: Array, model: LiquidModel
 ) -> Pairs:
-    """Arrays over pairs of a machine and a speed.
-
-    Parameters
-    ----------
-    machines : rotors with their fills; empty fills are left out
-    owner : index of each pair's machine, shape (n,)
-    speed : Omega, rad/s, shape (n,)
-    gravity : along the axis of each machine, m/s^2, shape (machines,)
-    model : of the liquid
-    """
+    """Arrays over pairs of a machine and a speed; empty fills are left out."""
     rotors = np.array([(r.mass, r.stiffness, r.damping, r.unbalance) for r, _ in machines]).reshape(-1, 4)
     wet = [[fill for fill in fills if fill.volume > 0.0] for _, fills in machines]
     own_gravity = gravity[owner]

@@ -38,19 +38,11 @@ def branches_beyond(
     dead: Array,
     moved: Flags,
 ) -> tuple[Array, Index, Flags, Flags]:
-    """Every solution beyond the straight part of the law, as far out as damping and stiffness allow.
+    """Every solution beyond the straight part of the law (up to `limit`), as far out as damping and stiffness
+    allow.
 
-    Parameters
-    ----------
-    pull, elastic, damping, force, steepest : as for `find_branches`
-    limit : deflection up to which the law is a straight line, shape (n,)
-    dead : largest pull of the liquid beyond its mass at the chamber's centre, shape (n,)
-    moved : there is a force; without one nothing moves, and there is nothing to look for, shape (n,)
-
-    Returns
-    -------
-    solution, which, converged : as from `find_branches`
-    bounded : solutions are bounded, or the law is straight everywhere, shape (n,)
+    As `find_branches`, and whether solutions are bounded or the law is straight everywhere. `dead` is the
+    largest pull of the liquid beyond its mass at the chamber's centre; without a force nothing moves.
     """
     # No solution is farther out than the damper or the spring allows.
     reach = np.minimum(over(force, damping), over(force + dead, np.abs(elastic))) * (1.0 + 1e-9)
@@ -69,18 +61,8 @@ def find_branches(
 ) -> tuple[Array, Index, Flags]:
     """Every solution e of (a e - Y(e))^2 + (c e)^2 = u^2 with start < e <= stop, at n speeds.
 
-    Parameters
-    ----------
-    pull : Y, non-decreasing in e
-    elastic, damping, force : a, c and u > 0, shape (n,)
-    steepest : no smaller than the slope of Y anywhere, shape (n,)
-    start, stop : search range of each speed, shape (n,)
-
-    Returns
-    -------
-    solution : shape (k,), in no order
-    which : the speed each belongs to, shape (k,)
-    converged : for each speed, all its solutions were resolved, shape (n,)
+    Y never falls with e and is nowhere steeper than `steepest`. Solutions in no order, the speed each belongs
+    to, and for each speed whether all were resolved.
     """
     converged = np.ones(force.shape, dtype=bool)
     which = np.flatnonzero(stop > start)
@@ -184,17 +166,8 @@ def divide(force: Array, stiffness: Complex) -> Complex:
 
 
 def all_deflections(pairs: Pairs) -> tuple[Array, Index, Flags]:
-    """Sizes of all solutions.
-
-    Parameters
-    ----------
-    pairs : n of them, at speeds above 0
-
-    Returns
-    -------
-    size : m, infinite where it has no bound, at least one for each pair, shape (k,)
-    which : the pair each belongs to, shape (k,)
-    converged : a pair's are all there, shape (n,)
+    """Sizes of all solutions, the pair each belongs to, and whether a pair's are all there; infinite without
+    a bound.
     """
     squared, limit = np.square(pairs.speed), pairs.limit
     force, damping = pairs.unbalance * squared, pairs.damping * pairs.speed
@@ -223,26 +196,14 @@ def all_deflections(pairs: Pairs) -> tuple[Array, Index, Flags]:
 
 
 def with_phase(pairs: Pairs, which: Index, deflection: Array, state: LiquidState) -> Complex:
-    """Complex deflections: w lags the unbalance by the angle of the wet rotor's dynamic stiffness.
-
-    Parameters
-    ----------
-    pairs, which : the pair of each solution, shape (k,)
-    deflection : its size, m, shape (k,)
-    state : of the liquid there, shape (k,)
-    """
+    """Complex deflections: w lags the unbalance by the angle of the wet rotor's dynamic stiffness."""
     pull = np.square(pairs.speed[which]) * state.unbalance
     total = pairs.dynamic_stiffness[which] * deflection - pull
     return np.asarray(deflection * np.exp(-1j * np.angle(total)), dtype=complex)
 
 
 def is_stable(pairs: Pairs, which: Index, deflection: Array, state: LiquidState) -> Flags:
-    """Stability against disturbances that are slow beside the liquid's waves [theory: rotor, eq. 8].
-
-    Parameters
-    ----------
-    pairs, which, deflection, state : as in `with_phase`
-    """
+    """Stability against disturbances that are slow beside the liquid's waves [theory: rotor, eq. 8]."""
     spin, own, damping, stiffness = (
         x[which] for x in (pairs.speed, pairs.mass, pairs.damping, pairs.stiffness)
     )
@@ -263,14 +224,6 @@ def is_stable(pairs: Pairs, which: Index, deflection: Array, state: LiquidState)
 
 
 def liquid_offset(pairs: Pairs, farthest: Array, deflection: Array, unbalance: Array) -> Array:
-    """Distance of the liquid's centre of mass from the rotation axis; without liquid, that of a drop.
-
-    Parameters
-    ----------
-    pairs : n of them
-    farthest : largest radius of the machine's chambers, m, shape (n,)
-    deflection : size, m, shape (n,)
-    unbalance : of the liquid, kg m, shape (n,)
-    """
+    """Distance of the liquid's centre of mass from the rotation axis; without liquid, that of a drop."""
     drop = np.where(deflection > 0.0, deflection + farthest, 0.0)
     return np.divide(unbalance, pairs.liquid_mass, out=drop, where=pairs.liquid_mass > 0.0)

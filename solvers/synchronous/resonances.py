@@ -35,29 +35,7 @@ class Tops:
 
 
 def planar_tops(machines: Sequence[PlanarMachine], gravity: Array, model: LiquidModel) -> Tops:
-    """Tops of the resonance curves of planar machines [theory: rotor, eq. 33 and 34].
-
-    Parameters
-    ----------
-    machines : rotors, each with its chambers and their liquid
-    gravity : along the axis of each, m/s^2, shape (n,)
-    model : of the liquid
-
-    Returns
-    -------
-    Tops
-
-    Examples
-    --------
-    Without liquid the amplitude is e/(2 zeta sqrt(1 - zeta^2)), at omega/sqrt(1 - 2 zeta^2):
-
-    >>> from solvers.rotor.jeffcott import Jeffcott
-    >>> from solvers.synchronous.models import LINEAR
-    >>> rotor = Jeffcott(mass=1.0, stiffness=100.0, damping=2.0, unbalance=1e-3)
-    >>> tops = planar_tops([(rotor, [])], np.zeros(1), LINEAR)
-    >>> print(f"{tops.speed[0]:.6f} {1e3 * tops.amplitude[0]:.6f}")
-    10.101525 5.025189
-    """
+    """Tops of the resonance curves of planar machines [theory: rotor, eq. 33 and 34]."""
     rotors = np.array([(r.mass, r.stiffness, r.damping, r.unbalance) for r, _ in machines]).reshape(-1, 4)
     mass, stiffness, damping, force = np.ascontiguousarray(rotors.T)
     liquid = _Liquid.of(machines, gravity, model)
@@ -81,13 +59,7 @@ def planar_tops(machines: Sequence[PlanarMachine], gravity: Array, model: Liquid
 
 
 def _bent(curve: _Curve, liquid: _Liquid, rows: Index) -> tuple[Array, Array, Array]:
-    """Mass, speed and deflection at the tops of machines with a wall that runs dry; nan where there is none.
-
-    Parameters
-    ----------
-    curve, liquid : of the machines, and of all of them
-    rows : the machines, shape (m,)
-    """
+    """Mass, speed and deflection at the tops of machines with a wall that runs dry; nan where none is."""
     full = liquid.added_mass[rows] * (1.0 + 1e-9)
     # With less mass than that the deflection rises without end.
     least = np.maximum(
@@ -130,11 +102,7 @@ class _Curve:
     def top(self, which: Index, mass: Array, change: Array) -> tuple[Array, Array]:
         """Speed and deflection at which the deflection stands still; nan where it does nowhere.
 
-        Parameters
-        ----------
-        which : of the rotors, shape (m,)
-        mass : of the rotor with its liquid, kg, shape (m,)
-        change : half of what its logarithm of the speed changes it by, kg, shape (m,)
+        `change` is half of what the logarithm of the speed changes the mass by, kg.
         """
         stiffness, damping, force = (x[which] for x in (self.stiffness, self.damping, self.force))
         # Both conditions, squared speeds eliminated [theory: rotor, eq. 34].
@@ -208,23 +176,7 @@ def resonances(system: RotorSystem, fills: Sequence[Fill], share: float = 1.0) -
     Those are the zeros of the determinant of the dynamic stiffness [theory: rotor, eq. 29], a polynomial of
     the speed: they stand off the real speeds by half the width of the resonance.
 
-    Parameters
-    ----------
-    system : the dry rotor
-    fills : its chambers
-    share : of the mass that a chamber adds in a small whirl
-
-    Returns
-    -------
-    speed, half_width : rising, rad/s, shape (k,)
-
-    Examples
-    --------
-    >>> from solvers.rotor.jeffcott import Jeffcott
-    >>> rotor = Jeffcott(mass=1.0, stiffness=100.0, damping=2.0, unbalance=1e-3)
-    >>> speed, half_width = resonances(rotor.system(), [])
-    >>> print(np.round(speed, 3), np.round(half_width, 3))
-    [9.95 9.95] [1. 1.]
+    Rising, and half widths, rad/s.
     """
     from scipy.linalg import eigvals
 

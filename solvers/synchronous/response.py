@@ -37,13 +37,7 @@ def critical_speed(
 ) -> float:
     """Speed at which a small deflection meets no stiffness: (M + dU/de) Omega^2 = K [theory: rotor, eq. 4].
 
-    Parameters
-    ----------
-    rotor, fills, gravity, model : see `solvers.synchronous.response.response`
-
-    Returns
-    -------
-    Omega, rad/s, between sqrt(K/(M + m_f)) and sqrt(K/M)
+    rad/s, between sqrt(K/(M + m_f)) and sqrt(K/M).
     """
     wet, along = [fill for fill in fills if fill.volume > 0.0], np.array([gravity])
 
@@ -64,14 +58,7 @@ def wet_critical_speeds(
 ) -> tuple[Array, Complex]:
     """All critical speeds of a rotor of any kind, and its shapes there [theory: rotor, eq. 31].
 
-    Parameters
-    ----------
-    rotor, fills, gravity, model : see `solvers.synchronous.response.response`
-
-    Returns
-    -------
-    speed : rising, rad/s, shape (k,)
-    shape : complex, shape (k, n)
+    Rising, rad/s, shape (k,), and complex shapes (k, n).
     """
     system = rotor.system()
     wet = [fill for fill in fills if fill.volume > 0.0]
@@ -105,16 +92,8 @@ def main_critical_speeds(
     dampers; without bound where the unbalance drives a mode that has none. Of equal ones it is the lowest
     [theory: rotor, eq. 31].
 
-    Parameters
-    ----------
-    system : the dry rotor
-    fills : its chambers
-    dry, wet : critical speeds, rad/s, rising, shape (k,), and shapes, (k, n), as from `critical_speeds` and
-        `wet_critical_speeds`
-
-    Returns
-    -------
-    rad/s, without and with liquid; nan where there is none
+    rad/s, without and with liquid; nan where there is none. `dry` and `wet` as from `critical_speeds` and
+    `wet_critical_speeds`.
     """
     speed, shape = dry
     if speed.size == 0:
@@ -146,11 +125,6 @@ def _with_liquid(system: RotorSystem, dry: Complex, wet: tuple[Array, Complex]) 
 
     Modes are alike by the squared cosine between their shapes in the metric of the dry mass; of all ways to
     pair them one to one it is the one with the largest sum [theory: rotor, eq. 39].
-
-    Parameters
-    ----------
-    dry : shapes, shape (k, n)
-    wet : critical speeds, rad/s, shape (m,), and shapes, (m, n)
     """
     from scipy.optimize import linear_sum_assignment
 
@@ -472,15 +446,7 @@ def answered_by(
 
     It serves models that are too dear to look for branches by, and near to one that is not.
 
-    Parameters
-    ----------
-    rotor, fills, gravity : see `response`
-    known : the answer by the other model
-    model : of the liquid
-
-    Returns
-    -------
-    Response; `residual` is that of the model's own balance, branches that are not reported stay as they were
+    `residual` is that of the model's own balance; branches that are not reported stay as they were.
     """
     system, found = rotor.system(), np.flatnonzero(np.isfinite(known.coordinates).all(axis=1))
     owner = np.zeros(found.size, dtype=np.intp)
@@ -511,12 +477,7 @@ def answered_by(
 
 
 def distance(found: Response, exact: Response) -> Array:
-    """How far an answer is from another one, relative: the larger of amplitude and liquid's offset.
-
-    Parameters
-    ----------
-    found, exact : at the same speeds, shape (n,)
-    """
+    """How far an answer is from another one, relative: the larger of amplitude and liquid's offset."""
     gaps = []
     for name in ("amplitude", "liquid_offset"):
         here, there = getattr(found, name), getattr(exact, name)
@@ -637,12 +598,7 @@ def _merged(parts: list[tuple[Index, Response]]) -> Response:
 
 
 def joined(parts: Sequence[Response]) -> Response:
-    """Responses at several sets of speeds as one, one set after the other.
-
-    Parameters
-    ----------
-    parts : of one rotor, at least one
-    """
+    """Responses at several sets of speeds as one, one set after the other."""
     found: dict[str, Any] = {"position": parts[0].position, "over_time": _times(parts)}
     for each in fields(Response):
         values = [getattr(part, each.name) for part in parts]
@@ -661,12 +617,7 @@ def _times(parts: Sequence[Response]) -> Array:
 
 
 def by_speed(parts: Sequence[Response]) -> Response:
-    """Responses at several sets of speeds as one, by rising speed.
-
-    Parameters
-    ----------
-    parts : of one rotor, at least one
-    """
+    """Responses at several sets of speeds as one, by rising speed."""
     every = joined(parts)
     return every.at(np.argsort(every.speed, kind="stable"))
 

@@ -48,23 +48,11 @@ class WaveTerms:
 
 
 def wave_split(terms: WaveTerms, points: int, first_angle: float = 0.0) -> Split:
-    """Linear symbol, and steepening with forcing as the rest [theory: steppers, eq. 1].
+    """Linear symbol, and steepening with forcing as the rest, for fields eta in m^2
+    [theory: steppers, eq. 1].
 
-    Followed in the frame of the whirl or, without forcing, of long waves.
-
-    Parameters
-    ----------
-    terms : the equation
-    points : evenly spaced round the drum, 8 or more; an even number with small factors is fastest
-    first_angle : theta of the first point, rad
-
-    Returns
-    -------
-    Split for fields eta in m^2; free of aliases, without the mode of half the points
-
-    Raises
-    ------
-    InputError : fewer than 8 points
+    Followed in the frame of the whirl or, without forcing, of long waves; free of aliases, without the mode
+    of half the points. `first_angle` is theta of the first point.
     """
     if points < 8:
         raise InputError("points", points, "8 or more")
@@ -173,9 +161,8 @@ class System:
         return split(self.coefficient(p) * dv + product[1 : self.modes + 1])
 
     def jacobian(self, y: Array, p: float, modes: int, border: int = 0) -> Array:
-        """Exact derivative with respect to the first modes, in columns; with room for a border.
-
-        Shape (2 modes + border, 2 modes + border); the border is not set.
+        """Exact derivative with respect to the first modes, shape (2 modes + border,) twice; the border is
+        not set.
         """
         v = joined(y)
         wave = np.zeros(3 * modes, dtype=complex)  # wave numbers -(modes - 1) ... 2 modes

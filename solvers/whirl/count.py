@@ -42,16 +42,8 @@ class Region:
 def missed_modes(function: Characteristic, degree: int, known: Complex, region: Region) -> Array:
     """How many modes of a region are not among those known [theory: whirl, eq. 19].
 
-    Parameters
-    ----------
-    function : the characteristic function
-    degree : power of lambda it goes with far away
-    known : modes, with or without their conjugates, nan where there is none, 1/s, shape (n, m)
-    region : where to count
-
-    Returns
-    -------
-    Their number, a conjugate pair counts as two, shape (n,); nan where the phase could not be followed
+    A conjugate pair counts as two; nan where the phase could not be followed. f goes with this power of
+    lambda far away.
     """
     if region.line.size == 0:
         return np.zeros(0)

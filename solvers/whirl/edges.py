@@ -29,21 +29,12 @@ def unstable_bands(
     friction: Friction = NO_FRICTION,
     growth: Array | None = None,
 ) -> tuple[Bands, ...]:
-    """Bands of speed in which some whirl grows, their edges refined.
+    """Bands (low, high) of speed in which some whirl grows, rad/s, for each row of fills, their edges
+    refined.
 
     Looked at are speeds of its own choice between the first and the last of those given, so that no band is
-    lost between two of these and none depends on their number [theory: whirl, eq. 32 and 33].
-
-    Parameters
-    ----------
-    rotor, rows, friction : as for `solvers.whirl.growth.growth_map`
-    speed : rising, rad/s, shape (n,)
-    growth : at these speeds if it is known, shape (rows, n)
-
-    Returns
-    -------
-    For each row its bands (low, high), rad/s; an end that is the first or last speed is where the range ends.
-    Next to a speed at which the growth is not known a band ends at the last one at which it is
+    lost between two of these and none depends on their number [theory: whirl, eq. 32 and 33]. Next to a speed
+    at which the growth rate is not known a band ends at the last one at which it is.
     """
     grid = np.asarray(speed, dtype=float)
     row, points, rate = looks(rotor, rows, float(grid[0]), float(grid[-1]), friction)
@@ -100,22 +91,8 @@ def _bands(
 
 
 def bands_not_known(speed: Array, growth: Array) -> Bands:
-    """Bands of speed in which the growth is not known.
-
-    Parameters
-    ----------
-    speed : rising, rad/s, shape (n,)
-    growth : 1/s, nan where it is not known, shape (n,)
-
-    Returns
-    -------
-    (low, high), rad/s, the nearest speeds at which it is known, or the ends of the range
-
-    Examples
-    --------
-    >>> nan = float("nan")
-    >>> bands_not_known(np.arange(1.0, 6.0), np.array([nan, nan, 1.0, nan, -1.0]))
-    ((1.0, 3.0), (3.0, 5.0))
+    """Bands of speed in which the growth rate is not known (nan): the nearest speeds at which it is, or the
+    ends.
     """
     lost = np.concatenate([[False], np.isnan(growth), [False]])
     first, past = np.flatnonzero(~lost[:-1] & lost[1:]), np.flatnonzero(lost[:-1] & ~lost[1:])
@@ -135,10 +112,6 @@ def _refine(
 
     Three looks at a time: in the middle and closely round the secant's zero; in quarters where the whirl is
     neutral on one side, as without any damping.
-
-    Parameters
-    ----------
-    low, high : speed and growth on either side, shape (2, n)
     """
     low, high = low.copy(), high.copy()
     first = low[1] > 0.0

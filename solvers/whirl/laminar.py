@@ -60,10 +60,6 @@ def laminar_modes(system: RotorSystem, layers: Sequence[Placed], speed: Array) -
     Started from the rotor with its liquid at rest and from the waves of each layer on a drum at rest. Layers
     that are equal have waves against one another that do not move the rotor: these are the free ones. Where
     the argument principle says that a mode which grows more was missed, all are computed at once.
-
-    Parameters
-    ----------
-    system, layers, speed : as for `solvers.whirl.system.coupled_matrices`
     """
     groups = _groups(system, layers)
     weights = np.ones(len(layers))
@@ -282,13 +278,7 @@ class _Eliminated:
 
 
 def _eliminate(problem: _Problem, root: Complex, spin: Array) -> _Eliminated:
-    """Rotor and layers at values of lambda [theory: whirl, eq. 14].
-
-    Parameters
-    ----------
-    problem : the rotor with its layers
-    root, spin : lambda, 1/s, and Omega, rad/s, shape (k,)
-    """
+    """Rotor and layers at values of lambda [theory: whirl, eq. 14]."""
     system, at = problem.system, root[:, None, None]
     damping = system.damping + spin[:, None, None] * system.gyroscopic
     matrix = at * (at * system.mass + damping) + system.stiffness
@@ -324,13 +314,7 @@ def all_modes(system: RotorSystem, layers: Sequence[Placed], speed: Array) -> Co
 
     Exact for layers without floor and lid, whose drag is that on the slower wave.
 
-    Parameters
-    ----------
-    system, layers, speed : as for `laminar_modes`
-
-    Returns
-    -------
-    lambda, 1/s, nan in place of those on other sheets, shape (n, 8 N) with N coordinates of rotor and layers
+    lambda, 1/s, nan in place of those on other sheets, shape (n, 8 N) with N coordinates of rotor and layers.
     """
     linear = coupled_matrices(system, layers, speed)
     size, count = len(linear.mass), len(system.coordinates)

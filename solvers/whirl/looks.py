@@ -60,14 +60,7 @@ def looks(
 ) -> tuple[Index, Array, Array]:
     """Points from which every change of the sign of the growth is seen, by rising row and speed.
 
-    Parameters
-    ----------
-    rotor, rows, friction : as for `solvers.whirl.growth.growth_map`
-    first, last : ends of the range, rad/s
-
-    Returns
-    -------
-    row, speed, rad/s, and growth, 1/s, nan where it is not known, shape (n,)
+    Rows, speeds, and growth rates, nan where they are not known.
     """
 
     def at(row: Index, speed: Array) -> Looks:

@@ -87,13 +87,7 @@ class _Scaled:
 def planar_modes(problem: PlanarProblem) -> Modes:
     """All modes of the rotor and its layers [theory: whirl, eq. 8].
 
-    Parameters
-    ----------
-    problem : rotor, layers and points
-
-    Returns
-    -------
-    Modes, 2 + 2 g of them; with laminar friction up to twice as many
+    2 + 2 g of them; with laminar friction up to twice as many.
     """
     points = problem.spin.size
     chunks = [problem.part(slice(i, i + _CHUNK)) for i in range(0, points, _CHUNK)]

@@ -55,11 +55,7 @@ class DrumMatrices:
 def drum_matrices(rotor: Jeffcott, layers: Sequence[SectionLayer], speed: Array) -> DrumMatrices:
     """Rotor and liquid as one linear system in the frame of the drum [theory: sections, eq. 3].
 
-    Parameters
-    ----------
-    rotor : its mass includes that of liquid without a free surface
-    layers : of its chambers
-    speed : Omega, rad/s, shape (n,)
+    The rotor's mass includes that of liquid without a free surface.
     """
     heavy = rotor.mass + sum(layer.density * layer.liquid.liquid_area for layer in layers)
     pull = -np.hstack([np.zeros((2, 0)), *(layer.density * layer.liquid.moment for layer in layers)])
@@ -115,13 +111,7 @@ def _mixed(weights: Complex, parts: Complex) -> Complex:
 def drum_modes(rotor: Jeffcott, layers: Sequence[SectionLayer], speed: Array) -> SystemModes:
     """Whirl modes in the drum's frame: all of them without laminar friction, with it those that grow most.
 
-    Parameters
-    ----------
-    rotor, layers, speed : as for `drum_matrices`
-
-    Returns
-    -------
-    Modes; `sense` tells which way they go round as seen from the drum.
+    `sense` tells which way they go round as seen from the drum.
     """
     system = drum_matrices(rotor, layers, speed)
     circles = _circles(layers)
@@ -187,13 +177,7 @@ class MostGrowing:
 
 
 def most_growing(search: MostGrowing, speed: Array) -> SystemModes:
-    """The modes that grow most, each with laminar friction of its own frequency [theory: sections, eq. 6].
-
-    Parameters
-    ----------
-    search : where to start from
-    speed : Omega, rad/s, shape (n,)
-    """
+    """The modes that grow most, each with laminar friction of its own frequency [theory: sections, eq. 6]."""
     root = search.started
     # Fast modes have more friction than that of slow waves, in proportion to the root of their frequency.
     more = np.sqrt(np.maximum(search.slip / (_SLOW * speed[:, None]), 1.0))
@@ -301,16 +285,7 @@ def _followed(
 ) -> tuple[Complex, Complex, Flags]:
     """Newton's method on each mode with its own laminar friction.
 
-    Parameters
-    ----------
-    search : where the matrices are from
-    start : first values of f modes at each of n speeds, above the real axis, shape (n, f)
-    at : which speeds, shape (n,)
-    shape : first shapes, shape (n f, N)
-
-    Returns
-    -------
-    Modes, shape (n, f); their shapes, (n, f, N); whether they settled, (n, f)
+    Modes (n, f) from starts above the real axis, their shapes (n, f, N), and whether they settled.
     """
     root, owner = start.astype(complex).ravel(), np.repeat(at, start.shape[1])
     on, found = np.arange(root.size), np.zeros(root.shape, dtype=bool)
@@ -353,13 +328,7 @@ class CircleLayer:
 def circle_layer(layer: SectionLayer) -> CircleLayer:
     """The motions of a layer that a circular whirl drives [theory: sections, eq. 9].
 
-    Parameters
-    ----------
-    layer : with motions in two directions
-
-    Raises
-    ------
-    InputError : it does not answer alike in all directions
+    An `InputError` where it does not answer alike in all directions.
     """
     liquid = layer.liquid
     drive = (liquid.moment[0] - 1j * liquid.moment[1])[:, None]
@@ -422,11 +391,7 @@ class StandingMatrices:
 def standing_matrices(system: RotorSystem, layers: Sequence[Placed], speed: Array) -> StandingMatrices:
     """Rotor and liquid as one linear system in the standing frame [theory: sections, eq. 10].
 
-    Parameters
-    ----------
-    system : the dry rotor, with the mass of all liquid that has no free surface
-    layers : plane, m, and layer
-    speed : Omega, rad/s, shape (n,)
+    The rotor has the mass of all liquid without a free surface.
     """
     count, spin = len(system.coordinates), speed[:, None, None]
     circles = [(plane, circle_layer(layer)) for plane, layer in layers]
@@ -459,12 +424,7 @@ def standing_matrices(system: RotorSystem, layers: Sequence[Placed], speed: Arra
 
 
 def standing_modes(system: RotorSystem, layers: Sequence[Placed], speed: Array) -> SystemModes:
-    """Whirl modes in the standing frame: all without laminar friction, with it those that grow most.
-
-    Parameters
-    ----------
-    system, layers, speed : as for `standing_matrices`
-    """
+    """Whirl modes in the standing frame: all without laminar friction, with it those that grow most."""
     found = standing_matrices(system, layers, speed)
     rows = np.zeros((2 * len(layers), len(found.mass)))
     for k, (plane, _) in enumerate(layers):

@@ -17,18 +17,10 @@ _NONE = complex(np.nan, np.nan)
 def standing_roots(matrices: CoupledMatrices, drags: Complex, speed: Array) -> Complex:
     """lambda of M z'' + C z' + K z with laminar drags of both senses of circle [theory: whirl, eq. 20].
 
-    The drags are (lambda -+ i Omega)^1.5 D. With lambda = i Omega (z^2 + z^-2)/2 both roots are
-    sqrt(2 i Omega) (z -+ 1/z)/2.
+    The drags are (lambda -+ i Omega)^1.5 D. With lambda = i Omega (z^2 + z^-2)/2 both roots are sqrt(2 i
+    Omega) (z -+ 1/z)/2.
 
-    Parameters
-    ----------
-    matrices : without laminar friction, in the standing frame, N coordinates
-    drags : D of circles along and against the spin, shape (2, N, N)
-    speed : Omega, rad/s, shape (n,)
-
-    Returns
-    -------
-    1/s, nan in place of those on other sheets, shape (n, 8 N)
+    1/s, nan in place of those on other sheets, shape (n, 8 N), from D of circles along and against the spin.
     """
     inverse, spin = np.linalg.inv(np.linalg.cholesky(matrices.mass)), speed[:, None, None]
     along, against, damping, stiffness = (
@@ -54,15 +46,7 @@ def standing_roots(matrices: CoupledMatrices, drags: Complex, speed: Array) -> C
 def drum_roots(matrices: CoupledMatrices, laminar: Array, speed: Array) -> Complex:
     """lambda of M z'' + C z' + K z with a drag lambda^1.5 S: those of a polynomial in sqrt(lambda).
 
-    Parameters
-    ----------
-    matrices : without laminar friction, in the frame of the drum, N coordinates
-    laminar : S, shape (N, N)
-    speed : Omega, rad/s, shape (n,)
-
-    Returns
-    -------
-    1/s, nan in place of those on other sheets, shape (n, 4 N)
+    1/s, nan in place of those on other sheets, shape (n, 4 N).
     """
     inverse, spin = np.linalg.inv(np.linalg.cholesky(matrices.mass)), speed[:, None, None]
     drag, damping, stiffness = (

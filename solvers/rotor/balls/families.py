@@ -103,12 +103,7 @@ class Polygons:
 def growth_ranges(members: Sequence[Member]) -> Array:
     """Least and largest growth of small motions across the families of some states, 1/s, shape (s, 2).
 
-    A search along each family from members all over it; the same draws at all speeds. States of one machine,
-    with or without liquid in step.
-
-    Parameters
-    ----------
-    members : one of each family
+    A search along each family from members all over it, with the same draws at all speeds.
     """
     found = np.full((len(members), 2), np.nan)
     groups: dict[bytes, list[int]] = {}
