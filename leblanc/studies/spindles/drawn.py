@@ -30,19 +30,7 @@ _TOUCH = 1e-9  # m, by which sections that meet may overlap
 def spindle_view(
     scene: Scene, number: int | None = None, speed: float | None = None, factor: float | None = None
 ) -> SpindleView:
-    """A spindle unit in one of the natural motions of its band.
-
-    Parameters
-    ----------
-    scene : of kind "spindle"
-    number : which natural motion, from 1; the first if nothing is given
-    speed : the natural motion nearest to this frequency instead, rad/s
-    factor : of the deflection as drawn, over what would be chosen
-
-    Raises
-    ------
-    InputError : another rotor, no such natural motion, a value out of its range
-    """
+    """A spindle unit in one of the natural motions of its band."""
     rotor = scene.rotor
     if not isinstance(rotor, Spindle):
         raise InputError("rotor.kind", rotor.kind, "spindle for this")
@@ -105,12 +93,7 @@ def _sections(beam: Beam, place: float) -> tuple[DrawnSection, ...]:
 
 
 def levels_of(beams: list[tuple[DrawnSection, ...]]) -> list[int]:
-    """Level of each beam: on the axis as long as no two would lie in one another, else beside it.
-
-    Parameters
-    ----------
-    beams : sections of each
-    """
+    """Level of each beam: on the axis as long as no two would lie in one another, else beside it."""
     levels: list[int] = []
     for own in beams:
         level = 0

@@ -22,16 +22,7 @@ _CHECKED = 50  # frequencies at which the way by reactions is gone as well
 
 
 def run_spindle(scene: Scene) -> SpindleResult:
-    """Answer of a spindle unit to a unit harmonic force over its frequency [theory: spindle, eq. 10-14].
-
-    Parameters
-    ----------
-    scene : the scene; its speeds are the frequencies of the force
-
-    Raises
-    ------
-    InputError : its rotor is of another kind, a frequency beyond the range of the beam theory
-    """
+    """Answer of a spindle unit to a unit harmonic force over its frequency [theory: spindle, eq. 10-14]."""
     rotor = scene.rotor
     if not isinstance(rotor, Spindle):
         raise InputError("rotor.kind", rotor.kind, "spindle for this")
@@ -92,12 +83,7 @@ def _ways_apart(machine: Structure, frequency: Array, points: list[Coordinate], 
 
 
 def places_of(machine: Structure) -> tuple[float, ...]:
-    """First station of each beam along the machine, m: the ends of a joint stand at one place.
-
-    Parameters
-    ----------
-    machine : beams and joints; a beam that no joint leads to begins at 0
-    """
+    """First station of each beam along the machine, m: the ends of a joint stand at one place."""
     within = [np.cumsum([0.0, *(section.length for section in beam)]) for beam in machine.beams]
     known = {0: 0.0}
     for _ in machine.beams:
