@@ -113,7 +113,7 @@ def round_sections(
 def section_of_file(
     chamber: Chamber, volume: float, fineness: Resolution, source: SectionSource
 ) -> tuple[list[LiquidSection], list[Note], str]:
-    """Coarser and finer mesh of the liquid in a chamber from a file, notes, and a description of the section."""
+    """Coarser and finer mesh of the liquid in a chamber from a file, notes, and the section described."""
     from meshes.findings import mesh_findings
     from meshes.refine.bisection import halved, straightened
     from meshes.refine.waterline import liquid_outside, surface_radius_of

@@ -29,7 +29,7 @@ _PASSES = 4  # of weights by the fitted values
 
 
 def parse_noise(text: str, field: str = "noise") -> tuple[str, float]:
-    """Kind of the noise and its size: "estimate" and 0, "relative" and a share, "length" or "angle" and SI."""
+    """Kind of the noise and its size: "estimate", 0; "relative", a share; "length" or "angle", SI."""
     if text.strip() == ESTIMATE:
         return ESTIMATE, 0.0
     kind, size = "", 0.0

@@ -45,7 +45,7 @@ def planes_of(scene: Scene) -> tuple[float, ...]:
 
 
 def liquid_beside(scene: Scene) -> tuple[str, LiquidModel]:
-    """Model of the liquid that rests in the drum beside balls, and its name; auto is the exact equilibrium."""
+    """Model of the liquid that rests beside balls, and its name; auto is the exact equilibrium."""
     require_clear(scene, "balls beside liquid")
     name = "statics" if scene.model.liquid == "auto" else scene.model.liquid
     if not scene.fills:

@@ -110,7 +110,7 @@ def wall_is_dry(fill: Fill, volume: float, deflection: complex, speed: float, gr
 def meets_inner_wall(
     fill: Fill, volume: float, deflection: complex, speed: float, gravity: float, depth: float, gap: float
 ) -> bool:
-    """Liquid at rest comes as near as a gap to a core or an inner wall, or past the edges of closed baffles."""
+    """Liquid at rest comes within a gap of a core or inner wall, or past edges of closed baffles."""
     wall = _dry_walls(fill, depth)
     if wall.size == 0:
         return False
