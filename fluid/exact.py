@@ -1,8 +1,8 @@
 """Exact waves of the Korteweg-de Vries equation on the drum: solitary and cnoidal waves.
 
 All for eta_t + lambda0 eta_theta + alpha eta eta_theta + delta eta_theta_theta_theta = 0
-[theory: kdv, eq. 1] with coefficients of either sign. The waves are humps (height above 0) where alpha and
-delta have one sign, as in both families of waves in the layer, and troughs where they have two.
+[theory: kdv, eq. 1]. The waves are humps where alpha and delta have one sign, as in both families of waves in
+the layer, and troughs where they have two.
 """
 
 from __future__ import annotations
@@ -36,18 +36,10 @@ class TravellingWave:
     complement: float  #: 1 - m of the elliptic functions; 0 for a solitary wave
 
     def profile(self, theta: ArrayLike, time: ArrayLike = 0.0) -> Array:
-        """Field at given angles and times; a crest (or trough) passes theta = 0 at time 0.
+        """Field eta (m^2) at given angles and times; a crest (or trough) passes theta = 0 at time 0.
 
-        [theory: steppers, eq. 12-13]; narrow crests as a sum over neighbours [theory: steppers, eq. 15].
-
-        Parameters
-        ----------
-        theta : rad, shape (...,); a solitary wave is cut half way round the drum from its crest
-        time : s, shape (...,)
-
-        Returns
-        -------
-        eta, m^2, of the common shape
+        [theory: steppers, eq. 12-13]; narrow crests as a sum over neighbours [theory: steppers, eq. 15]. A
+        solitary wave is cut half way round the drum.
         """
         from scipy.special import ellipj, ellipkm1
 
@@ -71,19 +63,8 @@ def solitary_wave(c: KdvCoefficients, height: float, mean_zero: bool = False) ->
 
     A solution up to its tails, 4 H e^{-2 pi kappa} at the far side; the cnoidal wave has no such restriction.
 
-    Parameters
-    ----------
-    c : linear speed, steepening, dispersion
-    height : H, m^2, of the sign of steepening times dispersion
-    mean_zero : whether the level is lowered so that the wave holds no liquid beyond the mean; 0 otherwise
-
-    Returns
-    -------
-    TravellingWave
-
-    Raises
-    ------
-    InputError : a height of the wrong sign
+    Height of the sign of steepening times dispersion, m^2; with `mean_zero` its level is lowered so that it
+    holds no liquid beyond the mean.
     """
     sharpness = math.sqrt(_sharpness_squared(c, height))
     level = -height * math.tanh(math.pi * sharpness) / (math.pi * sharpness) if mean_zero else 0.0
@@ -94,20 +75,8 @@ def solitary_wave(c: KdvCoefficients, height: float, mean_zero: bool = False) ->
 def cnoidal_wave(c: KdvCoefficients, height: float, crests: int = 1, mean: float = 0.0) -> TravellingWave:
     """Periodic wave of the KdV equation of a given height [theory: steppers, eq. 13-14].
 
-    Parameters
-    ----------
-    c : linear speed, steepening, dispersion
-    height : H from trough to crest, m^2, of the sign of steepening times dispersion
-    crests : number round the drum, 1 or more
-    mean : of eta, m^2
-
-    Returns
-    -------
-    TravellingWave
-
-    Raises
-    ------
-    InputError : a height of the wrong sign or so large that the crests are shocks, no crests
+    Height from trough to crest, m^2, of the sign of steepening times dispersion; an `InputError` where the
+    crests would be shocks.
     """
     from scipy.optimize import brentq
     from scipy.special import ellipkm1

@@ -51,30 +51,9 @@ class KdvCoefficients:
 
 
 def coefficients(radius: float, surface_radius: float, spin: float, family: int) -> KdvCoefficients:
-    """Coefficients of one family of waves.
+    """Coefficients of one family of waves, +1 prograde, -1 retrograde.
 
     [theory: kdv, eq. 5, 8, 9, 11], from the annular long-wave equations and the exact dispersion.
-
-    Parameters
-    ----------
-    radius : wall radius R, m
-    surface_radius : mean free-surface radius a, m, below `radius`
-    spin : spin speed Omega, rad/s, above 0
-    family : +1 prograde, -1 retrograde
-
-    Returns
-    -------
-    KdvCoefficients
-
-    Raises
-    ------
-    InputError : a value that is not finite and positive, no layer, another family
-
-    Examples
-    --------
-    >>> c = coefficients(0.15, 0.135, 40.0, -1)
-    >>> print(f"{c.linear_speed:.8f} {c.steepening:.4f} {c.dispersion:.8f}")
-    -9.43615322 -5095.4776 -0.01206823
     """
     require_positive("radius", radius)
     require_positive("surface_radius", surface_radius)
@@ -106,14 +85,7 @@ def forcing(c: KdvCoefficients, acceleration: ArrayLike) -> Array:
 
     q = +-L a F/(2 S) [theory: kdv, eq. 11].
 
-    Parameters
-    ----------
-    c : the family
-    acceleration : F = omega_w^2 w0 of the axis, m/s^2, shape (...,)
-
-    Returns
-    -------
-    q, m^2/s, shape (...,); positive for the prograde family
+    Shape (...,), m^2/s; positive for the prograde family.
     """
     return np.asarray(c.coupling * np.asarray(acceleration, dtype=float))
 
@@ -122,19 +94,6 @@ def decay(c: KdvCoefficients, friction_rate: ArrayLike) -> Array:
     """Rate gamma at which a linear wall friction damps the waves of the family.
 
     gamma = k |lambda0|/(2 S), about k/2 [theory: kdv, eq. 12].
-
-    Parameters
-    ----------
-    c : the family
-    friction_rate : k of the friction force -k u per mass, 1/s, shape (...,), 0 or above
-
-    Returns
-    -------
-    gamma, 1/s, shape (...,)
-
-    Raises
-    ------
-    InputError : a negative or not finite friction rate
     """
     k = np.asarray(friction_rate, dtype=float)
     if not bool(np.all(np.isfinite(k) & (k >= 0.0))):
@@ -147,16 +106,6 @@ def wave_frequency(mode: ArrayLike, c: KdvCoefficients, whitham: bool) -> Array:
 
     KdV: n lambda0 - delta n^3 [theory: kdv, eq. 10]; Whitham: the exact sigma(n) of the family
     [theory: waves, eq. 7]. Both are odd in n.
-
-    Parameters
-    ----------
-    mode : whole number n of crests, shape (...,), of either sign
-    c : the family
-    whitham : exact dispersion instead of its first two terms
-
-    Returns
-    -------
-    omega, rad/s, shape (...,)
     """
     n = np.asarray(mode, dtype=float)
     if not whitham:
@@ -167,24 +116,11 @@ def wave_frequency(mode: ArrayLike, c: KdvCoefficients, whitham: bool) -> Array:
 
 
 def rescaling(c: KdvCoefficients, steepening: float, dispersion: float) -> tuple[float, float]:
-    """Scales of field and angle that lead to u_t + p u u_x + d u_xxx = 0 in the frame of linear long waves.
+    """Scales of field (1/m^2) and angle that lead to u_t + p u u_x + d u_xxx = 0 in the frame of linear long
+    waves.
 
     u = field_scale * eta, x = angle_scale * (theta - lambda0 t), the time kept; a negative angle scale
     mirrors the drum [theory: kdv, eq. 14].
-
-    Parameters
-    ----------
-    c : the family
-    steepening : p of the other convention, not 0
-    dispersion : d of the other convention, not 0
-
-    Returns
-    -------
-    field_scale, 1/m^2, and angle_scale
-
-    Raises
-    ------
-    InputError : a coefficient that is 0 or not finite
     """
     for name, value in (("steepening", steepening), ("dispersion", dispersion)):
         if not math.isfinite(value) or value == 0.0:
@@ -199,14 +135,8 @@ def offset(c: KdvCoefficients, profile: ArrayLike) -> Complex:
     a/(2 pi A0) times the integral of eta e^{i xi} [theory: kdv, eq. 15]. What it leaves out is smaller than
     the terms kept by eta/a^2, while eta itself is known to a part eta/A0.
 
-    Parameters
-    ----------
-    c : the family
-    profile : eta, m^2, at equal steps of xi = theta - s t all round, from the deflection, shape (..., points)
-
-    Returns
-    -------
-    Offset, m, real part along the deflection, imaginary part 90 deg ahead of it, shape (...,)
+    eta at equal steps of xi = theta - s t all round; real part along the deflection, imaginary part 90 deg
+    ahead of it, m.
     """
     eta = np.asarray(profile, dtype=float)
     angle = 2.0 * np.pi * np.arange(eta.shape[-1]) / eta.shape[-1]
@@ -218,20 +148,6 @@ def force_ratio(c: KdvCoefficients, liquid_offset: ArrayLike, whirl_amplitude: A
     """Force of a steady wave on the drum, over that of a full drum m_f omega_w^2 w0.
 
     G = (1 - 1/kappa)(1 + d/w0): the liquid's momentum [theory: kdv, eq. 16], exact for the offset given.
-
-    Parameters
-    ----------
-    c : the family
-    liquid_offset : d from `offset`, m, shape (...,)
-    whirl_amplitude : w0, m, shape (...,), above 0
-
-    Returns
-    -------
-    G, real part along the deflection, shape (...,)
-
-    Raises
-    ------
-    InputError : a whirl amplitude that is not positive
     """
     w = np.asarray(whirl_amplitude, dtype=float)
     if not bool(np.all(np.isfinite(w) & (w > 0.0))):
@@ -253,14 +169,7 @@ class Validity:
 
 
 def validity(c: KdvCoefficients, profile: ArrayLike, whirl_speed: ArrayLike) -> Validity:
-    """Size of what the one-family wave leaves out [theory: kdv, eq. 17].
-
-    Parameters
-    ----------
-    c : the family
-    profile : eta, m^2, shape (..., points)
-    whirl_speed : s seen from the drum, rad/s, shape (...,)
-    """
+    """Size of what the one-family wave leaves out [theory: kdv, eq. 17]."""
     eta, s = np.asarray(profile, dtype=float), np.asarray(whirl_speed, dtype=float)
     gap = np.abs(s - c.linear_speed)
     other = np.abs(s - c.other_speed)

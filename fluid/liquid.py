@@ -285,10 +285,7 @@ _GRADED = CELSIUS + 25.0  # K, at which silicone oils have the viscosity that th
 def silicone_law(grade: float, density: float) -> GivenLaw:
     """A silicone oil (polydimethylsiloxane) over temperature [KF96].
 
-    Parameters
-    ----------
-    grade : its viscosity at 25 degrees Celsius, m^2/s, from 100 mm^2/s up
-    density : at that temperature, kg/m^3
+    Grade in m^2/s, from 100 mm^2/s up, and density, both at 25 degrees Celsius.
     """
     span = CELSIUS - 25.0, CELSIUS + 250.0
     thickness = Vogel(grade * math.exp(-SILICONE_SLOPE / _GRADED), SILICONE_SLOPE, 0.0, *span)

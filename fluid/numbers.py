@@ -31,16 +31,7 @@ class LayerNumbers:
 def layer_numbers(fill: Fill, speed: ArrayLike, gravity: float, axial_gravity: float) -> LayerNumbers:
     """Numbers of one chamber's layer [theory: statics, eq. 2].
 
-    Parameters
-    ----------
-    fill : chamber and liquid, with some liquid in it
-    speed : spin speed Omega, rad/s, shape (...,), > 0
-    gravity : g, m/s^2
-    axial_gravity : its component along the axis, m/s^2
-
-    Returns
-    -------
-    LayerNumbers; a number whose denominator is 0 is infinite
+    A number whose denominator is 0 is infinite.
     """
     spin = np.asarray(speed, dtype=float)
     radius, viscosity = fill.chamber.radius, fill.liquid.viscosity
@@ -78,17 +69,7 @@ def whirl_numbers(
 ) -> WhirlNumbers:
     """Numbers of one layer under one whirl [theory: waves, eq. 7] [theory: long_wave, eq. 10].
 
-    Parameters
-    ----------
-    fill : chamber and liquid, with some liquid and a free surface
-    spin : spin speed Omega, rad/s, above 0
-    whirl_speed : omega_w in space, rad/s
-    amplitude : w0, m
-    gravity : across the axis, m/s^2
-
-    Returns
-    -------
-    WhirlNumbers; a number whose denominator is 0 is infinite
+    A number whose denominator is 0 is infinite.
     """
     radius, surface, depth = fill.chamber.radius, fill.surface_radius, fill.depth
     viscosity, slip = fill.liquid.viscosity, whirl_speed - spin

@@ -21,19 +21,10 @@ CYLINDER_STEEPNESS = 1e30
 
 
 def steepness(speed: ArrayLike, gravity: ArrayLike, radius: ArrayLike, height: ArrayLike) -> Array:
-    """Rise of the free surface over the chamber's radius, in chamber heights.
+    """Rise of the free surface over the chamber's radius, in chamber heights, 0 (flat) to
+    `CYLINDER_STEEPNESS`.
 
-    B = beta R^2/h with beta = Omega^2/(2 g) [theory: statics, eq. 2]; capped where the surface is a cylinder.
-
-    Parameters
-    ----------
-    speed : spin speed Omega, rad/s
-    gravity : gravity along the axis g, m/s^2; 0 for a horizontal axis
-    radius, height : of the chamber, m
-
-    Returns
-    -------
-    B, from 0 (flat) to `CYLINDER_STEEPNESS`; 0 where both speed and gravity are 0
+    B = beta R^2/h with beta = Omega^2/(2 g) [theory: statics, eq. 2]; 0 where both speed and gravity are 0.
     """
     spin, g, wall, h = np.broadcast_arrays(
         *(np.asarray(x, dtype=float) for x in (speed, gravity, radius, height))
@@ -81,30 +72,10 @@ class Lens:
 
 
 def lens_moments(disc_radius: ArrayLike, radius: float, eccentricity: ArrayLike) -> Lens:
-    """Moments of a disc about the rotation axis cut by the chamber's disc.
+    """Moments A, S, J and T of a disc about the rotation axis cut by the chamber's disc at a distance e.
 
     Holds whether the circles cross, one lies in the other, or they are apart [theory: statics, eq. 5-6].
-    Rounding is a few units in the last place of (r + R + e)^n, n the dimension of the moment: where the lens
-    is a sliver, its own relative accuracy is less.
-
-    Parameters
-    ----------
-    disc_radius : r of the disc about the rotation axis, m, shape (...,), 0 or above; may be infinite
-    radius : of the chamber R, m
-    eccentricity : distance e of the chamber's centre from the rotation axis, m, shape (...,), 0 or above
-
-    Returns
-    -------
-    A, S, J and T of the lens, shape (...,)
-
-    Raises
-    ------
-    InputError : a radius or distance outside its range
-
-    Examples
-    --------
-    >>> print(f"{float(lens_moments(1.0, 1.0, 1.0).area):.6f}")
-    1.228370
+    Rounding is a few units in the last place of (r + R + e)^n, n the dimension of the moment.
     """
     require_positive("radius", radius)
     r, e = np.broadcast_arrays(np.asarray(disc_radius, dtype=float), np.asarray(eccentricity, dtype=float))
@@ -146,8 +117,7 @@ def lens_moments(disc_radius: ArrayLike, radius: float, eccentricity: ArrayLike)
 def _half_angles(r: Array, radius: float, e: Array) -> tuple[Array, Array]:
     """Half the angle of the chord seen from the rotation axis and from the chamber's centre.
 
-    From the half-angle formulas of the triangle with sides r, R, e; none of the factors is a difference of
-    squares.
+    None of the factors is a difference of squares.
     """
     total = r + radius + e
     # The clip takes back what rounding puts beyond tangency.

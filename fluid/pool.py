@@ -45,13 +45,7 @@ class Pool:
 def pool_of(fill: Fill) -> Pool | None:
     """The liquid of a chamber lying at its bottom.
 
-    Parameters
-    ----------
-    fill : chamber, with circular walls about its axis, and liquid
-
-    Returns
-    -------
-    None where there is no free surface: an empty or a full chamber
+    None where there is no free surface: an empty or a full chamber.
     """
     chamber = fill.chamber
     if not 0.0 < fill.volume < chamber.capacity * FULL:
@@ -78,18 +72,7 @@ def pool_of(fill: Fill) -> Pool | None:
 def sloshing_number(half_angle: float) -> float:
     """Slowest frequency of a liquid in a lying cylinder, omega^2 R/g [theory: pool, eq. 3-4].
 
-    Parameters
-    ----------
-    half_angle : half of the wetted arc, rad, above 0, below pi
-
-    Returns
-    -------
-    1 for a shallow pool, 1.3557 for a half full cylinder
-
-    Examples
-    --------
-    >>> round(sloshing_number(0.5 * math.pi), 6)
-    1.355727
+    For half of the wetted arc, rad: 1 for a shallow pool, 1.3557 for a half full cylinder.
     """
     point, weight = np.polynomial.legendre.leggauss(_POINTS)
     place = 0.5 * _STRIP * (point + 1.0)
@@ -104,16 +87,7 @@ def sloshing_number(half_angle: float) -> float:
 def wall_torque(fill: Fill, pool: Pool, friction: Friction, rotation: ArrayLike) -> Array:
     """Torque of walls and baffles on a pool past which they move [theory: pool, eq. 6-7].
 
-    Parameters
-    ----------
-    fill : chamber and liquid
-    pool : that lies in it, as from `pool_of`
-    friction : law; the laminar one at the frequency at which a point of the wall comes by
-    rotation : of the chamber relative to the pool, rad/s, shape (...,)
-
-    Returns
-    -------
-    N m, of the sign of the rotation, shape (...,)
+    N m, of the sign of the rotation; the laminar law at the frequency at which a point of the wall comes by.
     """
     turn = np.asarray(rotation, dtype=float)
     pushed = _baffle_factor(fill, pool) * turn * np.abs(turn)
@@ -169,22 +143,7 @@ def balance_speed(fill: Fill, pool: Pool, friction: Friction, gravity: float) ->
 
     Above it gravity cannot hold the pool: it is carried round.
 
-    Parameters
-    ----------
-    fill, pool, friction : as for `wall_torque`
-    gravity : across the axis, m/s^2
-
-    Returns
-    -------
-    rad/s; inf where no speed up to 1e9 times the pendulum's frequency suffices
-
-    Examples
-    --------
-    >>> from fluid.liquid import Liquid
-    >>> from meshes.chamber import Chamber
-    >>> fill = Fill(Chamber(0.24, 0.06, 0.20), Liquid("brine", 1197.0, 1.6e-6), 1.2e-3)
-    >>> print(f"{balance_speed(fill, pool_of(fill), Friction('linear', 5.0), 9.81):.2f}")
-    7.07
+    rad/s; inf where no speed up to 1e9 times the pendulum's frequency suffices.
     """
     weight = pool.mass * gravity * pool.arm
 
@@ -218,10 +177,7 @@ class _Segment:
 def _segment(radius: float, height: float) -> _Segment:
     """Part of a disc that lies at least so far below its centre [theory: pool, eq. 1-2].
 
-    Parameters
-    ----------
-    radius : of the disc, m, may be 0
-    height : of the centre above the level, m; negative where the disc is more than half below it
+    The height of the centre above the level is negative where more than half lies below.
     """
     if radius <= height:
         return _Segment(0.0, 0.0, 0.0, 0.0, 0.0)

@@ -14,47 +14,17 @@ from meshes.errors import InputError, require_not_negative, require_positive
 
 
 def dry_radius_as_printed(chamber: Chamber, eccentricity: float) -> float:
-    """Radius R - e of the waterline on the floor that touches the near wall, right as printed [DR18, eq. 19].
-
-    Parameters
-    ----------
-    chamber : without an inner wall
-    eccentricity : distance e of the rotation axis from the geometric axis, m, below R
-
-    Returns
-    -------
-    R_1, m
-
-    Raises
-    ------
-    InputError : a value outside its range, a chamber with an inner wall
-    """
+    """Radius R - e of the floor's waterline that touches the near wall, right as printed [DR18, eq. 19]."""
     _require_plain(chamber)
     _require_axis_inside(chamber, eccentricity)
     return chamber.radius - eccentricity
 
 
 def optimal_volume_as_printed(chamber: Chamber, eccentricity: float, speed: float, gravity: float) -> float:
-    """Optimal volume as printed: far too large [DR18, eq. 18].
+    """Optimal volume (m^3) of a chamber without an inner wall as printed: far too large [DR18, eq. 18].
 
     The polar moment of the air's section at the lid is taken about a point of its rim (3/32 s^4) where the
     rotation axis is meant.
-
-    Parameters
-    ----------
-    chamber : without an inner wall
-    eccentricity : distance e of the rotation axis from the geometric axis, m, below R
-    speed : spin speed Omega, rad/s, above 0
-    gravity : along the axis g, m/s^2, above 0
-
-    Returns
-    -------
-    V, m^3
-
-    Raises
-    ------
-    InputError : a value outside its range, also where Omega^2/(2 g) is 0 or infinite; a chamber with an inner
-        wall
     """
     return _disc_volume(chamber, eccentricity, speed, gravity, corrected=False)
 
@@ -66,15 +36,6 @@ def optimal_volume_disc_corrected(
 
     Still an approximation: the air's section at the lid is a lens, for which the source puts the disc with
     the same extent along the deflection.
-
-    Parameters, Returns, Raises
-    ---------------------------
-    As in `optimal_volume_as_printed`.
-
-    Examples
-    --------
-    >>> print(f"{optimal_volume_disc_corrected(Chamber(0.2, 0.05), 0.001, 90.0, 9.81) * 1e6:.1f} ml")
-    56.7 ml
     """
     return _disc_volume(chamber, eccentricity, speed, gravity, corrected=True)
 
@@ -87,21 +48,7 @@ def dry_volume_as_printed(
     A square root is missing, a tangent stands for an arctangent, the sector's angle is halved and taken on
     the wet side.
 
-    Parameters
-    ----------
-    chamber : without an inner wall
-    surface_constant : C* of the source, z = beta r^2 - C*, m
-    eccentricity : distance e of the rotation axis from the geometric axis, m, above 0 and below R
-    speed : spin speed Omega, rad/s, above 0
-    gravity : along the axis g, m/s^2, above 0
-
-    Returns
-    -------
-    V, m^3
-
-    Raises
-    ------
-    InputError : a waterline on the floor that does not cross the side wall; a value outside its range
+    The constant C* is that of the source, z = beta r^2 - C*, m.
     """
     beta, chord, cosine = _floor_crossing(chamber, surface_constant, eccentricity, speed, gravity)
     R, h, e, c = chamber.radius, chamber.height, eccentricity, surface_constant
@@ -120,10 +67,6 @@ def dry_volume_frozen_angle(
     """Volume of liquid that leaves a part of the wall dry, by the repaired formula [DR18, eq. 20].
 
     The air's section at each height is a lens; its angles are those at the floor [theory: errata, eq. 2].
-
-    Parameters, Returns, Raises
-    ---------------------------
-    As in `dry_volume_as_printed`.
     """
     beta, chord, cosine = _floor_crossing(chamber, surface_constant, eccentricity, speed, gravity)
     R, h, e, c = chamber.radius, chamber.height, eccentricity, surface_constant
@@ -141,21 +84,7 @@ def liquid_volume_by_lens(
 
     Chamber minus air: digits are lost as beta R^2/h grows and as the fill shrinks.
 
-    Parameters
-    ----------
-    chamber : without an inner wall
-    surface_constant : C* of the source, z = beta r^2 - C*, m
-    eccentricity : distance e of the rotation axis from the geometric axis, m, 0 or above
-    speed : spin speed Omega, rad/s, above 0
-    gravity : along the axis g, m/s^2, above 0
-
-    Returns
-    -------
-    V, m^3
-
-    Raises
-    ------
-    InputError : a value outside its range, a chamber with an inner wall
+    For C* of the source, z = beta r^2 - C*, m.
     """
     beta = _steepness(chamber, speed, gravity)
     require_not_negative("eccentricity", eccentricity)
@@ -169,17 +98,7 @@ def liquid_volume_by_lens(
 
 
 def optimal_volume_by_lens(chamber: Chamber, eccentricity: float, speed: float, gravity: float) -> float:
-    """Volume whose surface just touches the near wall at the floor, exact [theory: statics, eq. 8].
-
-    Parameters, Returns, Raises
-    ---------------------------
-    As in `optimal_volume_as_printed`.
-
-    Examples
-    --------
-    >>> print(f"{optimal_volume_by_lens(Chamber(0.2, 0.05), 0.001, 90.0, 9.81) * 1e6:.4f} ml")
-    54.4396 ml
-    """
+    """Volume whose surface just touches the near wall at the floor, exact [theory: statics, eq. 8]."""
     beta = _steepness(chamber, speed, gravity)
     dry = dry_radius_as_printed(chamber, eccentricity)
     return liquid_volume_by_lens(chamber, beta * dry**2, eccentricity, speed, gravity)
@@ -189,19 +108,6 @@ def liquid_angle_as_printed(lag: float, ratio: float) -> float:
     """Angle from the liquid to the rotor's unbalance as printed [DR18, eq. 25; DG21, eq. 4].
 
     Right for k = 1 only: the cosine has lost a factor 1/k; the right form is in `solvers.rotor.vector_model`.
-
-    Parameters
-    ----------
-    lag : delta, rad
-    ratio : k = rotor's unbalance over the liquid's, above 0
-
-    Returns
-    -------
-    alpha_0, rad, 0 to pi
-
-    Raises
-    ------
-    InputError : a value outside its range; a ratio for which the printed root or arccosine is not real
     """
     require_positive("ratio", ratio)
     if not math.isfinite(lag):

@@ -54,18 +54,8 @@ class Constant:
 class Tabulated:
     """A property from a table [theory: liquids, eq. 1].
 
-    Between its points a piecewise cubic that never leaves their range (PCHIP), of the logarithm of the
-    property. Its error falls with the third power of the distance of even points; two points are joined by
-    a straight line.
-
-    Raises
-    ------
-    InputError : temperatures that do not rise, values that are not finite and above 0, different lengths
-
-    Examples
-    --------
-    >>> round(Tabulated((280.0, 300.0, 320.0), (1.4e-6, 0.86e-6, 0.58e-6)).at(300.0), 9)
-    8.6e-07
+    A piecewise cubic that never leaves the range of its points (PCHIP), of the logarithm of the property; its
+    error falls with the third power of the distance of even points.
     """
 
     temperatures: tuple[float, ...]  #: rising, K; at least two
@@ -105,17 +95,7 @@ class Tabulated:
 
 @dataclass(frozen=True)
 class Expansion:
-    """Density of a liquid whose volume grows linearly [theory: liquids, eq. 2].
-
-    Raises
-    ------
-    InputError : a density that is not above 0, a range that does not rise, or in which the volume vanishes
-
-    Examples
-    --------
-    >>> round(Expansion(870.0, 288.15, 7e-4, 273.15, 353.15).at(298.15), 3)
-    863.952
-    """
+    """Density of a liquid whose volume grows linearly [theory: liquids, eq. 2]."""
 
     value: float  #: density at that temperature, kg/m^3
     temperature: float  #: K
@@ -143,17 +123,6 @@ class Walther:
     """Kinematic viscosity of an oil through two points, ASTM D341 [theory: liquids, eq. 3].
 
     log log(nu + 0.7) is a straight line over log T, nu in mm^2/s.
-
-    Raises
-    ------
-    InputError : not two points, viscosities that are too small or do not fall, a range that does not rise, or
-        in which the viscosity falls below 2 mm^2/s
-
-    Examples
-    --------
-    >>> law = Walther((313.15, 373.15), (32e-6, 5.4e-6), 273.15, 373.15)
-    >>> round(law.at(353.15) * 1e6, 1)
-    8.5
     """
 
     temperatures: tuple[float, float]  #: of the two points, K, rising
@@ -186,16 +155,6 @@ class Vogel:
     """Kinematic viscosity nu = a exp(b / (T - c)) [theory: liquids, eq. 4, 5].
 
     With c = 0 it is Andrade's law.
-
-    Raises
-    ------
-    InputError : a coefficient a that is not above 0, a negative b, a range that does not rise or reaches c
-
-    Examples
-    --------
-    >>> law = Vogel(a=1e-6, b=300.0, c=150.0, lowest=273.15, highest=373.15)
-    >>> round(law.at(300.0) * 1e6, 3)
-    7.389
     """
 
     a: float  #: m^2/s
@@ -225,12 +184,7 @@ def _require_range(lowest: float, highest: float) -> None:
 
 @dataclass(frozen=True)
 class GivenLaw:
-    """Density and viscosity of a liquid over temperature, each by a law of its own.
-
-    Raises
-    ------
-    InputError : ranges that have no temperature in common, a reference out of them
-    """
+    """Density and viscosity of a liquid over temperature, each by a law of its own."""
 
     density: PropertyLaw  #: kg/m^3
     viscosity: PropertyLaw  #: kinematic, m^2/s
@@ -256,12 +210,7 @@ class GivenLaw:
         return min(self.density.highest, self.viscosity.highest)
 
     def relative(self, temperature: float) -> tuple[float, float]:
-        """Density and kinematic viscosity at a temperature over those at the reference.
-
-        Parameters
-        ----------
-        temperature : K
-        """
+        """Density and kinematic viscosity at a temperature over those at the reference."""
         pairs = ((law.at(temperature), law.at(self.reference)) for law in (self.density, self.viscosity))
         rho, nu = (here / there if there > 0.0 else 1.0 for here, there in pairs)
         return rho, nu

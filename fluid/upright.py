@@ -24,18 +24,11 @@ _TWO = np.array([-1.0, 1.0]) / np.sqrt(3.0)
 
 
 class FrozenLiquid(NamedTuple):
-    """Moments of a liquid that turns with its chamber as one body; shapes (...,).
+    """Moments of a liquid that turns with its chamber as one body; shapes (...,)."""
 
-    Parameters
-    ----------
-    polar : about the axis, kg m^2
-    transverse : about a line across the axis through the fixed point, kg m^2
-    static : first moment of the heights above the fixed point, kg m
-    """
-
-    polar: Array
-    transverse: Array
-    static: Array
+    polar: Array  #: about the axis, kg m^2
+    transverse: Array  #: about a line across the axis through the fixed point, kg m^2
+    static: Array  #: first moment of the heights above the fixed point, kg m
 
 
 def frozen_liquid(
@@ -48,23 +41,7 @@ def frozen_liquid(
 ) -> FrozenLiquid:
     """Moments of the liquid below its paraboloid, as if it were frozen [theory: statics, eq. 20].
 
-    Parameters
-    ----------
-    chamber, floor, surface_constant, speed, gravity, density : see `free_surface_term`
-
-    Returns
-    -------
-    Its share in C_0, A_0 and M x_c3 of the whole
-
-    Raises
-    ------
-    InputError : a density or gravity that is not positive, a value that is not finite
-
-    Examples
-    --------
-    >>> full = frozen_liquid(Chamber(radius=0.2, height=0.1), 0.0, 0.1, 0.0, 9.81, 1000.0)
-    >>> print(f"{full.polar:.6f} {full.static:.6f}")
-    0.251327 0.628319
+    Its share in C_0, A_0 and M x_c3 of the whole; arguments as of `free_surface_term`.
     """
     constant, beta = _surface(floor, surface_constant, speed, gravity, density)
     inner, outer = _waterlines(chamber, constant, beta)
@@ -93,28 +70,12 @@ def free_surface_term(
     gravity: float,
     density: float,
 ) -> Array:
-    """What the freedom of the liquid's surface takes from the stability of the upright rotation.
+    """What the freedom of the liquid's surface takes from the stability of the upright rotation, a, N m.
 
     a = rho g int int (1 + Omega^2 z/g)^2 r^3 cos(phi)^2 dr dphi over the plan of the free surface, z the
-    height of the surface above the fixed point [DR18, eq. 22, whose integral over the angle lacks cos(phi)^2;
-    theory: statics, eq. 19]. Concentric chamber, rotation axis through its centre.
-
-    Parameters
-    ----------
-    chamber : its plane is not used
-    floor : height of the chamber's floor above the fixed point, m
-    surface_constant : C of the surface z = beta r^2 + C, from the chamber's floor, m, shape (...,)
-    speed : spin speed Omega, rad/s, shape (...,)
-    gravity : along the axis g, m/s^2, above 0
-    density : rho, kg/m^3
-
-    Returns
-    -------
-    a, N m, shape (...,), 0 or above; 0 where there is no free surface
-
-    Raises
-    ------
-    InputError : a density or gravity that is not positive, a value that is not finite
+    height of the surface above the fixed point
+    [DR18, eq. 22, whose integral over the angle lacks cos(phi)^2; theory: statics, eq. 19]. `floor` is the
+    height of the chamber's floor above that point, C counts from the floor; 0 without a free surface.
     """
     constant, beta = _surface(floor, surface_constant, speed, gravity, density)
     inner, outer = _waterlines(chamber, constant, beta)
@@ -132,17 +93,8 @@ def cylinder_terms(
 ) -> tuple[FrozenLiquid, Array]:
     """Both without gravity, where the surface is a cylinder [theory: statics, eq. 20 and below eq. 21].
 
-    a = rho pi Omega^2 a_s^2 int z^2 dz over the chamber's height, a_s the surface's radius: the limit of
-    (19) for g to 0.
-
-    Parameters
-    ----------
-    chamber, floor, speed, density : see `free_surface_term`
-    volume : of the liquid, m^3, shape (...,), from 0 to the capacity
-
-    Raises
-    ------
-    InputError : a density that is not positive, a value that is not finite or out of its range
+    a = rho pi Omega^2 a_s^2 int z^2 dz over the chamber's height, a_s the surface's radius: the limit of (19)
+    for g to 0.
     """
     require_positive("density", density)
     amount, omega = np.broadcast_arrays(np.asarray(volume, dtype=float), np.asarray(speed, dtype=float))

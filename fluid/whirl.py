@@ -35,11 +35,6 @@ def plane_layer(fill: Fill, friction: Friction) -> Layer | None:
 
     Quadratic friction damps in proportion to the motion, so it is no friction to an infinitesimal whirl, and
     of the law of the wall it feels the part of the waves, which is the laminar one.
-
-    Parameters
-    ----------
-    fill : chamber and liquid
-    friction : the laminar law takes the liquid's viscosity
     """
     radius = fill.chamber.radius
     if fill.volume == 0.0 or is_full(fill):
@@ -60,11 +55,6 @@ def wall_share(layer_tanh: float, crests: int = 1) -> float:
     """Drag of a wall on a wave over that on the shear of its own velocity, times R [theory: whirl, eq. 12].
 
     n (1 - T_n^2)/T_n: a wall layer moves the wall in by its thickness d, and T_n with it.
-
-    Parameters
-    ----------
-    layer_tanh : T_n = tanh(n L), from 0 to 1
-    crests : n
     """
     return crests * (1.0 - layer_tanh) * (1.0 + layer_tanh) / layer_tanh
 
@@ -74,12 +64,6 @@ def plate_rate(layer_tanh: ArrayLike, spin: ArrayLike, slip: ArrayLike) -> Compl
 
     The flow is the sum of two circles, whose layers the Coriolis force makes unlike: of the energy (1 - T)/2
     goes round as e^{i s t} and (1 + T)/2 the other way.
-
-    Parameters
-    ----------
-    layer_tanh : T_n = tanh(n L), from 0 to 1, shape (...,)
-    spin : Omega, rad/s, shape (...,)
-    slip : s, rad/s, complex, shape (...,)
     """
     return plate_terms(layer_tanh, spin, slip)[0]
 
@@ -95,13 +79,7 @@ def plate_terms(layer_tanh: ArrayLike, spin: ArrayLike, slip: ArrayLike) -> tupl
 
 
 def layer_rate(layer: Layer, spin: ArrayLike, slip: ArrayLike) -> Complex:
-    """All friction of a layer, k of `wave_function`, 1/s, complex with the inertia of wall layers.
-
-    Parameters
-    ----------
-    layer : of a chamber
-    spin, slip : as in `plate_rate`
-    """
+    """All friction of a layer, k of `wave_function`, 1/s, complex with the inertia of wall layers."""
     plates = layer.lids * plate_rate(layer.layer_tanh, spin, slip)
     return np.asarray(layer.rate + stokes_rate(layer.stokes, slip) + plates)
 
@@ -110,11 +88,6 @@ def steady_rate(layer: Layer, spin: ArrayLike) -> Complex:
     """Friction that does not depend on the frequency, from which the search for modes starts, 1/s.
 
     Linear friction, and floor and lid as they drag on the slower free wave, next to which whirls grow.
-
-    Parameters
-    ----------
-    layer : of a chamber
-    spin : Omega, rad/s
     """
     plates = layer.lids * complex(plate_rate(layer.layer_tanh, 1.0, -slower_slip(layer.layer_tanh)))
     return np.asarray(layer.rate + plates * np.sqrt(np.asarray(spin)))
@@ -124,17 +97,7 @@ def body_force_rate(fill: Fill, friction: Friction, spin: float) -> float:
     """k of a force -k u on all the liquid that damps its slower free wave as its walls do, 1/s.
 
     Such a force leaves a flow without vorticity without any, which walls do not: of theirs it has the drag on
-    waves, and no wall layers [theory: potential, eq. 30].
-
-    Parameters
-    ----------
-    fill : chamber and liquid
-    friction : of its walls; a quadratic one drags on no small wave, and has none
-    spin : Omega, rad/s
-
-    Returns
-    -------
-    0 without liquid or without a free surface
+    waves, and no wall layers [theory: potential, eq. 30]. 0 without liquid or without a free surface.
     """
     layer = plane_layer(fill, friction)
     if layer is None:
@@ -143,12 +106,7 @@ def body_force_rate(fill: Fill, friction: Friction, spin: float) -> float:
 
 
 def slower_slip(layer_tanh: float) -> float:
-    """Size of the slower free wave's frequency seen from the drum over the spin, sqrt(T^2 + T) - T.
-
-    Parameters
-    ----------
-    layer_tanh : T, from 0 to 1
-    """
+    """Size of the slower free wave's frequency seen from the drum over the spin, sqrt(T^2 + T) - T."""
     # Without the difference of what is nearly alike.
     return layer_tanh / (math.sqrt(layer_tanh * (layer_tanh + 1.0)) + layer_tanh)
 
@@ -161,27 +119,14 @@ def is_full(fill: Fill) -> bool:
 def stokes_rate(stokes: ArrayLike, slip: ArrayLike) -> Complex:
     """Drag of a laminar oscillating layer, stokes sqrt(i s), 1/s [theory: whirl, eq. 12].
 
-    Of both roots the one with a positive real part: the layer dies out away from the wall. For a real s its
-    real part is the rate of decay [theory: long_wave, eq. 10] and its imaginary part, as large, the inertia.
-
-    Parameters
-    ----------
-    stokes : of `Layer`, s^(-1/2), shape (...,)
-    slip : s = omega - Omega, rad/s, complex, shape (...,)
+    Of both roots the one with a positive real part: the layer decays away from the wall. For a real s its
+    real part is the decay rate [theory: long_wave, eq. 10] and its imaginary part, as large, the inertia.
     """
     return np.asarray(np.asarray(stokes) * np.sqrt(1j * np.asarray(slip, dtype=complex)))
 
 
 def wave_function(layer_tanh: ArrayLike, spin: ArrayLike, slip: ArrayLike, rate: ArrayLike) -> Complex:
-    """E = s^2 - 2 T Omega s - T Omega^2 - i k s, zero at the free waves [theory: whirl, eq. 3].
-
-    Parameters
-    ----------
-    layer_tanh : T, shape (...,)
-    spin : Omega, rad/s, shape (...,)
-    slip : s = omega - Omega, rad/s, complex, shape (...,)
-    rate : k of the friction, 1/s, complex with the inertia of a wall layer, shape (...,)
-    """
+    """E = s^2 - 2 T Omega s - T Omega^2 - i k s, zero at the free waves [theory: whirl, eq. 3]."""
     s, t, omega = np.asarray(slip, dtype=complex), np.asarray(layer_tanh), np.asarray(spin)
     return np.asarray(s * (s - 2.0 * t * omega - 1j * np.asarray(rate)) - t * np.square(omega))
 
@@ -192,11 +137,6 @@ def offset_with_friction(
     """Offset of the liquid's centre of mass from the drum's axis over the deflection of the axis.
 
     d/w = -(1 - T)/2 omega^2/E [theory: whirl, eq. 4].
-
-    Parameters
-    ----------
-    layer_tanh, spin, rate : as in `wave_function`
-    whirl_speed : omega in the standing frame, rad/s, complex, shape (...,), not at a free wave
     """
     omega = np.asarray(whirl_speed, dtype=complex)
     share = 0.5 * (1.0 - np.asarray(layer_tanh))
@@ -210,10 +150,6 @@ def force_with_friction(
     """Force of the layer on its drum over that of a full drum, m_f omega^2 w.
 
     G = 2 T/(1 + T) (1 + d/w): Newton's law for the liquid [theory: whirl, eq. 5].
-
-    Parameters
-    ----------
-    layer_tanh, spin, whirl_speed, rate : as in `offset_with_friction`
     """
     t = np.asarray(layer_tanh)
     filled = 2.0 * t / (1.0 + t)
@@ -225,16 +161,7 @@ def drag_power(layer: Layer, spin: ArrayLike, whirl_speed: float | Array, force:
 
     The force is omega^2 w in a drum whose axis whirls, or gravity, which stands still.
 
-    Parameters
-    ----------
-    layer : of a chamber
-    spin : Omega, rad/s, shape (...,)
-    whirl_speed : omega at which the force goes round in the standing frame, rad/s, shape (...,)
-    force : its size per mass, m/s^2, shape (...,)
-
-    Returns
-    -------
-    W, shape (...,)
+    W, for a force of that size per mass, m/s^2, at omega in the standing frame.
     """
     slip = np.asarray(whirl_speed - np.asarray(spin))
     wave = wave_function(layer.layer_tanh, spin, slip, layer_rate(layer, spin, slip))
@@ -247,14 +174,7 @@ def damped_waves(layer_tanh: ArrayLike, spin: ArrayLike, rate: ArrayLike) -> tup
 
     s = b +- sqrt(b^2 + T Omega^2), b = T Omega + i k/2 [theory: whirl, eq. 9].
 
-    Parameters
-    ----------
-    layer_tanh, spin : as in `wave_function`
-    rate : k, 1/s, real, shape (...,)
-
-    Returns
-    -------
-    Of the prograde wave and of the retrograde wave, rad/s, shape (...,)
+    Of the prograde wave and of the retrograde wave, rad/s.
     """
     t, omega = np.asarray(layer_tanh), np.asarray(spin)
     centre = t * omega + 0.5j * np.asarray(rate)
@@ -267,14 +187,7 @@ def covering_speed(fill: Fill, gravity: float) -> float:
 
     Omega^2 min(R^2 - a^2, a^2 - R_i^2) = g h_c [theory: whirl, eq. 18].
 
-    Parameters
-    ----------
-    fill : chamber and liquid
-    gravity : along the axis, m/s^2, 0 or above
-
-    Returns
-    -------
-    Omega, rad/s; 0 without gravity, without liquid or without a free surface
+    0 without gravity, without liquid or without a free surface.
     """
     if gravity == 0.0 or fill.volume == 0.0 or is_full(fill):
         return 0.0

@@ -21,10 +21,6 @@ class Baffles:
     Four kinds follow from the two ends, with the free surface at r = a: attached to the wall and ending in
     the liquid; attached and piercing the surface, so that the liquid cannot go around; with a gap at the wall
     and piercing the surface; and standing free in the liquid.
-
-    Raises
-    ------
-    InputError : a count that is not whole and positive, a negative length, a number that is not finite
     """
 
     count: int  #: how many, 1 or more
@@ -53,20 +49,8 @@ class Baffles:
         return np.asarray(self.first_angle + 2.0 * math.pi / self.count * np.arange(self.count))
 
     def wetted_span(self, radius: float, surface_radius: float) -> tuple[float, float] | None:
-        """Radii between which a baffle stands in the liquid.
-
-        Parameters
-        ----------
-        radius : wall radius R, m
-        surface_radius : radius a of the free surface, m
-
-        Returns
-        -------
-        Inner and outer radius, m, set to a or R where the baffle reaches them; None if it stays dry.
-
-        Raises
-        ------
-        InputError : an inner edge outside the outer one
+        """Radii between which a baffle stands in the liquid, m, set to a or R where it reaches them; None if
+        it stays dry.
         """
         inner, outer = self.tip_radius, radius - self.wall_gap
         if inner >= outer:

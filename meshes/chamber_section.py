@@ -47,14 +47,7 @@ class ChamberSection:
 
 
 def chamber_section(name: str, mesh: Section, cell_size: float | None = None) -> ChamberSection:
-    """Give a section its name and fingerprint.
-
-    Parameters
-    ----------
-    name : of the file it came from
-    mesh : the section, about the geometric axis
-    cell_size : at the walls of an outline that was meshed for it, m
-    """
+    """Give a section its name and fingerprint."""
     content = hashlib.sha256()
     for array in (mesh.points.astype("<f8"), mesh.triangles.astype("<i8")):
         content.update(np.ascontiguousarray(array).tobytes())
@@ -65,14 +58,7 @@ def chamber_section(name: str, mesh: Section, cell_size: float | None = None) ->
 def level(section: ChamberSection, liquid_area: float) -> tuple[float, float]:
     """Free surface of an area of liquid, the volume over the height.
 
-    Parameters
-    ----------
-    section : of the chamber
-    liquid_area : m^2, above 0 and below the section's
-
-    Returns
-    -------
-    Radius a of the surface, m, and the part of the circle r = a inside the section, 1 if it meets no wall
+    Radius a of the surface, m, and the part of the circle r = a inside the section, 1 if it meets no wall.
     """
     from meshes.refine.waterline import area_outside, surface_radius_of
 
@@ -89,12 +75,7 @@ def surface_is_whole(section: ChamberSection, liquid_area: float) -> bool:
 
 @lru_cache(maxsize=1024)
 def layer_depth(section: ChamberSection, liquid_area: float) -> float:
-    """Depth of the layer where it is thinnest: from the free surface to the nearest wall outside it, m.
-
-    Parameters
-    ----------
-    section, liquid_area : as for `level`
-    """
+    """Depth of the layer where it is thinnest: from the free surface to the nearest wall outside it, m."""
     radius, _ = level(section, liquid_area)
     liquid = liquid_of(section, radius)
     wall = liquid.points[np.unique(liquid.wall)]
@@ -103,13 +84,7 @@ def layer_depth(section: ChamberSection, liquid_area: float) -> float:
 
 @lru_cache(maxsize=64)
 def liquid_of(section: ChamberSection, surface_radius: float) -> LiquidSection:
-    """Mesh of the liquid at rest, with curved sides.
-
-    Parameters
-    ----------
-    section : of the chamber
-    surface_radius : a, m
-    """
+    """Mesh of the liquid at rest, with curved sides."""
     from meshes.refine.waterline import liquid_outside
 
     size = min(2.0 * math.pi * surface_radius / 64.0, 0.5 * (section.farthest - surface_radius))
@@ -117,12 +92,7 @@ def liquid_of(section: ChamberSection, surface_radius: float) -> LiquidSection:
 
 
 def rest_offset(section: ChamberSection, liquid_area: float) -> float:
-    """Distance of the centre of mass of the liquid at rest from the axis, by its triangles' corners, m.
-
-    Parameters
-    ----------
-    section, liquid_area : as for `level`
-    """
+    """Distance of the centre of mass of the liquid at rest from the axis, by its triangles' corners, m."""
     liquid = liquid_of(section, level(section, liquid_area)[0])
     corners = liquid.points[liquid.cells[:, :3]]
     first, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]

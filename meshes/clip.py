@@ -38,9 +38,7 @@ class Remainder:
 def wall_loops(section: Section) -> tuple[Complex, ...]:
     """Walls of a section as closed lines with it on their left, m, shape (k,) each.
 
-    Parameters
-    ----------
-    section : with straight or quadratic sides, the latter cut into straight pieces
+    Quadratic sides are cut into straight pieces.
     """
     sides = free_sides(section.triangles)
     plane = section.points[:, 0] + 1j * section.points[:, 1]
@@ -75,19 +73,9 @@ def _side(nodes: Complex, share: Array) -> Complex:
 
 
 def area_within(loops: tuple[Complex, ...], radius: ArrayLike) -> Array:
-    """Area of a section inside circles about the origin, m^2.
+    """Area of a section inside circles about the origin, m^2, from its `wall_loops`.
 
-    Exact for straight sides: each one's share is a triangle where it runs inside the circle and a sector
-    where it does not.
-
-    Parameters
-    ----------
-    loops : as from `wall_loops`, about the centre of the circles
-    radius : of each circle, m, shape (...)
-
-    Returns
-    -------
-    shape (...)
+    Exact for straight sides: each one's share is a triangle inside the circle and a sector outside.
     """
     start = np.concatenate(loops)
     end = np.concatenate([np.roll(loop, -1) for loop in loops])
@@ -114,10 +102,7 @@ def _roots(start: Complex, end: Complex, radius: float | Array) -> tuple[Array, 
 def radius_for(loops: tuple[Complex, ...], area: float) -> float:
     """Radius of the circle about the origin that leaves some area of a section outside of it, m.
 
-    Parameters
-    ----------
-    loops : as from `wall_loops`, about the centre of the circle
-    area : m^2; 0 where nothing is left, the whole section for a circle that does not reach it
+    0 where nothing is left, the whole section for a circle that does not reach it.
     """
     whole = Remainder(loops, ()).area
     low, high = 0.0, float(max(np.abs(loop).max() for loop in loops))
@@ -129,13 +114,7 @@ def radius_for(loops: tuple[Complex, ...], area: float) -> float:
 
 
 def outside_circle(loops: tuple[Complex, ...], radius: float) -> Remainder:
-    """What of a section lies outside the circle about the origin.
-
-    Parameters
-    ----------
-    loops : as from `wall_loops`, about the centre of the circle
-    radius : of the circle, m
-    """
+    """What of a section lies outside the circle about the origin."""
     kept: list[Complex] = []
     parts: list[Complex] = []
     for loop in loops:

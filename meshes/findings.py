@@ -40,15 +40,8 @@ class Finding:
 
 
 def mesh_findings(mesh: Section | LiquidSection | Body) -> tuple[Finding, ...]:
-    """Faults of the cells of a mesh, the worst place of each kind; none if there is no fault.
-
-    Parameters
-    ----------
-    mesh : a section, a section of liquid or a body of liquid
-
-    Returns
-    -------
-    Findings: cells that are folded, angles near 180 degrees, neighbours of very different size.
+    """Faults of the cells of a mesh, the worst place of each kind: folded, angles near 180 degrees, sizes
+    that jump.
     """
     if isinstance(mesh, Body):
         return _folded(mesh.points, mesh.cells, body_jacobians(mesh.points, mesh.cells))
@@ -58,21 +51,7 @@ def mesh_findings(mesh: Section | LiquidSection | Body) -> tuple[Finding, ...]:
 
 
 def wave_findings(liquid: LiquidSection, mode: int) -> tuple[Finding, ...]:
-    """Whether a mesh resolves a wave along the free surface and across the liquid.
-
-    Parameters
-    ----------
-    liquid : the mesh
-    mode : n, waves around the circumference, 1 or more
-
-    Returns
-    -------
-    Findings, none if the wave is resolved to about a hundredth of its frequency squared.
-
-    Raises
-    ------
-    InputError : a mode below 1
-    """
+    """Where a mesh does not resolve n crests along the free surface and across the liquid to 1 %."""
     found = []
     points = points_per_wave(liquid, mode)
     error = wave_error(points, liquid.order)
@@ -101,21 +80,7 @@ def wave_findings(liquid: LiquidSection, mode: int) -> tuple[Finding, ...]:
 
 
 def points_per_wave(liquid: LiquidSection, mode: int) -> float:
-    """Nodes on a wavelength 2 pi a/n of the free surface where its sides are longest.
-
-    Parameters
-    ----------
-    liquid : the mesh
-    mode : n, 1 or more
-
-    Returns
-    -------
-    The number of nodes.
-
-    Raises
-    ------
-    InputError : a mode below 1
-    """
+    """Nodes on a wavelength 2 pi a/n of the free surface where its sides are longest."""
     _check_mode(mode)
     start, end = (liquid.points[liquid.surface[:, k]] for k in (0, 1))
     chord = float(np.hypot(*(end - start).T).max())
@@ -126,41 +91,17 @@ def points_per_wave(liquid: LiquidSection, mode: int) -> float:
 def wave_error(points: float, order: int) -> float:
     """Relative error of a squared frequency of waves along a line on even finite elements.
 
-    The leading term: (k s)^2/12 for linear elements of length s, (k s)^4/720 for quadratic ones, with k s =
-    2 pi p/N for N nodes on a wavelength and degree p.
+    The leading term: (k s)^2/12 for linear elements of length s, (k s)^4/720 for quadratic ones, with k s = 2
+    pi p/N for N nodes on a wavelength and degree p.
 
-    Parameters
-    ----------
-    points : nodes on a wavelength N
-    order : 1 or 2, the degree p
-
-    Returns
-    -------
-    The error, 1 at most.
+    For N nodes on a wavelength; 1 at most.
     """
     step = 2.0 * math.pi * order / points
     return min(1.0, step**2 / 12.0 if order == 1 else step**4 / 720.0)
 
 
 def points_across(liquid: LiquidSection, mode: int) -> tuple[int, Array]:
-    """Fewest nodes across the part of the liquid that a wave moves.
-
-    A wave of mode n reaches a depth of about a/n, or to the wall.
-
-    Parameters
-    ----------
-    liquid : the mesh
-    mode : n, 1 or more
-
-    Returns
-    -------
-    Nodes from the free surface downwards, both ends counted, along sides of cells; and where they are fewest,
-    m. Where walls meet the surface the depth is nothing, and is not looked at.
-
-    Raises
-    ------
-    InputError : a mode below 1
-    """
+    """Fewest nodes from the free surface down to a/n or the wall, both ends counted; where that is, m."""
     _check_mode(mode)
     steps, radius = _steps_below(liquid), np.hypot(*liquid.points.T)
     deepest = float(radius[liquid.wall[:, 0]].max()) - liquid.surface_radius

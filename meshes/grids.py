@@ -38,23 +38,7 @@ def grid(
     *,
     height: float = 0.0,
 ) -> UnstructuredGrid:
-    """A mesh with fields on it, in metres.
-
-    Parameters
-    ----------
-    mesh : a section, a section of liquid or a body of liquid
-    point_data : real fields at the nodes by name, each of shape (N, ...)
-    cell_data : real fields on the cells by name, each of shape (M, ...)
-    height : z of a plane mesh, m
-
-    Returns
-    -------
-    The grid; curved cells stay quadratic.
-
-    Raises
-    ------
-    InputError : a field of another length, or of numbers that VTK does not take
-    """
+    """A mesh with real fields at its nodes and on its cells, in metres; curved cells stay quadratic."""
     cells = mesh.triangles if isinstance(mesh, Section) else mesh.cells
     dimension = 3 if isinstance(mesh, Body) else 2
     return _grid(_in_space(mesh.points, height), cells, dimension, point_data, cell_data)
@@ -67,23 +51,9 @@ def boundary_grid(
     *,
     height: float = 0.0,
 ) -> UnstructuredGrid:
-    """The free surface of a mesh of liquid, or the walls that it wets.
+    """The free surface of a mesh of liquid, or the walls that it wets, with the nodes of the whole mesh.
 
-    Parameters
-    ----------
-    mesh : a section of liquid, which is bounded by lines, or a body, which is bounded by triangles
-    part : "surface" or "wall"
-    point_data : real fields at all nodes of the mesh by name, each of shape (N, ...)
-    height : z of a plane mesh, m
-
-    Returns
-    -------
-    The grid, with the nodes of the whole mesh. Walls carry the cell data `part`: the number of the piece of
-    wall of a section, or of the part of a body's walls in `meshes.bodies.body.WALL_PARTS`.
-
-    Raises
-    ------
-    InputError : another part, a field of another length, or of numbers that VTK does not take
+    Walls carry the cell data `part`: the piece of wall of a section, or of `meshes.bodies.body.WALL_PARTS`.
     """
     if part not in ("surface", "wall"):
         raise InputError("part", part, '"surface" or "wall"')
@@ -96,21 +66,7 @@ def boundary_grid(
 
 
 def wall_grid(body: Body, part: str) -> UnstructuredGrid:
-    """One part of the walls that a body wets: "floor", "lid" or "side".
-
-    Parameters
-    ----------
-    body : the body
-    part : of `meshes.bodies.body.WALL_PARTS`
-
-    Returns
-    -------
-    The grid, with the nodes of the whole body.
-
-    Raises
-    ------
-    InputError : another part
-    """
+    """One part of the walls that a body wets: "floor", "lid" or "side"."""
     if part not in WALL_PARTS:
         raise InputError("part", part, ", ".join(WALL_PARTS))
     return _grid(body.points, body.wall[body.wall_part == WALL_PARTS.index(part)], 2, None, None)

@@ -47,20 +47,8 @@ class LiquidSection:
 def liquid_section(points: Array, cells: Indices, surface_radius: float) -> LiquidSection:
     """Find free surface and walls among the free sides of a mesh.
 
-    Parameters
-    ----------
-    points, cells, surface_radius : as for `LiquidSection`; the sides of the free surface have all their nodes
-        on the circle r = a
-
-    Returns
-    -------
-    The mesh with its sides; the arrays are copied and cannot be written to.
-
-    Raises
-    ------
-    InputError : a shape or a number that does not fit, a cell inverted, folded or without area, cells that
-        overlap along a side or share its middle node wrongly, nodes inside the circle, no side on the circle,
-        a body of liquid that has no free surface
+    The sides of the free surface have all their nodes on the circle r = a. An `InputError` for cells
+    inverted, folded, overlapping or inside the circle, and for a body of liquid without a free surface.
     """
     require_positive("surface_radius", surface_radius)
     nodes, numbers = _checked(points, cells)
@@ -133,20 +121,7 @@ def _check_bodies(points: Array, body: Indices, cells: Indices, surface: Indices
 
 
 def free_sides(cells: Indices) -> Indices:
-    """Sides that one cell alone has.
-
-    Parameters
-    ----------
-    cells : node numbers, as for `LiquidSection`
-
-    Returns
-    -------
-    Sides with their cell on the left, shape (S, 2 or 3): start, end, node between.
-
-    Raises
-    ------
-    InputError : cells that overlap along a side, sides that share the node between
-    """
+    """Sides that one cell alone has, it on their left, shape (S, 2 or 3): start, end, node between."""
     sides = SIDES[cells.shape[1]]
     every = cells[:, sides].reshape(-1, sides.shape[1])
     nodes = int(cells.max()) + 1

@@ -43,15 +43,11 @@ class Quality:
 
 
 def edge_polynomials(nodes: Array) -> tuple[Array, Array, Array]:
-    """Sides of cells as quadratic curves c0 + c1 t + c2 t^2, 0 <= t <= 1, counter-clockwise.
+    """Sides of cells as curves c0 + c1 t + c2 t^2, 0 <= t <= 1, counter-clockwise, shape (M, sides, 2) each,
+    m.
 
-    Parameters
-    ----------
-    nodes : of each cell, shape (M, K, 2), m: K = 3 or 6 for triangles, 4 or 9 for quadrilaterals
-
-    Returns
-    -------
-    c0, c1, c2, each of shape (M, sides, 2), m; c2 is exactly zero for a straight side.
+    From nodes (M, K, 2), K = 3 or 6 for triangles, 4 or 9 for quadrilaterals; c2 is exactly zero for a
+    straight side.
     """
     sides = SIDES[nodes.shape[1]]
     start, end = nodes[:, sides[:, 0]], nodes[:, sides[:, 1]]
@@ -66,15 +62,8 @@ def edge_polynomials(nodes: Array) -> tuple[Array, Array, Array]:
 def jacobians(points: Array, cells: Indices) -> Array:
     """Jacobian determinants of the maps from the reference triangle or square.
 
-    Parameters
-    ----------
-    points : nodes, shape (N, 2), m
-    cells : node numbers, shape (M, 3) or (M, 6) for triangles, (M, 4) or (M, 9) for quadrilaterals
-
-    Returns
-    -------
-    Values at points that include the nodes, shape (M, K), m^2: twice the area of a straight triangle; the
-    area of a parallelogram.
+    Shape (M, K), m^2, at points that include the nodes: twice the area of a straight triangle, the area of a
+    parallelogram.
     """
     nodes = points[cells]
     if cells.shape[1] == 3:
@@ -121,14 +110,7 @@ def _square_slopes(count: int) -> Array:
 def cell_areas(points: Array, cells: Indices) -> Array:
     """Area of each cell by Green's theorem along its sides, exact for curved ones.
 
-    Parameters
-    ----------
-    points : nodes, shape (N, 2), m
-    cells : node numbers, shape (M, 3) or (M, 6) for triangles, (M, 4) or (M, 9) for quadrilaterals
-
-    Returns
-    -------
-    Areas, shape (M,), m^2; negative for clockwise cells.
+    Shape (M,), m^2; negative for clockwise cells.
     """
     nodes = points[cells]
     # Measured from a corner, so that a small cell far from the origin keeps its digits.
@@ -149,13 +131,7 @@ def triangle_areas(points: Array, triangles: Indices) -> Array:
 def vertex_angles(points: Array, cells: Indices) -> Array:
     """Angles at the vertices of cells, between tangents if the sides are curved.
 
-    Parameters
-    ----------
-    points, cells : as for `cell_areas`
-
-    Returns
-    -------
-    Angles, shape (M, vertices), rad, from 0 to pi.
+    Shape (M, vertices), rad, from 0 to pi.
     """
     _, c1, c2 = edge_polynomials(points[cells])
     leaving = c1
@@ -168,13 +144,7 @@ def vertex_angles(points: Array, cells: Indices) -> Array:
 def aspect_ratios(points: Array, cells: Indices) -> Array:
     """Longest side of each cell over its breadth across that side, 1 for regular cells.
 
-    Parameters
-    ----------
-    points, cells : as for `cell_areas`; the chords are looked at
-
-    Returns
-    -------
-    Ratios, shape (M,); infinite for a cell without area.
+    Of the chords; infinite for a cell without area.
     """
     corners = 3 if cells.shape[1] in (3, 6) else 4
     nodes = points[cells[:, :corners]]
@@ -190,14 +160,7 @@ def aspect_ratios(points: Array, cells: Indices) -> Array:
 def assess(points: Array, triangles: Indices) -> Quality:
     """Quality of a plane mesh, valid or not.
 
-    Parameters
-    ----------
-    points : nodes, shape (N, 2), m
-    triangles : node numbers of the cells, as for `cell_areas`
-
-    Returns
-    -------
-    The report; angles and aspect ratio of a cell without area are 0 or infinite.
+    Angles and aspect ratio of a cell without area are 0 or infinite.
     """
     angles = vertex_angles(points, triangles)
     regular = np.pi / 3.0 if angles.shape[1] == 3 else np.pi / 2.0

@@ -19,10 +19,7 @@ _FULL_DEPTH = math.sqrt(3.0) / 2.0  # a ring of equilateral triangles is that de
 class Section:
     """Triangulated section of a chamber; the arrays are copied and cannot be written to.
 
-    Raises
-    ------
-    InputError : a shape or number that does not fit, a triangle inverted or without area, triangles that
-        overlap along an edge, a midside node that belongs to more than one edge
+    The arrays are checked: no triangle inverted, without area, or overlapping along an edge.
     """
 
     points: Array  #: nodes, shape (N, 2), m, from the chamber's geometric axis
@@ -61,24 +58,11 @@ def disc(
     wall_layer: float | None = None,
     growth: float = 1.3,
 ) -> Section:
-    """Disc about the origin, with a node on the x axis.
+    """Disc about the origin, with a node on the x axis; with straight edges the polygon inscribed in the
+    circle.
 
-    Parameters
-    ----------
-    radius : wall radius R, m
-    segments : edges along the wall, 8 or more
-    order : 1 for straight edges, 2 for quadratic ones whose nodes on the wall lie on the circle
-    wall_layer : depth of the triangles at the wall, m, at most; without it they are as deep as wide
-    growth : depth of a ring of triangles over that of the ring outside it, 1 to 2
-
-    Returns
-    -------
-    The section; with order 1 a regular polygon inscribed in the circle.
-
-    Raises
-    ------
-    InputError : a length that is not positive, fewer than 8 segments, another order, growth out of range,
-        above a million nodes
+    `wall_layer` is the largest depth of the triangles at the wall, m (None: as deep as wide), `growth` the
+    depth of a ring of triangles over that of the ring outside it.
     """
     return annulus(radius, 0.0, segments, order=order, wall_layer=wall_layer, growth=growth)
 
@@ -92,22 +76,9 @@ def annulus(
     wall_layer: float | None = None,
     growth: float = 1.3,
 ) -> Section:
-    """Annulus about the origin, with a node of the outer wall on the x axis.
+    """Annulus about the origin, with a node of the outer wall on the x axis; a disc without an inner radius.
 
-    Parameters
-    ----------
-    radius : outer wall radius R, m
-    inner_radius : inner wall radius R_i, m; 0 for a disc
-    segments : edges along the outer wall, 8 or more; the inner wall has edges of the same length, 8 or more
-    order, wall_layer, growth : as in `disc`; nodes of both walls lie on their circles
-
-    Returns
-    -------
-    The section.
-
-    Raises
-    ------
-    InputError : as `disc`; an inner wall outside the outer one
+    Edges of both walls are equally long; the rest as in `disc`.
     """
     _check_request(radius, inner_radius, segments, order, wall_layer, growth)
     radii, counts = _rings(radius, inner_radius, segments, wall_layer, growth)
@@ -177,7 +148,7 @@ def _stitch(
 ) -> Indices:
     """Triangles between two rings: each edge of one is joined to the nearest node of the other.
 
-    Around both rings at once, the edges are taken in the order of their middles; ties go to the outer ring.
+    Edges of both are taken in the order of their middles; ties go to the outer ring.
     """
     outer_middles = (np.arange(outer) + 0.5 + outer_turn) / outer
     inner_middles = (np.arange(inner) + 0.5 + inner_turn) / inner

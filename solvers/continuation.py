@@ -1,7 +1,7 @@
 """Curves of solutions of m equations in m + 1 unknowns, followed by their arc length through every turn.
 
 Made for few unknowns: the derivative is taken by central differences. Waves and limit cycles, which have
-hundreds, are followed by their own rooms, whose equations know their derivatives.
+hundreds, have solvers of their own, whose equations know their derivatives.
 """
 
 from __future__ import annotations
@@ -60,35 +60,11 @@ def follow(
 ) -> Curve:
     """Follow a curve from a point on it by pseudo-arclength, through its turns.
 
-    A step goes along the tangent and is corrected by Newton's method on the plane across it. It becomes
-    shorter where Newton's method fails or the curve bends, and longer where both are easy.
-
-    Parameters
-    ----------
-    equations : what is left of each at a point; nan where there are none
-    start : near the curve, shape (m + 1,)
-    unit : size of each unknown on which lengths are measured, shape (m + 1,)
-    low, high : corners of the box in which the curve is wanted; infinite where there is none
-    step : first and longest length of a step, in these units
-    way : 1 or -1, the direction in which the first unknown that changes grows or falls
-    tolerance : change of all unknowns, in their units, at which a point counts as found
-    most : points
-    renew : called with each new point, for equations that move their own frame along
-
-    Returns
-    -------
-    Curve; only its start, as given, and `End.LOST` or `End.NOWHERE` where no point is found near it
-
-    Raises
-    ------
-    InputError : units or lengths that are not positive, a way that is not 1 or -1
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> circle = follow(lambda x: np.array([x @ x - 1.0]), [1.0, 0.0], [1, 1], [-2, -2], [2, 2])
-    >>> circle.end.name, bool(np.abs(np.hypot(*circle.points.T) - 1.0).max() < 1e-9)
-    ('CLOSED', True)
+    `unit` is the size of each unknown, in which `step`, the first and longest one, and `tolerance`, the
+    change at which a point counts as found, are measured; the box from `low` to `high` bounds the curve;
+    `way` is the direction in which the first unknown that changes grows or falls; `renew` is called with each
+    new point, for equations that move their own frame along. Equations are nan where there are none. Where no
+    point is found near the start the curve is that alone, with `End.LOST` or `End.NOWHERE`.
     """
     require_positive("step", step)
     size, begin = np.asarray(unit, dtype=float), np.asarray(start, dtype=float)

@@ -18,22 +18,11 @@ def bracketed_root(
     relative: float = 4.0 * np.finfo(float).eps,
     iterations: int = 200,
 ) -> tuple[Array, NDArray[np.bool_]]:
-    """Root of each of n functions between the ends of its bracket [Chandrupatla97].
+    """Root of each of n functions between the ends of its bracket, and whether it was found [Chandrupatla97].
 
-    Steps by inverse quadratic interpolation where the last three points allow it, otherwise by halving.
-
-    Parameters
-    ----------
-    function : takes points, shape (m,), and which of the n functions each belongs to, shape (m,); returns
-        values, shape (m,), of opposite sign at the two ends
-    low, high : the brackets, shape (n,)
-    relative : bracket width over its larger end at which a root counts as found
-    iterations : most steps
-
-    Returns
-    -------
-    root : shape (n,); an end of the bracket where the function does not change sign
-    found : shape (n,), False where it does not, or where the steps ran out
+    `function` takes points and which of the n functions each belongs to, shape (m,). Steps by inverse
+    quadratic interpolation where the last three points allow it, otherwise by halving, until the bracket is
+    `relative` of its larger end. Without a change of sign the root is an end of the bracket.
     """
     # The newest point, the one across the root from it, and the one before.
     new, across = low.astype(float), high.astype(float)
@@ -72,11 +61,11 @@ class _Points(NamedTuple):
     at_before: Array
 
     def at(self, which: NDArray[np.bool_]) -> _Points:
-        """Those of some functions."""
+        """Points of some functions."""
         return _Points(*(x[which] for x in self))
 
     def step(self, x: Array, fx: Array) -> _Points:
-        """With a further point inside the bracket."""
+        """Points with a further one inside the bracket."""
         same = np.sign(fx) == np.sign(self.at_new)
         return _Points(
             new=x,

@@ -76,15 +76,9 @@ class SearchPlan:
 def best_of(judged: Judgement, cost: Array, margin: float = 1e-6, tie: float | None = None) -> int:
     """Index of the best of the points judged [theory: optimum, eq. 6].
 
-    Those that exceed their constraints least, of these the least objective, of those within a margin of
-    it the least cost, and of those the one that is farthest from exceeding anything.
-
-    Parameters
-    ----------
-    judged : m points
-    cost : of each, shape (m,)
-    margin : relative
-    tie : the same of cost and of the room to the limits; the margin if None
+    Those that exceed their constraints least, of these the least objective, of those within a margin of it
+    the least cost, and of those the one that is farthest from exceeding anything. `tie` is the margin of cost
+    and of the room to the limits; None: that of the objective.
     """
     over = np.maximum(judged.excess, 0.0)
     left = np.flatnonzero(over <= over.min() * (1.0 + margin))
@@ -124,26 +118,12 @@ def search(
     plan: SearchPlan | None = None,
     stage: Callable[[float], None] | None = None,
 ) -> Found:
-    """Best point of a box; the same answer to the same question.
+    """Best point of a box, the same for the same question; least excess where none is allowed.
 
-    Parameters
-    ----------
-    judge : of the points
-    low, high : the box, shape (n,)
-    cost : of each coordinate, above 0, shape (n,); decides between points of equal objective
-    starts : points where an edge or a kink is expected, shape (k, n); their coordinates become levels
-    alike : groups of coordinates that may be exchanged without a change; they are ordered by falling value
-    plan : how much is tried
-    stage : called with the share of the search that is done, as far as that can be foreseen
-
-    Returns
-    -------
-    Found; the one that exceeds its constraints least where none satisfies them. No point that was judged
-    beats it in the order of `best_of`. An interrupt from the keyboard ends the search with what it has
-
-    Raises
-    ------
-    InputError : a box whose corners are not finite or not in order
+    `cost` decides between points of equal objective; `starts` are points where an edge or a kink is expected,
+    whose coordinates become levels; coordinates of a group in `alike` may be exchanged without a change and
+    are ordered by falling value. No point that was judged beats the answer in the order of `best_of`. A
+    Ctrl-C ends the search with what it has.
     """
     plan = plan or SearchPlan()
     if not (np.all(np.isfinite(low)) and np.all(np.isfinite(high)) and np.all(low <= high)):

@@ -1,4 +1,4 @@
-"""Compiled loops in slices, and how many steps they may take: nothing runs for ever or deaf.
+"""Compiled loops in slices, and how many steps they may take: nothing runs for ever or past a Ctrl-C.
 
 Python sees a Ctrl-C between two slices only. What a loop carries from step to step stands in arrays that
 outlive the slice, so that no digit of an answer depends on where a slice ends.
@@ -22,26 +22,14 @@ SPARE = 100
 
 
 def step_budget(time: float, spin: float, cells: int, courant: float) -> int:
-    """Most steps over a time, a hundred times what a film needs at four times the speed of the drum.
-
-    Parameters
-    ----------
-    time : to be covered, s
-    spin : largest speed of the drum in that time, rad/s
-    cells : round the wall
-    courant : Courant number of the steps
-    """
+    """Most steps over a time, a hundred times what a film needs at four times the speed of the drum."""
     return math.ceil(SPARE * (1.0 + FASTEST * abs(spin) * time * cells / (2.0 * math.pi * courant)))
 
 
 def slices(steps: int, size: int, most: int = 0) -> Iterator[int]:
     """Numbers of steps that make up a number of them, each as many as take a fraction of a second.
 
-    Parameters
-    ----------
-    steps : in all
-    size : cells or coordinates that a step moves
-    most : in a slice; 0 sets no such bound
+    `size` counts the cells or coordinates that a step moves; `most` bounds a slice, 0: not.
     """
     length = max(1, SLICE // size)
     length = min(length, most) if most > 0 else length
@@ -50,17 +38,7 @@ def slices(steps: int, size: int, most: int = 0) -> Iterator[int]:
 
 
 def compiled(loop: Callable[..., Any], *given: Any) -> Any:
-    """What a compiled loop returns; an interrupt that comes on the way into it or out of it stays one.
-
-    Parameters
-    ----------
-    loop : compiled by numba
-    given : its arguments
-
-    Raises
-    ------
-    KeyboardInterrupt : or what else a signal's handler has raised
-    """
+    """What a compiled loop returns; an interrupt that comes on the way into it or out of it stays one."""
     try:
         return loop(*given)
     except SystemError as error:  # "returned a result with an exception set"

@@ -1,9 +1,10 @@
 """What the height of a wave does to the force of a layer, and how far each model of the layer is off.
 
 Weakly nonlinear theory in closed form, to second order in the whirl: by the exact equations, by long waves
-and by one family of waves. Their differences are the errors of the models; a growth with the height,
-fitted to exact waves, does for the higher orders [theory: model_error, eq. 24-36]. Lengths over R, times
-in 1/Omega; of the whirl speed counts p^2 = (1 - Omega/omega_w)^2. Errors are over the larger of |G| and 1.
+and by one family of waves. Their differences are the errors of the models; a growth with the height, fitted
+to exact waves, does for the higher orders [theory: model_error, eq. 24-36]. `layer` is h_0/R, `detuning` p^2
+= (1 - Omega/omega_w)^2, `whirl` w_0/h_0, shapes (...,); errors are over the larger of |G| and 1, nan where
+there is no smooth wave.
 """
 
 from __future__ import annotations
@@ -35,40 +36,19 @@ _AT_RESONANCE = np.errstate(invalid="ignore")
 
 
 def layer_tanh(layer: ArrayLike) -> Array:
-    """T = tanh(L) = (R^2 - a^2)/(R^2 + a^2) of a layer.
-
-    Parameters
-    ----------
-    layer : h_0/R, shape (...,), between 0 and 1
-    """
+    """T = tanh(L) = (R^2 - a^2)/(R^2 + a^2) of a layer."""
     square = np.square(1.0 - np.asarray(layer, dtype=float))
     return np.asarray((1.0 - square) / (1.0 + square))
 
 
 def detuning_ratio(layer: ArrayLike, detuning: ArrayLike) -> Array:
-    """p/p_1 to small free waves of one crest [theory: potential, eq. 15].
-
-    Parameters
-    ----------
-    layer, detuning : h_0/R and p^2, shape (...,)
-    """
+    """p/p_1 to small free waves of one crest [theory: potential, eq. 15]."""
     t = layer_tanh(layer)
     return np.asarray(np.sqrt(np.asarray(detuning, dtype=float) * (1.0 + t) / t))
 
 
 def small_force(layer: ArrayLike, detuning: ArrayLike, dispersion: ArrayLike | None = None) -> Array:
-    """G of a whirl of vanishing size [theory: model_error, eq. 28].
-
-    Parameters
-    ----------
-    layer, detuning : h_0/R and p^2, shape (...,)
-    dispersion : what stands for tanh(L), shape (...,); the exact one if None
-
-    Examples
-    --------
-    >>> print(f"{small_force(0.1, (1.0 - 1.0 / 0.7) ** 2):.4f}")
-    -0.6778
-    """
+    """G of a vanishing whirl; `dispersion` for tanh(L), None: the exact one [theory: model_error, eq. 28]."""
     square = np.square(1.0 - np.asarray(layer, dtype=float))
     t = layer_tanh(layer) if dispersion is None else np.asarray(dispersion)
     x = np.asarray(detuning, dtype=float)
@@ -77,19 +57,7 @@ def small_force(layer: ArrayLike, detuning: ArrayLike, dispersion: ArrayLike | N
 
 
 def force_change(layer: ArrayLike, detuning: ArrayLike) -> Array:
-    """What the wave's height adds to G, over (w_0/a)^2, by the exact equations [theory: model_error, eq. 29].
-
-    Parameters
-    ----------
-    layer, detuning : h_0/R and p^2, shape (...,)
-
-    Examples
-    --------
-    >>> layer, detuning = 0.3, (1.0 - 1.0 / 0.85) ** 2
-    >>> change = force_change(layer, detuning) * (0.1 * layer / (1.0 - layer)) ** 2
-    >>> print(f"{small_force(layer, detuning) + change:.5f}")  # the exact wave has 1.06877
-    1.06876
-    """
+    """What the height adds to G, over (w_0/a)^2, by the exact equations [theory: model_error, eq. 29]."""
     t, x = layer_tanh(layer), np.asarray(detuning, dtype=float)
     first, second = (1.0 + t) * x - t, (1.0 + t + t * t) * x - t
     above = x * (8.0 * t**3 - 21.0 * t * t + 14.0 * t - 5.0) - 4.0 * t * (1.0 - t) ** 2
@@ -97,12 +65,7 @@ def force_change(layer: ArrayLike, detuning: ArrayLike) -> Array:
 
 
 def long_wave_change(layer: ArrayLike, detuning: ArrayLike) -> Array:
-    """The same by long waves without dispersion [theory: model_error, eq. 30].
-
-    Parameters
-    ----------
-    layer, detuning : h_0/R and p^2, shape (...,)
-    """
+    """`force_change` by long waves without dispersion [theory: model_error, eq. 30]."""
     surface, x = 1.0 - np.asarray(layer, dtype=float), np.asarray(detuning, dtype=float)
     log = -np.log(surface)
     first = (1.0 + log) * x - log
@@ -111,12 +74,7 @@ def long_wave_change(layer: ArrayLike, detuning: ArrayLike) -> Array:
 
 
 def nonlinearity(layer: ArrayLike, detuning: ArrayLike, whirl: ArrayLike) -> Array:
-    """By what part the height changes the place of the liquid [theory: model_error, eq. 31].
-
-    Parameters
-    ----------
-    layer, detuning, whirl : h_0/R, p^2 and w_0/h_0, shape (...,)
-    """
+    """Share by which the height changes the place of the liquid [theory: model_error, eq. 31]."""
     square = np.square(1.0 - np.asarray(layer, dtype=float))
     offset = small_force(layer, detuning) - (1.0 - square)
     return np.asarray(_quotient(_added(layer, detuning, whirl), np.abs(offset)))
@@ -126,21 +84,7 @@ def largest_whirl(layer: ArrayLike, detuning: ArrayLike) -> Array:
     """w_0/h_0 beyond which no smooth steady wave follows a whirl that grows [theory: model_error, eq. 32-33].
 
     Above the resonance, p > p_1, the fold; below the free waves of two crests the choking of a thin layer,
-    which a thick one comes to earlier.
-
-    Parameters
-    ----------
-    layer, detuning : h_0/R and p^2, shape (...,)
-
-    Returns
-    -------
-    shape (...,); inf between the resonances of one and of two crests
-
-    Examples
-    --------
-    >>> detuning = (1.1 * detuning_ratio(0.1, 1.0) ** -1.0) ** 2
-    >>> print(f"{largest_whirl(0.1, detuning):.4f}")  # the fold of the exact wave is at 0.01037
-    0.0104
+    which a thick one comes to earlier; between the resonances of one and of two crests inf.
     """
     t, x = np.broadcast_arrays(layer_tanh(layer), np.asarray(detuning, dtype=float))
     first, second = t / (1.0 + t), t / (1.0 + t + t * t)
@@ -155,21 +99,7 @@ def largest_whirl(layer: ArrayLike, detuning: ArrayLike) -> Array:
 
 @_AT_RESONANCE
 def linear_error(layer: ArrayLike, detuning: ArrayLike, whirl: ArrayLike) -> Array:
-    """Estimated error of the force by linear theory [theory: model_error, eq. 34].
-
-    Parameters
-    ----------
-    layer, detuning, whirl : h_0/R, p^2 and w_0/h_0, shape (...,)
-
-    Returns
-    -------
-    nan where there is no smooth wave
-
-    Examples
-    --------
-    >>> float(linear_error(0.1, 0.0, 0.5))  # at rest in a synchronous whirl
-    0.0
-    """
+    """Estimated error of the force by linear theory [theory: model_error, eq. 34]."""
     found = _added(layer, detuning, whirl) * _growth(layer, detuning, whirl)
     return _told(found, layer, detuning, whirl)
 
@@ -180,15 +110,7 @@ def long_wave_error(
 ) -> Array:
     """Estimated error of the force by long waves [theory: model_error, eq. 35].
 
-    Parameters
-    ----------
-    layer, detuning, whirl : h_0/R, p^2 and w_0/h_0, shape (...,)
-    dispersion : the model has it
-    cells : round the wall, of waves through time
-
-    Returns
-    -------
-    nan where there is no smooth wave
+    `cells` round the wall, of waves through time.
     """
     depth = np.asarray(layer, dtype=float)
     added, growth = _added(layer, detuning, whirl), _growth(layer, detuning, whirl)
@@ -210,15 +132,7 @@ def long_wave_error(
 def family_error(layer: float, speed: float, whirl: float, whitham: bool) -> float:
     """Estimated error of the force by the family whose resonance is nearer [theory: model_error, eq. 36].
 
-    Parameters
-    ----------
-    layer, whirl : h_0/R, w_0/h_0
-    speed : omega_w/Omega, other than 0
-    whitham : the family has the exact dispersion
-
-    Returns
-    -------
-    nan where there is no smooth wave
+    The speed is omega_w/Omega, other than 0; `whitham`: the family has the exact dispersion.
     """
     surface, detuning, slip = 1.0 - layer, (1.0 - 1.0 / speed) ** 2, speed - 1.0
     pair = [kdv.coefficients(1.0, surface, 1.0, sign) for sign in (1, -1)]

@@ -28,14 +28,7 @@ SUPERCRITICAL = 1.1
 
 
 def open_share(depth: Real, tip: float, gap: float) -> Real:
-    """Share of the depth that baffles leave open [theory: baffles, eq. 1].
-
-    Parameters
-    ----------
-    depth : of the layer at them
-    tip : distance of their inner edge from the wall
-    gap : distance of their outer edge from the wall
-    """
+    """Share of the depth that baffles leave open [theory: baffles, eq. 1]."""
     held = np.maximum(depth, 1e-300)
     return np.minimum((np.maximum(held - tip, 0.0) + np.minimum(held, gap)) / held, 1.0)
 
@@ -46,12 +39,7 @@ def contraction(share: Real) -> Real:
 
 
 def loss_coefficient(share: Real) -> Real:
-    """Head lost at a baffle over that of the flow before it, u^2/2 [theory: baffles, eq. 2].
-
-    Parameters
-    ----------
-    share : open share of the depth, above 0
-    """
+    """Head lost at a baffle over that of the flow before it, u^2/2 [theory: baffles, eq. 2]."""
     jet = contraction(share) * share
     lost = 1.0 / jet - 1.0
     return lost * lost
@@ -61,28 +49,16 @@ def lid_length(share: Real) -> Real:
     """Length of channel over its depth with the inertia that a baffle adds, under a rigid lid.
 
     [theory: baffles, eq. 15]
-
-    Parameters
-    ----------
-    share : open share of the depth, above 0
     """
     return -4.0 / math.pi * np.log(np.sin(0.5 * math.pi * share))
 
 
 def pile_up(depth: Array, tip: float, gap: float, head: Array) -> tuple[Array, Array]:
-    """Loss coefficient of the mean flow and the depth that piles up before the baffles.
+    """Loss coefficient of the mean flow (inf where nothing flows past) and the depth that piles up before the
+    baffles, m.
 
-    A fixed point: the deeper the layer stands, the less it loses [theory: baffles, eq. 3].
-
-    Parameters
-    ----------
-    depth : h0 of the uniform layer, m, shape (n,)
-    tip, gap : distances of the baffles' edges from the wall, m
-    head : u^2/(4 g), u the mean flow past the baffles and g what holds it to the wall, m, shape (n,)
-
-    Returns
-    -------
-    zeta, inf where nothing flows past; depth before the baffles, m; both shape (n,)
+    A fixed point: the deeper the layer stands, the less it loses [theory: baffles, eq. 3]; `head` is u^2/(4
+    g), u the mean flow past the baffles and g what holds it to the wall, m.
     """
     depth, head = np.broadcast_arrays(np.asarray(depth, dtype=float), np.asarray(head, dtype=float))
     # The depth before the baffles is the root of a function that falls: bisection.
@@ -124,11 +100,7 @@ class BaffleTorque:
 def baffle_torque(fill: Fill, spin: float, lag: Array) -> BaffleTorque:
     """Torque by which baffles carry a layer that lags behind its drum [theory: baffles, eq. 4].
 
-    Parameters
-    ----------
-    fill : chamber with baffles, and liquid
-    spin : of the drum, rad/s
-    lag : over the spin, from 0 to 1, shape (n,)
+    The lag over the spin, from 0 to 1, shape (n,).
     """
     baffles, radius = fill.chamber.baffles, fill.chamber.radius
     depth, inner = fill.depth, fill.surface_radius
@@ -149,12 +121,7 @@ def baffle_torque(fill: Fill, spin: float, lag: Array) -> BaffleTorque:
 
 
 def most_torque(fill: Fill, spin: float) -> float:
-    """Largest torque that baffles can exert before the layer shoots over them, N m; inf if they are closed.
-
-    Parameters
-    ----------
-    fill, spin : as for `baffle_torque`
-    """
+    """Largest torque that baffles exert before the layer shoots over them, N m; inf if they are closed."""
     found = baffle_torque(fill, spin, np.linspace(0.0, 0.6, 241))
     below = found.torque[found.froude <= SUPERCRITICAL]
     return float(below.max())

@@ -81,27 +81,15 @@ class Friction:
     def at(self, viscosity: float, frequency: float, radius: float) -> tuple[int, float]:
         """Law and coefficient as `damping_rate` and compiled code take them [theory: long_wave, eq. 10].
 
-        Of the law of the wall the part of the waves.
-
-        Parameters
-        ----------
-        viscosity : of the liquid, nu, m^2/s
-        frequency : of the motion seen from the drum, s, rad/s; only the laminar ones depend on it
-        radius : of the wall R, m
+        Of the law of the wall the part of the waves; s is the frequency seen from the drum, on which only the
+        laminar laws depend.
         """
         if not self.law.laminar:
             return self.law.number, self.coefficient
         return self.law.number, float(stokes_coefficient(viscosity, frequency)) / radius
 
     def lid(self, radius: float, height: float, frequency: float, spin: float) -> float:
-        """Floor and lid as `damping_rate` takes them, 2 R/h_c, for the law of the wall with `plate_factor`.
-
-        Parameters
-        ----------
-        radius, height : of the chamber, m
-        frequency : of the motion seen from the drum, s, rad/s
-        spin : Omega, rad/s
-        """
+        """What `damping_rate` takes for floor and lid, 2 R/h_c, times `plate_factor` for the wall law."""
         plain = 2.0 * radius / height
         if self.law is FrictionLaw.WALL:
             return plain * plate_factor(frequency, spin)
@@ -114,17 +102,9 @@ NO_FRICTION = Friction()
 def damping_rate(law: int, coefficient: float, lid: float, depth: Any, area: Any, velocity: Any) -> Any:
     """Rate of decay of u, tau R/(rho u A) in the units of the coefficient [theory: long_wave, eq. 9].
 
-    Serves arrays and, compiled, scalars. Under the law of the wall it is the rate of small waves.
-
-    Parameters
-    ----------
-    law : number of the `FrictionLaw`
-    coefficient : k of the linear law, 1/s; sqrt(nu |s|/2)/R of Stokes' and of the wall's, 1/s; c_f of
-        the quadratic one
-    lid : 2 R/h_c, floor and lid for Stokes' law, see `Friction.lid`; 0 without them
-    depth : h/R
-    area : A/R^2 > 0
-    velocity : u, in units that make c_f |u| a rate
+    Serves arrays and, compiled, scalars. Coefficient: k of the linear law, 1/s; sqrt(nu |s|/2)/R of Stokes'
+    and of the wall's, whose rate is that of small waves; c_f of the quadratic one, with u in units that make
+    c_f |u| a rate. `lid` is 2 R/h_c, 0 without floor and lid; depth and area over R and R^2.
     """
     if law == LINEAR:
         return coefficient * depth / area
@@ -137,25 +117,13 @@ def damping_rate(law: int, coefficient: float, lid: float, depth: Any, area: Any
 
 
 def stokes_coefficient(viscosity: ArrayLike, frequency: ArrayLike) -> Array:
-    """Shear over velocity of an oscillating laminar layer, sqrt(nu |s|/2), m/s [theory: long_wave, eq. 10].
-
-    Parameters
-    ----------
-    viscosity : nu, m^2/s, shape (...,)
-    frequency : whirl frequency s seen from the drum, rad/s, shape (...,)
-    """
+    """Shear over velocity of an oscillating laminar layer, sqrt(nu |s|/2) [theory: long_wave, eq. 10]."""
     squared = 0.5 * np.asarray(viscosity, dtype=float) * np.abs(np.asarray(frequency, dtype=float))
     return np.asarray(np.sqrt(squared))
 
 
 def layer_thickness(viscosity: ArrayLike, frequency: ArrayLike) -> Array:
-    """Thickness of an oscillating layer, sqrt(2 nu/|sigma|), m [theory: sloshing, eq. 19].
-
-    Parameters
-    ----------
-    viscosity : nu, m^2/s, shape (...,)
-    frequency : sigma, rad/s, not 0, shape (...,)
-    """
+    """Thickness of an oscillating layer, sqrt(2 nu/|sigma|), m [theory: sloshing, eq. 19]."""
     return np.asarray(np.sqrt(2.0 * np.asarray(viscosity, dtype=float) / np.abs(frequency)))
 
 
@@ -164,12 +132,6 @@ def plate_drags(viscosity: ArrayLike, frequency: ArrayLike, spin: ArrayLike) -> 
 
     sqrt(nu |2 Omega - sigma|/2) for the circle that goes round as e^{-i sigma t} and sqrt(nu |2 Omega +
     sigma|/2) for the other [theory: sloshing, eq. 21].
-
-    Parameters
-    ----------
-    viscosity : nu, m^2/s, shape (...,)
-    frequency : sigma in the frame of the drum, rad/s, shape (...,)
-    spin : Omega, rad/s; 0 for the plain layers without Coriolis force, shape (...,)
     """
     sigma, twice = np.asarray(frequency, dtype=float), 2.0 * np.asarray(spin, dtype=float)
     return stokes_coefficient(viscosity, twice - sigma), stokes_coefficient(viscosity, twice + sigma)
@@ -178,13 +140,8 @@ def plate_drags(viscosity: ArrayLike, frequency: ArrayLike, spin: ArrayLike) -> 
 def plate_factor(frequency: float, spin: float) -> float:
     """Drag of floor and lid on waves in a thin layer over that of the wall [theory: friction, eq. 9].
 
-    Floor and lid bound a flow that goes to and fro on straight lines: both circles have equal weight. Not
-    below a billionth of the spin is the frequency told from 0, where no wave is.
-
-    Parameters
-    ----------
-    frequency : of the waves seen from the drum, s, rad/s
-    spin : Omega, rad/s; 0 for 1
+    Floor and lid bound a straight-line flow: both circles have equal weight. At s below a billionth of the
+    spin, where no wave is, s is not told from 0.
     """
     slow = max(abs(frequency), _SLOWEST * abs(spin), 1e-300)
     twice = 2.0 * abs(spin)
@@ -196,11 +153,6 @@ def edge_weight(distance: ArrayLike, thickness: ArrayLike) -> Array:
 
     The outer velocity grows as d^(-1/2) towards the edge and its square has no integral. A layer cannot
     follow it nearer than its own thickness [theory: sloshing, eq. 23].
-
-    Parameters
-    ----------
-    distance : d from the edge, m, shape (...,); inf without an edge
-    thickness : delta of the layer, m, above 0, shape (...,)
     """
     return np.asarray(1.0 / (1.0 + np.asarray(thickness, dtype=float) / np.asarray(distance, dtype=float)))
 
@@ -213,22 +165,12 @@ def decay_rate(
     height: float,
     drags: tuple[ArrayLike, ArrayLike, ArrayLike],
 ) -> Array:
-    """Rate at which the amplitude of a mode decays: loss of energy over twice the energy.
+    """Rate at which the amplitude of a mode decays, 1/s: loss of energy over twice the energy.
 
-    [g w + (g_1 (k + c) + g_2 (k - c))/h]/(k + b) [theory: sloshing, eq. 22].
-
-    Parameters
-    ----------
-    wall : w = oint |d psi/dn|^2 ds on all walls, m^3/s^2, shape (...,)
-    kinetic : k = int |grad psi|^2, m^4/s^2, shape (...,)
-    sense : c = Im oint psi* psi_theta dtheta on the free surface, m^4/s^2, shape (...,)
-    potential : b = (Omega/sigma)^2 oint |psi_theta|^2 dtheta, m^4/s^2, shape (...,)
-    height : of the chamber, m; inf leaves floor and lid out
-    drags : g on the walls; g_1 and g_2 of `plate_drags`, m/s, shape (...,)
-
-    Returns
-    -------
-    1/s, shape (...,)
+    [g w + (g_1 (k + c) + g_2 (k - c))/h]/(k + b) [theory: sloshing, eq. 22], with w = oint |d psi/dn|^2 ds on
+    all walls, k = int |grad psi|^2, c = Im oint psi* psi_theta dtheta on the free surface, b =
+    (Omega/sigma)^2 oint |psi_theta|^2 dtheta, drags g on the walls, g_1 and g_2 of `plate_drags`, m/s; an
+    infinite height leaves floor and lid out.
     """
     g, first, second = (np.asarray(drag, dtype=float) for drag in drags)
     k, c = np.asarray(kinetic, dtype=float), np.asarray(sense, dtype=float)

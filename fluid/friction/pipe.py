@@ -33,12 +33,7 @@ class Regime(StrEnum):
 
 
 def regime(reynolds: float) -> Regime:
-    """Laminar below a Reynolds number of 2100, turbulent from 4000 on, transition between.
-
-    Parameters
-    ----------
-    reynolds : Re = u D_h/nu, a number
-    """
+    """Laminar below a Reynolds number of 2100, turbulent from 4000 on, transition between."""
     if reynolds < LAMINAR_BELOW:
         return Regime.LAMINAR
     return Regime.TRANSITION if reynolds < TURBULENT_FROM else Regime.TURBULENT
@@ -47,10 +42,7 @@ def regime(reynolds: float) -> Regime:
 def friction_factor(reynolds: ArrayLike, roughness: ArrayLike = 0.0) -> Array:
     """Darcy's friction factor by Churchill's formula, f_D = 8 tau/(rho u^2) [theory: friction, eq. 2].
 
-    Parameters
-    ----------
-    reynolds : Re = u D_h/nu, above 0, inf for a liquid without viscosity, shape (...,)
-    roughness : height of the wall's roughness over D_h, 0 or above; taken as 1 beyond, shape (...,)
+    Roughness over D_h, taken as 1 beyond; an infinite Re is a liquid without viscosity.
     """
     re = np.asarray(reynolds, dtype=float)
     rough = np.minimum(np.asarray(roughness, dtype=float), _ROUGHEST)
@@ -67,26 +59,13 @@ def hydraulic_diameter(depth: ArrayLike, height: ArrayLike) -> Array:
     """Four times the area of the layer's section over its wet sides, D_h = 4 h h_c/(h_c + 2 h), m.
 
     Wet are the wall, the floor and the lid, not the free surface [theory: friction, eq. 3].
-
-    Parameters
-    ----------
-    depth : h, m, above 0, shape (...,)
-    height : h_c of the chamber, m, inf without floor and lid, shape (...,)
     """
     h = np.asarray(depth, dtype=float)
     return np.asarray(4.0 * h / (1.0 + 2.0 * h / np.asarray(height, dtype=float)))
 
 
 def drag_speed(velocity: ArrayLike, diameter: ArrayLike, viscosity: ArrayLike, roughness: ArrayLike) -> Array:
-    """Shear over density and velocity, f_D |u|/8, m/s; 8 nu/D_h in slow flow [theory: friction, eq. 1].
-
-    Parameters
-    ----------
-    velocity : u, m/s, shape (...,)
-    diameter : D_h, m, above 0, shape (...,)
-    viscosity : nu, m^2/s, shape (...,)
-    roughness : height of the wall's roughness, m, shape (...,)
-    """
+    """Shear over density and velocity, f_D |u|/8, m/s; 8 nu/D_h in slow flow [theory: friction, eq. 1]."""
     d, nu = np.asarray(diameter, dtype=float), np.asarray(viscosity, dtype=float)
     u = np.maximum(np.abs(np.asarray(velocity, dtype=float)), _SMALLEST)
     with np.errstate(divide="ignore"):
@@ -100,19 +79,10 @@ def drag_speed(velocity: ArrayLike, diameter: ArrayLike, viscosity: ArrayLike, r
 def steady_lag(
     acceleration: float, radius: float, diameter: float, viscosity: float, roughness: float = 0.0
 ) -> float:
-    """Velocity against the wall at which friction gives the liquid the drum's acceleration, m/s.
+    """Velocity against the wall at which friction gives the liquid the drum's acceleration, m/s; inf without
+    friction.
 
     dOmega/dt R = (f_D/2) u^2/D_h [theory: friction, eq. 4].
-
-    Parameters
-    ----------
-    acceleration : of the drum, rad/s^2, 0 or above
-    radius : of the wall R, m
-    diameter, viscosity, roughness : as for `spin_up_time`
-
-    Returns
-    -------
-    inf where there is no friction
     """
     wanted = acceleration * radius
     if wanted == 0.0:
@@ -130,13 +100,7 @@ def steady_lag(
 
 
 def bisected(below: Callable[[float], bool], low: float, high: float) -> float:
-    """Where a condition ceases to hold between two numbers, to rounding.
-
-    Parameters
-    ----------
-    below : holds at the lower one and not at the upper one
-    low, high : the two
-    """
+    """Where a condition ceases to hold between two numbers, to rounding."""
     while True:
         middle = 0.5 * (low + high)
         if not low < middle < high:
@@ -151,17 +115,7 @@ def spin_up_time(
 
     The integral of du/dt = -(f_D/2) u |u|/D_h [theory: friction, eq. 5].
 
-    Parameters
-    ----------
-    share : of the lag at the beginning, above 0, up to 1, shape (...,)
-    velocity : of the liquid against the wall at the beginning, m/s
-    diameter : D_h, m
-    viscosity : nu, m^2/s
-    roughness : height of the wall's roughness, m
-
-    Returns
-    -------
-    Shape (...,); inf without friction, 0 without a lag
+    Shape (...,); inf without friction, 0 without a lag.
     """
     wanted = np.asarray(share, dtype=float)
     if velocity == 0.0:

@@ -27,15 +27,10 @@ NO_TABLE = np.zeros((0, 2))
 class WallDrag(NamedTuple):
     """What a time step knows of the law of the wall; rates in the unit of the frequency given.
 
-    Parameters
-    ----------
-    coefficient : of the waves' part on the wall, sqrt(nu |s|/2)/R, 1/s
-    plates : 2 R/h_c times the drag of floor and lid over that of the wall
-    lid : 2 R/h_c
-    thin : thickness of the oscillating layer over R
-    top : last velocity of the table over R, 1/s
-    table : f_D u/8 over that velocity, and (1 - p)/2 or 0, p the power of u in it, at equal steps of the
-        fourth root of u/top, shape (m, 2)
+    `coefficient` of the waves' part on the wall sqrt(nu |s|/2)/R, 1/s; `plates` 2 R/h_c times the drag of
+    floor and lid over that of the wall; `lid` 2 R/h_c; `thin` thickness of the oscillating layer over R;
+    `top` last velocity of the table over R, 1/s; `table` f_D u/8 over that velocity, and (1 - p)/2 or 0, p
+    the power of u in it, at equal steps of the fourth root of u/top, shape (m, 2).
     """
 
     coefficient: float
@@ -59,17 +54,7 @@ def wall_drag(
     frequency: float,
     spin: float,
 ) -> WallDrag:
-    """The law of the wall for a layer.
-
-    Parameters
-    ----------
-    friction : its roughness counts
-    viscosity : nu, m^2/s
-    depth : mean depth h of the layer, m
-    radius, height : R and h_c of the chamber, m
-    frequency : of the waves seen from the drum, s, rad/s
-    spin : Omega, rad/s
-    """
+    """The law of the wall for a layer of mean depth h and waves of frequency s seen from the drum, rad/s."""
     diameter = float(hydraulic_diameter(depth, height))
     top, table = drag_table(diameter, viscosity, friction.roughness)
     lid = 2.0 * radius / height
@@ -88,14 +73,7 @@ def wall_drag(
 
 
 def drag_table(diameter: float, viscosity: float, roughness: float) -> tuple[float, Array]:
-    """Last velocity of a `WallDrag`'s table, m/s, and the table, shape (m, 2).
-
-    Parameters
-    ----------
-    diameter : D_h, m
-    viscosity : nu, m^2/s
-    roughness : height of the wall's roughness, m
-    """
+    """Last velocity of a `WallDrag`'s table, m/s, and the table, shape (m, 2)."""
     # Without viscosity the friction factor does not depend on the velocity: any one will do.
     top = _TOP_REYNOLDS * viscosity / diameter if viscosity > 0.0 else 1.0
     root = np.linspace(0.0, 1.0, _STEPS + 1)
@@ -109,11 +87,7 @@ def drag_table(diameter: float, viscosity: float, roughness: float) -> tuple[flo
 def mean_rates(drag: WallDrag, depth: ArrayLike, area: ArrayLike, velocity: ArrayLike) -> Array:
     """Rate at which the mean part takes the velocity, (f_D |u|/8)(1/h + 2/h_c) [theory: friction, eq. 7].
 
-    Parameters
-    ----------
-    drag : the law
-    depth, area : h/R and A/R^2, above 0, shape (n,)
-    velocity : u over R, 1/s, shape (n,)
+    Depth and area over R and R^2, velocity over R, shape (n,).
     """
     slip = np.abs(velocity) / (1.0 - np.asarray(area)) / drag.top
     root = np.minimum(slip, 1.0) ** 0.25
@@ -123,24 +97,14 @@ def mean_rates(drag: WallDrag, depth: ArrayLike, area: ArrayLike, velocity: Arra
 
 
 def wave_rates(drag: WallDrag, depth: ArrayLike, area: ArrayLike) -> Array:
-    """Rate at which the part of the waves takes what they have beside the mean [theory: friction, eq. 8].
-
-    Parameters
-    ----------
-    drag, depth, area : as for `mean_rates`
-    """
+    """Rate at which the part of the waves takes what they have beside the mean [theory: friction, eq. 8]."""
     h = np.asarray(depth)
     faded = h / (h + drag.thin)
     return np.asarray(drag.coefficient * (1.0 + drag.plates * h) / np.asarray(area) * faded)
 
 
 def wall_shear(drag: WallDrag, depth: Array, area: Array, velocity: Array) -> Array:
-    """Torque of the wall on a radian of the layer over rho, both parts, shape (n,) [theory: friction, eq. 6].
-
-    Parameters
-    ----------
-    drag, depth, area, velocity : as for `mean_rates`; lengths over R
-    """
+    """Torque of the wall on a radian of the layer over rho, both parts [theory: friction, eq. 6]."""
     held, waves = mean_rates(drag, depth, area, velocity), wave_rates(drag, depth, area)
     weight = waves * area
     mean = float(weight @ velocity) / max(float(weight.sum()), 1e-300)

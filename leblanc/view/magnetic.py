@@ -21,14 +21,7 @@ _ARC = 13  # points of a pole along its arc
 
 
 def magnetic_picture(view: MagneticView, index: int = 0, last: int | None = None) -> Picture:
-    """Picture of a rotor in magnetic bearings at an instant.
-
-    Parameters
-    ----------
-    view : rotor and path
-    index : of the instant
-    last : up to which instant the path is drawn; all of it if None
-    """
+    """Picture of a rotor in magnetic bearings at an instant, with the path up to the instant `last`."""
     moved = view.path_factor * view.displacement[:, 0::2] + 1j * view.path_factor * view.displacement[:, 1::2]
     ends = 0.5 * view.length * np.array([-1.0, 1.0])
     top, tail = (_placed(view, _axis(view, moved[index], end), end)[0] for end in (ends[1], ends[0]))
@@ -72,13 +65,7 @@ def magnetic_picture(view: MagneticView, index: int = 0, last: int | None = None
 
 
 def magnetic_film(view: MagneticView, frames: int) -> Film:
-    """The trial in time, or a turn of the orbit.
-
-    Parameters
-    ----------
-    view : rotor and path
-    frames : how many
-    """
+    """The trial in time, or a turn of the orbit, in so many frames."""
     chosen = np.linspace(0, view.time.size - 1, frames).round().astype(int).tolist()
     distance = np.hypot(view.displacement[:, 0::2], view.displacement[:, 1::2]).max(axis=1)
     curve = (f"deflection, up to {with_unit(float(distance.max()), LENGTH)}", distance)

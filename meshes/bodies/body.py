@@ -70,26 +70,11 @@ def columns(
     layers: int,
     order: int,
 ) -> Body:
-    """Liquid that stands on the floor above a plane triangulation.
+    """Liquid that stands on the floor above a plane triangulation of six-node triangles, counter-clockwise.
 
-    Parameters
-    ----------
-    points : plane nodes, shape (N, 2), m
-    triangles : six-node triangles, counter-clockwise, shape (M, 6)
-    depth : of the liquid at each node, m, shape (N,); columns of depth 0 are single points
-    height : of the chamber, m: where the depth reaches it the liquid wets the lid
-    open_top : columns that end in the free surface, shape (N,); those on the lid's waterline among them
-    open_side : columns that stand in the free surface, where the liquid ends sideways, shape (N,)
-    layers : tetrahedra on top of each other
-    order : 1 for straight edges, 2 for quadratic ones
-
-    Returns
-    -------
-    The body.
-
-    Raises
-    ------
-    InputError : above a million nodes
+    `depth` is that of the liquid at each node, m; columns of depth 0 are single points, and where it reaches
+    the height the liquid wets the lid. Columns in `open_top` end in the free surface, those in `open_side`
+    stand in it. An `InputError` above a million nodes.
     """
     require_few_nodes("layers", layers, len(points) * (2.0 * layers + 1.0))
     depth = depth.copy()
@@ -170,14 +155,7 @@ def _body(points: Array, cells: Indices, airy: NDArray[np.bool_], height: float)
 def body_jacobians(points: Array, cells: Indices) -> Array:
     """Jacobian determinants of tetrahedra at their nodes, six times the volume for straight edges.
 
-    Parameters
-    ----------
-    points : nodes, shape (N, 3), m
-    cells : node numbers, shape (M, 4) or (M, 10)
-
-    Returns
-    -------
-    Values, shape (M, 1 or 10), m^3.
+    Of nodes (N, 3) in cells (M, 4) or (M, 10), m^3.
     """
     nodes = points[cells]
     if cells.shape[1] == 4:

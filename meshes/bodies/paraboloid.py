@@ -34,29 +34,11 @@ def paraboloid_body(
 ) -> Body:
     """Liquid between floor, lid, walls and the surface z = beta r^2 + C, r from the rotation axis.
 
-    The section is made to follow the waterlines at floor and lid. Where they are closer together than the
-    bend of their edges, the surface between them stands upright at the radius that keeps the volume. Dry
-    spots much smaller than the section are left out.
-
-    Parameters
-    ----------
-    section : the section of the chamber; its geometric axis is the origin
-    height : axial height h of the chamber, m
-    beta : Omega^2/(2 g), 1/m; 0 at rest, infinite without gravity
-    surface_constant : C, height of the surface above the floor on the rotation axis, m
-    dry_radius : distance from the axis at which the surface meets the floor, m; used if beta is infinite
-    axis : where the rotation axis crosses the section, m; (-e, 0) for a deflection e
-    size : longest edge across the axis, m
-    layers : tetrahedra on top of each other
-    order : 1 for straight edges, 2 for quadratic ones
-
-    Returns
-    -------
-    The body, in coordinates of the chamber: from its geometric axis and its floor.
-
-    Raises
-    ------
-    InputError : a value out of its range, a surface that leaves no liquid, above a million nodes
+    In coordinates of the chamber, from its geometric axis and its floor; the rotation axis crosses the
+    section at `axis`, (-e, 0) for a deflection e. Without gravity (beta infinite) the surface meets the floor
+    at `dry_radius`. Where waterlines at floor and lid are closer together than the bend of their edges, the
+    surface between them stands upright at the radius that keeps the volume; dry spots much smaller than the
+    section are left out.
     """
     _check(height, beta, surface_constant, dry_radius, axis, size, layers, order)
     extent = float(np.ptp(section.points, axis=0).max())

@@ -29,26 +29,11 @@ def wave_body(
     layers: int = 2,
     order: int = 2,
 ) -> Body:
-    """Liquid between the wall r = R and the free surface r = r_s(theta), from floor to lid.
+    """Liquid between the wall r = R and the free surface r = r_s(theta), from floor to lid; dry wall carries
+    none.
 
-    Parameters
-    ----------
-    radius : wall radius R, m
-    height : axial height h of the chamber, m
-    surface_radius : r_s at some angles around, m, shape (n,), n 8 or more; R where the wall is dry
-    angles : the angles, rad, rising within one turn, shape (n,); evenly spaced from 0 if not given
-    across : cells from the surface to the wall
-    layers : tetrahedra on top of each other
-    order : 1 for straight edges; 2 for quadratic ones, for which n is even: every other sample lies between
-        the ends of an edge
-
-    Returns
-    -------
-    The body; dry parts of the wall carry none.
-
-    Raises
-    ------
-    InputError : a value out of its range, no liquid at all, above a million nodes
+    r_s at rising angles within one turn (evenly spaced from 0 if None), 8 or more, an even number for
+    quadratic edges: every other sample lies between the ends of an edge.
     """
     inner = np.array(surface_radius, dtype=np.float64)
     count = inner.size
@@ -83,7 +68,7 @@ def wave_body(
 def _merged(row: Indices, column: Indices, thickness: Array) -> Indices:
     """Number of each node of the grid: where the wall is dry, all nodes of a ray are one.
 
-    The cell beside it is a triangle, whose diagonal has become one of its sides and takes that side's middle.
+    The cell beside it is a triangle, whose diagonal takes that side's middle.
     """
     dry = thickness == 0.0
     before, after = np.roll(dry, 1)[column], np.roll(dry, -1)[column]

@@ -22,16 +22,7 @@ MEET = 1e-6
 
 
 def meet(points: Array) -> tuple[Indices, Array]:
-    """Number the places where ends of curves meet.
-
-    Parameters
-    ----------
-    points : ends of curves, shape (N, 2)
-
-    Returns
-    -------
-    Number of the place of each end, shape (N,), and the places, shape (P, 2).
-    """
+    """Number the places where ends of curves meet: that of each end, (N,), and the places, (P, 2)."""
     reach = MEET * float(np.ptp(points, axis=0).max())
     first = np.array([min(near) for near in cKDTree(points).query_ball_point(points, reach)])
     places, number = np.unique(first, return_inverse=True)
@@ -39,21 +30,9 @@ def meet(points: Array) -> tuple[Indices, Array]:
 
 
 def closed_loops(path: str | Path, ends: Indices, places: Array) -> list[list[int]]:
-    """Put curves that meet end to end in order.
+    """Numbers of the curves of each outline, in order, from the places of their ends.
 
-    Parameters
-    ----------
-    path : of the drawing, for messages
-    ends : places of the two ends of each curve, shape (K, 2)
-    places : where they are, shape (P, 2)
-
-    Returns
-    -------
-    Numbers of the curves of each outline, in order.
-
-    Raises
-    ------
-    InputError : an outline that is open or branches, and where
+    An `InputError` tells where an outline is open or branches.
     """
     degree = np.bincount(ends.ravel(), minlength=len(places))
     if np.any(degree != 2):
@@ -101,20 +80,11 @@ class Curve:
 
 
 def read_drawing(path: str | Path) -> tuple[list[Curve], float | None]:
-    """Curves in the model space of a DXF drawing.
+    """Curves in the model space of a DXF drawing, and the length of its unit in metres, None if it does not
+    say.
 
-    Parameters
-    ----------
-    path : a `.dxf` file; text, dimensions, hatches and similar entities are skipped, blocks are opened
-
-    Returns
-    -------
-    The curves, and the length of the drawing's unit in metres, None if it does not say.
-
-    Raises
-    ------
-    InputError : not a drawing that can be read, curves outside one plane z = constant, splines that do not
-        end on their control points, no curve at all
+    Text, dimensions, hatches and similar entities are skipped, blocks are opened. An `InputError` for curves
+    outside one plane z = constant, splines that do not end on their control points, no curve at all.
     """
     try:
         import ezdxf

@@ -54,22 +54,8 @@ class FileContents:
 def plane_cells(
     path: str | Path, contents: FileContents, scale: float, kinds: tuple[str, ...]
 ) -> tuple[Array, Indices, Indices]:
-    """The one kind of plane cells of a file.
-
-    Parameters
-    ----------
-    path : of the file, for messages
-    contents : of the file
-    scale : length of the file's unit, m
-    kinds : the cells that will do
-
-    Returns
-    -------
-    Points that they use, m, shape (N, 2); cells, counter-clockwise; the new number of each point, or -1.
-
-    Raises
-    ------
-    InputError : other cells, more than one kind, points that are not in a plane z = constant
+    """The one kind of plane cells of a file: points in m, cells counter-clockwise, new number of each point
+    or -1.
     """
     found = sorted({kind for kind, data in contents.blocks if kind not in _DROPPED and len(data)})
     shapes = "triangles or quadrilaterals" if "quad" in kinds else "triangles"
@@ -92,16 +78,8 @@ def plane_cells(
 
 
 def named_lines(contents: FileContents, number: Indices) -> dict[str, Indices]:
-    """End nodes of the lines of each physical group.
-
-    Parameters
-    ----------
-    contents : of the file
-    number : new number of each point of the file, or -1
-
-    Returns
-    -------
-    Pairs of new numbers by the group's name, "group 3" for one without; lines in no group are left out.
+    """End nodes of the lines of each physical group, by its name or "group 3"; lines in no group are left
+    out.
     """
     found: dict[str, list[Indices]] = {}
     for (kind, data), groups in zip(contents.blocks, contents.groups, strict=True):
@@ -156,23 +134,7 @@ class NamedSection:
 def name_walls(
     section: Section, lines: Mapping[str, Indices], slits: Sequence[str], notes: Sequence[str]
 ) -> NamedSection:
-    """Find the walls that have a name, and open slits along named lines.
-
-    Parameters
-    ----------
-    section : the section
-    lines : end nodes of the lines of each group, shape (L, 2); -1 for nodes that the section does not use
-    slits : groups along which the section is opened: thin baffles drawn as lines
-    notes : what was dropped before
-
-    Returns
-    -------
-    The section, opened, and its walls.
-
-    Raises
-    ------
-    InputError : a slit that is no group, or does not lie inside the section
-    """
+    """Find the walls that have a name, and open slits along named lines: thin baffles drawn as lines."""
     said = list(notes)
     for name in slits:
         if name not in lines:
@@ -207,24 +169,11 @@ def _pairs(ends: Indices) -> Indices:
 
 
 def read_section(path: str | Path, scale: float = 1.0) -> Section:
-    """Section from a mesh file.
+    """Section from a mesh file (`.msh` of Gmsh 2.2 or 4.1, `.vtu`, `.xdmf`), the file's origin its geometric
+    axis.
 
-    Triangles may be straight or quadratic; points and lines in the file are dropped, so are nodes that no
-    triangle uses, and clockwise triangles are turned round.
-
-    Parameters
-    ----------
-    path : a `.msh` file (Gmsh 2.2 or 4.1, text or binary), a `.vtu` or an `.xdmf` file
-    scale : length of the file's unit, m: 1e-3 for a mesh drawn in millimetres
-
-    Returns
-    -------
-    The section, in metres; coordinates are from the file's origin, which is taken for the geometric axis.
-
-    Raises
-    ------
-    InputError : no such file, not a mesh, cells other than triangles, a mesh that does not lie in a plane
-        z = constant, triangles that `Section` refuses
+    `scale` is the length of the file's unit, m. Triangles may be straight or quadratic; points, lines and
+    nodes that no triangle uses are dropped, clockwise triangles are turned round.
     """
     return read_walls(path, scale).section
 
@@ -232,19 +181,7 @@ def read_section(path: str | Path, scale: float = 1.0) -> Section:
 def read_walls(path: str | Path, scale: float = 1.0, slits: Sequence[str] = ()) -> NamedSection:
     """Section from a mesh file, with the walls that Gmsh's physical groups name.
 
-    Parameters
-    ----------
-    path, scale : as for `read_section`
-    slits : physical groups of lines inside the section along which it is opened: baffles without thickness
-
-    Returns
-    -------
-    The section, its named walls, and what was dropped, in words. Groups without a name are called by their
-    number, as "group 3".
-
-    Raises
-    ------
-    InputError : as `read_section`; a slit that is no group of lines inside the section
+    Slits are groups of lines inside the section along which it is opened: baffles without thickness.
     """
     contents = _contents(path, scale)
     points, cells, number = plane_cells(path, contents, scale, ("triangle", "triangle6"))
@@ -256,20 +193,8 @@ def read_walls(path: str | Path, scale: float = 1.0, slits: Sequence[str] = ()) 
 
 
 def read_liquid_section(path: str | Path, scale: float = 1.0) -> LiquidSection:
-    """Section of liquid at rest from a mesh file.
-
-    Parameters
-    ----------
-    path, scale : as for `read_section`; triangles or quadrilaterals, straight or quadratic. The nodes nearest
-        to the origin are taken for the free surface
-
-    Returns
-    -------
-    The mesh; its free surface and its walls are found anew.
-
-    Raises
-    ------
-    InputError : as `read_section`; a mesh that `liquid_section` refuses
+    """Section of liquid at rest from a mesh file; the nodes nearest to the origin are taken for the free
+    surface.
     """
     contents = _contents(path, scale)
     points, cells, _ = plane_cells(path, contents, scale, tuple(PLANE.values()))
@@ -286,19 +211,8 @@ def write_section(
     point_data: Mapping[str, ArrayLike] | None = None,
     cell_data: Mapping[str, ArrayLike] | None = None,
 ) -> None:
-    """Write a section, and fields on it, to a mesh file.
-
-    Parameters
-    ----------
-    section : the section, in metres
-    path : a `.msh` file (Gmsh 4.1, binary), a `.vtu` file, or an `.xdmf` file, which gets an `.h5` file
-        beside it; the folder must exist
-    point_data : fields at the nodes by name, each of shape (N, ...); `.msh` takes 1, 3 or 9 components
-    cell_data : fields on the triangles by name, each of shape (M, ...)
-
-    Raises
-    ------
-    InputError : another kind of file, a field of another length, a file that cannot be written
+    """Write a section, and fields at its nodes and on its triangles, to a `.msh` (4.1, binary), `.vtu` or
+    `.xdmf` file.
     """
     block = (PLANE[section.triangles.shape[1]], section.triangles)
     _write(path, section.points, [block], point_data, cell_data)
@@ -315,15 +229,6 @@ def write_mesh(
 
     A `.msh` file also gets the lines of a section's free surface and walls, in physical groups named
     "surface", "outer wall", and "wall 1", "wall 2", ... for pieces that stand free; fields are 0 there.
-
-    Parameters
-    ----------
-    mesh : in metres
-    path, point_data, cell_data : as for `write_section`
-
-    Raises
-    ------
-    InputError : as `write_section`
     """
     if isinstance(mesh, Body):
         _write(path, mesh.points, [(SPACE[mesh.cells.shape[1]], mesh.cells)], point_data, cell_data)

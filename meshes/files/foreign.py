@@ -32,13 +32,7 @@ _limit = threading.Lock()  # the limit of memory is one for the whole process
 def open_regular(path: str | os.PathLike[str]) -> BinaryIO:
     """A file opened for reading.
 
-    Parameters
-    ----------
-    path : of the file
-
-    Raises
-    ------
-    OSError : it cannot be opened, or is a folder, or a pipe, a socket or a device, which may never end
+    An `OSError` for a folder, a pipe, a socket or a device, which may never end.
     """
     _require_regular(Path(path).stat().st_mode, path)  # first: opening a pipe or a device may have effects
     handle = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
@@ -58,17 +52,7 @@ def _require_regular(mode: int, path: str | os.PathLike[str]) -> None:
 
 
 def require_file(path: str | Path, what: str = "file") -> None:
-    """Refuse a file that is not there, is no regular file or is too long.
-
-    Parameters
-    ----------
-    path : of the file
-    what : it is, for the message
-
-    Raises
-    ------
-    InputError : what is wrong with it
-    """
+    """Refuse a file that is not there, is no regular file or is too long."""
     try:
         with open_regular(path) as file:
             size = os.fstat(file.fileno()).st_size
@@ -80,16 +64,7 @@ def require_file(path: str | Path, what: str = "file") -> None:
 
 
 def require_harmless_xml(path: str | Path) -> None:
-    """Refuse XML that defines entities, has too many parts, or points to files that are not beside it.
-
-    Parameters
-    ----------
-    path : a `.vtu` or `.xdmf` file
-
-    Raises
-    ------
-    InputError : what is wrong with it
-    """
+    """Refuse XML that defines entities, has too many parts, or points to files that are not beside it."""
     size = Path(path).stat().st_size
     most = int(min(MAX_ELEMENTS, _MOST_WORK / max(size, 1)))
     whole = _scan(path, most)
@@ -186,16 +161,7 @@ def _mode(path: Path) -> int:
 
 @contextmanager
 def limited_memory(path: str | Path) -> Iterator[None]:
-    """Let a library that reads a file take no more than `MAX_MEMORY`, where the system can limit it (Linux).
-
-    Parameters
-    ----------
-    path : of the file, for the message
-
-    Raises
-    ------
-    InputError : it needs more
-    """
+    """Let a library that reads a file take no more than `MAX_MEMORY`, where the system can limit it."""
     try:
         import resource
 

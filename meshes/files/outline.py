@@ -28,8 +28,7 @@ from meshes.section import Section
 def silenced() -> Iterator[None]:
     """Send what the whole process prints on its standard output into the void.
 
-    Libraries such as OpenCASCADE write there without asking, below Python's own streams. For the time being
-    other threads are silent as well.
+    Libraries such as OpenCASCADE write there below Python's own streams; other threads are silent as well.
     """
     try:
         kept = os.dup(1)
@@ -73,32 +72,14 @@ def outline_section(
     height: float | None = None,
     slits: Sequence[str] = (),
 ) -> Section:
-    """Section from an outline drawn elsewhere, its geometric axis at the drawing's origin.
+    """Section from an outline drawn elsewhere (DXF, STEP, IGES, BREP), its geometric axis at the drawing's
+    origin.
 
-    The largest closed outline is the outer wall; the others lie within it and are inner walls and obstacles,
-    whatever is drawn inside those. Only what CAD shows and plots counts. The same file and sizes give the
-    same mesh.
-
-    Parameters
-    ----------
-    path : a `.dxf` drawing; or a `.step`, `.iges` or `.brep` model with a plane face, or with a solid
-    wall_size : size of the triangles at walls, m; a hundredth of the largest extent if not given
-    inside_size : size of the largest triangles, m
-    growth : size of a triangle over that of its neighbour nearer to the wall, above 1, 3 at most
-    order : 1 for straight edges; 2 for quadratic ones, whose nodes on walls lie on the outline
-    scale : length of the file's unit, m; needed where the file does not name it
-    height : z at which a solid is cut, in the file's unit; STEP and IGES models are in millimetres
-    slits : layers of a DXF drawing whose lines are baffles without thickness
-
-    Returns
-    -------
-    The section, in metres.
-
-    Raises
-    ------
-    InputError : a value out of its range, above a million nodes, a file that cannot be read, an outline that
-        is open or crossed, or lies outside the largest
-    ImportError : Gmsh or ezdxf is not installed: `pip install leblanc[cad]`
+    The largest closed outline is the outer wall; the others within it are inner walls and obstacles. Only
+    what CAD shows and plots counts; the same file and sizes give the same mesh. Sizes in m: `wall_size` a
+    hundredth of the largest extent if None; `scale` is the length of the file's unit, `height` the z at which
+    a solid is cut, in that unit; `slits` are layers of a DXF drawing whose lines are baffles. An
+    `ImportError` without Gmsh or ezdxf (`leblanc[cad]`).
     """
     file = _check(path, wall_size, inside_size, growth, order)
     drawn = file.suffix.lower() == ".dxf"

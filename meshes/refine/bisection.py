@@ -28,16 +28,8 @@ def quadratic_triangles(section: Section) -> tuple[Array, Indices]:
 
 
 def edge_numbers(triangles: Indices) -> tuple[Indices, Indices]:
-    """Number the edges of a triangulation.
-
-    Parameters
-    ----------
-    triangles : node numbers, shape (M, 3) or (M, 6)
-
-    Returns
-    -------
-    Numbers of the edges 0-1, 1-2, 2-0 of each triangle, shape (M, 3); nodes of each edge, shape (E, 2 or 3):
-    the ends, the lower number first, and the node between.
+    """Number the edges of triangles: those of 0-1, 1-2, 2-0 of each, (M, 3), and nodes of each edge, (E, 2 or
+    3).
     """
     width = 2 if triangles.shape[1] == 3 else 3
     every = triangles[:, EDGES[:, :width]].reshape(-1, width)
@@ -50,19 +42,7 @@ def edge_numbers(triangles: Indices) -> tuple[Indices, Indices]:
 def refine(points: Array, triangles: Indices, size: Callable[[Array], Array]) -> tuple[Array, Indices]:
     """Bisect triangles until no edge is longer than the given size at its middle.
 
-    Parameters
-    ----------
-    points : nodes, shape (N, 2), m
-    triangles : node numbers, shape (M, 6)
-    size : longest edge at some points, shape (K, 2) -> (K,), m
-
-    Returns
-    -------
-    Points, with new ones at the end, and triangles.
-
-    Raises
-    ------
-    InputError : above a million nodes
+    Triangles of six nodes; `size` of points (K, 2) gives the longest edge there, m. New points at the end.
     """
     while True:
         _, edges = edge_numbers(triangles)
@@ -78,23 +58,11 @@ def refine(points: Array, triangles: Indices, size: Callable[[Array], Array]) ->
 
 
 def bisect(points: Array, triangles: Indices, marked: NDArray[np.bool_]) -> tuple[Array, Indices]:
-    """Halve some edges, and the longest edges of all triangles that this touches.
+    """Halve the marked edges (in the order of `edge_numbers`), and the longest edges of all triangles this
+    touches.
 
-    A triangle is halved across its longest edge, the halves once more if another edge of theirs is halved:
-    no angle becomes less than half of the smallest there was.
-
-    Parameters
-    ----------
-    points, triangles : as for `refine`
-    marked : edges to halve, in the order of `edge_numbers`, shape (E,)
-
-    Returns
-    -------
-    Points, with new ones at the end, and triangles.
-
-    Raises
-    ------
-    InputError : above a million nodes
+    The halves are halved once more if another edge of theirs is: no angle becomes less than half of the
+    smallest.
     """
     number, edges = edge_numbers(triangles)
     length = np.sum((points[edges[:, 1]] - points[edges[:, 0]]) ** 2, axis=1)
@@ -173,19 +141,8 @@ _INNER = np.array(
 
 
 def halved(liquid: LiquidSection) -> LiquidSection:
-    """The same liquid with all sides half as long; walls keep their shape, the surface its circle.
-
-    Parameters
-    ----------
-    liquid : with quadratic triangles
-
-    Returns
-    -------
-    Four triangles for each.
-
-    Raises
-    ------
-    InputError : other cells
+    """The same liquid with all sides of its quadratic triangles half as long; walls and surface keep their
+    shape.
     """
     if liquid.cells.shape[1] != 6:
         raise InputError("liquid", liquid.cells.shape, "a mesh of quadratic triangles")
@@ -199,12 +156,7 @@ def halved(liquid: LiquidSection) -> LiquidSection:
 
 
 def straightened(liquid: LiquidSection) -> LiquidSection:
-    """The same triangles with straight sides.
-
-    Parameters
-    ----------
-    liquid : with triangles
-    """
+    """The same triangles with straight sides."""
     used, corners = np.unique(liquid.cells[:, :3], return_inverse=True)
     return liquid_section(liquid.points[used], corners.reshape(-1, 3), liquid.surface_radius)
 

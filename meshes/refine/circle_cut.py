@@ -48,21 +48,11 @@ class Circle:
 def follow_circle(
     points: Array, triangles: Indices, circle: Circle, locked: NDArray[np.bool_] | None = None
 ) -> tuple[Array, Indices, NDArray[np.bool_]]:
-    """Make the edges of a triangulation follow a circle.
+    """Make the edges of a triangulation follow a circle: points, triangles, and which lie outside, shape
+    (M,).
 
-    The triangles near the circle must be small against its radius. Edges on the circle become quadratic arcs;
-    walls keep their shape, but for smooth ones, where a vertex may slide along.
-
-    Parameters
-    ----------
-    points : nodes, shape (N, 2), m
-    triangles : node numbers, shape (M, 6)
-    circle : the circle
-    locked : vertices that must not move, shape (N,)
-
-    Returns
-    -------
-    Points, triangles, and which of them lie outside the circle, shape (M,).
+    The triangles near the circle must be small against its radius. Edges on it become quadratic arcs; walls
+    keep their shape, but for smooth ones, where a vertex may slide along. `locked` vertices must not move.
     """
     fixed = np.zeros(len(points), dtype=bool) if locked is None else locked.copy()
     points, triangles = _split_double_crossings(points, triangles, circle)
@@ -296,19 +286,10 @@ def cut_along(
     *,
     outside: bool,
 ) -> tuple[Array, Indices]:
-    """Quadratic triangulation of a section with edges along circles.
+    """Quadratic triangulation of a section with edges along circles, given the refined points and triangles.
 
-    Parameters
-    ----------
-    section : the section
-    size : longest edge at some points, shape (K, 2) -> (K,), m
-    circles : the circles, given the refined points and triangles
-    outside : whether to drop what lies inside the last circle
-
-    Returns
-    -------
-    Points, some of them unused, shape (N, 2), m, and triangles, shape (M, 6); M may be 0. Cells may still be
-    folded if a wall touches a circle.
+    With `outside` what lies inside the last circle is dropped. Cells may still be folded if a wall touches a
+    circle.
     """
     start = quadratic_triangles(section)
     spots = np.empty((0, 3))

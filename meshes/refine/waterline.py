@@ -1,17 +1,12 @@
 """Waterlines in a mesh: integrals over triangles that they cross, and the liquid that lies outside of them.
 
-Triangles cut by waterlines: circles about the rotation axis where the surface meets floor and lid.
-
 Over a triangle that a waterline crosses, the depth of the liquid has a kink, and a quadrature rule made for
 smooth functions loses its order. Such a triangle is integrated along rays from the axis instead. For any
 function q and any part of the plane with boundary r(theta), taken around it,
 
     integral of q over the part = oint dtheta int_{r_0}^{r(theta)} q rho drho,
 
-if q vanishes inside r_0, or if the axis is outside the part. Only the edges count, and along an edge the
-kinks are single points.
-
-The liquid at rest in any section: what lies outside the circle of the free surface.
+if q vanishes inside r_0, or if the axis is outside the part. Along an edge the kinks are single points.
 """
 
 from __future__ import annotations
@@ -67,14 +62,7 @@ class Arcs:
 def monotone_arcs(section: Section, axis: tuple[float, float]) -> Arcs:
     """Cut the edges of a section's triangles where their distance from the axis is least or largest.
 
-    Parameters
-    ----------
-    section : the section
-    axis : where the rotation axis crosses it, m
-
-    Returns
-    -------
-    The arcs, at most twelve to a triangle.
+    At most twelve arcs to a triangle.
     """
     coefficients = edge_polynomials(section.points[section.triangles] - np.array(axis))
     curve = np.array([c.reshape(-1, 2).T for c in coefficients])
@@ -105,14 +93,7 @@ def monotone_arcs(section: Section, axis: tuple[float, float]) -> Arcs:
 def distance_range(arcs: Arcs, triangles: int) -> tuple[Array, Array]:
     """Least and largest squared distance from the axis over each triangle.
 
-    Parameters
-    ----------
-    arcs : the arcs of all triangles
-    triangles : how many there are, M
-
-    Returns
-    -------
-    Least, largest, shape (M,), m^2; the least is zero in the triangle that holds the axis.
+    Shape (M,), m^2; the least is zero in the triangle that holds the axis.
     """
     least, largest = np.full(triangles, np.inf), np.zeros(triangles)
     np.minimum.at(least, arcs.triangle, arcs.near_square)
@@ -125,23 +106,13 @@ def distance_range(arcs: Arcs, triangles: int) -> tuple[Array, Array]:
 
 
 def beyond(arcs: Arcs, least: Array, largest: Array, floor: float, lid: float) -> tuple[Array, Array, Array]:
-    """Quadrature rule for the parts of triangles that lie outside the floor's waterline.
+    """Quadrature rule for the parts of triangles that lie outside the floor's waterline: x, y from the axis,
+    weights.
 
-    Exact to rounding for what is polynomial up to the lid's waterline and another polynomial beyond it, as
-    long as the triangles are small against their distance from the axis, and to about 1e-8 of itself next to
-    the axis: there each edge is cut where the distance doubles, so that no piece is longer than about twice
-    its distance from the pole at the axis.
-
-    Parameters
-    ----------
-    arcs : arcs of the triangles to integrate over
-    least, largest : range of the squared distance over the triangle of each arc, shape (A,), m^2
-    floor : squared radius of the inner waterline, m^2; below zero if the liquid covers the axis
-    lid : squared radius of the outer waterline, m^2, above `floor`
-
-    Returns
-    -------
-    x, y from the axis, m, and weights, m^2, each of shape (Q,); weights have either sign.
+    `floor` and `lid` are squared radii of the waterlines, m^2, the first below zero if the liquid covers the
+    axis; weights (m^2) have either sign. Exact to rounding for what is polynomial up to the lid's waterline
+    and another polynomial beyond, to about 1e-8 of itself next to the axis, where edges are cut where the
+    distance doubles.
     """
     pole = floor if floor > 0.0 else lid
     distant = least > 0.25 * largest
@@ -205,8 +176,8 @@ def _crossing(arcs: Arcs, level: float) -> Array:
 def _extremes(curve: Array) -> Array:
     """Stationary points of the distance along quadratic curves, in order, shape (3, A).
 
-    The slope of half the squared distance is a cubic; between its own stationary points it is monotone and
-    has one zero at most. Where it has none, some point of that interval is returned, which does no harm.
+    The slope of half the squared distance is a cubic, monotone between its own stationary points; where it
+    has no zero, some point of that interval is returned.
     """
     c0, c1, c2 = curve
     d3, d2 = 2.0 * np.sum(c2 * c2, axis=0), 3.0 * np.sum(c1 * c2, axis=0)
@@ -234,19 +205,7 @@ _COARSEST = 0.25
 def area_outside(section: Section, radius: float, axis: tuple[float, float] = (0.0, 0.0)) -> float:
     """Area of the part of a section outside a circle.
 
-    Parameters
-    ----------
-    section : the section
-    radius : of the circle, m
-    axis : its centre, m
-
-    Returns
-    -------
-    The area, m^2, exact on the mesh to about 1e-9.
-
-    Raises
-    ------
-    InputError : a radius that is negative or not finite
+    Exact on the mesh to about 1e-9, m^2.
     """
     if not (math.isfinite(radius) and radius >= 0.0):
         raise InputError("radius", radius, "a finite number, 0 or above")
@@ -269,18 +228,7 @@ def area_outside(section: Section, radius: float, axis: tuple[float, float] = (0
 def surface_radius_of(section: Section, liquid_area: float) -> float:
     """Radius of the free surface that leaves a given area of liquid, its volume over the chamber's height.
 
-    Parameters
-    ----------
-    section : the section of the chamber; its geometric axis is the origin
-    liquid_area : m^2
-
-    Returns
-    -------
-    a, m: `area_outside` of it is the area to the accuracy of that function.
-
-    Raises
-    ------
-    InputError : an area that is not positive, or as large as the section leaves no surface
+    a, m, to the accuracy of `area_outside`.
     """
     require_positive("liquid_area", liquid_area)
     whole = section_area(section)
@@ -307,28 +255,11 @@ def liquid_outside(
     wall_size: float = math.inf,
     growth: float = 1.5,
 ) -> LiquidSection:
-    """Liquid of a section outside the circle r = a, with walls of any shape.
+    """Liquid of a section outside the circle r = a, with walls of any shape, which keep it.
 
-    The section is refined by bisection where sizes are given, and near the circle at least to a quarter of
-    its radius. Nodes near the circle are moved onto it, crossed triangles are split, and the sides on it
-    become quadratic arcs. Walls keep their shape.
-
-    Parameters
-    ----------
-    section : the section of the chamber; its geometric axis is the origin
-    surface_radius : radius a of the free surface, m
-    order : 1 for straight sides, 2 for quadratic ones; that of the section if not given
-    surface_size, wall_size : longest sides at the circle and at walls, m
-    growth : size of a cell over that of its neighbour nearer to where it is small, above 1, 3 at most
-
-    Returns
-    -------
-    The mesh.
-
-    Raises
-    ------
-    InputError : a value out of its range, no liquid outside the circle, a circle that does not cross or lie
-        in the section, a wall that hardly touches it, above a million nodes
+    The section is bisected where sizes (m) are given, and near the circle at least to a quarter of its
+    radius. Nodes near the circle are moved onto it, crossed triangles split; sides on it become quadratic
+    arcs. An `InputError` where the circle does not cross or lie in the section, or a wall hardly touches it.
     """
     require_positive("surface_radius", surface_radius)
     for name, value in (("surface_size", surface_size), ("wall_size", wall_size)):

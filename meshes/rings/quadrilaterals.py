@@ -1,8 +1,8 @@
 """Mapped quadrilaterals of the liquid ring between the free surface and a circular wall, with baffles.
 
-Circles and rays of nodes, equally spaced in the angle and in the logarithm of the radius, where harmonic
-functions vary evenly. Towards the edge of a baffle in the liquid, distances grow as a power of the cell's
-number: a flow that turns round an edge is singular there, and that spacing keeps the order of convergence.
+Circles and rays of nodes, equally spaced in the angle and in ln r, where harmonic functions vary evenly.
+Towards the edge of a baffle in the liquid distances grow as a power of the cell's number, which keeps the
+order of convergence where a flow turns round it.
 """
 
 from __future__ import annotations
@@ -41,25 +41,11 @@ def ring(
     towards_surface: float = 1.0,
     towards_wall: float = 1.0,
 ) -> LiquidSection:
-    """Liquid at rest between the circle r = a and the wall r = R, in quadrilaterals.
+    """Liquid at rest between the circle r = a and the wall r = R, in quadrilaterals of four or nine nodes.
 
-    Parameters
-    ----------
-    radius : wall radius R, m
-    surface_radius : radius a of the free surface, m
-    around, across : cells around and across, at least; more with baffles
-    order : 1 for four nodes a cell; 2 for nine, all on their true circles and rays
-    baffles : radial baffles, each a slit
-    times : that many times the cells between any two marks; 2 halves every cell, for estimates of the error
-    towards_surface, towards_wall : 1 for equal steps in ln r; above 1 distances from there grow as that power
-
-    Returns
-    -------
-    The mesh.
-
-    Raises
-    ------
-    InputError : a value out of its range, above a million nodes
+    `around` and `across` count cells at least, more with baffles, each a slit; `times` multiplies the cells
+    between any two marks, for estimates of the error. `towards_surface` and `towards_wall` above 1 let
+    distances from there grow as that power; 1: equal steps in ln r.
     """
     _check(radius, surface_radius, around, across, order, times)
     least = around * order**2

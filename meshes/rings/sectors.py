@@ -24,19 +24,7 @@ def compartment(
 ) -> Section:
     """Section between a baffle and the next one, the baffles taken as walls from one circle to the other.
 
-    Parameters
-    ----------
-    baffles : their number and angles; the lengths are not looked at
-    number : of the baffle where it starts, from 0
-    radius, inner_radius, segments, order : as for `sector`
-
-    Returns
-    -------
-    The section; a single baffle leaves the whole chamber, slit along it.
-
-    Raises
-    ------
-    InputError : as `sector`; a baffle that is not there
+    A single baffle leaves the whole chamber, slit along it.
     """
     if not 0 <= number < baffles.count:
         raise InputError("number", number, f"0 to {baffles.count - 1}")
@@ -54,24 +42,8 @@ def sector(
     *,
     order: int = 2,
 ) -> Section:
-    """Part of a disc or an annulus between two rays.
-
-    Parameters
-    ----------
-    radius : outer wall radius R, m
-    start : direction of the first ray, rad
-    angle : from the first ray to the second, rad, 2 pi at most
-    inner_radius : inner wall radius R_i, m; 0 for a sector that reaches the axis
-    segments : triangles along the outer wall, 1 or more
-    order : 1 for straight edges; 2 for quadratic ones, whose nodes on the walls lie on their circles
-
-    Returns
-    -------
-    The section.
-
-    Raises
-    ------
-    InputError : a value out of its range, edges of more than 60 degrees, above a million nodes
+    """Part of a disc (inner radius 0) or an annulus between two rays, `segments` triangles along the outer
+    wall.
     """
     _check(radius, start, angle, inner_radius, segments, order)
     require_few_nodes("segments", segments, segments * order**2)

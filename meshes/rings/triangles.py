@@ -16,26 +16,11 @@ from meshes.liquid_section import SIDES, LiquidSection, liquid_section
 
 
 def open_slits(points: Array, cells: Indices, slits: Indices) -> tuple[Array, Indices]:
-    """Part the cells of a mesh along some of its sides.
+    """Part the cells of a mesh along some of its sides, given by end nodes (K, 2); copies of nodes at the
+    end.
 
     A node is doubled where the sides cut its cells into groups: along a slit and where it meets the boundary.
-    At a tip inside the mesh the cells stay connected around it, and the node stays one. Where slits cross,
-    every group gets a node.
-
-    Parameters
-    ----------
-    points : nodes, shape (N, 2), m
-    cells : node numbers, shape (M, 3), (M, 6), (M, 4) or (M, 9)
-    slits : end nodes of the sides to open, shape (K, 2), in either direction
-
-    Returns
-    -------
-    Points and cells; nodes keep their numbers, copies are added at the end.
-
-    Raises
-    ------
-    InputError : a slit that is no side between two cells, or one that opens nothing: a single side whose ends
-        are both tips in the mesh
+    At a tip inside the mesh the node stays one. An `InputError` for a slit that opens nothing.
     """
     if len(slits) == 0:
         return points, cells
@@ -87,22 +72,10 @@ def _key(ends: Indices) -> Indices:
 def graded(
     length: float, largest: float, start: float, end: float, growth: float = 1.5, least: int = 1
 ) -> Array:
-    """Divide a line into steps that grow from both ends.
+    """Divide a line into steps that grow from both ends by a ratio up to `growth`: positions from 0 to
+    `length`.
 
-    The step at a point is the least of `largest` and what has grown from either end. The steps are stretched
-    or shrunk alike, so that a whole number of them fills the line.
-
-    Parameters
-    ----------
-    length : of the line, above 0
-    largest : the longest step
-    start, end : steps at the ends, at most; above `largest` they have no effect
-    growth : ratio of neighbouring steps, at most, above 1
-    least : smallest number of steps
-
-    Returns
-    -------
-    Positions from 0 to `length`, rising, shape (steps + 1,).
+    The steps are stretched or shrunk alike, so that a whole number of them, at least `least`, fills the line.
     """
     slope = math.log(growth)
     # A step that starts where steps are `start` long, and grows on its way, ends that much shorter.
@@ -141,29 +114,11 @@ def ring(
     tip_size: float | None = None,
     growth: float = 1.5,
 ) -> LiquidSection:
-    """Liquid at rest between the circle r = a and the wall r = R.
+    """Liquid at rest between the circle r = a and the wall r = R, in triangles along circles and rays.
 
-    The cells lie along circles and rays, so that a layer may be much thinner than the cells are wide.
-
-    Parameters
-    ----------
-    radius : wall radius R, m
-    surface_radius : radius a of the free surface, m
-    segments : cells around, 8 or more, at least; more where they are graded towards baffles
-    order : 1 for straight sides; 2 for quadratic ones, whose nodes on wall and surface lie on their circles
-    layers : cells across the liquid, at least
-    baffles : radial baffles, each a slit
-    wall_depth, surface_depth : depth of the cells at the wall and at the free surface, m, at most
-    tip_size : size of the cells at the edges of baffles, m, at most; without it 1/20 of the liquid's depth
-    growth : size of a cell over that of its neighbour nearer to where it is small, above 1, 3 at most
-
-    Returns
-    -------
-    The mesh.
-
-    Raises
-    ------
-    InputError : a value out of its range, above a million nodes
+    A layer may be much thinner than the cells are wide. Counts are least ones, sizes (m) largest ones:
+    `wall_depth`, `surface_depth` of the cells there, `tip_size` at the edges of baffles (None: 1/20 of the
+    depth), each a slit.
     """
     _check(radius, surface_radius, segments, order, layers, growth)
     for name, value in (("wall_depth", wall_depth), ("surface_depth", surface_depth)):
@@ -234,17 +189,8 @@ def _grid(radii: Array, angles: Array, order: int) -> tuple[Array, Indices]:
 
 
 def polar_triangles(outwards: int, around: int, order: int) -> Indices:
-    """Triangles of a grid of nodes that closes around: two to each cell.
-
-    Parameters
-    ----------
-    outwards : rows of nodes less one, from the inside outwards
-    around : nodes in a row, numbered counter-clockwise, row by row
-    order : 1, or 2 where every other row and every other node of a row lies between vertices
-
-    Returns
-    -------
-    Node numbers, shape (M, 3 or 6).
+    """Triangles, two to each cell, of a grid of nodes numbered counter-clockwise, row by row, from the inside
+    outwards.
     """
     i, j = np.meshgrid(np.arange(0, outwards, order), np.arange(0, around, order), indexing="ij")
 

@@ -1,8 +1,7 @@
-"""Where small whirls of a rotor with layers neither grow nor die: a branch of limit cycles begins at each.
+"""Where small whirls of a rotor with layers neither grow nor decay: a branch of limit cycles begins at each.
 
-Every mode is followed over the spin, not only the one that grows most: with several layers the branch of one
-mode may begin or end inside the band of another. The friction is that of the waves, a rate that is real
-[theory: whirl, eq. 30].
+Every mode is followed over the spin: with several layers the branch of one mode may begin or end inside the
+band of another. The friction is that of the waves, a real rate [theory: whirl, eq. 30].
 """
 
 from __future__ import annotations
@@ -21,29 +20,17 @@ _NEUTRAL = 1e-9  # of the spin: a growth below it is that of a mode without any 
 
 
 class Edge(NamedTuple):
-    """A small whirl that neither grows nor dies.
+    """A small whirl that neither grows nor decays."""
 
-    Parameters
-    ----------
-    spin, whirl_speed : Omega and omega_w, rad/s
-    moved : the rotor's coordinates, largest deflection of a layer's axis 1 m, complex, shape (p,)
-    trough : of the deepest wave over the depth of its layer, for that deflection, 1/m
-    """
-
+    #: spin and whirl_speed: Omega and omega_w, rad/s
     spin: float
     whirl_speed: float
-    moved: Complex
-    trough: float
+    moved: Complex  #: the rotor's coordinates, largest deflection of a layer's axis 1 m, complex, shape (p,)
+    trough: float  #: of the deepest wave over the depth of its layer, for that deflection, 1/m
 
 
 def small_whirl_edges(machine: Circular, range_: tuple[float, float]) -> tuple[Edge, ...]:
-    """All small whirls with the spin that neither grow nor die, by rising spin.
-
-    Parameters
-    ----------
-    machine : the rotor and its layers
-    range_ : first and last spin, rad/s
-    """
+    """All small whirls with the spin that neither grow nor decay, by rising spin."""
     spins = np.linspace(*range_, _GRID)
     found: list[Edge] = []
     last: tuple[Complex, Complex] | None = None

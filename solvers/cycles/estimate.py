@@ -1,4 +1,4 @@
-"""How large a self-excited whirl grows, in one line: the layer's lag by rule, no wave solved."""
+"""Estimated size of a self-excited whirl: the layer's lag by rule, no wave solved."""
 
 from __future__ import annotations
 
@@ -43,20 +43,9 @@ def estimated_whirl(
 ) -> Estimate:
     """Frequency, shape and size of a large whirl [theory: whirl, eq. 29].
 
-    It whirls as if the chambers were full of solid, drags the liquid back to about the band's lower edge,
-    and is as large as the torque of the lagging liquid on the wall can feed against the supports' damping.
-
-    Parameters
-    ----------
-    machine : the rotor and its layers
-    friction : on the walls
-    lower : edge of the band where whirls begin to grow, without friction and damping, rad/s
-    near : frequency of the whirl there, rad/s
-    spin : Omega, rad/s
-
-    Returns
-    -------
-    Estimate; its amplitude is 0 without friction and infinite without damping of the supports
+    It whirls as if the chambers were full of solid, drags the liquid back to about the lower edge of the
+    undamped band, and is as large as the lagging liquid's torque on the wall can feed against damping: 0
+    without friction, infinite without damping. `near`: frequency at that edge, rad/s.
     """
     whirl_speed, shape = _full(machine, near, spin)
     rows = np.array([place.row for place in machine.places])
@@ -109,14 +98,7 @@ def whirl_estimate(
 ) -> tuple[Estimate | None, ...]:
     """Size of the whirl at each speed inside a band, without solving for it [theory: whirl, eq. 29, 31].
 
-    Parameters
-    ----------
-    rotor, fills, friction : as for `solvers.cycles.cycles.limit_cycles`
-    speeds : rad/s, rising, shape (n,)
-
-    Returns
-    -------
-    An estimate for each speed; None outside the bands, and where the whirl is no circle or nothing bounds it
+    None outside the bands, and where the whirl is no circle or nothing bounds it.
     """
     machine = _settling(rotor, fills, friction)
     if machine is None:
@@ -163,8 +145,8 @@ def _by_rule(
 def _shares(rotor: Rotor, fills: Sequence[Fill], speeds: Array, friction: Friction) -> Array:
     """Share of the whole whirl that weak growth leaves at speeds inside undamped bands, shape (n,).
 
-    Where friction and damping take most of the growth the whirl does not drag the liquid back to the edge of
-    the band: its own wave is steep before.
+    Where friction and damping take most of the growth, the whirl's own wave is steep before it drags the
+    liquid back to the edge of the band.
     """
     at = np.zeros(len(speeds), dtype=int)
     own = growth_at(rotor, [fills], at, speeds, friction)[0]
@@ -182,14 +164,8 @@ def largest_estimate(
 ) -> Estimate | None:
     """The largest of the whirls in the middles of the bands, by rule; None where nothing grows by itself.
 
-    A middle is that of what a band has in common with one without friction and damping. Next to the upper
-    edge of that one [theory: whirl, eq. 31] leaps, as the undamped growth goes to nothing there.
-
-    Parameters
-    ----------
-    rotor, fills, friction : as for `solvers.cycles.cycles.limit_cycles`
-    range_ : first and last speed, rad/s
-    bands : in which some whirl grows, rad/s; solved for if None
+    The middle of what a band shares with an undamped one, next to whose upper edge [theory: whirl, eq. 31]
+    leaps, as growth vanishes there. `bands` in which some whirl grows, rad/s; solved for if None.
     """
     machine = _settling(rotor, fills, friction)
     if machine is None:
@@ -204,13 +180,7 @@ def largest_estimate(
 
 
 def unsettled(machine: Circular, friction: Friction) -> str:
-    """Why no whirl of a certain size can last; empty where one can.
-
-    Parameters
-    ----------
-    machine : the rotor and its layers
-    friction : on the walls
-    """
+    """Why no whirl of a certain size can last; empty where one can."""
     if friction.law is FrictionLaw.NONE or (not friction.law.laminar and friction.coefficient == 0.0):
         return "without friction of the liquid nothing keeps it turning: a whirl drags it back and dies down"
     if not np.abs(machine.damping).max() > 0.0:
@@ -221,13 +191,7 @@ def unsettled(machine: Circular, friction: Friction) -> str:
 def undamped_bands(
     rotor: Rotor, fills: Sequence[Fill], range_: tuple[float, float]
 ) -> Iterator[tuple[float, float, float]]:
-    """Bands without friction and damping: their edges, and the whirl speed at the lower one.
-
-    Parameters
-    ----------
-    rotor, fills : the machine
-    range_ : first and last speed, rad/s
-    """
+    """Bands without friction and damping: their edges, and the whirl speed at the lower one."""
     free = _undamped(rotor)
     (bands,) = unstable_bands(free, [fills], np.linspace(*range_, _GRID), NO_FRICTION)
     for lower, upper in bands:

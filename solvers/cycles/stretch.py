@@ -16,20 +16,9 @@ _jit: Any = machine_code(**COMPILED)
 def advance_each(
     areas, momenta, pace, start, time, parts, drive, wall, angles, inside, courant, most, spare, loads
 ):
-    """Advance states of a layer, one after the other, through a time in equal steps.
+    """Advance states of a layer, one after the other, in place, in equal steps; whether all came to the end.
 
-    Parameters
-    ----------
-    areas, momenta : the states, changed in place, shape (m, n)
-    pace : record PACE, shape (1,), scratch
-    start, time : when they begin, and how long they go on
-    parts : steps that the time is cut into
-    drive, wall, angles, inside, courant, most, spare : as for `solvers.layer.step.advance`
-    loads : results, record LOADS, shape (m,): of each state, added to
-
-    Returns
-    -------
-    Whether all of them came to the end
+    Arguments as of `solvers.layer.step.advance`; the loads of each state are added to `loads`, shape (m,).
     """
     for k in range(areas.shape[0]):
         pace[0].time, pace[0].fastest = start, 0.0

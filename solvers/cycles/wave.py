@@ -1,9 +1,9 @@
 """A layer under a prescribed whirl whose wave stands in the whirl's frame, by finite volumes in time.
 
-Seen from the drum the whirl turns at the slip. After the time in which it turns by one cell the layer is as
-it was, but one cell further on: a fixed point of that short map is the steady wave, with whatever bores and
-dry cells it has. The scheme keeps mass and angular momentum, so that the wave's force and the wall's torque
-agree to rounding. Lengths over R, times over 1/Omega [theory: whirl, eq. 21-23].
+When the whirl has turned by one cell, at the slip as seen from the drum, the layer is as it was, but one cell
+further on: a fixed point of that short map is the steady wave, with its bores and dry cells. Mass and angular
+momentum are kept, so that the wave's force and the wall's torque agree to rounding. Lengths over R, times
+over 1/Omega [theory: whirl, eq. 21-23].
 """
 
 from __future__ import annotations
@@ -36,39 +36,26 @@ _MEANS = ((1, 40), (4, 10), (12, 10))  # periods a mean is taken over, and how m
 
 
 class Whirling(NamedTuple):
-    """What drives a layer.
+    """What drives a layer."""
 
-    Parameters
-    ----------
-    ratio : r = omega_w/Omega
-    size : w = W/R
-    drag : of the friction, as `fluid.friction.laws.damping_rate` takes it, over Omega if it is a rate; under
-        the law of the wall 1/Omega, s, with which all of the law changes
-    """
-
-    ratio: float
-    size: float
+    ratio: float  #: r = omega_w/Omega
+    size: float  #: w = W/R
+    #: of the friction, as `fluid.friction.laws.damping_rate` takes it, over Omega if it is a rate; under the
+    #: law of the wall 1/Omega, s, with which all of the law changes
     drag: float
 
 
 class Answer(NamedTuple):
-    """A layer after some time.
+    """A layer after some time."""
 
-    Parameters
-    ----------
-    state : area and momentum of the cells, shape (2 n,)
-    force : G, mean over that time
-    turning : mean rotation of the liquid relative to the drum, over Omega
-    """
-
-    state: Array
-    force: complex
-    turning: float
+    state: Array  #: area and momentum of the cells, shape (2 n,)
+    force: complex  #: G, mean over that time
+    turning: float  #: mean rotation of the liquid relative to the drum, over Omega
 
 
 @dataclass(frozen=True)
 class Derivatives:
-    """Of the map over the time of one cell at a state, the states having 2 n components."""
+    """Derivatives of the map over the time of one cell at a state, the states having 2 n components."""
 
     state: Array  #: of the state after it, shape (2 n, 2 n)
     given: Array  #: by ratio, size and drag, shape (2 n, 3)
@@ -77,14 +64,7 @@ class Derivatives:
 
 
 class StandingWave:
-    """A layer on its way to a standing wave.
-
-    Parameters
-    ----------
-    fill : chamber and liquid, with some liquid and a free surface
-    friction : on the wall
-    cells : finite volumes round the wall
-    """
+    """A layer on its way to a standing wave."""
 
     def __init__(self, fill: Fill, friction: Friction, cells: int) -> None:
         from solvers.layer.step import scratch
@@ -132,7 +112,7 @@ class StandingWave:
     def settle(self, given: Whirling) -> Answer | None:
         """Go on until G stays; None where it does not, or where the layer breaks down.
 
-        First one period is compared with the next, then means of 4 and of 12.
+        One period is compared with the next, later means of 4 and of 12.
         """
         for length, tries in _MEANS:
             last = complex(math.inf)
@@ -149,13 +129,9 @@ class StandingWave:
         return None
 
     def cell(self, state: Array, given: Whirling, turned: float = 0.0) -> Answer | None:
-        """The map: a state after the time of one cell, moved back by it; None where the layer breaks down.
+        """A state after the time of one cell, moved back by it; None where the layer breaks down.
 
-        Parameters
-        ----------
-        state : shape (2 n,)
-        given : what drives it
-        turned : angle of the push ahead of the frame the state is in, rad
+        The forcing is ahead of the state's frame by `turned`, rad.
         """
         slip, n = given.ratio - 1.0, self.cells
         if not abs(slip) > _SLOWEST:

@@ -1,7 +1,7 @@
 """Many speeds: each from its synchronous motion, then with neighbours' motions carried up and down.
 
-A motion that lives on beyond the speed at which it began is found only on the way: the first pass takes every
-speed by itself, the second goes on from speed to speed wherever two neighbours are of different kinds.
+A motion that exists beyond the speed at which it began is found only from a neighbour: the second pass goes
+from speed to speed wherever two neighbours are of different kinds.
 """
 
 from __future__ import annotations
@@ -54,12 +54,7 @@ def alike(first: HeldState, second: HeldState) -> bool:
 
 
 def one_by_one(machine: HeldMachine, numerics: HoldNumerics) -> Runner:
-    """A runner that takes task after task in this process.
-
-    Parameters
-    ----------
-    machine, numerics : as for `hold`
-    """
+    """A runner that takes task after task in this process."""
 
     def run(tasks: Sequence[HeldTask]) -> Iterator[tuple[int, HeldState]]:
         for k, task in enumerate(tasks):
@@ -74,18 +69,9 @@ def held_branches(
     forks: Flags | None = None,
     done: Callable[[int], object] = lambda _: None,
 ) -> HeldBranches:
-    """Held states over rising speeds, up and down.
+    """Held states over rising speeds, up and down; the same in whatever order the runner answers.
 
-    Parameters
-    ----------
-    tasks : the motion each speed begins with, by rising speed
-    run : holds tasks, any number at a time, and gives their states in any order
-    forks : where several steady motions are known to exist, so that neighbours are tried, shape (n,)
-    done : called with how many states have been found since the last call
-
-    Returns
-    -------
-    HeldBranches; the same whatever the order in which the runner answers
+    `forks`: where several steady motions are known to exist, so that neighbours are tried.
     """
     found: dict[int, HeldState] = {}
     for k, state in run(tasks):

@@ -1,4 +1,4 @@
-"""Exact waves on the road of a held state: a turn at a time, judged as long waves are [theory: held]."""
+"""Held states with exact waves: a turn at a time, judged as long waves are [theory: held]."""
 
 from __future__ import annotations
 
@@ -44,26 +44,12 @@ class _Turning:
 
 
 def riding(machine: HeldMachine, spin: float) -> Flags:
-    """Which chambers hold a layer at a speed, shape (l,).
-
-    Parameters
-    ----------
-    machine : what is held
-    spin : rad/s
-    """
+    """Which chambers hold a layer at a speed, shape (l,)."""
     return np.array([layer_capture(fill, machine.gravity) < spin for fill in machine.fills], dtype=bool)
 
 
 def exact_machine(machine: HeldMachine, spin: float, layers: Flags, nodes: int) -> ExactMachine:
-    """Rotor and exact layers of what is held.
-
-    Parameters
-    ----------
-    machine : what is held
-    spin : rad/s
-    layers : which chambers hold one; the other liquid is a mass, shape (l,)
-    nodes : of each surface
-    """
+    """Rotor and exact layers of what is held; liquid that is not among the `layers` is a mass."""
     system = machine.system
     for fill, rides in zip(machine.fills, layers.tolist(), strict=True):
         if not rides:
@@ -76,14 +62,10 @@ def exact_machine(machine: HeldMachine, spin: float, layers: Flags, nodes: int) 
 
 
 def begin(machine: HeldMachine, spin: float, nodes: int, motion: Complex, kick: float) -> Moment:
-    """Rotor in a synchronous motion with its liquid at rest in the drum, as `solvers.held.hold.start`.
+    """Rotor in a synchronous motion with its liquid at rest in the drum.
 
-    Parameters
-    ----------
-    machine, spin : what is held, and how fast, rad/s
-    nodes : of each surface
-    motion : complex amplitudes of the coordinates, shape (n,)
-    kick : velocity of the axis beside that of the motion, over the layers' depth times the spin
+    `motion`: complex amplitudes of the coordinates; `kick`: velocity of the axis beside that, over the
+    layers' depth times the spin.
     """
     layers = riding(machine, spin)
     exact = exact_machine(machine, spin, layers, nodes)
@@ -104,16 +86,9 @@ def begin(machine: HeldMachine, spin: float, nodes: int, motion: Complex, kick: 
 def _wave(layer: ExactLayer, spin: float, deflection: complex, gravity: float, nodes: int) -> Array:
     """Wave under a circle about the rotation axis, and on it the small one of gravity, at rest in space.
 
-    Liquid that gravity comes to all of a sudden would ripple for long, and break where it is thin. Both are
-    lower together where they would leave the wall dry [theory: whirl, eq. 1-3].
-
-    Parameters
-    ----------
-    layer : what is filled
-    spin : rad/s
-    deflection : of its chamber's axis, over R, drum frame
-    gravity : along the first direction, over Omega^2 R
-    nodes : of the surface
+    `deflection` over R in the drum frame, `gravity` over Omega^2 R along the first direction; without its
+    wave the liquid would ripple for long. Both are lower together where they would leave the wall dry
+    [theory: whirl, eq. 1-3].
     """
     depth, inner = layer.layer, 1.0 - layer.layer
     tanh = (1.0 - inner**2) / (1.0 + inner**2)
@@ -156,16 +131,9 @@ def require_own_steps(numerics: HoldNumerics) -> None:
 def march(
     machine: HeldMachine, moment: Moment, numerics: HoldNumerics, watch: Watch
 ) -> tuple[Moment, Outcome]:
-    """Turn by turn until the watch has seen enough, the turns have run out or a wave is none any more.
+    """Advance turn by turn until the watch has seen enough, the turns have run out or a wave breaks down.
 
-    Parameters
-    ----------
-    machine, moment, numerics : as for `solvers.held.hold.hold`
-    watch : judges the turns
-
-    Returns
-    -------
-    Where it ends, and how; where nodes were too few it goes on with twice as many
+    Where nodes were too few it goes on with twice as many.
     """
     nodes = moment.wave.shape[1] // 2 if len(moment.wave) else numerics.cells
     exact = exact_machine(machine, moment.spin, moment.layers, nodes)
@@ -240,13 +208,7 @@ def _steps(exact: ExactMachine, begin: Parts, course: Course, turn: float) -> Ar
 
 
 def again(machine: HeldMachine, moment: Moment, nodes: int) -> Moment:
-    """A moment with another number of nodes.
-
-    Parameters
-    ----------
-    machine, moment : as for `march`
-    nodes : even
-    """
+    """The moment with another number of nodes."""
     exact = exact_machine(machine, moment.spin, moment.layers, nodes)
     state = exact.rest()
     parts = exact.parts(state)

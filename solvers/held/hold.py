@@ -30,13 +30,8 @@ def start(
 ) -> Moment:
     """Rotor in a synchronous motion with its liquid at rest in the drum.
 
-    Parameters
-    ----------
-    machine : what is held
-    spin : Omega, rad/s
-    numerics : resolution
-    coordinates : complex amplitudes of the motion, q = Re(coordinates e^{i Omega t}), shape (n,)
-    kick : velocity of the axis beside that of the motion, over the layer's mean depth times the spin
+    `coordinates`: complex amplitudes, q = Re(coordinates e^{i Omega t}); `kick`: velocity of the axis beside
+    that of the motion, over the layer's mean depth times the spin.
     """
     n = len(machine.system.coordinates)
     motion = np.zeros(n, dtype=complex) if coordinates is None else np.asarray(coordinates)
@@ -84,7 +79,7 @@ def _circle(fill: Fill, deflection: complex, cells: int) -> Array:
 
 
 def _levelled(fill: Fill, area: Array) -> Array:
-    """The same with as much liquid in each compartment as at rest: none passes closed baffles."""
+    """Areas with as much liquid in each compartment as at rest: none passes closed baffles."""
     if fill.compartments < 2:
         return area
     faces = np.sort(table_of(fill, area.size)[:, FACE].astype(int))
@@ -101,25 +96,10 @@ def hold(
     slowest: float = 0.0,
     trackers: Sequence[Any] = (),
 ) -> HeldState:
-    """Hold a machine at the spin of a moment until its motion has settled.
+    """Hold a machine at the spin of a moment until its motion has converged.
 
-    Parameters
-    ----------
-    machine : what is held
-    begin : where it begins
-    numerics : resolution
-    slowest : rate at which the slowest small motion dies or grows, 1/s; a limit cycle is told from a motion
-        that dies slowly by windows long against it; 0 where it is not known
-    trackers : of py-pde, beside our own
-
-    Returns
-    -------
-    HeldState
-
-    Raises
-    ------
-    InputError : a value out of its range
-    KeyboardInterrupt : broken off
+    `slowest`: rate at which the slowest small motion decays or grows, 1/s, 0 where it is not known; windows
+    long against it tell a limit cycle from slow decay. `trackers` of py-pde are called beside our own.
     """
     numerics = numerics or HoldNumerics()
     require_positive("speed", begin.spin)
@@ -135,12 +115,7 @@ def hold(
 
 
 def compile_kernels(machine: HeldMachine, begin: Moment) -> None:
-    """Compile what holds a motion, or load it from disk, by a step of it.
-
-    Parameters
-    ----------
-    machine, begin : as for `hold`
-    """
+    """Compile what holds a motion, or load it from disk, by a step of it."""
     if machine.exact:  # nothing of it is compiled
         return
     from solvers.pypde import RotorLayersPDE, run
@@ -154,13 +129,7 @@ def compile_kernels(machine: HeldMachine, begin: Moment) -> None:
 
 
 def require_known_solver(machine: HeldMachine, spin: float, numerics: HoldNumerics) -> None:
-    """Raise `InputError` unless py-pde has a solver of that name that can hold the machine.
-
-    Parameters
-    ----------
-    machine, numerics : as for `hold`
-    spin : rad/s
-    """
+    """Raise `InputError` unless py-pde has a solver of that name that can hold the machine."""
     if machine.exact:
         from solvers.held.exact import require_own_steps
 
@@ -180,9 +149,9 @@ _SHARE = 0.5  # of what half the cells change; a third where the scheme is of se
 def hold_with_error(
     machine: HeldMachine, begin: Moment, numerics: HoldNumerics, slowest: float = 0.0
 ) -> HeldState:
-    """`hold`, and from where it ends once more with half the cells, to estimate the error.
+    """`hold`, and from its end once more with half the cells, to estimate the error.
 
-    Parameters and errors as of `hold`; with less than 16 cells, or 8 in a compartment, there is no estimate.
+    No estimate with less than 16 cells, or 8 in a compartment.
     """
     found = hold(machine, begin, numerics, slowest)
     half = replace(numerics, cells=numerics.cells // 2)
@@ -200,7 +169,7 @@ def hold_with_error(
 
 
 def _resampled(machine: HeldMachine, moment: Moment, cells: int) -> Moment:
-    """The same with another number of cells; what a layer and a compartment hold stays."""
+    """The moment with another number of cells; what a layer and a compartment hold stays."""
     if machine.exact:
         from solvers.held.exact import again as with_nodes
 
@@ -221,9 +190,9 @@ def _resampled(machine: HeldMachine, moment: Moment, cells: int) -> Moment:
 def _march(
     machine: HeldMachine, moment: Moment, numerics: HoldNumerics, watch: Watch, trackers: Sequence[Any]
 ) -> tuple[Moment, Outcome]:
-    """On py-pde's road until the watch has seen enough, the turns have run out or the steps have failed.
+    """Advance on py-pde until the watch has seen enough, the turns have run out or the steps have failed.
 
-    Exact waves have no cells, and a road of their own.
+    Exact waves by `solvers.held.exact`.
     """
     if machine.exact:
         from solvers.held import exact

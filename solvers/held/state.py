@@ -30,12 +30,7 @@ class HeldKind(StrEnum):
 
 @dataclass(frozen=True)
 class HoldNumerics:
-    """How a state is held.
-
-    Raises
-    ------
-    InputError : a value out of its range
-    """
+    """How a state is held."""
 
     #: finite volumes round each wall, from 8; nodes of the surface of an exact wave, even, from 16
     cells: int = 128
@@ -72,19 +67,14 @@ class Moment:
     wave: Array = field(default_factory=lambda: np.zeros((0, 0)))
 
     def at(self, spin: float) -> Moment:
-        """The same motion turn by turn at another spin: velocities go with it.
-
-        Parameters
-        ----------
-        spin : rad/s
-        """
+        """The same motion turn by turn at another spin: velocities go with it."""
         share = spin / self.spin
         return replace(self, spin=spin, rate=self.rate * share, momentum=self.momentum * share)
 
 
 @dataclass(frozen=True)
 class HeldState:
-    """What rotor and liquid do at one speed; n coordinates, l chambers.
+    """Motion of rotor and liquid at one speed; n coordinates, l chambers.
 
     Deflections are those of the first chamber's axis, or of the axis at position 0 without one, from where it
     rests without motion.
@@ -128,13 +118,13 @@ class HeldState:
 
     @property
     def settled(self) -> bool:
-        """It came to an answer."""
+        """Whether it came to an answer."""
         return self.kind is not HeldKind.NOT_SETTLED
 
 
 @dataclass(frozen=True)
 class HeldMachine:
-    """What is held."""
+    """Machine that is held."""
 
     system: RotorSystem  #: the dry rotor
     fills: tuple[Fill, ...]  #: its chambers with their liquid

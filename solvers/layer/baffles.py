@@ -59,19 +59,8 @@ _CLOSED, _BEFORE = baffles.CLOSED, baffles.BEFORE
 def table_of(fill: Fill, cells: int, smeared: bool | None = None) -> Array:
     """A layer's table of baffles: each at the nearest face between two cells, or all of them smeared.
 
-    Parameters
-    ----------
-    fill : chamber and liquid
-    cells : round the wall
-    smeared : None where the cells decide
-
-    Returns
-    -------
-    Shape (k, COLUMNS), k = 0 without baffles, 1 with smeared ones
-
-    Raises
-    ------
-    InputError : baffles that cut the liquid into compartments, with less than four cells in each
+    Shape (k, COLUMNS), k = 0 without baffles, 1 with smeared ones; `smeared` None: the cells decide.
+    Compartments with less than four cells in each are refused.
     """
     plates, radius = fill.chamber.baffles, fill.chamber.radius
     if plates is None:
@@ -101,13 +90,7 @@ def tables_of(fills: Sequence[Fill], cells: int) -> Array:
 
 @_jit
 def resistance(depth, row):
-    """Head lost over the flow squared, K/(2 h^2); below 0 where nothing passes [theory: baffles, eq. 5].
-
-    Parameters
-    ----------
-    depth : h at the baffle
-    row : of the table
-    """
+    """Head lost over the flow squared, K/(2 h^2); below 0 where nothing passes [theory: baffles, eq. 5]."""
     if row[LOSS] >= 0.0:
         return 0.5 * row[LOSS] / max(depth, 1e-12)
     share = _share(depth, row[TIP], row[GAP])
@@ -202,28 +185,17 @@ def _through(sides, row, most):
 def _aside(ratio):
     """Slope of a cell beside a baffle over its difference from the next one.
 
-    3/2 - ratio/2 is right to second order. Where the profile turns over there is no jump: rotor and liquid
-    would not agree on an acceleration.
-
-    Parameters
-    ----------
-    ratio : of the difference after that to it
+    3/2 - ratio/2 is right to second order, `ratio` being the difference after that over this one. Where the
+    profile turns over there is no jump: rotor and liquid would not agree on an acceleration.
     """
     return min(1.0, 2.0 * ratio, max(1.5 - 0.5 * ratio, 0.0))
 
 
 @_jit
 def slope_aside(table, area, full, value, half, ghosts):
-    """Put half slopes of cells beside baffles, which know their own side alone, to second order.
+    """Put half slopes of cells beside baffles, which know their own side alone, to second order, in place.
 
-    Parameters
-    ----------
-    table : as by `table_of`
-    area : of the cells, shape (n,)
-    full : area of a full gap
-    value : of the cells, continued beyond both ends, shape (n + 2 ghosts,)
-    half : their half slopes, changed in place, of the same shape
-    ghosts : cells by which the ring is continued
+    Values and slopes of the cells have shape (n + 2 ghosts,).
     """
     n = area.size
     # The two ends of a short piece would share cells and make a stiff whole of it: no slopes there.
@@ -251,15 +223,9 @@ def slope_aside(table, area, full, value, half, ghosts):
 
 @_jit
 def straighten(table, n, value, bent, ghosts):
-    """Make straight again the cells beside baffles, where they were parabolas.
+    """Make straight again, in place, the cells beside baffles, where they were parabolas.
 
-    Parameters
-    ----------
-    table : as by `table_of`
-    n : cells of the ring
-    value : of the cells, continued beyond both ends, shape (n + 2 ghosts,)
-    bent : means of what they have at their two faces, changed in place, of the same shape
-    ghosts : cells by which the ring is continued
+    `bent` are the means of what cells have at their two faces, with ghosts as `value`.
     """
     for k in range(2 * table.shape[0]):
         i, way = int(table[k // 2, FACE]), 2 * (k % 2) - 1
@@ -278,18 +244,9 @@ def obstruct(table, area, spin, full, slot, pull_face, before, after, mass, flow
     """Put a layer's baffles in the way: mass and momentum fluxes through their faces, in place.
 
     The flux of momentum that stays is that of the cell before the face; the one after it gets less by what
-    the baffle takes, the column TORQUE.
-
-    Parameters
-    ----------
-    table : as by `table_of`; its last columns are results
-    area : of the cells, shape (n,)
-    spin : Omega
-    full, slot : area of a full gap, and how the head rises with more
-    pull_face : radial force at the faces, shape (n,)
-    before, after : states on the two sides of each face, rows A, q, flux of mass and of momentum,
-        pressure, shape (5 or more, n + 1)
-    mass, flow : fluxes of an open face, changed where a baffle stands, shape (n + 1,)
+    the baffle takes, the column TORQUE. `before` and `after` have the states on the two sides of each face,
+    rows A, q, flux of mass and of momentum, pressure, shape (5 or more, n + 1); `mass` and `flow` the fluxes
+    of an open face.
     """
     n = pull_face.size
     for k in range(table.shape[0]):
@@ -352,14 +309,9 @@ def take(table, step, d_q):
 def smeared_resistance(depth, head, row):
     """`resistance` of one of many baffles to the flow of a layer that piles up before each.
 
-    The depth before them grows from that of the layer to the fixed point by Newton's method; the function is
-    convex and falls, so that no step goes too far [theory: baffles, eq. 3 and 11].
-
-    Parameters
-    ----------
-    depth : h of the layer
-    head : u^2/(4 g) of the flow past them
-    row : of the table
+    The depth before them grows from that of the layer to the fixed point by Newton's method, `head` being
+    u^2/(4 g) of the flow past them; the function is convex and falls, so that no step goes too far
+    [theory: baffles, eq. 3 and 11].
     """
     if row[LOSS] >= 0.0:
         return 0.5 * row[LOSS] / max(depth, 1e-12)
@@ -384,18 +336,10 @@ def smeared_resistance(depth, head, row):
 
 @_jit
 def smear(table, area, q, spin, step, dt, d_q):
-    """Take from all cells what smeared baffles take; the rows of baffles at faces stay as they are.
+    """Take from all cells what smeared baffles take, in `d_q`, TORQUE and POWER.
 
-    A step by Heun's method with these rates is of second order and stops no flow beyond rest.
-
-    Parameters
-    ----------
-    table : as by `table_of`; TORQUE and POWER are results
-    area, q : state, shape (n,)
-    spin : Omega
-    step : width of a cell
-    dt : time step
-    d_q : rate of change of q, changed, shape (n,)
+    Rows of baffles at faces stay as they are. A step by Heun's method with these rates is of second order and
+    stops no flow beyond rest.
     """
     for k in range(table.shape[0]):
         row = table[k]

@@ -80,13 +80,8 @@ def _weigh(area, velocity, surface, coefficient, plates, thin, dt, kept, gone):
 def wall_kept(area, velocity, surface, coefficient, wall, dt, kept, pushed):
     """What the law of the wall makes of each cell's velocity in a time dt: kept u + pushed.
 
-    Parameters
-    ----------
-    area, velocity, surface : A, u and r_s, shape (n,)
-    coefficient : of the waves' part on the wall
-    wall : lid, plates, thin, top and table, see `fluid.friction.wall.WallDrag`
-    dt : time
-    kept, pushed : results, shape (n,)
+    `wall` has lid, plates, thin, top and table, see `fluid.friction.wall.WallDrag`; `coefficient` is that of
+    the waves' part on the wall.
     """
     lid, plates, thin, top, table = wall
     _slow_mean(area, velocity, surface, lid, top, table, dt, kept, pushed)

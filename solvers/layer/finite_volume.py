@@ -4,10 +4,8 @@ Unknowns of a cell: the liquid area per radian A and the relative angular moment
 absolute one less Omega R^2 A, whose flux cancels [theory: long_wave, eq. 4]. Reconstructed are the static
 head, so that equilibria stay as they are, and the velocity, both limited; the flux is HLL; time steps are
 Heun's (SSP), with friction in two exact half steps around them [theory: long_wave, eq. 11]. Lengths over R,
-times in the unit of the spin given. The equations are those of `fluid.long_wave`.
-
-Every pass over the ring is free of branches and reads arrays straight through, so that the compiler turns it
-into vector instructions; together the passes cost a third of a loop that decides cell by cell.
+times in the unit of the spin given. Every pass over the ring is free of branches and reads arrays straight
+through, so that the compiler turns it into vector instructions.
 """
 
 from __future__ import annotations
@@ -68,8 +66,8 @@ def log_and_inverse(area: float, surface: float) -> tuple[float, float]:
     """L = ln(1/r) and 1/r^2 for r >= 0.03, to rounding for any area down to nothing.
 
     With a c of 1, 4 or 16 that brings c r above 0.48, L = ln c + 2 artanh z, z = (1 - c r)/(1 + c r) up to
-    0.352. For c = 1 the numerator times 1 + r is twice the area, so that thin films keep their digits.
-    artanh z over z is a polynomial in z^2, right to 2e-17. No branch, no root, one division: it vectorises.
+    0.352. For c = 1 the numerator times 1 + r is twice the area, so that thin films keep their digits. artanh
+    z over z is a polynomial in z^2, right to 2e-17. No branch, no root, one division: it vectorises.
     """
     near = surface >= 0.5
     scale = 1.0 if near else (4.0 if surface >= 0.125 else 16.0)
@@ -246,19 +244,11 @@ def side(
     back,
     ahead,
 ):
-    """State and fluxes on one side of each face.
+    """State and fluxes on one side of each face, and its characteristic speeds; the results stand last.
 
-    Parameters
-    ----------
-    cell_area, head, half_head, velocity, half_velocity : of the cell on that side of each face; head and
-        velocity are the means of its two faces
-    bed : radial force at the faces
-    way : 1 for the cell before the face, -1 for the one after it
-    spin : Omega
-    full, slot : as for `primitives`
-    area, momentum : results, the state A and q at the face
-    mass, flow, push : results, its fluxes of mass and of momentum, and the pressure's share of the latter
-    back, ahead : results, its characteristic speeds
+    `way` is 1 for the cell before the face, -1 for the one after it; head and velocity are the means of a
+    cell's two faces, `bed` the radial force at the faces, `push` the pressure's share of the flux of
+    momentum.
     """
     rim = np.sqrt(np.maximum(1.0 - 2.0 * full, 0.0)) if full < 0.5 else -1.0
     for i in range(bed.size):
@@ -413,17 +403,9 @@ def ring_rates(
 def rates(area, q, spin, euler, pull_cell, pull_face, inside, step, dt, dispersion, work, d_area, d_q):
     """Rates of change of A and q; returns the largest characteristic speed.
 
-    Parameters
-    ----------
-    area, q : state, shape (n,)
-    spin : Omega; euler : its rate of change
-    pull_cell, pull_face : f_r at the cells' middles and at their left faces, shape (n,)
-    inside : baffles and inner wall, a `solvers.layer.inside.Inside`
-    step : cell width, rad
-    dt : time step in which no cell may lose more than it has
-    dispersion : whether the waves disperse
-    work : scratch, shape (WORK, n + 2 GHOSTS)
-    d_area, d_q : results, shape (n,)
+    `pull_cell` and `pull_face` are f_r at the cells' middles and at their left faces, `euler` the rate of
+    change of the spin, `dt` the time step in which no cell may lose more than it has, `work` scratch, (WORK,
+    n + 2 GHOSTS).
     """
     none = area[:0]
     return ring_rates(
@@ -683,14 +665,8 @@ def solve_ring(diagonal, side, value, spare):
     """Solve diagonal_i y_i - side_i y_{i-1} - side_{i+1} y_{i+1} = value_i round a ring, in place.
 
     Elimination, and the two corners by the formula of Sherman and Morrison. The matrix must be positive
-    definite.
-
-    Parameters
-    ----------
-    diagonal : shape (n,); left with the pivots' inverses
-    side : shape (n + 1,) or longer, its last the first once more
-    value : right-hand side and solution, shape (n,)
-    spare : scratch, shape (n,) or longer
+    definite. `diagonal` is left with the pivots' inverses; `side` has n + 1 entries, the last the first once
+    more.
     """
     n = value.size
     last, first, share = n - 1, diagonal[0], side[0] / diagonal[0]

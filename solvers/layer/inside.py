@@ -21,18 +21,11 @@ OPEN = 1.0
 
 
 class Inside(NamedTuple):
-    """Obstacles of a ring, as the steps take them.
+    """Obstacles of a ring, as the steps take them."""
 
-    Parameters
-    ----------
-    plates : table of the baffles, as by `solvers.layer.baffles.table_of`
-    full : area of the full gap over R^2, (1 - (R_i/R)^2)/2; 1 without an inner wall
-    slot : rise of the head with the area beyond that, over Omega^2
-    """
-
-    plates: Array
-    full: float
-    slot: float
+    plates: Array  #: table of the baffles, as by `solvers.layer.baffles.table_of`
+    full: float  #: area of the full gap over R^2, (1 - (R_i/R)^2)/2; 1 without an inner wall
+    slot: float  #: rise of the head with the area beyond that, over Omega^2
 
 
 NOTHING = Inside(np.zeros((0, COLUMNS)), OPEN, 0.0)
@@ -45,16 +38,5 @@ def full_area(fill: Fill) -> float:
 
 
 def inside_of(fill: Fill, cells: int, smeared: bool | None = None) -> Inside:
-    """Obstacles of a chamber.
-
-    Parameters
-    ----------
-    fill : chamber and liquid
-    cells : round the wall
-    smeared : whether baffles are smeared over the layer; None where the cells decide
-
-    Raises
-    ------
-    InputError : compartments with too few cells
-    """
+    """Obstacles of a chamber, baffles smeared over the layer or not; None: the cells decide."""
     return Inside(table_of(fill, cells, smeared), full_area(fill), SLOT_SPEED**2)

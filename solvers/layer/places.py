@@ -11,22 +11,11 @@ FEWEST_CELLS = 4
 
 
 def is_smeared(fill: Fill, cells: int) -> bool:
-    """Whether a layer has so many baffles that they act as a sink all over it.
-
-    Parameters
-    ----------
-    fill : chamber and liquid
-    cells : round the wall
-    """
+    """Whether a layer has so many baffles that they act as a sink all over it."""
     plates = fill.chamber.baffles
     return plates is not None and cells < FEWEST_CELLS * plates.count
 
 
 def fewest_cells(fills: Sequence[Fill]) -> int:
-    """Round each wall, so that every compartment has enough of them; 8 without compartments.
-
-    Parameters
-    ----------
-    fills : chambers and their liquid
-    """
+    """Fewest cells round each wall that every compartment needs; 8 without compartments."""
     return max([8, *(FEWEST_CELLS * fill.compartments for fill in fills)])

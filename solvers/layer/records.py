@@ -29,41 +29,26 @@ def records(kind: np.dtype[Any], count: int = 1) -> Record:
 
 
 class Drive(NamedTuple):
-    """A prescribed whirl as the steps take it [theory: long_wave, eq. 8].
+    """A prescribed whirl as the steps take it [theory: long_wave, eq. 8]."""
 
-    Parameters
-    ----------
-    amplitude : of the axis
-    slip : whirl speed seen from the drum
-    ramp : time over which the amplitude grows
-    whirl : whirl speed in space
-    weight : gravity across the axis
-    spin : Omega
-    """
-
-    amplitude: float
-    slip: float
-    ramp: float
-    whirl: float
-    weight: float
-    spin: float
+    amplitude: float  #: of the axis
+    slip: float  #: whirl speed seen from the drum
+    ramp: float  #: time over which the amplitude grows
+    whirl: float  #: whirl speed in space
+    weight: float  #: gravity across the axis
+    spin: float  #: Omega
 
 
 class Wall(NamedTuple):
-    """What the wall does to a layer.
+    """What the wall does to a layer."""
 
-    Parameters
-    ----------
-    law, coefficient : of the friction, as by `fluid.friction.laws.Friction.at`; rates in the unit of the spin
-    lid : 2 R/h_c, floor and lid under Stokes' friction and the law of the wall
-    dispersion : whether its waves disperse
-    plates, thin, top, table : of the law of the wall, see `fluid.friction.wall.WallDrag`
-    """
-
+    #: law and coefficient: of the friction, as by `fluid.friction.laws.Friction.at`; rates in the unit of the
+    #: spin
     law: int
     coefficient: float
-    lid: float
-    dispersion: bool
+    lid: float  #: 2 R/h_c, floor and lid under Stokes' friction and the law of the wall
+    dispersion: bool  #: whether its waves disperse
+    #: plates, thin, top and table: of the law of the wall, see `fluid.friction.wall.WallDrag`
     plates: float = 0.0
     thin: float = 0.0
     top: float = 0.0
@@ -81,7 +66,7 @@ PACE = floats("time", "fastest")
 
 
 class Outcome(IntEnum):
-    """How a stretch of time steps ended, of a layer or of a rotor with layers; compiled code knows it too."""
+    """How a stretch of time steps ended, of a layer or of a rotor with layers; shared with compiled code."""
 
     DONE = 0
     TOO_LONG = 1

@@ -32,21 +32,11 @@ def means(
     offsets: tuple[complex, complex],
     rates: tuple[complex, complex],
 ) -> Complex:
-    """Means over a time [theory: long_wave, eq. 7].
+    """Means over a time of a record LOADS, shape (6,); forces over rho h_c R^3 [theory: long_wave, eq. 7].
 
-    Parameters
-    ----------
-    sums : a record LOADS of `solvers.layer.records`
-    length : of the time
-    mass : of the liquid, over rho h_c R^2
-    whirl_speed : omega_w
-    offsets : of the centre of mass at the beginning and at the end
-    rates : of change of the offset there, in the frame of the deflection as well
-
-    Returns
-    -------
-    Force by the liquid's momentum and offset, turning, least and largest depth, force by the pressure on the
-    wall, shape (6,); forces are over rho h_c R^3
+    Force by the liquid's momentum, offset, turning, least and largest depth, force by the pressure on the
+    wall. The mass is over rho h_c R^2; offsets and their rates are those at both ends, in the frame of the
+    deflection.
     """
     pressure = complex(sums.force_x, sums.force_y) / length
     moved = complex(sums.offset_x, sums.offset_y) / length
@@ -74,15 +64,7 @@ class Numerics:
 def resting_area(amplitude: float, cells: int, mean: float) -> Array:
     """Equilibrium of the liquid under a synchronous whirl: a circle about the rotation axis, cell by cell.
 
-    Parameters
-    ----------
-    amplitude : of the axis, over R
-    cells : round the wall
-    mean : of A over R^2
-
-    Returns
-    -------
-    A over R^2, the deflection along theta = 0, shape (n,)
+    A over R^2, the deflection along theta = 0, shape (n,).
     """
     cosine, sine = ring(cells)[:2]
 

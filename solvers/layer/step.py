@@ -1,8 +1,8 @@
 """Time steps of a finite-volume layer: their parts, and a layer's way under a prescribed whirl.
 
 Heun's method in two stages between two half steps of friction, exact but for the law of the wall
-[theory: long_wave, eq. 11]. The coupled
-machine takes the parts and puts its own forces to them. Lengths over R, times in the unit of the spin given.
+[theory: long_wave, eq. 11]. The coupled machine takes the parts and puts its own forces to them. Lengths over
+R, times in the unit of the spin given.
 """
 
 from __future__ import annotations
@@ -72,15 +72,7 @@ def profile(area, q, spin, velocity, surface, log):
 
 @_sum_jit
 def kept_speed(area, velocity, surface, law, coefficient, lid, dt, kept):
-    """Share of each cell's velocity that friction leaves after a time dt: an exact decay, cell by cell.
-
-    Parameters
-    ----------
-    area, velocity, surface : as `profile` gives them, shape (n,)
-    law, coefficient, lid : as for `fluid.friction.laws.damping_rate`
-    dt : time
-    kept : result, shape (n,)
-    """
+    """Share of each cell's velocity that friction leaves after a time dt: an exact decay, cell by cell."""
     n, strong = area.size, 0
     for i in range(n):
         a = np.maximum(area[i], DRY)
@@ -165,7 +157,7 @@ def calm(area, q, spin):
 
 @_part
 def predict(area, q, rate_a, rate_q, dt, next_a, next_q):
-    """Euler step; tells whether the surface stays off the axis and every number is one."""
+    """Euler step; whether the surface stays off the axis and every number is finite."""
     wrong = 0
     for i in range(area.size):
         next_a[i] = np.maximum(area[i] + dt * rate_a[i], 0.0)
@@ -185,7 +177,7 @@ def predict_energy(energy, rate, dt, next_energy):
 
 @_part
 def correct_energy(energy, rate, dt, next_energy):
-    """Second stage of Heun's method for it."""
+    """Second stage of Heun's method for the energy of the fluctuations."""
     for i in range(energy.size):
         energy[i] = 0.5 * (energy[i] + np.maximum(next_energy[i] + dt * rate[i], 0.0))
 
@@ -236,23 +228,10 @@ def stage_rates(
 ):
     """Rates of change at one stage of a time step, for callers that are compiled themselves.
 
-    Parameters
-    ----------
-    area, q : state at the stage, shape (n,)
-    energy : A e of the fluctuations behind bores, shape (n,), or (0,) where they are left out
-    spin, euler : there, and its rate of change
-    x, y : body force in the drum frame
-    angles : cosine and sine at the cells' middles and at their left faces, shape (4, n)
-    inside : baffles and inner wall, a `solvers.layer.inside.Inside`
-    dt : of the step, 0 where only the fastest wave is asked for
-    dispersion : as for `solvers.layer.finite_volume.rates`
-    pull_cell, pull_face, rate_a, rate_q : results, shape (n,)
-    rate_e : result, of the shape of `energy`
-    spare : scratch
-
-    Returns
-    -------
-    Outcome.DONE, AT_AXIS, or TOO_LONG where the step is to be taken again; the fastest wave
+    `energy` is A e of the fluctuations behind bores, (n,) or (0,); x, y the body force in the drum frame;
+    `angles` cosine and sine at the cells' middles and at their left faces, (4, n); `dt` 0 where only the
+    fastest wave is asked for. Returns Outcome.DONE, AT_AXIS, or TOO_LONG where the step is to be taken again,
+    and the fastest wave.
     """
     step = 2.0 * np.pi / area.size
     pull(x, y, angles, pull_cell, pull_face)
@@ -282,7 +261,7 @@ def stage_rates(
 
 
 def scratch(cells: int) -> NDArray[np.float64]:
-    """Scratch that `advance` wants for a ring of so many cells."""
+    """Scratch of `advance` for a ring of so many cells."""
     return np.zeros((WORK + 9, cells + 2 * GHOSTS))
 
 
@@ -325,7 +304,6 @@ def _cell_loads(area, q, spin, pull, cosine, sine, full, slot):
 
 @_sum_part
 def _bounds(values):
-    """Least and largest of them."""
     least, largest = values[0], values[0]
     for i in range(values.size):
         least = values[i] if values[i] < least else least
@@ -337,10 +315,7 @@ def _bounds(values):
 def centre(area, angles):
     """Centre of mass of the layer from the drum's axis, x and y in the drum frame; nan without liquid.
 
-    Parameters
-    ----------
-    area : A, shape (n,); below zero counts as dry
-    angles : as for `advance`
+    An area below zero counts as dry.
     """
     x, y, total = 0.0, 0.0, 0.0
     for i in range(area.size):
@@ -377,26 +352,11 @@ def tally(area, q, spin, pull, angles, cosine, sine, share, full, slot, sums):
 
 @_jit
 def advance(area, q, energy, pace, stop, drive, wall, angles, inside, courant, most, spare, loads):
-    """Advance a layer under a prescribed whirl and integrate its loads over time.
+    """Advance a layer under a prescribed whirl, in place, and add its loads to `loads`.
 
-    Parameters
-    ----------
-    area, q : state, changed in place, shape (n,)
-    energy : A e of the fluctuations behind bores, changed in place, shape (n,), or (0,) without them
-    pace : record PACE, shape (1,): how far it has come, changed in place; after RAN_OUT the next call goes on
-        as if there had been none between
-    stop : time
-    drive, wall : `solvers.layer.records`'s
-    angles : cosine and sine at the cells' middles and at their left faces, shape (4, n)
-    inside : baffles and inner wall, a `solvers.layer.inside.Inside`
-    courant : Courant number
-    most : most steps
-    spare : as from `scratch`, whose rows are reused
-    loads : results, record LOADS, shape (1,): the first one is added to
-
-    Returns
-    -------
-    Outcome, and the steps tried
+    `energy` is A e of the fluctuations behind bores, (n,), or (0,) without them; `pace` a record PACE, how
+    far it has come: after RAN_OUT the next call goes on as if there had been none between. `angles` as of
+    `stage_rates`; rows of the scratch `spare` are reused. Returns Outcome, and the steps tried.
     """
     n = area.size
     step = 2.0 * np.pi / n
@@ -482,16 +442,7 @@ def march(
 ) -> tuple[Outcome, int]:
     """`advance` from one time to another in slices, between which Python sees a Ctrl-C.
 
-    Parameters
-    ----------
-    area, q, stop, drive, wall, angles, courant, spare, loads : as for `advance`
-    start : time
-    most : most steps; by default `solvers.slices.step_budget`
-    energy, inside : as for `advance`; fluctuations are left out if None
-
-    Returns
-    -------
-    Outcome, and the steps tried
+    At most `most` steps, by default `solvers.slices.step_budget`. Returns Outcome, and the steps tried.
     """
     pace, outcome, taken = records(PACE), Outcome.RAN_OUT, 0
     pace[0].time = start

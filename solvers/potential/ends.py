@@ -45,20 +45,7 @@ class End:
 def froude(wave: SteadyWave) -> Array:
     """Square of the local Froude number of the flow seen from the wave [theory: potential, eq. 33].
 
-    Parameters
-    ----------
-    wave : steady
-
-    Returns
-    -------
-    At the nodes, shape (m,): 1 where long waves stand still on the flow
-
-    Examples
-    --------
-    >>> from solvers.potential.steady import at_rest
-    >>> from solvers.potential.strip import nodes
-    >>> float(froude(at_rest(0.05, nodes(16)))[0].round(3))  # small free waves are nearly long here
-    0.999
+    At the nodes: 1 where long waves stand still on the flow.
     """
     y, speed = wave.surface, wave.speeds
     radius = np.exp(-y)
@@ -66,13 +53,7 @@ def froude(wave: SteadyWave) -> Array:
 
 
 def end(wave: SteadyWave, most: int = MOST) -> End:
-    """Why a branch did not go on.
-
-    Parameters
-    ----------
-    wave : the last one that was found, by `solvers.potential.steady.forced`
-    most : steps from crest to trough that nodes may have
-    """
+    """Why a branch did not go on."""
     ratios = [abs(wave.detuning / linear_detuning(wave.layer, n) - 1.0) for n in range(2, _MOST_CRESTS)]
     crests, local = 2 + int(np.argmin(ratios)), float(froude(wave).max())
     reached = abs(wave.whirl)

@@ -1,7 +1,7 @@
 """A layer under a prescribed circular whirl by the exact wave in time; SI units.
 
 What `solvers.pypde.settle` does by long waves: from the uniform layer at rest in the drum, whirl period by
-whirl period, or as pictures. A wave that breaks ends it, for beyond that it owes no force.
+whirl period, or as pictures. A wave that breaks ends it: beyond that the model has no force.
 """
 
 from __future__ import annotations
@@ -57,27 +57,7 @@ def simulate(
 ) -> PotentialHistory:
     """Layer from rest in the drum, uniform, whirl period by whirl period.
 
-    Parameters
-    ----------
-    fill : clear circular chamber and liquid, with some liquid and a free surface
-    whirl : what drives it
-    duration : s; whole periods within it are answered, at least one
-    steps : how it is taken through time
-    progress : called with the share of the time that is done
-
-    Raises
-    ------
-    InputError : no liquid, no free surface, baffles, another section, a value out of its range
-
-    Examples
-    --------
-    >>> from fluid.liquid import Liquid
-    >>> from meshes.chamber import Chamber
-    >>> fill = Fill(Chamber(0.15, 1.0), Liquid("water", 1000.0, 1e-6), volume=0.1 * math.pi * 0.15**2)
-    >>> whirl = Whirl(spin=40.0, speed=32.0, amplitude=1e-4, ramp=0.5)
-    >>> found = simulate(fill, whirl, duration=1.6, steps=Steps(nodes=64))
-    >>> found.state.value, found.periods.force_ratio.size
-    ('resolved', 2)
+    Whole periods within `duration`, s, are answered, at least one; the chamber is circular and clear.
     """
     require_positive("duration", duration)
     steps = steps or Steps()
@@ -115,22 +95,7 @@ def film(
     steps: Steps | None = None,
     progress: Progress = None,
 ) -> LayerFilm:
-    """Layer from rest in the drum, as pictures at equal intervals.
-
-    Parameters
-    ----------
-    fill, whirl, steps, progress : see `simulate`
-    frames : how many pictures, at least 1
-    periods : how many whirl periods they cover
-
-    Returns
-    -------
-    LayerFilm; it ends early where the wave breaks
-
-    Raises
-    ------
-    InputError : as for `simulate`, or no picture
-    """
+    """Layer from rest in the drum, as pictures at equal intervals; a wave that breaks ends it early."""
     if frames < 1:
         raise InputError("frames", frames, "1 or more")
     require_positive("periods", periods)
@@ -154,14 +119,7 @@ def film(
 def whirl_push(fill: Fill, whirl: Whirl) -> Push:
     """The force f of a whirl and of gravity across the axis [theory: potential, eq. 24].
 
-    Parameters
-    ----------
-    fill : its chamber has the radius
-    whirl : its ramp scales the force, as in [theory: long_wave, eq. 8]
-
-    Returns
-    -------
-    f over Omega^2 R, of the time in 1/Omega
+    f over Omega^2 R, of the time in 1/Omega; the ramp scales the force [theory: long_wave, eq. 8].
     """
     unit = whirl.spin**2 * fill.chamber.radius
     size, slip = whirl.speed**2 * whirl.amplitude / unit, whirl.slip / whirl.spin
@@ -196,10 +154,7 @@ def _sample(surface: Surface, time: float, push: Push, friction: float) -> _Samp
 
 @dataclass
 class _Means:
-    """Means over whirl periods, and how well momentum, energy and angular momentum balance.
-
-    [theory: potential, eq. 20-22]
-    """
+    """Means over whirl periods, and how well the balances hold [theory: potential, eq. 20-22]."""
 
     whirl: Whirl  #: what drives the layer
     push: Push
@@ -270,12 +225,7 @@ def _points(period: float) -> tuple[Array, Array]:
 
 
 def _start(fill: Fill, steps: Steps) -> Surface:
-    """The uniform layer at rest in the drum.
-
-    Raises
-    ------
-    InputError : no liquid, no free surface, a ring that is not clear
-    """
+    """The uniform layer at rest in the drum."""
     chamber, wanted = fill.chamber, "none for the exact wave, which wants a clear circular wall"
     if chamber.section is not None:
         raise InputError("section", type(chamber.section).__name__, wanted)

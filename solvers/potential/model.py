@@ -1,6 +1,6 @@
 """The exact wave as a liquid model: steady waves of one whirl, and free waves.
 
-In SI units; the solvers of this room count lengths in radii and times in 1/Omega.
+In SI units; the solvers below count lengths in radii and times in 1/Omega.
 """
 
 from __future__ import annotations
@@ -108,12 +108,7 @@ class Potential(WaveModel):
 
     @property
     def steps(self) -> Steps:
-        """How a wave is taken through time.
-
-        Raises
-        ------
-        InputError : too few nodes for it, or an odd number
-        """
+        """How a wave is taken through time."""
         if self.cells is None:
             return Steps()
         if self.cells < unsteady.FEWEST or self.cells % 2:
@@ -140,12 +135,7 @@ class Potential(WaveModel):
         )
 
     def wave(self, fill: Fill, whirl: Whirl) -> PotentialWave:
-        """See `WaveModel`; the error is the distance from the same wave on half as many nodes again.
-
-        Raises
-        ------
-        InputError : gravity across the axis, no free surface
-        """
+        """See `WaveModel`; the error is the distance from the same wave on half as many nodes again."""
         if whirl.gravity != 0.0:
             allowed = "0 for the steady exact wave: gravity across the axis turns in the frame of the whirl"
             raise InputError("gravity", whirl.gravity, allowed)
@@ -180,13 +170,7 @@ class Potential(WaveModel):
         )
 
     def wave_at_end(self, fill: Fill, whirl: Whirl, history: PotentialHistory) -> PotentialWave:
-        """The wave as a history leaves it, with the last means as its answer.
-
-        Parameters
-        ----------
-        fill, whirl : chamber and liquid, and its whirl
-        history : from `solvers.potential.histories`
-        """
+        """The wave as a history leaves it, with the last means as its answer."""
         periods, answered = history.periods, history.periods.force_ratio.size > 0
         none = complex(math.nan, math.nan)
         force, offset = (periods.force_ratio[-1], periods.offset[-1]) if answered else (none, none)
@@ -219,22 +203,9 @@ class Potential(WaveModel):
         )
 
     def free_wave(self, fill: Fill, spin: float, crest: float, crests: int = 1) -> FreeWave:
-        """The free wave whose crest is so high.
+        """Free wave of so many crests, `crest` being the depth there over the mean depth, above 1.
 
-        Parameters
-        ----------
-        fill : chamber and liquid
-        spin : Omega, rad/s
-        crest : depth at the crest over the mean depth, above 1
-        crests : n, round the drum
-
-        Returns
-        -------
-        The wave; its error is the distance from the same one on half as many nodes again
-
-        Raises
-        ------
-        InputError : no free surface, no crest
+        Its error is the distance from the same one on half as many nodes again.
         """
         _require_surface(fill)
         radius, layer = fill.chamber.radius, fill.depth / fill.chamber.radius
@@ -398,7 +369,7 @@ def _crest_number(wave: SteadyWave) -> float:
 
 
 def _mass_error(wave: SteadyWave) -> float:
-    """Of the surface as it is drawn, on nodes of its own."""
+    """Relative error of the mass under the surface as it is drawn, on nodes of its own."""
     return abs(wave.volume / (wave.layer * (2.0 - wave.layer)) - 1.0)
 
 

@@ -1,9 +1,10 @@
 """Exact waves that stand in the frame of their whirl, by Newton's method with an analytic Jacobian.
 
-Lengths over R, times in 1/Omega. Unknown are the surface y at the nodes, Bernoulli's constant, the detuning
-p^2 = (1 - Omega/omega_w)^2 and the whirl w_0; two conditions choose among p^2, w_0, the depth of the crest
-and the height of the wave [theory: potential, eq. 7-8]. The wave depends on p^2 and not on the sign of p:
-whirl speeds come in twins [theory: potential, eq. 9].
+Lengths over R, times in 1/Omega; `layer` is h_0/R, `crest` the depth there over h_0, `most` the steps from
+crest to trough that nodes may have. Unknown are the surface y at the nodes, Bernoulli's constant, the
+detuning p^2 = (1 - Omega/omega_w)^2 and the whirl w_0; two conditions choose among p^2, w_0, the depth of the
+crest and the height of the wave [theory: potential, eq. 7-8]. The wave depends on p^2 and not on the sign of
+p: whirl speeds come in twins [theory: potential, eq. 9].
 """
 
 from __future__ import annotations
@@ -74,7 +75,7 @@ class SteadyWave:
 
     @property
     def trough(self) -> float:
-        """Depth at the trough, half way between two crests, likewise."""
+        """Depth at the trough, half way between two crests, over that of the layer at rest."""
         return float(-np.expm1(-self.surface[-1])) / self.layer
 
     @property
@@ -123,12 +124,7 @@ class SteadyWave:
 
     @property
     def force_ratio(self) -> float:
-        """Force G on the drum over that of a full chamber [theory: potential, eq. 14].
-
-        Raises
-        ------
-        InputError : a free wave, which no whirl holds
-        """
+        """Force G on the drum over that of a full chamber [theory: potential, eq. 14]."""
         if self.whirl == 0.0:
             raise InputError("whirl", self.whirl, "other than 0")
         volume = self.layer * (2.0 - self.layer)
@@ -170,36 +166,14 @@ class SteadyWave:
 
 
 def linear_detuning(layer: float, crests: int = 1) -> float:
-    """p^2 of small free waves [theory: potential, eq. 15].
-
-    Parameters
-    ----------
-    layer : h_0/R
-    crests : n
-
-    Examples
-    --------
-    >>> p = linear_detuning(0.1) ** 0.5
-    >>> f"{-p / (1.0 + p):.12f}"  # of the backward wave, over the spin
-    '-0.235602983589'
-    """
+    """p^2 of small free waves [theory: potential, eq. 15]."""
     ring = (1.0 - layer) ** (2 * crests)
     share = (1.0 - ring) / (1.0 + ring)
     return share / (crests + share)
 
 
 def at_rest(layer: float, at: Nodes) -> SteadyWave:
-    """The layer without a wave, from which the others begin.
-
-    Parameters
-    ----------
-    layer : h_0/R
-    at : nodes
-
-    Raises
-    ------
-    InputError : no layer, or no air
-    """
+    """The layer without a wave, from which the others begin."""
     if not 0.0 < layer < 1.0:
         raise InputError("layer", layer, "between 0 and 1")
     flat = np.full(at.u.size, -math.log1p(-layer))
@@ -207,23 +181,12 @@ def at_rest(layer: float, at: Nodes) -> SteadyWave:
 
 
 def solve(begin: SteadyWave, wanted: Mapping[str, float], same: bool = False) -> SteadyWave:
-    """The wave that meets two conditions, from one that is near.
+    """The wave that meets two conditions, from one that is near and whose nodes are kept.
 
-    Parameters
-    ----------
-    begin : a wave, whose nodes are kept
-    wanted : two of "detuning" p^2, "whirl" w_0/R, "crest" and "height", over h_0 the depth at the crest and
-        what it has more than the trough
-    same : stay on the branch of `begin`. The first round goes along its tangent; where the later ones change
-        the surface by more than half as much again, the wave that they come to is another branch's
-
-    Returns
-    -------
-    The wave; the one that it began with, not converged, where there is none near
-
-    Raises
-    ------
-    InputError : not two conditions, or unknown ones
+    Conditions are two of "detuning" p^2, "whirl" w_0/R, "crest" and, crest less trough, "height", both over
+    h_0. With `same` it stays on the branch of `begin`: where rounds after the first, along its tangent,
+    change the surface by more than half as much again, they have come to another. Where none is near it is
+    `begin`, not converged.
     """
     if len(wanted) != 2 or not set(wanted) <= set(CONDITIONS):
         raise InputError("wanted", ", ".join(wanted), "two of " + ", ".join(CONDITIONS))
@@ -279,20 +242,8 @@ def follow(
     """The wave that meets two conditions, in steps from another: each that fails is halved.
 
     For a free wave a step that puts shorter waves on it fails too: it has come to another branch. A whirl
-    brings such waves along by itself, in its lee; there a step fails that leaves the tangent. Nodes follow
-    the spectrum on the way.
-
-    Parameters
-    ----------
-    begin : a wave
-    wanted : as for `solve`
-    steps : to begin with
-    most : steps from crest to trough that nodes may have; those of `begin` are kept where it is 0
-    least : shortest step, of the way
-
-    Returns
-    -------
-    The last wave that was found; `converged` is False if it is not the one that was wanted
+    brings such waves along in its lee; there a step fails that leaves the tangent. Nodes follow the spectrum,
+    up to `most` (0: those of `begin` stay). Where it is not reached, the last wave found, not converged.
     """
     parameters = np.concatenate((begin.surface, [0.0, begin.detuning, begin.whirl]))
     start = {key: _value(parameters, begin.layer, key) for key in wanted}
@@ -313,18 +264,7 @@ def follow(
 
 
 def refined(wave: SteadyWave, wanted: Mapping[str, float], most: int = MOST) -> SteadyWave:
-    """The same wave on nodes that its spectrum wants: more of them, as crowded as its crest is sharp.
-
-    Parameters
-    ----------
-    wave : that meets the conditions
-    wanted : the conditions
-    most : steps from crest to trough that nodes may have
-
-    Returns
-    -------
-    The wave whose `tail` is rounding, or the best that so many nodes give
-    """
+    """The same wave on nodes that its spectrum needs, up to `most`, as crowded as its crest is sharp."""
     while wave.tail > RESOLVED and wave.surface.size - 1 < most:
         # A crest is as wide as the layer is deep, and shrinks with the square of its speed as it nears 0.
         sharp = _CROWDED * wave.at.crests * wave.layer * wave.crest_speed**2
@@ -341,13 +281,7 @@ def refined(wave: SteadyWave, wanted: Mapping[str, float], most: int = MOST) -> 
 
 
 def on_more_nodes(wave: SteadyWave, wanted: Mapping[str, float]) -> SteadyWave:
-    """The same wave on half as many nodes again, whose own error is far less.
-
-    Parameters
-    ----------
-    wave : that meets the conditions
-    wanted : the conditions
-    """
+    """The same wave on half as many nodes again, whose own error is far less."""
     count = math.ceil(_FINER * (wave.surface.size - 1))
     return solve(on_nodes(wave, nodes(count, wave.at.crests, wave.at.cluster)), wanted)
 
@@ -358,25 +292,7 @@ def _kept(found: SteadyWave, wanted: Mapping[str, float]) -> bool:
 
 
 def forced(layer: float, detuning: float, whirl: float, most: int = MOST) -> SteadyWave:
-    """The wave that a whirl holds, followed from the layer at rest.
-
-    Parameters
-    ----------
-    layer : h_0/R
-    detuning : p^2 = (1 - Omega/omega_w)^2
-    whirl : w_0/R, above 0
-    most : steps from crest to trough that nodes may have
-
-    Raises
-    ------
-    InputError : a detuning below 0, no whirl, no layer
-
-    Examples
-    --------
-    >>> wave = forced(0.1, (1.0 - 1.0 / 1.3) ** 2, 0.002)
-    >>> f"{wave.force_ratio:.9f}"
-    '2.042546357'
-    """
+    """The wave that a whirl holds, followed from the layer at rest."""
     require_not_negative("detuning", detuning)
     require_positive("whirl", whirl)
     begin = solve(at_rest(layer, nodes(min(_FIRST, most))), {"detuning": detuning, "whirl": 0.0})
@@ -386,24 +302,7 @@ def forced(layer: float, detuning: float, whirl: float, most: int = MOST) -> Ste
 
 
 def free(layer: float, crest: float, crests: int = 1, most: int = MOST) -> SteadyWave:
-    """The free wave with a crest of this depth, followed from small ones.
-
-    Parameters
-    ----------
-    layer : h_0/R
-    crest : depth at the crest over h_0, above 1
-    crests : n, round the drum
-    most : steps from crest to trough that nodes may have
-
-    Raises
-    ------
-    InputError : no crest above the layer
-
-    Examples
-    --------
-    >>> f"{free(0.1, 1.1).slip_speeds()[1]:.9f}"  # of the backward wave, over the spin
-    '-0.241999445'
-    """
+    """The free wave with a crest of this depth, followed from small ones."""
     if not crest > 1.0:
         raise InputError("crest", crest, "above 1")
     rest = at_rest(layer, nodes(min(_FIRST, most), crests))
@@ -416,13 +315,7 @@ def free(layer: float, crest: float, crests: int = 1, most: int = MOST) -> Stead
 
 
 def on_nodes(wave: SteadyWave, to: Nodes) -> SteadyWave:
-    """The same wave on other nodes, its residual there not yet known.
-
-    Parameters
-    ----------
-    wave : of as many crests
-    to : nodes
-    """
+    """The same wave on other nodes, its residual there not yet known."""
     surface = moved(wave.at, wave.surface, to)
     return replace(wave, at=to, surface=surface, residual=math.nan, converged=False)
 
@@ -472,7 +365,7 @@ def _equations(at: Nodes, layer: float, state: Array, wanted: Mapping[str, float
 
 
 def _value(state: Array, layer: float, key: str) -> float:
-    """What a condition is about."""
+    """Value of the quantity that a condition names."""
     if key in ("detuning", "whirl"):
         return float(state[-2] if key == "detuning" else state[-1])
     crest, trough = -np.expm1(-state[0]) / layer, -np.expm1(-state[-4]) / layer
@@ -480,7 +373,7 @@ def _value(state: Array, layer: float, key: str) -> float:
 
 
 def _gradient(state: Array, layer: float, key: str) -> Array:
-    """Its derivative by the state."""
+    """Derivative of that quantity by the state."""
     found = np.zeros(state.size)
     if key in ("detuning", "whirl"):
         found[-2 if key == "detuning" else -1] = 1.0

@@ -40,12 +40,7 @@ class Nodes:
     cluster: float  #: L
 
     def spectrum(self, values: Array) -> Array:
-        """Coefficients of an even function in cosines of xi, shape (m,).
-
-        Parameters
-        ----------
-        values : at the nodes, shape (m,)
-        """
+        """Coefficients of an even function in cosines of xi, shape (m,)."""
         return np.asarray(self.harmonics @ values)
 
 
@@ -61,18 +56,7 @@ class Strip:
 
 @lru_cache(maxsize=8)
 def nodes(count: int, crests: int = 1, cluster: float = 1.0) -> Nodes:
-    """Nodes from crest to trough.
-
-    Parameters
-    ----------
-    count : m - 1, how many steps there are from crest to trough
-    crests : n, round the drum
-    cluster : L, at most 1; steps at the crest over even ones
-
-    Raises
-    ------
-    InputError : too few nodes, no crest, or a cluster that is none
-    """
+    """The `count` + 1 nodes from crest to trough of n crests round the drum; `cluster` is L, at most 1."""
     if count < FEWEST:
         raise InputError("count", count, f"at least {FEWEST}")
     if crests < 1:
@@ -115,15 +99,7 @@ def _placed(count: int, crests: int, cluster: float) -> tuple[Array, Array, Arra
 def _waves_in_u(count: int, cluster: float) -> Array:
     """Waves in u of one crest from those in xi, without the mean [theory: potential, eq. 13].
 
-    The nodes themselves are too far apart for them at the trough.
-
-    Parameters
-    ----------
-    count, cluster : as for `nodes`
-
-    Returns
-    -------
-    Shape (count - 2, count + 1)
+    Shape (count - 2, count + 1): the nodes themselves are too far apart for them at the trough.
     """
     j, away = np.arange(count + 1), (1.0 - cluster) / (1.0 + cluster)
     # exp(iu) = (w + away)/(1 + away w) as a power series in w = exp(i xi), and what multiplies one by it.
@@ -138,17 +114,7 @@ def _waves_in_u(count: int, cluster: float) -> Array:
 
 
 def strip(at: Nodes, depth: float) -> Strip:
-    """Operators for a strip of this depth.
-
-    Parameters
-    ----------
-    at : nodes
-    depth : K
-
-    Raises
-    ------
-    InputError : no depth
-    """
+    """Operators for a strip of this depth K."""
     require_positive("depth", depth)
     most = min(math.ceil(_DEEP / (at.crests * depth)), at.taken.shape[0])
     k = at.crests * np.arange(1, most + 1)
@@ -165,17 +131,6 @@ def strip(at: Nodes, depth: float) -> Strip:
 
 
 def moved(at: Nodes, values: Array, to: Nodes) -> Array:
-    """Values of an even function at other nodes of the same number of crests, by its series in xi.
-
-    Parameters
-    ----------
-    at : nodes of the values
-    values : shape (m,)
-    to : the other nodes
-
-    Returns
-    -------
-    Shape of the other nodes
-    """
+    """Values of an even function at other nodes of the same number of crests, by its series in xi."""
     xi = 2.0 * np.arctan2(np.sin(0.5 * at.crests * to.u), at.cluster * np.cos(0.5 * at.crests * to.u))
     return np.asarray(np.cos(np.outer(xi, np.arange(at.u.size))) @ at.spectrum(values))

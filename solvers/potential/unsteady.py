@@ -1,9 +1,9 @@
 """The exact wave in time: rates of change of its surface, the force that it exerts, what it conserves.
 
-On even nodes all round the drum, by Fourier transforms [theory: potential, eq. 16-27]. Lengths over R, times
-in 1/Omega, with the spin Omega that the liquid had when it was at rest in its drum. Forces are seen in the
-frame that turns at that spin for ever, whatever the drum does later [theory: potential, eq. 24]; with f = 0
-volume, energy and angular momentum stay. `solvers.potential.in_time` takes a wave through time.
+A state is y and phi on n even nodes all round the drum, n even, shape (2n,); by Fourier transforms
+[theory: potential, eq. 16-27]. Lengths over R, times in 1/Omega, with the spin Omega that the liquid had when
+it was at rest in its drum. Forces are seen in the frame that turns at that spin for ever, whatever the drum
+does later [theory: potential, eq. 24]; with f = 0 volume, energy and angular momentum stay.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ class Surface:
 
     @property
     def state(self) -> Array:
-        """Both in one, shape (2n,)."""
+        """Height and potential in one, shape (2n,)."""
         return np.concatenate((self.height, self.potential))
 
 
@@ -77,12 +77,7 @@ class Waves:
 
 @lru_cache(maxsize=16)
 def wave_numbers(count: int) -> Waves:
-    """Wave numbers of even nodes.
-
-    Parameters
-    ----------
-    count : n, even
-    """
+    """Wave numbers of even nodes."""
     k = np.arange(count // 2 + 1.0)
     kept = math.floor(KEPT * k[-1]) + 1
     odd = np.concatenate((k[:-1], [0.0]))
@@ -119,13 +114,7 @@ class _Flow:
 
 
 def still(layer: float, count: int) -> Surface:
-    """The layer at rest in the drum.
-
-    Parameters
-    ----------
-    layer : h_0/R
-    count : n, even
-    """
+    """The layer at rest in the drum."""
     if not 0.0 < layer < 1.0:
         raise InputError("layer", layer, "between 0 and 1")
     return Surface(np.full(count, -math.log1p(-layer)), np.zeros(count))
@@ -134,11 +123,7 @@ def still(layer: float, count: int) -> Surface:
 def started(wave: SteadyWave, slip: float, count: int) -> Surface:
     """A steady wave of one crest as it stands in the drum, its deflection along the first direction.
 
-    Parameters
-    ----------
-    wave : steady, forced or free
-    slip : s/Omega, with its sign: one of the wave's two, where the other has the same shape
-    count : n, even
+    The slip s/Omega is one of the wave's two, with its sign.
     """
     half = moved(wave.at, wave.surface, nodes(count // 2))
     height = np.concatenate((half[:-1], half[:0:-1]))
@@ -153,18 +138,11 @@ def started(wave: SteadyWave, slip: float, count: int) -> Surface:
 
 
 def rates(state: Array, push: complex, damping: float = 0.0, friction: float = 0.0) -> Array:
-    """Rates of change of a surface [theory: potential, eq. 16-18].
+    """Rates of change of a surface, shape (2n,) [theory: potential, eq. 16-18].
 
-    Parameters
-    ----------
-    state : y and phi, shape (2n,)
-    push : f, minus the acceleration of the axis, over Omega^2 R
-    damping : of the shortest waves that are kept, over Omega; falls with the eighth power of the wave number
-    friction : k of a body force -k grad phi on the liquid, over Omega [theory: potential, eq. 22]
-
-    Returns
-    -------
-    Shape (2n,)
+    `push` is f, minus the acceleration of the axis, over Omega^2 R; `damping` that of the shortest waves that
+    are kept, over Omega, falling with the eighth power of the wave number; `friction` k of a body force -k
+    grad phi on the liquid, over Omega [theory: potential, eq. 22].
     """
     flow = _flow(state)
     change = _moved(flow, 1.0)
@@ -216,10 +194,7 @@ def _limited(spectra: Complex, flow: _Flow, damping: float, friction: float) -> 
 def force(state: Array, push: complex, friction: float = 0.0) -> complex:
     """Force on the drum by the pressure on its wall, over density, Omega^2 R^3 [theory: potential, eq. 19].
 
-    Parameters
-    ----------
-    state, push : as for `rates`
-    friction : k as for `rates`; the drum holds the body force that it stands for [theory: potential, eq. 22]
+    The drum holds the body force that friction stands for [theory: potential, eq. 22].
     """
     flow = _flow(state)
     along = flow.radius * (push.real * np.cos(flow.angle) + push.imag * np.sin(flow.angle))
@@ -252,7 +227,7 @@ def _momentum(flow: _Flow) -> complex:
 
 @dataclass(frozen=True)
 class Answer:
-    """What a layer does under any force: its rates and its own force are straight lines of f."""
+    """What a layer does under any force: its rates and its own force are linear in f."""
 
     still: Array  #: rates without f, shape (2n,)
     lever: Array  #: rates of phi for f = 1 and f = i, shape (2, n)
@@ -262,12 +237,7 @@ class Answer:
     moment: complex  #: V times the centre of mass, complex
 
     def rates(self, push: complex) -> Array:
-        """Rates under a force f, shape (2n,).
-
-        Parameters
-        ----------
-        push : f, as for `rates`
-        """
+        """Rates under a force f, shape (2n,)."""
         found = self.still.copy()
         found[self.lever.shape[1] :] += push.real * self.lever[0] + push.imag * self.lever[1]
         return found
@@ -276,10 +246,8 @@ class Answer:
 def answer(state: Array, spin: float = 1.0, friction: float = 0.0, damping: float = 0.0) -> Answer:
     """Rates and force of a layer under any force at once [theory: potential, eq. 25-27].
 
-    Parameters
-    ----------
-    state, damping, friction : as for `rates`; friction turns the drum's pressure by nothing
-    spin : of the frame in which the flow has no vorticity, over the unit of the spin
+    Friction turns the drum's pressure by nothing; `spin` is that of the frame in which the flow has no
+    vorticity, over the unit of the spin.
     """
     n, flow, whole = state.size // 2, _flow(state), 2.0 * np.pi
     arms = flow.radius * np.stack((np.cos(flow.angle), np.sin(flow.angle)))
@@ -312,10 +280,8 @@ def _moment(flow: _Flow) -> complex:
 def invariants(state: Array, spin: float = 1.0) -> Invariants:
     """Volume, energy, angular momentum and first moments [theory: potential, eq. 20].
 
-    Parameters
-    ----------
-    state : y and phi, shape (2n,)
-    spin : of the frame in which the flow has no vorticity, over the unit of the spin; 0 leaves phi alone
+    `spin` is that of the frame in which the flow has no vorticity, over the unit of the spin; 0 leaves phi
+    alone.
     """
     n, flow, whole = state.size // 2, _flow(state), 2.0 * np.pi
     square, phi = np.square(flow.radius), state[n:]
@@ -338,15 +304,8 @@ def invariants(state: Array, spin: float = 1.0) -> Invariants:
 def laid(radius: Callable[[Array], Array], count: int) -> Surface:
     """Liquid at rest in the drum under a surface of a given shape [theory: potential, eq. 2].
 
-    Parameters
-    ----------
-    radius : of the surface over R at some angles, shape as theirs, above 0, below 1; its waves are lower than
-        the layer is deep
-    count : n, even
-
-    Raises
-    ------
-    ArithmeticError : the angles did not settle: the surface is too steep for these nodes
+    `radius` of the surface over R, between 0 and 1, at angles; its waves are lower than the layer is deep. An
+    `ArithmeticError` where it is too steep for these nodes.
     """
     angle = wave_numbers(count).angle
     for _ in range(_ROUNDS):
@@ -358,16 +317,9 @@ def laid(radius: Callable[[Array], Array], count: int) -> Surface:
 
 
 def levelled(state: Array, volume: float) -> Array:
-    """The same surface, moved out or in until it holds a volume, shape (2n,).
+    """The same surface, moved out or in until it holds a volume over R^2, shape (2n,).
 
-    Parameters
-    ----------
-    state : y and phi, shape (2n,)
-    volume : V, over R^2
-
-    Raises
-    ------
-    ArithmeticError : no such surface near by
+    An `ArithmeticError` where there is no such surface near by.
     """
     found, n = state.copy(), state.size // 2
     for _ in range(_ROUNDS):
@@ -382,10 +334,7 @@ def levelled(state: Array, volume: float) -> Array:
 def tail(state: Array, layer: float) -> float:
     """Size of the shortest waves that are kept, over that of the largest: k |Y_k| and k |phi_k|.
 
-    Parameters
-    ----------
-    state : y and phi, shape (2n,)
-    layer : h_0/R; waves below a thousandth of it count as that high: a layer at rest has none
+    Waves below a thousandth of the layer h_0/R count as that high: a layer at rest has none.
     """
     n = state.size // 2
     kept = wave_numbers(n).kept
@@ -395,17 +344,7 @@ def tail(state: Array, layer: float) -> float:
 
 
 def resampled(state: Array, count: int) -> Array:
-    """The same waves on another number of nodes, the shortest left out where they are fewer.
-
-    Parameters
-    ----------
-    state : y and phi, shape (2n,)
-    count : n, even
-
-    Returns
-    -------
-    Shape (2 count,)
-    """
+    """The same waves on another number of nodes, the shortest left out where they are fewer."""
     n = state.size // 2
     spectra = fft.rfft(state.reshape(2, n)) * (count / n)
     whole = np.zeros((2, count // 2 + 1), dtype=complex)
@@ -417,26 +356,14 @@ def resampled(state: Array, count: int) -> Array:
 
 
 def node_angles(state: Array) -> Array:
-    """Angles of the nodes in the frame of the spin, rad, shape (n,).
-
-    Parameters
-    ----------
-    state : y and phi, shape (2n,)
-    """
+    """Angles of the nodes in the frame of the spin, rad, shape (n,)."""
     return _flow(state).angle
 
 
 def seen(state: Array, at: Array) -> tuple[Array, Array]:
-    """Radius of the surface, and velocity along the wall, at given angles; a surface that does not overhang.
+    """Radius of the surface, and velocity along the wall, at given angles in the frame of the spin, rad.
 
-    Parameters
-    ----------
-    state : y and phi, shape (2n,)
-    at : angles in the frame of the spin, rad, shape (m,)
-
-    Returns
-    -------
-    r/R and the velocity over R times the unit of the spin, shape (m,) each
+    Over R, and over R times the unit of the spin, shape (m,); of a surface that does not overhang.
     """
     flow = _flow(state)
     k, inner = flow.waves.k[1:-1], np.minimum(flow.waves.k[1:-1] * flow.depth, LARGE)

@@ -43,23 +43,11 @@ _ROWS = 4096  # steps written down between two looks of Python
 class RotorLayersPDE(CirclePDE):  # type: ignore[no-untyped-call]
     """Rotor and layers at a constant spin [theory: coupling, eq. 1-5].
 
-    The state is a collection on a grid as from `circle`: "area" of each captured layer and "momentum" of each
-    as of `AnnularLongWavePDE`, then the coordinates of the rotor by their names and their rates of change,
-    uniform fields. At time 0 the drum's zero mark lies along the first direction.
-
-    Parameters
-    ----------
-    system : the dry rotor
-    fills : its chambers; liquid of a full chamber, or below its speed of capture, is a mass
-    spin : Omega, rad/s
-    friction : on the walls; the laminar law takes the frequency of the slower free wave
-    gravity : across the axis, against the first direction, m/s^2
-    dispersion : add the finite depth's dispersion [theory: long_wave, eq. 12]
-    layers : which chambers hold a layer, shape (l,); None takes those whose liquid rides with the drum
-
-    Raises
-    ------
-    InputError : a negative gravity
+    The state is a collection on a `circle`: "area" and "momentum" of each layer as of `AnnularLongWavePDE`,
+    then the coordinates of the rotor by their names and their rates, uniform fields. At time 0 the drum's
+    zero mark lies along the first direction; gravity, m/s^2, acts across the axis, against it. Liquid of a
+    full chamber, or where no annular layer exists, is a mass; `layers` says which chambers hold a layer,
+    None: those whose liquid rides with the drum. The laminar law takes the frequency of the slower free wave.
     """
 
     def __init__(
@@ -82,12 +70,7 @@ class RotorLayersPDE(CirclePDE):  # type: ignore[no-untyped-call]
         self._still: dict[int, Coupled] = {}  # by the number of cells: what does not change with the state
 
     def machine(self, cells: int) -> Coupled:
-        """The same for the compiled steps, at rest, with its layers as they are caught at this spin.
-
-        Parameters
-        ----------
-        cells : round each wall
-        """
+        """Machine of the compiled steps at rest, with the annular layers of this spin."""
         given = (self.system, self.fills, self.spin, self.friction, self.gravity, cells, self.dispersion)
         found = couple(*given)
         if hasattr(self, "layers") and not np.array_equal(found.active, self.layers):
@@ -103,13 +86,9 @@ class RotorLayersPDE(CirclePDE):  # type: ignore[no-untyped-call]
         area: Array | None = None,
         momentum: Array | None = None,
     ) -> Any:
-        """State of so many cells; n coordinates, l captured layers.
+        """State of 8 or more cells round each wall, at rest and uniform where nothing is given.
 
-        Parameters
-        ----------
-        cells : round each wall, 8 or more
-        coordinates, rate : of the rotor, shape (n,); at rest if None
-        area, momentum : A, m^2, and q, m^4/s, shape (l, cells); uniform and at rest in the drum if None
+        Coordinates and rates of the rotor have shape (n,), areas A, m^2, and momenta q, m^4/s, (l, cells).
         """
         rest, n = self.machine(cells), len(self.system.coordinates)
         square = np.square(rest.machine.layers.radius)[:, None]
@@ -136,12 +115,7 @@ class RotorLayersPDE(CirclePDE):  # type: ignore[no-untyped-call]
         return FieldCollection(fields)
 
     def parts(self, state: Any) -> tuple[Array, Array, Array, Array]:
-        """Area and momentum of the layers, shape (l, c), coordinates and rates, shape (n,).
-
-        Raises
-        ------
-        InputError : other fields
-        """
+        """Area and momentum of the layers, shape (l, c), coordinates and rates, shape (n,)."""
         n, count = len(self.system.coordinates), int(self.layers.sum())
         if not isinstance(state, FieldCollection) or len(state) != 2 * (n + count):
             allowed = f"{2 * count} fields of the layers and {2 * n} of the rotor, as from `start`"
@@ -154,15 +128,6 @@ class RotorLayersPDE(CirclePDE):  # type: ignore[no-untyped-call]
 
         The force of a layer depends on the acceleration of its chamber: it is found by rounds of a linear
         equation with the inertia of the flow [theory: coupling, eq. 4].
-
-        Parameters
-        ----------
-        state : as from `start`
-        t : time, s
-
-        Returns
-        -------
-        Rates of all fields
         """
         area, _, place, rate = self.parts(state)
         machine, layers = self._resting(state), self._moving(state, t)
@@ -220,7 +185,7 @@ class RotorLayersPDE(CirclePDE):  # type: ignore[no-untyped-call]
 
     @property
     def sizes(self) -> tuple[float, ...]:
-        """Of each field, for tolerances: layers at rest, their least depth, that times the spin."""
+        """Size of each field, for tolerances: layers at rest, their least depth, that times the spin."""
         fills, n = [self.fills[j] for j in np.flatnonzero(self.layers).tolist()], len(self.system.coordinates)
         areas = [0.5 * (fill.chamber.radius**2 - fill.surface_radius**2) for fill in fills]
         depth = min((fill.depth for fill in fills), default=1.0)
@@ -228,22 +193,13 @@ class RotorLayersPDE(CirclePDE):  # type: ignore[no-untyped-call]
         return *areas, *(self.spin * area**2 for area in areas), *moving
 
     def row(self, state: Any, t: float) -> Array:
-        """A moment as the compiled steps write it down: see `solvers.runup.state.State.trace`.
-
-        Parameters
-        ----------
-        state, t : the moment; its time, s
-
-        Returns
-        -------
-        Shape (2 + n + 2 l,)
-        """
+        """A moment as a row of `solvers.runup.state.State.trace`, shape (2 + n + 2 l,)."""
         moments = [layer.moment for layer in self._moving(state, t)]
         parts = [part for moment in moments for part in (moment.real, moment.imag)]
         return np.array([t, self.spin * t, *self.parts(state)[2], *parts])
 
     def deflection(self, state: Any) -> Complex:
-        """Of each chamber's axis in the standing frame, m, complex, shape (l,)."""
+        """Deflection of each chamber's axis in the standing frame, m, complex, shape (l,)."""
         place = self.parts(state)[2]
         return np.array([complex(*(self.system.at(fill.chamber.plane) @ place)) for fill in self.fills])
 
@@ -281,7 +237,7 @@ class _Layer:
         return np.asarray(0.5 * (faces + np.roll(faces, -1)))
 
     def _flow_inertia(self) -> Array:
-        """Of the flow under a body force, standing frame, kg, shape (2, 2) [theory: coupling, eq. 4]."""
+        """Inertia of the flow under a body force, standing frame, kg, (2, 2) [theory: coupling, eq. 4]."""
         step = 2.0 * math.pi / self.a.size
         seen = self.across * self.turn
         parts = np.stack([seen.real, seen.imag])
@@ -348,20 +304,9 @@ class _Layer:
 class CoupledSolver(SolverBase):  # type: ignore[no-untyped-call]
     """The compiled coupled steps of the run-up, by the name "coupled" [theory: coupling, eq. 5].
 
-    Steps by the Courant number, cut to land on the times of trackers. Hooks after each step are not called.
-    `info["followed"]` holds what every step of the last stretch has left, for trackers: see
+    Steps by the Courant number (at most 0.9), cut to land on the times of trackers; hooks after each step are
+    not called. With `follow`, `info["followed"]` holds what every step of the last stretch has left: see
     `solvers.runup.state.State.trace`.
-
-    Parameters
-    ----------
-    pde : the equation
-    backend : numpy, whatever is asked
-    courant : Courant number, above 0, at most 0.9
-    follow : write every step down
-
-    Raises
-    ------
-    InputError : an equation that is no `RotorLayersPDE`, another Courant number
     """
 
     name = "coupled"
@@ -383,17 +328,7 @@ class CoupledSolver(SolverBase):  # type: ignore[no-untyped-call]
         self.equation, self.courant, self.follow = pde, courant, follow
 
     def make_stepper(self, state: Any, dt: float | None = None) -> Any:
-        """Function that advances a state from one time to another.
-
-        Parameters
-        ----------
-        state : an example
-        dt : None; the Courant number sets the steps
-
-        Raises
-        ------
-        InputError : other fields, a `dt`
-        """
+        """Function that advances a state over a time; `dt` must be None (steps by the Courant number)."""
         if dt is not None:
             raise InputError("dt", dt, "left out: `courant` sets the steps")
         self.equation.parts(state)
@@ -461,23 +396,7 @@ def run(
     trackers: Sequence[Any],
     **options: Any,
 ) -> tuple[Any, Outcome]:
-    """Solve as py-pde does; steps that fail are an outcome.
-
-    Parameters
-    ----------
-    equation, state : what is solved, and where it begins
-    stretch : of time, s
-    trackers : of py-pde
-    options : of the solver
-
-    Returns
-    -------
-    The state reached, and how it ended
-
-    Raises
-    ------
-    KeyboardInterrupt : broken off
-    """
+    """Solve as py-pde does over a stretch of time; steps that fail are an outcome, Ctrl-C is let through."""
     try:
         state = equation.solve(state, stretch, tracker=list(trackers), **options)
     except RuntimeError:  # py-pde's solvers have no other
@@ -487,24 +406,13 @@ def run(
 
 
 class TurnTracker(TrackerBase):  # type: ignore[no-untyped-call]
-    """Hands on what the steps of each turn have left, until that is enough.
+    """Tracker that hands the steps of each turn to `enough`, until that is true.
 
-    It is called several times a turn. The solver "coupled" with `follow` tells every step; of other solvers
-    the moments are taken at which it is called.
-
-    Parameters
-    ----------
-    equation : what is solved
-    turn : time of a turn, s
-    enough : called with the steps of a turn, rows of `solvers.runup.state.State.trace`, with the layers at
-        its marks, areas A, m^2, shape (marks, l, c), and with the state at its end, which it may change;
-        tells whether the run may end
-    marks : how often a turn the layers are looked at
-
-    Attributes
-    ----------
-    balances : works and heats of each turn, as `solvers.runup.state.WORKS`, and last what the energy of
-        rotor and liquid has gained, J; none where the solver does not tell them
+    `enough` takes the steps of a turn (rows of `solvers.runup.state.State.trace`), the layers at its `marks`
+    (areas A, m^2, shape (marks, l, c)) and the state at its end, which it may change. The solver "coupled"
+    with `follow` gives every step, others the moments at which this is called. `balances` are works and heats
+    of each turn as `solvers.runup.state.WORKS`, and last the energy that rotor and liquid gain, J; empty
+    where the solver does not give them.
     """
 
     def __init__(
@@ -522,12 +430,12 @@ class TurnTracker(TrackerBase):  # type: ignore[no-untyped-call]
         self._balance: Array | float = 0.0
 
     def initialize(self, field: Any, info: dict[str, Any] | None = None) -> float:
-        """Keep a hand on what the solver tells."""
+        """Keep the solver's `info`."""
         self.info: dict[str, Any] = {} if info is None else info
         return super().initialize(field, info)
 
     def handle(self, field: Any, t: float) -> None:
-        """Take what has come since the last time."""
+        """Take the steps since the last call."""
         told = self.info["solver"]
         steps = told["followed"] if "followed" in told else self.equation.row(field, t)[None, :]
         if steps is None or t == 0.0:

@@ -39,10 +39,6 @@ class FamilyLaw:
         """Share of the exact offset, and slope of the offset over that of the exact one.
 
         Beyond reach both are the last share.
-
-        Parameters
-        ----------
-        deflection : in mean depths, shape (n,)
         """
         within = np.minimum(deflection, self.reach)
         share = self.share(within)
@@ -60,7 +56,7 @@ class FamilyLaw:
 
     @property
     def steepest(self) -> float:
-        """No smaller than any slope that `shares` has."""
+        """Upper bound of the slopes that `shares` has."""
         fine = np.linspace(0.0, self.reach, 20 * STEPS)
         # Between two of these points the slope of a spline is off by less than a part of its steps.
         return 1.02 * float(max(self.shares(fine)[1].max(), 1.0))
@@ -68,20 +64,9 @@ class FamilyLaw:
 
 @lru_cache(maxsize=4096)
 def family_law(surface: float, dispersion: bool) -> FamilyLaw:
-    """The law of a layer.
+    """Law of a layer by the radius of its mean surface over the wall's.
 
-    Parameters
-    ----------
-    surface : radius of the mean surface over that of the wall
-    dispersion : the exact one in place of KdV's
-
-    Returns
-    -------
-    FamilyLaw of the family whose resonance is nearer, the retrograde one
-
-    Raises
-    ------
-    InputError : no layer
+    Of the retrograde family, whose resonance is nearer.
     """
     c = kdv.coefficients(1.0, surface, 1.0, -1)
     depth, whole = 1.0 - surface, surface**2 / (2.0 * c.mean_area)
@@ -124,14 +109,7 @@ class Standing:
 
 
 def standing(fills: Fills, deflection: Array, dispersion: bool) -> Standing:
-    """The waves of some layers, each law solved once.
-
-    Parameters
-    ----------
-    fills : shape (n,)
-    deflection : of the chambers' axes, m, shape (n,)
-    dispersion : the exact one in place of KdV's
-    """
+    """Waves of some layers, each law solved once; deflections of the chambers' axes, m, shape (n,)."""
     radius, depth = fills.chamber.radius, fills.depth
     surface = 1.0 - depth / radius
     waves = (fills.volume > 0.0) & (fills.volume < FULL * fills.chamber.capacity) & (surface > 0.0)

@@ -14,19 +14,9 @@ from meshes.errors import InputError
 
 
 def circle(points: int) -> CartesianGrid:
-    """The grid the waves live on: evenly spaced cells all round the drum.
+    """Periodic grid of the waves: at least 8 even cells all round the drum, theta at their centres.
 
-    Parameters
-    ----------
-    points : number of cells, 8 or more; an even number with small factors is fastest
-
-    Returns
-    -------
-    Periodic py-pde grid over 0 ... 2 pi; the coordinate is theta at the cells' centres
-
-    Raises
-    ------
-    InputError : fewer than 8 points
+    An even number with small factors is fastest.
     """
     if points < 8:
         raise InputError("points", points, "8 or more")
@@ -44,20 +34,7 @@ class CirclePDE(PDEBase):  # type: ignore[no-untyped-call]
         tracker: Any = "auto",
         **options: Any,
     ) -> Any:
-        """Solve as py-pde does, but let a Ctrl-C through, of which py-pde makes an early end.
-
-        Parameters
-        ----------
-        state, t_range, dt, tracker, options : as for `pde.PDEBase.solve`
-
-        Returns
-        -------
-        The final state
-
-        Raises
-        ------
-        KeyboardInterrupt : the run was broken off; `diagnostics` has the state it had come to
-        """
+        """Solve as py-pde does, but let a Ctrl-C through, of which py-pde makes an early end."""
         with warnings.catch_warnings():
             warnings.filterwarnings(
                 "ignore", "`ExplicitSolver` is deprecated"
@@ -71,16 +48,7 @@ class CirclePDE(PDEBase):  # type: ignore[no-untyped-call]
     def determine_backend(
         self, state: Any, backend: str | BackendBase[Any] = "auto", *, use_mpi: bool = False
     ) -> BackendBase[Any]:
-        """The backend for a solver: numpy unless another is asked for, so that nothing is compiled.
-
-        Parameters
-        ----------
-        state, backend, use_mpi : as py-pde passes them
-
-        Returns
-        -------
-        The backend
-        """
+        """The backend for a solver: numpy unless another is asked for, so that nothing is compiled."""
         return super().determine_backend(state, "numpy" if backend == "auto" else backend, use_mpi=use_mpi)
 
 

@@ -36,18 +36,10 @@ _LOST = "the surface came to the axis, or a film outran the steps,"
 class AnnularLongWavePDE(CirclePDE):  # type: ignore[no-untyped-call]
     """Nonlinear long waves on the wall of a whirling drum [theory: long_wave, eq. 1 and 4].
 
-    The state is a collection of two scalar fields on a grid as from `solvers.pypde.grid.circle`, in the
-    drum frame: "area", the liquid area per radian A in m^2, and "momentum", the relative angular momentum
-    q = R u A - Omega A^2 in m^4/s. In SI units both are small numbers: tolerances of py-pde's and scipy's
-    steppers, which are absolute, want to be of some 1e-6 of them.
-
-    Parameters
-    ----------
-    fill, whirl, friction, dispersion, spin_rate : as in `solvers.pypde.terms.LongWaveTerms`
-
-    Raises
-    ------
-    InputError : a rate that is not finite
+    The state is a collection of two scalar fields on a `circle` in the drum frame: "area", the liquid area
+    per radian A, m^2, and "momentum", the relative angular momentum q = R u A - Omega A^2, m^4/s. Both are
+    small numbers: absolute tolerances of py-pde's and scipy's steppers should be some 1e-6 of them.
+    Parameters as of `solvers.pypde.terms.LongWaveTerms`.
     """
 
     def __init__(
@@ -66,22 +58,10 @@ class AnnularLongWavePDE(CirclePDE):  # type: ignore[no-untyped-call]
     def start(
         self, grid: GridBase, depth: ArrayLike | None = None, velocity: ArrayLike = 0.0, time: float = 0.0
     ) -> Any:
-        """State from depth and velocity.
+        """State from depth R - r_s, m, and velocity along the wall, relative to the drum, m/s.
 
-        Parameters
-        ----------
-        grid : as from `circle`, n cells
-        depth : R - r_s of each cell, m, shape (n,) or one number; None: the fill, uniform
-        velocity : u along the wall, relative to the drum, m/s, shape (n,) or one number
-        time : at which the drum has the spin that the momentum is relative to, s
-
-        Returns
-        -------
-        Collection of "area" and "momentum"
-
-        Raises
-        ------
-        InputError : another grid, a depth below 0 or to the axis, a velocity that is not finite
+        Each of shape (n,) or one number; depth None: the fill, uniform. The momentum is relative to the
+        drum's spin at `time`.
         """
         n, fill = _cells(grid), self.terms.fill
         h = np.broadcast_to(np.asarray(fill.depth if depth is None else depth, dtype=float), (n,))
@@ -124,18 +104,7 @@ class AnnularLongWavePDE(CirclePDE):  # type: ignore[no-untyped-call]
         return terms.loads_at(self.terms, *_parts(state), t)
 
     def means(self, loads: Array, length: float, places: tuple[terms.Place, terms.Place]) -> Complex:
-        """Means over a time of loads added up.
-
-        Parameters
-        ----------
-        loads : integrals over the time, as `loads` has them at one moment
-        length : of the time, s
-        places : as from `place` at its ends
-
-        Returns
-        -------
-        As from `solvers.pypde.terms.load_means`, shape (6,)
-        """
+        """Means over a time of loads added up, as from `solvers.pypde.terms.load_means`, shape (6,)."""
         return terms.load_means(self.terms, loads, length, places)
 
     def fastest(self, grid: GridBase) -> float:
@@ -164,39 +133,17 @@ class AnnularLongWavePDE(CirclePDE):  # type: ignore[no-untyped-call]
         return terms.angular_momentum(self.terms, *_parts(state), t)
 
     def evolution_rate(self, state: Any, t: float = 0.0) -> Any:
-        """Right-hand side of the equation, for py-pde's own solvers.
+        """Right-hand side of the equation, for py-pde's own solvers; nan where the surface is at the axis.
 
         Wall friction is a source in it, stiff in thin films for all laws but the linear one. Their steps must
         resolve the waves, dt < dtheta/|lambda| [theory: long_wave, eq. 3], and beside a dry patch may leave
         cells a little below zero, which count as dry.
-
-        Parameters
-        ----------
-        state : collection of "area" and "momentum"
-        t : time, s
-
-        Returns
-        -------
-        Collection of dA/dt, m^2/s, and dq/dt, m^4/s^2; nan where the surface has come to the axis
-
-        Raises
-        ------
-        InputError : other fields, another grid
         """
         area, momentum = _parts(state)
         return _collection(state.grid, *terms.layer_rates(self.terms, area, momentum, t))
 
     def make_post_step_hook(self, state: Any, backend: str | BackendBase[Any] = "numpy") -> tuple[Any, Any]:
-        """Check after each step of py-pde's own solvers that there is a layer still.
-
-        Parameters
-        ----------
-        state, backend : as py-pde passes them
-
-        Returns
-        -------
-        Function that raises ConvergenceError where there is none; no data for it
-        """
+        """Check after each step of py-pde's own solvers that there is a layer still."""
 
         # By these names: some of py-pde's solvers pass them as keywords.
         def check(state_data: Any, t: float, post_step_data: Any) -> tuple[Any, Any]:
@@ -219,14 +166,6 @@ class AnnularLongWavePDE(CirclePDE):  # type: ignore[no-untyped-call]
         """Solve as py-pde does, by the solver "finite_volume" unless another is named.
 
         py-pde's own default is left aside since its tolerance, 1e-4 m^2, is no smaller than a thin layer.
-
-        Parameters
-        ----------
-        state, t_range, dt, tracker, solver, options : as for `pde.PDEBase.solve`
-
-        Returns
-        -------
-        The final state
         """
         return super().solve(state, t_range, dt, tracker, solver=solver, **options)
 
@@ -234,20 +173,10 @@ class AnnularLongWavePDE(CirclePDE):  # type: ignore[no-untyped-call]
 class FiniteVolumeSolver(SolverBase):  # type: ignore[no-untyped-call]
     """The compiled finite volumes with their own time steps, by the name "finite_volume".
 
-    Heun's method with steps by the Courant number, cut to land on the times of trackers; friction in exact
-    half steps; no cell falls below zero, no liquid is lost [theory: long_wave, eq. 11]. The spin must be
-    constant. Hooks after each step are not called. Its `info` has the integrals of the loads over the time
-    covered, as "loads": see `solvers.pypde.terms.loads_at`.
-
-    Parameters
-    ----------
-    pde : the equation
-    backend : numpy, whatever is asked
-    courant : Courant number, above 0, at most 0.9
-
-    Raises
-    ------
-    InputError : an equation that is no `AnnularLongWavePDE`, a spin that changes, another Courant number
+    Heun's method with steps by the Courant number (at most 0.9), cut to land on the times of trackers;
+    friction in exact half steps; no cell falls below zero, no liquid is lost [theory: long_wave, eq. 11]. The
+    spin must be constant; hooks after each step are not called. `info["loads"]` has the integrals of the
+    loads over the time covered: see `solvers.pypde.terms.loads_at`.
     """
 
     name = "finite_volume"
@@ -269,21 +198,7 @@ class FiniteVolumeSolver(SolverBase):  # type: ignore[no-untyped-call]
         self.terms, self.courant = pde.terms, courant
 
     def make_stepper(self, state: Any, dt: float | None = None) -> Any:
-        """Function that advances a state from one time to another.
-
-        Parameters
-        ----------
-        state : an example
-        dt : None; the Courant number sets the steps
-
-        Returns
-        -------
-        Function of state, start and end; returns the end
-
-        Raises
-        ------
-        InputError : other fields, another grid, a `dt`
-        """
+        """Function that advances a state over a time; `dt` must be None (steps by the Courant number)."""
         if dt is not None:
             raise InputError("dt", dt, "left out: `courant` sets the steps")
         _parts(state)

@@ -89,11 +89,7 @@ class LongWave(WaveModel):
 
         Under gravity across the axis and with baffles it is the gap between the forces by momentum and by
         pressure. A whirl larger than smooth waves follow is answered on half as many cells as well: its error
-        is the difference, of a wave that steepens until the cells hold it.
-
-        Raises
-        ------
-        InputError : no liquid, no free surface, a solver that cannot solve it
+        is the difference.
         """
         from solvers.pypde.settle import settle
 
@@ -118,12 +114,8 @@ class LongWave(WaveModel):
     ) -> LiquidWave:
         """The wave as a history leaves it, with the last means as its answer.
 
-        Parameters
-        ----------
-        fill, whirl : chamber and liquid, and its whirl
-        history : from `solvers.pypde.settle`
-        steady : it was followed until it no longer changed, so that it counts where smooth waves end
-        grid_gap : difference of the force on half as many cells, over the larger of it and 1; nan: not asked
+        `steady`: it was followed until it no longer changed, so that it counts where smooth waves end;
+        `grid_gap` is the difference of the force on half as many cells, over the larger of it and 1.
         """
         chamber, answered = fill.chamber, history.force_ratio.size > 0
         none = complex(math.nan, math.nan)
@@ -165,7 +157,7 @@ class LongWave(WaveModel):
         )
 
     def _error(self, fill: Fill, whirl: Whirl) -> float:
-        """Of a smooth wave without friction; nan where there is none."""
+        """Error of a smooth wave without friction; nan where there is none."""
         layer, size = fill.depth / fill.chamber.radius, whirl.amplitude / fill.depth
         numerics = self.numerics
         return float(long_wave_error(layer, whirl.detuning, size, numerics.dispersion, numerics.cells))
@@ -251,12 +243,7 @@ class OneFamily(WaveModel):
         return standing(fills, deflection, self.dispersion)
 
     def wave(self, fill: Fill, whirl: Whirl) -> LiquidWave:
-        """See `WaveModel`; the error is that beside exact waves [theory: model_error, eq. 36].
-
-        Raises
-        ------
-        InputError : gravity across the axis, no free surface
-        """
+        """See `WaveModel`; the error is that beside exact waves [theory: model_error, eq. 36]."""
         chamber, surface = fill.chamber, fill.surface_radius
         if whirl.gravity != 0.0:
             raise InputError("gravity", whirl.gravity, "0 for one family of waves")

@@ -43,31 +43,14 @@ class SplitPDE(CirclePDE):  # type: ignore[no-untyped-call]
 
     @abstractmethod
     def split(self, grid: GridBase) -> Split:
-        """The equation as exponential steppers take it.
-
-        Parameters
-        ----------
-        grid : of the field
-
-        Returns
-        -------
-        Linear symbol of each mode, and the rest
-        """
+        """The equation as exponential steppers take it: linear symbol of each mode, and the rest."""
 
 
 class KdvBurgersPDE(SplitPDE):  # type: ignore[no-untyped-call]
     """Weakly nonlinear waves of one family, forced by a whirl and damped [theory: kdv, eq. 1].
 
-    The field is eta, the liquid area per radian above its mean, m^2.
-
-    Parameters
-    ----------
-    c : speed, steepening, dispersion of the family
-    whitham, viscosity, damping, forcing, whirl_speed, ramp : as in `solvers.waves.modes.WaveTerms`
-
-    Raises
-    ------
-    InputError : a value that is not finite, a negative viscosity or damping
+    The field is eta, the liquid area per radian above its mean, m^2. Parameters as of
+    `solvers.waves.modes.WaveTerms`.
     """
 
     def __init__(
@@ -87,20 +70,7 @@ class KdvBurgersPDE(SplitPDE):  # type: ignore[no-untyped-call]
         self.explicit_time_dependence = self.terms.forcing != 0.0 and self.terms.whirl_speed != 0.0
 
     def split(self, grid: GridBase) -> Split:
-        """The equation as exponential steppers take it.
-
-        Parameters
-        ----------
-        grid : as from `circle`
-
-        Returns
-        -------
-        As from `solvers.waves.modes.wave_split`
-
-        Raises
-        ------
-        InputError : another grid
-        """
+        """The equation as exponential steppers take it."""
         points, first = circle_points(grid)
         if self._known is None or self._known[:2] != (points, first):
             # py-pde's own solvers ask for it at each evaluation.
@@ -108,37 +78,14 @@ class KdvBurgersPDE(SplitPDE):  # type: ignore[no-untyped-call]
         return self._known[2]
 
     def evolution_rate(self, state: Any, t: float = 0.0) -> Any:
-        """Right-hand side of the equation, for py-pde's own solvers.
-
-        Parameters
-        ----------
-        state : eta on a grid as from `circle`
-        t : time, s
-
-        Returns
-        -------
-        d eta/dt, m^2/s
-
-        Raises
-        ------
-        InputError : another grid
-        """
+        """Right-hand side of the equation, for py-pde's own solvers."""
         split = self.split(state.grid)
         spectrum = to_spectrum(state.data)
         rate = split.symbol * spectrum + split.nonlinear(spectrum, t)
         return ScalarField(state.grid, np.fft.irfft(rate, n=state.data.size))
 
     def make_post_step_hook(self, state: Any, backend: str | BackendBase[Any] = "numpy") -> tuple[Any, Any]:
-        """Check after each step of py-pde's own solvers that the wave is finite still.
-
-        Parameters
-        ----------
-        state, backend : as py-pde passes them
-
-        Returns
-        -------
-        Function that raises ConvergenceError where it is not; no data for it
-        """
+        """Check after each step of py-pde's own solvers that the wave is finite still."""
 
         # By these names: some of py-pde's solvers pass them as keywords.
         def check(state_data: Any, t: float, post_step_data: Any) -> tuple[Any, Any]:
@@ -154,19 +101,12 @@ class KdvBurgersPDE(SplitPDE):  # type: ignore[no-untyped-call]
         return np.array([place.real, place.imag])
 
     def place(self, state: Any, t: float) -> complex:
-        """The same as a complex number, real along the deflection."""
+        """Offset of the centre of mass as a complex number, m, real along the deflection."""
         ahead = circle_points(state.grid)[1] - self.terms.whirl_speed * t
         return complex(kdv.offset(self.terms.c, state.data)) * cmath.exp(1j * ahead)
 
     def means(self, loads: Array, length: float, places: tuple[complex, complex]) -> Complex:
-        """Mean over a time of the offset, m, shape (1,).
-
-        Parameters
-        ----------
-        loads : integral over the time of what `loads` has at one moment
-        length : of the time, s
-        places : at its ends
-        """
+        """Mean over a time of the offset, m, shape (1,)."""
         return np.array([complex(*loads) / length])
 
     def seen(self, state: Any, t: float) -> Array:
@@ -196,20 +136,10 @@ class KdvBurgersPDE(SplitPDE):  # type: ignore[no-untyped-call]
 class ExponentialSolver(SolverBase):  # type: ignore[no-untyped-call]
     """Exponential steppers for every py-pde equation that is a `SplitPDE`, by the name "exponential".
 
-    Without `dt` the steps follow the tolerance; with it they are as long as `dt` or, to land on the times of
-    trackers, shorter. Trackers see the field at exactly their times. Hooks after each step are not called.
-
-    Parameters
-    ----------
-    pde : the equation
-    backend : numpy, whatever is asked
-    method : "etdrk4", "krogstad" or "ifrk4"
-    tolerance : error of a step over the field, both root mean squares
-    frame : angular speed of the frame in which the rest of the split is followed, rad/s; None: the equation's
-
-    Raises
-    ------
-    InputError : an equation that is no `SplitPDE`, an unknown method, a tolerance that is not positive
+    Method "etdrk4", "krogstad" or "ifrk4". Without `dt` the steps follow the tolerance, the error of a step
+    over the field, both root mean squares; with it they are as long as `dt` or, to land on the times of
+    trackers, shorter. Hooks after each step are not called. The rest of the split is followed in a frame of
+    angular speed `frame`, rad/s; None: the equation's.
     """
 
     name = "exponential"
@@ -233,21 +163,7 @@ class ExponentialSolver(SolverBase):  # type: ignore[no-untyped-call]
         self.method, self.tolerance, self.frame = method, tolerance, frame
 
     def make_stepper(self, state: Any, dt: float | None = None) -> Any:
-        """Function that advances a state from one time to another.
-
-        Parameters
-        ----------
-        state : an example
-        dt : length of the steps, s; None: adaptive
-
-        Returns
-        -------
-        Function of state, start and end; returns the end
-
-        Raises
-        ------
-        InputError : another grid than `circle` gives, a `dt` that is not positive
-        """
+        """Function that advances a state from one time to another by steps of `dt`, s; None: adaptive."""
         if dt is not None:
             require_positive("dt", dt)
         split = self.equation.split(state.grid)

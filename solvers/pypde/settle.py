@@ -44,23 +44,8 @@ def simulate(
 ) -> LayerHistory:
     """Layer from rest in the drum, uniform, whirl period by whirl period.
 
-    Parameters
-    ----------
-    fill : chamber and liquid, with some liquid and a free surface
-    whirl : what drives it
-    duration : s; whole periods within it are answered, at least one
-    friction : on the wall; the laminar law takes the frequency of the whirl seen from the drum
-    numerics : resolution
-    solver : its name in py-pde
-    progress : called with the share of the time that is done
-
-    Returns
-    -------
-    LayerHistory
-
-    Raises
-    ------
-    InputError : no liquid, no free surface, a value out of its range, a solver that cannot solve it
+    Whole periods within `duration`, s, are answered, at least one. The laminar law takes the frequency of the
+    whirl seen from the drum.
     """
     require_positive("duration", duration)
     equation, state = _start(fill, whirl, friction, numerics or Numerics())
@@ -79,18 +64,10 @@ def settle(
 ) -> LayerHistory:
     """Layer whose force no longer changes from one stretch of whirl periods to the next.
 
-    A synchronous whirl starts from its equilibrium. Any other starts from rest with a gentle ramp; stretches
-    of ever more periods are compared until the mean force of one differs by less than 1e-4 (without friction
-    1e-3) from the last.
-
-    Parameters
-    ----------
-    fill, whirl, friction, numerics, solver, progress : see `simulate`
-
-    Returns
-    -------
-    LayerHistory of stretches, its last row the answer; `converged` is False where it does not settle, as a
-    frictionless bore never does
+    A synchronous whirl starts from its equilibrium, any other from rest with a gentle ramp; stretches of ever
+    more periods are compared until the mean force of one differs by less than 1e-4 (without friction 1e-3)
+    from the last. The last row is the answer; `converged` is False where it does not settle, as a
+    frictionless bore never does.
     """
     synchronous = whirl.slip == 0.0 and whirl.gravity == 0.0
     if not synchronous:
@@ -121,18 +98,7 @@ def film(
     solver: str = OURS,
     progress: Progress = None,
 ) -> LayerFilm:
-    """Layer from rest in the drum, as pictures at equal intervals.
-
-    Parameters
-    ----------
-    fill, whirl, friction, numerics, solver, progress : see `simulate`
-    frames : how many pictures, at least 1
-    periods : how many whirl periods they cover
-
-    Returns
-    -------
-    LayerFilm; it ends early where the surface came to the axis
-    """
+    """Layer from rest in the drum, as pictures at equal intervals; a surface at the axis ends it early."""
     equation, state = _start(fill, whirl, friction, numerics or Numerics())
     if solver != OURS:
         require_solver(equation, solver)
@@ -161,12 +127,7 @@ def film(
 def _start(
     fill: Fill, whirl: Whirl, friction: Friction, numerics: Numerics
 ) -> tuple[AnnularLongWavePDE, Any]:
-    """The equation, and the uniform layer at rest in the drum.
-
-    Raises
-    ------
-    InputError : no liquid, no free surface
-    """
+    """The equation, and the uniform layer at rest in the drum."""
     chamber = fill.chamber
     if not 0.0 < fill.volume < chamber.capacity * (1.0 - 1e-9):
         raise InputError("volume", fill.volume, f"above 0 and below the capacity ({chamber.capacity:g} m^3)")

@@ -25,17 +25,7 @@ _SETTLED, _STIRRED = 1e-6, 1e-3
 
 
 def steady_wave(terms: WaveTerms, points: int) -> SteadyWave:
-    """The steady wave of one family that py-pde's `solve` comes back with.
-
-    Parameters
-    ----------
-    terms : what acts
-    points : of the grid
-
-    Returns
-    -------
-    SteadyWave; `converged` and `reason` tell whether it is an answer
-    """
+    """The steady wave of one family that py-pde's `solve` comes back with."""
     equation = KdvBurgersPDE(**vars(terms))
     with suppress(ConvergenceError):  # which the wave tells as well
         equation.solve(ScalarField(circle(points), 0.0), 1.0, tracker=None, solver=NEWTON)
@@ -50,24 +40,9 @@ def steady_state(
     solver: str,
     progress: Callable[[float], object] | None = None,
 ) -> tuple[Array, str]:
-    """The wave that is left of rest under a whirl that has grown gently.
+    """Wave left of rest under a whirl that has grown gently, and why it is not steady, or empty.
 
-    Parameters
-    ----------
-    terms : what acts, with the whirl's speed and forcing
-    whirl : its period, and its ramp if it has one
-    points : of the grid
-    solver : its name in py-pde
-    progress : called with the share of the longest time that is done
-
-    Returns
-    -------
-    Heights at equal steps of the angle from the deflection, m^2, shape (points,); why it has not become
-    steady, or empty
-
-    Raises
-    ------
-    InputError : a solver that cannot solve it
+    Heights at equal steps of the angle from the deflection, m^2, shape (points,).
     """
     whirl = gently(whirl)
     named = vars(replace(terms, ramp=whirl.ramp))

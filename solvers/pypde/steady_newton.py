@@ -23,18 +23,9 @@ from solvers.waves.steady import solve
 class SteadyNewtonSolver(SolverBase):  # type: ignore[no-untyped-call]
     """Steady wave in the frame of the whirl, by the name "steady_newton" [theory: kdv, eq. 18].
 
-    The state comes back as the wave that the whirl holds once all others have died, with the whirl fully
+    The state comes back as the wave that the whirl holds once all others have decayed, with the whirl fully
     grown, at the angle that it has at each stop. It is found from nothing, by continuation from a strongly
-    damped one where that is needed; its `info` has it as "wave", on as many modes as it needs.
-
-    Parameters
-    ----------
-    pde : the equation
-    backend : numpy, whatever is asked
-
-    Raises
-    ------
-    InputError : an equation that is no `KdvBurgersPDE`
+    damped one where that is needed; `info["wave"]` has it on as many modes as it needs.
     """
 
     name = "steady_newton"
@@ -47,21 +38,7 @@ class SteadyNewtonSolver(SolverBase):  # type: ignore[no-untyped-call]
         self.terms = pde.terms
 
     def make_stepper(self, state: Any, dt: float | None = None) -> Any:
-        """Function that puts the wave in place of a state.
-
-        Parameters
-        ----------
-        state : an example
-        dt : None; there are no steps
-
-        Returns
-        -------
-        Function of state, start and end; returns the end
-
-        Raises
-        ------
-        InputError : another grid than `circle` gives, a `dt`
-        """
+        """Function that puts the wave in place of a state; there are no steps, `dt` must be None."""
         if dt is not None:
             raise InputError("dt", dt, "left out: there are no steps in time")
         circle_points(state.grid)
@@ -88,14 +65,7 @@ def steady_problem(terms: WaveTerms) -> WaveProblem:
 
 
 def drawn(wave: SteadyWave, grid: GridBase, time: float) -> Array:
-    """Heights of a steady wave on a grid in the drum, m^2, shape (points,).
-
-    Parameters
-    ----------
-    wave : that stands in the frame of the whirl
-    grid : as from `solvers.pypde.grid.circle`; it may be too coarse for all modes
-    time : s
-    """
+    """Heights of a steady wave on a grid, which may be too coarse for all modes, m^2, shape (points,)."""
     points, first = circle_points(grid)
     modes = wave.modes
     turn = np.exp(1j * np.arange(1, modes.size + 1) * (first - wave.speed * time))

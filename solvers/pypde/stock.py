@@ -24,10 +24,6 @@ def names(equation: Any) -> tuple[str, ...]:
     """Names of the solvers that are registered in py-pde and can solve an equation.
 
     Those for several processes or for noise are left out, and those whose steps it cannot stand.
-
-    Parameters
-    ----------
-    equation : a `solvers.pypde.grid.CirclePDE` with `steps`
     """
     return tuple(
         name
@@ -63,16 +59,7 @@ def is_ours(name: str) -> bool:
 def stepping(equation: Any, grid: GridBase, name: str, interval: float) -> dict[str, Any]:
     """What `solve` is given with the name of a solver, for steps that it is stable and right with.
 
-    Parameters
-    ----------
-    equation : with `fastest`, `steps` and `sizes`
-    grid : of the state
-    name : of a solver that can solve it
-    interval : between stops, which a whole number of steps fills, s
-
-    Returns
-    -------
-    `dt` and options of the solver; nothing for those that choose their steps by themselves
+    A whole number of steps fills the interval between stops; nothing for solvers that choose their steps.
     """
     if name == "exponential":
         return {"dt": interval}  # an error relative to a wave that begins with none would be of no use

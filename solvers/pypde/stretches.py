@@ -53,7 +53,7 @@ class Stretches:
         return np.asarray(self.start + self.period * np.cumsum((0, *self.periods)))
 
     def stops(self, samples: int) -> Array:
-        """The same with stops between them, so many in each whirl period, s."""
+        """`ends` with stops between them, so many in each whirl period, s."""
         ends = self.ends
         counts = [n * samples + 1 for n in self.periods]
         parts = [np.linspace(*span)[1:] for span in zip(ends, ends[1:], counts, strict=False)]
@@ -69,12 +69,7 @@ def gently(whirl: Whirl) -> Whirl:
 def settling(whirl: Whirl, synchronous: bool) -> Stretches:
     """Stretches of ever more whirl periods, until a layer has had time enough to settle.
 
-    The first one begins when the whirl has grown.
-
-    Parameters
-    ----------
-    whirl : with its ramp
-    synchronous : the layer starts from its equilibrium
+    The first one begins when the whirl has grown; a synchronous layer starts from its equilibrium.
     """
     count = 2 if synchronous else max(1, round(100.0 / (whirl.period * whirl.spin)))
     grown = 0 if synchronous else int(np.ceil(whirl.ramp / whirl.period))
@@ -87,17 +82,11 @@ def settling(whirl: Whirl, synchronous: bool) -> Stretches:
 
 
 class StretchMeans(TrackerBase):  # type: ignore[no-untyped-call]
-    """Means over stretches of time, and an end to the run where two neighbours agree.
+    """Tracker of means over stretches of time, which ends the run where two neighbours agree.
 
-    Loads come from the solver, if its `info` adds them up as "loads"; else they are taken at each stop
-    and joined by straight lines.
-
-    Parameters
-    ----------
-    equation : what is solved
-    stretches : over which
-    samples : stops in each whirl period, for solvers that do not add loads up; 0 for those that do
-    settled : relative difference of the first mean of two stretches at which the run ends; None: at its end
+    They agree where their first means differ by less than `settled`, relative; None: never. Loads come from
+    the solver, if its `info` adds them up as "loads" (`samples` 0); else they are taken at `samples` stops in
+    each whirl period and joined by straight lines.
     """
 
     name = "stretch_means"
@@ -123,12 +112,7 @@ class StretchMeans(TrackerBase):  # type: ignore[no-untyped-call]
         return float(super().initialize(field, info))
 
     def handle(self, field: Any, t: float) -> None:
-        """See `pde.TrackerBase`.
-
-        Raises
-        ------
-        FinishedSimulation : the means no longer change
-        """
+        """See `pde.TrackerBase`; raises `FinishedSimulation` where the means no longer change."""
         loads = self._taken(field, t) if self.samples else self._solver["loads"]
         if t < self._ends[len(self.rows) + (self.last is not None)] - self._early:
             return
@@ -167,17 +151,7 @@ def run(
 ) -> str:
     """Solve an equation over stretches of time, to their end or until the means stay the same.
 
-    Parameters
-    ----------
-    equation : a `CirclePDE` that is `Measured`
-    state : at time 0
-    means : what is measured on the way; it has the state that was reached
-    solver, options : by its name in py-pde, and what `solve` is given for it
-    progress : called with the share of the time that is done
-
-    Returns
-    -------
-    Why the run went no further, or empty
+    The means have the state that was reached; returned is why the run went no further, or empty.
     """
     stop = float(means.stretches.ends[-1])
     trackers: list[Any] = [means]

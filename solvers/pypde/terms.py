@@ -36,12 +36,7 @@ from solvers.slices import compiled
 
 @dataclass(frozen=True)
 class LongWaveTerms:
-    """What acts on a layer [theory: long_wave, eq. 4].
-
-    Raises
-    ------
-    InputError : a rate that is not finite
-    """
+    """What acts on a layer [theory: long_wave, eq. 4]."""
 
     fill: Fill  #: chamber and liquid; the volume is that of the uniform layer
     whirl: Whirl  #: of the drum's axis, at a constant speed in space, and gravity; its spin is that at time 0
@@ -74,12 +69,7 @@ class LongWaveTerms:
         return Wall(law, coefficient, drag.lid, self.dispersion, drag.plates, drag.thin, drag.top, drag.table)
 
     def spin(self, time: float) -> float:
-        """Omega at a time, rad/s.
-
-        Raises
-        ------
-        InputError : a time at which the drum does not spin forward
-        """
+        """Omega at a time, rad/s; refused where the drum does not spin forward."""
         spin = self.whirl.spin + self.spin_rate * time
         if spin <= 0.0:
             raise InputError("time", time, "one at which the drum spins forward")
@@ -96,14 +86,7 @@ def _wall_drag(friction: Friction, fill: Fill, slip: float, spin: float) -> Wall
 def body_force(terms: LongWaveTerms, time: float) -> complex:
     """Minus the acceleration of the drum's axis, and gravity [theory: long_wave, eq. 8].
 
-    Parameters
-    ----------
-    terms : the whirl
-    time : s
-
-    Returns
-    -------
-    f in the drum frame, m/s^2, real along theta = 0
+    In the drum frame, m/s^2, real along theta = 0.
     """
     whirl = terms.whirl
     # The drum has turned by the time and the mean spin so far.
@@ -114,21 +97,11 @@ def body_force(terms: LongWaveTerms, time: float) -> complex:
 
 
 def layer_rates(terms: LongWaveTerms, area: Array, momentum: Array, time: float) -> tuple[Array, Array]:
-    """Rates of change of a layer [theory: long_wave, eq. 1 and 4], discretised as in eq. 11 there.
+    """Rates of change of a layer, m^2/s and m^4/s^2 [theory: long_wave, eq. 1 and 4].
 
-    A cell below zero, where a time step has taken more than there was, counts as dry. Where the surface has
-    come to the axis there are no rates: all are nan, which steppers that adapt their steps take as too long a
-    step.
-
-    Parameters
-    ----------
-    terms : what acts
-    area, momentum : A and q, shape (n,)
-    time : s
-
-    Returns
-    -------
-    dA/dt, m^2/s, and dq/dt, m^4/s^2, shape (n,)
+    Discretised as in eq. 11 there. A cell below zero, where a time step has taken more than there was, counts
+    as dry. Where the surface has come to the axis all rates are nan, which adaptive steppers take as too long
+    a step.
     """
     radius, n, spin = terms.fill.chamber.radius, area.size, terms.spin(time)
     a, q = scaled(terms, area, momentum)
@@ -147,17 +120,7 @@ def layer_rates(terms: LongWaveTerms, area: Array, momentum: Array, time: float)
 class Marcher:
     """Heun steps on one ring in which no cell falls below zero, at a constant spin.
 
-    Parameters
-    ----------
-    terms : what acts; `spin_rate` must be 0
-    cells : of the ring
-    courant : Courant number
-    loads : a record LOADS of `solvers.layer.records`, shape (1,), that the integrals are added to; lengths
-        over R, times in s
-
-    Raises
-    ------
-    InputError : a spin that changes
+    They add loads to a record LOADS of `solvers.layer.records`, shape (1,); lengths over R, times in s.
     """
 
     def __init__(self, terms: LongWaveTerms, cells: int, courant: float, loads: Record | None = None) -> None:
@@ -180,20 +143,9 @@ class Marcher:
         self._told = np.zeros((2, cells))
 
     def march(self, state: Array, start: float, stop: float) -> tuple[Outcome, int]:
-        """Advance a layer; one that is as the last call left it goes on without a rounding.
+        """Advance a layer, A and q, shape (2, n), in place unless the steps fail; how it ended, steps.
 
-        Parameters
-        ----------
-        state : A and q, shape (2, n), changed in place unless the steps fail
-        start, stop : times, s
-
-        Returns
-        -------
-        How it ended, and the number of steps, at most `solvers.slices.step_budget`
-
-        Raises
-        ------
-        InputError : a time before 0, a cell below zero or full
+        One that is as the last call left it goes on without a rounding.
         """
         if self._kept is None or not (self._told == state).all():
             require_layer(self.terms, state[0], state[1])
@@ -213,18 +165,7 @@ class Marcher:
 
 
 def loads_at(terms: LongWaveTerms, area: Array, momentum: Array, time: float) -> Array:
-    """What a `Marcher` adds up over time, at one moment.
-
-    Parameters
-    ----------
-    terms : what acts
-    area, momentum : A and q, shape (n,)
-    time : s
-
-    Returns
-    -------
-    The fields of a record LOADS of `solvers.layer.records`; lengths over R, times in s
-    """
+    """Fields of a record LOADS at one moment, as a `Marcher` adds them up; lengths over R, times in s."""
     a, q = scaled(terms, area, momentum)
     n, slip, found = a.size, terms.whirl.slip, records(LOADS)
     turn = cmath.exp(1j * slip * time)
@@ -238,31 +179,14 @@ def loads_at(terms: LongWaveTerms, area: Array, momentum: Array, time: float) ->
 
 
 class Place(NamedTuple):
-    """Where the liquid is and how it moves, in the frame of the deflection, real along it.
-
-    Parameters
-    ----------
-    offset : of the centre of mass from the drum's axis, m
-    rate : of change of the offset, m/s
-    """
+    """Offset of the centre of mass from the drum's axis, m, and its rate, m/s, real along the deflection."""
 
     offset: complex
     rate: complex
 
 
 def place_at(terms: LongWaveTerms, area: Array, momentum: Array, time: float) -> Place:
-    """Offset of the centre of mass and its rate of change, as the finite volumes move the liquid.
-
-    Parameters
-    ----------
-    terms : what acts
-    area, momentum : A and q, shape (n,)
-    time : s
-
-    Returns
-    -------
-    Place; nan where there is no layer
-    """
+    """Offset of the centre of mass and its rate, as the finite volumes move it; nan without a layer."""
     slip, radius = terms.whirl.slip, terms.fill.chamber.radius
     turn = cmath.exp(-1j * slip * time)
     offset = offset_of(area, radius) * turn
@@ -274,19 +198,11 @@ def place_at(terms: LongWaveTerms, area: Array, momentum: Array, time: float) ->
 
 
 def load_means(terms: LongWaveTerms, loads: Array, length: float, ends: tuple[Place, Place]) -> Complex:
-    """Means over a time of what a `Marcher` has added up [theory: long_wave, eq. 7].
+    """Means over a time of what a `Marcher` has added up, shape (6,) [theory: long_wave, eq. 7].
 
-    Parameters
-    ----------
-    terms : the whirl
-    loads : integrals of what `loads_at` has
-    length : of the time, s
-    ends : the liquid at the beginning and at the end, as from `place_at`
-
-    Returns
-    -------
     Force over that of a full drum by the liquid's momentum, offset, m, turning, rad/s, least and largest
-    depth, m, force by the pressure on the wall as the first; shape (6,); without deflection no force
+    depth, m, force by the pressure on the wall as the first; without deflection no force. `ends` are the
+    `place_at` of both ends.
     """
     whirl, radius = terms.whirl, terms.fill.chamber.radius
     mass = terms.fill.volume / (terms.fill.chamber.height * radius**2)
@@ -375,18 +291,7 @@ def depth(terms: LongWaveTerms, area: Array) -> Array:
 
 
 def velocity(terms: LongWaveTerms, area: Array, momentum: Array, time: float) -> Array:
-    """Velocity along the wall relative to the drum, u = (q + Omega A^2)/(R A); 0 in dry cells.
-
-    Parameters
-    ----------
-    terms : chamber and spin
-    area, momentum : A and q, shape (n,)
-    time : s
-
-    Returns
-    -------
-    u, m/s, shape (n,)
-    """
+    """Velocity along the wall relative to the drum, m/s: u = (q + Omega A^2)/(R A); 0 in dry cells."""
     radius = terms.fill.chamber.radius
     a, q = scaled(terms, area, momentum)
     return radius * faded_velocity(a, q, terms.spin(time))
@@ -407,19 +312,7 @@ def angular_momentum(terms: LongWaveTerms, area: Array, momentum: Array, time: f
 def pressure_force(terms: LongWaveTerms, area: Array, momentum: Array, time: float) -> complex:
     """Force of the liquid on the drum by the pressure on its wall [theory: long_wave, eq. 7].
 
-    Parameters
-    ----------
-    terms : what acts
-    area, momentum : A and q, shape (n,)
-    time : s
-
-    Returns
-    -------
-    F in the drum frame, N, real along theta = 0
-
-    Raises
-    ------
-    InputError : a surface at the axis, a value that is not finite
+    In the drum frame, N, real along theta = 0.
     """
     require_layer(terms, area, momentum)
     a, q = scaled(terms, area, momentum)
@@ -431,12 +324,7 @@ def pressure_force(terms: LongWaveTerms, area: Array, momentum: Array, time: flo
 
 
 def liquid_offset(terms: LongWaveTerms, area: Array) -> complex:
-    """Liquid's centre of mass from the drum's axis, in the drum frame, m, of A, m^2, shape (n,).
-
-    Raises
-    ------
-    InputError : no liquid, a surface at the axis, a value that is not finite
-    """
+    """Liquid's centre of mass from the drum's axis, in the drum frame, m, of A, m^2, shape (n,)."""
     require_layer(terms, area, area)
     if not area.max() > 0.0:
         raise InputError("area", 0.0, "above 0 in some cell")
@@ -444,7 +332,7 @@ def liquid_offset(terms: LongWaveTerms, area: Array) -> complex:
 
 
 def offset_of(area: Array, radius: float) -> complex:
-    """The same of what is known to be a layer; nan without liquid."""
+    """`liquid_offset` of what is known to be a layer; nan without liquid."""
     return complex(*compiled(centre, area / radius**2, ring(area.size))) * radius
 
 

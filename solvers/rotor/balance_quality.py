@@ -1,10 +1,8 @@
 """Balance quality: residual unbalance over mass times the service speed, and the grades of ISO 21940-11.
 
-The standard speaks of a rigid rotor without liquid: G is the speed e_per Omega at which the centre of mass of
-a rotor with the permissible residual unbalance e_per m goes round. It is not a measured vibration velocity.
-The analogue for a machine with liquid is the total unbalance that turns with the rotor, its own and the
-liquid's about the rotation axis, over the mass of the dry rotor: what a dry rotor would need to move as the
-machine does [theory: balance_quality, eq. 1-3].
+The standard speaks of a rigid rotor without liquid; its G is no measured vibration velocity. With liquid the
+total unbalance that turns with the rotor takes its place: what a rotor without liquid would need to move as
+the machine does [theory: balance_quality, eq. 1-3].
 """
 
 from __future__ import annotations
@@ -35,18 +33,7 @@ _ROUNDING = 1e-9  # relative; a quality that is a grade to rounding has that gra
 def grade_of(quality: float) -> float | None:
     """The finest grade of ISO 21940-11 that a balance quality keeps.
 
-    Parameters
-    ----------
-    quality : residual unbalance over mass times angular speed, m/s
-
-    Returns
-    -------
-    m/s; None above the coarsest grade, or where the quality is not finite
-
-    Examples
-    --------
-    >>> grade_of(5e-3), grade_of(5.0)
-    (0.0063, None)
+    Both in m/s; None above the coarsest grade, or where the quality is not finite.
     """
     if not math.isfinite(quality):
         return None
@@ -54,41 +41,14 @@ def grade_of(quality: float) -> float | None:
 
 
 def grade_name(grade: float) -> str:
-    """A grade as the standard writes it.
-
-    Parameters
-    ----------
-    grade : m/s
-
-    Examples
-    --------
-    >>> grade_name(0.0063)
-    'G 6.3'
-    """
+    """A grade as the standard writes it."""
     return f"G {grade * 1e3:.6g}"
 
 
 def permissible_unbalance(grade: float, mass: float, speed: ArrayLike) -> Array:
     """Residual unbalance that a grade permits, U_per = G m/Omega [ISO16; theory: balance_quality, eq. 1].
 
-    Parameters
-    ----------
-    grade : G, m/s
-    mass : m of the rotor, kg
-    speed : Omega, rad/s, shape (...,)
-
-    Returns
-    -------
-    kg m, shape (...,)
-
-    Raises
-    ------
-    InputError : a grade, mass or speed that is not above 0
-
-    Examples
-    --------
-    >>> round(float(permissible_unbalance(0.0063, 40.0, 314.159)) * 1e6)
-    802
+    Grade in m/s, mass in kg, speed in rad/s, shape (...,); result in kg m.
     """
     require_positive("grade", grade)
     require_positive("mass", mass)
@@ -109,21 +69,9 @@ class TolerancePlane:
 def tolerance_planes(rotor: Rotor) -> tuple[TolerancePlane, ...]:
     """Planes in which the unbalance of a rotor is judged [theory: balance_quality, eq. 3].
 
-    Two for a rigid rotor in supports at two places and more, the outermost ones: each has the share of the
-    mass that rests on it, from 0.3 to 0.7. One for a Jeffcott rotor, for a tub, whose drum bearings a scene
-    does not say, and where all supports are at one place: then only the resultant is judged, no couple.
-
-    Parameters
-    ----------
-    rotor : of any kind
-
-    Returns
-    -------
-    One or two; none where the mass that spins is 0
-
-    Raises
-    ------
-    InputError : a kind of rotor that is not known
+    Two for a rigid rotor on supports at two or more places: the outermost ones, each with its share of the
+    mass, from 0.3 to 0.7. One (resultant, no couple) for a Jeffcott rotor, a tub and supports at one place;
+    none where no mass spins.
     """
     if isinstance(rotor, Tub):
         return (TolerancePlane(0.0, rotor.drum_mass),) if rotor.drum_mass > 0.0 else ()
@@ -140,15 +88,8 @@ def tolerance_planes(rotor: Rotor) -> tuple[TolerancePlane, ...]:
 def residual_unbalance(system: RotorSystem, generalised: Complex, positions: ArrayLike) -> Complex:
     """Unbalances in one or two planes that act as a generalised one does [theory: balance_quality, eq. 2].
 
-    Parameters
-    ----------
-    system : the dry rotor
-    generalised : unbalance on its coordinates, kg m, shape (s, n)
-    positions : of the planes, m; of a single one the resultant is returned
-
-    Returns
-    -------
-    Turning with the spin, kg m, shape (s, planes)
+    From shape (s, n) on its coordinates to (s, planes), kg m, turning with the spin; of a single plane the
+    resultant.
     """
     wanted = np.atleast_1d(np.asarray(positions, dtype=float))
     places = wanted if wanted.size == 2 else np.array([wanted[0], wanted[0] + 1.0])
@@ -162,22 +103,10 @@ def residual_unbalance(system: RotorSystem, generalised: Complex, positions: Arr
 
 
 def balance_quality(rotor: Rotor, speed: ArrayLike, coordinates: Complex | None = None) -> Array:
-    """Balance quality of a machine, m/s [theory: balance_quality, eq. 1-3].
+    """Balance quality of a machine, m/s, shape (s,) [theory: balance_quality, eq. 1-3].
 
-    Parameters
-    ----------
-    rotor : the dry rotor
-    speed : Omega, rad/s, above 0, shape (s,)
-    coordinates : complex amplitudes of the machine with its liquid, shape (s, n); the dry rotor by itself if
-        None
-
-    Returns
-    -------
-    Of the plane that is worst; infinite where the motion is, nan where no mass spins, shape (s,)
-
-    Raises
-    ------
-    InputError : a kind of rotor that is not known
+    That of the worst plane, from the complex amplitudes with liquid, shape (s, n), or of the rotor by itself
+    if these are None; infinite where the motion is, nan where no mass spins.
 
     Examples
     --------

@@ -31,18 +31,7 @@ class Campbell:
 def campbell(system: RotorSystem, spin: ArrayLike) -> Campbell:
     """Natural frequencies over the spin speed and their crossings with it [theory: rotor, eq. 24].
 
-    Parameters
-    ----------
-    system : the rotor
-    spin : Omega, rising, rad/s, shape (s,), 0 or above
-
-    Returns
-    -------
-    Campbell; modes are followed by likeness of shape and nearness of frequency
-
-    Raises
-    ------
-    InputError : speeds that are not rising, or negative
+    At rising speeds, rad/s; modes are followed by likeness of shape and nearness of frequency.
     """
     omega = np.array(spin, dtype=float).reshape(-1)
     if not (np.all(np.isfinite(omega)) and np.all(omega >= 0.0) and np.all(np.diff(omega) > 0.0)):

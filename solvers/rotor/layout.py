@@ -18,12 +18,7 @@ _ROWS, _COLUMNS = np.array(PAIRS).T
 
 @dataclass(frozen=True)
 class Mounts:
-    """Springs or dampers of m layouts with n mounts each.
-
-    Raises
-    ------
-    InputError : shapes that do not fit together
-    """
+    """Springs or dampers of m layouts with n mounts each."""
 
     position: Array  #: of each from the tub's centre of mass, m, shape (m, n, 3)
     direction: Array  #: unit vectors, shape (m, n, 3)
@@ -39,12 +34,7 @@ class Mounts:
 
     @classmethod
     def of(cls, mounts: Sequence[Mount]) -> Mounts:
-        """One layout of mounts that are given one by one.
-
-        Parameters
-        ----------
-        mounts : any number
-        """
+        """One layout of mounts that are given one by one."""
         way = np.array([mount.direction for mount in mounts], dtype=float).reshape(-1, 3)
         return cls(
             np.array([mount.position for mount in mounts], dtype=float).reshape(1, -1, 3),
@@ -56,13 +46,7 @@ class Mounts:
     def matrix(self, origin: Array) -> Array:
         """Stiffness or damping for the motion of a point and the turns about it [theory: rotor, eq. 21].
 
-        Parameters
-        ----------
-        origin : the point, from the tub's centre of mass, m, shape (3,)
-
-        Returns
-        -------
-        Sum of J^T c J, shape (m, 6, 6)
+        Sum of J^T c J, shape (m, 6, 6); the point from the tub's centre of mass, m.
         """
         along = np.einsum("n,mni,mnj->mnij", self.coefficient, self.direction, self.direction)
         along = along + self.along_axes[None, :, :, None] * np.eye(3)
@@ -71,22 +55,14 @@ class Mounts:
 
 
 def centre_of_mass(rotor: Tub) -> Array:
-    """Centre of mass of tub and drum from that of the tub, m, shape (3,).
-
-    Parameters
-    ----------
-    rotor : tub with its drum
-    """
+    """Centre of mass of tub and drum from that of the tub, m, shape (3,)."""
     return np.array(rotor.drum_position) * rotor.drum_mass / rotor.mass
 
 
 def mass_matrix(rotor: Tub, origin: Array) -> Array:
     """Mass matrix for the motion of a point and the turns about it, shape (6, 6) [theory: rotor, eq. 22].
 
-    Parameters
-    ----------
-    rotor : tub with its drum
-    origin : the point, from the tub's centre of mass, m, shape (3,)
+    The point from the tub's centre of mass, m.
     """
     # The tub's centre moves with the point and turns about it.
     tub, drum = displacement(-origin), displacement(np.array(rotor.drum_position) - origin)
@@ -98,13 +74,8 @@ def mass_matrix(rotor: Tub, origin: Array) -> Array:
 def couplings(matrix: Array) -> Array:
     """Terms off the diagonal over the root of those on it, in the order of `PAIRS` [theory: rotor, eq. 36].
 
-    Parameters
-    ----------
-    matrix : symmetric, without negative eigenvalues, shape (..., 6, 6)
-
-    Returns
-    -------
-    -1 to 1, 0 where a diagonal term is, shape (..., 15)
+    Of symmetric matrices without negative eigenvalues, shape (..., 6, 6): -1 to 1, 0 where a diagonal term
+    is, shape (..., 15).
 
     Examples
     --------
@@ -121,13 +92,7 @@ def couplings(matrix: Array) -> Array:
 
 
 def natural_frequencies(stiffness: Array, mass: Array) -> Array:
-    """Natural frequencies at rest without damping, rising, rad/s, shape (m, 6).
-
-    Parameters
-    ----------
-    stiffness : shape (m, 6, 6)
-    mass : shape (6, 6)
-    """
+    """Natural frequencies at rest without damping, rising, rad/s, shape (m, 6)."""
     root = np.linalg.inv(np.linalg.cholesky(mass))
     squared = np.linalg.eigvalsh(root @ stiffness @ root.T)
     return np.asarray(np.sqrt(np.maximum(squared, 0.0)))
@@ -136,14 +101,8 @@ def natural_frequencies(stiffness: Array, mass: Array) -> Array:
 def sag(stiffness: Array, weight: Array) -> Array:
     """How far the point sinks under a weight in it, and how far the tub turns with it.
 
-    Parameters
-    ----------
-    stiffness : for the motion of the point, shape (m, 6, 6)
-    weight : force, N, shape (3,)
-
-    Returns
-    -------
-    Distance along the force, m, and largest turn, rad, shape (2, m); infinite where nothing holds the tub
+    Distance along the force (N, shape (3,)), m, and largest turn, rad, shape (2, m), from stiffness (m, 6,
+    6); infinite where nothing holds the tub.
     """
     force = np.concatenate([weight, np.zeros(3)])
     held = np.linalg.eigvalsh(stiffness)

@@ -22,17 +22,7 @@ _LEAST_COSINE = math.cos(math.radians(80.0))  # of contact angles that are looke
 
 @dataclass(frozen=True)
 class Bearing:
-    """What the frequencies of a bearing depend on.
-
-    Raises
-    ------
-    InputError : a value out of its range
-
-    Examples
-    --------
-    >>> round(Bearing(9, 7.144 / 31.0).orders()["ftf"], 4)
-    0.3848
-    """
+    """What the frequencies of a bearing depend on."""
 
     balls: int  #: N_b, how many roll in one row
     diameter_ratio: float  #: d/D, of a ball over the circle of the balls' centres, between 0 and 1
@@ -61,18 +51,7 @@ class Bearing:
 def cage_slip(measured: float, theoretical: float) -> float:
     """Share by which a cage is behind rolling without slip [theory: spindle, eq. 19] [DR18, eq. 9].
 
-    Parameters
-    ----------
-    measured, theoretical : speeds of the cage, in one unit, the second above 0
-
-    Returns
-    -------
-    0 where all balls roll, 1 where the cage stands still, below 0 where it is ahead
-
-    Examples
-    --------
-    >>> cage_slip(300.0, 400.0)
-    0.25
+    0 where all balls roll, 1 where the cage stands still, below 0 where it is ahead.
     """
     require_positive("theoretical", theoretical)
     if not (math.isfinite(measured) and measured >= 0.0):
@@ -103,23 +82,8 @@ def fit_bearing(
     """Bearing from its frequencies over that of the shaft, by least squares of the relative errors.
 
     Every number of balls is tried; for each the ratio of diameters and the contact angle are fitted
-    [theory: spindle, eq. 18].
-
-    Parameters
-    ----------
-    given : by names of `ORDERS`, each above 0
-    balls, contact_angle : where they are known; rad
-
-    Raises
-    ------
-    InputError : an unknown name, a value that is not above 0, fewer values than are sought, or none that
-        tells what is sought: the balls need bpfo or bpfi, the contact angle bsf
-
-    Examples
-    --------
-    >>> found = fit_bearing({"ftf": 0.38475, "bpfi": 5.5369, "bsf": 2.0497})
-    >>> found.bearing.balls, round(found.projected_ratio, 3)
-    (9, 0.23)
+    [theory: spindle, eq. 18]. An `InputError` where the values do not tell what is sought: balls need bpfo or
+    bpfi, the contact angle bsf.
     """
     for name, value in given.items():
         if name not in ORDERS:

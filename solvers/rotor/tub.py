@@ -19,14 +19,10 @@ Vector = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Mount:
-    """A spring or a damper between the tub and the ground.
+    """A spring or a damper between the tub and the ground [theory: rotor, eq. 21].
 
     It resists the velocity or displacement u of its point with -c d (d . u) along a direction d, and with
-    -c_i u_i along the axes: the sum of both [theory: rotor, eq. 21].
-
-    Raises
-    ------
-    InputError : a value that is not finite, a negative coefficient, a direction of no length
+    -c_i u_i along the axes: the sum of both.
     """
 
     position: Vector  #: where it holds the tub, from the tub's centre of mass, m
@@ -56,13 +52,8 @@ class Mount:
 class Tub:
     """Suspended tub with a spinning drum [theory: rotor, eq. 20-23; DR18, eq. 1-8].
 
-    The origin is the tub's centre of mass, the axes are its principal ones, and the drum spins about +y,
-    which turns z into x.
-
-    Raises
-    ------
-    InputError : a mass or inertia of the tub that is not positive, a negative one of the drum, a place that
-        is not finite
+    The origin is the tub's centre of mass, the axes are its principal ones; the drum spins about +y, which
+    turns z into x.
     """
 
     tub_mass: float  #: m_1 and m_2, kg
@@ -124,13 +115,7 @@ class Tub:
 def displacement(position: ArrayLike) -> Array:
     """Displacement of points of the tub for unit coordinates [theory: rotor, eq. 20].
 
-    Parameters
-    ----------
-    position : (x, y, z) of each point, m, shape (..., 3)
-
-    Returns
-    -------
-    J, shape (..., 3, 6): rows along x, y, z; columns x, y, z, alpha, beta, gamma
+    J, shape (..., 3, 6): rows along x, y, z; columns x, y, z, alpha, beta, gamma.
     """
     x, y, z = np.moveaxis(np.asarray(position, dtype=float), -1, 0)
     found = np.zeros((*x.shape, 3, 6))

@@ -15,12 +15,7 @@ from solvers.rotor.system import RotorSystem
 
 @dataclass(frozen=True)
 class Support:
-    """An isotropic support of the rotor's axis.
-
-    Raises
-    ------
-    InputError : a position that is not finite, a negative stiffness or damping
-    """
+    """An isotropic support of the rotor's axis."""
 
     position: float  #: along the axis from the rotor's centre of mass, m
     stiffness: float  #: k, N/m, the same in all directions across the axis
@@ -34,12 +29,7 @@ class Support:
 
 @dataclass(frozen=True)
 class PlaneUnbalance:
-    """An unbalance in one plane across the axis.
-
-    Raises
-    ------
-    InputError : a position or angle that is not finite, a negative size
-    """
+    """An unbalance in one plane across the axis."""
 
     position: float  #: of the plane, along the axis from the rotor's centre of mass, m
     size: float  #: mass times its distance from the axis, kg m
@@ -56,10 +46,6 @@ class TwoPlane:
     """Rigid rotor with four degrees of freedom [theory: rotor, eq. 16-19].
 
     The centre of mass sits at position 0; the spin about z turns x into y.
-
-    Raises
-    ------
-    InputError : a mass or transverse inertia that is not positive, a polar inertia out of its range
     """
 
     mass: float  #: M, kg, without the liquid

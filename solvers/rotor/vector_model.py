@@ -1,9 +1,8 @@
 """The vector model of the liquid balancer: the balance of unbalances in angles.
 
-The liquid lies along the deflection and the deflection lags the total unbalance by delta. In units of the
-liquid's unbalance, seen from the deflection, the rotor's unbalance is k e^{i alpha} and the total is
-1 + k e^{i alpha}, whose argument is delta [theory: rotor, eq. 10]. Angles in rad, alpha from the liquid to
-the rotor's unbalance, positive with the spin.
+The liquid lies along the deflection, which lags the total unbalance by delta. In units of the liquid's
+unbalance the total is 1 + k e^{i alpha}, whose argument is delta [theory: rotor, eq. 10]; alpha from the
+liquid to the rotor's unbalance, rad, positive with the spin.
 """
 
 from __future__ import annotations
@@ -16,70 +15,31 @@ from meshes.errors import InputError
 
 
 def deflection_lag(speed: ArrayLike, mass: ArrayLike, damping: ArrayLike, stiffness: ArrayLike) -> Array:
-    """Angle by which the deflection lags the total unbalance.
+    """Angle delta by which the deflection lags the total unbalance, rad, 0 to pi.
 
     tan(delta) = C Omega/(K - M Omega^2) [DR18, section 6; theory: rotor, eq. 9].
-
-    Parameters
-    ----------
-    speed : spin speed Omega, rad/s, shape (...,), 0 or above
-    mass : of the rotor without the liquid M, kg, shape (...,)
-    damping : of the support C, N s/m, shape (...,)
-    stiffness : of the support K, N/m, shape (...,)
-
-    Returns
-    -------
-    delta, rad, 0 to pi, shape (...,)
     """
     omega, m, c, k = (np.asarray(x, dtype=float) for x in (speed, mass, damping, stiffness))
     return np.asarray(np.arctan2(c * omega, k - m * np.square(omega)))
 
 
 def balance_residual(angle: ArrayLike, lag: ArrayLike, ratio: ArrayLike) -> Array:
-    """What is left of the balance of the tangential forces, over the liquid's unbalance.
+    """What is left of the balance of the tangential forces, over the liquid's unbalance; 0 in balance.
 
-    k sin(alpha - delta) - sin(delta), the imaginary part of (1 + k e^{i alpha}) e^{-i delta}: smooth in every
-    argument and without the square root of the source [DR18, eq. 23b and 24; theory: rotor, eq. 11].
-
-    Parameters
-    ----------
-    angle : alpha, rad, shape (...,)
-    lag : delta, rad, shape (...,)
-    ratio : k = rotor's unbalance over the liquid's, shape (...,)
-
-    Returns
-    -------
-    Residual, 1, shape (...,); 0 in balance
+    k sin(alpha - delta) - sin(delta): smooth in every argument and without the square root of the source
+    [DR18, eq. 23b and 24; theory: rotor, eq. 11].
     """
     alpha, delta, k = (np.asarray(x, dtype=float) for x in (angle, lag, ratio))
     return np.asarray(k * np.sin(alpha - delta) - np.sin(delta))
 
 
 def balance_angles(lag: ArrayLike, ratio: ArrayLike) -> tuple[Array, Array]:
-    """Both angles at which the tangential forces balance.
+    """Both angles at which the tangential forces balance, rad.
 
     alpha_0 = delta + phi_C with sin(phi_C) = sin(delta)/k; their cosines are those of the source's solution
-    with its lost factor 1/k put back [DR18, eq. 25; theory: rotor, eq. 13]. For k >= 1 only the first is
-    an equilibrium; for k < 1 both are while delta < pi/2 and none beyond.
-
-    Parameters
-    ----------
-    lag : delta, rad, 0 to pi, shape (...,)
-    ratio : k, shape (...,), sin(delta) or above, not 0
-
-    Returns
-    -------
-    First and second angle, rad, shape (...,)
-
-    Raises
-    ------
-    InputError : a lag outside 0 to pi; a ratio below sin(delta), for which no angle balances
-
-    Examples
-    --------
-    >>> first, second = balance_angles(0.5, 1.0)
-    >>> print(f"{first:.6f} {second:.6f}")
-    1.000000 3.141593
+    with its lost factor 1/k put back [DR18, eq. 25; theory: rotor, eq. 13]. For k >= 1 only the first is an
+    equilibrium; for k < 1 both are while delta < pi/2 and none beyond. An `InputError` below k = sin(delta),
+    where no angle balances.
     """
     delta, k = (np.asarray(x, dtype=float) for x in (lag, ratio))
     if not np.all((delta >= 0.0) & (delta <= np.pi)):
@@ -91,22 +51,9 @@ def balance_angles(lag: ArrayLike, ratio: ArrayLike) -> tuple[Array, Array]:
 
 
 def unbalance_left(angle: ArrayLike, ratio: ArrayLike) -> Array:
-    """Total unbalance over the rotor's own.
+    """Residual unbalance ratio, total unbalance over the rotor's own; 0 where the liquid balances the rotor.
 
     lambda_0 = |1 + k e^{i alpha_0}|/k [DR18, eq. 26; theory: rotor, eq. 14].
-
-    Parameters
-    ----------
-    angle : alpha_0, rad, shape (...,)
-    ratio : k, shape (...,), above 0
-
-    Returns
-    -------
-    lambda_0, shape (...,); 0 where the liquid balances the rotor
-
-    Raises
-    ------
-    InputError : a ratio that is not positive
     """
     alpha, k = (np.asarray(x, dtype=float) for x in (angle, ratio))
     if not np.all(k > 0.0):

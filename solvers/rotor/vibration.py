@@ -1,4 +1,4 @@
-"""Linear vibration of a dry rotor: modes, unbalance response, orbits, critical speeds."""
+"""Linear vibration of a rotor without liquid: modes, unbalance response, orbits, critical speeds."""
 
 from __future__ import annotations
 
@@ -54,22 +54,7 @@ class Orbit:
 
 
 def modes(system: RotorSystem, spin: ArrayLike = 0.0, *, damped: bool = True) -> Modes:
-    """Natural frequencies and mode shapes at spin speeds [theory: rotor, eq. 24].
-
-    Parameters
-    ----------
-    system : the rotor
-    spin : Omega, rad/s, shape (s,) or a number
-    damped : with the dampers, or without
-
-    Returns
-    -------
-    Modes
-
-    Raises
-    ------
-    InputError : a spin speed that is not finite
-    """
+    """Natural frequencies and mode shapes at spin speeds [theory: rotor, eq. 24]."""
     omega = np.atleast_1d(np.asarray(spin, dtype=float)).reshape(-1)
     if not np.all(np.isfinite(omega)):
         raise InputError("spin", spin, "finite numbers")
@@ -134,13 +119,7 @@ def _per_mass(system: RotorSystem, matrix: Array) -> Array:
 
 
 def dynamic_stiffness(system: RotorSystem, speed: Array) -> Complex:
-    """K - Omega^2 M + i Omega (C + Omega G), N/m and alike, shape (s, n, n) [theory: rotor, eq. 25].
-
-    Parameters
-    ----------
-    system : the rotor
-    speed : Omega, rad/s, shape (s,)
-    """
+    """K - Omega^2 M + i Omega (C + Omega G), N/m and alike, shape (s, n, n) [theory: rotor, eq. 25]."""
     omega = np.asarray(speed, dtype=float)[:, None, None]
     real = system.stiffness - np.square(omega) * system.mass
     return np.asarray(real + 1j * omega * (system.damping + omega * system.gyroscopic), dtype=complex)
@@ -149,19 +128,8 @@ def dynamic_stiffness(system: RotorSystem, speed: Array) -> Complex:
 def unbalance_response(system: RotorSystem, speed: ArrayLike) -> Complex:
     """Steady answer q = Re(answer e^{i Omega t}) to the unbalance at constant speed [theory: rotor, eq. 25].
 
-    Parameters
-    ----------
-    system : the rotor
-    speed : Omega, rad/s, shape (s,)
-
-    Returns
-    -------
     Complex amplitudes of the coordinates, shape (s, n); infinite where an undamped rotor runs exactly at a
-    critical speed
-
-    Raises
-    ------
-    InputError : a speed that is not finite
+    critical speed.
     """
     omega = np.atleast_1d(np.asarray(speed, dtype=float))
     if omega.ndim != 1 or not np.all(np.isfinite(omega)):
@@ -171,13 +139,7 @@ def unbalance_response(system: RotorSystem, speed: ArrayLike) -> Complex:
 
 
 def solve_each(matrix: Complex, right: Complex) -> Complex:
-    """Solution of each of s linear systems; infinite where its matrix is singular.
-
-    Parameters
-    ----------
-    matrix : shape (s, n, n)
-    right : shape (s, n)
-    """
+    """Solution of each of s linear systems, shape (s, n); infinite where its matrix is singular."""
     try:
         return np.asarray(np.linalg.solve(matrix, right[..., None])[..., 0])
     except np.linalg.LinAlgError:
@@ -191,13 +153,9 @@ def solve_each(matrix: Complex, right: Complex) -> Complex:
 
 
 def orbit(system: RotorSystem, answer: Complex, position: float) -> Orbit:
-    """Orbit of the axis at a position for coordinates q = Re(answer e^{i Omega t}) [theory: rotor, eq. 26].
+    """Orbit of the axis at a position for q = Re(answer e^{i Omega t}) [theory: rotor, eq. 26].
 
-    Parameters
-    ----------
-    system : the rotor
-    answer : complex amplitudes, infinite where there is none, shape (..., n)
-    position : along the axis, m
+    `forward` infinite where the answer is.
     """
     bounded = np.asarray(np.isfinite(answer).all(axis=-1))
     first, second = np.moveaxis(np.where(bounded[..., None], answer, 0.0) @ system.at(position).T, -1, 0)
@@ -207,19 +165,11 @@ def orbit(system: RotorSystem, answer: Complex, position: float) -> Orbit:
 
 
 def whirl_direction(system: RotorSystem, shape: Complex) -> Array:
-    """Sense in which the axis goes round, from -1, circles against the spin, to 1, circles with it.
+    """Sense in which the axis goes round, from -1, backward circles, to 1, forward ones.
 
-    (|f|^2 - |b|^2)/(|f|^2 + |b|^2), f and b summed over the displacement of the axis and its lean, the
-    latter times the length at which an impulse moves the axis as much by turning as by shifting the rotor.
-
-    Parameters
-    ----------
-    system : the rotor
-    shape : complex shapes of modes or answers, shape (..., n)
-
-    Returns
-    -------
-    direction, 0 for straight lines and where the axis does not move, shape (...,)
+    (|f|^2 - |b|^2)/(|f|^2 + |b|^2), f and b summed over the displacement of the axis and its lean, the latter
+    times the length at which an impulse moves the axis as much by turning as by shifting the rotor. 0 for
+    straight lines and where the axis does not move.
     """
     forward, backward = np.zeros(shape.shape[:-1]), np.zeros(shape.shape[:-1])
     shift, turn = (
@@ -239,15 +189,8 @@ def whirl_direction(system: RotorSystem, shape: Complex) -> Array:
 def critical_speeds(system: RotorSystem, added: Complex | None = None) -> tuple[Array, Complex]:
     """Speeds at which the undamped rotor vibrates freely once a turn [theory: rotor, eq. 27].
 
-    Parameters
-    ----------
-    system : the rotor; its dampers are left out
-    added : complex mass matrix of what moves with the rotor at the speed of its spin, Hermitian, shape (n, n)
-
-    Returns
-    -------
-    speed : rising, rad/s, shape (c,), c at most n; above 0
-    shape : complex, shape (c, n)
+    Rising, rad/s, shape (c,), and complex shapes (c, n). `added` is the Hermitian mass matrix of what moves
+    with the rotor at the speed of its spin.
     """
     from scipy.linalg import eig
 

@@ -17,12 +17,7 @@ from solvers.runup.state import BALL
 
 @dataclass(frozen=True)
 class Balls:
-    """The balls of some races at the start of a run-up; N balls in all, race by race.
-
-    Raises
-    ------
-    InputError : another number of places or shares than balls, one that is not finite
-    """
+    """The balls of some races at the start of a run-up; N balls in all, race by race."""
 
     races: tuple[BallRace, ...] = ()  #: that hold them
     places: tuple[float, ...] = ()  #: angle of each in the standing frame, rad, N of them
@@ -41,23 +36,13 @@ NO_BALLS = Balls()
 
 
 def spread_balls(races: Sequence[BallRace]) -> Balls:
-    """Balls evenly round each race, at rest in the drum.
-
-    Parameters
-    ----------
-    races : on the rotor
-    """
+    """Balls evenly round each race, at rest in the drum."""
     places = [2.0 * np.pi * k / len(race.masses) for race in races for k in range(len(race.masses))]
     return Balls(tuple(races), tuple(places), (1.0,) * len(places))
 
 
 def ball_records(balls: Balls) -> Record:
-    """What the steps know of each ball, records BALL, shape (N,).
-
-    Parameters
-    ----------
-    balls : on the rotor
-    """
+    """What the steps know of each ball, records BALL, shape (N,)."""
     rows = [
         (
             *(mass, race.radius, race.rolling * mass * race.radius**2, race.drag * race.radius**2),
@@ -73,13 +58,7 @@ def ball_records(balls: Balls) -> Record:
 
 
 def race_planes(system: RotorSystem, balls: Balls) -> Array:
-    """Displacement of the axis in the plane of each ball for unit coordinates, shape (N, 2, n).
-
-    Parameters
-    ----------
-    system : the rotor
-    balls : on it
-    """
+    """Displacement of the axis in the plane of each ball for unit coordinates, shape (N, 2, n)."""
     planes, _ = race_arrays(system, balls.races)
     return np.asarray(planes, dtype=float).reshape(len(balls.places), 2, len(system.coordinates))
 
@@ -93,15 +72,7 @@ def _along(races: Array, roll: Array) -> Array:
 def balls_energy(
     balls: Record, races: Array, rate: Array, roll: Array, roll_rate: Array, spin: float
 ) -> float:
-    """Kinetic energy of the balls, J [theory: races, eq. 1].
-
-    Parameters
-    ----------
-    balls, races : as in `solvers.runup.state.Machine`
-    rate : of the rotor's coordinates, shape (n,)
-    roll, roll_rate : angle of each ball in the standing frame, and its rate, shape (N,)
-    spin : rad/s
-    """
+    """Kinetic energy of the balls, J [theory: races, eq. 1]."""
     carried = races @ rate
     axis = 0.5 * balls.mass * np.square(carried).sum(axis=1)
     meeting = balls.mass * balls.radius * roll_rate * (_along(races, roll) @ rate)
@@ -110,16 +81,9 @@ def balls_energy(
 
 
 def balls_inertia(balls: Record, races: Array, roll: Array) -> tuple[Array, Array]:
-    """What the balls add to the rotor's inertia against a blow, and how their rates answer one.
+    """What the balls add to the rotor's inertia against an impulse, and how their rates answer one.
 
-    Parameters
-    ----------
-    balls, races : as in `solvers.runup.state.Machine`
-    roll : angle of each ball in the standing frame, shape (N,)
-
-    Returns
-    -------
-    kg and kg m^2, shape (n, n); fall of the balls' rates for unit jumps of the rotor's rates, shape (N, n)
+    kg and kg m^2, (n, n); fall of the balls' rates for unit jumps of the rotor's rates, (N, n).
     """
     along, moving = _along(races, roll), balls.mass * balls.radius
     whole = np.einsum("j,jin,jim->nm", balls.mass, races, races)

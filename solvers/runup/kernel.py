@@ -1,7 +1,7 @@
 """Rotor and liquid layers through time together [theory: coupling].
 
 Each step looks for the mean acceleration of every chamber's axis that makes the layers' change of momentum
-and the rotor's trapezium agree: momentum is handed over to rounding, and the rotor's part is stable for any
+and the rotor's trapezium agree: momentum is exchanged to rounding, and the rotor's part is stable for any
 stiffness. SI units; layers over their wall radius.
 """
 
@@ -80,9 +80,9 @@ def motor_torque(curve, spin):
 
 @_jit
 def resisted(curve, weight, aim):
-    """Where x + weight T(x) = aim, T by straight lines between the points of a curve; the slope of T there.
+    """Where x + weight T(x) = aim, and the slope of T there, T by straight lines between points of a curve.
 
-    So a torque at the middle of a step is taken there and not before it.
+    With it a torque is that of the middle of a step, not of its beginning.
     """
     low, high = 0, curve.shape[1] - 1
     if aim <= curve[0, 0] + weight * curve[1, 0]:
@@ -103,15 +103,8 @@ def resisted(curve, weight, aim):
 def dragged(curve, inertia, slip, freely, dt):
     """Impulse of the drag on what slips past its walls, and how much of other torques it lets through.
 
-    The drag is that of the mean slip, and can at most stop the slip: neither its heat is ever below zero nor
-    does it turn the slip round [theory: pool, eq. 13].
-
-    Parameters
-    ----------
-    curve : slip, rising from 0, and torque
-    inertia : of what slips
-    slip, freely : at the beginning, and at the end if there were no drag
-    dt : time step
+    The drag is that of the mean slip and at most stops it: its heat is never below zero
+    [theory: pool, eq. 13]. `freely` is the slip at the end without drag.
     """
     both = 0.5 * (slip + freely)
     mean, slope = resisted(curve, 0.5 * dt / inertia, abs(both))
@@ -125,12 +118,7 @@ def dragged(curve, inertia, slip, freely, dt):
 def driven(curve, shaft, load, dt):
     """Spin at the end of a step under the motor's torque at the middle, however steep its curve.
 
-    Parameters
-    ----------
-    curve : the motor's
-    shaft : record SHAFT
-    load : impulse of the torque of liquid and whirl on the drum
-    dt : time step
+    `load`: impulse of the torque of liquid and whirl on the drum.
     """
     weight = 0.5 / shaft.inertia
     middle, _ = resisted(curve, -dt * weight, shaft.spin - load * weight)
@@ -177,7 +165,7 @@ def layer_scratch(layers: int, cells: int) -> NDArray[np.float64]:
 def measure(area, q, spin, angles, plates, spare, out):
     """Fill `out`, a record MEASURES, for a layer [theory: coupling, eq. 2, 4 and 7].
 
-    `plates` is the layer's table of baffles as the last evaluation of its rates left it.
+    `plates`: the layer's table of baffles as the last evaluation of its rates left it.
     """
     n = area.size
     profile(area, q, spin, spare[_VELOCITY, :n], spare[_SURFACE, :n], spare[_LOG, :n])
@@ -186,7 +174,7 @@ def measure(area, q, spin, angles, plates, spare, out):
 
 @_unwrapped
 def measure_profile(area, q, spin, angles, plates, spare, out):
-    """The same of a layer whose profile stands in its scratch, as `layer_step` leaves it."""
+    """Fill `out` as `measure`, for a layer whose profile stands in its scratch, as `layer_step` leaves it."""
     n = area.size
     velocity, surface, log = spare[_VELOCITY, :n], spare[_SURFACE, :n], spare[_LOG, :n]
     step = 2.0 * np.pi / n
@@ -269,8 +257,8 @@ def _held_back(plates, velocity, log, across, along, step, out):
 def _power(area, velocity, surface, log, rate_a, spin, x, y, cosine, sine):
     """Power of the body force in the frame that does not turn, and what the flow's profile misses, a cell.
 
-    The second is over the change of the spin: the Euler force acts on the angular momentum, which the profile
-    does not turn into energy to the last digit [theory: coupling, eq. 8].
+    The second over the change of the spin: the profile does not turn all of the Euler force's work on the
+    angular momentum into energy [theory: coupling, eq. 8].
     """
     moment_x, moment_y, rate_x, rate_y, missed = 0.0, 0.0, 0.0, 0.0, 0.0
     for i in range(area.size):
@@ -286,14 +274,11 @@ def _power(area, velocity, surface, log, rate_a, spin, x, y, cosine, sine):
 
 @_summed
 def _rub(area, q, held, velocity, log, kept, pushed, spin, full, slot):
-    """Let friction leave its share of the velocities and add to them; sums over the cells.
+    """Let friction leave its share of the velocities and add to them; sums over the cells, over rho h_c R^4.
 
-    `q` and `held` are their angular momenta after it and before it.
-
-    Returns
-    -------
-    Impulse of the wall's torque, heat, and the energy in the frame that does not turn before and after, all
-    over rho h_c R^4 [theory: coupling, eq. 7]; that of a full gap with it [theory: long_wave, eq. 19]
+    Impulse of the wall's torque, heat, and the energy in the frame that does not turn before and after
+    [theory: coupling, eq. 7], of a full gap too [theory: long_wave, eq. 19]. `q` and `held`: angular momenta
+    after and before.
     """
     torque, heat, before, after = 0.0, 0.0, 0.0, 0.0
     for i in range(area.size):
@@ -343,26 +328,11 @@ def _half_friction(area, q, spin, layer, drags, dt, inside, spare, gains):
 def layer_step(
     area, q, rolling, spins, force, layer, coefficient, thin, table, dt, angles, inside, spare, gains
 ):
-    """Advance a layer by one time step, in place; a step that fails leaves nothing to go on with.
+    """Advance a layer by one time step, in place; a step that fails leaves nothing of use.
 
-    Parameters
-    ----------
-    area, q : state, shape (n,)
-    rolling : A e of the fluctuations behind bores, shape (n,), or (0,) where they are left out
-    spins : spin at the beginning and at the end
-    force : body force over R in the drum frame at the beginning (two parts) and at the end (two)
-    layer : its record LAYER
-    coefficient : of its friction at these spins
-    thin, table : of the law of the wall at these spins, see `fluid.friction.wall.WallDrag`
-    dt : time step
-    angles : cosine and sine at the cells' middles and at their left faces, shape (4, n)
-    inside : its baffles and inner wall, a `solvers.layer.inside.Inside`
-    spare : scratch of this layer, from `layer_scratch`; the profile at the end is left in it
-    gains : results, a record GAINS
-
-    Returns
-    -------
-    Outcome.DONE, Outcome.TOO_LONG or Outcome.AT_AXIS; and the largest speed met
+    Outcome.DONE, TOO_LONG or AT_AXIS, and the largest speed met. `spins` and `force` (body force over R in
+    the drum frame, two parts each) at both ends; friction's `coefficient`, `thin` and `table` at these spins.
+    The profile at the end is left in `spare`, results in `gains`, a record GAINS.
     """
     n = area.size
     step, euler, dispersion = 2.0 * np.pi / n, (spins[1] - spins[0]) / dt, layer.dispersion
@@ -431,7 +401,7 @@ _SWING = 0.25
 
 @_unwrapped
 def _move_pools(machine, state, room, dt):
-    """All pools through one step under the guessed accelerations, by the midpoint [theory: pool, eq. 5]."""
+    """Move all pools one step under the guessed accelerations, by the midpoint [theory: pool, eq. 5]."""
     spin, first = 0.5 * (room.spins[0] + room.spins[1]), machine.layers.shape[0]
     for j in range(machine.pools.shape[0]):
         pool, own, drag = machine.pools[j], first + j, machine.drags[j]
@@ -457,7 +427,7 @@ def _move_pools(machine, state, room, dt):
 
 @_inner
 def _move_layers(machine, state, room, dt):
-    """All layers through one step under the guessed accelerations; what went wrong, the fastest wave."""
+    """Move all layers through one step under the guessed accelerations; what went wrong, the fastest wave."""
     fastest, spins, turn, force = 0.0, room.spins, room.turn, room.force
     copy(room.area, state.area)
     copy(room.momentum, state.momentum)
@@ -518,20 +488,8 @@ def _measure_layers(machine, state, room):
 def add_ball(ball, b, gravity, row, moving, spins, dt, n, left, right):
     """Row and column of a ball, on a straight line about its way so far [theory: races, eq. 2-3].
 
-    Parameters
-    ----------
-    ball : record BALL
-    b : displacement of the axis in its plane for unit coordinates, shape (2, n)
-    gravity : across the axis, shape (2,)
-    row : of its own equation
-    moving : its angle in the standing frame and its rate
-    spins : at both ends of the step
-    dt, n : of the step, coordinates of the rotor
-    left, right : equations, changed in place
-
-    Returns
-    -------
-    What it resists to rolling, as a drag
+    `b`: displacement of the axis in its plane for unit coordinates; `row`: its own equation; `moving`: its
+    angle in the standing frame and its rate. Returns its rolling resistance as a drag.
     """
     angle, rate = moving
     spin, gained = 0.5 * (spins[0] + spins[1]), spins[1] - spins[0]
@@ -562,12 +520,7 @@ def add_ball(ball, b, gravity, row, moving, spins, dt, n, left, right):
 def ball_dragged(ball, held, rate, change, spins, dt):
     """Impulse of the torque of the drum on a ball, by drag and by what it resists to rolling.
 
-    Parameters
-    ----------
-    ball : record BALL
-    held : as from `add_ball`
-    rate, change : of the ball, at the beginning and over the step
-    spins, dt : of the step
+    `held` as from `add_ball`; `change` of the ball's rate over the step.
     """
     slow = 0.5 * (spins[0] + spins[1]) - rate - 0.5 * change
     return dt * (ball.drag * slow + held * (spins[1] - rate - change))
@@ -575,23 +528,14 @@ def ball_dragged(ball, held, rate, change, spins, dt):
 
 @_unwrapped
 def ball_turned(ball, held, rate, change, spins, dt):
-    """Impulse of the torque that a ball takes from the drum [theory: races, eq. 1].
-
-    Parameters are those of `ball_dragged`.
-    """
+    """Impulse of the torque that a ball takes from the drum [theory: races, eq. 1]."""
     gained = spins[1] - spins[0]
     return ball_dragged(ball, held, rate, change, spins, dt) + ball.driven * gained - ball.carried * change
 
 
 @_unwrapped
 def tally_ball(ball, held, gravity, moving, change, spins, dt, sums):
-    """Add the works of one step of a ball to `sums`, a record SUMS.
-
-    Parameters
-    ----------
-    ball, held, gravity, moving, spins, dt : as in `add_ball`
-    change : of its rate over the step
-    """
+    """Add the works of one step of a ball to `sums`, a record SUMS."""
     angle, rate = moving
     spin, mean, middle = 0.5 * (spins[0] + spins[1]), rate + 0.5 * change, angle + 0.5 * dt * rate
     sums.drive += spin * ball_turned(ball, held, rate, change, spins, dt)
@@ -838,22 +782,11 @@ def _keep(state, room, row):
 
 @_jit
 def advance(machine, state, room, stop, courant, most, resumed):
-    """Advance rotor and layers to a time.
+    """Advance rotor and layers to a time, in place: Outcome, and the steps tried.
 
-    Parameters
-    ----------
-    machine, state, room : `solvers.runup.state`'s; the state is changed in place
-    stop : s
-    courant : Courant number; the rotor turns in a step by at most this share of a cell
-    most : most steps
-    resumed : the call before ended with RAN_OUT, and nothing has changed since
-
-    Every step is written down in the state's trace if that has rows: as many as there are steps.
-
-    Returns
-    -------
-    Outcome.DONE, AT_AXIS, RAN_OUT, TOO_LONG, NOT_COUPLED (the accelerations did not agree in the
-    shortest steps) or STOPPED (the motor stands); and the steps tried
+    The rotor turns in a step by at most the Courant number's share of a cell. `resumed`: the call before
+    ended with RAN_OUT, and nothing has changed since. Every step goes into the state's trace if that has
+    rows. NOT_COUPLED: the accelerations did not agree in the shortest steps; STOPPED: the motor stands.
     """
     shaft, pace, sums = state.shaft[0], state.pace[0], state.sums[0]
     cell, taken = 2.0 * np.pi / machine.angles.shape[1], 0

@@ -1,7 +1,4 @@
-"""Rotor and linear layers through time by the trapezium [theory: coupling, eq. 11-13].
-
-SI units.
-"""
+"""Rotor and linear layers through time by the trapezium, in SI units [theory: coupling, eq. 11-13]."""
 
 from __future__ import annotations
 
@@ -38,53 +35,35 @@ LINEAR_LAYER = floats("mass", "curvature", "rate", "whole", "power", "inertia", 
 
 
 class LinearMachine(NamedTuple):
-    """Rotor, l linear layers and b balls; n coordinates, N = n + 2 l + b.
+    """Rotor, l linear layers and b balls; n coordinates, N = n + 2 l + b."""
 
-    Parameters
-    ----------
-    matrices : M, C, G, K of the rotor, shape (4, n, n)
-    unbalance : U, complex, shape (n,)
-    planes : displacement of each layer's axis for unit coordinates, shape (l, 2, n)
-    layers : records LINEAR_LAYER, shape (l,)
-    tables : of the law of the wall, shape (l, m, 2); m = 0 under other laws
-    plates : smeared baffles, zeta N r_m/(4 pi R) at lags that rise evenly from 0 to the spin, shape (l, p);
-        p = 0 where no layer has any
-    active : 1 for a layer, 0 for liquid that lies at the bottom or is solid, shape (l,)
-    pools : records POOL of `solvers.runup.state`, the mass 0 for liquid that does not swing, shape (l,)
-    drags : relative rotation of the walls and their torque on each pool, shape (l, 2, k)
-    gravity : across the axis, shape (2,)
-    curve : the motor's, shape (2, k)
-    watched : displacement of the axis whose amplitude counts, for unit coordinates, shape (2, n)
-    place, rate : rotor's coordinates, the layers' offsets, two parts each, and the balls' angles in the
-        standing frame, and their rates, shape (N,); of a pool its angle from the bottom, and 0
-    shaft : record SHAFT of `solvers.runup.state`, shape (1,)
-    carried : rotation of each layer as a whole, rad/s, shape (l,)
-    sums : record SUMS, shape (1,)
-    crest : record CREST of `solvers.runup.state`, shape (1,)
-    balls, races : as in `solvers.runup.state.Machine`, shapes (b,) and (b, 2, n)
-    left, change, swing, held : scratch, shapes (N, N), (N,), (n,), (b,)
-    """
-
-    matrices: Array
-    unbalance: NDArray[np.complex128]
-    planes: Array
-    layers: Record
-    tables: Array
+    matrices: Array  #: M, C, G, K of the rotor, shape (4, n, n)
+    unbalance: NDArray[np.complex128]  #: U, complex, shape (n,)
+    planes: Array  #: displacement of each layer's axis for unit coordinates, shape (l, 2, n)
+    layers: Record  #: records LINEAR_LAYER, shape (l,)
+    tables: Array  #: of the law of the wall, shape (l, m, 2); m = 0 under other laws
+    #: smeared baffles, zeta N r_m/(4 pi R) at lags that rise evenly from 0 to the spin, shape (l, p); p = 0
+    #: where no layer has any
     plates: Array
-    active: Array
+    active: Array  #: 1 for a layer, 0 for liquid that lies at the bottom or is solid, shape (l,)
+    #: records POOL of `solvers.runup.state`, the mass 0 for liquid that does not swing, shape (l,)
     pools: Record
-    drags: Array
-    gravity: Array
-    curve: Array
-    watched: Array
+    drags: Array  #: relative rotation of the walls and their torque on each pool, shape (l, 2, k)
+    gravity: Array  #: across the axis, shape (2,)
+    curve: Array  #: the motor's, shape (2, k)
+    watched: Array  #: displacement of the axis whose amplitude counts, for unit coordinates, shape (2, n)
+    #: place and rate: rotor's coordinates, the layers' offsets, two parts each, and the balls' angles in the
+    #: standing frame, and their rates, shape (N,); of a pool its angle from the bottom, and 0
     place: Array
     rate: Array
-    shaft: Record
-    carried: Array
-    sums: Record
-    crest: Record
+    shaft: Record  #: record SHAFT of `solvers.runup.state`, shape (1,)
+    carried: Array  #: rotation of each layer as a whole, rad/s, shape (l,)
+    sums: Record  #: record SUMS, shape (1,)
+    crest: Record  #: record CREST of `solvers.runup.state`, shape (1,)
+    #: balls and races: as in `solvers.runup.state.Machine`, shapes (b,) and (b, 2, n)
     balls: Record
     races: Array
+    #: left, change, swing and held: scratch, shapes (N, N), (N,), (n,), (b,)
     left: Array
     change: Array
     swing: Array
@@ -190,13 +169,7 @@ def _wall_drag(m, j, spin, lag):
 
 @_jit
 def plate_drag(curve, spin, lag):
-    """Rate at which smeared baffles take a lag away, 1/s [theory: baffles, eq. 13].
-
-    Parameters
-    ----------
-    curve : of a layer, a row of `LinearMachine.plates`
-    spin, lag : rad/s, from 0
-    """
+    """Rate at which smeared baffles take a lag away, 1/s [theory: baffles, eq. 13]."""
     last = curve.size - 1
     if last < 1:
         return 0.0
@@ -277,18 +250,9 @@ _PLAIN, _SECANT = 6, 12
 
 @_jit
 def advance_linear(m, stop, angle_step, most):
-    """Advance rotor and layers to a time.
+    """Advance rotor and layers to a time, by at most `angle_step` rad a step, in at most so many steps.
 
-    Parameters
-    ----------
-    m : LinearMachine, changed in place
-    stop : s
-    angle_step : most that the rotor turns in a step, rad
-    most : most steps
-
-    Returns
-    -------
-    Outcome.DONE, RAN_OUT, STOPPED where the motor stands, or NOT_COUPLED where its load grows without bound
+    Outcome.DONE, RAN_OUT, STOPPED where the motor stands, or NOT_COUPLED where its load grows without bound.
     """
     n, spins, taken, shaft, share = m.unbalance.size, (0.0, 0.0), 0, m.shaft[0], 1.0
     longest = swing_time(m.pools, m.gravity)

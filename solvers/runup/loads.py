@@ -16,18 +16,9 @@ _ENDS = 4  # moments at the ends of a path whose accelerations are not those of 
 
 
 def path_extremes(machine: LoadedMachine, path: RotorPath, time: Array) -> Extremes:
-    """The worst of each interval up to a sample, the first sample alone [theory: loads, eq. 14].
+    """Extremes of each interval up to a sample, the first sample alone [theory: loads, eq. 14].
 
-    Parameters
-    ----------
-    machine : whose rotor moves
-    path : its motion
-    time : of the samples, s, rising, shape (k,)
-
-    Returns
-    -------
-    Extremes of k intervals. Where liquid is caught or falls they are those before and after: of the blow
-    itself only the impulse is known, see `bearing_impulses`
+    Where liquid is caught or falls those before and after; of the impulse itself see `bearing_impulses`.
     """
     every = np.union1d(path.time, time)
     every = every[(every >= time[0]) & (every <= time[-1])]
@@ -48,16 +39,9 @@ def path_extremes(machine: LoadedMachine, path: RotorPath, time: Array) -> Extre
 
 
 def bearing_impulses(machine: LoadedMachine, path: RotorPath) -> Array:
-    """What each hand-over of liquid does to the bearings at once [theory: loads, eq. 20].
+    """Impulse of each pool-annulus transition on the bearings, N s, shape (j, b) [theory: loads, eq. 20].
 
-    Parameters
-    ----------
-    machine : whose rotor moves
-    path : its motion
-
-    Returns
-    -------
-    N s, shape (j, b); b = 0 where bearings are not known
+    b = 0 where bearings are not known.
     """
     kicks = path.kicks()
     if machine.bearings is None or not isinstance(machine.rotor, Tub):
@@ -68,17 +52,9 @@ def bearing_impulses(machine: LoadedMachine, path: RotorPath) -> Array:
 
 
 def held_extremes(machine: LoadedMachine, spin: float, path: Array) -> Extremes:
-    """The worst over the last turns of a motion that is held at a speed [theory: loads, eq. 14].
+    """Extremes over the last turns of a motion that is held at a speed [theory: loads, eq. 14].
 
-    Parameters
-    ----------
-    machine : whose rotor moves
-    spin : rad/s
-    path : time and coordinates, as of `solvers.held.state.HeldState`, shape (m, 1 + n)
-
-    Returns
-    -------
-    Extremes of one turn; not a number where the path is too short
+    `path`: time and coordinates as of `solvers.held.state.HeldState`, (m, 1 + n); nan where it is too short.
     """
     if len(path) <= 4 * _ENDS:
         nothing = np.full((1, len(machine.rotor.system().coordinates)), np.nan, dtype=complex)
@@ -98,18 +74,10 @@ def held_extremes(machine: LoadedMachine, spin: float, path: Array) -> Extremes:
 def drive_torque(
     path: RotorPath, time: Array, speed: Array, angle: Array, inertia: Array, motor: bool
 ) -> Array:
-    """Mean torque on the shaft from each sample to the next [theory: loads, eq. 17].
+    """Mean torque on the shaft from each sample to the next, N m, shape (k,) [theory: loads, eq. 17].
 
-    Parameters
-    ----------
-    path : with the works at the samples
-    time, speed, angle : of the samples, s, rad/s and rad, shape (k,)
-    inertia : of what spins about the axis without the liquid, kg m^2, shape (k,)
-    motor : a motor drives: its own work counts
-
-    Returns
-    -------
-    N m, shape (k,); the first is that of the interval after it
+    The first is that of the interval after it. `inertia` of what spins without liquid, kg m^2; `motor`: its
+    own work counts.
     """
     if time.size < 2:
         return np.zeros(time.shape)

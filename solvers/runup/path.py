@@ -1,4 +1,4 @@
-"""The motion of the rotor all along a run-up, fine enough for velocities and accelerations [theory: loads].
+"""Motion of the rotor all along a run-up, fine enough for velocities and accelerations [theory: loads].
 
 `Recorder` keeps it while a machine runs; the run is the same with it and without. SI units.
 """
@@ -36,16 +36,9 @@ class RotorPath:
     jumps: Array = field(default_factory=lambda: np.zeros(0))
 
     def motion(self, time: Array) -> tuple[Array, Array, Array, Array]:
-        """Angle, coordinates, their rates and accelerations at some times, by cubic splines between jumps.
+        """Angle, coordinates, their rates and accelerations at rising times, by cubic splines between jumps.
 
-        Parameters
-        ----------
-        time : within those of the path, rising, s, shape (t,); at a jump the motion is that after it
-
-        Returns
-        -------
-        rad, shape (t,); coordinates and their derivatives, shape (t, n) each; derivatives are not a number
-        where two jumps are so close that they are not known between them
+        At a jump the motion after it; nan where two jumps are too close for derivatives.
         """
         angle, n = np.interp(time, self.time, self.angle), self.coordinates.shape[1]
         if self.time.size < _LEAST:
@@ -64,9 +57,9 @@ class RotorPath:
         return angle, found[0], found[1], found[2]
 
     def kicks(self) -> Array:
-        """By how much the rates change at each jump, m/s and rad/s, shape (j, n).
+        """Changes of the rates at each jump, m/s and rad/s, shape (j, n).
 
-        Not a number where the motion before it or after it is not known.
+        nan where the motion before or after is not known.
         """
         ends, found = np.concatenate([[-np.inf], self.jumps, [np.inf]]), []
         for k, time in enumerate(self.jumps.tolist()):
@@ -88,23 +81,13 @@ class RotorPath:
 
 
 def fastest_frequency(system: RotorSystem) -> float:
-    """Highest undamped natural frequency of a rotor at rest, rad/s.
-
-    Parameters
-    ----------
-    system : the rotor
-    """
+    """Highest undamped natural frequency of a rotor at rest, rad/s."""
     squares = np.linalg.eigvals(np.linalg.solve(system.mass, system.stiffness)).real
     return math.sqrt(max(float(squares.max()), 0.0))
 
 
 def evenly(phase: Array) -> Index:
-    """Of some moments the nearest to the middle of each whole number of their phase.
-
-    Parameters
-    ----------
-    phase : rising, shape (m,)
-    """
+    """Of some moments the nearest to the middle of each whole number of their phase."""
     part = np.floor(phase)
     order = np.lexsort((np.abs(phase - part - 0.5), part))
     _, first = np.unique(part[order], return_index=True)
@@ -112,13 +95,7 @@ def evenly(phase: Array) -> Index:
 
 
 def apart(time: Array, angle: Array, frequency: float) -> Flags:
-    """Of moments chosen by `evenly` those that are not close to the one before; both ends stay.
-
-    Parameters
-    ----------
-    time, angle : s and rad, rising, shape (m,)
-    frequency : fastest natural frequency, rad/s
-    """
+    """Of moments chosen by `evenly` those that are not close to the one before; both ends stay."""
     if time.size <= 2:
         return np.ones(time.shape, dtype=bool)
     far = np.diff(angle + frequency * time) > _CLOSE * 2.0 * np.pi / FINE
@@ -162,12 +139,7 @@ class Recorder:
         self.work.append([float(machine.sums[name]) for name in WORKS])
 
     def path(self, jumps: Sequence[float] = ()) -> RotorPath:
-        """What was kept, up to the last step.
-
-        Parameters
-        ----------
-        jumps : times at which the velocities have changed at once, s
-        """
+        """What was kept, up to the last step."""
         rows = np.concatenate(self.kept)
         if self.waiting.size:
             # The last step stands for the one before it too, which may be close.

@@ -18,12 +18,7 @@ FLOOR = 0.005
 
 @dataclass(frozen=True)
 class Stage:
-    """One part of a programme: a speed that is given, or a drum that turns freely.
-
-    Raises
-    ------
-    InputError : a value out of its range, too few or too many of them
-    """
+    """One part of a programme: a speed that is given, or a drum that turns freely."""
 
     stop: float | None = None  #: speed at the end, rad/s; None where the time alone ends it
     #: at which a given speed changes, rad/s^2, without a sign; None where the time is given
@@ -45,12 +40,7 @@ class Stage:
             raise InputError("rate", self.rate, "left out where the duration is given")
 
     def lasts(self, spin: float, stop: float) -> float:
-        """How long a stage with a given speed lasts, s.
-
-        Parameters
-        ----------
-        spin, stop : speeds at its beginning and at its end, rad/s
-        """
+        """How long a stage with a given speed lasts, s."""
         if self.duration is not None:
             return self.duration
         assert self.rate is not None
@@ -58,16 +48,7 @@ class Stage:
 
 
 def require_curve(speeds: tuple[float, ...], torques: tuple[float, ...]) -> None:
-    """Refuse what is no torque curve of a motor.
-
-    Parameters
-    ----------
-    speeds, torques : of its points, rad/s and N m
-
-    Raises
-    ------
-    InputError : less than two points, numbers that are not finite, speeds that do not rise
-    """
+    """Refuse what is no torque curve of a motor."""
     if len(speeds) < 2 or len(speeds) != len(torques):
         raise InputError("motor.torques", len(torques), "one for each of at least two speeds")
     if not all(math.isfinite(value) for value in (*speeds, *torques)):
@@ -78,12 +59,7 @@ def require_curve(speeds: tuple[float, ...], torques: tuple[float, ...]) -> None
 
 @dataclass(frozen=True)
 class Programme:
-    """Stages one after the other, each from the speed that the one before has reached.
-
-    Raises
-    ------
-    InputError : a value out of its range, no stage, no speed above 0, a coast or a motor without inertia
-    """
+    """Stages one after the other, each from the speed that the one before has reached."""
 
     start: float  #: speed at the beginning, rad/s; a drum at rest begins at the `floor`
     stages: tuple[Stage, ...]  #: at least one
@@ -113,7 +89,7 @@ class Programme:
 
     @property
     def highest(self) -> float:
-        """Highest speed that it asks for, rad/s."""
+        """Highest speed of the programme, rad/s."""
         return max(self.start, *(stage.stop or 0.0 for stage in self.stages if not stage.free), 0.0)
 
     @property
@@ -122,13 +98,7 @@ class Programme:
         return FLOOR * self.highest
 
     def target(self, stage: Stage, spin: float) -> float:
-        """Speed at which a stage ends, or below which it cannot go, rad/s.
-
-        Parameters
-        ----------
-        stage : of this programme
-        spin : at its beginning, rad/s
-        """
+        """Speed at which a stage ends, or below which it cannot go, rad/s."""
         if stage.stop is None:
             return self.floor if stage.free else spin
         return max(stage.stop, self.floor)
@@ -150,7 +120,7 @@ class Programme:
     def corners(self) -> Array:
         """Times at which stages begin and end and the speeds there, shape (2, k).
 
-        Where the drum coasts they are estimates: those of a drum without liquid that does not whirl.
+        Estimates where the drum coasts: those of a drum without liquid that does not whirl.
         """
         time, spin = 0.0, max(self.start, self.floor)
         points = [(time, spin)]

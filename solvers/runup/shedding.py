@@ -18,12 +18,7 @@ _PIECE = 1e-3
 
 
 class Shedding:
-    """What is left of the parts that leave, and the pieces of time in which it is set anew.
-
-    Parameters
-    ----------
-    system : of the rotor, with its s parts that leave
-    """
+    """What is left of the s parts of a rotor that leave, and the pieces of time in which it is set anew."""
 
     def __init__(self, system: RotorSystem) -> None:
         self._system = system
@@ -34,13 +29,7 @@ class Shedding:
         self.brought = 0.0  # energy that came with what has left, below 0, J
 
     def pieces(self, machine: RunupMachine, stop: float) -> Iterator[float]:
-        """Times on the way to another one; the unbalance is set before each, and what has left is gone after.
-
-        Parameters
-        ----------
-        machine : that is advanced to each time before the next is asked for
-        stop : the last of them, s
-        """
+        """Times on the way to another; the unbalance is set before each, what has left is gone after."""
         if not self.left.size:
             yield stop
             return

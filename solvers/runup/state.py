@@ -1,7 +1,7 @@
-"""What the coupled time steps work on, and how every run-up begins. SI units.
+"""What the coupled time steps work on, and how every run-up begins; SI units.
 
-The steps take the machine, its chambers, its state and scratch. Numbers that change one by one stand in
-records, see `solvers.layer.records`.
+The steps take machine, chambers, state and scratch; single numbers that change stand in records, see
+`solvers.layer.records`.
 """
 
 from __future__ import annotations
@@ -37,27 +37,19 @@ def mean_area(fill: Fill) -> float:
 
 
 class LayerProperties(NamedTuple):
-    """What the steps know of a layer.
+    """What the steps know of a layer."""
 
-    Parameters
-    ----------
-    radius : of the wall R, m
-    weight : rho h_c, kg/m^2
-    mass : kg
-    law, coefficient : of the friction: number of the law; k, 1/s, Stokes' over the root of the spin, or c_f
-    lid : 2 R/h_c under Stokes' friction and the law of the wall, otherwise 0
-    dispersion : whether its waves disperse
-    plates, thin, top : of the law of the wall, see `fluid.friction.wall.WallDrag`, of unit spin: the
-        coefficient goes with the root of the spin and `thin` with its inverse
-    """
-
-    radius: float
-    weight: float
-    mass: float
+    radius: float  #: of the wall R, m
+    weight: float  #: rho h_c, kg/m^2
+    mass: float  #: kg
+    #: law and coefficient: of the friction: number of the law; k, 1/s, Stokes' over the root of the spin, or
+    #: c_f
     law: int
     coefficient: float
-    lid: float
-    dispersion: bool
+    lid: float  #: 2 R/h_c under Stokes' friction and the law of the wall, otherwise 0
+    dispersion: bool  #: whether its waves disperse
+    #: plates, thin and top: of the law of the wall, see `fluid.friction.wall.WallDrag`, of unit spin: the
+    #: coefficient goes with the root of the spin and `thin` with its inverse
     plates: float = 0.0
     thin: float = 0.0
     top: float = 0.0
@@ -69,14 +61,7 @@ LAYER = np.dtype([(name, _KINDS.get(name, np.float64)) for name in LayerProperti
 
 
 def layer_properties(fill: Fill, friction: Friction, dispersion: bool) -> LayerProperties:
-    """What the steps know of a chamber's layer.
-
-    Parameters
-    ----------
-    fill : chamber and liquid
-    friction : on the walls; the laminar law takes the frequency of the slower free wave
-    dispersion : add the finite depth's dispersion
-    """
+    """Properties of a chamber's layer for the steps; the laminar law at the slower free wave's frequency."""
     chamber, slip = fill.chamber, unit_slip(fill)
     law, coefficient = friction.at(fill.liquid.viscosity, slip, chamber.radius)
     laminar = friction.law.laminar and slip > 0.0
@@ -129,17 +114,9 @@ _TURNS = np.concatenate(([0.0], np.geomspace(1e-5, 1e4, 430)))
 def drag_curves(
     fills: Sequence[Fill], pools: Sequence[Pool | None], friction: Friction, gravity: float
 ) -> Array:
-    """Relative rotation of the walls and their torque on each pool, as the steps take it.
+    """Relative rotation of the walls and their torque on each pool, as the steps take it, shape (l, 2, k).
 
-    Parameters
-    ----------
-    fills, pools : chambers, and what lies in them, shape (l,)
-    friction : as for `fluid.pool.wall_torque`
-    gravity : across the axis, m/s^2
-
-    Returns
-    -------
-    rad/s, rising from 0, and N m, 0 where there is no pool, shape (l, 2, k)
+    rad/s, rising from 0, and N m, 0 where there is no pool.
     """
     found = np.zeros((len(fills), 2, _TURNS.size))
     for j, (fill, pool) in enumerate(zip(fills, pools, strict=True)):
@@ -183,165 +160,110 @@ WORKS = ("unbalance", "drive", "gravity", "support", "friction", "bores", "baffl
 
 
 class Machine(NamedTuple):
-    """Rotor and layers; n coordinates, l layers, c cells.
+    """Rotor and layers; n coordinates, l layers, c cells."""
 
-    Parameters
-    ----------
-    matrices : M, C, G, K, shape (4, n, n)
-    unbalance : U, complex, shape (n,)
-    planes : in-plane displacement of each axis for unit coordinates, the layers' first, then the pools',
-        shape (l + p, 2, n)
-    layers : records LAYER, shape (l,)
-    pools : records POOL of liquid that swings at the bottom, shape (p,)
-    drags : of each pool, relative rotation of its walls, rising from 0, and their torque, shape (p, 2, k)
-    tables : of the law of the wall, shape (l, m, 2); m = 0 under other laws
-    gravity : acceleration across the axis, shape (2,)
-    angles : cosine and sine at the cells' middles and at their left faces, shape (4, c)
-    curve : the motor's speeds and torques, shape (2, k); k = 0 for a ramp
-    watched : displacement of the axis whose amplitude counts, for unit coordinates, shape (2, n)
-    plates : baffles of each layer, as by `solvers.layer.baffles.tables_of`, shape (l, k, COLUMNS)
-    gaps : area of the full gap of each layer over R^2, 1 without an inner wall, shape (l,)
-    balls : records BALL, shape (N,)
-    races : displacement of the axis in the plane of each ball for unit coordinates, shape (N, 2, n)
-    """
-
-    matrices: Array
-    unbalance: NDArray[np.complex128]
+    matrices: Array  #: M, C, G, K, shape (4, n, n)
+    unbalance: NDArray[np.complex128]  #: U, complex, shape (n,)
+    #: in-plane displacement of each axis for unit coordinates, the layers' first, then the pools', shape (l +
+    #: p, 2, n)
     planes: Array
-    layers: Record
-    pools: Record
+    layers: Record  #: records LAYER, shape (l,)
+    pools: Record  #: records POOL of liquid that swings at the bottom, shape (p,)
+    #: of each pool, relative rotation of its walls, rising from 0, and their torque, shape (p, 2, k)
     drags: Array
-    tables: Array
-    gravity: Array
-    angles: Array
-    curve: Array
-    watched: Array
-    plates: Array
-    gaps: Array
-    balls: Record
-    races: Array
+    tables: Array  #: of the law of the wall, shape (l, m, 2); m = 0 under other laws
+    gravity: Array  #: acceleration across the axis, shape (2,)
+    angles: Array  #: cosine and sine at the cells' middles and at their left faces, shape (4, c)
+    curve: Array  #: the motor's speeds and torques, shape (2, k); k = 0 for a ramp
+    watched: Array  #: displacement of the axis whose amplitude counts, for unit coordinates, shape (2, n)
+    plates: Array  #: baffles of each layer, as by `solvers.layer.baffles.tables_of`, shape (l, k, COLUMNS)
+    gaps: Array  #: area of the full gap of each layer over R^2, 1 without an inner wall, shape (l,)
+    balls: Record  #: records BALL, shape (N,)
+    races: Array  #: displacement of the axis in the plane of each ball for unit coordinates, shape (N, 2, n)
 
 
 class State(NamedTuple):
-    """What changes with time.
+    """What changes with time."""
 
-    Parameters
-    ----------
-    place, rate : of the coordinates, shape (n,)
-    shaft : record SHAFT, shape (1,)
-    area, momentum : A/R^2 and q/R^2 of the layers' cells, shape (l, c)
-    rolling : A e/R^4 of the fluctuations behind bores, shape (l, c), or (l, 0) where they are left out
-    lean, lean_rate : angle of each pool from the bottom, positive with the spin, and its rate, shape (p,)
-    push : mean accelerations of the axes over the last step and over the one before, shape (l + p, 2, 2)
-    pace : record PACE, shape (1,)
-    sums : record SUMS, shape (1,)
-    crest : record CREST, shape (1,)
-    trace : time, angle, coordinates, and the first moment of each layer over R^3 in the drum frame, of every
-        step, shape (k, 2 + n + 2 l); k = 0 where nobody wants them
-    roll, roll_rate : angle of each ball in the standing frame, and its rate, shape (N,)
-    """
-
+    #: place and rate: of the coordinates, shape (n,)
     place: Array
     rate: Array
-    shaft: Record
+    shaft: Record  #: record SHAFT, shape (1,)
+    #: area and momentum: A/R^2 and q/R^2 of the layers' cells, shape (l, c)
     area: Array
     momentum: Array
+    #: A e/R^4 of the fluctuations behind bores, shape (l, c), or (l, 0) where they are left out
     rolling: Array
+    #: lean and lean_rate: angle of each pool from the bottom, positive with the spin, and its rate, shape
+    #: (p,)
     lean: Array
     lean_rate: Array
+    #: mean accelerations of the axes over the last step and over the one before, shape (l + p, 2, 2)
     push: Array
-    pace: Record
-    sums: Record
-    crest: Record
+    pace: Record  #: record PACE, shape (1,)
+    sums: Record  #: record SUMS, shape (1,)
+    crest: Record  #: record CREST, shape (1,)
+    #: time, angle, coordinates, and the first moment of each layer over R^3 in the drum frame, of every step,
+    #: shape (k, 2 + n + 2 l); k = 0 where nobody wants them
     trace: Array
+    #: roll and roll_rate: angle of each ball in the standing frame, and its rate, shape (N,)
     roll: Array
     roll_rate: Array
 
 
 class Room(NamedTuple):
-    """Scratch of the steps, made by `solvers.runup.long_wave`.
+    """Scratch of the steps, made by `solvers.runup.long_wave`."""
 
-    Parameters
-    ----------
-    area, momentum, rolling, lean, lean_rate : the liquid at the beginning of the step, as in `State`
-    drag : impulse of the walls' torque on each pool, shape (p,)
-    begin, end : records MEASURES of the layers at both ends, shape (l,)
-    gains : records GAINS of the layers, shape (l,)
-    inertia : of the flows of layers and pools (xx, xy, yy), shape (l + p, 3)
-    before, after : their momenta relative to their axes at both ends, shape (l + p, 2)
-    guess, found : mean accelerations of the axes put in and come out, shape (l + p, 2)
-    change, swing : of the velocities over the step; of the unbalance's momentum, shape (n,)
-    left, right : matrix and loads of the equations of rotor and balls, shapes (n + N, n + N) and (n + N,)
-    roll : change of the balls' rates over the step, shape (N,)
-    held : rolling resistance of each ball over its speed in the drum, N m s, shape (N,)
-    spins : at both ends, shape (2,)
-    turn : cosine and sine of the angle turned at both ends, shape (4,)
-    force : body force over R in the drum frame at both ends, two parts each, shape (4,)
-    spare : scratch of `solvers.runup.kernel.layer_step`, shape (l, ...)
-    """
-
+    #: area, momentum, rolling, lean and lean_rate: the liquid at the beginning of the step, as in `State`
     area: Array
     momentum: Array
     rolling: Array
     lean: Array
     lean_rate: Array
-    drag: Array
+    drag: Array  #: impulse of the walls' torque on each pool, shape (p,)
+    #: begin and end: records MEASURES of the layers at both ends, shape (l,)
     begin: Record
     end: Record
-    gains: Record
-    inertia: Array
+    gains: Record  #: records GAINS of the layers, shape (l,)
+    inertia: Array  #: of the flows of layers and pools (xx, xy, yy), shape (l + p, 3)
+    #: before and after: their momenta relative to their axes at both ends, shape (l + p, 2)
     before: Array
     after: Array
+    #: guess and found: mean accelerations of the axes put in and come out, shape (l + p, 2)
     guess: Array
     found: Array
+    #: change and swing: of the velocities over the step; of the unbalance's momentum, shape (n,)
     change: Array
     swing: Array
+    #: left and right: matrix and loads of the equations of rotor and balls, shapes (n + N, n + N) and (n +
+    #: N,)
     left: Array
     right: Array
-    roll: Array
-    held: Array
-    spins: Array
-    turn: Array
-    force: Array
-    spare: Array
+    roll: Array  #: change of the balls' rates over the step, shape (N,)
+    held: Array  #: rolling resistance of each ball over its speed in the drum, N m s, shape (N,)
+    spins: Array  #: at both ends, shape (2,)
+    turn: Array  #: cosine and sine of the angle turned at both ends, shape (4,)
+    force: Array  #: body force over R in the drum frame at both ends, two parts each, shape (4,)
+    spare: Array  #: scratch of `solvers.runup.kernel.layer_step`, shape (l, ...)
 
 
 class Rest(NamedTuple):
-    """A rotor without deflection and its liquid at rest in the drum; n coordinates, l chambers.
+    """A rotor without deflection and its liquid at rest in the drum; n coordinates, l chambers."""
 
-    Parameters
-    ----------
-    capture : own rotation above which each liquid stays a layer, rad/s, inf for a solid mass, shape (l,)
-    pools : of the chambers across gravity; None for a solid mass, no liquid, and without gravity
-    planes : displacement of each chamber's axis for unit coordinates, shape (l, 2, n)
-    watched : that of the first chamber, or of the axis at a position without one, shape (2, n)
-    shaft : record SHAFT at the spin, shape (1,)
-    gravity : acceleration across the axis, shape (2,)
-    """
-
+    #: own rotation above which each liquid stays a layer, rad/s, inf for a solid mass, shape (l,)
     capture: Array
+    #: of the chambers across gravity; None for a solid mass, no liquid, and without gravity
     pools: tuple[Pool | None, ...]
-    planes: Array
-    watched: Array
-    shaft: Record
-    gravity: Array
+    planes: Array  #: displacement of each chamber's axis for unit coordinates, shape (l, 2, n)
+    watched: Array  #: that of the first chamber, or of the axis at a position without one, shape (2, n)
+    shaft: Record  #: record SHAFT at the spin, shape (1,)
+    gravity: Array  #: acceleration across the axis, shape (2,)
 
 
 def at_rest(
     system: RotorSystem, fills: Sequence[Fill], spin: float, gravity: float, position: float = 0.0
 ) -> Rest:
-    """How every run-up begins.
-
-    Parameters
-    ----------
-    system, fills, gravity : as for `solvers.runup.runup.run_up`
-    spin : at the beginning, rad/s
-    position : of the plane whose amplitude counts where there is no chamber, m
-
-    Raises
-    ------
-    InputError : a negative gravity
-    """
+    """How every run-up begins; `position` of the plane whose amplitude counts without a chamber, m."""
     require_not_negative("gravity", gravity)
     shaft = records(SHAFT)
     shaft[0].spin = spin
@@ -412,10 +334,6 @@ class CoupledRotor(ABC):
         """Rate at which layers that fall swing on as pools at the bottom, rad/s [theory: pool, eq. 11].
 
         Their angular momentum stays, as far as their energy and what the fall gives suffice for that.
-
-        Parameters
-        ----------
-        own : rotation of the liquid itself, rad/s, shape (l,)
         """
         arm = np.array([0.0 if pool is None else pool.arm for pool in self.pools])
         inertia = np.maximum(self.pool_inertia, 1e-300)
@@ -426,10 +344,7 @@ class CoupledRotor(ABC):
     def caught(self, active: Flags, own: Array) -> Flags:
         """Which liquids are layers from now on [theory: pool, eq. 9-10].
 
-        Parameters
-        ----------
-        active : those that are layers now, shape (l,)
-        own : rotation of the liquid itself: of layers, and of pools once they were spread, rad/s, shape (l,)
+        `own`: rotation of the liquid itself: of layers, and of pools once they were spread, rad/s.
         """
         if self.handover is Handover.RIDING:
             return np.asarray(self.spin > np.where(active, RELEASE * self.capture, self.capture))
@@ -518,12 +433,7 @@ class CoupledRotor(ABC):
         self.crest.amplitude = 0.0
 
     def largest(self, amplitude: float) -> dict[str, float]:
-        """Parts of a reading: the largest amplitude of the interval, with that of the moment itself.
-
-        Parameters
-        ----------
-        amplitude : of the moment, m
-        """
+        """Parts of a reading: the largest amplitude of the interval, with that of the moment itself."""
         largest, speed, time = self.crest.item()
         if amplitude >= largest:
             largest, speed, time = amplitude, self.spin, self.time

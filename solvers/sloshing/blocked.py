@@ -18,10 +18,6 @@ def blocked_inertia(section: LiquidSection) -> float:
 
     The flow of a stroke has a potential, 0 on the free surface and with the walls' normal velocity on them
     [theory: baffles, eq. 14].
-
-    Parameters
-    ----------
-    section : the liquid at rest
     """
     push = _push(section)
     unknown = np.zeros(len(section.points), dtype=bool)
@@ -51,12 +47,7 @@ def _push(section: LiquidSection) -> Array:
 
 
 def blocked_share(fill: Fill) -> float:
-    """Share of a layer's moment of inertia that its baffles take along at once [theory: baffles, eq. 14].
-
-    Parameters
-    ----------
-    fill : chamber with baffles in the liquid
-    """
+    """Share of a layer's moment of inertia that its baffles take along at once [theory: baffles, eq. 14]."""
     from meshes.rings.quadrilaterals import ring
 
     radius, inner = fill.chamber.radius, fill.surface_radius

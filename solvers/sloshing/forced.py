@@ -40,19 +40,8 @@ class ModeDamping:
 def mode_damping(system: Condensed, modes: SloshingModes, viscosity: float, height: float) -> ModeDamping:
     """Damping of each mode, to first order in the thickness of the layers [theory: sloshing, eq. 18-23].
 
-    Parameters
-    ----------
-    system, modes : the liquid and its modes
-    viscosity : kinematic viscosity nu, m^2/s, 0 or above
-    height : of the chamber along the axis, m; inf leaves floor and lid out
-
-    Returns
-    -------
-    The rates; laminar, without separation at the edges of baffles, which damps more and grows with amplitude.
-
-    Raises
-    ------
-    InputError : a negative viscosity, a height that is not positive
+    Laminar, without separation at the edges of baffles, which damps more and grows with amplitude; an
+    infinite height leaves floor and lid out.
     """
     require_not_negative("viscosity", viscosity)
     if height != np.inf:
@@ -83,31 +72,16 @@ def mode_damping(system: Condensed, modes: SloshingModes, viscosity: float, heig
 def wall_loss(section: LiquidSection, psi: Complex, cut: Array) -> Array:
     """oint |d psi/dn|^2 ds on all walls, cut off at the edges of thin baffles [theory: sloshing, eq. 23].
 
-    Parameters
-    ----------
-    section : the liquid at rest
-    psi : on the nodes, shape (k, N)
-    cut : thickness of the layer of each, m, shape (k,)
-
-    Returns
-    -------
-    shape (k,), in the units of psi^2/m
+    Shape (k,), in the units of psi^2/m, of psi on the nodes (k, N) and layers as thick as `cut`, m.
     """
     slope, weight = wall_weights(section, np.asarray(cut)[:, None])
     return np.asarray(np.sum(np.square(np.abs(slope @ psi.T)).T * weight, axis=1))
 
 
 def wall_weights(section: LiquidSection, cut: Array) -> tuple[csr_array, Array]:
-    """Slope along the normal at points on the walls, and their lengths, cut off at edges of thin baffles.
+    """Slope along the normal at points on the walls, (Q, N), 1/m, and their lengths, m, (Q,) or (k, Q).
 
-    Parameters
-    ----------
-    section : the liquid at rest
-    cut : thickness of the layer, m, shape () or (k, 1)
-
-    Returns
-    -------
-    psi at the nodes to its slope, shape (Q, N), 1/m; lengths, shape (Q,) or (k, Q), m.
+    Cut off at edges of thin baffles by the thickness of the layer, m, shape () or (k, 1).
     """
     walls, edges = wall_points(section), baffle_edges(section)
     if len(edges) == 0:
@@ -158,21 +132,8 @@ def forced_response(
 ) -> ForcedResponse:
     """Force of the liquid on a whirling drum, a sum over all modes [theory: sloshing, eq. 14-16].
 
-    Parameters
-    ----------
-    system : the liquid, from `condense`
-    spin : Omega, rad/s
-    whirl_speed : omega in space, rad/s, shape (...,); 0 serves gravity across the axis, the spin itself a
-        synchronous whirl
-    modes : `spectrum` of the system, if it is known already
-
-    Returns
-    -------
-    The response; infinite where the whirl meets a free wave.
-
-    Raises
-    ------
-    InputError : a spin that is not positive, a whirl speed that is not finite
+    Whirl speeds in space, rad/s: 0 serves gravity across the axis, the spin itself a synchronous whirl;
+    infinite where the whirl meets a free wave.
     """
     require_positive("spin", spin)
     omega = np.asarray(whirl_speed, dtype=float)
@@ -223,18 +184,10 @@ def _moments_of(
 
 
 def displacement_field(system: LiquidSystem, spin: float, slip: float, force: Complex) -> Complex:
-    """Stream function of the displacement under a body force, by one dense solution [theory: sloshing, eq.
-    13].
+    """Stream function of the displacement under a body force, by one dense solution
+    [theory: sloshing, eq. 13].
 
-    Parameters
-    ----------
-    system : the liquid
-    spin, slip : Omega and s, rad/s
-    force : amplitude of f, m/s^2, shape (2,)
-
-    Returns
-    -------
-    In the condensed unknowns, m^2, shape (n,).
+    In the condensed unknowns, m^2, shape (n,), for the amplitude of f, m/s^2, shape (2,).
     """
     matrix = spin**2 * system.surface - slip**2 * system.inertia + 2j * slip * spin * system.gyration
     return np.asarray(np.linalg.solve(matrix, -(system.moment.T @ force)))
@@ -243,14 +196,7 @@ def displacement_field(system: LiquidSystem, spin: float, slip: float, force: Co
 def newton_force(system: LiquidSystem, spin: float, slip: float, force: Complex, field: Complex) -> Complex:
     """Force on the drum over rho h from the motion of the liquid's centre of mass [theory: sloshing, eq. 15].
 
-    Parameters
-    ----------
-    system, spin, slip, force : as for `displacement_field`
-    field : what it returns
-
-    Returns
-    -------
-    Amplitudes in both directions, m^3/s^2, shape (2,).
+    Amplitudes in both directions, m^3/s^2, for the field that `displacement_field` returns.
     """
     change = 1j * slip * np.eye(2) + spin * TURN
     return np.asarray(system.liquid_area * force + change @ change @ (system.moment @ field))
@@ -261,14 +207,6 @@ def pressure_force(system: LiquidSystem, spin: float, slip: float, force: Comple
 
     The slope of the pressure along the walls follows from the velocity there, pressure itself where a wall
     meets the free surface. An independent statement of `newton_force`, less accurate.
-
-    Parameters
-    ----------
-    system, spin, slip, force, field : as for `newton_force`
-
-    Returns
-    -------
-    Amplitudes in both directions, m^3/s^2, shape (2,).
     """
     section, walls = system.section, wall_points(system.section)
     eta = system.on_nodes(field[None])

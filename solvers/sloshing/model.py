@@ -104,10 +104,6 @@ class SmallWaves(WaveModel):
         """See `WaveModel`: the part of the answer that turns with the whirl.
 
         Depths are those at an instant when the deflection lies along the first baffle.
-
-        Raises
-        ------
-        InputError : gravity across the axis, no free surface, a section of its own
         """
         self._require(fill, whirl)
         from meshes.rings.quadrilaterals import ring

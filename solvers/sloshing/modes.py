@@ -58,12 +58,7 @@ class SloshingModes:
 
 
 def spectrum(system: LiquidSystem) -> Spectrum:
-    """All modes by one Hermitian eigenproblem, with real frequencies to rounding [theory: sloshing, eq. 11].
-
-    Parameters
-    ----------
-    system : the liquid
-    """
+    """All modes by one Hermitian eigenproblem, frequencies real to rounding [theory: sloshing, eq. 11]."""
     n = len(system.inertia)
     root_k, root_b = cholesky(system.inertia, lower=True), cholesky(system.surface, lower=True)
     matrix = np.zeros((2 * n, 2 * n), dtype=complex)
@@ -81,21 +76,8 @@ def sloshing_modes(
 ) -> SloshingModes:
     """Slowest modes of the liquid in the drum's frame [theory: sloshing, eq. 10-12].
 
-    Parameters
-    ----------
-    system : the liquid, from `condense` or `surface_system`
-    spin : Omega, rad/s
-    count : how many, at least 1; fewer are returned if the mesh has fewer
-    modes : of the system, at least the first one beyond those counted and all with its frequency; all of them
-        if None, for which the system has to be dense
-
-    Returns
-    -------
-    The modes.
-
-    Raises
-    ------
-    InputError : a spin that is not positive, a count below 1
+    `modes` of the system are at least the first one beyond those counted and all with its frequency; None:
+    all of them, for which the system has to be dense. Fewer are returned if the mesh has fewer.
     """
     require_positive("spin", spin)
     if count < 1 or count != int(count):
@@ -137,16 +119,7 @@ def sloshing_modes(
 
 
 def first_largest(values: Complex) -> Indices:
-    """Place of the first of the largest values of each row, of which rounding alone makes one the largest.
-
-    Parameters
-    ----------
-    values : shape (k, n)
-
-    Returns
-    -------
-    shape (k,)
-    """
+    """Place of the first of the largest values of each row, of which rounding alone makes one the largest."""
     size = np.abs(values)
     return np.asarray((size >= (1.0 - _TIE) * size.max(axis=1, keepdims=True)).argmax(axis=1))
 
@@ -189,18 +162,10 @@ def _residual(sigma: Array, kinetic: Array, travel: Array, tension: Array) -> Ar
 
 
 def surface_displacement(section: LiquidSection, eta: Complex) -> tuple[Indices, Complex]:
-    """Displacement xi = eta_theta/a along the radius, as a smooth function fitted on each stretch of surface.
+    """Nodes on the surface and displacement xi = eta_theta/a along the radius there, m, shape (k, S).
 
-    [theory: sloshing, eq. 3]. Where the surface meets both sides of a baffle it has a node on either side.
-
-    Parameters
-    ----------
-    section : the liquid at rest
-    eta : stream function of the displacement on the nodes, m^2, shape (k, N)
-
-    Returns
-    -------
-    Nodes on the surface, shape (S,), and the displacement there, m, shape (k, S).
+    As a smooth function fitted on each stretch of surface [theory: sloshing, eq. 3]. Where the surface meets
+    both sides of a baffle it has a node on either side.
     """
     nodes = np.unique(section.surface)
     sides = np.searchsorted(nodes, section.surface)
@@ -225,13 +190,6 @@ def surface_displacement(section: LiquidSection, eta: Complex) -> tuple[Indices,
 def running(section: LiquidSection, eta: Complex) -> Array:
     """How much of a motion runs round the surface: oint Im(eta* eta_theta) over oint |eta eta_theta|.
 
-    Parameters
-    ----------
-    section : the liquid at rest
-    eta : stream function of the displacement on the nodes, shape (k, N)
-
-    Returns
-    -------
     1 for a wave that runs with the spin as e^{i n theta}, 0 for a standing one, -1 against it, shape (k,).
     """
     _, values, slopes = _along_sides(section, eta)
@@ -260,15 +218,7 @@ def _along_sides(section: LiquidSection, eta: Complex) -> tuple[Array, Complex, 
 def harmonics(section: LiquidSection, eta: Complex, most: int) -> Complex:
     """Fourier coefficients of the displacement, (1/2 pi) oint xi e^{-i n theta} dtheta.
 
-    Parameters
-    ----------
-    section : the liquid at rest
-    eta : stream function of the displacement on the nodes, m^2, shape (k, N)
-    most : largest n
-
-    Returns
-    -------
-    Coefficients for n = -most ... most, m, shape (k, 2 most + 1).
+    For n = -most ... most, m, shape (k, 2 most + 1).
     """
     angle, _, rise = _along_sides(section, eta)
     n = np.arange(-most, most + 1)

@@ -48,13 +48,8 @@ class ReducedLiquid:
     def compliance(self, slip_ratio: ArrayLike) -> Complex:
         """First moment of the displaced liquid for a uniform force [theory: sections, eq. 2].
 
-        Parameters
-        ----------
-        slip_ratio : s/Omega of a force f e^{i s t} in the drum's frame, shape (k,)
-
-        Returns
-        -------
-        Q Omega^2/(rho h f) over the two directions, shape (k, 2, 2), m^2
+        Q Omega^2/(rho h f) over the two directions, shape (k, 2, 2), m^2, for a force f e^{i s t} in the
+        drum's frame, its s/Omega of shape (k,).
         """
         s = np.asarray(slip_ratio, dtype=complex)[:, None, None]
         matrix = -np.square(s) * self.inertia + 2j * s * self.gyration + self.surface
@@ -64,13 +59,7 @@ class ReducedLiquid:
     def force_ratio(self, slip_ratio: ArrayLike) -> Array:
         """Force on a drum that whirls in a circle over that of a full one, as far as it turns with the whirl.
 
-        Parameters
-        ----------
-        slip_ratio : s/Omega, of the whirl as seen from the drum, shape (k,)
-
-        Returns
-        -------
-        G, shape (k,) [theory: sections, eq. 2]
+        G [theory: sections, eq. 2] for s/Omega of the whirl as seen from the drum, shape (k,).
         """
         s, found = np.asarray(slip_ratio, dtype=float), self.compliance(slip_ratio)
         along, across = found[:, 0, 0] + found[:, 1, 1], found[:, 0, 1] - found[:, 1, 0]
@@ -79,12 +68,7 @@ class ReducedLiquid:
 
 
 def reduce_liquid(system: LiquidSystem) -> ReducedLiquid:
-    """Keep the motions that answer a uniform force [theory: sections, eq. 1].
-
-    Parameters
-    ----------
-    system : the condensed liquid
-    """
+    """Keep the motions that answer a uniform force [theory: sections, eq. 1]."""
     root = scipy.linalg.cholesky(system.inertia, lower=True)
 
     def scaled(matrix: Array) -> Array:
@@ -115,14 +99,7 @@ def reduce_liquid(system: LiquidSystem) -> ReducedLiquid:
 def spanned(vectors: Any, distinct: float = _DISTINCT) -> Any:
     """Orthonormal columns that span others, but for what rounding and near repetition add.
 
-    Parameters
-    ----------
-    vectors : real or complex, shape (n, k)
-    distinct : part of a vector that must stand across the others
-
-    Returns
-    -------
-    Shape (n, m), m at most k.
+    `distinct`: part of a vector that must stand across the others.
     """
     kept: list[Any] = []
     for vector in vectors.T:
@@ -152,11 +129,6 @@ def section_layer(fill: Fill, friction: Friction) -> SectionLayer | None:
     """Layer of a fill under a law of friction; None without liquid or without a free surface.
 
     A clear ring is known in closed form; with baffles in the liquid it is computed by finite elements.
-
-    Parameters
-    ----------
-    fill : chamber and liquid
-    friction : the quadratic law does not act on small whirls
     """
     if fill.volume == 0.0 or is_full(fill):
         return None
@@ -210,11 +182,6 @@ def section_layers(fills: Sequence[Fill], friction: Friction) -> tuple[float, li
 
     Equal layers count as one: against one another they slosh as if the rotor were not there, and such motion
     does not grow.
-
-    Parameters
-    ----------
-    fills : chambers in one plane, or of a rotor whose planes move alike
-    friction : as for `section_layer`
     """
     solid, found = 0.0, dict[tuple[object, ...], list[Fill]]()
     for fill in fills:
@@ -231,12 +198,7 @@ def section_layers(fills: Sequence[Fill], friction: Friction) -> tuple[float, li
 
 
 def clear_ring(radius: float, surface_radius: float) -> ReducedLiquid:
-    """The two motions of a ring without baffles that a whirl drives [theory: sections, eq. 4].
-
-    Parameters
-    ----------
-    radius, surface_radius : R and a, m
-    """
+    """The two motions of a ring without baffles that a whirl drives [theory: sections, eq. 4]."""
     tangent = math.tanh(math.log(radius / surface_radius))
     turn = np.array([[0.0, 1.0], [-1.0, 0.0]])
     return ReducedLiquid(
@@ -274,17 +236,11 @@ def _reduced(mesh: LiquidSection, cut: float) -> tuple[ReducedLiquid, Array]:
 
 
 def wall_drag(section: LiquidSection, motions: Array, cut: float = 0.0) -> Array:
-    """Integral of the product of tangential displacements along walls and baffles, both sides of each.
+    """Integral of the product of tangential displacements along walls and both sides of baffles, shape (m,
+    m).
 
-    Parameters
-    ----------
-    section : the liquid at rest
-    motions : stream functions on the nodes, shape (m, N), m^2
-    cut : thickness of the layer that does not see the edges of baffles, m [theory: sloshing, eq. 23]
-
-    Returns
-    -------
-    Shape (m, m), 1/m for motions without unit.
+    Stream functions on the nodes, (m, N), m^2; `cut` is the thickness of the layer that does not see the
+    edges of baffles, m [theory: sloshing, eq. 23].
     """
     from solvers.sloshing.forced import wall_weights
 

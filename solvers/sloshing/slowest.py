@@ -42,12 +42,7 @@ class SlowModes:
 
 
 def surface_solver(system: SurfaceSystem) -> Callable[[Any], Any]:
-    """B x = f among motions without circulation, for columns f, shape (n, k).
-
-    Parameters
-    ----------
-    system : the liquid
-    """
+    """B x = f among motions without circulation, for columns f, shape (n, k)."""
     steady, held = system.steady, system.inertia_times(system.steady)
     # One value of each closed part is 0 at first; then the constant that leaves no circulation is added.
     grounded = np.argmax(steady, axis=0) if steady.shape[1] else np.empty(0, dtype=np.intp)
@@ -71,17 +66,7 @@ def surface_solver(system: SurfaceSystem) -> Callable[[Any], Any]:
 
 
 def slowest_modes(system: SurfaceSystem, count: int) -> SlowModes:
-    """The slowest modes at unit spin.
-
-    Parameters
-    ----------
-    system : the liquid
-    count : how many, at least 1
-
-    Returns
-    -------
-    The modes; fewer if the mesh has fewer.
-    """
+    """The slowest modes at unit spin; fewer if the mesh has fewer."""
     size = len(system.steady) - system.steady.shape[1]
     block = min(max(_BLOCK, system.pieces + 2), size)
     krylov = _Krylov(system, block)
@@ -112,10 +97,6 @@ def synchronous_force_ratio(system: SurfaceSystem) -> float:
     """Force on a drum in synchronous whirl over that of a full one, as far as it turns with the whirl.
 
     The liquid is at rest in the drum then, and B alone counts [theory: sloshing, eq. 13, 15].
-
-    Parameters
-    ----------
-    system : the liquid
     """
     moved = system.moment @ surface_solver(system)(system.moment.T)
     return float(system.liquid_area + 0.5 * np.trace(moved)) / system.enclosed_area

@@ -65,13 +65,7 @@ class WallPoints:
 def stiffness(section: LiquidSection) -> csr_array:
     """K = int grad psi . grad v over the liquid [theory: sloshing, eq. 6].
 
-    Parameters
-    ----------
-    section : the liquid at rest
-
-    Returns
-    -------
-    Symmetric matrix over the nodes of the mesh, shape (N, N), a pure number.
+    Symmetric, over the nodes of the mesh, a pure number.
     """
     basis = CellBasis(*_mesh(section), intorder=_DEGREE[section.cells.shape[1]], disable_doflocs=True)
     raw = BilinearForm(_gradients).assemble(basis).tocoo()
@@ -80,12 +74,7 @@ def stiffness(section: LiquidSection) -> csr_array:
 
 
 def wall_points(section: LiquidSection) -> WallPoints:
-    """Points on the walls with the slope of the stream function there, eight to a side.
-
-    Parameters
-    ----------
-    section : the liquid at rest
-    """
+    """Points on the walls with the slope of the stream function there, eight to a side."""
     mesh, element = _mesh(section)
     t, weight = 0.5 * (1.0 + _GAUSS[0]), 0.5 * _GAUSS[1]
     corners = _CORNERS[len(SIDES[section.cells.shape[1]])]
@@ -114,15 +103,8 @@ def wall_points(section: LiquidSection) -> WallPoints:
 
 
 def gradients(section: LiquidSection) -> tuple[csr_array, csr_array]:
-    """Slopes of the stream function at the middles of the cells, u = (d psi/dy, -d psi/dx).
-
-    Parameters
-    ----------
-    section : the liquid at rest
-
-    Returns
-    -------
-    psi at the nodes to d psi/dx and to d psi/dy, each of shape (M, N), 1/m.
+    """Matrices from psi at the nodes to d psi/dx and d psi/dy at the middles of the cells, u = (d psi/dy, -d
+    psi/dx).
     """
     mesh, element = _mesh(section)
     corners = len(SIDES[section.cells.shape[1]])
@@ -203,13 +185,7 @@ class LiquidSystem:
     def on_nodes(self, amplitudes: Array | Complex) -> Complex:
         """Stream function on the nodes of the mesh.
 
-        Parameters
-        ----------
-        amplitudes : of the condensed unknowns, shape (k, n)
-
-        Returns
-        -------
-        shape (k, N), in their units
+        Shape (k, N), of amplitudes (k, n).
         """
         return self.interior.on_nodes(amplitudes)
 
@@ -318,13 +294,7 @@ class Interior:
 def condense(section: LiquidSection) -> LiquidSystem:
     """Matrices of the liquid's motion on the free surface [theory: sloshing, eq. 9].
 
-    Parameters
-    ----------
-    section : the liquid at rest
-
-    Returns
-    -------
-    The system; its size is that of the nodes on the free surface, and its cost the cube of that.
+    Its size is that of the nodes on the free surface, its cost the cube of that.
     """
     parts = _parts(section)
     schur = parts.schur()
@@ -349,16 +319,7 @@ def condense(section: LiquidSection) -> LiquidSystem:
 
 
 def surface_system(section: LiquidSection) -> SurfaceSystem:
-    """The liquid's motion on the free surface without dense matrices [theory: sloshing, eq. 9].
-
-    Parameters
-    ----------
-    section : the liquid at rest
-
-    Returns
-    -------
-    The system; its cost is that of the factors of the inside.
-    """
+    """The liquid's motion on the free surface without dense matrices [theory: sloshing, eq. 9]."""
     parts = _parts(section)
     place = np.full(parts.count + 1, -1, dtype=np.int64)
     place[parts.outside] = np.arange(len(parts.outside))
@@ -448,18 +409,11 @@ def _parts(section: LiquidSection) -> _Parts:
 
 
 def surface_forms(section: LiquidSection) -> tuple[csr_array, csr_array]:
-    """C = oint psi_theta v dtheta and B = oint psi_theta v_theta dtheta on the free surface.
+    """C = oint psi_theta v dtheta and B = oint psi_theta v_theta dtheta on the free surface, over the nodes,
+    rows for v.
 
     [theory: sloshing, eq. 6]; the angle is positive with the spin, and it varies along a side as through its
     nodes.
-
-    Parameters
-    ----------
-    section : the liquid at rest
-
-    Returns
-    -------
-    Matrices over the nodes, rows for v, shape (N, N), pure numbers.
     """
     sides = section.surface
     x, y = section.points[sides[:, 0]].T
@@ -486,11 +440,7 @@ def _differences(
 ) -> tuple[csr_array, csr_array, csr_array]:
     """D, W and its inverse with B = D^T W D: differences from node to node along the sides of the surface.
 
-    Parameters
-    ----------
-    section : the liquid at rest
-    unknown : on the surface, of each node, -1 for those held at 0, shape (N,)
-    count : of those unknowns
+    `unknown`: number on the surface of each node, -1 for those held at 0.
     """
     sides = section.surface
     x, y = section.points[sides[:, 0]].T

@@ -79,26 +79,12 @@ def integrate_surface(
     dry_radius: float | None = None,
     axis: tuple[float, float] = (0.0, 0.0),
 ) -> Moments:
-    """Moments of the liquid under a given surface [theory: statics, eq. 1].
+    """Moments of the liquid under a given surface about the rotation axis and the floor
+    [theory: statics, eq. 1].
 
-    The surface is given by one of two lengths; `dry_radius` serves every speed, even beta infinite.
-
-    Parameters
-    ----------
-    section : triangulation of the chamber's section
-    height : axial height h of the chamber, m
-    beta : Omega^2/(2 g), 1/m; 0 at rest, infinite without gravity
-    wetted_height : Z, height of the surface where the section is farthest from the axis, m
-    dry_radius : distance from the axis at which the surface meets the floor, m
-    axis : where the rotation axis crosses the section, m; (-e, 0) for a deflection e
-
-    Returns
-    -------
-    The moments about the rotation axis and the floor, exact on the mesh to about 1e-9.
-
-    Raises
-    ------
-    InputError : a value out of its range, both or neither of `wetted_height` and `dry_radius`
+    The surface is given by its height Z where the section is farthest from the axis, or by the distance from
+    the axis at which it meets the floor, which serves every speed, even beta infinite. The axis crosses the
+    section at `axis`, (-e, 0) for a deflection e. Exact on the mesh to about 1e-9.
     """
     plan = _plan(section, height, beta, axis)
     if (wetted_height is None) == (dry_radius is None):
@@ -121,21 +107,7 @@ def solve_surface(
 ) -> SurfaceSolution:
     """Free surface that holds a given volume [theory: statics, eq. 1], bracketed by empty and full chamber.
 
-    Parameters
-    ----------
-    section : triangulation of the chamber's section
-    height : axial height h of the chamber, m
-    beta : Omega^2/(2 g), 1/m; 0 at rest, infinite without gravity
-    volume : of the liquid, m^3
-    axis : where the rotation axis crosses the section, m; (-e, 0) for a deflection e
-
-    Returns
-    -------
-    The surface and the liquid's moments.
-
-    Raises
-    ------
-    InputError : a value out of its range, more liquid than the section holds
+    beta is infinite without gravity; the axis crosses the section at `axis`, (-e, 0) for a deflection e.
     """
     plan = _plan(section, height, beta, axis)
     require_not_negative("volume", volume)
@@ -171,21 +143,7 @@ def optimal_volume_fem(
 ) -> float:
     """Volume whose surface just touches the near wall at the floor [DR18, eq. 19] [theory: statics, eq. 8].
 
-    Parameters
-    ----------
-    radius : wall radius R, m
-    height : axial height h of the chamber, m
-    eccentricity : distance e of the rotation axis from the geometric one, m
-    beta : Omega^2/(2 g), 1/m; 0 at rest, infinite without gravity
-    inner_radius : inner wall radius R_i, m; 0 if there is none
-
-    Returns
-    -------
-    The volume on the mesh of `default_disc`, m^3.
-
-    Raises
-    ------
-    InputError : a value out of its range
+    m^3, on the mesh of `default_disc`; beta is infinite without gravity.
     """
     require_positive("radius", radius)
     require_not_negative("eccentricity", eccentricity)
@@ -203,23 +161,12 @@ def optimal_volume_fem(
 def default_disc(radius: float, layer: float, *, inner_radius: float = 0.0) -> Section:
     """Quadratic mesh that serves a liquid layer of that thickness to about 1e-7 of its volume.
 
-    The only error is the wall's: with 2 b the angle of an edge, its parabola runs inside the circle by
-    d = b^4 R/60 on the average, and liquid as deep as at the wall is lost there. Of the optimal volume that
-    is 2 d/layer at fast spin and 8 d/(3 layer) at slow spin, of an even layer less.
+    The only error is the wall's: with 2 b the angle of an edge, its parabola runs inside the circle by d =
+    b^4 R/60 on the average, and liquid as deep as at the wall is lost there. Of the optimal volume that is 2
+    d/layer at fast spin and 8 d/(3 layer) at slow spin, of an even layer less.
 
-    Parameters
-    ----------
-    radius : wall radius R, m
-    layer : thickness of the liquid where it is thickest, m: 2 e for the optimal volume
-    inner_radius : inner wall radius R_i, m; 0 for a disc
-
-    Returns
-    -------
-    A disc or an annulus of 64 to 1024 wall edges; layers below 4e-5 R would need more and get fewer digits.
-
-    Raises
-    ------
-    InputError : a value out of its range
+    A disc or an annulus of 64 to 1024 wall edges; the layer is the thickness where it is thickest, 2 e for
+    the optimal volume. Layers below 4e-5 R get fewer digits.
     """
     require_positive("radius", radius)
     require_not_negative("layer", layer)

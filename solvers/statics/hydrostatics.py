@@ -45,16 +45,8 @@ def moments(
 ) -> Moments:
     """Moments of the liquid under a given surface.
 
-    Parameters
-    ----------
-    chamber : the chamber, or one for each state, shape (n,)
-    eccentricity : e, m, shape (...,)
-    steep : beta R^2/h, shape (...,)
-    wetted_height : height of the unclamped surface at the farthest wall point over h, shape (...,)
-
-    Returns
-    -------
-    Moments about the rotation axis and the chamber's floor, over the density, shape (...,)
+    About the rotation axis and the chamber's floor, over the density. `steep` is beta R^2/h, `wetted_height`
+    that of the unclamped surface at the farthest wall point over h.
     """
     e, b, zeta = same_shape(eccentricity, steep, wetted_height)
     from solvers.statics import kernel
@@ -71,10 +63,7 @@ def volume_under(chamber: AnyChamber, eccentricity: Array, steep: Array, wetted_
 
 
 def volume_and_plan(chamber: AnyChamber, e: Array, steep: Array, zeta: Array) -> tuple[Array, Array]:
-    """Volume under the surface and its derivative with respect to the wetted height over h.
-
-    Parameters and shapes as for `moments`.
-    """
+    """Volume under the surface and its derivative with respect to the wetted height over h; as `moments`."""
     from solvers.statics import kernel
 
     volume, plan = _integrals(kernel.volumes, 2, chamber, e, steep, zeta)
@@ -82,10 +71,11 @@ def volume_and_plan(chamber: AnyChamber, e: Array, steep: Array, zeta: Array) ->
 
 
 def plan_moments(chamber: AnyChamber, e: Array, steep: Array, zeta: Array) -> tuple[Array, ...]:
-    """First moment of the liquid about the rotation axis, m^4, and the moments of its free surface's plan.
+    """First moment of the liquid about the rotation axis, m^4, and the moments of its free surface's plan; as
+    `moments`.
 
-    Parameters and shapes as for `moments`; the plan's area, first and second moment along the deflection are
-    beta-fold, so that they stay finite as the surface becomes a cylinder [theory: statics, eq. 17].
+    The plan's area, first and second moment along the deflection are beta-fold, so that they stay finite as
+    the surface becomes a cylinder [theory: statics, eq. 17].
     """
     from solvers.statics import kernel
 
@@ -148,13 +138,9 @@ class Equilibrium:
         return _integrals(kernel.first_moments, 1, self.chamber, *state)[0]
 
     def unbalance(self) -> tuple[Array, Array]:
-        """First moment of the liquid about the rotation axis and its slope in e at fixed volume.
+        """First moment of the liquid about the rotation axis, m^4, and its slope in e at fixed volume, m^3.
 
-        Returns
-        -------
-        first_moment : int x dV, m^4, shape (...,)
-        slope : its derivative with respect to the eccentricity, m^3, shape (...,); V + 2 beta times the
-            spread of the free surface's plan [theory: statics, eq. 17]
+        The slope is V + 2 beta times the spread of the free surface's plan [theory: statics, eq. 17].
         """
         x, plan, plan_x, plan_xx = plan_moments(
             self.chamber, self.eccentricity, self.steepness, self.wetted_height
@@ -172,31 +158,8 @@ def equilibrium(
 ) -> Equilibrium:
     """Surface of a given volume of liquid that turns as a whole about an axis off the chamber's centre.
 
-    The surface is found by Newton steps on the logarithm of wet over dry volume, kept inside a bracket that
-    every step shrinks; a step that leaves the bracket is replaced by bisection.
-
-    Parameters
-    ----------
-    chamber : the chamber, or one for each state, shape (n,)
-    volume : V, m^3, shape (...,), from 0 to the chamber's capacity
-    eccentricity : e, m, shape (...,), >= 0
-    speed : spin speed Omega, rad/s, shape (...,)
-    gravity : along the axis g, m/s^2, shape (...,); 0 for a horizontal axis
-
-    Returns
-    -------
-    Equilibrium, shapes broadcast together
-
-    Raises
-    ------
-    InputError : a volume outside the chamber, a negative or non-finite eccentricity, speed or gravity
-
-    Examples
-    --------
-    >>> from meshes.chamber import Chamber
-    >>> state = equilibrium(Chamber(0.2, 0.05), 54.43957239e-6, 0.001, 90.0)
-    >>> bool(abs(state.nearest_depth) < 1e-6)  # the surface just touches the near wall at the floor
-    True
+    Newton steps on the logarithm of wet over dry volume, kept inside a bracket that every step shrinks; a
+    step that leaves it is replaced by bisection. Arrays broadcast; one chamber, or one for each state.
     """
     v, e, spin, g = same_shape(volume, eccentricity, speed, gravity)
     _check("eccentricity", e)
@@ -221,17 +184,6 @@ def optimal_volume(
     """Volume whose surface just touches the near wall at the floor [DR18, eq. 18-19; theory: statics, eq. 8].
 
     Less leaves a dry patch, more does not change the liquid's unbalance.
-
-    Parameters
-    ----------
-    chamber : the chamber, or one for each state, shape (n,)
-    eccentricity : deflection e, m, shape (...,)
-    speed : spin speed Omega, rad/s, shape (...,)
-    gravity : along the axis, m/s^2, shape (...,)
-
-    Returns
-    -------
-    V, m^3, shape (...,)
 
     Examples
     --------

@@ -1,9 +1,8 @@
 """How far the liquid's law is below the straight line of its added mass: closed forms, nothing is solved for.
 
-The linear law says that the liquid's unbalance is the full mass times the deflection. It is exact while the
-wall is wet to the lid all round and the inner wall is dry; beyond, what is missing is the first moment of the
-air that has moved [theory: model_error]. Lengths across the axis are in units of the chamber's radius R,
-along it of its height h.
+The linear law is exact while the wall is wet to the lid all round and the inner wall is dry; beyond, what is
+missing is the first moment of the air that has moved [theory: model_error]. Lengths across the axis are in
+units of R, along it of h.
 """
 
 from __future__ import annotations
@@ -43,12 +42,6 @@ def upright_surfaces(fills: Fills, speed: Array, gravity: Array) -> Surfaces:
     """Surfaces about the chambers' own axis, and how far the axis may move before the law bends.
 
     [theory: model_error, eq. 3 and 4]
-
-    Parameters
-    ----------
-    fills : shape (n,)
-    speed : spin speed Omega, rad/s, shape (n,)
-    gravity : along the axis, m/s^2, shape (n,)
     """
     chamber = fills.chamber
     radius, height = chamber.radius, chamber.height
@@ -82,19 +75,10 @@ def upright_surfaces(fills: Fills, speed: Array, gravity: Array) -> Surfaces:
 
 
 def defect_bound(surfaces: Surfaces, deflection: Array) -> Array:
-    """Upper bound of full mass times deflection less the liquid's unbalance.
-
-    Never below what is missing, 0 as long as nothing is, and next to it where little is
+    """Upper bound of full mass times deflection less the liquid's unbalance, kg m
     [theory: model_error, eq. 7 and 8].
 
-    Parameters
-    ----------
-    surfaces : shape (n,)
-    deflection : e, m, shape (n,)
-
-    Returns
-    -------
-    kg m, shape (n,); infinite where the deflection is
+    Never below what is missing, 0 as long as nothing is, and next to it where little is.
     """
     eps = deflection / surfaces.radius
     # The slope of the unbalance is between the liquid's mass and the full one.

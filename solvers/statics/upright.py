@@ -18,13 +18,7 @@ from solvers.statics.hydrostatics import equilibrium
 
 @dataclass(frozen=True)
 class Top:
-    """A rigid body without liquid, with one fixed point on its axis.
-
-    Raises
-    ------
-    InputError : a mass or transverse inertia that is not positive, a negative polar inertia or stiffness, a
-        height that is not finite
-    """
+    """A rigid body without liquid, with one fixed point on its axis."""
 
     mass: float  #: kg
     transverse_inertia: float  #: across and along its axis, about its centre of mass, kg m^2
@@ -59,25 +53,8 @@ def upright_margin(
 ) -> Margin:
     """Second variation of the energy of upright rotation [DR18, eq. 21-22; theory: statics, eq. 18-21].
 
-    Parameters
-    ----------
-    top : body without the liquid
-    fills : circular chambers without baffles; their planes are heights above the body's centre of mass
-    share : of each fill's volume that is in its chamber, shape (...,); 1 as it stands
-    speed : spin speed Omega, rad/s, shape (...,), above 0
-    gravity : m/s^2, 0 or above
-
-    Raises
-    ------
-    InputError : a chamber with baffles or a section of its own, a volume above the capacity, a speed that is
-        not positive, a negative gravity
-
-    Examples
-    --------
-    >>> top = Top(mass=1.0, transverse_inertia=0.01, polar_inertia=0.02, centre=0.05)
-    >>> margin = upright_margin(top, (), 1.0, 10.0, 9.81)
-    >>> print(f"{float(margin.left):.4f} N m")
-    0.2595 N m
+    Of circular chambers without baffles, their planes heights above the body's centre of mass; `share` of
+    each fill's volume is in its chamber, shape (...,).
     """
     require_not_negative("gravity", gravity)
     part, omega = np.broadcast_arrays(np.asarray(share, dtype=float), np.asarray(speed, dtype=float))
@@ -104,16 +81,8 @@ def upright_margin(
 
 
 def sign_changes(function: Callable[[Array], Array], grid: Array) -> tuple[float, ...]:
-    """Where a function changes its sign between neighbouring points of a grid.
-
-    Parameters
-    ----------
-    function : of points, shape (m,), to values, shape (m,)
-    grid : ascending, shape (n,)
-
-    Returns
-    -------
-    Ascending; two changes between one pair of neighbours are not seen
+    """Where a function of points (m,) changes its sign between neighbours of a grid; two changes there are
+    not seen.
     """
     at = np.sign(function(grid))
     (changes,) = np.nonzero(at[1:] * at[:-1] < 0.0)

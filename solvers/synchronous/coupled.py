@@ -1,6 +1,6 @@
 """Solutions of the harmonic balance of any rotor and liquid, over all speeds at once.
 
-Where all chambers sit in one plane the balance has one unknown and every branch is found. With several planes
+With all chambers in one plane the balance has one unknown and every branch is found. With several planes
 Newton's method starts from several shares of the added mass and from the neighbouring speeds, up and down.
 """
 
@@ -38,7 +38,7 @@ class Near:
     enough: bool = True  #: no other solutions are looked for where these lead to one
 
     def at(self, which: Index) -> Near:
-        """Those of some speeds."""
+        """Solutions near some of the speeds."""
         return Near(self.speed[which], self.answer[which], self.enough)
 
 
@@ -57,10 +57,7 @@ class Solutions:
 def solutions(balance: Balance, near: Near | None = None) -> Solutions:
     """Solutions of the balance: all where the chambers sit in one plane, by Newton's method elsewhere.
 
-    Parameters
-    ----------
-    balance : at s speeds, n coordinates
-    near : solutions at close speeds, from which others are followed where chambers sit in several planes
+    `near`: solutions at close speeds, from which others are followed where chambers sit in several planes.
     """
     if balance.fills:
         apart = np.abs(balance.plane - balance.plane[0])
@@ -73,12 +70,7 @@ def solutions(balance: Balance, near: Near | None = None) -> Solutions:
 
 
 def one_plane(balance: Balance) -> Solutions:
-    """Every solution where all chambers sit in one plane [theory: rotor, eq. 30].
-
-    Parameters
-    ----------
-    balance : all its planes alike
-    """
+    """Every solution where all chambers sit in one plane [theory: rotor, eq. 30]."""
     p, squared = balance.plane[0], np.square(balance.speed)
     everyone = np.arange(balance.speed.size)
     free = solve_each(balance.stiffness, balance.force)
@@ -134,8 +126,7 @@ def _phase(support: Complex, alone: Complex, size: Array, pulled: Array) -> Comp
 def several_planes(balance: Balance, near: Near | None = None) -> Solutions:
     """Solutions where chambers sit in several planes: Newton from many starts, then from speed to speed.
 
-    Every solution is followed to the speeds beside its own. One that is far from every start and on a branch
-    that no other speed leads to may be missed; parameters as in `solutions`.
+    One that is far from every start and on a branch that no other speed leads to may be missed.
     """
     everyone = np.arange(balance.speed.size)
     straight = balance.linear(everyone)
@@ -189,14 +180,7 @@ class _Way:
 
 
 def _followed(balance: Balance, begin: Complex, start: Array, target: Index) -> _Way:
-    """Solutions moved from other speeds to those of some pairs, by steps over which they change little.
-
-    Parameters
-    ----------
-    begin : shape (k, n)
-    start : their speeds, rad/s, shape (k,)
-    target : shape (k,)
-    """
+    """Solutions moved from other speeds to those of some pairs, by steps over which they change little."""
     x, here, goal = begin.copy(), start.copy(), balance.speed[target]
     step = goal - here
     least, arrived = _LEAST * np.abs(step), step == 0.0
@@ -226,7 +210,8 @@ def _weight(balance: Balance) -> Array:
 def _linear_starts(balance: Balance, which: Index, shares: tuple[float, ...]) -> tuple[Complex, Index]:
     """Solutions with several shares of the added mass at each of some speeds, and their speeds.
 
-    Left out are those with every wall wet: from there Newton's first step leads to the whole mass's one.
+    Without those that wet every wall: from there Newton's first step leads to the solution with the whole
+    mass.
     """
     begin = np.concatenate([balance.linear(which, share) for share in shares])
     owner = np.tile(which, len(shares))
@@ -278,18 +263,7 @@ def _meeting(owner: Index, other: Index) -> tuple[Index, Index]:
 
 
 def newton(balance: Balance, begin: Complex, which: Index) -> tuple[Complex, Flags]:
-    """Solutions next to starts.
-
-    Parameters
-    ----------
-    begin : coordinates, shape (k, n)
-    which : the speed of each, shape (k,)
-
-    Returns
-    -------
-    answer : shape (k, n)
-    converged : shape (k,)
-    """
+    """Solutions next to starts, and whether they converged: coordinates (k, n), the speed of each (k,)."""
     x = begin.copy()
     converged = np.zeros(which.size, dtype=bool)
     active = np.arange(which.size)
@@ -328,14 +302,7 @@ def newton(balance: Balance, begin: Complex, which: Index) -> tuple[Complex, Fla
 def stable_solutions(balance: Balance, answer: Complex, which: Index) -> Flags:
     """Stability of solutions against disturbances slow beside the liquid's waves [theory: rotor, eq. 35].
 
-    Parameters
-    ----------
-    answer : coordinates, shape (k, n)
-    which : the speed of each, shape (k,)
-
-    Returns
-    -------
-    shape (k,). With every wall wet the liquid is a mass, and dampers take the energy of any motion
+    With every wall wet the liquid is a mass, and dampers take the energy of any motion.
     """
     stable = np.ones(which.size, dtype=bool)
     bent = np.flatnonzero(np.any(np.abs(balance.forward(answer)) > balance.limit[which], axis=1))
@@ -368,7 +335,7 @@ def _real(matrix: Complex) -> Array:
 
 
 def _at_rounding(balance: Balance, x: Complex, which: Index) -> Flags:
-    """Nothing is left of the balance but rounding of its terms, of which the largest may cancel."""
+    """Whether nothing is left of the balance but rounding of its terms, of which the largest may cancel."""
     terms = np.einsum("kij,kj->ki", np.abs(balance.stiffness[which]), np.abs(x))
     largest = np.linalg.norm(terms, axis=1) + np.linalg.norm(balance.force[which], axis=1)
     left, _, _ = _linearised(balance, x, which)

@@ -1,9 +1,8 @@
 """Estimated errors of a steady answer: of the linear law, and by gravity across the axis.
 
-Closed forms; nothing is solved for [theory: model_error]. Every deflection of a planar machine that satisfies
-the balance with the exact law lies between two bounds, which follow from the linear answer and from a bound
-of what the law is below its straight line. A rotor that tilts or has unlike springs has bounds of its own.
-`error_estimate` takes whichever the rotor has.
+Closed forms [theory: model_error]. Every deflection of a planar machine with the exact law lies between two
+bounds, from the linear answer and from a bound of the law's distance below its straight line; a rotor that
+tilts or has unlike springs has bounds of its own. `error_estimate` takes whichever the rotor has.
 """
 
 from __future__ import annotations
@@ -35,17 +34,8 @@ _RIPPLE = 1.0
 def law_error(fills: Fills, speed: Array, gravity: Array) -> Array:
     """Change of the liquid's unbalance by gravity across the axis, over full mass times deflection.
 
-    0.15 (R/h0)^(5/4) (g/(Omega^2 a))^2 [theory: model_error, eq. 20].
-
-    Parameters
-    ----------
-    fills : with liquid, shape (n,)
-    speed : spin speed Omega, rad/s, shape (n,)
-    gravity : across the axis, m/s^2, shape (n,)
-
-    Returns
-    -------
-    Shape (n,); nan where the liquid does not ride with the drum
+    0.15 (R/h0)^(5/4) (g/(Omega^2 a))^2 [theory: model_error, eq. 20]; nan where the liquid does not ride with
+    the drum.
     """
     depth, radius = fills.depth, fills.chamber.radius
     surface = np.maximum(radius - depth, fills.chamber.inner_radius)
@@ -59,9 +49,7 @@ def law_error(fills: Fills, speed: Array, gravity: Array) -> Array:
 
 @dataclass(frozen=True)
 class GravityError:
-    """Estimates of what gravity does to an answer that knows none [theory: model_error, eq. 21-22].
-
-    Each of shape (n,).
+    """Estimates of what gravity does to an answer without it, (n,) [theory: model_error, eq. 21-22].
 
     Infinite where there is no bound, nan where the liquid does not ride with the drum.
     """
@@ -73,14 +61,14 @@ class GravityError:
     liquid_ripple: Array
 
     def at(self, part: slice) -> GravityError:
-        """Some of them."""
+        """Estimates of some answers."""
         return GravityError(
             self.amplitude[part], self.liquid[part], self.ripple[part], self.liquid_ripple[part]
         )
 
     @classmethod
     def none(cls, shape: tuple[int, ...]) -> GravityError:
-        """No gravity, or no liquid."""
+        """Estimates without gravity, or without liquid."""
         return cls(*np.zeros((4, *shape)))
 
 
@@ -168,12 +156,7 @@ class Laws:
 
 
 def planar_enclosure(pairs: Pairs) -> Enclosure:
-    """Bounds of the deflections of planar machines [theory: model_error, eq. 9 to 14].
-
-    Parameters
-    ----------
-    pairs : n pairs of a machine and a speed, whatever their liquid model
-    """
+    """Bounds of the deflections of planar machines [theory: model_error, eq. 9 to 14]."""
     squared = np.square(pairs.speed)
     force, damping = pairs.unbalance * squared, pairs.damping * pairs.speed
     elastic = pairs.stiffness - pairs.mass * squared
@@ -265,14 +248,7 @@ def _smallest(beyond: Array, damping: Array, force: Array, pull: Array, linear: 
 
 
 def planar_gravity_error(pairs: Pairs, across: Array, most: Array) -> GravityError:
-    """Estimates of what gravity across the axis does to n answers.
-
-    Parameters
-    ----------
-    pairs : n pairs of a machine and a speed
-    across : gravity across their axes, m/s^2, shape (n,)
-    most : bound of the deflection, m, shape (n,)
-    """
+    """Estimates of what gravity across the axis does to n answers of at most the deflections `most`, m."""
     waves = _Waves(pairs.speed, across)
     for slot in pairs.slots:
         rows = np.flatnonzero((slot.place >= 0) & (across > 0.0))
@@ -331,19 +307,6 @@ def coupled_error(
     """Errors in the motion of any rotor: of the linear law, and by gravity across the axis.
 
     [theory: model_error, eq. 17 to 19 and 21]
-
-    Parameters
-    ----------
-    system : the dry rotor
-    fills : its chambers with their liquid, any number
-    speed : spin speeds Omega, rad/s, shape (s,), > 0
-    gravity : along the axis, m/s^2
-    position : of the plane whose amplitude is reported, m
-    across : gravity across the axis, m/s^2
-
-    Returns
-    -------
-    Of the linear law; by gravity, as `solvers.synchronous.errors.planar_gravity_error`
     """
     wet = [fill for fill in fills if fill.volume > 0.0]
     terms = harmonic_balance(system, [wet], np.zeros(speed.size, dtype=np.intp), speed, gravity, LINEAR)
@@ -402,7 +365,8 @@ def _largest_coupled(
 ) -> Array:
     """Bounds of the deflections at the chambers, m, shape (s, c) [theory: model_error, eq. 17 and 18].
 
-    `dead` is the liquids' mass times radius: beyond its mass at the chamber's centre the liquid has less.
+    `dead`: the liquids' mass times radius; the unbalance exceeds that of its mass at the chamber's centre by
+    less.
     """
     most = frozen + _carried(far, np.square(speed)[:, None] * dead)
     for _ in range(_COUPLED_ROUNDS):
@@ -430,14 +394,7 @@ def _shift(spread: tuple[Array, Array], pull: Array) -> Array:
 def _answer(
     terms: Balance, mass: Array, place: Complex
 ) -> tuple[tuple[Complex, Complex], tuple[Array, Array]]:
-    """Parts with and against the spin at each place, and what a unit force on a chamber adds to them.
-
-    Parameters
-    ----------
-    terms : of the balance
-    mass : that each chamber adds to the part that goes with the spin, kg, shape (c,)
-    place : p of each place, the chambers first, shape (k, n)
-    """
+    """Parts with and against the spin at each place, and what a unit force on a chamber adds to them."""
     p = terms.plane
     added = 0.5 * np.einsum("c,ci,cj->ij", mass, p, np.conj(p))
     matrix = terms.stiffness - np.square(terms.speed)[:, None, None] * added
@@ -473,18 +430,7 @@ def error_estimate(
     across: float = 0.0,
     position: float | None = None,
 ) -> tuple[LinearError, GravityError]:
-    """Errors in the motion of a rotor: of the linear law, and by gravity across the axis.
-
-    Parameters
-    ----------
-    rotor, fills, position : see `solvers.synchronous.response.response`
-    speed : spin speeds Omega, rad/s, shape (n,), > 0
-    gravity, across : along and across the axis, m/s^2
-
-    Returns
-    -------
-    Of the linear law; by gravity across the axis
-    """
+    """Errors in the motion of a rotor: of the linear law, and by gravity across the axis."""
     spin = np.array(speed, dtype=float).reshape(-1)
     if isinstance(rotor, Jeffcott):
         owner = np.zeros(spin.size, dtype=np.intp)
@@ -496,15 +442,7 @@ def error_estimate(
 def machine_errors(
     machines: Sequence[PlanarMachine], owner: Index, speed: Array, gravity: Array, across: Array
 ) -> tuple[LinearError, GravityError]:
-    """`error_estimate` of many planar machines at once: of n pairs of a machine and a speed.
-
-    Parameters
-    ----------
-    machines : rotors, each with its chambers and their liquid
-    owner : which machine each pair has, shape (n,)
-    speed : spin speeds Omega, rad/s, shape (n,), > 0
-    gravity, across : along and across the axis of each machine, m/s^2, shape (machines,)
-    """
+    """`error_estimate` of many planar machines at once: of n pairs of a machine and a speed."""
     pairs = pair_machines(machines, owner, speed, gravity, LINEAR)
     bounds = planar_enclosure(pairs)
     return bounds.error(), planar_gravity_error(pairs, across[owner], bounds.most)

@@ -1,7 +1,7 @@
 """Liquid models of the synchronous response: the exact equilibrium, linear theory, the equilibrium on grids.
 
-`Statics` and `Linear` also answer a prescribed whirl with its wave. The two on grids, long-wave cells round
-the wall and finite elements, converge to the exact equilibrium, the cells where it is a cylinder of liquid.
+`Statics` and `Linear` also answer a prescribed whirl with its wave. Long-wave cells and finite elements
+converge to the exact equilibrium, the cells where it is a cylinder of liquid.
 """
 
 from __future__ import annotations
@@ -80,12 +80,7 @@ class Statics(WaveModel):
         return np.asarray(fills.density * state.first_moment())
 
     def wave(self, fill: Fill, whirl: Whirl) -> LiquidWave:
-        """See `WaveModel`; no friction acts on liquid that is at rest in the drum.
-
-        Raises
-        ------
-        InputError : another whirl than the synchronous one, gravity across the axis
-        """
+        """See `WaveModel`; no friction acts on liquid that is at rest in the drum."""
         amplitude = whirl.amplitude
         if whirl.slip != 0.0:
             allowed = f"the spin speed ({whirl.spin:g} rad/s) for the static model"
@@ -129,8 +124,8 @@ class Statics(WaveModel):
     def linear_limit(self, fills: Fills, speed: Array, gravity: Array) -> Array:
         """Deflection at which the surface reaches the near wall under the lid, m, shape (n,).
 
-        Up to it the wall is wet all over, the inner wall is dry, and the liquid adds the mass of a full
-        chamber [theory: statics, eq. 9]; 0 where the upright surface does not even do that.
+        Up to it the outer wall is wet, the inner dry, and the liquid adds the mass of a full chamber
+        [theory: statics, eq. 9]; 0 where the upright surface does not even do that.
         """
         chamber = fills.chamber
         steep = steepness(speed, gravity, chamber.radius, chamber.height)
@@ -190,12 +185,7 @@ class Linear(WaveModel):
         return added_mass_answer(fills, whirls, error)
 
     def wave(self, fill: Fill, whirl: Whirl) -> LiquidWave:
-        """See `WaveModel`; the error is that of small waves beside exact ones [theory: model_error, eq. 34].
-
-        Raises
-        ------
-        InputError : no free surface
-        """
+        """See `WaveModel`; the error is that beside exact waves [theory: model_error, eq. 34]."""
         chamber, surface, amplitude = fill.chamber, fill.surface_radius, whirl.amplitude
         if fill.depth >= chamber.radius * (1.0 - 1e-9) or surface <= chamber.inner_radius:
             allowed = "less than what fills the chamber, for a free surface"
@@ -234,19 +224,7 @@ class Linear(WaveModel):
         )
 
     def free_wave(self, fill: Fill, spin: float, crest: float, crests: int = 1) -> FreeWave:
-        """The free wave of n crests, whose speed does not depend on its height [theory: waves, eq. 7].
-
-        Parameters
-        ----------
-        fill : chamber and liquid
-        spin : Omega, rad/s
-        crest : depth at the crest over the mean depth, above 1
-        crests : n, round the drum
-
-        Raises
-        ------
-        InputError : no free surface, no crest
-        """
+        """The free wave of n crests, whose speed does not depend on its height [theory: waves, eq. 7]."""
         radius, surface = fill.chamber.radius, fill.surface_radius
         if fill.depth >= radius * (1.0 - 1e-9) or surface <= fill.chamber.inner_radius:
             raise InputError("volume", fill.volume, "less than what fills the chamber, for a free surface")
@@ -274,7 +252,7 @@ class Linear(WaveModel):
         )
 
     def _error(self, fill: Fill, whirl: Whirl) -> float:
-        """Of one wave; none where gravity throws others."""
+        """Error of one wave; none where gravity throws others."""
         if whirl.gravity != 0.0:
             return math.nan
         if whirl.slip == 0.0:
@@ -387,8 +365,8 @@ def _middles(cells: int) -> tuple[Array, Array, Array]:
 def _circle(e: Array, level: Array, cells: int) -> tuple[Array, Array]:
     """Depth of each cell over R under a circle about the rotation axis, and r + e cos(theta), (n, cells).
 
-    The surface is at r = chord - e cos(theta). `level` is how much the circle's squared radius falls short of
-    the squared distance of the wall at the middle of the deepest cell: thin films keep their digits.
+    The surface is at r = chord - e cos(theta). `level`: its squared radius is that much below the squared
+    distance of the wall in the middle of the deepest cell: thin films keep their digits.
     """
     cosine, sine, away = _middles(cells)
     e, level = e[:, None], level[:, None]

@@ -1,10 +1,8 @@
 """Largest amplitudes over a range of speeds, found between the speeds that were asked for.
 
-`refine` takes samples of complex amplitudes over speed and asks for more of them where a larger one may lie:
-around every maximum, and wherever the phase turns too far from one sample to the next, which is how a
-resonance shows that is narrower than their distance. Where a resonance is known to be, `seeds` has the speeds
-that show its shape, so that none is too narrow to be found. Many machines are refined at once: all that they
-want in a round is asked for together.
+`refine` samples complex amplitudes around every maximum and wherever the phase turns too far between two
+samples, where a narrower resonance shows; `seeds` has the speeds that show the shape of a known one. A
+round's speeds of many machines are asked for together.
 """
 
 from __future__ import annotations
@@ -44,12 +42,12 @@ class Peak:
 
     @property
     def bounded(self) -> bool:
-        """It is finite."""
+        """Whether it is finite."""
         return math.isfinite(self.amplitude)
 
     @property
     def known(self) -> bool:
-        """There is one, with a bound or without."""
+        """Whether there is one, with a bound or without."""
         return not math.isnan(self.amplitude)
 
 
@@ -62,29 +60,18 @@ class Samples:
 
     @property
     def amplitude(self) -> Array:
-        """m, shape (n,)."""
+        """Amplitude, m, shape (n,)."""
         return np.asarray(np.abs(self.parts).sum(axis=1))
 
     def joined(self, speed: Array, parts: Complex) -> Samples:
-        """With others, those of equal speed once."""
+        """Samples with others, those of equal speed once."""
         every = np.concatenate((self.speed, speed))
         distinct, first = np.unique(every, return_index=True)
         return Samples(distinct, np.concatenate((self.parts, parts))[first])
 
 
 def highest(speed: Array, amplitude: Array) -> Peak:
-    """The largest of some amplitudes, the first of equals.
-
-    Parameters
-    ----------
-    speed : rad/s, shape (n,)
-    amplitude : m, nan where there is none, shape (n,)
-
-    Examples
-    --------
-    >>> highest(np.array([1.0, 2.0, 3.0]), np.array([0.1, np.nan, 0.3]))
-    Peak(speed=3.0, amplitude=0.3)
-    """
+    """The largest of some amplitudes, the first of equals."""
     if np.isnan(amplitude).all():
         return Peak(math.nan, math.nan)
     k = int(np.nanargmax(amplitude))
@@ -94,20 +81,10 @@ def highest(speed: Array, amplitude: Array) -> Peak:
 def seeds(
     centre: Array, half_width: Array, start: float, stop: float, known: Array, whole: bool = True
 ) -> Array:
-    """Speeds that show the shape of resonances, in a range of speeds.
+    """Speeds that show the shape of resonances, rising: their centres, and others where samples are few.
 
-    Parameters
-    ----------
-    centre, half_width : of each resonance, rad/s, shape (k,)
-    start, stop : of the range, rad/s
-    known : speeds at which there are samples already, rising, shape (n,)
-    whole : show all of the shape, as a figure needs it; else as much as `refine` needs to find it, where
-        resonances that overlap share their speeds
-
-    Returns
-    -------
-    rising, shape (m,): the centres, and beside them as many as show a resonance that the samples are too
-    coarse for
+    `whole`: all of the shape, as a figure needs it; else as much as `refine` needs, where overlapping
+    resonances share their speeds.
     """
     found = list(centre) if whole else []
     for k in np.argsort(half_width, kind="stable").tolist():  # nan, whose shape another one shows, last
@@ -125,29 +102,10 @@ def seeds(
 
 
 def refine(answer: Answer, samples: Sequence[Samples], bound: Sequence[float]) -> list[Samples]:
-    """Samples with as many more as it takes to find the largest amplitude of each machine.
+    """Samples with those added that give the largest amplitude of each machine to about 1e-10 of itself.
 
-    Parameters
-    ----------
-    answer : parts of some machines, by their index, at some speeds
-    samples : of each machine, from one end of its range of speeds to the other
-    bound : what no amplitude of a machine exceeds, m; infinite where nothing is known. A machine that has
-        reached it is done
-
-    Returns
-    -------
-    Samples of each machine: the largest of their amplitudes is the peak to about 1e-10 of itself
-
-    Examples
-    --------
-    A resonance of damping ratio 1e-3 at 10 rad/s, from four speeds:
-
-    >>> def answer(owner, speed):
-    ...     return (1.0 / (100.0 - speed**2 + 2e-2j * speed))[:, None]
-    >>> speed = np.array([5.0, 8.0, 11.0, 20.0])
-    >>> (found,) = refine(answer, [Samples(speed, answer(None, speed))], [np.inf])
-    >>> print(f"{highest(found.speed, found.amplitude).amplitude * 2e-3 * 100.0:.6f}")
-    1.000001
+    `answer` gives parts of some machines, by their index, at some speeds; a machine that has reached its
+    `bound`, which no amplitude exceeds, is done.
     """
     found = list(samples)
     spacing = [np.ptp(one.speed) / max(one.speed.size - 1, 1) for one in found]
@@ -203,13 +161,9 @@ def _inside_turns(x: Array, size: Array, parts: Complex, largest: float, turn: i
 
 
 def _around_maxima(x: Array, size: Array, largest: float) -> tuple[Array, Array]:
-    """Speeds around the maxima of an amplitude: where a resonance has its top, and between it and its sides.
+    """Speeds around maxima of an amplitude whose shape is not seen yet, and around the highest of the others.
 
-    One over the amplitude squared is nearly a parabola over the speed around the top of a resonance.
-
-    Returns
-    -------
-    Around maxima whose shape is not seen yet, and around the highest of the others
+    1/amplitude^2 is nearly a parabola over the speed around the top of a resonance.
     """
     edge = np.concatenate(([-np.inf], size, [-np.inf]))
     found: list[float] = []

@@ -1,11 +1,9 @@
 """All synchronous deflections of planar machines with liquid, many pairs of a machine and a speed at once.
 
-A planar rotor and its chambers move in one circle, so that the balance has one unknown, the size of the
-deflection [theory: rotor, eq. 2]: |a e - Y(e) + i c e| = u, where a, c and u belong to the rotor and Y, the
-liquid's pull towards the deflection, never decreases with e [theory: rotor, eq. 6]. So Y on an interval lies
-between its values at the ends: an interval in which the left-hand side cannot reach u holds no solution. Y is
-nowhere steeper than a full chamber makes it: an interval over which the left-hand side then only rises, or
-only falls, holds one solution at most. What is left is halved again and again, and none is missed.
+One unknown, the size e of the deflection [theory: rotor, eq. 2]: |a e - Y(e) + i c e| = u, with Y the
+liquid's pull, which never decreases with e [theory: rotor, eq. 6] and is nowhere steeper than a full chamber
+makes it. An interval in which bounds by the values of Y at its ends keep the left-hand side from u holds no
+solution, one over which that only rises or falls at most one; others are halved, so that none is missed.
 """
 
 from __future__ import annotations
@@ -38,19 +36,10 @@ def branches_beyond(
     dead: Array,
     moved: Flags,
 ) -> tuple[Array, Index, Flags, Flags]:
-    """Every solution beyond the straight part of the law, as far out as damping and stiffness allow.
+    """Every solution beyond `limit`, the straight part of the law, as far as damping and stiffness allow.
 
-    Parameters
-    ----------
-    pull, elastic, damping, force, steepest : as for `find_branches`
-    limit : deflection up to which the law is a straight line, shape (n,)
-    dead : largest pull of the liquid beyond its mass at the chamber's centre, shape (n,)
-    moved : there is a force; without one nothing moves, and there is nothing to look for, shape (n,)
-
-    Returns
-    -------
-    solution, which, converged : as from `find_branches`
-    bounded : solutions are bounded, or the law is straight everywhere, shape (n,)
+    As `find_branches`, and whether solutions are bounded or the law is straight everywhere. `dead`: the
+    largest pull of the liquid beyond its mass at the chamber's centre; `moved`: there is a force.
     """
     # No solution is farther out than the damper or the spring allows.
     reach = np.minimum(over(force, damping), over(force + dead, np.abs(elastic))) * (1.0 + 1e-9)
@@ -69,18 +58,8 @@ def find_branches(
 ) -> tuple[Array, Index, Flags]:
     """Every solution e of (a e - Y(e))^2 + (c e)^2 = u^2 with start < e <= stop, at n speeds.
 
-    Parameters
-    ----------
-    pull : Y, non-decreasing in e
-    elastic, damping, force : a, c and u > 0, shape (n,)
-    steepest : no smaller than the slope of Y anywhere, shape (n,)
-    start, stop : search range of each speed, shape (n,)
-
-    Returns
-    -------
-    solution : shape (k,), in no order
-    which : the speed each belongs to, shape (k,)
-    converged : for each speed, all its solutions were resolved, shape (n,)
+    Y never falls with e and is nowhere steeper than `steepest`. Solutions in no order, the speed each belongs
+    to, and for each speed whether all were resolved.
     """
     converged = np.ones(force.shape, dtype=bool)
     which = np.flatnonzero(stop > start)
@@ -184,17 +163,9 @@ def divide(force: Array, stiffness: Complex) -> Complex:
 
 
 def all_deflections(pairs: Pairs) -> tuple[Array, Index, Flags]:
-    """Sizes of all solutions.
+    """Sizes of all solutions, m, the pair each belongs to, and whether a pair's are all there.
 
-    Parameters
-    ----------
-    pairs : n of them, at speeds above 0
-
-    Returns
-    -------
-    size : m, infinite where it has no bound, at least one for each pair, shape (k,)
-    which : the pair each belongs to, shape (k,)
-    converged : a pair's are all there, shape (n,)
+    At least one for each pair; infinite without a bound.
     """
     squared, limit = np.square(pairs.speed), pairs.limit
     force, damping = pairs.unbalance * squared, pairs.damping * pairs.speed
@@ -223,26 +194,14 @@ def all_deflections(pairs: Pairs) -> tuple[Array, Index, Flags]:
 
 
 def with_phase(pairs: Pairs, which: Index, deflection: Array, state: LiquidState) -> Complex:
-    """Complex deflections: w lags the unbalance by the angle of the wet rotor's dynamic stiffness.
-
-    Parameters
-    ----------
-    pairs, which : the pair of each solution, shape (k,)
-    deflection : its size, m, shape (k,)
-    state : of the liquid there, shape (k,)
-    """
+    """Complex deflections: w lags the unbalance by the angle of the wet rotor's dynamic stiffness."""
     pull = np.square(pairs.speed[which]) * state.unbalance
     total = pairs.dynamic_stiffness[which] * deflection - pull
     return np.asarray(deflection * np.exp(-1j * np.angle(total)), dtype=complex)
 
 
 def is_stable(pairs: Pairs, which: Index, deflection: Array, state: LiquidState) -> Flags:
-    """Stability against disturbances that are slow beside the liquid's waves [theory: rotor, eq. 8].
-
-    Parameters
-    ----------
-    pairs, which, deflection, state : as in `with_phase`
-    """
+    """Stability against disturbances that are slow beside the liquid's waves [theory: rotor, eq. 8]."""
     spin, own, damping, stiffness = (
         x[which] for x in (pairs.speed, pairs.mass, pairs.damping, pairs.stiffness)
     )
@@ -263,14 +222,6 @@ def is_stable(pairs: Pairs, which: Index, deflection: Array, state: LiquidState)
 
 
 def liquid_offset(pairs: Pairs, farthest: Array, deflection: Array, unbalance: Array) -> Array:
-    """Distance of the liquid's centre of mass from the rotation axis; without liquid, that of a drop.
-
-    Parameters
-    ----------
-    pairs : n of them
-    farthest : largest radius of the machine's chambers, m, shape (n,)
-    deflection : size, m, shape (n,)
-    unbalance : of the liquid, kg m, shape (n,)
-    """
+    """Distance of the liquid's centre of mass from the rotation axis; without liquid, that of a drop."""
     drop = np.where(deflection > 0.0, deflection + farthest, 0.0)
     return np.divide(unbalance, pairs.liquid_mass, out=drop, where=pairs.liquid_mass > 0.0)

@@ -1,9 +1,8 @@
 """Where a rotor with liquid resonates: the tops of planar machines, and the resonances of any other rotor.
 
-A planar rotor moves in a circle, and at the largest of all its deflections the deflection stands still over
-the speed. So does the liquid's share in the mass, as far as it depends on the deflection alone: the top is
-that of a linear rotor that has this mass [theory: rotor, eq. 33]. It is found however narrow the resonance
-is, and wherever the curve of the deflections folds.
+At the largest deflection of a planar rotor the deflection is stationary over the speed, and so is the mass
+that the liquid adds: the top is that of a linear rotor of this mass [theory: rotor, eq. 33], found however
+narrow the resonance is and wherever the curve folds.
 """
 
 from __future__ import annotations
@@ -35,29 +34,7 @@ class Tops:
 
 
 def planar_tops(machines: Sequence[PlanarMachine], gravity: Array, model: LiquidModel) -> Tops:
-    """Tops of the resonance curves of planar machines [theory: rotor, eq. 33 and 34].
-
-    Parameters
-    ----------
-    machines : rotors, each with its chambers and their liquid
-    gravity : along the axis of each, m/s^2, shape (n,)
-    model : of the liquid
-
-    Returns
-    -------
-    Tops
-
-    Examples
-    --------
-    Without liquid the amplitude is e/(2 zeta sqrt(1 - zeta^2)), at omega/sqrt(1 - 2 zeta^2):
-
-    >>> from solvers.rotor.jeffcott import Jeffcott
-    >>> from solvers.synchronous.models import LINEAR
-    >>> rotor = Jeffcott(mass=1.0, stiffness=100.0, damping=2.0, unbalance=1e-3)
-    >>> tops = planar_tops([(rotor, [])], np.zeros(1), LINEAR)
-    >>> print(f"{tops.speed[0]:.6f} {1e3 * tops.amplitude[0]:.6f}")
-    10.101525 5.025189
-    """
+    """Tops of the resonance curves of planar machines [theory: rotor, eq. 33 and 34]."""
     rotors = np.array([(r.mass, r.stiffness, r.damping, r.unbalance) for r, _ in machines]).reshape(-1, 4)
     mass, stiffness, damping, force = np.ascontiguousarray(rotors.T)
     liquid = _Liquid.of(machines, gravity, model)
@@ -81,13 +58,7 @@ def planar_tops(machines: Sequence[PlanarMachine], gravity: Array, model: Liquid
 
 
 def _bent(curve: _Curve, liquid: _Liquid, rows: Index) -> tuple[Array, Array, Array]:
-    """Mass, speed and deflection at the tops of machines with a wall that runs dry; nan where there is none.
-
-    Parameters
-    ----------
-    curve, liquid : of the machines, and of all of them
-    rows : the machines, shape (m,)
-    """
+    """Mass, speed and deflection at the tops of machines with a wall that runs dry; nan where none is."""
     full = liquid.added_mass[rows] * (1.0 + 1e-9)
     # With less mass than that the deflection rises without end.
     least = np.maximum(
@@ -124,17 +95,13 @@ class _Curve:
     force: Array
 
     def at(self, which: Index | Flags) -> _Curve:
-        """Some of them."""
+        """Curves of some rotors."""
         return _Curve(*(x[which] for x in (self.mass, self.stiffness, self.damping, self.force)))
 
     def top(self, which: Index, mass: Array, change: Array) -> tuple[Array, Array]:
-        """Speed and deflection at which the deflection stands still; nan where it does nowhere.
+        """Speed and deflection at which the deflection is stationary; nan where there is none.
 
-        Parameters
-        ----------
-        which : of the rotors, shape (m,)
-        mass : of the rotor with its liquid, kg, shape (m,)
-        change : half of what its logarithm of the speed changes it by, kg, shape (m,)
+        `change`: half the derivative of the mass over the logarithm of the speed, kg.
         """
         stiffness, damping, force = (x[which] for x in (self.stiffness, self.damping, self.force))
         # Both conditions, squared speeds eliminated [theory: rotor, eq. 34].
@@ -161,7 +128,7 @@ class _Liquid:
 
     @classmethod
     def of(cls, machines: Sequence[PlanarMachine], gravity: Array, model: LiquidModel) -> _Liquid:
-        """That of some machines."""
+        """Liquid of some machines."""
         wet = [(k, fill) for k, (_, fills) in enumerate(machines) for fill in fills if fill.volume > 0.0]
         owner, fills = np.array([k for k, _ in wet], dtype=np.intp), Fills.of([fill for _, fill in wet])
         mass, added_mass = (
@@ -203,28 +170,10 @@ class _Liquid:
 
 
 def resonances(system: RotorSystem, fills: Sequence[Fill], share: float = 1.0) -> tuple[Array, Array]:
-    """Speeds at which the unbalance meets a free vibration, where the liquid adds a share of its full mass.
+    """Speeds at which the unbalance meets a free vibration, rising, and half widths, rad/s.
 
-    Those are the zeros of the determinant of the dynamic stiffness [theory: rotor, eq. 29], a polynomial of
-    the speed: they stand off the real speeds by half the width of the resonance.
-
-    Parameters
-    ----------
-    system : the dry rotor
-    fills : its chambers
-    share : of the mass that a chamber adds in a small whirl
-
-    Returns
-    -------
-    speed, half_width : rising, rad/s, shape (k,)
-
-    Examples
-    --------
-    >>> from solvers.rotor.jeffcott import Jeffcott
-    >>> rotor = Jeffcott(mass=1.0, stiffness=100.0, damping=2.0, unbalance=1e-3)
-    >>> speed, half_width = resonances(rotor.system(), [])
-    >>> print(np.round(speed, 3), np.round(half_width, 3))
-    [9.95 9.95] [1. 1.]
+    The liquid adds a `share` of its full mass. Zeros of the determinant of the dynamic stiffness
+    [theory: rotor, eq. 29], a polynomial of the speed; their distance from the real axis is half the width.
     """
     from scipy.linalg import eigvals
 

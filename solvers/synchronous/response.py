@@ -1,9 +1,8 @@
-"""Steady answer of any rotor with liquid to its unbalance, and its critical speeds: the entry to this room.
+"""Steady answer of any rotor with liquid to its unbalance, and its critical speeds.
 
-`response` takes a rotor, its fills, speeds, gravity and a liquid model, and gives one result for every kind
-of rotor. A Jeffcott rotor is solved by its one circle, with the stability of every branch, and thousands of
-them at once by `machine_responses`; any other rotor by harmonic balance. Critical speeds hold at small
-deflections, dampers left out.
+`response` gives one result for every kind of rotor. A Jeffcott rotor is solved by its one circle, with the
+stability of every branch, and thousands at once by `machine_responses`; any other by harmonic balance.
+Critical speeds hold at small deflections, dampers left out.
 """
 
 from __future__ import annotations
@@ -37,13 +36,7 @@ def critical_speed(
 ) -> float:
     """Speed at which a small deflection meets no stiffness: (M + dU/de) Omega^2 = K [theory: rotor, eq. 4].
 
-    Parameters
-    ----------
-    rotor, fills, gravity, model : see `solvers.synchronous.response.response`
-
-    Returns
-    -------
-    Omega, rad/s, between sqrt(K/(M + m_f)) and sqrt(K/M)
+    rad/s, between sqrt(K/(M + m_f)) and sqrt(K/M).
     """
     wet, along = [fill for fill in fills if fill.volume > 0.0], np.array([gravity])
 
@@ -64,14 +57,7 @@ def wet_critical_speeds(
 ) -> tuple[Array, Complex]:
     """All critical speeds of a rotor of any kind, and its shapes there [theory: rotor, eq. 31].
 
-    Parameters
-    ----------
-    rotor, fills, gravity, model : see `solvers.synchronous.response.response`
-
-    Returns
-    -------
-    speed : rising, rad/s, shape (k,)
-    shape : complex, shape (k, n)
+    Rising, rad/s, shape (k,), and complex shapes (k, n).
     """
     system = rotor.system()
     wet = [fill for fill in fills if fill.volume > 0.0]
@@ -99,22 +85,12 @@ def main_critical_speeds(
     dry: tuple[Array, Complex],
     wet: tuple[Array, Complex],
 ) -> tuple[float, float]:
-    """Critical speed where the unbalance moves the dry machine most, and that of the same mode with liquid.
+    """Critical speed where the unbalance moves the rotor without liquid most, and that of this mode with it.
 
-    The largest amplitude at any chamber counts, or at position 0 without chambers, by linear theory with the
-    dampers; without bound where the unbalance drives a mode that has none. Of equal ones it is the lowest
-    [theory: rotor, eq. 31].
-
-    Parameters
-    ----------
-    system : the dry rotor
-    fills : its chambers
-    dry, wet : critical speeds, rad/s, rising, shape (k,), and shapes, (k, n), as from `critical_speeds` and
-        `wet_critical_speeds`
-
-    Returns
-    -------
-    rad/s, without and with liquid; nan where there is none
+    rad/s; nan where there is none. By the largest amplitude at any chamber, or at position 0 without
+    chambers, in linear theory with dampers; without bound where the unbalance drives an undamped mode; the
+    lowest of equals [theory: rotor, eq. 31]. `dry` and `wet` as from `critical_speeds` and
+    `wet_critical_speeds`.
     """
     speed, shape = dry
     if speed.size == 0:
@@ -142,15 +118,10 @@ def _parted(system: RotorSystem, fills: Sequence[Fill], shape: Complex) -> Compl
 
 
 def _with_liquid(system: RotorSystem, dry: Complex, wet: tuple[Array, Complex]) -> Array:
-    """Critical speed with liquid of each dry mode, rad/s, nan where it has none, shape (k,).
+    """Critical speed with liquid of each mode without, rad/s, nan where it has none, shape (k,).
 
-    Modes are alike by the squared cosine between their shapes in the metric of the dry mass; of all ways to
-    pair them one to one it is the one with the largest sum [theory: rotor, eq. 39].
-
-    Parameters
-    ----------
-    dry : shapes, shape (k, n)
-    wet : critical speeds, rad/s, shape (m,), and shapes, (m, n)
+    Modes are alike by the squared cosine between their shapes in the metric of the rotor's mass, paired one
+    to one with the largest sum [theory: rotor, eq. 39].
     """
     from scipy.optimize import linear_sum_assignment
 
@@ -247,14 +218,14 @@ class Response:
 
     @property
     def parts_dry(self) -> Complex:
-        """The same of the rotor without liquid, m, shape (n, 2)."""
+        """Forward and backward part of the rotor without liquid, m, shape (n, 2)."""
         return np.stack((self.deflection_dry, self.backward_dry), axis=1)
 
     @property
     def amplitude(self) -> Array:
         """Largest distance of the axis from the line it rests in, of the branch reported, m, shape (n,).
 
-        Of motions that were held in time it is the mean.
+        The mean where motions were integrated in time.
         """
         size = np.abs(self.parts).sum(axis=1)
         if self.over_time.size == 0:
@@ -263,7 +234,7 @@ class Response:
 
     @property
     def amplitude_dry(self) -> Array:
-        """The same of the rotor without liquid, m, shape (n,)."""
+        """Amplitude of the rotor without liquid, m, shape (n,)."""
         return np.asarray(np.abs(self.parts_dry).sum(axis=1))
 
     @property
@@ -285,14 +256,14 @@ class Response:
 
     @property
     def peak(self) -> Peak:
-        """The amplitude there."""
+        """Amplitude at `top` and its speed."""
         if self.top is None:
             return Peak(math.nan, math.nan)
         return Peak(float(self.speed[self.top]), float(self.amplitude[self.top]))
 
     @property
     def branch_amplitude(self) -> Array:
-        """The same of every branch, nan where there is none, m, shape (n, b)."""
+        """Amplitude of every branch, nan where there is none, m, shape (n, b)."""
         return np.asarray(np.abs(self.branch_deflection) + np.abs(self.branch_backward))
 
     def at(self, which: Index) -> Response:
@@ -470,17 +441,8 @@ def answered_by(
 ) -> Response:
     """The branches that one liquid model reports, as another has them: Newton's method from each.
 
-    It serves models that are too dear to look for branches by, and near to one that is not.
-
-    Parameters
-    ----------
-    rotor, fills, gravity : see `response`
-    known : the answer by the other model
-    model : of the liquid
-
-    Returns
-    -------
-    Response; `residual` is that of the model's own balance, branches that are not reported stay as they were
+    For models too dear to look for branches by. `residual` is that of the model's own balance; branches that
+    are not reported stay as they were.
     """
     system, found = rotor.system(), np.flatnonzero(np.isfinite(known.coordinates).all(axis=1))
     owner = np.zeros(found.size, dtype=np.intp)
@@ -511,12 +473,7 @@ def answered_by(
 
 
 def distance(found: Response, exact: Response) -> Array:
-    """How far an answer is from another one, relative: the larger of amplitude and liquid's offset.
-
-    Parameters
-    ----------
-    found, exact : at the same speeds, shape (n,)
-    """
+    """How far an answer is from another one, relative: the larger of amplitude and liquid's offset."""
     gaps = []
     for name in ("amplitude", "liquid_offset"):
         here, there = getattr(found, name), getattr(exact, name)
@@ -637,12 +594,7 @@ def _merged(parts: list[tuple[Index, Response]]) -> Response:
 
 
 def joined(parts: Sequence[Response]) -> Response:
-    """Responses at several sets of speeds as one, one set after the other.
-
-    Parameters
-    ----------
-    parts : of one rotor, at least one
-    """
+    """Responses at several sets of speeds as one, one set after the other."""
     found: dict[str, Any] = {"position": parts[0].position, "over_time": _times(parts)}
     for each in fields(Response):
         values = [getattr(part, each.name) for part in parts]
@@ -661,12 +613,7 @@ def _times(parts: Sequence[Response]) -> Array:
 
 
 def by_speed(parts: Sequence[Response]) -> Response:
-    """Responses at several sets of speeds as one, by rising speed.
-
-    Parameters
-    ----------
-    parts : of one rotor, at least one
-    """
+    """Responses at several sets of speeds as one, by rising speed."""
     every = joined(parts)
     return every.at(np.argsort(every.speed, kind="stable"))
 

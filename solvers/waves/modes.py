@@ -50,21 +50,8 @@ class WaveTerms:
 def wave_split(terms: WaveTerms, points: int, first_angle: float = 0.0) -> Split:
     """Linear symbol, and steepening with forcing as the rest [theory: steppers, eq. 1].
 
-    Followed in the frame of the whirl or, without forcing, of long waves.
-
-    Parameters
-    ----------
-    terms : the equation
-    points : evenly spaced round the drum, 8 or more; an even number with small factors is fastest
-    first_angle : theta of the first point, rad
-
-    Returns
-    -------
-    Split for fields eta in m^2; free of aliases, without the mode of half the points
-
-    Raises
-    ------
-    InputError : fewer than 8 points
+    For fields eta, m^2, on 8 or more points, the first at theta = `first_angle`; free of aliases, without the
+    mode of half the points. Followed in the frame of the whirl or, without forcing, of long waves.
     """
     if points < 8:
         raise InputError("points", points, "8 or more")
@@ -151,7 +138,7 @@ class System:
         return split(v)
 
     def residual(self, y: Array, p: float) -> Array:
-        """What is left of the equations, shape (2 M,)."""
+        """Residual of the equations, shape (2 M,)."""
         v = joined(y)
         square = fft.rfft(np.square(values(v, self.points)), norm="forward")
         r = self.coefficient(p) * v + 0.5 * square[1 : self.modes + 1]
@@ -173,10 +160,7 @@ class System:
         return split(self.coefficient(p) * dv + product[1 : self.modes + 1])
 
     def jacobian(self, y: Array, p: float, modes: int, border: int = 0) -> Array:
-        """Exact derivative with respect to the first modes, in columns; with room for a border.
-
-        Shape (2 modes + border, 2 modes + border); the border is not set.
-        """
+        """Exact derivative by the first modes, shape (2 modes + border, 2 modes + border), border not set."""
         v = joined(y)
         wave = np.zeros(3 * modes, dtype=complex)  # wave numbers -(modes - 1) ... 2 modes
         kept = min(2 * modes, self.modes)
@@ -199,7 +183,7 @@ class System:
 
 
 class DampingSystem(System):
-    """The same at a fixed speed: an extra diffusion, in the problem's scale, takes the place of p."""
+    """`System` at a fixed speed: an extra diffusion, in the problem's scale, takes the place of p."""
 
     def __init__(self, problem: WaveProblem, modes: int, speed: float) -> None:
         super().__init__(problem, modes)

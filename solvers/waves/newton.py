@@ -1,13 +1,10 @@
 """Newton's method for steady waves, and curves of them over one parameter, through their folds.
 
-The derivative has a dense low block and a diagonal above it. Above the first modes the coefficient of a mode,
-which grows with its number, outweighs all that the wave's height couples to it: there the diagonal stands for
-the derivative. What that leaves out, and what old factors leave out, costs corrections; where these gain too
-little new factors are made, at last with all modes in the block, or, beyond `DENSE_MODES`, GMRES takes over.
-
-A point of a curve is the scaled wave and the parameter together, [Re v, Im v, p]. The next one is predicted
-by the cubic through the last two with their tangents and corrected on the plane across the curve:
-pseudo-arclength continuation.
+The derivative has a dense low block and a diagonal above it, where the coefficient of a mode outweighs all
+that the wave's height couples to it. Where corrections gain too little new factors are made, at last with all
+modes in the block, or, beyond `DENSE_MODES`, GMRES takes over. A point of a curve is the scaled wave and the
+parameter, [Re v, Im v, p]; the next one is predicted by the cubic through the last two with their tangents
+and corrected on the plane across the curve: pseudo-arclength continuation.
 """
 
 from __future__ import annotations
@@ -100,12 +97,7 @@ class Factors:
 def factorise(
     system: System, y: Array, p: float, plane: Array | None = None, alone: float = ALONE
 ) -> Factors:
-    """Factors of the derivative at a wave; where a plane's direction is given, bordered by it and by p.
-
-    Raises
-    ------
-    LinAlgError : the low block is singular
-    """
+    """Factors of the derivative at a wave; where a plane's direction is given, bordered by it and by p."""
     m = system.modes
     coefficient = system.coefficient(p)
     height = float(np.max(np.abs(values(joined(y), system.points))))
@@ -273,19 +265,7 @@ class Pace:
 
 
 def march(make: Callable[[int], System], first: Array, target: float, pace: Pace) -> Path:
-    """Follow a curve from a point on it until its parameter has passed the target.
-
-    Parameters
-    ----------
-    make : the equations of a number of modes
-    first : the point to begin with, [Re v, Im v, p]
-    target : of the parameter
-    pace : lengths and limits
-
-    Returns
-    -------
-    Path; its last point is the first one beyond the target
-    """
+    """Follow a curve from a point [Re v, Im v, p] to the first one beyond the target of its parameter."""
     system = make(first.size // 2)
     sense = math.copysign(1.0, target - first[-1])
     try:
@@ -340,10 +320,7 @@ def _with_modes(point: PathPoint, modes: int) -> PathPoint:
 
 
 def segment(begin: Array, end: Array, leaving: Array, arriving: Array) -> tuple[Array, float]:
-    """Cubic between two points with their tangents, and the length of the curve there.
-
-    Coefficients of u^0 ... u^3, from u = 0 to 1.
-    """
+    """Cubic between two points with their tangents, u^0 ... u^3 up to u = 1, and the curve's length."""
     modes = max(begin.size, end.size) // 2
     a, b, start, stop = (widened(x, modes) for x in (begin, end, leaving, arriving))
     chord = b - a

@@ -68,15 +68,7 @@ _SHORT = 1.4
 def family_problem(
     c: KdvCoefficients, acceleration: float, whitham: bool = False, decay: float = 0.0, diffusion: float = 0.0
 ) -> WaveProblem:
-    """Waves of one family under the whirl.
-
-    Parameters
-    ----------
-    c : the family
-    acceleration : F = omega_w^2 w0 of the axis, m/s^2
-    whitham : exact dispersion instead of KdV's
-    decay, diffusion : as in `WaveProblem`
-    """
+    """Waves of one family under the whirl, whose axis accelerates by F = omega_w^2 w0, m/s^2."""
     frequency = functools.partial(wave_frequency, c=c, whitham=whitham)
     return WaveProblem(frequency, c.steepening, float(forcing(c, acceleration)), decay, diffusion)
 
@@ -88,29 +80,14 @@ def solve(
     points: int = 128,
     most_points: int = MOST_POINTS,
 ) -> SteadyWave:
-    """One steady wave at a whirl speed, with as many points as it needs.
+    """One steady wave at a whirl speed seen from the drum, rad/s, with as many points as it needs.
 
-    Where several answers exist this is one of them: the one next to the guess; else the one next to the bore
-    of vanishing dispersion [theory: kdv, eq. 27] or to the linear wave or, if Newton's method does not arrive
-    from there, the one that grows out of a strongly damped wave as the extra damping is taken away, through
-    folds if there are any. `solvers.waves.steady` finds the others.
-
-    Parameters
-    ----------
-    problem : equations; without forcing the answer is rest
-    speed : whirl speed s seen from the drum, rad/s
-    guess : modes of a wave near by, m^2, shape (m,)
-    points : to begin with, 12 or more; doubled until the spectrum's tail falls below `TAIL`
-    most_points : limit of that; a wave that needs more is returned with `converged` False
-
-    Returns
-    -------
-    SteadyWave; `converged` and `reason` tell whether it is an answer
-
-    Raises
-    ------
-    InputError : a speed that is not finite, too few points, a guess without forcing (a free wave is defined
-        up to a shift)
+    Where several answers exist it is the one next to the guess (modes, m^2, shape (m,)); else next to the
+    bore of vanishing dispersion [theory: kdv, eq. 27] or to the linear wave or, if Newton's method does not
+    arrive from there, the one that grows out of a strongly damped wave as the extra damping is taken away;
+    `respond` finds the others. Points, at least 12, are doubled until the spectrum's tail falls below `TAIL`;
+    a wave that needs more than `most_points` is not converged. Without forcing it is rest; a guess is refused
+    there, since a free wave is defined up to a shift only.
     """
     if not math.isfinite(speed):
         raise InputError("speed", speed, "a finite number")
@@ -246,24 +223,10 @@ def follow(
     most_steps: int = 4000,
     longest: float = _LONGEST,
 ) -> Branch:
-    """Follow the curve of steady waves from one whirl speed to another, through its folds.
+    """Follow the curve of steady waves from one whirl speed, rad/s, to another, through its folds.
 
-    Parameters
-    ----------
-    problem : equations
-    start, stop : whirl speeds, rad/s; the wave at `start` is the one of `solvers.waves.steady.solve`
-    points : to begin with; doubled up to `MOST_CURVE_POINTS` where the spectrum needs it
-    most_steps : limit of the points on the curve
-    longest : longest step, in units of the scaled wave and speed
-
-    Returns
-    -------
-    Branch; `complete` is False where it came back to the start, left what the modes resolve or ran out of
-    steps
-
-    Raises
-    ------
-    InputError : speeds that are not finite or are equal, too few points, a free wave
+    It starts at the wave of `solve`; `longest` step in units of the scaled wave and speed. `complete` is
+    False where it came back to the start, left what the modes resolve or ran out of steps.
     """
     if not (math.isfinite(start) and math.isfinite(stop)) or start == stop:
         raise InputError("stop", stop, f"a finite speed other than start ({start!r})")
@@ -294,23 +257,10 @@ def _branch(problem: WaveProblem, path: Path, begin: SteadyWave, stop: float) ->
 
 
 def growth_rates(wave: SteadyWave) -> Complex:
-    """Growth rates of small disturbances of a steady wave, seen in the whirl's frame.
+    """Growth rates of small disturbances of a steady wave in the whirl's frame, 1/s, largest real part first.
 
-    Eigenvalues of the linearised operator on disturbances that carry no liquid to or from the layer
-    [theory: kdv, eq. 21]. A free wave may be shifted at no cost; that direction is taken out.
-
-    Parameters
-    ----------
-    wave : a converged wave of at most `DENSE_MODES` modes
-
-    Returns
-    -------
-    Eigenvalues, 1/s, largest real part first; unstable if that is above 0; shape (2 M,) or, for a free wave,
-    (2 M - 1,)
-
-    Raises
-    ------
-    InputError : a wave that is not converged or has too many modes
+    On disturbances that carry no liquid to or from the layer [theory: kdv, eq. 21], shape (2 M,); of a free
+    wave the direction of a shift is taken out, (2 M - 1,). At most `DENSE_MODES` modes.
     """
     if not wave.converged:
         raise InputError("wave", wave.reason, "converged")
@@ -354,23 +304,9 @@ class Response:
 def respond(
     problem: WaveProblem, speeds: ArrayLike, points: int = 128, margin: float = 0.0, stability: bool = False
 ) -> Response:
-    """All steady waves at a row of whirl speeds, connected to those below and above the row.
+    """All steady waves at a row of rising whirl speeds, rad/s, connected to those beyond the row.
 
-    Parameters
-    ----------
-    problem : equations
-    speeds : whirl speeds s, rad/s, increasing, shape (k,), two or more
-    points : to begin with
-    margin : how far outside the row the curves begin, rad/s; far from resonance the answer there is unique
-    stability : also the growth rate of each answer
-
-    Returns
-    -------
-    Response
-
-    Raises
-    ------
-    InputError : speeds that do not increase, a negative margin
+    The curves begin `margin` outside, rad/s; far from resonance the answer there is unique.
     """
     row = np.asarray(speeds, dtype=float)
     if row.ndim != 1 or row.size < 2 or not bool(np.all(np.diff(row) > 0.0)):

@@ -56,16 +56,7 @@ class Weights(NamedTuple):
 
 
 def phi_functions(z: Complex) -> tuple[Complex, Complex, Complex]:
-    """phi_1, phi_2, phi_3 to rounding for every argument [theory: steppers, eq. 2].
-
-    Parameters
-    ----------
-    z : shape (...,), dimensionless
-
-    Returns
-    -------
-    Three arrays of that shape; 1, 1/2 and 1/6 at z = 0
-    """
+    """phi_1, phi_2, phi_3 to rounding for every argument; 1, 1/2, 1/6 at 0 [theory: steppers, eq. 2]."""
     z = np.asarray(z, dtype=complex)
     near = np.abs(z) < 1.0
     # The quotients cancel near 0; there the Taylor series takes over.
@@ -116,41 +107,14 @@ METHODS = {
 
 
 def find_method(name: str) -> Method:
-    """A method by its name.
-
-    Parameters
-    ----------
-    name : "etdrk4" (Cox and Matthews), "krogstad" (ETDRK4-B) or "ifrk4" (integrating factor)
-
-    Returns
-    -------
-    Method
-
-    Raises
-    ------
-    InputError : an unknown name
-    """
+    """Method "etdrk4" (Cox and Matthews), "krogstad" (ETDRK4-B) or "ifrk4" (integrating factor)."""
     if name not in METHODS:
         raise InputError("method", name, "one of " + ", ".join(METHODS))
     return METHODS[name]
 
 
 def step_weights(symbol: Complex, frame: float, method: Method, step: float) -> Weights:
-    """What one step multiplies the field and N with.
-
-    N is followed in a frame that turns with the crests [theory: steppers, eq. 9].
-
-    Parameters
-    ----------
-    symbol : L of each mode, 1/s, shape (modes,)
-    frame : angular speed of the frame, rad/s
-    method : stages and weights
-    step : h, s
-
-    Returns
-    -------
-    Weights
-    """
+    """Weights of a step, N followed in a frame that turns with the crests [theory: steppers, eq. 9]."""
     half, full = np.exp(0.5 * step * symbol), np.exp(step * symbol)
     if method.lawson:
         return Weights._make((half, full, *(step * w for w in method.weights(step * symbol)), half, full))
@@ -226,14 +190,7 @@ class Advance:
 def to_spectrum(values: Array) -> Complex:
     """Fourier coefficients of a real field on evenly spaced points.
 
-    Parameters
-    ----------
-    values : shape (points,)
-
-    Returns
-    -------
-    Shape (points // 2 + 1,), scaled as numpy.fft.rfft; without the mode of half the points, whose derivative
-    the points cannot show
+    Scaled as numpy.fft.rfft; without the mode of half the points, whose derivative they cannot show.
     """
     spectrum = np.fft.rfft(values)
     if values.size % 2 == 0:
@@ -242,17 +199,7 @@ def to_spectrum(values: Array) -> Complex:
 
 
 def squared(spectrum: Complex, points: int) -> Complex:
-    """Spectrum of the square of a real field, free of aliases [theory: steppers, eq. 8].
-
-    Parameters
-    ----------
-    spectrum : of the field, shape (points // 2 + 1,)
-    points : of the field's grid
-
-    Returns
-    -------
-    Of the same shape, as if squared on infinitely many points
-    """
+    """Spectrum of the square of a real field, free of aliases [theory: steppers, eq. 8]."""
     fine = 3 * points // 2
     square = np.fft.rfft(np.square(np.fft.irfft(spectrum, n=fine)))[: spectrum.size] * (fine / points)
     if points % 2 == 0:
@@ -283,24 +230,7 @@ def _step(
 def advance_fixed(
     split: Split, spectrum: Complex, span: tuple[float, float], steps: int, method: str
 ) -> Advance:
-    """Advance a field by equal steps.
-
-    Parameters
-    ----------
-    split : the equation
-    spectrum : of the field at the start, shape (modes,)
-    span : start and end, s, the end after the start
-    steps : how many, 1 or more
-    method : a name in `METHODS`
-
-    Returns
-    -------
-    The field at the end and how the run went
-
-    Raises
-    ------
-    InputError : a span that does not run forward, no steps, an unknown method
-    """
+    """Advance a field by equal steps."""
     start, stop = _checked_span(span)
     if steps < 1:
         raise InputError("steps", steps, "1 or more")
@@ -326,19 +256,6 @@ def advance_adaptive(
 
     The better of the two embedded results is kept; a proportional-integral control sets the next step
     [theory: steppers, eq. 10-11].
-
-    Parameters
-    ----------
-    split, spectrum, span, method : as in `advance_fixed`
-    control : tolerance and limits
-
-    Returns
-    -------
-    The field at the end, or where the run had to stop, and how the run went
-
-    Raises
-    ------
-    InputError : a span that does not run forward, an unknown method
     """
     start, stop = _checked_span(span)
     scheme = find_method(method)

@@ -1,4 +1,4 @@
-"""Self-excited whirl: growth and whirl speed of the mode that grows most, for any rotor and any fills."""
+"""Self-excited whirl: growth rate and whirl speed of the mode that grows most, for any rotor and fills."""
 
 from __future__ import annotations
 
@@ -66,17 +66,7 @@ def asynchronous_growth(
 def growth_map(
     rotor: Rotor, rows: Sequence[Sequence[Fill]], speed: ArrayLike, friction: Friction = NO_FRICTION
 ) -> tuple[Array, Array]:
-    """Growth over speed for each of several sets of fills.
-
-    Parameters
-    ----------
-    rotor, speed, friction : as for `asynchronous_growth`
-    rows : the fills of the rotor's chambers, each row the same chambers
-
-    Returns
-    -------
-    growth, 1/s, and whirl_speed, rad/s, as from `asynchronous_growth`, shape (rows, n)
-    """
+    """Growth rate and whirl speed over speed for each of several sets of fills, shape (rows, n)."""
     spin = np.array(speed, dtype=float).reshape(-1)
     row = np.repeat(np.arange(len(rows)), spin.size)
     growth, whirl_speed = growth_at(rotor, rows, row, np.tile(spin, len(rows)), friction)
@@ -91,17 +81,7 @@ def growth_at(
     speed: Array,
     friction: Friction = NO_FRICTION,
 ) -> tuple[Array, Array]:
-    """Growth at points (row, speed), as `growth_map`.
-
-    Parameters
-    ----------
-    rotor, rows, friction : as for `growth_map`
-    row, speed : of each point, shape (n,)
-
-    Returns
-    -------
-    growth and whirl_speed, shape (n,)
-    """
+    """Growth rate and whirl speed at points (row, speed), as `growth_map`."""
     if not np.all(np.isfinite(speed) & (speed > 0.0)):
         raise InputError("speed", speed.tolist(), "finite numbers above 0")
     if isinstance(rotor, Jeffcott):
@@ -117,13 +97,7 @@ def growth_at(
 def system_modes(
     rotor: Rotor, fills: Sequence[Fill], speed: Array, friction: Friction = NO_FRICTION
 ) -> SystemModes:
-    """All whirl modes of any rotor with its fills [theory: whirl, eq. 7].
-
-    Parameters
-    ----------
-    rotor, fills, friction : as for `asynchronous_growth`
-    speed : rad/s, shape (n,)
-    """
+    """All whirl modes of any rotor with its fills [theory: whirl, eq. 7]."""
     heavy = rotor.system()
     for fill in fills:
         if is_full(fill):
@@ -141,7 +115,7 @@ def system_modes(
 
 
 def _fastest(modes: SystemModes, spin: Array) -> tuple[Array, Array]:
-    """Growth and whirl speed from eigenvalues; nan where a mode that grows more may be missing."""
+    """Growth rate and whirl speed from eigenvalues; nan where a mode that grows more may be missing."""
     root, known, lost = modes.root, modes.found, ~modes.complete
     omega = modes.sense * root.imag - 1j * root.real
     omega = np.where(known, omega, complex(np.nan, np.nan))
@@ -150,20 +124,11 @@ def _fastest(modes: SystemModes, spin: Array) -> tuple[Array, Array]:
 
 
 def dominant(omega: Complex, rounding: Array, spin: Array) -> tuple[Array, Array]:
-    """Growth and whirl speed of the mode that grows most.
+    """Growth rate and whirl speed of the mode that grows most, shape (n,).
 
-    Of modes that grow or die alike, to 1e-9 of their own speeds, it is the one nearest to the spin, as the
-    waves are that can grow.
-
-    Parameters
-    ----------
-    omega : in the standing frame, rad/s, nan where there is no mode, shape (m, n)
-    rounding : of each, rad/s, shape (m, n)
-    spin : Omega, rad/s, shape (n,)
-
-    Returns
-    -------
-    growth, 1/s, 0 where rounding cannot tell it from 0, and whirl speed, rad/s, shape (n,)
+    Growth is 0 where rounding cannot tell it from 0; of modes that grow alike, to 1e-9 of their own speeds,
+    the one nearest to the spin, as growing waves are. Modes of shape (m, n), rad/s in the standing frame, nan
+    where there is none.
     """
     missing = np.isnan(omega)
     rate = np.where(missing, -np.inf, -omega.imag)
@@ -178,19 +143,7 @@ def dominant(omega: Complex, rounding: Array, spin: Array) -> tuple[Array, Array
 def machines_growth(
     machines: Sequence[PlanarMachine], frictions: Sequence[Friction], owner: Index, speed: Array
 ) -> tuple[Array, Array]:
-    """Growth of many planar machines at once [theory: whirl, eq. 8].
-
-    Parameters
-    ----------
-    machines : rotors, each with its chambers and their liquid
-    frictions : of each machine's liquid, as for `asynchronous_growth`
-    owner : which machine each point has, shape (n,)
-    speed : of each point, rad/s, shape (n,), above 0
-
-    Returns
-    -------
-    growth and whirl_speed as from `asynchronous_growth`, shape (n,)
-    """
+    """Growth rate and whirl speed of many planar machines at once [theory: whirl, eq. 8]."""
     growth, whirl_speed = np.full((2, speed.size), np.nan)
     for here, found in _planar_parts(machines, frictions, owner, speed):
         if isinstance(found, SystemModes):
@@ -244,18 +197,10 @@ def _planar_parts(
 def modes_at(
     rotor: Rotor, rows: Sequence[Sequence[Fill]], row: Index, speed: Array, friction: Friction
 ) -> tuple[Complex, Array, Array]:
-    """Modes of small whirls at points (row, speed), and the growth of the one that grows most.
+    """Modes of small whirls at points (row, speed), their rounding, and the largest growth rate.
 
-    Parameters
-    ----------
-    rotor, rows, row, speed, friction : as for `growth_at`
-
-    Returns
-    -------
-    root : growth + i frequency, 1/s, each mode once, in a frame in which modes that are coupled meet where
-        they are alike; 0 for a growth that is rounding, nan where a point has fewer modes, shape (n, m)
-    rounding : of each, 1/s, shape (n, m)
-    growth : as from `growth_at`, shape (n,)
+    growth + i frequency, 1/s, each mode once, in a frame in which coupled modes meet where they are alike; 0
+    for a growth that is rounding, nan where a point has fewer modes, shape (n, m).
     """
     parts: Iterable[tuple[Index, SystemModes | Modes]]
     if isinstance(rotor, Jeffcott):
@@ -285,8 +230,8 @@ def modes_at(
 def planar_layers(mass: float, fills: Sequence[Fill], friction: Friction) -> tuple[float, list[Layer]]:
     """Mass of a rotor with all liquid that has no free surface, and its layers, equal ones as one.
 
-    In one plane the liquid of equal chambers acts together. Against one another they slosh as if the rotor
-    were not there: a layer without mass stands for that.
+    In one plane the liquid of equal chambers acts together; a layer without mass stands for their sloshing
+    against one another, which does not move the rotor.
     """
     layers: list[Layer] = []
     apart: list[Layer] = []

@@ -19,13 +19,7 @@ MOST_STEPS = 100_000_000  # about ten minutes
 
 @dataclass(frozen=True)
 class BallRace:
-    """A circular race around the rotor's axis with balls that roll in it.
-
-    Raises
-    ------
-    InputError : a radius or mass that is not positive, no ball, a negative drag, resistance or share, kappa
-        below 1
-    """
+    """A circular race around the rotor's axis with balls that roll in it."""
 
     position: float  #: along the axis, m
     radius: float  #: R of the balls' centres, m
@@ -69,13 +63,7 @@ class BalancedRun:
     speed: float  #: Omega, rad/s
 
     def deflection(self, system: RotorSystem, position: float) -> Complex:
-        """Complex deflection of the axis at a position in the frame that turns with the rotor, m, shape (s,).
-
-        Parameters
-        ----------
-        system : the rotor
-        position : along the axis, m
-        """
+        """Complex deflection of the axis at a position in the turning frame, m, shape (s,)."""
         first, second = system.at(position) @ self.coordinates.T
         return np.asarray((first + 1j * second) * np.exp(-1j * self.speed * self.time))
 
@@ -93,23 +81,9 @@ def simulate(
 ) -> BalancedRun:
     """Integrate rotor and balls at constant spin [theory: balls, eq. 16-18].
 
-    Parameters
-    ----------
-    system : the rotor
-    races : one or more
-    speed : Omega, rad/s, above 0
-    duration : s
-    places : start of the balls in the rotor, race by race, rad, shape (N,); by default evenly around each
-        race. They start at rest in the rotor, and the rotor without deflection
-    gravity : across the axis, against the second direction, m/s^2
-    samples : of the result, the start among them
-    steps : of the fourth-order method in a turn of the rotor, or in 2 pi of its fastest own motion if that is
-        faster
-
-    Raises
-    ------
-    InputError : a value out of its range, or so long a time of so stiff a rotor that it would take too many
-        steps; balls that resist to rolling, which only run-ups know
+    Balls start at rest in the rotor at `places` (rad, race by race; None: evenly), the rotor without
+    deflection; gravity acts across the axis, against the second direction. `steps` counts those of the
+    fourth-order method in a turn, or in 2 pi of the fastest own motion if that is faster.
     """
     from solvers.rotor.balls.steps import advance
 
@@ -156,7 +130,7 @@ def _fastest(system: RotorSystem, balls: Array, speed: float) -> float:
 
 
 def _audit(record: Array, system: RotorSystem, axes: Array, balls: Array, gravity: float) -> float:
-    """Largest gap between the work done and the change of energy, over what was turned over till the end."""
+    """Largest gap between the work done and the change of energy, over the sum of the sizes of all work."""
     if not np.isfinite(record).all():
         return math.inf
     held = np.array([energy(state, system.mass, system.stiffness, axes, balls, gravity) for state in record])
@@ -172,13 +146,9 @@ def race_arrays(system: RotorSystem, races: Sequence[BallRace]) -> tuple[Array, 
 
 
 def with_balls_at(system: RotorSystem, races: Sequence[BallRace], places: Array) -> RotorSystem:
-    """The rotor with its balls held where they are: a part of its mass and of its unbalance.
+    """Rotor with its balls fixed where they are: a part of its mass and of its unbalance.
 
-    Parameters
-    ----------
-    system : the rotor without balls
-    races : that hold them
-    places : of each ball in the rotor, race by race, rad, shape (N,)
+    Places in rad, race by race, shape (N,).
     """
     axes, balls = race_arrays(system, races)
     mass = system.mass + np.einsum("j,jin,jim->nm", balls[:, 0], axes, axes)

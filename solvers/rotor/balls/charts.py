@@ -1,8 +1,7 @@
-"""Charts of stability over two parameters: where balls keep a rotor balanced, and the curves where that ends.
+"""Stability charts over two parameters: where balls keep a rotor balanced, and the boundaries of that region.
 
-On such a curve a root stands on the imaginary axis: a pair of them, where the balls begin to swing or the
-rotor to whirl (Hopf), or one at 0, where steady states meet or part (a fold or a branching). Where the
-supports differ it is a multiplier of half a turn that stands on the unit circle.
+On such a boundary a root is on the imaginary axis: a pair where balls swing or the rotor whirls (Hopf), or
+one at 0 (a fold or a branching); on supports that differ a multiplier of half a turn on the unit circle.
 """
 
 from __future__ import annotations
@@ -47,7 +46,7 @@ Family = Callable[[float, float], Machine]  # the machine that belongs to a poin
 
 
 class Crossing(Enum):
-    """What stands on the imaginary axis."""
+    """Kind of root on the imaginary axis."""
 
     HOPF = "a pair of roots"
     ZERO = "one root at 0"
@@ -55,7 +54,7 @@ class Crossing(Enum):
 
 @dataclass(frozen=True)
 class Edge:
-    """A curve on which a root stands on the imaginary axis; k points."""
+    """Stability boundary, a curve on which a root is on the imaginary axis; k points."""
 
     kind: Crossing  #: a pair of roots, or one at 0
     first: Array  #: the two parameters, shape (k,)
@@ -92,21 +91,16 @@ class Rest:
     def motions(self, steps: int | None = None) -> Linearised | HalfTurn:
         """Small motions about it, without neutral directions.
 
-        Parameters
-        ----------
-        steps : of half a turn where the supports differ; None: as many as needed
+        Over half a turn where the supports differ, by so many steps; None: as many as needed.
         """
         return small_motions(self.machine, self.speed, self.places, self.coordinates, steps=steps)
 
 
 class State:
-    """The state whose stability is charted: balanced, or one with a deflection next to given places.
+    """State whose stability is charted: the balanced one (None), or one next to given places.
 
-    Where the supports differ the balls follow the forward part of the rotor's motion [theory: races, eq. 5].
-
-    Parameters
-    ----------
-    places : of the balls near the state, rad, shape (N,); None for the balanced state
+    Places in rad, shape (N,). Where the supports differ the balls follow the forward part of the rotor's
+    motion [theory: races, eq. 5].
     """
 
     def __init__(self, places: ArrayLike | None = None) -> None:
@@ -115,10 +109,7 @@ class State:
     def at(self, machine: Machine, near: Array | None = None) -> Rest | None:
         """The state; None where there is none within a quarter turn of the places.
 
-        Parameters
-        ----------
-        machine : at a point of the chart
-        near : places to begin from in place of those given, rad, shape (N,)
+        The search begins at `near` in place of those places.
         """
         rotor = RotorWithBalls(machine.system, tuple(machine.races))
         if self.places is None:
@@ -141,13 +132,7 @@ def _held(rotor: RotorWithBalls, speed: float, places: Array) -> tuple[Rest, Arr
 def gathered(system: RotorSystem, races: Sequence[BallRace], light: bool = False) -> State:
     """The state with the balls of each race together, next to the heavy side of its plane or opposite to it.
 
-    The heavy side is where the unbalance bends the slowly turning rotor to. The state itself is sought anew
-    at each point of a chart.
-
-    Parameters
-    ----------
-    system, races : rotor and balls
-    light : opposite
+    The heavy side is where the unbalance bends the slowly turning rotor to.
     """
     axes, _ = race_arrays(system, races)
     bent = np.linalg.solve(system.stiffness, system.unbalance)
@@ -156,20 +141,10 @@ def gathered(system: RotorSystem, races: Sequence[BallRace], light: bool = False
 
 
 def stability_chart(family: Family, first: ArrayLike, second: ArrayLike, state: State | None = None) -> Chart:
-    """Count growing roots on a grid, and follow every curve on which the count changes.
+    """Count unstable roots on a grid of two parameters, and follow every boundary between the counts.
 
-    A curve that passes between the lines of the grid is not seen; one that is seen is followed to its end
-    or to the edge of the grid. Where a state with a deflection ends in a fold, that is a curve as well.
-
-    Parameters
-    ----------
-    family : machine for each pair of values, on any supports
-    first, second : values of the grid, rising, two or more each
-    state : whose stability; None: the balanced one
-
-    Raises
-    ------
-    InputError : values that do not rise
+    Both parameters rise. A boundary between the lines of the grid is not seen. Where a state with a
+    deflection ends in a fold, that is a boundary as well.
     """
     x, y = (np.asarray(values, dtype=float) for values in (first, second))
     for name, values in (("first", x), ("second", y)):
@@ -199,22 +174,11 @@ def stability_chart(family: Family, first: ArrayLike, second: ArrayLike, state: 
 def stable_bands(
     family: Family, first: ArrayLike, second: float, state: State | None = None
 ) -> tuple[Array, list[tuple[float, float]]]:
-    """Growth over the speed at one value of the second parameter, and the bands of speed without growth.
+    """Growth rate over speed at one value of the second parameter, and the bands of speed that are stable.
 
-    The bands are looked for between the first and the last speed at speeds of their own, so that none is lost
-    between two of those given and none depends on their number [theory: balls, eq. 32-34].
-
-    Parameters
-    ----------
-    family : machine for each pair of values, its first the speed
-    first : speeds that rise, rad/s, shape (a,)
-    second : the other parameter
-    state : whose stability; None: the balanced one
-
-    Returns
-    -------
-    growth : largest real part, 1/s; nan where the state does not exist, shape (a,)
-    bands : ends of each, where the growth changes its sign, or the state ends, to rounding
+    Growth rate in 1/s, nan where there is no state. The ends of the bands are sought at speeds of their own,
+    so that none is lost between two of those given and none depends on their number
+    [theory: balls, eq. 32-34].
     """
     asked, chosen = np.asarray(first, dtype=float), state or State()
 
@@ -247,9 +211,9 @@ def stable_bands(
 def _looks(at: Callable[[float], Rest | None], first: float, last: float) -> Array:
     """Speeds, the ends among them, between which no more than one edge of a band lies.
 
-    About balls that stay where they are the matrix of small motions is a parabola over the spin, so that all
-    speeds at which a root stands on the axis are eigenvalues. Elsewhere parabolas follow it over shorter
-    ranges, or speeds a fiftieth apart are looked at.
+    The matrix of small motions about balls that stay where they are is a parabola over the spin, so that all
+    speeds with a root on the axis are its eigenvalues; elsewhere parabolas follow it over shorter ranges, or
+    speeds are a fiftieth apart.
     """
     start = at(first)
     if start is not None and turning(start.machine.system) is None:
@@ -316,15 +280,7 @@ def _on_axis(middle: Array, rise: Array, bend: Array) -> Array:
 def existence_bounds(
     family: Family, first: float, second: ArrayLike, state: State | None = None
 ) -> list[float]:
-    """Values of the second parameter between which the state begins or ends to exist, by halving.
-
-    Parameters
-    ----------
-    family : machine for each pair of values
-    first : one value of the first parameter; the balanced state exists at all speeds or at none
-    second : values that rise, shape (b,)
-    state : None: the balanced one
-    """
+    """Values of the second parameter between which the state begins or ends to exist, by halving."""
     y, chosen = np.asarray(second, dtype=float), state or State()
 
     def exists(at: float) -> bool:
@@ -351,19 +307,8 @@ def follow_edge(
 ) -> Edge | None:
     """Follow the curve on which a root stays on the imaginary axis, both ways [theory: balls, eq. 39].
 
-    Parameters
-    ----------
-    family : machine for each pair of values
-    where : the two values near the curve, shape (2,)
-    root : there, 1/s, near the imaginary axis
-    low, high : corners of the rectangle of values, shape (2,)
-    state : whose stability; None: the balanced one
-    fold : the state with a deflection meets another there, so that its places are no function of the values:
-        they are followed along with them
-
-    Returns
-    -------
-    Edge, its points from one end to the other; None where no curve is found next to the start
+    From `where`, shape (2,), with a root (1/s) near the axis there, within the corners `low` and `high`. At a
+    `fold` the places of the balls are followed as well. None where no curve is found next to the start.
     """
     corner, far = np.asarray(low, dtype=float), np.asarray(high, dtype=float)
     at, span = np.asarray(where, dtype=float), far - corner
@@ -404,17 +349,10 @@ def _joined(ways: Sequence[Curve], kind: Crossing) -> Edge:
 
 
 class _Bordered:
-    """A motion neither grows nor fades: det(A - i w) = 0 made smooth by a border [theory: balls, eq. 39].
+    """A motion neither grows nor decays: det(A - i w) = 0 made smooth by a border [theory: balls, eq. 39].
 
-    The same with the map of half a turn less e^{i pi w/Omega} where the supports differ. The largest growth
-    would do as a test too, but has kinks where two motions take turns, and does not tell the frequency.
-
-    Parameters
-    ----------
-    family, state : of the chart
-    swings : a pair of roots, whose frequency is the third unknown; else one root at 0
-    fold : the places of the balls are unknowns as well, and the pulls on them equations
-    near : places of the balls at the start, rad, shape (N,)
+    The frequency is the third unknown of a pair that `swings`; at a `fold` the places of the balls are
+    unknowns as well, and the pulls on them equations. The largest growth rate would have kinks.
     """
 
     def __init__(self, family: Family, state: State, swings: bool, fold: bool, near: Array) -> None:
@@ -467,14 +405,14 @@ class _Bordered:
 
 
 def _roots(state: State, machine: Machine) -> Complex | None:
-    """Of the state; None where it does not exist, or where half a turn did not settle."""
+    """Roots of the state; None where it does not exist, or where half a turn did not converge."""
     rest = state.at(machine)
     motions = None if rest is None else rest.motions()
     return None if motions is None or not motions.settled else motions.roots()
 
 
 def _counted(state: State, machine: Machine) -> tuple[int, float]:
-    """Growing roots, and the largest real part."""
+    """Number of roots that grow, and the largest real part."""
     roots = _roots(state, machine)
     if roots is None:
         return NONE, np.nan

@@ -21,20 +21,10 @@ def rates(
 ) -> None:
     """Rates of change, the coupled accelerations solved for exactly [theory: balls, eq. 16-18].
 
-    Written without array expressions, for the compiler.
-
-    Parameters
-    ----------
-    time : s
-    state : n coordinates, their rates, angles of the N balls, theirs, work done without what is stored, and
-        the sum of the sizes of all work, shape (2 n + 2 N + 2,)
-    mass, stiffness : of the rotor, shape (n, n)
-    damping : C + Omega G, shape (n, n)
-    turning : real and imaginary part of the unbalance, shape (2, n)
-    axes : displacement of the axis in each ball's plane for unit coordinates, shape (N, 2, n)
-    balls : mass, radius, drag, rolling inertia of each, shape (N, 4)
-    numbers : spin and gravity
-    out : the result, shape of `state`
+    For the compiler. State: n coordinates, their rates, angles of the N balls, theirs, work done without what
+    is stored, sum of the sizes of all work. `damping` is C + Omega G, `turning` real and imaginary part of
+    the unbalance (2, n), `axes` the axis in each ball's plane for unit coordinates (N, 2, n), `balls` mass,
+    radius, drag, rolling inertia (N, 4), `numbers` spin and gravity.
     """
     spin, gravity = numbers
     n, count = mass.shape[0], balls.shape[0]
@@ -87,15 +77,8 @@ def rates(
 def energy(state: Array, mass: Array, stiffness: Array, axes: Array, balls: Array, gravity: float) -> float:
     """Kinetic and potential energy of rotor and balls [theory: balls, eq. 19].
 
-    Parameters
-    ----------
-    state, mass, stiffness, axes, balls : see `rates`
-    gravity : against the second direction, m/s^2
-
-    Returns
-    -------
-    J; that of the balls' own spin up to a constant and a part in proportion to their speed, which a constant
-    spin of the rotor leaves out of every balance
+    Arguments as of `rates`; J. The balls' own spin is in it up to a constant and a part in proportion to
+    their speed, which a constant spin leaves out of every balance.
     """
     n, count = mass.shape[0], balls.shape[0]
     q, velocity = state[:n], state[n : 2 * n]

@@ -1,7 +1,7 @@
-"""How small motions about steady ones grow: roots in the turning frame, multipliers of half a turn elsewhere.
+"""Growth of small motions about steady ones: roots in the turning frame, or multipliers of half a turn.
 
-The balls of a race have no place of their own: where more of them stand than the balance needs, they can move
-along a family of balanced states. These directions are told, and are no instability.
+Where more balls stand than the balance needs, they can move along a family of balanced states: these
+directions are no instability.
 """
 
 from __future__ import annotations
@@ -64,17 +64,14 @@ class Linearised:
         return whole
 
     def roots(self) -> Complex:
-        """Characteristic roots but those of the neutral directions, 1/s, the one that grows most first."""
+        """Characteristic roots but those of the neutral directions, 1/s, the largest real part first."""
         found = np.linalg.eigvals(self.matrix())
         return np.asarray(found[np.argsort(-found.real)])
 
     def lasting(self, frequency: float, speed: float) -> Complex:
-        """Matrix that is singular where a motion of this frequency neither grows nor fades, without units.
+        """Matrix that is singular where a motion of this frequency neither grows nor decays, without units.
 
-        Parameters
-        ----------
-        frequency : as seen from the rotor, rad/s
-        speed : Omega, rad/s
+        The frequency is that seen from the rotor, rad/s.
         """
         matrix = _over_spin(self.matrix(), self.mass.shape[0], speed) / speed
         return np.asarray(matrix - 1j * frequency / speed * np.eye(len(matrix)))
@@ -99,12 +96,9 @@ class HalfTurn:
         return np.asarray(found * self.speed / np.pi)
 
     def lasting(self, frequency: float, speed: float) -> Complex:
-        """Matrix that is singular where a motion of this frequency neither grows nor fades, without units.
+        """Matrix that is singular where a motion of this frequency neither grows nor decays, without units.
 
-        Parameters
-        ----------
-        frequency : as seen from the rotor, rad/s, known up to twice the spin
-        speed : Omega, rad/s
+        The frequency is that seen from the rotor, rad/s, known up to twice the spin.
         """
         matrix = _over_spin(self.map, (len(self.map) + self.neutral.shape[1]) // 2, speed)
         return np.asarray(matrix - np.exp(1j * np.pi * frequency / speed) * np.eye(len(matrix)))
@@ -133,22 +127,15 @@ class Stability:
 
     @property
     def stable(self) -> bool:
-        """All disturbances but those along the neutral directions die out."""
+        """All disturbances but those along the neutral directions decay."""
         return self.settled and self.growth < 0.0
 
 
 def neutral_directions(machine: RotorWithBalls, places: ArrayLike, free: Flags | None = None) -> Array:
     """Directions in which balls can move and neither unbalance nor pull changes [theory: balls, eq. 35].
 
-    Parameters
-    ----------
-    machine : rotor and balls
-    places : of the balls, rad, shape (N,)
-    free : balls in whose plane the axis does not move [theory: races, eq. 7], shape (N,); None: all
-
-    Returns
-    -------
-    Orthonormal columns, shape (N, d)
+    Orthonormal columns, shape (N, d). `free`: balls in whose plane the axis does not move
+    [theory: races, eq. 7]; None: all.
     """
     moved = 1j * machine.moments(places)
     mine = np.flatnonzero(np.ones(moved.shape[1], dtype=bool) if free is None else free)
@@ -183,23 +170,12 @@ def small_motions(
     free: Flags | None = None,
     steps: int | None = None,
 ) -> Linearised | HalfTurn:
-    """Small motions about a state in which the balls rest in the rotor, on any supports.
+    """Small motions about a state in which the balls rest at `places` (rad, shape (N,)), on any supports.
 
-    In the turning frame where the rotor is the same in every direction; else over half a turn.
-
-    Parameters
-    ----------
-    machine : rotor and balls
-    speed : Omega, rad/s, above 0
-    places : psi of each ball, at which it rests, rad, shape (N,)
-    coordinates : complex amplitudes of the rotor, q = Re(coordinates e^{i Omega t}), shape (n,); None:
-        balanced, without any
-    free : balls in whose plane the axis does not move, shape (N,); None: all of a balanced rotor, else none
-    steps : of the half turn; None: as many as its growth needs
-
-    Raises
-    ------
-    InputError : a speed that is not positive, places that are not one for each ball
+    In the turning frame where the rotor is the same in every direction, else over half a turn, its `steps`
+    None: as many as needed. Coordinates are complex amplitudes, q = Re(coordinates e^{i Omega t}), None:
+    balanced; `free` are balls in whose plane the axis does not move, None: all of a balanced rotor, else
+    none.
     """
     require_positive("speed", speed)
     angles = machine.checked(places)
@@ -225,17 +201,7 @@ def linearised(
 ) -> Linearised:
     """Equations of small motions in the frame that turns with the rotor [theory: balls, eq. 32-34].
 
-    Parameters
-    ----------
-    system : a rotor that is the same in every direction across its axis
-    races : one or more
-    speed : Omega, rad/s, above 0
-    places : psi of each ball, at which it rests, rad, shape (N,)
-    deflection : p of the rotor in the turning frame, m or rad, shape (n,); None: balanced, without any
-
-    Raises
-    ------
-    InputError : a speed that is not positive, supports that differ in two directions
+    The rotor must be the same in every direction; `deflection` is p in the turning frame, None: balanced.
     """
     quarter_turn(system)
     found = small_motions(RotorWithBalls(system, tuple(races)), speed, places, deflection)
@@ -280,26 +246,15 @@ def _turning_motions(
 def turns_freely(machine: RotorWithBalls, still: Flags) -> bool:
     """Balls and deflection may turn together in the drum: the rotor by itself is balanced.
 
-    Where no plane has a deflection this is one of `neutral_directions`.
-
-    Parameters
-    ----------
-    machine : rotor and balls
-    still : balls in whose plane the axis does not move, shape (N,)
+    `still`: balls in whose plane the axis does not move. Where no plane has a deflection this is one of
+    `neutral_directions`.
     """
     held = np.abs(machine.push).sum(axis=0)
     return bool((np.abs(machine.system.unbalance) <= _RANK * held).all() and not still.all())
 
 
 def family_dimension(machine: RotorWithBalls, places: ArrayLike, still: Flags) -> int:
-    """Number of directions along which a state may move and stays one [theory: races, eq. 16].
-
-    Parameters
-    ----------
-    machine : rotor and balls
-    places : of the balls, rad, shape (N,)
-    still : balls in whose plane the axis does not move, shape (N,)
-    """
+    """Number of directions along which a state may move and stays one [theory: races, eq. 16]."""
     return int(neutral_directions(machine, places, still).shape[1] + turns_freely(machine, still))
 
 
@@ -311,24 +266,10 @@ def _directions(machine: RotorWithBalls, angles: Array) -> tuple[Array, Array]:
 
 
 def balanced_roots(system: RotorSystem, races: Sequence[BallRace], speed: float) -> Complex:
-    """Characteristic roots of a rotor without unbalance whose balls stand evenly round their races.
+    """Characteristic roots of a balanced rotor with its balls evenly round their races, 1/s.
 
-    Looked at in the frame that turns with the rotor, where this state is at rest. One root of each race is 0:
-    its balls may turn together. These, and what further balls leave free, are left out.
-
-    Parameters
-    ----------
-    system : a rotor on supports that are alike in both directions; its unbalance does not count
-    races : two balls or more each, all of one race alike
-    speed : Omega, rad/s, above 0
-
-    Returns
-    -------
-    Roots, 1/s, the one that grows most first; shape (2 n + 2 N - races,) for two balls in each
-
-    Raises
-    ------
-    InputError : a speed that is not positive, a race whose balls do not balance one another
+    The largest real part first, in the frame that turns with the rotor, on supports that are alike. The root
+    0 of each race, whose balls may turn together, and what further balls leave free are left out.
     """
     for race in races:
         if len(race.masses) < 2 or len(set(race.masses)) > 1:
@@ -342,26 +283,8 @@ def balanced_stability(
 ) -> Stability:
     """Whether rotor and balls stay balanced after a small disturbance [theory: balls, eq. 32-36].
 
-    Characteristic roots where the rotor is the same in every direction across its axis; where it is not,
-    Floquet multipliers of half a turn.
-
-    Parameters
-    ----------
-    system : any rotor, with its unbalance
-    races : one or more
-    speed : Omega, rad/s, above 0
-    places : of the balls, rad, shape (N,), which balance it; None: those of `balanced_places`
-
-    Raises
-    ------
-    InputError : a speed that is not positive, balls that do not balance the unbalance
-
-    Examples
-    --------
-    >>> from solvers.rotor.jeffcott import Jeffcott
-    >>> rotor, race = Jeffcott(10.0, 1e4, 40.0, 1.2e-3).system(), BallRace(0.0, 0.08, (0.015, 0.015), 0.3)
-    >>> [balanced_stability(rotor, [race], speed).stable for speed in (20.0, 60.0)]
-    [False, True]
+    Characteristic roots where the rotor is the same in every direction across its axis, else Floquet
+    multipliers of half a turn. Places None: those of `balanced_places`.
     """
     require_positive("speed", speed)
     machine = RotorWithBalls(system, tuple(races))
@@ -379,18 +302,9 @@ def balanced_stability(
 def light_ball_roots(system: RotorSystem, races: Sequence[BallRace], speed: float) -> Complex:
     """Forward whirls of a rotor with light balls evenly round their races [theory: balls, eq. 37-38].
 
-    To first order in the balls and in the damping of the supports. Above the speed of a whirl the drag of the
-    races, which turns with the rotor, feeds it; the supports must damp more than that.
-
-    Parameters
-    ----------
-    system : a rotor that is the same in every direction across its axis
-    races : two balls or more each
-    speed : Omega, rad/s, above 0
-
-    Returns
-    -------
-    lambda of each forward whirl in the standing frame, 1/s, by rising frequency, shape (n/2,) at most
+    lambda in the standing frame, 1/s, by rising frequency, to first order in the balls and in the damping of
+    the supports. Above the whirl frequency the drag of the races, which turns with the rotor, feeds a whirl;
+    the supports must damp more than that.
     """
     require_positive("speed", speed)
     quarter_turn(system)
@@ -423,7 +337,7 @@ def light_ball_roots(system: RotorSystem, races: Sequence[BallRace], speed: floa
 def _settled_half_turn(
     machine: RotorWithBalls, speed: float, angles: Array, coordinates: Complex, neutral: Array
 ) -> HalfTurn:
-    """The number of steps is doubled until the largest growth stays."""
+    """Half a turn with its steps doubled until the largest growth rate stays."""
     steps, last = STEPS, np.nan
     while True:
         found = _half_turn(machine, speed, angles, coordinates, neutral, steps)

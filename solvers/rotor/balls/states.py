@@ -34,17 +34,8 @@ _RANK = 1e-7  # of the largest: smaller singular values are none
 def quarter_turn(system: RotorSystem) -> Array:
     """J: rate of change of coordinates that turn with the spin, at unit speed [theory: balls, eq. 28].
 
-    Parameters
-    ----------
-    system : a rotor that is the same in every direction across its axis
-
-    Returns
-    -------
-    J with J^2 = -1, shape (n, n)
-
-    Raises
-    ------
-    InputError : coordinates without a partner, or matrices that a turn changes
+    J^2 = -1, shape (n, n); an `InputError` for coordinates without a partner and matrices that a turn
+    changes.
     """
     n = len(system.coordinates)
     turn = np.zeros((n, n))
@@ -62,12 +53,7 @@ def quarter_turn(system: RotorSystem) -> Array:
 
 
 def turning(system: RotorSystem) -> Array | None:
-    """J of `quarter_turn`, shape (n, n); None where the rotor is not the same in every direction.
-
-    Parameters
-    ----------
-    system : any rotor
-    """
+    """J of `quarter_turn`, shape (n, n); None where the rotor is not the same in every direction."""
     try:
         return quarter_turn(system)
     except InputError:
@@ -112,24 +98,13 @@ class RotorWithBalls:
         return np.asarray(self.system.mass + added)
 
     def carrying(self, added: Array) -> RotorWithBalls:
-        """The same with more in its mass matrix.
-
-        Parameters
-        ----------
-        added : of the liquid, which goes with the rotor, shape (n, n)
-        """
+        """The same with more in its mass matrix, of liquid that goes with the rotor, shape (n, n)."""
         return replace(self, system=replace(self.system, mass=self.system.mass + added))
 
     def checked(self, places: ArrayLike) -> Array:
-        """Places of the balls as an array.
+        """Places of the balls, psi in the rotor, rad, race by race, as an array of shape (N,).
 
-        Parameters
-        ----------
-        places : psi of each ball in the rotor, race by race, rad, shape (N,)
-
-        Raises
-        ------
-        InputError : not one finite angle for each ball
+        An `InputError` if they are not one finite angle for each ball.
         """
         angles, count = np.asarray(places, dtype=float), len(self.balls)
         if angles.shape != (count,) or not np.isfinite(angles).all():
@@ -139,17 +114,7 @@ class RotorWithBalls:
     def moments(self, places: ArrayLike) -> Complex:
         """Share of each ball in the unbalance, m R (B_1 - i B_2)^T e^{i psi} [theory: balls, eq. 21].
 
-        Parameters
-        ----------
-        places : psi of each ball in the rotor, race by race, rad, shape (N,)
-
-        Returns
-        -------
-        One column for each ball, in the units of the rotor's unbalance, shape (n, N)
-
-        Raises
-        ------
-        InputError : places that are not one finite angle for each ball
+        One column for each ball, in the units of the rotor's unbalance, shape (n, N).
         """
         return np.asarray(np.exp(1j * self.checked(places))[:, None] * self.push).T
 
@@ -161,10 +126,7 @@ class RotorWithBalls:
     def compliance(self, speed: Array, added: Complex | None = None) -> Complex:
         """Answer of the coordinates to an unbalance over it, shape (s, n, n).
 
-        Parameters
-        ----------
-        speed : rad/s, shape (s,)
-        added : the liquid's share in the mass matrix, shape (s, n, n)
+        `added` is the liquid's share in the mass matrix, shape (s, n, n).
         """
         s = speed[:, None, None]
         damping = self.system.damping + s * self.system.gyroscopic
@@ -174,25 +136,13 @@ class RotorWithBalls:
     def coordinates(self, compliance: Complex, places: Array) -> Complex:
         """Complex amplitudes with the balls at some places [theory: races, section 3].
 
-        Parameters
-        ----------
-        compliance : of each of p problems, shape (p, n, n)
-        places : of the balls, rad, shape (p, N)
-
-        Returns
-        -------
-        Q, m or rad, shape (p, n)
+        Q of p problems, m or rad, from compliances (p, n, n) and places (p, N).
         """
         load = self.system.unbalance + np.exp(1j * places) @ self.push
         return np.asarray(np.einsum("pij,pj->pi", compliance, load))
 
     def at_rest(self, compliance: Complex, places: Array) -> Flags:
-        """Balls in whose plane the axis does not move, shape (p, N).
-
-        Parameters
-        ----------
-        compliance, places : see `coordinates`
-        """
+        """Balls in whose plane the axis does not move, shape (p, N)."""
         bare, each = self._answers(compliance)
         scale = np.abs(bare).max(axis=1) + np.abs(each).max(axis=(1, 2))
         size = np.abs(self.forward(self.coordinates(compliance, places)))
@@ -205,7 +155,7 @@ class RotorWithBalls:
         return bare, np.moveaxis(each, 1, 2)
 
     def _scaled_answers(self, compliance: Complex) -> tuple[Complex, Complex]:
-        """The same over the largest deflection that all together could give."""
+        """Answers of `_answers` over the largest deflection that all together could give."""
         bare, each = self._answers(compliance)
         scale = np.abs(bare).max(axis=1) + np.abs(each).sum(axis=2).max(axis=1)
         scale = np.where(scale > 0.0, scale, 1.0)
@@ -214,34 +164,18 @@ class RotorWithBalls:
     def pulls(self, compliance: Complex, places: Array) -> tuple[Array, Array]:
         """Motion of the axis along the race at each ball, 0 where balls rest [theory: races, eq. 5].
 
-        Parameters
-        ----------
-        compliance, places : see `coordinates`
-
-        Returns
-        -------
-        Im[w e^{-i psi}] over the deflection that unbalance and balls all together could give, shape (p, N);
-        its derivatives by the places, shape (p, N, N)
+        Im[w e^{-i psi}] over the deflection that unbalance and balls all together could give, shape (p, N),
+        and its derivatives by the places, (p, N, N).
         """
         return _pulls(*self._scaled_answers(compliance), places)
 
     def settle(
         self, compliance: Complex, places: Array, rounds: int = _SETTLING, joined: Flags | None = None
     ) -> tuple[Array, Flags]:
-        """Let the balls go where they are pulled, as in a stiff oil, until they rest [theory: races, eq. 5].
+        """Places to which the balls are pulled, as in a stiff oil, and whether they rest there.
 
-        Implicit steps that grow as the pull fades; in the end they are Newton's.
-
-        Parameters
-        ----------
-        compliance : of each of p problems, shape (p, n, n)
-        places : start of the balls, rad, shape (p, N)
-        rounds : most steps
-        joined : starts whose balls move race by race as one, shape (p,); None: none
-
-        Returns
-        -------
-        Places, shape (p, N), and whether the balls rest there, shape (p,)
+        Implicit steps that grow as the pull decays [theory: races, eq. 5]; in the end they are Newton's.
+        Balls of starts that are `joined`, shape (p,), move race by race as one. Shapes (p, N) and (p,).
         """
         as_one = np.full(places.shape[0], False) if joined is None else joined
         answers = self._scaled_answers(compliance)
@@ -265,26 +199,17 @@ class RotorWithBalls:
 
     @cached_property
     def _mean_of_race(self) -> Array:
-        """What gives each ball the mean of its race, shape (N, N)."""
+        """Matrix that gives each ball the mean of its race, shape (N, N)."""
         counts = [len(race.masses) for race in self.races]
         own = np.repeat(np.eye(len(counts)), counts, axis=0)
         return np.asarray(own / counts @ own.T)
 
     def creep(self, compliance: Complex, places: Array) -> tuple[Array, Flags]:
-        """Where balls come to that creep along their pull in time [theory: races, eq. 17].
+        """Places to which balls creep along their pull in time, and whether they rest there.
 
-        The way itself, to a part of `_LOCAL` a step, in place of the long steps of `settle`: of a family of
-        states it tells one. Steps of a linearly implicit method of second order, which damps what is stiff;
-        at the end Newton's across the family.
-
-        Parameters
-        ----------
-        compliance : of each of p problems, shape (p, n, n)
-        places : start of the balls, rad, shape (p, N)
-
-        Returns
-        -------
-        Places, shape (p, N), and whether the balls rest there, shape (p,)
+        The way itself, to a part of `_LOCAL` a step: of a family of states it leads to one
+        [theory: races, eq. 17]. Steps of a linearly implicit method of second order; at the end Newton's
+        across the family.
         """
         bare, each = self._scaled_answers(compliance)
         found, length, unit = places.astype(float), np.full(places.shape[0], 0.1), np.eye(places.shape[1])
@@ -316,19 +241,10 @@ class RotorWithBalls:
         return found, np.asarray(rests)
 
     def nearest(self, compliance: Complex, places: ArrayLike) -> Array | None:
-        """Places next to given ones at which the balls rest, whether they would go there or not.
+        """Places next to given ones at which the balls rest, stable or not; None where none is found.
 
-        Newton's method on the pulls [theory: races, eq. 5]. Balls may sit in one another: nothing in the
-        equations keeps them apart.
-
-        Parameters
-        ----------
-        compliance : shape (n, n)
-        places : where the search begins, rad, shape (N,)
-
-        Returns
-        -------
-        Places, rad, shape (N,); None where the search finds none
+        Newton's method on the pulls [theory: races, eq. 5]. Balls may sit in one another: nothing keeps them
+        apart.
         """
         answers = self._scaled_answers(compliance[None])
         angles = self.checked(places).copy()
@@ -362,18 +278,10 @@ def _pulls(bare: Complex, each: Complex, places: Array) -> tuple[Array, Array]:
 
 
 def balancing_shares(machine: RotorWithBalls) -> tuple[Complex, float]:
-    """Unbalance that each race takes where the rotor is balanced [theory: races, eq. 14].
+    """Share of each race, kg m, in balancing the rotor, and what is left over the unbalance.
 
-    Of all shares that do it those whose squares, each over what its race can hold, have the least sum: races
-    of one plane are used to the same extent.
-
-    Parameters
-    ----------
-    machine : rotor and balls
-
-    Returns
-    -------
-    Share of each race in its plane, kg m, shape (races,); what they leave over the unbalance
+    Of all shares that balance it those whose squares, each over what its race can hold, have the least sum
+    [theory: races, eq. 14].
     """
     counts = [len(race.masses) for race in machine.races]
     first = np.cumsum([0, *counts[:-1]])
@@ -387,37 +295,12 @@ def balancing_shares(machine: RotorWithBalls) -> tuple[Complex, float]:
 
 
 def balanced_places(system: RotorSystem, races: Sequence[BallRace]) -> Array:
-    """Places at which the balls take away the whole unbalance [theory: balls, eq. 21].
+    """Places (rad, race by race) at which the balls take away the whole unbalance [theory: balls, eq. 21].
 
-    Of all shares of the planes in the unbalance those whose squares, each over what the plane's races can
-    hold, have the least sum, and the races of a plane are used to the same extent, each with its balls evenly
-    over an arc. Where balls of a plane differ, or a race has a single one, all of them together close a
-    polygon. There may be further places.
-
-    Parameters
-    ----------
-    system : the rotor with its unbalance
-    races : one or more
-
-    Returns
-    -------
-    psi of each ball in the rotor, race by race, rad, shape (N,)
-
-    Raises
-    ------
-    InputError : balls that cannot balance this unbalance
-
-    Examples
-    --------
-    >>> from solvers.rotor.jeffcott import Jeffcott
-    >>> rotor = Jeffcott(10.0, 1e4, 40.0, 1.2e-3).system()
-    >>> balanced_places(rotor, [BallRace(0.0, 0.08, (0.015, 0.015), 0.3)]).round(3)
-    array([2.094, 4.189])
-
-    The same with a race for each ball:
-
-    >>> balanced_places(rotor, [BallRace(0.0, 0.08, (0.015,), 0.3)] * 2).round(3)
-    array([4.189, 2.094])
+    Of all shares of the planes those whose squares, each over what the plane's races can hold, have the least
+    sum; the races of a plane are used to the same extent, each with its balls evenly over an arc. Where balls
+    of a plane differ, or a race has a single one, all of them close a polygon. There may be further places;
+    an `InputError` where there are none.
     """
     arms = [np.array(race.masses) * race.radius for race in races]
     planes: dict[float, list[int]] = {}
@@ -443,10 +326,7 @@ def balanced_places(system: RotorSystem, races: Sequence[BallRace]) -> Array:
 def _in_plane(arms: list[Array], share: complex) -> list[Array] | None:
     """Places of the balls of one plane, race by race, whose moments add up to a share; None if they cannot.
 
-    Parameters
-    ----------
-    arms : m R of each ball of each race, kg m
-    share : kg m
+    Arms are m R of each ball of each race, kg m.
     """
     whole = sum(float(arm.sum()) for arm in arms)
     wanted = abs(share) / whole
@@ -507,17 +387,7 @@ def _polygon(arms: list[float], wanted: float) -> list[float] | None:
 
 
 def require_balance(system: RotorSystem, races: Sequence[BallRace], places: ArrayLike) -> None:
-    """The balls at these places take away the whole unbalance.
-
-    Parameters
-    ----------
-    system, races : rotor and balls
-    places : of the balls, rad, shape (N,)
-
-    Raises
-    ------
-    InputError : they leave some of it
-    """
+    """Raise an `InputError` where the balls at these places leave some of the unbalance."""
     moments = RotorWithBalls(system, tuple(races)).moments(places)
     left = float(np.abs(system.unbalance + moments.sum(axis=1)).max())
     most = float(np.abs(moments).sum())
@@ -526,10 +396,5 @@ def require_balance(system: RotorSystem, races: Sequence[BallRace], places: Arra
 
 
 def without_unbalance(system: RotorSystem) -> RotorSystem:
-    """The rotor balanced by itself.
-
-    Parameters
-    ----------
-    system : the rotor
-    """
+    """Rotor balanced by itself."""
     return replace(system, unbalance=np.zeros_like(system.unbalance))

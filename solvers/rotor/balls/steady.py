@@ -1,4 +1,4 @@
-"""Steady states of a rotor with balls over speed: all that are found, and how small motions grow."""
+"""Steady states of a rotor with balls over speed: all that are found, with growth rates of small motions."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ class BallStates:
 
     @property
     def stable(self) -> Flags:
-        """Small motions fade or stay, shape (s, b)."""
+        """Small motions decay or stay, shape (s, b)."""
         return np.asarray((self.kind != BallKind.NONE) & (self.growth <= GROWS * self.speed[:, None]))
 
 
@@ -63,10 +63,6 @@ def starts_of(counts: Sequence[int]) -> Array:
     """Places from which the balls of some races are let go, rad, shape (k, N).
 
     Evenly, together on the heavy and on the light side, nearly so, and irregularly.
-
-    Parameters
-    ----------
-    counts : of balls in each race
     """
     even = np.concatenate([2.0 * np.pi * np.arange(count) / count for count in counts])
     # Counted over all races: two balls of one plane that begin at one angle would part by rounding alone.
@@ -80,31 +76,11 @@ def starts_of(counts: Sequence[int]) -> Array:
 
 
 def steady_states(system: RotorSystem, races: Sequence[BallRace], speed: ArrayLike) -> BallStates:
-    """States in which all balls rest in the drum, with the growth of small motions [theory: races, eq. 5].
+    """States in which all balls rest in the drum, with growth rates of small motions.
 
-    All that balls which creep come to from starts of many kinds, apart or kept together, and the balanced
-    one where they can hold the unbalance. Gravity across the axis has no part in it: it turns in the drum.
-
-    Parameters
-    ----------
-    system : the rotor without balls
-    races : one or more
-    speed : Omega, rad/s, above 0, shape (s,)
-
-    Raises
-    ------
-    InputError : no race, a speed that is not positive and finite
-
-    Examples
-    --------
-    Two balls above and below the critical speed of 105 rad/s:
-
-    >>> from solvers.rotor.jeffcott import Jeffcott
-    >>> rotor = Jeffcott(mass=4.0, stiffness=4.4e4, damping=84.0, unbalance=6e-4)
-    >>> race = BallRace(position=0.0, radius=0.065, masses=(7e-3, 7e-3), drag=0.1)
-    >>> found = steady_states(rotor.system(), [race], [60.0, 250.0])
-    >>> [[BallKind(k).name for k in row[ok]] for row, ok in zip(found.kind, found.stable)]
-    [['TOGETHER'], ['BALANCED']]
+    All that balls which creep come to from starts of many kinds, apart or kept together, and the balanced one
+    where they can hold the unbalance [theory: races, eq. 5]. Gravity across the axis has no part in it: it
+    turns in the drum.
     """
     spin = np.array(speed, dtype=float).reshape(-1)
     if not races:
@@ -122,21 +98,15 @@ def steady_states(system: RotorSystem, races: Sequence[BallRace], speed: ArrayLi
 
 
 def begin_joined(count: int) -> Flags:
-    """Of the starts of `starts_of`, so many times, those whose balls begin and stay together."""
+    """Starts of `starts_of`, so many times over, whose balls begin and stay together."""
     return np.tile(np.isin(np.arange(_LED + _STARTS), _TOGETHER), count)
 
 
 def attracting(machine: RotorWithBalls, compliance: Complex, places: Array, count: int) -> Flags:
     """States that balls which creep come to; from a start with all together, balls that stay so.
 
-    The last steps of a search are Newton's, and may end by chance, or by rounding, where balls that creep
-    would leave.
-
-    Parameters
-    ----------
-    machine : rotor and balls
-    compliance, places : of states from a number of starts at each speed, shapes (p, n, n) and (p, N)
-    count : of starts, those of `starts_of`
+    States from `count` starts of `starts_of` at each speed. The last steps of a search are Newton's, and may
+    end by chance where balls that creep would leave.
     """
     slope = machine.pulls(compliance, places)[1]
     counts = [len(race.masses) for race in machine.races]
@@ -171,15 +141,9 @@ def collected(
 ) -> BallStates:
     """Different states among those found, the balanced one first, then by rising deflection.
 
-    Of a family the member to which balls creep from the first start that leads to it.
-
-    Parameters
-    ----------
-    machine : rotor and balls
-    speed : rad/s, shape (s,)
-    compliance : shape (s, k, n, n), each start has its own
-    places, rests : found from k starts, those of `starts_of`, shapes (s, k, N) and (s, k)
-    added : to the mass matrix in small motions, of liquid, shape (s, n, n)
+    Of a family the member to which balls creep from the first start that leads to it. Found from the k starts
+    of `starts_of`: compliance (s, k, n, n), places (s, k, N), rests (s, k); `added` to the mass matrix in
+    small motions.
     """
     wanted = machine.balanced()
     rows: list[list[_Found]] = []
@@ -211,9 +175,8 @@ def collected(
 def _to_members(machine: RotorWithBalls, compliance: Complex, rows: list[list[_Found]]) -> None:
     """Take of each family the member that creeping balls come to [theory: races, eq. 17].
 
-    From the first start whose balls, on their true way, come to the family; the long steps of the search may
-    have gone elsewhere. Where none does, as to a balanced state that draws no balls, the member next to the
-    first start.
+    From the first start whose balls, on their true way, come to the family; where none does, the member next
+    to the first start.
     """
     starts = starts_of([len(race.masses) for race in machine.races])
     begins = begin_joined(1)
@@ -327,15 +290,9 @@ def _ordered(size: Array) -> list[int]:
 def growth(
     machine: RotorWithBalls, speed: float, places: Array, coordinates: Complex, still: Flags | None = None
 ) -> float:
-    """Largest real part of the roots of small motions about a state, 1/s; nan where it did not settle.
+    """Largest real part of the roots of small motions about a state, 1/s; nan where it did not converge.
 
-    Parameters
-    ----------
-    machine : rotor and balls, with the liquid's share in step with the axis
-    speed : rad/s
-    places : of the balls in the drum, rad, shape (N,)
-    coordinates : complex amplitudes there, shape (n,)
-    still : balls in whose plane the axis does not move, shape (N,); None: none
+    With the liquid's share in step with the axis; `still` are balls in whose plane the axis does not move.
     """
     found = small_motions(machine, speed, places, coordinates, still)
     return float(found.roots()[0].real) if found.settled else float("nan")

@@ -33,14 +33,8 @@ def _stretch(
 ) -> None:
     """Some of the steps of `advance`.
 
-    Parameters
-    ----------
-    state : start, shape (2 n + 2 N + 2,); becomes the end
-    mass, damping, stiffness, turning, axes, balls, numbers : see `ball_motion.rates`
-    step : time step, s
-    steps : between two samples
-    record : result: the state at each sample, shape (samples, 2 n + 2 N + 2)
-    begin, end : number of the first step, and of the one behind the last
+    Arguments as of `rates`; `state` becomes the end, `record` has the state at each sample, `begin` and `end`
+    number the steps.
     """
     slopes, trial = np.empty((4, state.size)), np.empty(state.size)
     for number in range(begin, end):
@@ -72,13 +66,8 @@ def advance(
 ) -> None:
     """Integrate by the classical Runge-Kutta method, of fourth order.
 
-    Parameters
-    ----------
-    state : start, shape (2 n + 2 N + 2,); becomes the end
-    matrices : mass, damping, stiffness, turning, axes, balls, see `ball_motion.rates`
-    numbers, step, steps : as for `stretch`
-    record : result: the state at each sample, the start first, shape (samples, 2 n + 2 N + 2)
-    stretch : what takes the steps of a slice, after each of which Python sees a Ctrl-C
+    `state` becomes the end, `record` has the state at each sample, the start first; after each slice of a
+    `stretch` Python sees a Ctrl-C.
     """
     record[0] = state
     begin = 0

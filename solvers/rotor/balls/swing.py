@@ -26,22 +26,8 @@ class Swing:
 def ball_swing(speed: Array, radius: Array, rate: Array, rolling: Array, gravity: float) -> Array:
     """Swing of a single ball on a rotor that does not give way [theory: races, eq. 12].
 
-    Parameters
-    ----------
-    speed : Omega, rad/s, shape (...)
-    radius : R of its path, m, shape (...)
-    rate : its drag over its mass b/m, 1/s, shape (...)
-    rolling : kappa, shape (...)
-    gravity : across the axis, m/s^2
-
-    Returns
-    -------
-    Amplitude of its angle in the drum, rad, shape (...)
-
-    Examples
-    --------
-    >>> f"{float(ball_swing(100.0, 0.1, 14.0, 1.4, 9.81)):.5f} rad"
-    '0.00697 rad'
+    Amplitude of its angle in the drum, rad, shape (...); `rate` is the drag over its mass b/m, 1/s, `rolling`
+    kappa, gravity acts across the axis.
     """
     return np.asarray(gravity / (radius * np.square(speed)) / np.hypot(rolling, rate / speed))
 
@@ -56,22 +42,9 @@ def gravity_swing(
 ) -> Swing:
     """Swings of balls about places at which they rest, rotor and balls together [theory: races, eq. 11].
 
-    To first order in g/(R Omega^2). Balls that swing once a turn shake the axis with twice the spin, and
-    otherwise only with their weight, which is in the equilibrium at rest. Where the supports differ, what
-    comes back to the balls with three times the spin is left out.
-
-    Parameters
-    ----------
-    system : the rotor without balls, with the liquid's share in its mass matrix
-    races : that hold the balls
-    speed : Omega, rad/s, above 0
-    places : of the balls in the drum, rad, shape (N,)
-    coordinates : complex amplitudes of the rotor there, shape (n,)
-    gravity : across the axis, against the first direction, m/s^2
-
-    Raises
-    ------
-    InputError : a speed that is not positive, a negative gravity
+    To first order in g/(R Omega^2), gravity across the axis against the first direction. Balls that swing
+    once a turn shake the axis with twice the spin. Where the supports differ, what comes back to the balls
+    with three times the spin is left out.
     """
     require_positive("speed", speed)
     require_not_negative("gravity", gravity)
@@ -95,11 +68,7 @@ def gravity_swing(
 def swing_power(races: Sequence[BallRace], speed: float, swing: Complex) -> float:
     """Mean power that the drag of the races turns into heat as balls swing, W; the motor replaces it.
 
-    Parameters
-    ----------
-    races : that hold the balls
-    speed : Omega, rad/s
-    swing : complex amplitude of each ball, as of `Swing`, rad, shape (N,)
+    Amplitudes as `Swing.balls`.
     """
     drag = np.array([race.drag * race.radius**2 for race in races for _ in race.masses])
     return float(0.5 * speed**2 * drag @ np.square(np.abs(swing)))

@@ -19,13 +19,7 @@ from solvers.rotor.two_plane import TwoPlane
 
 @dataclass(frozen=True)
 class RigidRotor:
-    """A rigid rotor on two isotropic supports, as its balancing sees it [theory: balls, section 3].
-
-    Raises
-    ------
-    InputError : mass or transverse inertia not positive, polar inertia or a stiffness negative, an inertia
-        larger than the other two together, supports that leave a motion free
-    """
+    """A rigid rotor on two isotropic supports, as its balancing sees it [theory: balls, section 3]."""
 
     mass: float  #: of the whole system with its balancers, kg
     #: A, B, C: about two axes fixed in the rotor and across its own, and about its own, through the centre of
@@ -60,7 +54,7 @@ class RigidRotor:
 
 @dataclass(frozen=True)
 class Condition:
-    """One of the conditions, over speed."""
+    """One condition for balancing, over speed."""
 
     name: str  #: the condition, as written
     value: Array  #: what must be above 0, shape (n,)
@@ -70,7 +64,7 @@ class Condition:
 
 @dataclass(frozen=True)
 class Balancing:
-    """Answer of `dynamic_balancing`."""
+    """Result of `dynamic_balancing`."""
 
     speed: Array  #: rad/s, shape (n,)
     possible: Flags  #: whether balancing occurs, shape (n,)
@@ -88,12 +82,7 @@ class Balancing:
         return self.possible if self.growth is None else np.asarray(self.growth < 0.0)
 
     def why(self, index: int = 0) -> str:
-        """The answer at one speed in words.
-
-        Parameters
-        ----------
-        index : of the speed
-        """
+        """Result at one speed in words."""
         said = self._conditions(index)
         if self.growth is None:
             return said
@@ -122,20 +111,10 @@ def dynamic_balancing(
 ) -> Balancing:
     """Whether two or more passive balancers of any type balance the rotor [theory: balls, eq. 26-27].
 
-    Balancers in at least two planes, light beside the rotor, able to produce the unbalance it has. Damping of
-    the supports has no part in the conditions [FF20, eq. 32-35]; it has one in what balls really do: supports
-    that hardly damp let a whirl of rotor and balls grow far above them. With `balls` the roots of rotor and
-    balls stand beside the conditions.
-
-    Parameters
-    ----------
-    rotor : with its supports
-    speed : spin speeds, rad/s, shape (n,) or one, 0 or above; above 0 with balls
-    balls : the same rotor with its damping and unbalance, and the races on it; None for the conditions alone
-
-    Raises
-    ------
-    InputError : a speed that is negative or not finite; balls that cannot balance the unbalance
+    Balancers in at least two planes, light beside the rotor, able to produce its unbalance. Damping of the
+    supports has no part in the conditions [FF20, eq. 32-35]; it has one in what balls really do: with
+    `balls`, the same rotor with its damping and unbalance and its races, their roots stand beside the
+    conditions.
     """
     spin = np.atleast_1d(np.asarray(speed, dtype=float))
     if spin.ndim != 1 or not np.all(np.isfinite(spin) & (spin >= 0.0)):
@@ -170,13 +149,7 @@ def dynamic_balancing(
 
 
 def of_two_planes(rotor: TwoPlane, added_mass: float = 0.0) -> RigidRotor:
-    """The rotor of `solvers.rotor.two_plane` as its balancing sees it.
-
-    Parameters
-    ----------
-    rotor : with its supports
-    added_mass : of the balancers, kg
-    """
+    """Rotor of `solvers.rotor.two_plane` as its balancing sees it, with the mass of the balancers, kg."""
     across, along = rotor.transverse_inertia, rotor.polar_inertia
     return RigidRotor(
         mass=rotor.mass + added_mass,
@@ -189,14 +162,7 @@ def of_two_planes(rotor: TwoPlane, added_mass: float = 0.0) -> RigidRotor:
 def potential_hessian(rotor: RigidRotor, speed: float) -> Array:
     """Second derivatives of the generalized potential as the balancers see it [theory: balls, eq. 25].
 
-    Parameters
-    ----------
-    rotor, speed : see `dynamic_balancing`
-
-    Returns
-    -------
-    Matrix for (alpha, beta, x, y), in the rotating frame, shape (4, 4); positive definite where balancing
-    occurs
+    For (alpha, beta, x, y) in the rotating frame, shape (4, 4); positive definite where balancing occurs.
     """
     a, b, c = rotor.inertia
     k11, k14, k33 = rotor.support
@@ -215,14 +181,8 @@ def potential_hessian(rotor: RigidRotor, speed: float) -> Array:
 def circulatory(damping: Sequence[float], position: Sequence[float]) -> Array:
     """B_1: what damping supports do to a deflection at rest in the rotor, over the speed [FF20, eq. 25].
 
-    Parameters
-    ----------
-    damping : b of each support, N s/m
-    position : of each along the axis from the centre of mass, m
-
-    Returns
-    -------
-    Skew matrix for (alpha, beta, x, y), shape (4, 4) [theory: balls, eq. 41]
+    Damping of each support, N s/m, at its position from the centre of mass, m; a skew matrix for (alpha,
+    beta, x, y) [theory: balls, eq. 41].
     """
     pairs = list(zip(damping, position, strict=True))
     b11, b14, b33 = (sum(b * z**k for b, z in pairs) for k in range(3))
@@ -237,20 +197,10 @@ def circulatory(damping: Sequence[float], position: Sequence[float]) -> Array:
 
 
 def turning_state(rotor: RigidRotor, damping: Sequence[float], speed: float, unbalance: ArrayLike) -> Array:
-    """Steady deflection in the turning frame, by the source's matrices [FF20, eq. 27-29].
+    """Steady deflection (alpha, beta, x, y) in the turning frame, by the source's matrices [FF20, eq. 27-29].
 
-    The source has its V with the other sign here, see theory: balls, eq. 42.
-
-    Parameters
-    ----------
-    rotor : with its supports
-    damping : of each of them, N s/m
-    speed : rad/s
-    unbalance : S = (-I_eta_zeta, I_xi_zeta, M xi_G, M eta_G), shape (4,)
-
-    Returns
-    -------
-    q = (alpha, beta, x, y), shape (4,)
+    For the unbalance (-I_eta_zeta, I_xi_zeta, M xi_G, M eta_G). The source has its V with the other sign
+    here, see theory: balls, eq. 42.
     """
     matrix = speed * circulatory(damping, rotor.position) - potential_hessian(rotor, speed)
     return np.asarray(np.linalg.solve(matrix, speed**2 * np.asarray(unbalance, dtype=float)), dtype=float)
@@ -261,20 +211,8 @@ def plane_compliance(
 ) -> Complex:
     """Deflection of one plane for a force there that turns with the rotor [theory: balls, eq. 44].
 
-    Parameters
-    ----------
-    rotor : A = B
-    position : of the plane along the axis from the centre of mass, m
-    speed : rad/s, shape (n,) or one
-    damping : of each support, N s/m; None for none
-
-    Returns
-    -------
-    g, m/N, shape of `speed`; its imaginary part is a quarter turn ahead
-
-    Raises
-    ------
-    InputError : a rotor whose transverse inertias differ
+    g, m/N; its imaginary part is a quarter turn ahead. The position counts from the centre of mass;
+    transverse inertias must be equal.
     """
     a, b, c = rotor.inertia
     if a != b:
@@ -295,10 +233,6 @@ def single_plane_balancing(
     """Whether balancers in one plane take away an unbalance of this plane [theory: balls, eq. 44].
 
     Light balancers whose drag outweighs their inertia: they do if and only if Re g < 0.
-
-    Parameters
-    ----------
-    rotor, position, speed, damping : see `plane_compliance`
     """
     return np.asarray(plane_compliance(rotor, position, speed, damping).real < 0.0)
 

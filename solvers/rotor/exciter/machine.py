@@ -24,19 +24,7 @@ ROLLING = {"ball": 7.0 / 5.0, "roller": 3.0 / 2.0}
 def rolling_inertia(kind: str, mass: float = 1.0, radius: float = 1.0, own_inertia: float = 0.0) -> float:
     """Inertia of a load on its way around the track, over m R^2 [theory: balls, eq. 2] [YF17, eq. 7].
 
-    Parameters
-    ----------
-    kind : `ball`, `roller` or `pendulum`
-    mass, radius : m, kg, and R, m; of a pendulum
-    own_inertia : J of a pendulum about its own centre of mass, kg m^2
-
-    Returns
-    -------
-    kappa: 7/5, 3/2 or 1 + J/(m R^2)
-
-    Raises
-    ------
-    InputError : an unknown kind, a mass or radius that is not positive, a negative inertia
+    kappa: 7/5, 3/2 or 1 + J/(m R^2) of a `ball`, `roller` or `pendulum`, J about its own centre of mass.
     """
     if kind in ROLLING:
         return ROLLING[kind]
@@ -50,12 +38,7 @@ def rolling_inertia(kind: str, mass: float = 1.0, radius: float = 1.0, own_inert
 
 @dataclass(frozen=True)
 class Dimensionless:
-    """The machine in its own units: 1/(natural frequency) and N m R/(whole mass) [theory: balls, eq. 5].
-
-    Raises
-    ------
-    InputError : a value that is not finite, smallness not between 0 and 1, a negative drag or damping
-    """
+    """The machine in its own units: 1/(natural frequency) and N m R/(whole mass) [theory: balls, eq. 5]."""
 
     #: eps = N m/(kappa M), share of the balls in the whole mass over their rolling inertia
     smallness: Annotated[float, Q("1", "smallness", "share of the balls in the mass over their inertia")]
@@ -85,12 +68,7 @@ class Dimensionless:
 
 @dataclass(frozen=True)
 class Exciter:
-    """A platform on springs, a shaft with an unbalance on it, balls free in a race around the shaft.
-
-    Raises
-    ------
-    InputError : masses, stiffness or radius not positive, kappa below 1, damping or unbalance negative
-    """
+    """A platform on springs, a shaft with an unbalance on it, balls free in a race around the shaft."""
 
     #: of all that moves with the platform, its load and the unbalance too, without the balls, kg
     platform_mass: float
@@ -131,10 +109,7 @@ class Exciter:
     def dimensionless(self, gravity: float = 0.0, incline: float = 0.0) -> Dimensionless:
         """The numbers that the motion depends on [theory: balls, eq. 5] [YF17, eq. 3].
 
-        Parameters
-        ----------
-        gravity : m/s^2, 0 to leave its pull on the balls out
-        incline : of the platform's line to the vertical, rad
+        Gravity 0 leaves its pull on the balls out; `incline` of the platform's line to the vertical, rad.
         """
         mass, frequency = self.whole_mass, self.natural_frequency
         balls = self.ball_count * self.ball_mass
@@ -166,14 +141,8 @@ class Exciter:
 def rates(time: float, state: Array, numbers: Array, out: Array) -> None:
     """Rates of change of the state, with the coupled accelerations solved for [theory: balls, eq. 4 and 6].
 
-    Written without array expressions, for the compiler.
-
-    Parameters
-    ----------
-    time : in units of 1/(natural frequency)
-    state : platform's position and velocity, angles of the N balls, their rates, shape (2 + 2 N,)
-    numbers : of `Dimensionless.numbers`
-    out : the result, shape of `state`
+    For the compiler. Time in units of 1/(natural frequency); state: platform's position and velocity, angles
+    of the N balls, their rates; numbers of `Dimensionless.numbers`.
     """
     eps, b, delta, h, sigma, alpha, n = numbers
     balls = (state.size - 2) // 2
@@ -202,16 +171,8 @@ def platform_motion(
 ) -> tuple[complex, complex]:
     """Slow and fast vibration of the platform to lowest order [theory: balls, eq. 7] [YF17, eq. 8].
 
-    Parameters
-    ----------
-    machine : its numbers
-    speed : n of the shaft
-    stuck : Q of the balls
-    together : A, length of the mean of the balls' unit vectors, 1 where they sit together
-
-    Returns
-    -------
-    Complex amplitudes: v = Im(slow e^{i Q t} + fast e^{i n t}), the balls' mean at the angle Q t
+    Complex amplitudes: v = Im(slow e^{i Q t} + fast e^{i n t}), the balls' mean at the angle Q t; `together`
+    is A, the length of the mean of their unit vectors.
     """
 
     def answer(frequency: float) -> complex:
@@ -230,16 +191,9 @@ class CharacteristicSpeeds:
 
 
 def lag_number(machine: Dimensionless, together: float = 1.0) -> float:
-    """chi = A^2 h/b [theory: balls, eq. 9].
+    """Lag number chi = A^2 h/b [theory: balls, eq. 9].
 
-    Parameters
-    ----------
-    machine : its numbers, with some drag
-    together : A, length of the mean of the balls' unit vectors, 0 to 1
-
-    Raises
-    ------
-    InputError : no drag, A outside 0 to 1
+    A is the length of the mean of the balls' unit vectors, 0 to 1.
     """
     if machine.drag <= 0.0:
         raise InputError("drag", machine.drag, "above 0")
@@ -249,17 +203,7 @@ def lag_number(machine: Dimensionless, together: float = 1.0) -> float:
 
 
 def shaft_speed(stuck: ArrayLike, machine: Dimensionless, together: float = 1.0) -> Array:
-    """Shaft speed that keeps balls at a given speed, without iteration [theory: balls, eq. 10].
-
-    Parameters
-    ----------
-    stuck : Q, shape (...,)
-    machine, together : see `lag_number`
-
-    Returns
-    -------
-    n, shape (...,)
-    """
+    """Shaft speed n at which balls stick at a given speed Q, without iteration [theory: balls, eq. 10]."""
     q = np.asarray(stuck, dtype=float)
     chi, h = lag_number(machine, together), machine.damping
     return np.asarray(q + chi * q**5 / (np.square(1.0 - q**2) + np.square(2.0 * h * q)))
@@ -268,18 +212,7 @@ def shaft_speed(stuck: ArrayLike, machine: Dimensionless, together: float = 1.0)
 def stuck_speeds(speed: ArrayLike, machine: Dimensionless, together: float = 1.0) -> Array:
     """All speeds at which the balls can stick, roots of the quintic [theory: balls, eq. 11] [YF17, eq. 9].
 
-    Parameters
-    ----------
-    speed : n of the shaft over the natural frequency, shape (...,), above 0
-    machine, together : see `lag_number`; some platform damping
-
-    Returns
-    -------
-    Q by size, shape (..., 3); nan in the last two where only one is real
-
-    Raises
-    ------
-    InputError : a speed that is not positive and finite, a machine without drag or damping
+    Q by size, shape (..., 3); nan in the last two where only one is real.
     """
     n = np.asarray(speed, dtype=float)
     if not np.all(np.isfinite(n) & (n > 0.0)):
@@ -302,12 +235,7 @@ def stuck_speeds(speed: ArrayLike, machine: Dimensionless, together: float = 1.0
 
 
 def characteristic_speeds(machine: Dimensionless, together: float = 1.0) -> CharacteristicSpeeds:
-    """Shaft speeds where the number of stuck speeds changes, to rounding [theory: balls, eq. 12-14].
-
-    Parameters
-    ----------
-    machine, together : see `lag_number`; some platform damping
-    """
+    """Shaft speeds where the number of stuck speeds changes, to rounding [theory: balls, eq. 12-14]."""
     if machine.damping <= 0.0:
         raise InputError("damping", machine.damping, "above 0")
     ends = _turning_points(machine, together)

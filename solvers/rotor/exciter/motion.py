@@ -36,14 +36,7 @@ def printed_critical_speed(
 ) -> Array:
     """Critical speed as the source prints it [YF17, eq. 18-20]; two balls.
 
-    Parameters
-    ----------
-    smallness, drag, unbalance, damping : eps, b, delta, h, see `solvers.rotor.exciter.machine.Dimensionless`,
-        shapes (...,)
-
-    Returns
-    -------
-    n_cr over the natural frequency, shape (...,)
+    Over the natural frequency, for the numbers of `Dimensionless`, shapes (...,).
     """
     eps, b, delta, h = np.broadcast_arrays(
         *(np.asarray(x, dtype=float) for x in (smallness, drag, unbalance, damping))
@@ -64,12 +57,7 @@ _TOLD = 5.0
 
 @dataclass(frozen=True)
 class Start:
-    """How the motion begins [theory: balls, section 1].
-
-    Raises
-    ------
-    InputError : an unknown kind, a negative separation
-    """
+    """How the motion begins [theory: balls, section 1]."""
 
     #: `released`: platform at rest, balls on their way at the natural frequency; `regime`: platform and balls
     #: already in the dual-frequency motion; `rest`: all at rest, the shaft at its full speed
@@ -125,20 +113,8 @@ def integrate(
 ) -> Motion:
     """Integrate the full equations of motion at one shaft speed [theory: balls, eq. 6].
 
-    Parameters
-    ----------
-    machine : its numbers, with some drag and damping
-    speed : n of the shaft, above 0
-    balls : N, 1 or more
-    start : how it begins
-    duration : in units of 1/(natural frequency); by default 200 turns of stuck balls, or 12 times the decay
-        time of a ball's speed or of the platform where that is longer
-    steps : of the fourth-order method in a turn of the shaft, or in 2 pi of what is faster: the natural
-        frequency, the decay of the platform or of a ball's speed
-
-    Raises
-    ------
-    InputError : a value out of its range
+    Duration in units of 1/(natural frequency), by default 200 turns of stuck balls, or 12 times the longest
+    decay time; `steps` of the fourth-order method in a turn of the shaft, or in 2 pi of what is faster.
     """
     from solvers.rotor.exciter.steps import advance
 
@@ -165,14 +141,7 @@ def integrate(
 def initial_state(machine: Dimensionless, speed: float, stuck: float, balls: int, start: Start) -> Array:
     """State at time 0, when the unbalance points along the first direction.
 
-    Parameters
-    ----------
-    machine, speed, balls, start : see `integrate`
-    stuck : slowest stuck speed
-
-    Returns
-    -------
-    Platform's position and velocity, angles of the balls, their speeds, shape (2 + 2 N,)
+    Platform's position and velocity, angles of the balls, their speeds, shape (2 + 2 N,).
     """
     state = np.zeros(2 + 2 * balls)
     state[2 : 2 + balls] = np.linspace(0.0, start.separation, balls)
@@ -189,21 +158,7 @@ def initial_state(machine: Dimensionless, speed: float, stuck: float, balls: int
 
 
 def placed_state(machine: Dimensionless, speed: float, ball_speed: ArrayLike, ball_angle: ArrayLike) -> Array:
-    """State at time 0 of balls that turn evenly, each at its own speed, and of the platform that they shake.
-
-    Parameters
-    ----------
-    machine, speed : its numbers; n of the shaft
-    ball_speed, ball_angle : of each ball, shape (N,)
-
-    Returns
-    -------
-    As of `initial_state`
-
-    Raises
-    ------
-    InputError : not one speed and one angle a ball, or not finite
-    """
+    """State at time 0 of balls that turn evenly, each at its own speed, and of the shaken platform."""
     speeds, angles = np.asarray(ball_speed, dtype=float), np.asarray(ball_angle, dtype=float)
     if speeds.ndim != 1 or speeds.size < 1 or speeds.shape != angles.shape:
         raise InputError("ball_speed, ball_angle", (speeds.tolist(), angles.tolist()), "one of each a ball")
@@ -218,7 +173,7 @@ def placed_state(machine: Dimensionless, speed: float, ball_speed: ArrayLike, ba
 
 @dataclass(frozen=True)
 class Trace:
-    """Motion after transients have died out, in the machine's own units; s samples, N balls."""
+    """Motion after transients have decayed, in the machine's own units; s samples, N balls."""
 
     time: Array  #: from the start of the motion, shape (s,)
     position: Array  #: v, v' and v'' of the platform, shape (s,)
@@ -236,18 +191,7 @@ def trace(
     start: Start | None = None,
     samples: int = 1200,
 ) -> Trace:
-    """Platform and balls over some turns of the stuck balls, after as long a run as `integrate` makes.
-
-    Parameters
-    ----------
-    machine, speed, balls, start : see `integrate`
-    turns : of balls at the slowest stuck speed
-    samples : of the result
-
-    Raises
-    ------
-    InputError : a value out of its range
-    """
+    """Platform and balls over some turns of the stuck balls, after as long a run as `integrate` makes."""
     from scipy.integrate import solve_ivp
 
     from solvers.rotor.exciter.steps import advance
@@ -292,17 +236,8 @@ def critical_speed(
 ) -> CriticalSpeed:
     """Largest shaft speed at which the dual-frequency motion holds [YF17, section 4.4].
 
-    Searched upward in steps of a constant ratio for the first speed at which it does not, then halved.
-
-    Parameters
-    ----------
-    machine, balls, start : see `integrate`
-    width : of the bracket
-    ratio : of the steps upward
-
-    Raises
-    ------
-    InputError : a width or ratio out of its range; a machine with one stuck speed at every shaft speed
+    Searched upward in steps of a constant `ratio` for the first speed at which it does not, then halved to
+    `width`.
     """
     require_positive("width", width)
     if not ratio > 1.0:
@@ -321,13 +256,7 @@ def critical_speed(
 def critical_speeds(
     machines: Sequence[Dimensionless], balls: int = 2, start: Start | None = None, workers: int = 1
 ) -> Array:
-    """`critical_speed` of many machines, shape (m,).
-
-    Parameters
-    ----------
-    machines, balls, start : see `integrate`
-    workers : threads; the compiled steps run side by side
-    """
+    """`critical_speed` of many machines, shape (m,)."""
     with ThreadPoolExecutor(max_workers=workers) as pool:
         found = pool.map(lambda machine: critical_speed(machine, balls, start).holds, machines)
     return np.array(list(found))

@@ -63,16 +63,7 @@ class Regime:
 
 
 def decay_time(machine: Dimensionless) -> float:
-    """Time in which the slower of the platform's and of a ball's free motion falls by e.
-
-    Parameters
-    ----------
-    machine : its numbers
-
-    Raises
-    ------
-    InputError : no drag or no damping
-    """
+    """Time in which the slower of the platform's and of a ball's free motion falls by e."""
     slowest = min(machine.smallness * machine.drag, machine.damping)
     if not slowest > 0.0:
         raise InputError("drag, damping", (machine.drag, machine.damping), "above 0")
@@ -87,20 +78,9 @@ def regime(
     steps: int = 24,
     samples: int = 0,
 ) -> Regime:
-    """What the balls do in the end, from a given start [theory: exciter, eq. 1].
+    """Final motion of the balls from a given start [theory: exciter, eq. 1].
 
-    Parameters
-    ----------
-    machine : its numbers, with some drag and damping
-    speed : n of the shaft
-    state : at the start, see `motion.initial_state`, shape (2 + 2 N,)
-    decays : length of the run in times of decay, see `decay_time`
-    steps : in a turn of the shaft
-    samples : of the platform's position over the last quarter, see `tangent.follow`
-
-    Raises
-    ------
-    InputError : a value out of its range
+    The run lasts `decays` times `decay_time`; `samples` of the platform's position over its last quarter.
     """
     require_positive("decays", decays)
     time = decays * decay_time(machine)
@@ -139,7 +119,7 @@ def _place(mean: float, speed: float) -> Place:
 def _kind(
     machine: Dimensionless, speed: float, motion: Followed, places: tuple[Place, ...], vibration: float
 ) -> Kind:
-    """What the last half of a motion is."""
+    """Kind of motion of the last half."""
     quarter = motion.growth.size // 4
     quarters = motion.growth[-2 * quarter :].reshape(2, -1).mean(axis=1)
     if np.all(quarters > CHAOTIC_GROWTH):

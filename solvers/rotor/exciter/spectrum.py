@@ -26,19 +26,8 @@ class Lines:
 def spectrum(samples: Array, sample_time: float) -> tuple[Array, Array]:
     """Amplitude spectrum with a Hann window.
 
-    Parameters
-    ----------
-    samples : at equal times, shape (s,)
-    sample_time : between two of them
-
-    Returns
-    -------
     Angular frequency and amplitude, shapes (s // 2 + 1,): a sine shows its amplitude where it has a whole
-    number of turns
-
-    Raises
-    ------
-    InputError : fewer than 16 samples, a time that is not positive
+    number of turns.
     """
     require_positive("sample_time", sample_time)
     if samples.size < 16:
@@ -52,22 +41,8 @@ def spectrum(samples: Array, sample_time: float) -> tuple[Array, Array]:
 def lines(samples: Array, sample_time: float, least: float = 0.01) -> Lines:
     """Lines that stand out of the spectrum.
 
-    Parameters
-    ----------
-    samples, sample_time : see `spectrum`
-    least : amplitude over the largest from which a line counts
-
-    Returns
-    -------
-    Lines; of a steady line between two frequencies of the transform both values are exact but for the
-    leakage of others
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> time = 0.1 * np.arange(4096)
-    >>> lines(2.0 * np.sin(1.234 * time), 0.1).frequency.round(4).tolist()
-    [1.234]
+    Those above `least` of the largest; a steady line between two frequencies of the transform is exact but
+    for the leakage of others.
     """
     if not 0.0 < least < 1.0:
         raise InputError("least", least, "between 0 and 1")
@@ -92,16 +67,7 @@ def combination(
 ) -> tuple[int, ...] | None:
     """Integers whose sum with basic frequencies is a given one, the smallest that do.
 
-    Parameters
-    ----------
-    frequency : to be made
-    basic : frequencies
-    order : largest sum of the integers' sizes
-    within : largest difference that counts as none
-
-    Returns
-    -------
-    One integer a basic frequency, or None
+    None where no sum of integers, their sizes together at most `order`, comes within `within`.
     """
     choices = itertools.product(range(-order, order + 1), repeat=len(basic))
     found = [

@@ -1,4 +1,4 @@
-"""How stuck balls lose what they do: small motions of the stuck state, and capture by the unbalance."""
+"""How stuck balls lose their motion: small motions of the stuck state, and capture by the unbalance."""
 
 from __future__ import annotations
 
@@ -15,30 +15,9 @@ from solvers.rotor.exciter.machine import Dimensionless, stuck_speeds
 def stuck_roots(machine: Dimensionless, stuck: float, share: float = 1.0) -> Complex:
     """Small motions of balls that stick together, all of them moving alike [theory: exciter, eq. 4].
 
-    Parameters
-    ----------
-    machine : its numbers
-    stuck : Q of the balls, on any branch of `shaft_speed`
-    share : k/N of the balls that stick together, the others not near this speed
-
-    Returns
-    -------
-    Growth rate and frequency of each small motion in the axes that turn with the balls, in units of the
-    natural frequency, shape (5,), the one that grows most first; the shift of their common phase, which is
-    always neutral, is left out
-
-    Raises
-    ------
-    InputError : a share that is not above 0 and at most 1
-
-    Examples
-    --------
-    Where the slowest stuck speed meets the second, a real root is zero:
-
-    >>> machine = Dimensionless(0.01, 0.4, 0.0, 0.03)
-    >>> merger = 1.00137541
-    >>> bool(abs(stuck_roots(machine, merger)[0]) < 1e-3)
-    True
+    Growth rate and frequency of each in the axes that turn with the balls, in units of the natural frequency,
+    the largest growth rate first, shape (5,); the shift of their common phase is left out. `share` is k/N of
+    the balls that stick together, the others not near this speed.
     """
     _require_share(share)
     q, h = stuck, machine.damping
@@ -62,14 +41,8 @@ def stuck_roots(machine: Dimensionless, stuck: float, share: float = 1.0) -> Com
 def parting_roots(machine: Dimensionless, stuck: float, share: float = 1.0) -> Complex:
     """Small motions of stuck balls against one another [theory: exciter, eq. 5].
 
-    Parameters
-    ----------
-    machine, stuck, share : see `stuck_roots`; two balls or more stick together
-
-    Returns
-    -------
-    Both roots, shape (2,), the one that grows most first: it passes zero where the balls turn at the natural
-    frequency, for any unbalance to this order
+    Shape (2,), the largest growth rate first: it passes zero where the balls turn at the natural frequency,
+    for any unbalance to this order.
     """
     _require_share(share)
     half = 0.5 * machine.smallness * machine.drag
@@ -82,21 +55,9 @@ def parting_roots(machine: Dimensionless, stuck: float, share: float = 1.0) -> C
 def capture_unbalance(machine: Dimensionless, speed: float, share: float) -> float:
     """Unbalance up to which balls can turn at the third stuck speed past the shaft [theory: exciter, eq. 7].
 
-    Parameters
-    ----------
-    machine : its numbers, with some drag and damping; its own unbalance is not used
-    speed : n of the shaft
-    share : k/N of the balls that turn together at the third stuck speed
-
-    Returns
-    -------
-    delta, with which the unbalance of balls that turn with the shaft counts; a larger one pulls the balls
-    into step with the shaft. nan where there is no third stuck speed. For a weak drag of the race, eps b
-    small beside the frequency at which a captured ball swings.
-
-    Raises
-    ------
-    InputError : a share that is not above 0 and at most 1
+    delta; a larger one pulls the balls into step with the shaft. nan where there is no third stuck speed. For
+    a weak drag of the race, eps b small beside the frequency at which a captured ball swings; `share` is k/N
+    of the balls at that speed.
     """
     _require_share(share)
     third = third_speed(machine, speed, share)
@@ -107,13 +68,7 @@ def capture_unbalance(machine: Dimensionless, speed: float, share: float) -> flo
 def third_speed(machine: Dimensionless, speed: float, share: float = 1.0) -> float:
     """Largest stuck speed of a share of the balls, beyond resonance [theory: exciter, eq. 1].
 
-    Parameters
-    ----------
-    machine, speed, share : see `capture_unbalance`
-
-    Returns
-    -------
-    Q; nan where all stuck speeds are below 1
+    nan where all stuck speeds are below 1.
     """
     _require_share(share)
     fastest = float(np.nanmax(stuck_speeds(speed, machine, math.sqrt(share))))
@@ -121,12 +76,7 @@ def third_speed(machine: Dimensionless, speed: float, share: float = 1.0) -> flo
 
 
 def resonance_speed(machine: Dimensionless, speed: float, share: float = 1.0) -> float:
-    """Smallest stuck speed of a share of the balls [theory: exciter, eq. 1].
-
-    Parameters
-    ----------
-    machine, speed, share : see `capture_unbalance`
-    """
+    """Smallest stuck speed of a share of the balls [theory: exciter, eq. 1]."""
     _require_share(share)
     return float(stuck_speeds(speed, machine, math.sqrt(share))[0])
 

@@ -73,23 +73,10 @@ def _stretch(
 ) -> int:
     """Some of the steps of `advance`.
 
-    Parameters
-    ----------
-    state : start and end, shape (2 + 2 N,)
-    numbers : see `exciter.rates`
-    step : time step, in units of 1/(natural frequency)
-    steps : in a block
-    most : mean speed of a ball beyond which it will not come back
-    means : result: mean speed of each ball and the largest spread, shape (blocks, N + 1)
-    first : block with which the last part begins
-    sums : result: over that part, projections of the platform's position on sine and cosine of the balls'
-        mean angle and of the shaft's, shape (4,), 0 at the start
-    before : angles of the balls at the beginning of the block, kept from one stretch to the next, shape (N,)
-    begin, end : number of the first step, and of the one behind the last
-
-    Returns
-    -------
-    Blocks done if a ball was faster than `most` in the last of them; else 0.
+    `means`: mean speed of each ball and the largest spread, a block a row; `sums`: from the block `first` on,
+    projections of the platform's position on sine and cosine of the balls' mean angle and of the shaft's;
+    `before`: angles at the beginning of the block. Returns the blocks done if a ball was faster than `most`,
+    else 0.
     """
     blocks, balls = means.shape[0], means.shape[1] - 1
     slopes, trial = np.empty((4, state.size)), np.empty(state.size)
@@ -139,14 +126,7 @@ def advance(
 ) -> int:
     """Integrate block by block until the end, or until a ball is faster than `most` in the mean of a block.
 
-    Parameters
-    ----------
-    state, numbers, step, steps, most, means, first, sums : as for `stretch`
-    stretch : what takes the steps of a slice, after each of which Python sees a Ctrl-C
-
-    Returns
-    -------
-    Blocks done.
+    Arguments as of `stretch`, after each slice of which Python sees a Ctrl-C; returns the blocks done.
     """
     blocks, begin, before = means.shape[0], 0, np.empty(means.shape[1] - 1)
     for taken in slices(blocks * steps, 4 * state.size):

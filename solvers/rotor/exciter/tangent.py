@@ -1,4 +1,4 @@
-"""The motion of the exciter together with a small disturbance: growth, speeds and vibration by blocks."""
+"""Motion of the exciter together with a small disturbance: growth rate, speeds and vibration by blocks."""
 
 from __future__ import annotations
 
@@ -36,14 +36,7 @@ class Followed:
 def tangent_rates(time: float, pair: Array, numbers: Array, out: Array) -> None:
     """Rates of the state and of a small disturbance of it [theory: balls, eq. 4 and 6].
 
-    Written without array expressions, for the compiler.
-
-    Parameters
-    ----------
-    time : in units of 1/(natural frequency)
-    pair : the state of `machine.rates` and behind it the disturbance, shape (4 + 4 N,)
-    numbers : of `Dimensionless.numbers`
-    out : the result, shape of `pair`
+    For the compiler. `pair`: the state of `machine.rates` and behind it the disturbance, shape (4 + 4 N,).
     """
     eps, b, delta, h, sigma, alpha, n = numbers
     size = pair.size // 2
@@ -115,17 +108,9 @@ def _stretch(
 ) -> None:
     """Some of the steps of `follow`.
 
-    Parameters
-    ----------
-    pair, numbers : see `tangent_rates`; the disturbance is brought back to length 1 at the end of each step
-    start : time of the first step
-    step : time step
-    steps : in a block
-    sums : result: of each block the turns of the balls, the logarithm of the growth, and the squares of the
-        platform's position, shape (blocks, N + 2), 0 at the start
-    samples : result: position of the platform, shape (s,)
-    first, every : step of the first sample, and steps from one to the next
-    begin, end : number of the first step, and of the one behind the last
+    The disturbance of `pair` is brought back to length 1 at the end of each step. `sums` has of each block
+    the turns of the balls, the logarithm of the growth and the squares of the platform's position; `samples`
+    its position.
     """
     size = pair.size // 2
     balls = (size - 2) // 2
@@ -168,27 +153,9 @@ def follow(
 ) -> Followed:
     """Integrate the full equations of motion and a small disturbance [theory: balls, eq. 6].
 
-    Parameters
-    ----------
-    machine : its numbers
-    speed : n of the shaft, above 0
-    state : at the start, see `motion.initial_state`, shape (2 + 2 N,)
-    duration : in units of 1/(natural frequency)
-    disturbance : at the start, shape (2 + 2 N,); by default one that is like no symmetry of the machine
-    blocks : of time, in each of which means are taken
-    samples : of the platform's position, over the last part of the time
-    sampled : that part, above 0 and at most 1
-    steps : in a turn of the shaft, or in 2 pi where the platform is faster
-    start : time at the start, when the unbalance has turned by n times this
-    stretch : what takes the steps of a slice, after each of which Python sees a Ctrl-C
-
-    Returns
-    -------
-    Followed; after many blocks the mean growth is the largest exponent of Lyapunov
-
-    Raises
-    ------
-    InputError : a value out of its range
+    Times in units of 1/(natural frequency). After many `blocks` the mean growth rate is the largest exponent
+    of Lyapunov. The disturbance is by default one that is like no symmetry of the machine; `samples` of the
+    platform's position over the last share `sampled` of the time.
     """
     require_positive("speed", speed)
     require_positive("duration", duration)

@@ -12,18 +12,11 @@ from solvers.rotor.tub import Tub
 
 
 def hub_load(rotor: Tub, place: Array, rate: Array, acceleration: Array) -> Array:
-    """What the drum does to the tub: force, and moment about the tub's centre [theory: loads, eq. 12].
+    """Force and moment of the drum on the tub, about the tub's centre, N and N m, shape (..., 6).
 
-    The balance of the tub alone gives it, so that neither the inertia of the drum nor the liquid is needed.
-
-    Parameters
-    ----------
-    rotor : tub with its drum
-    place, rate, acceleration : coordinates from the equilibrium at rest and their derivatives, shape (..., 6)
-
-    Returns
-    -------
-    shape (..., 6), N and N m; what carries the weight at rest is not in it
+    From the balance of the tub alone, so that neither the inertia of the drum nor the liquid is needed
+    [theory: loads, eq. 12]. Coordinates count from the equilibrium at rest: what carries the weight there is
+    not in it.
     """
     system = rotor.system()
     tub = np.array([rotor.tub_mass] * 3 + list(rotor.tub_inertia))
@@ -31,16 +24,9 @@ def hub_load(rotor: Tub, place: Array, rate: Array, acceleration: Array) -> Arra
 
 
 def weight_load(weights: Sequence[Weight], gravity: Array) -> Array:
-    """What the weight of the drum and its liquid does to the tub at rest.
+    """Force and moment on the tub at rest by the weight of the drum and its liquid, N and N m, shape (6,).
 
-    Parameters
-    ----------
-    weights : of the machine, those of the tub itself left out
-    gravity : acceleration along x, y, z, m/s^2, shape (3,)
-
-    Returns
-    -------
-    shape (6,), N and N m
+    Weights of the tub itself are left out.
     """
     total = np.zeros(6)
     for weight in weights:
@@ -53,16 +39,8 @@ def weight_load(weights: Sequence[Weight], gravity: Array) -> Array:
 def bearing_forces(rotor: Tub, bearings: tuple[float, float], load: Array) -> Array:
     """Share of each of two bearings across the axis in what the drum does to the tub [theory: loads, eq. 13].
 
-    Parameters
-    ----------
-    rotor : tub with its drum
-    bearings : y of both, m
-    load : force and moment about the tub's centre, shape (..., 6)
-
-    Returns
-    -------
-    Force of the drum on the tub in each bearing along z and x, the directions across the axis, N, shape
-    (..., 2, 2)
+    Force of the drum on the tub along z and x, N, shape (..., 2, 2), from the load about the tub's centre,
+    (..., 6); bearings at both y, m.
     """
     x, _, z = rotor.drum_position
     first, other = bearings

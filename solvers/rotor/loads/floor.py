@@ -21,12 +21,7 @@ _ALIKE = 1e-9  # of the largest force at rest: what rounding may make of equal o
 
 @dataclass(frozen=True)
 class Cabinet:
-    """A rigid cabinet that stands on a level floor.
-
-    Raises
-    ------
-    InputError : a value out of its range
-    """
+    """A rigid cabinet that stands on a level floor."""
 
     mass: float  #: without the rotor, kg
     centre: Vector  #: its centre of mass, in the rotor's coordinates at rest, m
@@ -59,30 +54,19 @@ class Margins:
 
     @property
     def walking(self) -> Array:
-        """The least of all, shape (...)."""
+        """Least of all margins, shape (...)."""
         return np.asarray(np.minimum(np.minimum(self.lift_off, self.slip), self.foot.min(axis=-1)))
 
 
 def plan(frame: Frame) -> tuple[int, int]:
-    """Numbers of the two directions along the floor; the first, the second and up are right-handed.
-
-    Parameters
-    ----------
-    frame : of the rotor
-    """
+    """Numbers of the two directions along the floor; the first, the second and up are right-handed."""
     return (frame.up + 1) % 3, (frame.up + 2) % 3
 
 
 def require_standing(cabinet: Cabinet, frame: Frame) -> None:
     """Refuse feet on which no machine stands.
 
-    Parameters
-    ----------
-    cabinet, frame : of the machine
-
-    Raises
-    ------
-    InputError : feet that are not on one level, or lie on a straight line
+    An `InputError` where they are not on one level, or lie on a straight line.
     """
     feet = np.array(cabinet.feet)
     size = float(np.ptp(feet, axis=0).max())
@@ -96,13 +80,8 @@ def require_standing(cabinet: Cabinet, frame: Frame) -> None:
 def floor_forces(cabinet: Cabinet, frame: Frame, force: Array, moment: Array) -> FloorForce:
     """Force of the floor under each foot [theory: loads, eq. 5-8].
 
-    Of more than three feet all are equally stiff: the shares are those of least squares.
-
-    Parameters
-    ----------
-    cabinet, frame : of the machine
-    force, moment : of all that acts on the cabinet, weights included; the moment is that about the origin of
-        the rotor's coordinates, N and N m, shape (..., 3)
+    From the force (N) and moment (N m, about the origin of the rotor's coordinates) of all that acts on the
+    cabinet, weights included, shape (..., 3); shares of more than three feet are those of least squares.
     """
     first, second = plan(frame)
     up = frame.up
@@ -131,15 +110,8 @@ def floor_forces(cabinet: Cabinet, frame: Frame, force: Array, moment: Array) ->
 def margins(cabinet: Cabinet, floor: FloorForce, rest: FloorForce) -> Margins:
     """How far a machine is from walking [theory: loads, eq. 9-11].
 
-    Parameters
-    ----------
-    cabinet : of the machine
-    floor : with its rotor in motion
-    rest : at rest
-
-    Raises
-    ------
-    InputError : a foot that carries nothing at rest, no gravity
+    From the floor's forces with the rotor in motion and at rest; an `InputError` for a foot that carries
+    nothing at rest, or without gravity.
     """
     if not rest.vertical.any():
         raise InputError("gravity", 0.0, "above 0 with a cabinet: without weight no foot holds to the floor")

@@ -32,36 +32,19 @@ class Frame:
     def moving(self, position: Vector) -> Array:
         """Displacement of a point of the body for unit coordinates [theory: loads, eq. 1].
 
-        Parameters
-        ----------
-        position : (x, y, z) at rest, m
-
-        Returns
-        -------
-        Along x, y, z, shape (3, n)
+        Along x, y, z, shape (3, n), of a point at (x, y, z) at rest, m.
         """
         return np.asarray(displacement(position) @ self.body)
 
     def on_axis(self, place: float) -> Vector:
-        """The point of the spin axis at a place along it.
-
-        Parameters
-        ----------
-        place : m
-        """
+        """The point of the spin axis at a place along it."""
         point = list(self.axis)
         point[self.along] = place
         return (point[0], point[1], point[2])
 
 
 def frame_of(rotor: AnyRotor, vertical: bool = False) -> Frame:
-    """Directions of a rotor.
-
-    Parameters
-    ----------
-    rotor : dry
-    vertical : gravity acts along its axis, not across it
-    """
+    """Directions of a rotor; `vertical` where gravity acts along its axis."""
     if isinstance(rotor, Tub):
         x, _, z = rotor.drum_position
         return Frame(np.eye(6), 1, (2, 0), 1 if vertical else 2, (x, 0.0, z))
@@ -81,12 +64,7 @@ class Holder:
 
 
 def holders_of(rotor: AnyRotor) -> tuple[Holder, ...]:
-    """What holds a rotor: the springs and dampers of a tub, the supports of any other.
-
-    Parameters
-    ----------
-    rotor : dry
-    """
+    """What holds a rotor: the springs and dampers of a tub, the supports of any other."""
     none, across = np.zeros((3, 3)), np.diag([1.0, 1.0, 0.0])
     if isinstance(rotor, Tub):
         springs = [
@@ -109,13 +87,7 @@ def holders_of(rotor: AnyRotor) -> tuple[Holder, ...]:
 def tensor(mount: Mount) -> Array:
     """Force of a spring or damper over the displacement or velocity of its point [theory: rotor, eq. 21].
 
-    Parameters
-    ----------
-    mount : of a tub
-
-    Returns
-    -------
-    shape (3, 3), N/m or N s/m
+    N/m or N s/m, shape (3, 3).
     """
     unit = np.array(mount.direction) / math.hypot(*mount.direction)
     return np.asarray(mount.coefficient * np.outer(unit, unit) + np.diag(mount.along_axes))
@@ -133,15 +105,7 @@ class Weight:
 def weights_of(
     rotor: AnyRotor, fills: Sequence[Fill], frame: Frame, races: Sequence[BallRace] = ()
 ) -> tuple[Weight, ...]:
-    """Masses of a rotor, of liquid and of balls, which count at the centre of their chamber or race.
-
-    Parameters
-    ----------
-    rotor : dry
-    fills : its chambers with their liquid
-    frame : of the rotor
-    races : with their balls
-    """
+    """Masses of a rotor, of liquid and of balls, which count at the centre of their chamber or race."""
     rolling = [Weight(sum(race.masses), frame.on_axis(race.position)) for race in races]
     liquid = [Weight(fill.mass, frame.on_axis(fill.chamber.plane)) for fill in fills if fill.volume > 0.0]
     if isinstance(rotor, Tub):

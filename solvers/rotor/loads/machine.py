@@ -52,12 +52,7 @@ class Loads:
 
 @dataclass(frozen=True)
 class LoadedMachine:
-    """A rotor with what holds it, where it stands and what is asked of it.
-
-    Raises
-    ------
-    InputError : a cabinet that does not stand, bearings of a rotor without a tub
-    """
+    """A rotor with what holds it, where it stands and what is asked of it."""
 
     rotor: AnyRotor  #: dry
     fills: tuple[Fill, ...] = ()  #: its chambers with their liquid
@@ -108,8 +103,8 @@ class LoadedMachine:
     def sunk(self) -> Array:
         """Coordinates by which the weight moves the rotor on its springs at rest, shape (n,).
 
-        Of many springs each takes its share by its stiffness [theory: loads, eq. 3]. Where nothing is
-        springy the weight moves nothing, and its way to the floor is not told.
+        Of many springs each takes its share by its stiffness [theory: loads, eq. 3]; where nothing is springy
+        the weight moves nothing.
         """
         load = sum(
             (weight.mass * self.frame.moving(weight.position).T @ self.pull for weight in self.weights),
@@ -137,13 +132,7 @@ class LoadedMachine:
     def holding(self, place: Array, rate: Array) -> Array:
         """Force of the moving rotor on the cabinet in each holder, weights left out [theory: loads, eq. 2].
 
-        Parameters
-        ----------
-        place, rate : coordinates from the equilibrium at rest, and their rates, shape (..., n)
-
-        Returns
-        -------
-        Along x, y, z, N, shape (..., h, 3)
+        Along x, y, z, N, shape (..., h, 3); coordinates count from the equilibrium at rest.
         """
         found = [
             place @ (holder.stiffness @ self.frame.moving(holder.position)).T
@@ -155,13 +144,7 @@ class LoadedMachine:
     def on_cabinet(self, place: Array, rate: Array) -> tuple[Array, Array]:
         """Force and moment of the moving rotor on the cabinet, weights left out [theory: loads, eq. 4].
 
-        Parameters
-        ----------
-        place, rate : as for `holding`
-
-        Returns
-        -------
-        N and N m, about the origin of the rotor's coordinates, shape (..., 3) each
+        N and N m about the origin of the rotor's coordinates, shape (..., 3) each.
         """
         forces = self.holding(place, rate)
         places = np.array([holder.position for holder in self.holders])
@@ -170,11 +153,7 @@ class LoadedMachine:
     def displacement(self, point: Point, place: Array, angle: Array) -> Array:
         """Displacement of a point along x, y, z, m, shape (..., 3) [theory: loads, eq. 1].
 
-        Parameters
-        ----------
-        point : of the machine
-        place : coordinates, shape (..., n)
-        angle : by which the drum has turned, rad, shape (...)
+        The drum has turned by the angle, rad, shape (...).
         """
         frame = self.frame
         if point.on == "tub":
@@ -196,10 +175,7 @@ class LoadedMachine:
     def loads(self, place: Array, rate: Array, acceleration: Array, angle: Array) -> Loads:
         """Forces and clearances at some moments.
 
-        Parameters
-        ----------
-        place, rate, acceleration : coordinates from the equilibrium at rest and their derivatives, (..., n)
-        angle : by which the drum has turned, rad, shape (...)
+        Coordinates count from the equilibrium at rest, shape (..., n); the drum has turned by the angle, rad.
         """
         still = self.holding(self.sunk, np.zeros_like(self.sunk))
         holder = np.linalg.norm(self.holding(place, rate) + still, axis=-1)

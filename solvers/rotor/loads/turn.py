@@ -34,22 +34,12 @@ class Extremes:
     walking: Array
 
     def at(self, rows: Index) -> Extremes:
-        """Those of some turns.
-
-        Parameters
-        ----------
-        rows : their numbers
-        """
+        """Extremes of some turns."""
         return Extremes(**{name: getattr(self, name)[rows] for name in Extremes.__dataclass_fields__})
 
 
 def extremes(loads: Loads) -> Extremes:
-    """The worst over the last axis of moments.
-
-    Parameters
-    ----------
-    loads : at moments, shape (k, m)
-    """
+    """Extremes of k turns over moments, the last axis of loads of shape (k, m)."""
     count = loads.holder.shape[0]
     floor, margin, none = loads.floor, loads.margins, np.full(count, np.nan)
     nobody = np.zeros((count, 0))
@@ -67,28 +57,15 @@ def extremes(loads: Loads) -> Extremes:
 
 
 def joined(parts: list[Extremes]) -> Extremes:
-    """Several of them one after the other.
-
-    Parameters
-    ----------
-    parts : of one machine, at least one
-    """
+    """Extremes of several parts, one after the other."""
     names = Extremes.__dataclass_fields__
     return Extremes(**{name: np.concatenate([getattr(part, name) for part in parts]) for name in names})
 
 
 def turn_extremes(machine: LoadedMachine, coordinates: Complex, speed: Array) -> Extremes:
-    """The worst over a turn of steady motions q = Re(coordinates e^{i Omega t}) [theory: loads, eq. 14].
+    """Extremes over a turn of steady motions q = Re(coordinates e^{i Omega t}) [theory: loads, eq. 14].
 
-    Parameters
-    ----------
-    machine : whose rotor moves
-    coordinates : complex amplitudes, shape (s, n)
-    speed : Omega, rad/s, shape (s,)
-
-    Returns
-    -------
-    Extremes of each speed; not a number where the motion is not known, infinite where it has no bound
+    From amplitudes (s, n): nan where the motion is not known, infinite where it has no bound.
     """
     angle = np.linspace(0.0, 2.0 * np.pi, ANGLES, endpoint=False)
     known = np.asarray(np.isfinite(coordinates).all(axis=1))
@@ -107,7 +84,7 @@ def turn_extremes(machine: LoadedMachine, coordinates: Complex, speed: Array) ->
 
 
 def _without(found: Extremes, known: Flags, endless: Flags) -> Extremes:
-    """Nothing in place of what is not known; no bound where the motion has none."""
+    """Extremes with nan where the motion is not known, and no bound where it has none."""
     values = {}
     for name in Extremes.__dataclass_fields__:
         value = getattr(found, name)
@@ -121,16 +98,8 @@ def _without(found: Extremes, known: Flags, endless: Flags) -> Extremes:
 def orbits(machine: LoadedMachine, coordinates: Complex) -> tuple[Array, Array]:
     """Semi-axes of the ellipse on which each point goes round [theory: loads, eq. 15].
 
-    Of a point on the drum it is the ellipse of the middle of its circle.
-
-    Parameters
-    ----------
-    machine : whose rotor moves
-    coordinates : complex amplitudes, shape (s, n)
-
-    Returns
-    -------
-    The larger and the smaller one, m, shape (s, p) each
+    The larger and the smaller one, m, shape (s, p) each; of a point on the drum that of the middle of its
+    circle.
     """
     large, small = np.zeros((2, coordinates.shape[0], len(machine.points)))
     for k, point in enumerate(machine.points):
@@ -147,17 +116,7 @@ def orbits(machine: LoadedMachine, coordinates: Complex) -> tuple[Array, Array]:
 def damping_power(machine: LoadedMachine, coordinates: Complex, speed: Array) -> Array:
     """Mean power that the supports turn into heat, which the motor replaces [theory: loads, eq. 16].
 
-    What the liquid takes is that of `liquid_power`.
-
-    Parameters
-    ----------
-    machine : whose rotor moves
-    coordinates : complex amplitudes, shape (s, n)
-    speed : Omega, rad/s, shape (s,)
-
-    Returns
-    -------
-    W, shape (s,)
+    W, shape (s,); what the liquid takes is that of `liquid_power`.
     """
     damping = machine.rotor.system().damping
     moved = np.where(np.isfinite(coordinates), coordinates, np.nan)
@@ -166,23 +125,11 @@ def damping_power(machine: LoadedMachine, coordinates: Complex, speed: Array) ->
 
 
 def liquid_power(machine: LoadedMachine, friction: Friction, coordinates: Complex, speed: Array) -> Array:
-    """Mean power that friction in the liquid turns into heat [theory: loads, eq. 18-19].
+    """Mean power that friction in the liquid turns into heat, W, shape (s,) [theory: loads, eq. 18-19].
 
-    The motor replaces it. Where the motion is a circle with the spin and gravity does not act across the
-    axis it is nothing: the liquid rests in its drum. What goes round the other way and gravity move it as
-    small waves; below the speed at which a ring stands it is a pool past which the walls move. Chambers with
-    baffles or sections of their own are left out.
-
-    Parameters
-    ----------
-    machine : whose rotor moves
-    friction : of the liquid
-    coordinates : complex amplitudes, shape (s, n)
-    speed : Omega, rad/s, shape (s,)
-
-    Returns
-    -------
-    W, shape (s,)
+    The motor replaces it. In a circular forward whirl without transverse gravity the liquid rests in its
+    drum; backward whirl and gravity move it as small waves, below the speed from which an annular layer
+    exists as a pool past which the walls move. Chambers with baffles or sections of their own are left out.
     """
     system, total = machine.rotor.system(), np.zeros(speed.shape)
     gravity = 0.0 if machine.vertical else machine.gravity

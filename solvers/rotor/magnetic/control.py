@@ -26,19 +26,16 @@ class Gains:
 
 
 class Controller(Protocol):
-    """What drives the coils.
-
-    A state of k values is its own; it starts at 0.
-    """
+    """What drives the coils, with a state of k values of its own that starts at 0."""
 
     @property
     def name(self) -> str:
-        """As scenes and results name it."""
+        """Name in scenes and results."""
         ...
 
     @property
     def states(self) -> int:
-        """k."""
+        """Number k of values of its state."""
         ...
 
     @property
@@ -47,23 +44,11 @@ class Controller(Protocol):
         ...
 
     def answer(self, speed: float, place: Array, rate: Array, memory: Array) -> tuple[Array, Array]:
-        """Wanted currents, A, shape (4,), and the rate of change of its state, shape (k,).
-
-        Parameters
-        ----------
-        speed : Omega, rad/s
-        place, rate : coordinates and their rates, shape (4,)
-        memory : its state, shape (k,)
-        """
+        """Wanted currents, A, shape (4,), and the rate of change of its state, shape (k,)."""
         ...
 
     def gains(self, speed: float) -> Gains:
-        """Its linear part about the centre.
-
-        Parameters
-        ----------
-        speed : Omega, rad/s
-        """
+        """Linear part of the control about the centre."""
         ...
 
 
@@ -72,10 +57,6 @@ class Synergetic:
     """Feedback that makes the rotor approach a manifold and on it its centre [theory: magnetic, eq. 11-16].
 
     It knows the rotor: the forces of magnets, motor, fluid and gyroscopic terms are worked out and taken off.
-
-    Raises
-    ------
-    InputError : a value that is not positive
     """
 
     model: MagneticRotor  #: the rotor that it knows
@@ -117,12 +98,7 @@ class Synergetic:
         )
 
     def forces(self, speed: float, place: Array, rate: Array, memory: Array) -> Array:
-        """Wanted forces along the axes of the bearings, N, shape (4,) [theory: magnetic, eq. 16].
-
-        Parameters
-        ----------
-        speed, place, rate, memory : as for `Controller.answer`
-        """
+        """Wanted forces along the axes of the bearings, N, shape (4,) [theory: magnetic, eq. 16]."""
         on_place, on_rate, on_memory = self._matrices(speed)
         return np.asarray(on_place @ place + on_rate @ rate + on_memory @ memory)
 
@@ -175,12 +151,7 @@ class Synergetic:
 
 @dataclass(frozen=True)
 class Pid:
-    """PID control of each axis of each bearing by itself, its derivative filtered [theory: magnetic, eq. 18].
-
-    Raises
-    ------
-    InputError : a proportional part or a cut-off that is not positive, another part that is negative
-    """
+    """PID control of each axis of each bearing, its derivative filtered [theory: magnetic, eq. 18]."""
 
     model: MagneticRotor  #: the rotor, of which it knows the gap, the bias current and the force constant
     proportional: float  #: P, N/m
@@ -253,14 +224,7 @@ def source_times(
 ) -> Synergetic:
     """Synergetic control from numbers over powers of sqrt(m/c_m), as the source has them [BG18, section 4].
 
-    Parameters
-    ----------
-    machine : with a motor
-    time, weight, rate, tilt_rate : T, h, mu_1 and mu_3, dimensionless
-
-    Raises
-    ------
-    InputError : a rotor without a motor, a number that is not positive
+    T, h, mu_1 and mu_3, dimensionless, of a machine with a motor.
     """
     require_positive("motor_stiffness", machine.motor_stiffness)
     unit = float(np.sqrt(machine.mass / machine.motor_stiffness))
@@ -270,16 +234,7 @@ def source_times(
 
 
 def require_distinct(controllers: Sequence[Controller]) -> None:
-    """There is a controller, and no two of one name.
-
-    Parameters
-    ----------
-    controllers : to compare
-
-    Raises
-    ------
-    InputError : none, or two of one name
-    """
+    """Refuse an empty list of controllers, and two of one name."""
     names = [controller.name for controller in controllers]
     if not names or len(set(names)) != len(names):
         raise InputError("controllers", names, "one or more, of different names")

@@ -22,7 +22,7 @@ _FACTORS = np.geomspace(1.0, 1e4, 161)  # of the loop gain
 class Loop:
     """Linear closed loop at one speed, s' = (A - B K) s + load [theory: magnetic, eq. 19].
 
-    s holds the four coordinates, their rates, the controller's state and, where coils take time, the four
+    s: the four coordinates, their rates, the controller's state and, where coils take time, the four
     currents.
     """
 
@@ -33,12 +33,7 @@ class Loop:
     machine: MagneticRotor  #: the rotor
 
     def closed(self, factor: complex = 1.0) -> Complex:
-        """Matrix of the closed loop, shape (p, p).
-
-        Parameters
-        ----------
-        factor : that multiplies the loop gain of all four currents
-        """
+        """Matrix of the closed loop, its gain times a factor, shape (p, p)."""
         return np.asarray(self.free - factor * (self.drive @ self.feedback), dtype=np.complex128)
 
     @property
@@ -53,15 +48,13 @@ class Loop:
 
     @property
     def stable(self) -> bool:
-        """All poles decay."""
+        """All poles have negative real parts."""
         return bool(self.poles.real.max() < 0.0)
 
     def transfer(self, frequency: ArrayLike) -> Complex:
-        """L, from wanted currents round to wanted currents with the sign of feedback, shape (..., 4, 4).
+        """Loop transfer L, from wanted currents round to wanted currents, shape (..., 4, 4).
 
-        Parameters
-        ----------
-        frequency : rad/s, shape (...,)
+        With the sign of feedback, at frequencies in rad/s.
         """
         w = np.asarray(frequency, dtype=float)[..., None, None]
         unit = np.eye(self.free.shape[0])
@@ -71,16 +64,10 @@ class Loop:
         return np.asarray(self.feedback @ answer)
 
     def answer(self, load: ArrayLike, frequency: float) -> tuple[Complex, Complex]:
-        """Motion under a turning or swinging load Re(load e^{i w t}), settled [theory: magnetic, eq. 22].
+        """Steady motion under a turning or swinging load Re(load e^{i w t}) [theory: magnetic, eq. 22].
 
-        Parameters
-        ----------
-        load : generalised forces, N and N m, complex, shape (4,)
-        frequency : w, rad/s; 0 for a constant load
-
-        Returns
-        -------
-        Complex amplitudes of the bearings' displacements, m, and of the wanted currents, A, shape (4,) each
+        Complex amplitudes of the bearings' displacements, m, and of the wanted currents, A, shape (4,) each;
+        load in N and N m, frequency w in rad/s, 0 for a constant load.
         """
         size = self.free.shape[0]
         right = np.zeros(size, dtype=np.complex128)
@@ -96,14 +83,7 @@ class Loop:
     def step(self, load: ArrayLike, time: ArrayLike) -> tuple[Array, Array]:
         """Motion after a constant load comes on a rotor at rest, linear [theory: magnetic, eq. 23].
 
-        Parameters
-        ----------
-        load : generalised forces, N and N m, shape (4,)
-        time : s, shape (n,)
-
-        Returns
-        -------
-        Displacements in the bearings, m, and wanted currents, A, each of shape (n, 4)
+        Displacements in the bearings, m, and wanted currents, A, shape (n, 4) each; load in N and N m.
         """
         from scipy.linalg import expm
 
@@ -116,18 +96,7 @@ class Loop:
 
 
 def closed_loop(machine: MagneticRotor, controller: Controller, speed: float) -> Loop:
-    """The loop of a rotor and a controller, which may know another rotor [theory: magnetic, eq. 17 and 19].
-
-    Parameters
-    ----------
-    machine : the rotor
-    controller : that drives it
-    speed : Omega, rad/s, 0 or above
-
-    Raises
-    ------
-    InputError : a speed that is negative or not finite
-    """
+    """Loop of a rotor and a controller, which may know another rotor [theory: magnetic, eq. 17 and 19]."""
     if not (math.isfinite(speed) and speed >= 0.0):
         raise InputError("speed", speed, "a finite number, 0 or above")
     gains, magnets, k = controller.gains(speed), machine.magnets, controller.states
@@ -164,12 +133,7 @@ class Margins:
 
 
 def margins(loop: Loop) -> Margins:
-    """Gain, phase and delay margin and the largest sensitivity of a stable loop; nan of one that is not.
-
-    Parameters
-    ----------
-    loop : of `closed_loop`
-    """
+    """Gain, phase and delay margin and the largest sensitivity of a stable loop; nan of one that is not."""
     if not loop.stable:
         return Margins(*(math.nan,) * 6)
     phase, delay = _phase_and_delay(loop)
@@ -239,9 +203,7 @@ def _sensitivity(loop: Loop) -> tuple[float, float]:
 def orbit_size(amplitude: ArrayLike) -> Array:
     """Largest distance from the centre in each bearing, m, shape (..., 2).
 
-    Parameters
-    ----------
-    amplitude : complex amplitudes along first x, first y, second x, second y, shape (..., 4)
+    From complex amplitudes along first x, first y, second x, second y, shape (..., 4).
     """
     x, y = np.asarray(amplitude)[..., 0::2], np.asarray(amplitude)[..., 1::2]
     return np.asarray(0.5 * (np.abs(x + 1j * y) + np.abs(x - 1j * y)))
@@ -250,14 +212,7 @@ def orbit_size(amplitude: ArrayLike) -> Array:
 def least_bandwidth(judge: Callable[[float], bool], low: float = 1e2, high: float = 1e9) -> float | None:
     """Smallest bandwidth of the coils at which a loop is good enough, to 0.1 %, rad/s.
 
-    Parameters
-    ----------
-    judge : whether it is, rising with the bandwidth
-    low, high : where it is searched, rad/s
-
-    Returns
-    -------
-    None where it is not good enough at the highest; the lowest where it is there already
+    None where `judge` refuses the highest; the lowest where it accepts that already.
     """
     require_positive("low", low)
     if not judge(high):

@@ -17,12 +17,7 @@ AXES = ("first x", "first y", "second x", "second y")  # of the bearings, in the
 
 @dataclass(frozen=True)
 class Magnets:
-    """Two opposite electromagnets on each of two axes, in each of two bearings [theory: magnetic, eq. 4].
-
-    Raises
-    ------
-    InputError : a value that is not positive, a control current above the bias current
-    """
+    """Two opposite electromagnets on each of two axes, in each of two bearings [theory: magnetic, eq. 4]."""
 
     gap: float  #: delta, between the rotor in the centre and each magnet, m
     force_constant: float  #: k_A, N m^2/A^2
@@ -59,20 +54,8 @@ class Magnets:
     def force(self, displacement: ArrayLike, current: ArrayLike) -> Array:
         """Force of a pair of magnets [theory: magnetic, eq. 4] [BG18, eq. 28].
 
-        Parameters
-        ----------
-        displacement : of the rotor towards the first magnet, m, below the gap in size, shape (...,)
-        current : control current, A, shape (...,)
-
-        Returns
-        -------
-        Force towards the first magnet, N, shape (...,)
-
-        Examples
-        --------
-        >>> magnets = Magnets(gap=2e-4, force_constant=2e-5, bias_current=0.03)
-        >>> round(float(magnets.force(0.0, 0.01)), 6)
-        0.6
+        Towards the first magnet, N, as the displacement, m, which is below the gap in size; control current
+        in A.
         """
         x, i = np.asarray(displacement, dtype=float), np.asarray(current, dtype=float)
         near = np.square((self.bias_current + i) / (self.gap - x))
@@ -82,16 +65,8 @@ class Magnets:
     def current(self, displacement: ArrayLike, force: ArrayLike) -> Array:
         """Control current for a force, the inverse of `force` [theory: magnetic, eq. 5].
 
-        A force that no current gives is answered by the current of the largest one in its direction.
-
-        Parameters
-        ----------
-        displacement : m, below the gap in size, shape (...,)
-        force : N, shape (...,)
-
-        Returns
-        -------
-        Current, A, shape (...,); beyond `limit` where that force takes so much
+        A force that no current gives is answered by the current of the largest one in its direction; A,
+        beyond `limit` where the force takes so much.
         """
         x, f = np.asarray(displacement, dtype=float), np.asarray(force, dtype=float) / self.force_constant
         near, far, i = 1.0 / np.square(self.gap - x), 1.0 / np.square(self.gap + x), self.bias_current
@@ -102,12 +77,7 @@ class Magnets:
         return np.asarray((least - apart * i * i) / (both + root))
 
     def energy(self, displacement: ArrayLike, current: ArrayLike) -> Array:
-        """Potential of `force` at held currents, J, shape (...,) [theory: magnetic, eq. 7].
-
-        Parameters
-        ----------
-        displacement, current : as for `force`
-        """
+        """Potential of `force` at held currents, J, shape (...,) [theory: magnetic, eq. 7]."""
         x, i = np.asarray(displacement, dtype=float), np.asarray(current, dtype=float)
         near = np.square(self.bias_current + i) / (self.gap - x)
         far = np.square(self.bias_current - i) / (self.gap + x)
@@ -116,12 +86,7 @@ class Magnets:
 
 @dataclass(frozen=True)
 class MagneticRotor:
-    """A rigid rotor between two bearings; x, y, alpha, beta of its centre [theory: magnetic, eq. 1].
-
-    Raises
-    ------
-    InputError : a value out of its range
-    """
+    """A rigid rotor between two bearings; x, y, alpha, beta of its centre [theory: magnetic, eq. 1]."""
 
     mass: float  #: m, kg
     transverse_inertia: float  #: I_x and I_z, kg m^2; I_z at most 2 I_x
@@ -195,13 +160,7 @@ class MagneticRotor:
     def unbalance_load(self, angle: ArrayLike, speed: ArrayLike, rate: ArrayLike = 0.0) -> Array:
         """Force and moment of the unbalances [theory: magnetic, eq. 2].
 
-        Parameters
-        ----------
-        angle, speed, rate : phi of the rotor, Omega and its rate of change, rad, rad/s, rad/s^2, shape (...,)
-
-        Returns
-        -------
-        Generalised forces, N and N m, shape (..., 4)
+        N and N m, shape (..., 4), at the angle phi, speed Omega and its rate of change.
         """
         speed = np.asarray(speed, dtype=float)
         turning = (speed**2 - 1j * np.asarray(rate)) * np.exp(1j * np.asarray(angle))
@@ -209,13 +168,7 @@ class MagneticRotor:
         return np.concatenate((self.unbalance[0] * pair, self.unbalance[1] * pair), axis=-1)
 
     def outward_force(self, displacement: ArrayLike, current: ArrayLike) -> Array:
-        """Force outwards on a rotor that does not lean, of both bearings and the motor, along one axis, N.
-
-        Parameters
-        ----------
-        displacement : of the rotor outwards, m, shape (...,)
-        current : control current of the axis in both bearings, A, shape (...,)
-        """
+        """Force outwards on a rotor that does not lean, of both bearings and the motor, along one axis, N."""
         x = np.asarray(displacement, dtype=float)
         return np.asarray(2.0 * self.magnets.force(x, current) + self.motor_stiffness * x)
 
@@ -231,13 +184,7 @@ class MagneticRotor:
         return float(brentq(outwards, 0.0, end)) if outwards(end) > 0.0 else self.magnets.gap
 
     def energy(self, place: ArrayLike, rate: ArrayLike, current: ArrayLike = 0.0) -> Array:
-        """Energy of the motion, of motor and magnets at held currents [theory: magnetic, eq. 7].
-
-        Parameters
-        ----------
-        place, rate : coordinates and their rates, shape (..., 4)
-        current : of the bearings' axes, A, shape (..., 4)
-        """
+        """Energy of the motion, of motor and magnets at held currents [theory: magnetic, eq. 7]."""
         q, v = np.asarray(place, dtype=float), np.asarray(rate, dtype=float)
         motion = 0.5 * np.sum(self.inertia * v * v, axis=-1)
         motor = -0.5 * np.sum(q * (q @ self.motor_pull), axis=-1)
@@ -262,10 +209,7 @@ class Dimensionless:
 def dimensionless(machine: MagneticRotor, length: float | None = None) -> Dimensionless:
     """The numbers of a rotor.
 
-    Parameters
-    ----------
-    machine : the rotor
-    length : l that Pi_2 is taken with, m; distance of the bearings if None
+    Pi_2 is taken with `length`, m; distance of the bearings if None.
     """
     length = machine.second - machine.first if length is None else length
     inertia, pull = machine.transverse_inertia, machine.motor_stiffness
@@ -285,15 +229,7 @@ def dimensionless(machine: MagneticRotor, length: float | None = None) -> Dimens
 def screw_drag(coefficient: float, viscosity: float, radius: float, length: float) -> float:
     """Moment of the fluid over the speed of turning, c_w eta pi r^2 l, N m s [theory: magnetic, eq. 9].
 
-    Parameters
-    ----------
-    coefficient : c_w
-    viscosity : eta, dynamic, Pa s
-    radius, length : r and l of the body, m
-
-    Raises
-    ------
-    InputError : a negative value, a radius or length that is not positive
+    c_w, dynamic viscosity eta in Pa s, r and l of the body in m.
     """
     require_not_negative("coefficient", coefficient)
     require_not_negative("viscosity", viscosity)
@@ -303,12 +239,6 @@ def screw_drag(coefficient: float, viscosity: float, radius: float, length: floa
 
 
 def motor_length(shape: float, first: float, second: float) -> float:
-    """Length of a motor whose shape number k_m = l_m^2/(3 (a_1 + a_2)^2) is known, m [BG18, eq. 31].
-
-    Parameters
-    ----------
-    shape : k_m
-    first, second : places of the bearings, m
-    """
+    """Length of a motor whose shape number k_m = l_m^2/(3 (a_1 + a_2)^2) is known, m [BG18, eq. 31]."""
     require_not_negative("shape", shape)
     return math.sqrt(3.0 * shape) * (second - first)

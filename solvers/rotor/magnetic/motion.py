@@ -31,12 +31,7 @@ class Ending(StrEnum):
 
 @dataclass(frozen=True)
 class SpeedLaw:
-    """Omega = mean + amplitude sin(frequency t) [theory: magnetic, eq. 24] [BG18, section 2].
-
-    Raises
-    ------
-    InputError : a negative value, an amplitude above the mean
-    """
+    """Omega = mean + amplitude sin(frequency t) [theory: magnetic, eq. 24] [BG18, section 2]."""
 
     mean: float  #: rad/s, the amplitude at most the mean
     amplitude: float = 0.0
@@ -53,7 +48,7 @@ class SpeedLaw:
         return np.asarray(self.mean + self.amplitude * np.sin(self.frequency * np.asarray(time, dtype=float)))
 
     def rate(self, time: ArrayLike) -> Array:
-        """Its rate of change, rad/s^2, shape of `time`."""
+        """Rate of change of Omega, rad/s^2, shape of `time`."""
         cosine = np.cos(self.frequency * np.asarray(time, dtype=float))
         return np.asarray(self.amplitude * self.frequency * cosine)
 
@@ -68,12 +63,7 @@ class SpeedLaw:
 
 @dataclass(frozen=True)
 class Load:
-    """A load on the rotor, constant or harmonic, from some time on [theory: magnetic, eq. 2] [BG18, eq. 37].
-
-    Raises
-    ------
-    InputError : a value that is not finite, a frequency that is not positive
-    """
+    """A constant or harmonic load on the rotor from some time on [theory: magnetic, eq. 2] [BG18, eq. 37]."""
 
     force: tuple[float, float]  #: along x and y, N
     moment: tuple[float, float] = (0.0, 0.0)  #: about x and y, N m
@@ -100,7 +90,7 @@ class Load:
 
 @dataclass(frozen=True)
 class Motion:
-    """A motion through time; n times."""
+    """Motion in time; n times."""
 
     time: Array  #: s, shape (n,)
     speed: Array  #: of the rotor, rad/s, shape (n,)
@@ -114,7 +104,7 @@ class Motion:
 
     @property
     def distance(self) -> Array:
-        """From the centre, in the bearing where it is larger, m, shape (n,)."""
+        """Distance from the centre in the bearing where it is larger, m, shape (n,)."""
         d = self.displacement
         return np.asarray(np.maximum(np.hypot(d[:, 0], d[:, 1]), np.hypot(d[:, 2], d[:, 3])))
 
@@ -131,22 +121,7 @@ def integrate(
 ) -> Motion:
     """Motion by scipy's LSODA, anew where a load comes on [theory: magnetic, eq. 1 and 2].
 
-    Parameters
-    ----------
-    machine, controller : rotor, and what drives its coils
-    law : speed over time
-    duration : s
-    loads : on the rotor
-    place, rate : where it starts, and how fast, shape (4,)
-    samples : how many times are recorded, evenly over the duration, 2 or more
-
-    Returns
-    -------
-    The motion; where the rotor touches a magnet it ends
-
-    Raises
-    ------
-    InputError : a value out of its range, a start at or beyond a magnet
+    From a place and rate of shape (4,), recorded at even times; it ends where the rotor touches a magnet.
     """
     require_positive("duration", duration)
     if samples < 2:
@@ -168,11 +143,7 @@ def integrate(
 def settling_time(motion: Motion, band: float, before: float = math.inf) -> float:
     """Time from which the rotor stays within a distance of the centre, s; inf if it does not.
 
-    Parameters
-    ----------
-    motion : through time
-    band : m
-    before : time at which something new happens, s; what comes later is not looked at
+    What comes after `before`, s, is not looked at.
     """
     require_positive("band", band)
     looked = motion.time < before
@@ -220,7 +191,7 @@ class _Equations:
         return np.concatenate(parts)
 
     def room(self, time: float, state: Array) -> float:
-        """Left in the bearing where there is less, m."""
+        """Clearance left in the bearing where there is less, m."""
         return _room(self.machine, state[:4])
 
     def errors(self, size: int) -> Array:

@@ -32,20 +32,10 @@ class Mode:
 
 
 def count_below(structure: Structure, frequency: Array, spin: float = 0.0) -> Index:
-    """How many natural frequencies, 0 included, lie below others [theory: spindle, eq. 11].
+    """Number of natural frequencies, 0 included, below given ones [theory: spindle, eq. 11].
 
-    Parameters
-    ----------
-    structure : the machine; its dampers do not count
-    frequency : rad/s, above 0, shape (n,)
-    spin : of what spins, rad/s; natural frequencies of forward whirl, of backward whirl where it is negative
-
-    Examples
-    --------
-    >>> from solvers.rotor.shaft.section import round_section
-    >>> free = Structure(((round_section(1.0, 0.02, theory="euler"),),))
-    >>> int(count_below(free, np.array([1.0]))[0])  # it may move and turn as a rigid body
-    2
+    Given ones above 0, rad/s; dampers do not count. Of forward whirl, of backward whirl where `spin` is
+    negative.
     """
     omega = np.asarray(frequency, dtype=float).reshape(-1)
     _require_band(float(omega.min()), float(omega.max()))
@@ -54,31 +44,10 @@ def count_below(structure: Structure, frequency: Array, spin: float = 0.0) -> In
 
 
 def natural_frequencies(structure: Structure, low: float, high: float, spin: float = 0.0) -> Array:
-    """All natural frequencies between two others [theory: spindle, eq. 11].
+    """All natural frequencies between two others, rad/s, rising, without dampers [theory: spindle, eq. 11].
 
-    The k-th eigenvalue of the dynamic stiffness passes zero once, at the k-th natural frequency, since no
-    piece has a resonance of its own in the band: none is missed, two of one frequency count twice.
-
-    Parameters
-    ----------
-    structure : the machine; its dampers do not count
-    low, high : ends of the band, rad/s, above 0
-    spin : of what spins, rad/s; frequencies of forward whirl, of backward whirl where it is negative
-
-    Returns
-    -------
-    rad/s, rising, shape (k,)
-
-    Raises
-    ------
-    InputError : a band that is not one, an end beyond the cutoff of shear waves
-
-    Examples
-    --------
-    >>> from solvers.rotor.shaft.section import round_section
-    >>> free = Structure(((round_section(1.0, 0.02, theory="euler"),),))
-    >>> (natural_frequencies(free, 1.0, 2000.0) / (2.0 * np.pi)).round(2).tolist()
-    [92.09, 253.84]
+    The k-th eigenvalue of the dynamic stiffness passes zero once, at the k-th of them: none is missed, two of
+    one frequency count twice. Of forward whirl, of backward whirl where `spin` is negative.
     """
     return _found(structure, low, high, spin)[0]
 
@@ -88,10 +57,7 @@ def modes(
 ) -> tuple[Mode, ...]:
     """Natural frequencies of a band with their shapes.
 
-    Parameters
-    ----------
-    structure, low, high, spin : as of `natural_frequencies`
-    least : pieces of each section, at whose ends the shape is told
+    The shape is known at the ends of at least `least` pieces of each section.
     """
     frequencies, order = _found(structure, low, high, spin)
     nodes = nodes_up_to(structure, high, spin, least)
@@ -139,7 +105,7 @@ def _require_band(low: float, high: float) -> None:
 
 
 def _eigenvalues(structure: Structure, nodes: Nodes, frequency: Array, spin: float) -> Array:
-    """Of the scaled dynamic stiffness, rising, shape (n, 2 nodes)."""
+    """Eigenvalues of the scaled dynamic stiffness, rising, shape (n, 2 nodes)."""
     return np.asarray(np.linalg.eigvalsh(_scaled(structure, nodes, frequency, spin)[0]))
 
 

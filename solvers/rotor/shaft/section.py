@@ -19,12 +19,7 @@ _SERIES, _TERMS = 1.0, 12  # up to this size of its argument a function is summe
 
 @dataclass(frozen=True)
 class Section:
-    """A uniform piece of a beam [theory: spindle, eq. 1-2].
-
-    Raises
-    ------
-    InputError : a value out of its range
-    """
+    """A uniform piece of a beam [theory: spindle, eq. 1-2]."""
 
     length: float  #: m
     bending_stiffness: float  #: E I, N m^2
@@ -47,27 +42,14 @@ class Section:
         return 1.0 / math.sqrt(both) if both > 0.0 else math.inf
 
     def turning_inertia(self, frequency: Array, spin: float) -> Array:
-        """R, moment of the inertia of a unit of length over its slope [theory: spindle, eq. 2], N.
-
-        Parameters
-        ----------
-        frequency : of the whirl, rad/s, shape (n,)
-        spin : of the shaft, rad/s
-        """
+        """R, moment of the inertia of a unit of length over its slope [theory: spindle, eq. 2], N."""
         turning = self.rotary_inertia * np.square(frequency) - self.polar_inertia * spin * frequency
         return np.asarray(turning)
 
     def pieces(self, frequency: float, spin: float = 0.0) -> int:
         """Into how many pieces it must be cut up to a frequency [theory: spindle, eq. 9].
 
-        Parameters
-        ----------
-        frequency : largest, rad/s, above 0
-        spin : of the shaft, rad/s
-
-        Raises
-        ------
-        InputError : the frequency is not below the cutoff of shear waves
+        An `InputError` where the frequency is not below the cutoff of shear waves.
         """
         gyroscopic = self.polar_inertia * abs(spin) * frequency
         turning = self.rotary_inertia * frequency**2 + gyroscopic
@@ -94,24 +76,8 @@ def round_section(
 ) -> Section:
     """A round section, solid or hollow, of one material [theory: spindle, eq. 16].
 
-    Parameters
-    ----------
-    length, diameter, bore : m
-    elastic_modulus : E, Pa
-    density : kg/m^3
-    poisson_ratio : nu
-    theory : "euler" with the mass alone, "rayleigh" with rotary inertia, "timoshenko" also with shear
-    spins : it turns with the shaft, so that a spin has gyroscopic moments
-
-    Raises
-    ------
-    InputError : a value out of its range, a bore that is not smaller than the diameter
-
-    Examples
-    --------
-    >>> shaft = round_section(0.5, 0.02)
-    >>> round(shaft.mass, 3), round(shaft.bending_stiffness)
-    (2.466, 1649)
+    SI units. Theory "euler" has the mass alone, "rayleigh" rotary inertia, "timoshenko" also shear; one that
+    `spins` has gyroscopic moments.
     """
     for name, value in (("length", length), ("diameter", diameter), ("density", density)):
         require_positive(name, value)
@@ -142,10 +108,7 @@ def round_section(
 def shear_coefficient(ratio: float, poisson_ratio: float) -> float:
     """kappa of a round section by Cowper [theory: spindle, eq. 16].
 
-    Parameters
-    ----------
-    ratio : bore over diameter, from 0 to below 1
-    poisson_ratio : nu
+    `ratio`: bore over diameter.
     """
     both = (1.0 + ratio**2) ** 2
     rest = (7.0 + 6.0 * poisson_ratio) * both + (20.0 + 12.0 * poisson_ratio) * ratio**2
@@ -155,16 +118,7 @@ def shear_coefficient(ratio: float, poisson_ratio: float) -> float:
 def transfer_matrices(section: Section, length: float, frequency: Array, spin: float = 0.0) -> Array:
     """From the state at the left end of a piece to that at its right end [theory: spindle, eq. 3-4].
 
-    Parameters
-    ----------
-    section : of which it is a piece
-    length : of the piece, m
-    frequency : rad/s, shape (n,); below 0 for whirl against the spin
-    spin : of the shaft, rad/s
-
-    Returns
-    -------
-    shape (n, 4, 4), for the states (w, theta, M, Q) in SI units
+    Shape (n, 4, 4), for the states (w, theta, M, Q) in SI units; frequencies below 0 for backward whirl.
     """
     bending, shear = section.bending_stiffness, section.shear_flexibility
     omega = np.asarray(frequency, dtype=float)
@@ -226,14 +180,8 @@ def _slope(function: object, first: Array, second: Array, odd: int) -> Array:
 def stiffness_matrices(transfer: Array) -> Array:
     """Forces on both ends of a piece from the motion of the ends [theory: spindle, eq. 8].
 
-    Parameters
-    ----------
-    transfer : matrices of the piece, shape (n, 4, 4)
-
-    Returns
-    -------
-    shape (n, 4, 4), symmetric, for the motions (w, theta) at the left and the right end; forces and moments
-    are those from outside
+    Symmetric, shape (n, 4, 4), for the motions (w, theta) at the left and the right end; forces and moments
+    are those from outside.
     """
     # The force at the left end is -Q, the moment -M; the states order M before Q, motions w before theta.
     order = [3, 2]

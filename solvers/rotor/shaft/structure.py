@@ -41,13 +41,7 @@ class Joint:
     angular_damping: float = 0.0
 
     def dynamic(self, frequency: Array, damped: bool = True) -> tuple[Complex, Complex]:
-        """k + i omega c across the axis and of the slope, shape (n,) each.
-
-        Parameters
-        ----------
-        frequency : rad/s, shape (n,)
-        damped : with its dampers
-        """
+        """k + i omega c across the axis and of the slope, shape (n,) each."""
         rate: Complex = 1j * np.asarray(frequency, dtype=float) * damped
         across: Complex = self.stiffness + rate * self.damping
         turning: Complex = self.angular_stiffness + rate * self.angular_damping
@@ -57,11 +51,6 @@ class Joint:
 @dataclass(frozen=True)
 class Structure:
     """Beams with what sits on them and what joins them.
-
-    Raises
-    ------
-    InputError : a beam without a section, a station that is not there, a negative mass or spring, a joint of
-        a station with itself
 
     Examples
     --------
@@ -122,42 +111,23 @@ class Nodes:
 
     @property
     def count(self) -> int:
-        """How many there are."""
+        """Number of nodes."""
         return self.starts[-1]
 
     def of(self, station: Station) -> int:
-        """Node at a station.
-
-        Parameters
-        ----------
-        station : of the structure
-        """
+        """Node at a station."""
         beam, place = station
         return self.starts[beam] + sum(self.pieces[beam][:place])
 
     def index(self, coordinate: Coordinate) -> int:
-        """Row of a coordinate in the matrices.
-
-        Parameters
-        ----------
-        coordinate : of the structure
-        """
+        """Row of a coordinate in the matrices."""
         return 2 * self.of(coordinate.station) + coordinate.slope
 
 
 def nodes_up_to(structure: Structure, frequency: float, spin: float = 0.0, least: int = 1) -> Nodes:
     """Nodes so close that no piece resonates between clamped ends up to a frequency [theory: spindle, eq. 9].
 
-    Parameters
-    ----------
-    structure : the machine
-    frequency : largest, rad/s
-    spin : of what spins, rad/s
-    least : pieces of each section
-
-    Raises
-    ------
-    InputError : the frequency is not below the cutoff of shear waves of each section
+    At least `least` pieces of each section; an `InputError` from the cutoff of shear waves on.
     """
     largest = max(frequency, 1e-9)
     return Nodes(
@@ -172,17 +142,8 @@ def dynamic_stiffness(
 ) -> Complex:
     """Forces on all nodes over their motions, at each frequency [theory: spindle, eq. 10].
 
-    Parameters
-    ----------
-    structure : the machine
-    nodes : of it, up to these frequencies
-    frequency : rad/s, shape (n,)
-    spin : of what spins, rad/s; the motion then is a circular whirl, forward where both have one sign
-    damped : with the dampers of the joints
-
-    Returns
-    -------
-    shape (n, 2 nodes, 2 nodes), symmetric, the deflection of a node before its slope
+    Symmetric, shape (n, 2 nodes, 2 nodes), the deflection of a node before its slope. With a spin the motion
+    is a circular whirl, forward where both have one sign.
     """
     omega = np.asarray(frequency, dtype=float)
     size = 2 * nodes.count
@@ -214,16 +175,7 @@ def dynamic_stiffness(
 
 
 def scales(matrices: Complex) -> Array:
-    """Factors of rows and columns with which forces and moments are of one size.
-
-    Parameters
-    ----------
-    matrices : dynamic stiffness, shape (n, m, m)
-
-    Returns
-    -------
-    shape (m,)
-    """
+    """Factors of rows and columns with which forces and moments are of one size, shape (m,)."""
     sizes = np.abs(np.diagonal(matrices, axis1=-2, axis2=-1)).max(axis=0)
     return np.asarray(1.0 / np.sqrt(np.where(sizes > 0.0, sizes, 1.0)))
 
@@ -237,21 +189,9 @@ def compliances(
 ) -> Complex:
     """Motion of some coordinates over a unit force or moment at others [theory: spindle, eq. 10].
 
-    Parameters
-    ----------
-    structure : the machine
-    frequency : rad/s, shape (n,)
-    motions, loads : what moves, where it is driven
-    spin : of what spins, rad/s; force and motion then turn with the frequency in one sense
-
-    Returns
-    -------
-    shape (n, motions, loads): m/N, rad/N, m/(N m) or rad/(N m), for force and motion as e^(i omega t)
-
-    Raises
-    ------
-    InputError : a station that is not there, a frequency that is not finite, or beyond the cutoff, or at
-        which the machine without damping answers without bounds
+    Shape (n, motions, loads): m/N, rad/N, m/(N m) or rad/(N m), for force and motion as e^(i omega t); with a
+    spin both turn in one sense. An `InputError` beyond the cutoff, or where the machine without damping
+    answers without bounds.
     """
     omega = np.asarray(frequency, dtype=float).reshape(-1)
     if not np.all(np.isfinite(omega)):
@@ -280,15 +220,7 @@ def compliances(
 def motion_at(structure: Structure, nodes: Nodes, motion: Array) -> list[tuple[Array, Array]]:
     """Deflection along each beam.
 
-    Parameters
-    ----------
-    structure : the machine
-    nodes : of it
-    motion : of all nodes, shape (2 nodes,)
-
-    Returns
-    -------
-    place from the first station, m, and deflection, of each beam, shape (k,) each
+    Place from the first station, m, and deflection, of each beam, from the motion of all nodes.
     """
     found = []
     for beam, sections in enumerate(structure.beams):

@@ -1,8 +1,8 @@
 """The way of the source: compliances of free beams by transfer matrices, reactions in the joints.
 
 Products of transfer matrices lose digits as waves grow along a beam, and free beams have rigid motions that
-grow without bounds towards rest. `structure` has neither fault; this way checks it, and it is told in the
-reactions what each joint carries.
+grow without bounds towards rest. This way checks `structure`, which has neither fault, and gives what each
+joint carries.
 """
 
 from __future__ import annotations
@@ -27,13 +27,7 @@ class Connection:
 
 
 def connections(structure: Structure, frequency: Array) -> list[Connection]:
-    """Springs between beams in the order of the joints, the radial one of a joint before the angular one.
-
-    Parameters
-    ----------
-    structure : the machine
-    frequency : rad/s, shape (n,)
-    """
+    """Springs between beams in the order of the joints, the radial one of a joint before the angular one."""
     found = []
     for joint in structure.joints:
         if joint.second is None:
@@ -48,16 +42,7 @@ def connections(structure: Structure, frequency: Array) -> list[Connection]:
 def point_matrices(structure: Structure, station: Station, frequency: Array, spin: float = 0.0) -> Complex:
     """Across a station: its masses and its springs to the ground [theory: spindle, eq. 5].
 
-    Parameters
-    ----------
-    structure : the machine
-    station : of it
-    frequency : rad/s, shape (n,)
-    spin : of what spins, rad/s
-
-    Returns
-    -------
-    shape (n, 4, 4), for the states (w, theta, M, Q)
+    Shape (n, 4, 4), for the states (w, theta, M, Q).
     """
     omega = np.asarray(frequency, dtype=float)
     found = np.tile(np.eye(4, dtype=complex), (omega.size, 1, 1))
@@ -76,16 +61,7 @@ def point_matrices(structure: Structure, station: Station, frequency: Array, spi
 def station_matrices(structure: Structure, beam: int, frequency: Array, spin: float = 0.0) -> list[Complex]:
     """From behind the station before to behind each station of a beam; the first is that of its own station.
 
-    Parameters
-    ----------
-    structure : the machine
-    beam : number of it
-    frequency : rad/s, shape (n,)
-    spin : of what spins, rad/s
-
-    Returns
-    -------
-    shape (n, 4, 4) each
+    Shape (n, 4, 4) each.
     """
     sections = structure.beams[beam]
     found = [point_matrices(structure, (beam, 0), frequency, spin)]
@@ -96,16 +72,7 @@ def station_matrices(structure: Structure, beam: int, frequency: Array, spin: fl
 
 
 def transfer_of_beam(structure: Structure, beam: int, frequency: Array, spin: float = 0.0) -> Complex:
-    """Product of all matrices of a beam, first end to last [theory: spindle, eq. 6] [DP18, eq. 8-11].
-
-    Parameters
-    ----------
-    structure, beam, frequency, spin : as of `station_matrices`
-
-    Returns
-    -------
-    shape (n, 4, 4)
-    """
+    """Product of all matrices of a beam, first end to last [theory: spindle, eq. 6] [DP18, eq. 8-11]."""
     total, *others = station_matrices(structure, beam, frequency, spin)
     for matrix in others:
         total = matrix @ total
@@ -115,17 +82,8 @@ def transfer_of_beam(structure: Structure, beam: int, frequency: Array, spin: fl
 def free_compliances(structure: Structure, beam: int, frequency: Array, spin: float = 0.0) -> Complex:
     """Compliances of a beam without its joints to other beams [theory: spindle, eq. 7].
 
-    Parameters
-    ----------
-    structure, beam, frequency, spin : as of `station_matrices`
-
-    Returns
-    -------
-    shape (n, 2 m, 2 m), of its m stations, the deflection and the force of each before slope and moment
-
-    Raises
-    ------
-    InputError : the frequency is one at which the beam alone moves without bounds, as a free one at rest
+    Shape (n, 2 m, 2 m), of its m stations deflection and force before slope and moment; an `InputError` where
+    the beam alone moves without bounds.
     """
     steps = station_matrices(structure, beam, frequency, spin)
     size, count = len(steps), np.asarray(frequency).size
@@ -164,29 +122,7 @@ class Substructures:
 def substructures(
     structure: Structure, frequency: Array, driven: Coordinate, spin: float = 0.0
 ) -> Substructures:
-    """Answer to a unit force by the compliances of free beams and the reactions between them.
-
-    Parameters
-    ----------
-    structure : the machine
-    frequency : rad/s, shape (n,)
-    driven : where the unit force or moment acts
-    spin : of what spins, rad/s
-
-    Raises
-    ------
-    InputError : no joint between two beams, a frequency at which a beam alone has no answer
-
-    Examples
-    --------
-    >>> from solvers.rotor.shaft.section import round_section
-    >>> from solvers.rotor.shaft.structure import Coordinate, Joint, Structure
-    >>> beams = ((round_section(0.2, 0.02),), (round_section(0.3, 0.04),))
-    >>> machine = Structure(beams, joints=(Joint((0, 1), (1, 0), 1e7, angular_stiffness=1e4),))
-    >>> found = substructures(machine, np.array([100.0]), Coordinate((0, 0)))
-    >>> found.matrix.shape, found.reactions.shape
-    ((1, 2, 2), (1, 2))
-    """
+    """Answer to a unit force at `driven` by the compliances of free beams and the reactions between them."""
     omega = np.asarray(frequency, dtype=float).reshape(-1)
     structure.require(driven.station)
     springs = connections(structure, omega)
