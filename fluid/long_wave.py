@@ -25,8 +25,7 @@ def layer_log(area: Real) -> Real:
 
 
 def static_head(area: Real, surface: Real, spin: float, pull: Real) -> Real:
-    """Bernoulli's function at rest, Omega^2 A - r_s f_r, constant in equilibrium [theory: long_wave, eq. 5].
-    """
+    """Bernoulli's function at rest, Omega^2 A - r_s f_r, one constant [theory: long_wave, eq. 5]."""
     return spin * spin * area - surface * pull
 
 
@@ -48,8 +47,9 @@ def momentum_flux(velocity: Real, log: Real, area: Real, inverse: Real) -> Real:
 
 
 def pressure_force(area: Real, surface: Real, spin: float, pull: Real) -> Real:
-    """Flux of angular momentum by pressure, Omega^2 A^2/2 + f_r ((1 - r^3)/3 - r A)
-    [theory: long_wave, eq. 4].
+    """Flux of angular momentum by pressure [theory: long_wave, eq. 4].
+
+    Omega^2 A^2/2 + f_r ((1 - r^3)/3 - r A).
     """
     arm = (1.0 - surface) * (1.0 + surface + surface * surface) / 3.0 - surface * area
     return 0.5 * spin * spin * area * area + pull * arm

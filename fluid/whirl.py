@@ -134,8 +134,7 @@ def wave_function(layer_tanh: ArrayLike, spin: ArrayLike, slip: ArrayLike, rate:
 def offset_with_friction(
     layer_tanh: ArrayLike, spin: ArrayLike, whirl_speed: ArrayLike, rate: ArrayLike
 ) -> Complex:
-    """Offset of the liquid's centre of mass over the deflection, -(1 - T)/2 omega^2/E [theory: whirl, eq. 4].
-    """
+    """Offset of the centre of mass over the deflection, d/w = -(1 - T)/2 omega^2/E [theory: whirl, eq. 4]."""
     omega = np.asarray(whirl_speed, dtype=complex)
     share = 0.5 * (1.0 - np.asarray(layer_tanh))
     resonance = wave_function(layer_tanh, spin, omega - np.asarray(spin), rate)

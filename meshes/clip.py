@@ -36,8 +36,7 @@ class Remainder:
 
 
 def wall_loops(section: Section) -> tuple[Complex, ...]:
-    """Walls of a section as closed lines with it on their left, m; quadratic sides cut into straight pieces.
-    """
+    """Walls of a section as closed lines with it on their left, m; quadratic sides are cut into pieces."""
     sides = free_sides(section.triangles)
     plane = section.points[:, 0] + 1j * section.points[:, 1]
     after: dict[int, list[int]] = {}

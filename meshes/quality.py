@@ -147,8 +147,7 @@ def aspect_ratios(points: Array, cells: Indices) -> Array:
 
 
 def assess(points: Array, triangles: Indices) -> Quality:
-    """Quality of a plane mesh, valid or not; a cell without area has angles and aspect ratio 0 or infinite.
-    """
+    """Quality of a plane mesh, valid or not; angles and aspect ratio without area are 0 or infinite."""
     angles = vertex_angles(points, triangles)
     regular = np.pi / 3.0 if angles.shape[1] == 3 else np.pi / 2.0
     areas = cell_areas(points, triangles)

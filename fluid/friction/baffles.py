@@ -46,8 +46,7 @@ def loss_coefficient(share: Real) -> Real:
 
 
 def lid_length(share: Real) -> Real:
-    """Length of channel over its depth with a baffle's inertia, under a rigid lid [theory: baffles, eq. 15].
-    """
+    """Channel length over its depth with a baffle's inertia, under a rigid lid [theory: baffles, eq. 15]."""
     return -4.0 / math.pi * np.log(np.sin(0.5 * math.pi * share))
 
 

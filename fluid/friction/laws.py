@@ -106,8 +106,7 @@ def damping_rate(law: int, coefficient: float, lid: float, depth: Any, area: Any
 
 
 def stokes_coefficient(viscosity: ArrayLike, frequency: ArrayLike) -> Array:
-    """Shear over velocity of an oscillating laminar layer, sqrt(nu |s|/2), m/s [theory: long_wave, eq. 10].
-    """
+    """Shear over velocity in an oscillating layer, sqrt(nu |s|/2), m/s [theory: long_wave, eq. 10]."""
     squared = 0.5 * np.asarray(viscosity, dtype=float) * np.abs(np.asarray(frequency, dtype=float))
     return np.asarray(np.sqrt(squared))
 
