@@ -23,10 +23,10 @@ from leblanc.report.parts import LIGHT, picture
 from leblanc.results.base import FilledChamber
 from leblanc.results.motion.self_excited import SelfExcited
 from leblanc.scene.scene import load_scene
+from leblanc.studies.run import words as words
 from leblanc.studies.run.answer import RunResult
 from leblanc.studies.run.notes import OF_MODELS, RunCode
 from leblanc.studies.run.study import run_scene
-from leblanc.studies.run import words as words
 from leblanc.studies.run.words import MODELS
 from tests.oracles.pages import WARNING, Page, about_record, printed, read_page
 from tests.oracles.records import RPM, folded, record_of, response_of, rig

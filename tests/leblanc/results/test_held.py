@@ -14,10 +14,10 @@ from leblanc.cli import main
 from leblanc.report.run import held_motions
 from leblanc.results.motion.held import MOTIONS
 from leblanc.results.motion.self_excited import SelfExcited
-from leblanc.studies.run.answer import RunResult
-from leblanc.studies.run.notes import RunCode
 from leblanc.studies.run import notes as notes
 from leblanc.studies.run import words as words
+from leblanc.studies.run.answer import RunResult
+from leblanc.studies.run.notes import RunCode
 from meshes.errors import InputError
 from tests.mutants import kills
 from tests.oracles.data_files import assert_read_back
