@@ -18,12 +18,7 @@ MOST = 1.0  # relative error that is drawn at most
 
 
 def model_figure(answer: Explanation) -> Figure:
-    """Estimated error over speed, with the liquid model that answers there.
-
-    Parameters
-    ----------
-    answer : the scene in numbers
-    """
+    """Estimated error over speed, with the liquid model that answers there."""
     with style():
         figure = Figure()
         axes: Any = figure.add_axes((0, 0, 1, 1))

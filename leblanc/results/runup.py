@@ -376,16 +376,10 @@ class RunupResult(Loaded, Result):
         return _crest(self.history, self._way(self.history, back))
 
     def curve(self, back: bool = False, dry: bool = False) -> tuple[Array, Array, Array]:
-        """Time, speed and amplitude of the samples on the way up or back, with the largest among them.
+        """Time, speed and amplitude, s, rad/s, m, of the samples on the way up or back, with the largest
+        among them.
 
-        Parameters
-        ----------
-        back : on the way back
-        dry : without liquid; empty where that was not run
-
-        Returns
-        -------
-        s, rad/s and m, each of shape (p,), in order of time; nan between parts of a programme
+        nan between parts of a programme; `dry` is without liquid, empty where that was not run.
         """
         history = self.history_dry if dry else self.history
         if history is None or (back and not self.turns_back):
@@ -414,13 +408,7 @@ class RunupResult(Loaded, Result):
         return time, speed, amplitude
 
     def pieces(self, history: RunupHistory, back: bool) -> list[slice]:
-        """Parts of the way up or of the way back, each from where it turns.
-
-        Parameters
-        ----------
-        history : with liquid or without
-        back : on the way back
-        """
+        """Parts of the way up or of the way back, each from where it turns."""
         return pieces(self._way(history, back))
 
     def _way(self, history: RunupHistory, back: bool) -> Flags:
@@ -622,18 +610,11 @@ def run_faults(history: RunupHistory, chambers: Sequence[FilledChamber]) -> tupl
 
 
 def turn_mean(values: Complex, angle: Array) -> Complex:
-    """Mean over the turns of the rotor around each time: what is fixed in space drops out of it.
+    """Mean over one turn around each time, or as many turns as hold eight samples: what is fixed in space
+    drops out.
 
-    The mean is taken over one turn, or over as many whole turns as hold eight samples.
-
-    Parameters
-    ----------
-    values : in the drum frame, shape (k,)
-    angle : of rotation, rising, rad, shape (k,)
-
-    Returns
-    -------
-    Means, shape (k,); near the ends over the turns that there are
+    Of values in the drum frame over the rising angle of rotation, rad, shape (k,); near the ends over the
+    turns that there are.
     """
     if angle.size < 3:
         return values.copy()

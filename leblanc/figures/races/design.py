@@ -32,12 +32,7 @@ _GRAM = 1e3
 
 
 def design_figure(result: BallDesignResult) -> Figure:
-    """Amplitude and decay over mass of the designs, amplitude over speed of the best.
-
-    Parameters
-    ----------
-    result : of the search
-    """
+    """Amplitude and decay over mass of the designs, amplitude over speed of the best."""
     with style():
         figure = Figure()
         figure.alt = alt(result)
@@ -58,13 +53,7 @@ def design_figure(result: BallDesignResult) -> Figure:
 
 
 def write_design_figure(result: BallDesignResult, directory: Path) -> FigureFiles:
-    """Draw the figure and write it as PNG and SVG.
-
-    Parameters
-    ----------
-    result : of the search
-    directory : where the files go; made if it is missing
-    """
+    """Draw the figure and write it as PNG and SVG."""
     return save(design_figure(result), directory, "design", TITLE)
 
 

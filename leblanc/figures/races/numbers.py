@@ -18,12 +18,7 @@ FRAME = Frame(left=0.72, top=0.46, between=0.14, below=0.42)
 
 
 def numbers_figure(answer: BallExplanation) -> Figure:
-    """Growth over speed, with the speed from which on the rotor is balanced.
-
-    Parameters
-    ----------
-    answer : the explanation
-    """
+    """Growth over speed, with the speed from which on the rotor is balanced."""
     with style():
         figure = Figure()
         figure.alt = alt(answer)

@@ -62,12 +62,7 @@ class Scale:
 
 
 def rounded_down(factor: float) -> float:
-    """The factor with two digits, for printing.
-
-    Parameters
-    ----------
-    factor : above 0
-    """
+    """The factor with two digits, for printing."""
     step = 10.0 ** (math.floor(math.log10(factor)) - 1)
     # A factor that is a round number already must not lose a digit to rounding.
     return math.floor(factor / step * (1.0 + 1e-9)) * step
@@ -76,10 +71,7 @@ def rounded_down(factor: float) -> float:
 def chord(radius: float, centre: complex, angle: Array) -> Array:
     """Distance from the origin, inside a circle, to that circle.
 
-    Parameters
-    ----------
-    radius, centre : of the circle, m
-    angle : direction of the ray, rad, shape (...,)
+    Distance from the origin, inside a circle, to that circle in a direction, rad, m, shape (...,).
     """
     away = centre * np.exp(-1j * angle)
     distance: Array = away.real + np.sqrt(radius**2 - away.imag**2)
@@ -89,9 +81,7 @@ def chord(radius: float, centre: complex, angle: Array) -> Array:
 def half_angle(share: float) -> float:
     """Half the angle of a circular segment of area R^2 (a - sin a cos a), rad; 0 to pi.
 
-    Parameters
-    ----------
-    share : of the segment's area, over R^2
+    Half the angle a, 0 to pi, of a circular segment of area R^2 (a - sin a cos a), from the area over R^2.
     """
     low, high = 0.0, math.pi
     for _ in range(60):
@@ -101,17 +91,10 @@ def half_angle(share: float) -> float:
 
 
 def pool(radius: float, inner_radius: float, area: float, down: float) -> tuple[Remainder, float]:
-    """Liquid that lies at the bottom of a ring whose axis is horizontal, seen along the axis.
+    """Liquid at the bottom of a ring whose axis is horizontal, about the centre, and how far below it the
+    surface is, m.
 
-    Parameters
-    ----------
-    radius, inner_radius : of the walls, m; 0 without an inner one
-    area : of the liquid, m^2
-    down : direction of gravity, rad
-
-    Returns
-    -------
-    The liquid about the centre of the walls, m; how far below the centre its surface is, m
+    `area` is in m^2, `down` the direction of gravity, rad.
     """
     # The same on both sides of the direction of gravity.
     turn = np.exp(1j * (down + np.linspace(0.0, 2.0 * math.pi, 721)[:-1]))
@@ -127,11 +110,8 @@ def pool(radius: float, inner_radius: float, area: float, down: float) -> tuple[
 def film_factor(chambers: Sequence[FilledChamber], depth: Array, deflection: Complex) -> float:
     """One factor for deflections and depths, so that a surface round the axis at rest stays so as drawn.
 
-    Parameters
-    ----------
-    chambers : whose walls are drawn to scale
-    depth : of the layers in each frame, m, nan where the liquid is none, shape (f, l, c)
-    deflection : of each chamber's axis, complex, m, shape (f, l)
+    Depths of frames, levels and chambers, m, shape (f, l, c), nan where there is no liquid; deflections, m,
+    shape (f, l).
     """
     fits = [LARGEST_FACTOR]
     for j, chamber in enumerate(chambers):
@@ -193,17 +173,10 @@ class LiquidShape:
 
 
 def strips(rows: int, columns: int, first: int = 0, last: int | None = None) -> Indices:
-    """Quadrilaterals between neighbouring rows of points, the last row next to the first.
+    """Quadrilaterals between neighbouring rows of points, the last row next to the first; shape (m, 4).
 
-    Parameters
-    ----------
-    rows, columns : of the points, numbered row by row
-    first, last : the columns that are joined, all of them if not given
-
-    Returns
-    -------
-    Numbers of points, shape (m, 4), counter-clockwise seen from outside where rows follow one another
-    counter-clockwise and columns go outwards over the top
+    Counter-clockwise seen from outside where rows follow one another counter-clockwise and columns go
+    outwards over the top.
     """
     end = columns - 1 if last is None else last
     row, column = np.meshgrid(np.arange(rows), np.arange(first, end), indexing="ij")

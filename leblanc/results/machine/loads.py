@@ -63,16 +63,8 @@ class MachineLoads:
         return self.time.size > 0
 
     def over_turn(self, values: Array, least: bool = False) -> Array:
-        """The largest, or the least, of some values over the turn that ends at each time, as figures draw it.
-
-        Parameters
-        ----------
-        values : shape (k,)
-        least : the least of them
-
-        Returns
-        -------
-        shape (k,); over speed the values themselves
+        """The largest, or the least, of values over the turn that ends at each time, shape (k,); over speed
+        they stay.
         """
         if not self.in_time:
             return values
