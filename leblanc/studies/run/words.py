@@ -198,7 +198,7 @@ class Comparison:
 
 
 def comparisons(result: RunResult) -> list[Comparison]:
-    """Largest and last amplitude, critical speed of planar rotors, balance quality, with and without liquid."""
+    """Largest and last amplitude, critical speed (planar), balance quality, with and without liquid."""
     r = result.curve
     wet, dry = r.top, largest(r.amplitude_dry)
     at_wet, at_dry = (NOT_FOUND if i is None else number(r.speed[i] * RPM) for i in (wet, dry))
