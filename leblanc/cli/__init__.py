@@ -173,10 +173,7 @@ def _version(wanted: bool) -> None:
 
 
 def application(wanted: str = "") -> typer.Typer:
-    """All commands: those of this package and those that installed packages announce.
-
-    All commands, those of installed packages too; only the wanted one of this package if it is named.
-    """
+    """All commands, those of installed packages too; only the wanted one of this package if it is named."""
     found = typer.Typer(
         name="leblanc", add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False
     )

@@ -577,10 +577,7 @@ def _draw_walls(axes: Axes, chamber: FilledChamber, centre: complex, depth_facto
 
 
 def write_numbers(axes: Axes, result: RunResult, views: Views, index: int) -> None:
-    """Heading above and numbers below the drawings of one view.
-
-    Heading above and numbers below the drawings of one view, from the first of them to the right.
-    """
+    """Heading above and numbers below the drawings of one view, from the first of them to the right."""
     middle = 0.5 * len(views.drawings)
     place = {"xycoords": "axes fraction", "textcoords": "offset points", "ha": "center"}
     # Above names of the drawings if there are several.

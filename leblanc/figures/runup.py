@@ -223,10 +223,7 @@ def _steady(axes: Axes, result: RunupResult) -> float:
 
 
 def steady_lines(rpm: Array, branches: Any, calm: Flags) -> tuple[Line, Line]:
-    """Amplitudes of the stable and of the unstable branches as two lines with gaps, rpm and mm.
-
-    Amplitudes of the stable and of the unstable branches as two lines with gaps, rpm and mm.
-    """
+    """Amplitudes of the stable and of the unstable branches as two lines with gaps, rpm and mm."""
     bounded = np.where(np.isfinite(branches), branches, complex(math.nan, math.nan))
     chain, size = link(bounded), np.abs(bounded) * MM
     stable, unstable = [], []

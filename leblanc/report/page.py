@@ -121,10 +121,7 @@ def made_on() -> str:
 
 
 def write_page(body: str, what: About, parts: Mapping[str, Any], path: Path) -> None:
-    """Write a report.
-
-    Write a report from the template of its body, which takes the parts.
-    """
+    """Write a report from the template of its body, which takes the parts."""
     from jinja2 import Environment, FunctionLoader, StrictUndefined
 
     page = Environment(

@@ -121,10 +121,7 @@ class Picture:
 
 
 def picture(files: FigureFiles, alt: str = "") -> Picture:
-    """A figure on disk as a page shows it, with its caption as text.
-
-    A figure on disk as a page shows it, with its caption and alternative text (its own if empty).
-    """
+    """A figure on disk as a page shows it, with its caption and alternative text (its own if empty)."""
     lightest = min((files.svg, files.png), key=lambda file: file.stat().st_size)
     chosen = files.svg if files.svg.stat().st_size <= LIGHT else lightest
     content = base64.b64encode(chosen.read_bytes()).decode("ascii")

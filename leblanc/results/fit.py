@@ -212,10 +212,7 @@ def quantile(freedom: int, stated: bool) -> float:
 
 
 def poor_note(rms: float, reason: str) -> Note:
-    """That noise does not explain what is left, and why.
-
-    That noise does not explain what is left (rms over that of what was measured), and why, in a clause.
-    """
+    """That noise does not explain what is left (rms over that of what was measured), and why, in a clause."""
     text = (
         f"The scene does not meet the data: {100.0 * rms:.2g} % of their size are left, and {reason}. "
         "There are no standard errors."
@@ -268,11 +265,7 @@ def lopsided_note(path: str, low: float, high: float) -> Note:
 
 
 def flat_note(paths: Sequence[str], powers: Sequence[float]) -> Note:
-    """That some unknowns are known in a combination only.
-
-    That some unknowns are known in a combination only, and the changes of each that leave the data as they
-    are.
-    """
+    """That some unknowns are known in a combination only, and which changes leave the data as they are."""
     largest = max(abs(power) for power in powers)
     changes = ", ".join(
         f"{path} by {100.0 * power / largest / 10.0:+.2g} %"
@@ -291,8 +284,7 @@ def fit_notes(
     shown: Sequence[bool],
     span: Array,
 ) -> list[Note]:
-    """What the data cannot tell, in words, of p unknowns with their values, standard errors and correlation,
-    shape (p, p).
+    """What the data cannot tell of p unknowns, in words; their correlation has shape (p, p).
 
     `at_bound`: the search ended there; `shown`: another note has said what is not known; `span`: large for an
     unknown of either sign, a length or an angle, nan of others.

@@ -94,10 +94,7 @@ def too_deep(chamber: int, limit: float) -> Note:
 
 
 def parted(chamber: int, count: int, volume: float) -> Note:
-    """Baffles cut the liquid of a chamber into compartments up to some volume.
-
-    Baffles cut the liquid of a chamber into compartments up to some volume, m^3.
-    """
+    """Baffles cut the liquid of a chamber into compartments up to some volume, m^3."""
     text = (
         f"Chamber {chamber + 1}: below {with_unit(volume, VOLUME)} its {count} baffles cut the liquid into "
         "compartments. There the steady answer is that of finite elements for small deflections, with an "

@@ -14,10 +14,7 @@ from leblanc.studies.run.answer import peak
 
 
 def describe_model(model: str, cells: int, dispersion: bool, bore: str = "none") -> str:
-    """Liquid model of a run-up with its resolution.
-
-    Liquid model of a run-up ("long_wave" or "linear") with its resolution and what bores leave behind.
-    """
+    """Liquid model of a run-up ("long_wave" or "linear") with its resolution and what bores leave behind."""
     if model == "linear":
         return f"exact linear theory in time, steps as of {cells} cells"
     shallow = "with dispersion" if dispersion else "without dispersion"

@@ -170,10 +170,7 @@ def fill_loops(axes: Axes, loops: Sequence[Complex], **look: Any) -> None:
 
 
 def part_of(colours: str, first: float, last: float) -> ListedColormap:
-    """A part of a range of colours, without its ends.
-
-    Part of a range of colours, from 0 to 1, without its ends.
-    """
+    """Part of a range of colours, from 0 to 1, without its ends."""
     return ListedColormap(matplotlib.colormaps[colours](np.linspace(first, last, 256)))
 
 
@@ -314,10 +311,7 @@ def _wrapped(text: str, width: float, most: int) -> list[str]:
 
 
 def require_film(path: Path) -> str:
-    """Ending of a film's path.
-
-    Ending of a film's path, .gif or .mp4; InputError for another or an .mp4 without an ffmpeg.
-    """
+    """Ending of a film's path, .gif or .mp4; InputError for another or an .mp4 without an ffmpeg."""
     kind = path.suffix.lower()
     if kind not in (".gif", ".mp4"):
         raise InputError("--animate", str(path), "a file that ends in .gif or .mp4")

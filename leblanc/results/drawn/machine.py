@@ -69,20 +69,14 @@ def rounded_down(factor: float) -> float:
 
 
 def chord(radius: float, centre: complex, angle: Array) -> Array:
-    """Distance from the origin, inside a circle, to that circle.
-
-    Distance from the origin, inside a circle, to that circle in a direction, rad, m, shape (...,).
-    """
+    """Distance from the origin, inside a circle, to that circle in a direction, rad, m, shape (...,)."""
     away = centre * np.exp(-1j * angle)
     distance: Array = away.real + np.sqrt(radius**2 - away.imag**2)
     return distance
 
 
 def half_angle(share: float) -> float:
-    """Half the angle of a circular segment of area R^2 (a - sin a cos a), rad; 0 to pi.
-
-    Half the angle a, 0 to pi, of a circular segment of area R^2 (a - sin a cos a), from the area over R^2.
-    """
+    """Half the angle a, 0 to pi, of a circular segment, from its area over R^2, a - sin a cos a."""
     low, high = 0.0, math.pi
     for _ in range(60):
         half = 0.5 * (low + high)

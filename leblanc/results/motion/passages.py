@@ -72,10 +72,7 @@ def _samples(history: RunupHistory, number: int) -> np.ndarray[tuple[int], np.dt
 
 
 def falling(history: RunupHistory, passages: Sequence[Passage], turning: int) -> Flags:
-    """The speed falls on the way to a sample, shape (k,).
-
-    The speed falls on the way to a sample, shape (k,); `turning` is the last sample before a run-up falls.
-    """
+    """The speed falls on the way to a sample, shape (k,); `turning` is the last before a run-up falls."""
     size = history.time.size
     if not passages or history.stage is None:
         return np.arange(size) > turning

@@ -31,10 +31,7 @@ class BallCode(NoteCode):
 
 
 def capacity(enough: bool, most: float) -> Note:
-    """Whether the balls can take the unbalance away.
-
-    Whether the balls can take the unbalance away; together they hold at most so much, kg m.
-    """
+    """Whether the balls can take the unbalance away; together they hold at most so much, kg m."""
     held = f"All balls on one side make an unbalance of {with_unit(most, UNBALANCE)}"
     text = (
         f"{held}: {'enough' if enough else 'not enough, or not in the right planes,'} to balance the rotor."
@@ -52,10 +49,7 @@ def points() -> Note:
 
 
 def sticks(deflection: float) -> Note:
-    """What resists to rolling leaves a band.
-
-    What resists to rolling leaves a band of deflections, m, below which balls stay.
-    """
+    """What resists to rolling leaves a band of deflections, m, below which balls stay."""
     text = (
         f"Balls that resist to rolling stay where they are while the axis moves by less than "
         f"{with_unit(deflection, LENGTH)}: any deflection up to that may remain. The states are those "
@@ -156,10 +150,7 @@ def free_balls() -> Note:
 
 
 def not_there(share: float, state: str) -> Note:
-    """Where a chart has nothing to judge.
-
-    Where a chart has no state (balanced, heavy or light) to judge: share of its points.
-    """
+    """Where a chart has no state (balanced, heavy or light) to judge: share of its points."""
     where = f"At {number(100.0 * share)} % of the points there is no such state: "
     why = (
         "the balls are too light for the unbalance." if state == "balanced" else "the balls stand elsewhere."

@@ -276,10 +276,7 @@ def not_physical(faults: Sequence[str]) -> Note | None:
 
 
 def balls_run(behind: float, speed: float) -> Note:
-    """Balls that have not come to rest in the drum.
-
-    Balls that have not come to rest in the drum but pass it at a rate, rad/s.
-    """
+    """Balls that have not come to rest in the drum but pass it at a rate, rad/s."""
     text = f"At the end a ball still runs in its race, by {in_rpm(behind)} at {in_rpm(speed)} of the drum."
     return Note(RunupCode.BALLS_RUN, {"behind": behind, "speed": speed}, text)
 

@@ -73,10 +73,7 @@ def growth_not_known(lost: int, points: int) -> Note:
 
 
 def own_volume(volume: float, bands: Bands) -> Note:
-    """Where a whirl grows with the volume of the scene.
-
-    Where a whirl grows with the volume of the scene, m^3.
-    """
+    """Where a whirl grows with the volume of the scene, m^3."""
     with_it = f"With the scene's {with_unit(volume, VOLUME)}"
     text = f"{with_it} no whirl grows by itself at these speeds."
     if bands:

@@ -30,10 +30,7 @@ from solvers.synchronous.response import Response, by_speed
 
 
 def grade_words(quality: float) -> str:
-    """The finest grade of ISO 21940-11 that a balance quality keeps, in words.
-
-    The finest grade of ISO 21940-11 that a balance quality, m/s, keeps, in words.
-    """
+    """The finest grade of ISO 21940-11 that a balance quality, m/s, keeps, in words."""
     grade = grade_of(quality)
     return f"above {grade_name(GRADES[-1])}" if grade is None else grade_name(grade)
 
@@ -60,10 +57,7 @@ def phase(deflection: NDArray[np.complex128]) -> Array:
 
 
 def peak(deflection: NDArray[np.complex128] | Array) -> int | None:
-    """Index of the largest deflection, the first of equals; None if there is no finite one.
-
-    Index of the largest deflection, the first of equals; None if there is no finite one.
-    """
+    """Index of the largest deflection, the first of equals; None if there is no finite one."""
     size = np.abs(deflection)
     known = np.asarray(np.isfinite(size))
     return int(np.argmax(np.where(known, size, -1.0))) if known.any() else None

@@ -82,10 +82,7 @@ def liquid_models(choice: Choice) -> Note | None:
 
 
 def unbalance_leaves(left: float) -> Note:
-    """A steady answer has all of the unbalance, though a part of it leaves with time.
-
-    A steady answer has all of the unbalance, though some leaves with time; `left` is the share in the end.
-    """
+    """A steady answer has all of the unbalance, though some leaves with time; `left` is the last share."""
     text = (
         "A part of the unbalance leaves with time; the steady answer has all of it, and the drum its whole "
         f"mass, as at the start. In the end {percent(left)} of the unbalance is left."
@@ -129,10 +126,7 @@ def not_carried(stands: float, carried: float | None = None) -> Note:
 
 
 def carried_words(stands: float, carried: float) -> str:
-    """From where on the walls carry the liquid round from rest, in a sentence.
-
-    From where on the walls carry the liquid round from rest, in a sentence; as for `not_carried`.
-    """
+    """From where on the walls carry the liquid round from rest, in a sentence; as for `not_carried`."""
     if math.isinf(carried):
         return "From rest nothing carries it round: no friction acts on it."
     if carried <= stands:
@@ -333,11 +327,7 @@ def self_excited(whirl: SelfExcited) -> Note:
 
 
 def thick_wall_layer(speed: float, limit: float, whole: bool) -> Note:
-    """Speeds at which the growth of whirls is out of the range of laminar friction.
-
-    Speeds up to which growth of whirls is out of the range of laminar friction: thickness over depth above a
-    limit.
-    """
+    """Speeds up to which growth of whirls is out of the range of laminar friction, and its limit."""
     where = "here" if whole else f"below {in_rpm(speed)}"
     text = f"Growth and bands {where} are out of range: a laminar wall layer over {limit:g} of the depth."
     return Note(RunCode.THICK_WALL_LAYER, {"speed": speed, "limit": limit}, text)
@@ -376,10 +366,7 @@ def several_answers(first: float, last: float, stable: bool) -> Note:
 
 
 def unbounded(wet: float | None, dry: float | None) -> Note:
-    """The amplitude has no bound at a speed within the range.
-
-    The amplitude has no bound at a speed with or without liquid, rad/s, within the range.
-    """
+    """The amplitude has no bound at a speed with or without liquid, rad/s, within the range."""
     found = [(name, speed) for name, speed in (("with", wet), ("without", dry)) if speed is not None]
     where = " and ".join(f"{name} liquid at {speed * RPM:.4g} rpm" for name, speed in found)
     text = f"Nothing damps the resonance {where}: the amplitude has no bound there."
