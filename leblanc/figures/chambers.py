@@ -64,8 +64,7 @@ class Exaggeration:
 
 
 def liquid_outline(chamber: FilledChamber, centre: complex, depth: float) -> tuple[Array, Array, Array]:
-    """Angles of rays about the rotation axis, rad, and inner and outer end of the liquid on each, m; shape
-    (361,).
+    """Rays about the rotation axis, rad, and inner and outer end of the liquid on each, m; shape (361,).
 
     The surface is the circle about the rotation axis that leaves the right area; `depth` is the mean depth as
     drawn, m, `centre` the geometric centre, which must leave that axis inside the inner wall.
@@ -261,8 +260,7 @@ def _is_upright(chamber: FilledChamber, square: float, ramp: float) -> bool:
 
 
 def _square(taken: Callable[[Array], Array], area: float, farthest: float, ramp: float) -> float:
-    """Square of the surface's radius on the floor, m^2, that leaves an area, m^2, outside it in the mean over
-    the height.
+    """Square of the surface's radius on the floor, m^2, that leaves an area outside it in the mean.
 
     `taken` is the area inside some radii (the whole inside an infinite one), `ramp` the growth of the square
     from floor to lid, m^2.

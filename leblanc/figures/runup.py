@@ -194,8 +194,7 @@ def _shade(axes: Axes, result: RunupResult, limits: tuple[float, float]) -> None
 
 
 def _steady(axes: Axes, result: RunupResult) -> float:
-    """Draw branches of the steady response, thin, without liquid as well; the largest value that the axes
-    must hold, mm.
+    """Draw branches of the steady response, thin, also without liquid; the largest value to hold, mm.
 
     A peak far above the run's is told in words instead.
     """

@@ -113,9 +113,7 @@ def laminar() -> Note:
 
 
 def no_liquid(by_mass: bool, forbidden: tuple[str, ...]) -> Note:
-    """The answer is no liquid at all: none is the least for a limit, or constraints forbid volumes that
-    vibrate less.
-    """
+    """The answer is no liquid: it is the least for a limit, or constraints forbid what vibrates less."""
     if by_mass:
         text = "The limit is met without liquid."
     elif forbidden:

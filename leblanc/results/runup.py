@@ -376,8 +376,7 @@ class RunupResult(Loaded, Result):
         return _crest(self.history, self._way(self.history, back))
 
     def curve(self, back: bool = False, dry: bool = False) -> tuple[Array, Array, Array]:
-        """Time, speed and amplitude, s, rad/s, m, of the samples on the way up or back, with the largest
-        among them.
+        """Time, speed and amplitude, s, rad/s, m, on the way up or back, the largest among them.
 
         nan between parts of a programme; `dry` is without liquid, empty where that was not run.
         """
@@ -610,8 +609,7 @@ def run_faults(history: RunupHistory, chambers: Sequence[FilledChamber]) -> tupl
 
 
 def turn_mean(values: Complex, angle: Array) -> Complex:
-    """Mean over one turn around each time, or as many turns as hold eight samples: what is fixed in space
-    drops out.
+    """Mean over the turn around each time, or turns of eight samples: what rests in space drops out.
 
     Of values in the drum frame over the rising angle of rotation, rad, shape (k,); near the ends over the
     turns that there are.

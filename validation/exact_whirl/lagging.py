@@ -44,8 +44,7 @@ class LaggingWave:
 def lagging_wave(
     layer: float, slip: float, whirl: float, friction: float, near: Array | None = None
 ) -> LaggingWave:
-    """Wave of a whirl w_0/R in liquid with friction k/omega_w, from surface `near`, (m,), or the layer at
-    rest.
+    """Wave of a whirl w_0/R in liquid with friction k/omega_w, from a surface, (m,), or from rest.
 
     Slip p = 1 - Omega/omega_w.
 

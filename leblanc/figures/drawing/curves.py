@@ -74,8 +74,7 @@ def lag_degrees(angle: Array, size: Array) -> Array:
 
 
 def thin(curves: Array, columns: int) -> Index:
-    """Indices of the points that keep the look of all curves, shape (n, k): ends, peaks and troughs of each
-    column.
+    """Indices of points that keep the look of curves, (n, k): ends, peaks and troughs of each column.
 
     All of them if there are few; nan is allowed.
     """
@@ -364,9 +363,7 @@ def _fold_tips(curves: Curves, row: int, beyond: int) -> list[tuple[Array, Array
 
 
 def other_branches(curves: Curves) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
-    """Amplitudes of the stable branches, and of the unstable ones with the tips of the folds: rpm and mm,
-    with gaps.
-    """
+    """Amplitudes of stable branches, and of unstable ones with the folds' tips: rpm and mm, with gaps."""
     stable, unstable = [], []
     for number in range(int(curves.chain.max(initial=-1)) + 1):
         point, column = np.nonzero(curves.chain == number)

@@ -64,9 +64,7 @@ class Caption:
 
 
 class Figure(matplotlib.figure.Figure):
-    """Figure of matplotlib with its caption, its alternative text and `drawn`, the size above the caption,
-    inches.
-    """
+    """Figure of matplotlib with its caption, alternative text and `drawn`, inches above the caption."""
 
     caption: Caption = Caption("")
     alt: str = ""

@@ -109,8 +109,7 @@ def _label(roots: int) -> str:
 
 
 def regions(result: BallChart) -> tuple[Array, Array, Indices]:
-    """Speed, rad/s, value, SI, and number of growing roots, shape (q, p), between points and up to the
-    curves.
+    """Speed, rad/s, value, SI, and number of growing roots, shape (q, p), between the points.
 
     Each place has the number of the nearest point of the grid that no curve parts from it; -1 for no such
     state.

@@ -85,8 +85,7 @@ def half_angle(share: float) -> float:
 
 
 def pool(radius: float, inner_radius: float, area: float, down: float) -> tuple[Remainder, float]:
-    """Liquid at the bottom of a ring whose axis is horizontal, about the centre, and how far below it the
-    surface is, m.
+    """Liquid at the bottom of a ring whose axis lies, and how far below the centre its surface is, m.
 
     `area` is in m^2, `down` the direction of gravity, rad.
     """

@@ -149,8 +149,7 @@ class Comparison(Result):
         return self.results[self.reference].amplitude_dry
 
     def difference(self, model: str) -> Array:
-        """Amplitude of a model less that of the reference, over the reference's largest amplitude, shape
-        (n,).
+        """Amplitude of a model less that of the reference, over the reference's largest, shape (n,).
 
         nan where one of the two has no finite amplitude or has not converged; zeros where no machine moves.
         """

@@ -129,8 +129,7 @@ def stood(step: int, time: float, reached: float) -> Note:
 
 
 def motor_limited(step: int, time: float, low: float, high: float, wanted: float | None) -> Note:
-    """A step of a programme that asked for more than the motor gives, for a time, s, between two speeds,
-    rad/s.
+    """A step of a programme that asked for more than the motor gives; s, between two speeds, rad/s.
 
     `wanted` is the speed that was not reached, None where it was.
     """

@@ -21,9 +21,7 @@ _ROUND = 121  # instants of an orbit
 
 
 def magnetic_view(scene: Scene, speed: float | None = None, factor: float | None = None) -> MagneticView:
-    """A rotor in magnetic bearings with its first controller: the trial in time, or an orbit by the
-    unbalances alone.
-    """
+    """A rotor with its first controller: the trial in time, or an orbit by the unbalances alone."""
     rotor = rotor_of(scene)
     if factor is not None and not (math.isfinite(factor) and factor > 0.0):
         raise InputError("--factor", factor, "a finite number above 0")

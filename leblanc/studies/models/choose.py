@@ -355,8 +355,7 @@ def captured_speed(scene: Scene) -> float | None:
 
 
 def balance_from(scene: Scene, fill: Fill) -> float | None:
-    """Speed above which gravity cannot hold liquid at the bottom against the walls, rad/s
-    [theory: pool, eq. 8].
+    """Speed above which gravity cannot hold liquid at the bottom, rad/s [theory: pool, eq. 8].
 
     inf where nothing drags on it; None where gravity does not act across the axis, no pool lies on a circular
     wall, or closed compartments take it along.

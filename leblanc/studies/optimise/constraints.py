@@ -24,9 +24,7 @@ from solvers.whirl.growth import growth_map
 
 
 class Constraint:
-    """A value of volumes (m, c) that must not be above its limit; `scale` is what an excess is measured by,
-    above 0.
-    """
+    """Value of volumes (m, c) that must not exceed a limit; `scale`, above 0, measures the excess."""
 
     def __init__(
         self,

@@ -37,8 +37,7 @@ _REFUSED = 10.0  # objective of a layout whose springs give way, above those of 
 
 
 class Variable(NamedTuple):
-    """One number that is searched: by how much mounts move along `ways`, m, or lean to them, rad, shape (n,
-    3).
+    """One searched number: how far mounts move along `ways`, m, or lean to them, rad, shape (n, 3).
 
     Mounts are counted together, springs first; `most` is the largest change either way.
     """

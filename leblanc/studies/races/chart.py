@@ -71,8 +71,7 @@ def chart_scene(
     state: str = STATES[0],
     progress: Callable[[int, int], None] | None = None,
 ) -> BallChart:
-    """Stability of a state of the balls over the scene's speeds and another of its numbers, by default the
-    drag.
+    """Stability of a state of the balls over speed and another number of the scene, or the drag.
 
     Paths in `over` keep their ratios; values go from a tenth to ten times what the scene has (of the drag a
     hundredth to a hundred times) unless given, by their logarithm where they span a decade. State heavy or

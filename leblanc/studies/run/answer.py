@@ -48,9 +48,7 @@ STATES = ("dry_patch", "stable", "model", "in_range", "converged")  # over speed
 
 
 def phase(deflection: NDArray[np.complex128]) -> Array:
-    """Angle from the unbalance to the deflection, rad in (-pi, pi], negative where it lags, 0 where there is
-    none.
-    """
+    """Angle from the unbalance to the deflection, rad in (-pi, pi], negative for a lag; 0 for none."""
     angle = np.angle(deflection)
     angle = np.where(angle <= -math.pi, math.pi, angle)
     return np.where(deflection == 0.0, 0.0, angle)

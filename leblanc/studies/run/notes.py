@@ -374,9 +374,7 @@ def unbounded(wet: float | None, dry: float | None) -> Note:
 
 
 def wall(chamber: int, speed: float, volume: float, enough: float, deflection: float) -> Note:
-    """How much liquid just covers the wall of a chamber at a speed, rad/s, and a deflection of the axis
-    there, m.
-    """
+    """How much liquid just covers a chamber's wall at a speed, rad/s, and the axis' deflection, m."""
     has = "wet all round" if volume > enough else "dry in part"
     text = (
         f"Chamber {chamber + 1} at {in_rpm(speed)}: wall {has} with {with_unit(volume, VOLUME)}; "

@@ -110,8 +110,7 @@ def _grown_whirl(
 
 
 def motion_response(machine: Prepared, choice: Choice) -> tuple[Response, Motion, tuple[float, float]]:
-    """Response of a rotor that is not planar, its motion, and the critical speeds that the unbalance moves
-    most, rad/s.
+    """Response of a rotor that is not planar, its motion, and the excited critical speeds, rad/s.
 
     The last two are those without and with liquid.
     """

@@ -205,9 +205,7 @@ def runup_view(
 
 
 def strobe(time: Array, speed: Array) -> tuple[Array, float]:
-    """Turn of the drum in each frame of a film, rad, slow enough for the eye, and how many times slower than
-    in truth.
-    """
+    """Turn of the drum in each frame of a film, rad, and how many times slower than in truth it is."""
     steps = 0.5 * (speed[1:] + speed[:-1]) * np.diff(time)
     slower = max(1.0, float(steps.max(initial=0.0)) / TURN)
     # Rounded to two digits for print, upwards.

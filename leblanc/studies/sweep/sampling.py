@@ -15,9 +15,7 @@ _SOBOL_CELL = 2.0**-30  # points of the sequence are multiples of it
 
 
 def sample_rows(sweep: Sweep) -> Rows:
-    """What gives samples by the first number and the one behind the last: SI values, or the number of a
-    choice.
-    """
+    """What makes samples from one number up to another: SI values, or the number of a choice."""
     if sweep.method == "grid":
         return lambda start, stop: grid_rows(sweep, start, stop)
     unit = _DESIGNS[sweep.method](sweep)

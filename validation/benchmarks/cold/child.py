@@ -44,8 +44,7 @@ def library(file: str) -> str | None:
 
 
 def place(frame: FrameType | None, command: str) -> tuple[str, str, str]:
-    """Call of the command function under way, "import", "physics" or "work", and library of the innermost
-    frame.
+    """Call under way, "import", "physics" or "work", and library of the innermost frame.
 
     The command's name is that of its module and of its function.
     """
