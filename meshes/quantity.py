@@ -19,7 +19,9 @@ class Q:
     over: tuple[str, ...] = ()  #: names of its dimensions; a quantity over itself alone is a coordinate
     axes: tuple[str, str] | None = None  #: of a complex number: what lies along its two axes
     part: bool = False  #: a record, whose own quantities are the answer's as well
-    rows: str = ""  #: records along this dimension, their quantities named after it: "check_speed"
+    rows: str = (
+        ""  #: records along this dimension; quantities without a `variable` are named after it: "check_speed"
+    )
     variable: str = ""  #: its name in the data file, where that is another
     error: str = ""  #: the quantity that is its error
     by: str = ""  #: its equation, as in "rotor, eq. 28"

@@ -118,8 +118,10 @@ def _with_parts(record: Any) -> Iterator[tuple[str, Q, Any]]:
             yield from _with_parts(value)
         elif q.rows:
             for inner, each in quantities(type(value[0])).items() if value else ():
-                column = np.array([getattr(row, inner) for row in value])
-                yield f"{q.rows}_{inner}", replace(each, over=(q.rows, *each.over), variable=""), column
+                if each.data:
+                    column = np.array([getattr(row, inner) for row in value])
+                    over = (q.rows, *each.over)
+                    yield each.variable or f"{q.rows}_{inner}", replace(each, over=over, variable=""), column
         else:
             yield name, q, value
 
