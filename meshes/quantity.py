@@ -29,5 +29,5 @@ class Q:
     when: str = ""  #: it is left out where this attribute is None
     part: bool = False  #: a record, whose own quantities are the answer's as well
     prefix: str = ""  #: a record, nested in the JSON, its variables named "prefix_speed"
-    rows: str = ""  #: records along this dimension, their variables named after it: "check_speed"
+    rows: str = ""  #: records along this dimension; those without a `variable` named after it: "check_speed"
     only: tuple[str, ...] = ()  #: of such a record these quantities alone

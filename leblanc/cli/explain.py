@@ -29,17 +29,6 @@ def explain(
     if (address := answerer("explain", machine.rotor.kind)) is not None:
         finish(called(address)(machine), str(scene), json)
         return
-    if machine.rotor.kind == "magnetic":
-        from leblanc.studies.magnetic.explain import explain_magnetic
-        from leblanc.text.magnetic import explanation_rows
-
-        told = explain_magnetic(machine)
-        if json:
-            print_json(told.to_json())
-        else:
-            print(told.name)
-            print_table(explanation_rows(told), indent=2)
-        return
     if machine.balls:
         balls = explain_balls(machine)
         if json:

@@ -51,9 +51,6 @@ def run(
             answer = called(address)(machine)
         finish(answer, str(scene), json, folder, machine, command_line("run", scene))
         return
-    if kind in _OTHERS:
-        _OTHERS[kind](machine, scene, folder, json)
-        return
     if machine.balls:
         _run_balls(machine, scene, folder, json)
         return
@@ -157,41 +154,3 @@ def _run_balls(machine: Scene, scene: Path, folder: Path, json: bool) -> None:
 
         raise NotConverged([f"{scene}: no state of the balls was found at some speeds; they are empty"])
     say(f"{result.name}: {result.speed.size} speeds done")
-
-
-def _run_magnetic(machine: Scene, scene: Path, folder: Path, json: bool) -> None:
-    """Poles, margins, deflections and a trial in time of a rotor in magnetic bearings."""
-    with working("control") as update:
-        from leblanc.studies.magnetic.run import run_magnetic
-
-        result = run_magnetic(machine, lambda what: update(what=what))
-
-    from leblanc.core.netcdf import write_netcdf
-    from leblanc.figures.magnetic.control import write_magnetic_figure
-    from leblanc.report.page import about, command_line
-    from leblanc.report.run import write_magnetic_report
-    from leblanc.text.magnetic import heads, limits, lines, rows
-
-    write_netcdf(result.named_arrays(), folder / "response.nc")
-    figure = write_magnetic_figure(result, folder)
-    what = about(
-        machine, command_line("run", scene), "response.nc", unused=("model", "runup", "programme", "optimise")
-    )
-    write_magnetic_report(result, what, figure, folder / "summary.html")
-    if json:
-        print_json(result.to_json())
-    else:
-        print("\n".join(lines(result)))
-        print_table(rows(result), heads(result), right=True)
-        print("\nLimits of the answer")
-        print_table([(limit.label, limit.where) for limit in limits(result)], indent=2)
-        print(f"Read {folder / 'summary.html'}; the data are in {folder / 'response.nc'}")
-    if not result.converged:
-        from leblanc.core.answer import NotConverged
-
-        raise NotConverged([f"{result.name}: the trial in time did not come to its end"])
-    say(f"{result.name}: {result.speed.size} speeds done")
-
-
-# Kinds with an answer of their own.
-_OTHERS = {"magnetic": _run_magnetic}

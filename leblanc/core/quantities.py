@@ -178,9 +178,10 @@ def _with_parts(record: Any, only: Collection[str] = ()) -> Iterator[tuple[str, 
                 yield f"{q.prefix}_{name}", replace(inner, over=over, text=text), each
         elif q.rows:
             for name, each in _declared(type(value[0])).items() if value else ():
-                column = np.array([getattr(row, each.attribute) for row in value])
                 if each.q.data:
-                    yield f"{q.rows}_{name}", replace(each.q, over=(q.rows, *each.q.over)), column
+                    column = np.array([getattr(row, each.attribute) for row in value])
+                    over = (q.rows, *each.q.over)
+                    yield each.q.variable or f"{q.rows}_{name}", replace(each.q, over=over), column
         else:
             yield q.variable or key, q, value
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from leblanc.core.notes import one_line
 from leblanc.core.units import MM, number
-from leblanc.view.film import Film
+from leblanc.view.film import ROUND, Film
 from leblanc.view.machine import cylinder, ground, spring
 from leblanc.view.parts import NO_CELLS, Label, Picture, Piece, bar_length, line
 from leblanc.wings.spindle.geometry import DrawnBeam, DrawnJoint, SpindleView
@@ -66,7 +66,7 @@ def spindle_picture(view: SpindleView, phase: float = 0.0) -> Picture:
     )
 
 
-def spindle_film(view: SpindleView, frames: int) -> Film:
+def spindle_film(view: SpindleView, frames: int = ROUND) -> Film:
     """A period of a natural motion in so many frames."""
     return Film(frames, lambda k: spindle_picture(view, 2.0 * math.pi * k / frames))
 

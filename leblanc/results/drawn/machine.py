@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -342,6 +342,9 @@ class RunupView:
 @dataclass(frozen=True)
 class ModeView:
     """One oscillation of the liquid in a spinning chamber, m(t) = Re(mode e^{-i sigma t})."""
+
+    picture: ClassVar = "leblanc.view.film:mode_picture"
+    film: ClassVar = "leblanc.view.film:mode_film"
 
     name: str  #: of the scene
     lying: bool  #: the axis is horizontal

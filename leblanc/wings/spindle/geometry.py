@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from itertools import accumulate
+from typing import ClassVar
 
 import numpy as np
 
@@ -79,6 +80,9 @@ class DrawnStation:
 @dataclass(frozen=True)
 class SpindleView:
     """A spindle unit in one of its natural motions."""
+
+    picture: ClassVar = "leblanc.view.spindle:spindle_picture"
+    film: ClassVar = "leblanc.view.spindle:spindle_film"
 
     name: str  #: of the scene
     assumed: bool  #: some of its values are

@@ -7,12 +7,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from itertools import pairwise
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from meshes.arrays import Array
 from meshes.errors import InputError, require_not_negative, require_positive
+from meshes.quantity import Q
 from solvers.rotor.magnetic.control import Controller
 from solvers.rotor.magnetic.machine import MagneticRotor
 
@@ -92,14 +94,16 @@ class Load:
 class Motion:
     """Motion in time; n times."""
 
-    time: Array  #: s, shape (n,)
-    speed: Array  #: of the rotor, rad/s, shape (n,)
+    time: Annotated[Array, Q("s", "time", over=("time",))]
+    speed: Annotated[Array, Q("rad s-1", "spin speed", over=("time",))]
     place: Array  #: coordinates and their rates, m, rad and per second, shape (n, 4)
     rate: Array
     memory: Array  #: state of the controller, shape (n, k)
-    displacement: Array  #: along first x, first y, second x, second y of the bearings, m, shape (n, 4)
-    current: Array  #: control currents that flow, A, shape (n, 4)
-    ending: Ending  #: how it ended
+    #: along first x, first y, second x, second y of the bearings, shape (n, 4)
+    displacement: Annotated[Array, Q("m", "displacement in the bearings", over=("time", "axis"))]
+    #: that flow, shape (n, 4)
+    current: Annotated[Array, Q("A", "control currents", over=("time", "axis"))]
+    ending: Annotated[Ending, Q(text="how it ended")]
     evaluations: int  #: of the equations of motion
 
     @property
