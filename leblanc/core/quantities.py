@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import builtins
+import cmath
 import math
 import sys
 from collections.abc import Collection, Iterator, Mapping
@@ -109,7 +110,7 @@ def plain(value: Any) -> Any:
     if isinstance(value, float):
         return value if math.isfinite(value) else None
     if isinstance(value, complex):
-        return [plain(value.real), plain(value.imag)]
+        return [value.real, value.imag] if cmath.isfinite(value) else [None, None]
     if isinstance(value, Mapping):
         return {str(key): plain(each) for key, each in value.items()}
     if isinstance(value, list | tuple):

@@ -105,7 +105,9 @@ class Controlled:
     ]
     current: Annotated[Array, Q("A", "control current", "of the unbalances", over=_OVER, variable="current")]
     loads: Annotated[tuple[LoadAnswer, ...], Q(text="what each load does", data=False)]
-    trial: Annotated[Followed | None, Q(text="in time; none where the scene has none", data=False)]
+    trial: Annotated[
+        Followed | None, Q(text="in time; none where the scene has none", data=False, when="trial")
+    ]
 
     @property
     def stable(
