@@ -36,12 +36,12 @@ if TYPE_CHECKING:
     from leblanc.results.races.design import BallDesignResult
     from leblanc.results.races.numbers import BallExplanation
     from leblanc.results.races.states import BallsResult
-    from leblanc.results.response import RunResult
     from leblanc.results.runup import RunupResult
-    from leblanc.results.spindles.unit import SpindleResult
     from leblanc.results.sweep import SweepResult
     from leblanc.results.whirl_map import WhirlMap
+    from leblanc.studies.run.answer import RunResult
     from leblanc.wings.exciter.answer import ExciterAnswer, ExciterExplanation
+    from leblanc.wings.spindle.answer import SpindleAnswer
 
 SceneOrPath = Scene | str | PathLike[str]
 
@@ -50,7 +50,7 @@ _OPTION = re.compile(r"--([a-z][a-z-]*)")
 
 def run(
     scene: SceneOrPath, *, workers: int = 1, solver: str | None = None, cycles: bool = False
-) -> RunResult | ExciterAnswer | MagneticResult | SpindleResult | BallsResult:
+) -> RunResult | ExciterAnswer | MagneticResult | SpindleAnswer | BallsResult:
     """Response and the liquid's centre of mass at each speed of a scene.
 
     Parameters
@@ -85,22 +85,18 @@ def run(
         raise InputError("workers", workers, "1 or more")
     machine = _scene(scene)
     if (address := answerer("run", machine.rotor.kind)) is not None:
-        answer: ExciterAnswer = called(address)(machine)
+        answer: ExciterAnswer | SpindleAnswer = called(address)(machine)
         return answer
     if machine.rotor.kind == "magnetic":
         from leblanc.studies.magnetic.run import run_magnetic
 
         return run_magnetic(machine)
-    if machine.rotor.kind == "spindle":
-        from leblanc.studies.spindles.unit import run_spindle
-
-        return run_spindle(machine)
     if machine.balls:
         from leblanc.studies.races.balls import run_balls
 
         return run_balls(machine)
     from leblanc.studies.held.holding import Holding
-    from leblanc.studies.run import run_scene
+    from leblanc.studies.run.study import run_scene
     from solvers.held.state import COUPLED
 
     return run_scene(machine, holding=Holding(workers, solver=solver or COUPLED), cycles=cycles)

@@ -8,6 +8,7 @@ WINGS: dict[str, dict[str, str]] = {
         "run": "leblanc.wings.exciter.study:run_exciter",
         "explain": "leblanc.wings.exciter.study:explain_exciter",
     },
+    "spindle": {"run": "leblanc.wings.spindle.study:run_spindle"},
 }
 
 

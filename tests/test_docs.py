@@ -643,7 +643,7 @@ class TestExamples:
 
     def test_the_smallest_scene_runs(self) -> None:
         from leblanc.scene.scene import load_scene
-        from leblanc.studies.run import run_scene
+        from leblanc.studies.run.study import run_scene
 
         record = run_scene(load_scene(DOCS / "examples" / "smallest_scene.toml"))
         answer = record.response

@@ -69,6 +69,7 @@ def _print_balls(answer: BallExplanation) -> None:
 def _print(answer: Explanation) -> None:
     """The explanation as text; of the liquid only where there is any."""
     from leblanc.core.notes import percent
+    from leblanc.studies.run.words import described
     from leblanc.text.closed_forms import closed_form_rows
     from leblanc.text.explanation import (
         ESTIMATES,
@@ -79,7 +80,6 @@ def _print(answer: Explanation) -> None:
         span_heading,
         span_rows,
     )
-    from leblanc.text.run import described
 
     print(answer.name)
     print_table(machine_rows(answer), indent=2)

@@ -60,7 +60,7 @@ def run(
 
     with working("preparing") as update:
         from leblanc.studies.held.holding import Holding
-        from leblanc.studies.run import run_scene
+        from leblanc.studies.run.study import run_scene
         from solvers.held.state import COUPLED
 
         holding = Holding(processes(workers), folder, fresh, solver or COUPLED)
@@ -68,13 +68,13 @@ def run(
 
     from leblanc.core.netcdf import write_netcdf
     from leblanc.core.units import amplitude_sentence
-    from leblanc.figures.response import write_figures
     from leblanc.report.run import write_run_report
     from leblanc.results.notes.baffles import BaffleCode
-    from leblanc.results.notes.response import RunCode
+    from leblanc.studies.run.figure import write_figures
+    from leblanc.studies.run.notes import RunCode
+    from leblanc.studies.run.words import amplitude_place, comparison_table, limit_rows, unanswered
     from leblanc.text.closed_forms import closed_form_rows
     from leblanc.text.machine import load_table
-    from leblanc.text.run import amplitude_place, comparison_table, limit_rows, unanswered
 
     write_netcdf(result.named_arrays(), folder / "response.nc")
     figures = write_figures(result, folder)
@@ -193,35 +193,5 @@ def _run_magnetic(machine: Scene, scene: Path, folder: Path, json: bool) -> None
     say(f"{result.name}: {result.speed.size} speeds done")
 
 
-def _run_spindle(machine: Scene, scene: Path, folder: Path, json: bool) -> None:
-    """Compliances and natural frequencies of a spindle unit."""
-    from leblanc.core.netcdf import write_netcdf
-    from leblanc.figures.spindles.unit import write_figures
-    from leblanc.report.page import about, command_line
-    from leblanc.report.spindle import write_spindle_report
-    from leblanc.studies.spindles.unit import run_spindle
-    from leblanc.text.spindles.unit import HEAD, answer, cage_rows, compliance_rows, limits
-
-    with working("compliances"):
-        result = run_spindle(machine)
-    write_netcdf(result.named_arrays(), folder / "response.nc")
-    figures = write_figures(result, folder)
-    what = about(machine, command_line("run", scene), "response.nc", unused=("model", "runup", "optimise"))
-    write_spindle_report(result, what, figures, folder / "summary.html")
-    if json:
-        print_json(result.to_json())
-    else:
-        print(answer(result))
-        print()
-        print_table(compliance_rows(result), HEAD, right=True)
-        if cages := cage_rows(result):
-            print()
-            print_table(cages)
-        print("\nLimits of the answer")
-        print_table([(limit.label, limit.where) for limit in limits(result)], indent=2)
-        print(f"Read {folder / 'summary.html'}; the data are in {folder / 'response.nc'}")
-    say(f"{result.name}: {result.frequency.size} frequencies, {len(result.modes)} natural ones done")
-
-
 # Kinds with an answer of their own.
-_OTHERS = {"magnetic": _run_magnetic, "spindle": _run_spindle}
+_OTHERS = {"magnetic": _run_magnetic}

@@ -17,10 +17,10 @@ from leblanc.core.terminal import print_json, say
 if TYPE_CHECKING:
     from leblanc.results.drawn.machine import ModeView
     from leblanc.results.drawn.magnetic import MagneticView
-    from leblanc.results.drawn.spindle import SpindleView
     from leblanc.scene.scene import Scene
     from leblanc.view.film import Film
     from leblanc.view.parts import Picture
+    from leblanc.wings.spindle.geometry import SpindleView
 
     Drawn = ModeView | SpindleView | MagneticView  # what has a film of its own
 
@@ -78,8 +78,8 @@ def view(
         screenshot = _target(machine, scene, screenshot, animate, out)
     wave: Drawn | None
     if machine.rotor.kind == "spindle":
-        from leblanc.studies.spindles.drawn import spindle_view
         from leblanc.view.spindle import spindle_picture
+        from leblanc.wings.spindle.geometry import spindle_view
 
         unit = spindle_view(machine, mode, spin, factor)
         wave, picture, numbers = unit, spindle_picture(unit), unit.to_json()

@@ -27,8 +27,8 @@ from leblanc.figures.drawing.page import (
 from leblanc.results.base import FilledChamber
 from leblanc.results.drawn.machine import chord, rounded_down
 from leblanc.results.motion.held import HELD_MODELS
-from leblanc.results.response import RunResult, peak, phase
-from leblanc.text.run import alts, amplitude_place
+from leblanc.studies.run.answer import RunResult, peak, phase
+from leblanc.studies.run.words import alts, amplitude_place
 from meshes.arrays import Array, Complex
 from meshes.baffles import Baffles
 from meshes.clip import Remainder, area_within, outside_circle, wall_loops

@@ -23,8 +23,8 @@ from leblanc.figures.drawing.page import (
     save,
     style,
 )
-from leblanc.results.notes.response import plane_label
 from leblanc.results.optimum import ConditionTable, OptimumResult
+from leblanc.studies.run.notes import plane_label
 from leblanc.text.optimum import amplitude_plane, load_words, worst_condition
 from meshes.arrays import Array, Flags
 

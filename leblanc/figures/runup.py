@@ -26,10 +26,10 @@ from leblanc.figures.drawing.page import (
     style,
 )
 from leblanc.figures.machine import machine_figure
-from leblanc.figures.response import DRY, SHADE, UNSTABLE, WET
-from leblanc.results.notes.response import plane_label
 from leblanc.results.races.balls import in_race
 from leblanc.results.runup import RunupResult
+from leblanc.studies.run.figure import DRY, SHADE, UNSTABLE, WET
+from leblanc.studies.run.notes import plane_label
 from leblanc.text.runup import describe_model, largest, largest_dry
 from meshes.arrays import Array, Flags
 

@@ -19,7 +19,7 @@ from leblanc.report.parts import Inputs, Table, scene_inputs, table
 from leblanc.results.choice import ModelSpan
 from leblanc.scene.scene import Scene
 from leblanc.scene.tasks import Optimisation
-from leblanc.text.run import described, error_words, speeds_words
+from leblanc.studies.run.words import described, error_words, speeds_words
 
 # What the numbers, the files and the figures come from.
 PACKAGES = (

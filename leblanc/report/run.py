@@ -14,17 +14,11 @@ from leblanc.core.units import LENGTH, NOT_FOUND, RPM, VOLUME, in_peak, number, 
 from leblanc.report.page import About, models, notes, why, write_page
 from leblanc.report.parts import Cell, Table, doubt, load_part, picture, table
 from leblanc.results.magnetic.control import MagneticResult
-from leblanc.results.notes.response import OF_MODELS, RunCode
 from leblanc.results.races.states import STATE_NAMES, BallsResult
-from leblanc.results.response import RunResult
 from leblanc.results.whirl_map import WhirlMap
-from leblanc.text import magnetic
-from leblanc.text.closed_forms import HEAD as VECTOR
-from leblanc.text.closed_forms import closed_form_rows, vector_rows
-from leblanc.text.races.balls import answer as balls_answer
-from leblanc.text.races.balls import facts as balls_facts
-from leblanc.text.races.balls import limits as balls_limits
-from leblanc.text.run import (
+from leblanc.studies.run.answer import RunResult
+from leblanc.studies.run.notes import OF_MODELS, RunCode
+from leblanc.studies.run.words import (
     WHIRL,
     Limit,
     answer,
@@ -35,6 +29,12 @@ from leblanc.text.run import (
     machine,
     remarks,
 )
+from leblanc.text import magnetic
+from leblanc.text.closed_forms import HEAD as VECTOR
+from leblanc.text.closed_forms import closed_form_rows, vector_rows
+from leblanc.text.races.balls import answer as balls_answer
+from leblanc.text.races.balls import facts as balls_facts
+from leblanc.text.races.balls import limits as balls_limits
 from leblanc.text.whirl_map import answer as whirl_map_answer
 from leblanc.text.whirl_map import band_words
 from leblanc.text.whirl_map import facts as whirl_map_facts

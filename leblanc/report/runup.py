@@ -27,10 +27,10 @@ from leblanc.core.units import (
 )
 from leblanc.report.page import About, models, notes, write_page
 from leblanc.report.parts import Cell, Table, doubt, load_part, picture, table
-from leblanc.results.notes.response import CLOSURE
 from leblanc.results.notes.runup import ERROR, IN_TABLES
-from leblanc.results.response import peak
 from leblanc.results.runup import RunupResult
+from leblanc.studies.run.answer import peak
+from leblanc.studies.run.notes import CLOSURE
 from leblanc.text.runup import answer, ball_rows, describe_model, largest_dry, rounding
 from leblanc.text.runup import moments as main_moments
 

@@ -20,9 +20,9 @@ from leblanc.results.base import FilledChamber
 from leblanc.results.machine.keys import Loaded
 from leblanc.results.machine.loads import MachineLoads
 from leblanc.results.motion.passages import Passage, falling, pieces
-from leblanc.results.notes.response import plane_words
 from leblanc.results.races.balls import RaceOfBalls, ball_moment, in_race
-from leblanc.results.response import phase
+from leblanc.studies.run.answer import phase
+from leblanc.studies.run.notes import plane_words
 from meshes.arrays import Array, Complex, Flags
 from solvers.layer.records import Outcome
 from solvers.runup.ensemble import Spread

@@ -28,7 +28,7 @@ from leblanc.results.explanation import (
 )
 from leblanc.results.models.comparison import Comparison, ModelAnswer
 from leblanc.results.motion.tilting import RestMode
-from leblanc.text.run import amplitude_place, error_words, speeds_words
+from leblanc.studies.run.words import amplitude_place, error_words, speeds_words
 from meshes.arrays import Array
 
 Rows = list[tuple[str, str]]

@@ -11,7 +11,7 @@ from leblanc.core.notes import one_line
 from leblanc.core.units import CURRENT, LENGTH, NOT_FOUND, TIME, in_rpm, number, ranges, with_unit
 from leblanc.results.magnetic.control import Controlled, LoadAnswer, MagneticResult
 from leblanc.results.magnetic.explanation import MagneticExplanation
-from leblanc.text.run import Limit
+from leblanc.studies.run.words import Limit
 
 SENSITIVE = 3.0  # largest sensitivity of a new machine by ISO 14839-3
 FASTEST = 1e5  # poles beyond it ask for more than coils and amplifiers give, 1/s

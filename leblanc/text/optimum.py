@@ -22,7 +22,7 @@ from leblanc.core.units import (
     with_unit,
 )
 from leblanc.results.optimum import ConditionTable, OptimumCode, OptimumResult
-from leblanc.text.run import amplitude_place, quality_words
+from leblanc.studies.run.words import amplitude_place, quality_words
 
 _DIMENSIONS = {dimension.unit.replace("*", " "): dimension for dimension in (LENGTH, MASS, UNBALANCE)}
 

@@ -9,8 +9,8 @@ import numpy as np
 from leblanc.core.notes import percent
 from leblanc.core.units import LENGTH, TIME, UNBALANCE, amplitudes_are, in_rpm, number, with_unit
 from leblanc.results.notes.runup import SETTLED
-from leblanc.results.response import peak
 from leblanc.results.runup import Moment, RunupResult
+from leblanc.studies.run.answer import peak
 
 
 def describe_model(model: str, cells: int, dispersion: bool, bore: str = "none") -> str:

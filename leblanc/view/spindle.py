@@ -8,10 +8,10 @@ import numpy as np
 
 from leblanc.core.notes import one_line
 from leblanc.core.units import MM, number
-from leblanc.results.drawn.spindle import DrawnBeam, DrawnJoint, SpindleView
 from leblanc.view.film import Film
 from leblanc.view.machine import cylinder, ground, spring
 from leblanc.view.parts import NO_CELLS, Label, Picture, Piece, bar_length, line
+from leblanc.wings.spindle.geometry import DrawnBeam, DrawnJoint, SpindleView
 from meshes.arrays import Array, Indices
 
 SIDES = 48  # round a section

@@ -11,7 +11,7 @@ import numpy as np
 
 from leblanc.core.units import MM, RPM
 from leblanc.results.motion.held import HELD_MODELS, Held
-from leblanc.results.response import RunResult, phase
+from leblanc.studies.run.answer import RunResult, phase
 from meshes.arrays import Array, Complex, Flags, Index
 
 Span = tuple[float, float]

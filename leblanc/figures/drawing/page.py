@@ -29,7 +29,7 @@ from numpy.typing import ArrayLike
 from leblanc.core.files import writing
 from leblanc.core.notes import one_line
 from leblanc.core.units import LENGTH, MASS, RPM, VOLUME, unit_for, units_of
-from leblanc.results.response import RunResult
+from leblanc.studies.run.answer import RunResult
 from meshes.arrays import Complex
 from meshes.errors import InputError
 

@@ -22,9 +22,9 @@ from leblanc.figures.drawing.page import (
     style,
 )
 from leblanc.figures.machine import machine_figure
-from leblanc.figures.response import DRY, WET
 from leblanc.results.races.balls import in_race
 from leblanc.results.races.states import BallsResult
+from leblanc.studies.run.figure import DRY, WET
 from leblanc.text.races.balls import alt, answer
 
 FRAME = Frame(left=0.72, top=0.46, between=0.14, below=0.42)

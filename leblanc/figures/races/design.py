@@ -12,8 +12,8 @@ from leblanc.core.notes import one_line
 from leblanc.core.units import MM, MM_PEAK, RPM
 from leblanc.figures.drawing.curves import gapped
 from leblanc.figures.drawing.page import Caption, Figure, FigureFiles, Frame, lay_out, number, save, style
-from leblanc.figures.response import DRY, WET
 from leblanc.results.races.design import BallDesignResult
+from leblanc.studies.run.figure import DRY, WET
 from leblanc.text.races.design import alt, answer
 from meshes.arrays import Flags
 

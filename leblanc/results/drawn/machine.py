@@ -18,8 +18,8 @@ from meshes.clip import Remainder, outside_circle, radius_for
 from meshes.liquid_section import LiquidSection
 
 if TYPE_CHECKING:
-    from leblanc.results.response import RunResult
     from leblanc.results.runup import RunupFrames, RunupResult
+    from leblanc.studies.run.answer import RunResult
 
 LARGEST_FACTOR = 1e6  # of a depth as drawn
 FILLED = 0.55  # deepest place as drawn over the room between the walls

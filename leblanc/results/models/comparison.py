@@ -13,7 +13,7 @@ from leblanc.core.answer import Result, attributes
 from leblanc.core.netcdf import NamedArrays, Variable, flags
 from leblanc.core.netcdf import variable as var
 from leblanc.results.motion.held import MOTIONS
-from leblanc.results.response import RunResult
+from leblanc.studies.run.answer import RunResult
 from meshes.arrays import Array
 from meshes.errors import InputError
 

@@ -20,8 +20,8 @@ from leblanc.core.units import (
     small_whirl_friction,
     with_unit,
 )
-from leblanc.results.notes.response import CLOSURE, STANDS
-from leblanc.results.response import peak
+from leblanc.studies.run.answer import peak
+from leblanc.studies.run.notes import CLOSURE, STANDS
 from meshes.arrays import Flags
 
 if TYPE_CHECKING:

@@ -21,17 +21,8 @@ _ROUND = 121  # instants of an orbit
 
 
 def magnetic_view(scene: Scene, speed: float | None = None, factor: float | None = None) -> MagneticView:
-    """A rotor in magnetic bearings with its first controller.
-
-    Parameters
-    ----------
-    scene : of kind "magnetic"
-    speed : of an orbit by the unbalances alone, rad/s; the trial in time if None and the scene has one
-    factor : of the path as drawn; that of the gap in a trial, chosen for an orbit, if None
-
-    Raises
-    ------
-    InputError : another rotor, a value out of its range, a speed at which the controller does not hold it
+    """A rotor in magnetic bearings with its first controller: the trial in time, or an orbit by the
+    unbalances alone.
     """
     rotor = rotor_of(scene)
     if factor is not None and not (math.isfinite(factor) and factor > 0.0):

@@ -19,16 +19,7 @@ _PLACES = 91  # up to 0.9 of the gap
 
 
 def explain_magnetic(scene: Scene) -> MagneticExplanation:
-    """Numbers that determine how a rotor in magnetic bearings behaves [theory: magnetic, eq. 4-10].
-
-    Parameters
-    ----------
-    scene : with a rotor of kind "magnetic"
-
-    Raises
-    ------
-    InputError : its rotor is of another kind
-    """
+    """Numbers that determine how a rotor in magnetic bearings behaves [theory: magnetic, eq. 4-10]."""
     rotor = rotor_of(scene)
     machine, last = rotor.machine(), scene.speeds.stop
     magnets, place = machine.magnets, np.linspace(0.0, 0.9 * machine.magnets.gap, _PLACES)

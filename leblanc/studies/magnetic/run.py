@@ -26,17 +26,7 @@ _STEPS = 400  # times at which a step is looked at
 
 
 def run_magnetic(scene: Scene, progress: Callable[[str], object] = lambda what: None) -> MagneticResult:
-    """Answer of a scene of kind "magnetic" over its speeds [theory: magnetic, eq. 19-24].
-
-    Parameters
-    ----------
-    scene : the scene
-    progress : called with what is worked on
-
-    Raises
-    ------
-    InputError : its rotor is of another kind
-    """
+    """Answer of a scene of kind "magnetic" over its speeds [theory: magnetic, eq. 19-24]."""
     rotor = rotor_of(scene)
     machine, speed, trial = rotor.machine(), scene.speed_array(), rotor.trial
     loads = loads_of(scene)
@@ -62,12 +52,7 @@ def run_magnetic(scene: Scene, progress: Callable[[str], object] = lambda what: 
 
 
 def loads_of(scene: Scene) -> dict[str, Load]:
-    """Loads on the rotor of a scene by their names, gravity among them where it lies across the axis.
-
-    Parameters
-    ----------
-    scene : of kind "magnetic"
-    """
+    """Loads on the rotor of a scene by their names, gravity among them where it lies across the axis."""
     rotor = rotor_of(scene)
     loads = {f"load {k + 1}": part.load() for k, part in enumerate(rotor.loads)}
     if rotor.axis == "horizontal":
@@ -76,12 +61,7 @@ def loads_of(scene: Scene) -> dict[str, Load]:
 
 
 def rotor_of(scene: Scene) -> MagneticOfScene:
-    """The scene's rotor, which is in magnetic bearings.
-
-    Raises
-    ------
-    InputError : it is of another kind
-    """
+    """The scene's rotor, which is in magnetic bearings."""
     from leblanc.scene.magnetic import MagneticRotor as OfScene
 
     if not isinstance(scene.rotor, OfScene):

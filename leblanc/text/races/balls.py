@@ -18,9 +18,9 @@ from leblanc.core.units import (
     rpm_bands,
     with_unit,
 )
-from leblanc.results.notes.response import plane_words
 from leblanc.results.races.states import BallsResult
-from leblanc.text.run import Limit
+from leblanc.studies.run.notes import plane_words
+from leblanc.studies.run.words import Limit
 
 FAR = math.radians(15.0)  # swing of a ball up to which small swings tell it
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from leblanc.core.units import RPM, UNBALANCE, in_rpm, number, rpm_bands, unit_for, with_unit
 from leblanc.results.races.chart import BallChart, Curve
-from leblanc.text.run import Limit
+from leblanc.studies.run.words import Limit
 
 STATES = {
     "balanced": "the balanced state",

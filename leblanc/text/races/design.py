@@ -6,8 +6,8 @@ import math
 
 from leblanc.core.units import LENGTH, MASS, MM, NOT_FOUND, UNBALANCE, in_rpm, number, with_unit
 from leblanc.results.races.design import BallDesignResult, DesignedRace
+from leblanc.studies.run.words import Limit
 from leblanc.text.optimum import shown
-from leblanc.text.run import Limit
 
 Rows = list[tuple[str, str]]
 

@@ -48,7 +48,7 @@ class SpeedLaw:
         return np.asarray(self.mean + self.amplitude * np.sin(self.frequency * np.asarray(time, dtype=float)))
 
     def rate(self, time: ArrayLike) -> Array:
-        """Its rate of change, rad/s^2, shape of `time`."""
+        """Rate of change of Omega, rad/s^2, shape of `time`."""
         cosine = np.cos(self.frequency * np.asarray(time, dtype=float))
         return np.asarray(self.amplitude * self.frequency * cosine)
 
@@ -90,7 +90,7 @@ class Load:
 
 @dataclass(frozen=True)
 class Motion:
-    """A motion through time; n times."""
+    """Motion in time; n times."""
 
     time: Array  #: s, shape (n,)
     speed: Array  #: of the rotor, rad/s, shape (n,)
@@ -104,7 +104,7 @@ class Motion:
 
     @property
     def distance(self) -> Array:
-        """From the centre, in the bearing where it is larger, m, shape (n,)."""
+        """Distance from the centre in the bearing where it is larger, m, shape (n,)."""
         d = self.displacement
         return np.asarray(np.maximum(np.hypot(d[:, 0], d[:, 1]), np.hypot(d[:, 2], d[:, 3])))
 
@@ -191,7 +191,7 @@ class _Equations:
         return np.concatenate(parts)
 
     def room(self, time: float, state: Array) -> float:
-        """Left in the bearing where there is less, m."""
+        """Clearance left in the bearing where there is less, m."""
         return _room(self.machine, state[:4])
 
     def errors(self, size: int) -> Array:

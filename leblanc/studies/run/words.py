@@ -27,8 +27,8 @@ from leblanc.core.units import (
 )
 from leblanc.results.choice import ModelSpan
 from leblanc.results.motion.held import HELD_MODELS, Held
-from leblanc.results.notes.response import plane_words
-from leblanc.results.response import RunResult, grade_words
+from leblanc.studies.run.answer import RunResult, grade_words
+from leblanc.studies.run.notes import plane_words
 from meshes.arrays import Array, Flags
 
 AGAINST = 0.5  # from here on a whirl counts as one with or against the spin

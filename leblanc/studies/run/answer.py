@@ -101,8 +101,8 @@ class RunResult(Loaded, Result):
     (('linear',), 'm')
     """
 
-    figure: ClassVar[str] = "leblanc.figures.response:amplitude_figure"
-    summary: ClassVar[str] = "leblanc.text.run:summary"
+    figure: ClassVar[str] = "leblanc.studies.run.figure:amplitude_figure"
+    summary: ClassVar[str] = "leblanc.studies.run.words:summary"
 
     name: str  #: of the scene, free text
     source: str

@@ -39,9 +39,9 @@ from leblanc.figures.drawing.page import (
     zero_of,
 )
 from leblanc.figures.machine import machine_figure
-from leblanc.results.notes.response import plane_label
-from leblanc.results.response import RunResult
-from leblanc.text.run import alts, amplitude_place
+from leblanc.studies.run.answer import RunResult
+from leblanc.studies.run.notes import plane_label
+from leblanc.studies.run.words import alts, amplitude_place
 from meshes.arrays import Array, Flags
 
 Draw = Callable[[Any, Curves, RunResult], None]
