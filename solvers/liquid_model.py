@@ -91,7 +91,7 @@ def drag_frequency(fill: Fill, whirl: Whirl) -> float:
 
 
 def grown(time: Array | float, ramp: float) -> Array:
-    """Share to which a whirl has grown, tau - sin(2 pi tau)/(2 pi), tau = time/ramp up to 1."""
+    """Share to which a whirl has grown, tau - sin(2 pi tau)/(2 pi), tau = time/ramp up to 1; 1 at ramp 0."""
     if ramp == 0.0:
         return np.ones_like(time, dtype=float)
     part = np.minimum(np.asarray(time) / ramp, 1.0)
@@ -443,7 +443,7 @@ def whirl_answer(
 
 
 def require_crest(fill: Fill, crest: float, crests: int) -> None:
-    """Raise `InputError` unless a free wave may have such crests."""
+    """Raise `InputError` unless a free wave may have such crests, of a depth over the mean depth."""
     most = fill.chamber.radius / fill.depth
     if not 1.0 < crest < most:
         raise InputError("free", crest, f"above 1 and below {most:g}, where the crest reaches the axis")

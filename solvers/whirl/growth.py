@@ -29,35 +29,11 @@ _EQUAL = 1e-9  # of a mode's own speed: difference in growth of two modes that c
 def asynchronous_growth(
     rotor: Rotor, fills: Sequence[Fill], speed: ArrayLike, friction: Friction = NO_FRICTION
 ) -> tuple[Array, Array]:
-    """Growth of the fastest growing whirl of a rotor with liquid in its chambers [theory: whirl, eq. 7].
+    """Growth rate and whirl speed of the whirl that grows most [theory: whirl, eq. 7], shape (n,).
 
-    Parameters
-    ----------
-    rotor : the dry rotor, of any kind
-    fills : its chambers with their liquid, any number
-    speed : spin speeds Omega, rad/s, shape (n,), above 0
-    friction : the laminar law takes each liquid's viscosity, the
-        quadratic one does not act on an infinitesimal whirl
-
-    Returns
-    -------
-    growth : 1/s, shape (n,): the whirl is unstable where it is above 0; what rounding cannot tell from 0 is
-        0, and nan stands where the modes were not found
-    whirl_speed : of that mode in the standing frame, rad/s, positive with the spin, shape (n,)
-
-    Raises
-    ------
-    InputError : a speed that is not positive and finite, too many different layers
-
-    Examples
-    --------
-    >>> from fluid.liquid import known_liquid
-    >>> from meshes.chamber import Chamber
-    >>> fill = Fill(Chamber(0.1, 0.02), known_liquid("water"), 1.2e-4)
-    >>> rotor = Jeffcott(mass=6.0, stiffness=6.0e4, damping=0.0, unbalance=0.0)
-    >>> growth, _ = asynchronous_growth(rotor, [fill], [80.0, 130.0])
-    >>> print(f"{growth[0]:.1f} {growth[1]:.1f}")
-    0.0 6.7
+    1/s, unstable above 0, 0 where rounding cannot tell it from 0, nan where modes were not found; rad/s in
+    the standing frame, positive with the spin. The laminar law takes each liquid's viscosity, the quadratic
+    one does not act on an infinitesimal whirl. An `InputError` also for too many different layers.
     """
     growth, whirl_speed = growth_map(rotor, [fills], speed, friction)
     return growth[0], whirl_speed[0]

@@ -36,7 +36,7 @@ def coupled_matrices(
 ) -> CoupledMatrices:
     """Rotor and layers with linear friction as one linear system [theory: whirl, eq. 7].
 
-    Liquid without a free surface is part of the rotor's mass.
+    Layers with their planes, m; liquid without a free surface is part of the rotor's mass.
     """
     count, spin = len(system.coordinates), speed[:, None, None]
     size = count + 2 * len(layers)
@@ -74,7 +74,7 @@ class SystemModes:
     complete: Flags
 
     def widened(self, width: int, gone: float) -> SystemModes:
-        """Modes with others that were not found appended, up to `width` at each speed."""
+        """Modes with others not found appended, up to `width` at each speed, lambda there `gone`."""
         more = ((0, 0), (0, width - self.root.shape[1]))
         return SystemModes(
             np.pad(self.root, more, constant_values=gone),
@@ -85,7 +85,7 @@ class SystemModes:
         )
 
     def replaced(self, which: Index, others: SystemModes, gone: float) -> SystemModes:
-        """Modes with those at some speeds in place of its own."""
+        """Modes with those at some speeds in place of its own, lambda `gone` where one lacks a mode."""
         width = max(self.root.shape[1], others.root.shape[1])
         found, others = self.widened(width, gone), others.widened(width, gone)
         for part in fields(found):
