@@ -54,8 +54,7 @@ def force_ratio(curvature: ArrayLike, whirl_ratio: ArrayLike) -> Array:
 
 
 def offset_ratio(curvature: ArrayLike, whirl_ratio: ArrayLike) -> Array:
-    """Offset of the liquid's centre of mass from the drum's axis, over the whirl radius
-    [theory: waves, eq. 6].
+    """Offset of the centre of mass from the drum's axis over the whirl radius [theory: waves, eq. 6].
 
     -q^2/D, along the deflection: 1/(kappa - 1) for synchronous whirl, infinite at the free wave.
     """
