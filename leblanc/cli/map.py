@@ -117,8 +117,9 @@ def map(
 
     from leblanc.core.netcdf import write_netcdf
     from leblanc.figures.whirl_map import cycles_figure, map_figure, save
-    from leblanc.report.page import about, command_line
+    from leblanc.report.page import command_line
     from leblanc.report.run import write_map_report
+    from leblanc.scene.inputs import about
 
     write_netcdf(found.named_arrays(), folder / "map.nc")
     files = [save(map_figure(found), folder, "map", "Self-excited whirl over speed and volume")]
@@ -196,7 +197,8 @@ def _map_balls(
     from leblanc.core.netcdf import write_netcdf
     from leblanc.figures.races.chart import write_chart_figure
     from leblanc.report.chart import write_chart_report
-    from leblanc.report.page import about, command_line
+    from leblanc.report.page import command_line
+    from leblanc.scene.inputs import about
     from leblanc.text.races.chart import HEAD, answer, curves, facts
 
     write_netcdf(found.named_arrays(), folder / "map.nc")

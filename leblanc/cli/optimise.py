@@ -59,7 +59,8 @@ def optimise(
 ) -> None:
     """Best volume(s), balls, or layout of a tub's mounts, for an objective. Figures, data file, report."""
     from leblanc.questions import optimisation_of, require_no_emulator
-    from leblanc.report.page import about, command_line
+    from leblanc.report.page import command_line
+    from leblanc.scene.inputs import about
 
     machine = load(scene)
     task = optimisation_of(machine, objective, deflection, limit, steady, seed)
@@ -113,7 +114,8 @@ def _layout(machine: Scene, scene: Path, task: Optimisation, folder: Path, json:
     from leblanc.figures.drawing.page import save
     from leblanc.figures.machine import layout_figure, places_figure
     from leblanc.report.layout import write_layout_report
-    from leblanc.report.page import about, command_line
+    from leblanc.report.page import command_line
+    from leblanc.scene.inputs import about
     from leblanc.studies.optimise.layout import optimise_layout
     from leblanc.text.layout import MOUNTS, PAIR_HEAD, answer, coupling_rows, facts, mount_rows
 
@@ -153,7 +155,7 @@ def _balls(
     from leblanc.core.terminal import print_table
     from leblanc.figures.races.design import write_design_figure
     from leblanc.report.design import write_design_report
-    from leblanc.report.page import about
+    from leblanc.scene.inputs import about
     from leblanc.studies.optimise.balls.search import optimise_balls
     from leblanc.text.races.design import RACE_HEAD, answer, constraint_rows, facts, nearest, paste, race_rows
 

@@ -41,7 +41,8 @@ def run(
     machine = load(scene)
     kind = machine.rotor.kind
     from leblanc.registry import answerer
-    from leblanc.report.page import about, command_line
+    from leblanc.report.page import command_line
+    from leblanc.scene.inputs import about
 
     files = ["summary.html", *([] if kind == "exciter" else ["response.nc"])]
     folder = results_dir(machine.name, out, scene, machine.digest, *files)
@@ -119,8 +120,9 @@ def _run_balls(machine: Scene, scene: Path, folder: Path, json: bool) -> None:
     """Where the balls of a rotor rest in the drum."""
     from leblanc.core.netcdf import write_netcdf
     from leblanc.figures.races.balls import write_balls_figures
-    from leblanc.report.page import about, command_line
+    from leblanc.report.page import command_line
     from leblanc.report.run import write_balls_report
+    from leblanc.scene.inputs import about
     from leblanc.studies.races.balls import run_balls
     from leblanc.text.closed_forms import closed_form_rows
     from leblanc.text.machine import load_table

@@ -67,8 +67,9 @@ def runup(
 
     from leblanc.core.netcdf import write_netcdf
     from leblanc.figures.runup import write_figures
-    from leblanc.report.page import about, command_line
+    from leblanc.report.page import command_line
     from leblanc.report.runup import write_runup_report
+    from leblanc.scene.inputs import about
 
     write_netcdf(result.named_arrays(), folder / "runup.nc")
     figures = write_figures(result, folder)

@@ -8,7 +8,6 @@ import platform
 import time
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from importlib import resources
 from itertools import count, groupby
 from pathlib import Path
 from typing import Any
@@ -56,11 +55,15 @@ class About:
     data: str = ""  #: file of the numbers beside the report; empty if there is none
 
     @property
+    def values(self) -> list[Any]:
+        """All values."""
+        single = [value for row in (*self.rows, *self.unused) for value in row.values]
+        return single + [value for table in self.tables for row in table.rows for value in row]
+
+    @property
     def assumed(self) -> bool:
         """Some value is marked."""
-        single = (value for row in (*self.rows, *self.unused) for value in row.values)
-        tabled = (value for table in self.tables for row in table.rows for value in row)
-        return any(value.assumed for value in (*single, *tabled))
+        return any(value.assumed for value in self.values)
 
 
 def all_versions() -> dict[str, str]:
@@ -87,35 +90,37 @@ def write_page(
     title: str, blocks: Sequence[Block], about: About, figures: Mapping[str, Any], path: Path
 ) -> None:
     """Write the page of an answer; the figures are those of its pictures on disk, by their names."""
-    from jinja2 import Environment, FunctionLoader, StrictUndefined
+    shown = list(flat(blocks, "page"))
+    headline = next((block for block in shown if isinstance(block, Headline)), Headline(""))
+    checks = [check for block in shown if isinstance(block, Checks) for check in block.rows]
+    parts = {
+        "title": title,
+        "machine": headline.about,
+        "answer": headline.text,
+        "doubt": doubt(checks, headline.error) if checks else "",
+        "sections": _sections(blocks, figures),
+    }
+    render("page", about, parts, path)
+
+
+def render(
+    body: str, about: About, parts: Mapping[str, Any], path: Path, package: str = "leblanc.core"
+) -> None:
+    """Write a body inside the common frame; a package keeps its template in a folder `templates`."""
+    from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 
     environment = Environment(
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
-        loader=FunctionLoader(_template),
+        loader=ChoiceLoader([PackageLoader(name) for name in dict.fromkeys((package, "leblanc.core"))]),
     )
     environment.filters["line"] = one_line
-    shown = list(flat(blocks, "page"))
-    headline = next((block for block in shown if isinstance(block, Headline)), Headline(""))
-    checks = [check for block in shown if isinstance(block, Checks) for check in block.rows]
-    text = environment.get_template("page.html.j2").render(
-        title=title,
-        headline=headline,
-        doubt=doubt(checks, headline.error) if checks else "",
-        sections=_sections(blocks, figures),
-        about=about,
-        date=made_on(),
-        versions=all_versions(),
-        citation=citation(),
-    )
+    made = {"about": about, "date": made_on(), "versions": all_versions(), "citation": citation()}
+    text = environment.get_template(f"{body}.html.j2").render(made, **parts)
     with writing(path) as temporary:
         temporary.write_text(text.lstrip(), encoding="utf-8")
-
-
-def _template(name: str) -> str:
-    return resources.files("leblanc.core").joinpath("templates", name).read_text(encoding="utf-8")
 
 
 _CLAUSES = 2  # of the sentence of doubt
@@ -181,7 +186,7 @@ def _rendered(
     for drawn, group in groupby(shown, lambda block: isinstance(block, Picture)):
         if drawn:
             names = [one.name for one in group if isinstance(one, Picture)]
-            pictures = [{"number": next(numbers), **_picture(figures[name])} for name in names]
+            pictures = [{"number": next(numbers), **picture(figures[name])} for name in names]
             yield {"kind": "pictures", "pictures": pictures, "layout": "one"}
         else:
             for block in group:
@@ -206,15 +211,15 @@ def _one(block: Block, figures: Mapping[str, Any], numbers: Iterator[int]) -> It
         yield {"kind": "words", **parts}
 
 
-def _picture(files: Any) -> dict[str, Any]:
-    """A figure on disk, its caption as text; the drawn caption is cut off."""
+def picture(files: Any, alt: str = "") -> dict[str, Any]:
+    """A figure on disk as a page shows it, its caption as text; the drawn caption is cut off."""
     lightest = min((files.svg, files.png), key=lambda file: file.stat().st_size)
     chosen = files.svg if files.svg.stat().st_size <= LIGHT else lightest
     content = base64.b64encode(chosen.read_bytes()).decode("ascii")
     return {
         "title": files.title,
         "caption": one_line(files.caption.shown.removeprefix(f"{files.title}.")),
-        "alt": files.alt or files.title,
+        "alt": alt or files.alt or files.title,
         "address": f"data:{TYPES[chosen.suffix]};base64,{content}",
         "shape": files.drawn,
     }

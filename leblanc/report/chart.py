@@ -5,9 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from leblanc.core.blocks import Cell
+from leblanc.core.page import About, picture, render
 from leblanc.core.units import RPM, number
-from leblanc.report.page import About, notes, write_page
-from leblanc.report.parts import Cell, doubt, picture, table
+from leblanc.report.page import notes
+from leblanc.report.parts import doubt, table
 from leblanc.results.races.chart import BallChart
 from leblanc.text.races.chart import HEAD, STATES, answer, curves, facts, limits, what
 
@@ -38,4 +40,4 @@ def write_chart_report(result: BallChart, about: About, figure: FigureFiles, pat
         "models": [("balls", MODEL)],
         "remarks": notes(result.notes),
     }
-    write_page("chart", about, parts, path)
+    render("chart", about, parts, path, "leblanc.report")

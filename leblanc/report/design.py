@@ -5,9 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from leblanc.core.blocks import Cell
 from leblanc.core.notes import texts
-from leblanc.report.page import About, write_page
-from leblanc.report.parts import Cell, Table, doubt, picture, table
+from leblanc.core.page import About, picture, render
+from leblanc.report.parts import Table, doubt, table
 from leblanc.report.run import limit_checks
 from leblanc.results.races.design import BallDesignResult
 from leblanc.text.races.design import RACE_HEAD, answer, constraint_rows, facts, limits, paste, race_rows
@@ -58,4 +59,4 @@ def write_design_report(result: BallDesignResult, what: About, figure: FigureFil
         "reason": _SEARCH,
         "remarks": list(texts(result.notes)),
     }
-    write_page("design", what, parts, path)
+    render("design", what, parts, path, "leblanc.report")

@@ -6,9 +6,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from leblanc.core.blocks import Cell
+from leblanc.core.page import About, picture, render
 from leblanc.core.units import LENGTH, with_unit
-from leblanc.report.page import About, write_page
-from leblanc.report.parts import Cell, Table, doubt, picture, table
+from leblanc.report.parts import Table, doubt, table
 from leblanc.results.machine.layout import LayoutResult
 from leblanc.text.layout import (
     FREQUENCIES,
@@ -55,4 +56,4 @@ def write_layout_report(
         "pictures": [picture(figure) for figure in figures],
         "remarks": remarks(result),
     }
-    write_page("layout", what, parts, path)
+    render("layout", what, parts, path, "leblanc.report")

@@ -9,10 +9,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from leblanc.core.blocks import Cell
 from leblanc.core.notes import texts
+from leblanc.core.page import About, picture, render
 from leblanc.core.units import LENGTH, MASS, ML, VOLUME, in_rpm, number, unit_for, with_unit
-from leblanc.report.page import About, models, notes, why, write_page
-from leblanc.report.parts import Cell, Table, doubt, load_part, picture, table
+from leblanc.report.page import models, notes, why
+from leblanc.report.parts import Table, doubt, load_part, table
 from leblanc.report.run import response_checks as response_checks
 from leblanc.results.optimum import OptimumResult
 from leblanc.text.optimum import amplitude_plane, answer, over_conditions, quality, shown, worst_condition
@@ -185,4 +187,4 @@ def write_optimise_report(
         "reason": f"{ONE_MODEL} {RUN_UP if result.in_time else ''}".strip(),
         "remarks": notes(texts(result.notes)),
     }
-    write_page("optimise", what, parts, path)
+    render("optimise", what, parts, path, "leblanc.report")

@@ -9,9 +9,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from leblanc.core.blocks import Cell
+from leblanc.core.page import About, picture, render
 from leblanc.core.units import LENGTH, NOT_FOUND, RPM, VOLUME, in_peak, number, ranges, unit_for
-from leblanc.report.page import About, models, notes, why, write_page
-from leblanc.report.parts import Cell, Table, doubt, load_part, picture, table
+from leblanc.report.page import models, notes, why
+from leblanc.report.parts import Table, doubt, load_part, table
 from leblanc.results.races.states import STATE_NAMES, BallsResult
 from leblanc.results.whirl_map import WhirlMap
 from leblanc.studies.run.answer import RunResult
@@ -86,7 +88,7 @@ def write_run_report(result: RunResult, what: About, figures: Sequence[FigureFil
         "held": held_motions(result),
         "remarks": [*notes(result.notes, elsewhere), *remarks(result)],
     }
-    write_page("run", what, parts, path)
+    render("run", what, parts, path, "leblanc.report")
 
 
 def closed_form_tables(result: RunResult | BallsResult) -> list[Table]:
@@ -217,7 +219,7 @@ def write_balls_report(result: BallsResult, what: About, figures: Sequence[Figur
         "models": [("balls", model)],
         "remarks": [note.text for note in result.notes],
     }
-    write_page("balls", what, parts, path)
+    render("balls", what, parts, path, "leblanc.report")
 
 
 def bands(result: WhirlMap) -> Table:
@@ -286,4 +288,4 @@ def write_map_report(result: WhirlMap, what: About, figures: Sequence[FigureFile
         "reason": "No other model answers this for any growth and any whirl speed.",
         "remarks": notes(result.notes),
     }
-    write_page("map", what, parts, path)
+    render("map", what, parts, path, "leblanc.report")

@@ -11,7 +11,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from leblanc.core.blocks import Cell
 from leblanc.core.notes import one_line, percent
+from leblanc.core.page import About, picture, render
 from leblanc.core.units import (
     LENGTH,
     MASS,
@@ -25,8 +27,8 @@ from leblanc.core.units import (
     unit_for,
     with_unit,
 )
-from leblanc.report.page import About, models, notes, write_page
-from leblanc.report.parts import Cell, Table, doubt, load_part, picture, table
+from leblanc.report.page import models, notes
+from leblanc.report.parts import Table, doubt, load_part, table
 from leblanc.results.notes.runup import ERROR, IN_TABLES
 from leblanc.results.runup import RunupResult
 from leblanc.studies.run.answer import peak
@@ -259,4 +261,4 @@ def write_runup_report(result: RunupResult, what: About, figures: Sequence[Figur
         "models": [] if result.chamberless else models((result.model,)),
         "remarks": notes([note.text for note in result.notes if note.code not in IN_TABLES]),
     }
-    write_page("runup", what, parts, path)
+    render("runup", what, parts, path, "leblanc.report")

@@ -7,10 +7,8 @@ import math
 from html.parser import HTMLParser
 from pathlib import Path
 
-from leblanc.core.notes import one_line
-from leblanc.report.page import About
-from leblanc.report.parts import Cell, Entry, Inputs
-from leblanc.scene.rows import Value
+from leblanc.core.page import About
+from leblanc.scene.rows import Row, Value
 from leblanc.studies.run.answer import RunResult
 
 VOID = {"meta", "img", "br"}
@@ -141,14 +139,12 @@ def check_rules(page: Page, text: str) -> None:
 def about_record(record: RunResult) -> About:
     """What a report of a made-up record is about: the record's own list of inputs."""
     values = [(label, Value(text, (path,)).marked(record.assumed)) for label, text, path in record.inputs]
-    entries = tuple(
-        Entry(label, (Cell(one_line(one.text), one.assumed, path=one.path),)) for label, one in values
-    )
+    rows = tuple(Row(label, (value,)) for label, value in values)
     paths = [path for _, _, path in record.inputs]
     elsewhere = tuple(
         one for one in record.assumed if not any(path == one or path.startswith(f"{one}.") for path in paths)
     )
-    return About(record.name, record.source, record.digest, Inputs(entries, ()), elsewhere)
+    return About(record.name, record.source, record.digest, rows, elsewhere=elsewhere)
 
 
 def printed(value: float) -> str:

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from leblanc.report.page import about
 from leblanc.report.run import write_run_report
+from leblanc.scene.inputs import about
 from leblanc.scene.scene import load_scene
 from leblanc.studies.run.figure import write_figures
 from leblanc.studies.run.study import run_scene

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from leblanc.report.parts import Inputs, scene_inputs
+from leblanc.core.page import About
 from leblanc.scene.chambers import Chamber, DensityLaw, ViscosityLaw
-from leblanc.scene.inputs import optimise_rows
+from leblanc.scene.inputs import about, optimise_rows
 from leblanc.scene.rows import row
 from leblanc.scene.scene import Scene, scene_from_table
 from leblanc.scene.schema.paths import tables_of
@@ -190,8 +190,8 @@ def leaves(value: Any, path: str = "") -> Iterator[str]:
         yield path
 
 
-def shown(inputs: Inputs) -> set[str]:
-    return {cell.path for cell in inputs.cells if cell.path}
+def shown(what: About) -> set[str]:
+    return {value.path for value in what.values if value.path}
 
 
 def covered(path: str, paths: set[str]) -> bool:
@@ -204,7 +204,7 @@ def covered(path: str, paths: set[str]) -> bool:
 @pytest.mark.parametrize("way", WAYS)
 def test_every_value_has_its_cell(kind: str, way: str) -> None:
     table = full(kind, way)
-    paths = shown(scene_inputs(scene_from_table(table)))
+    paths = shown(about(scene_from_table(table)))
     lost = [path for path in leaves(table) if path not in ELSEWHERE and not covered(path, paths)]
     assert not lost
 
@@ -233,7 +233,7 @@ def test_the_full_scene_has_every_key_there_is(kind: str) -> None:
 @pytest.mark.parametrize("way", ["ramp", "programme"])
 def test_each_assumed_value_marks_its_cell_and_no_other(kind: str, way: str) -> None:
     table = full(kind, way)
-    bare = scene_inputs(scene_from_table(table))
+    bare = about(scene_from_table(table))
     assert not bare.assumed
     derived = {
         "rotor.critical_speed": {"rotor.stiffness"},
@@ -247,14 +247,14 @@ def test_each_assumed_value_marks_its_cell_and_no_other(kind: str, way: str) -> 
         if path in ELSEWHERE:
             continue
         scene = scene_from_table(table | {"assumed": [path]})
-        marked = {cell.path for cell in scene_inputs(scene).cells if cell.assumed}
+        marked = {cell.path for cell in about(scene).values if cell.assumed}
         own = {one for one in shown(bare) if path == one or path.startswith(f"{one}.")}
         assert marked == own | (derived.get(path, set()) & shown(bare)), path
 
 
 def test_an_assumed_table_marks_all_that_is_in_it() -> None:
     scene = scene_from_table(full("two_plane") | {"assumed": ["runup", "rotor.supports.0", "chambers"]})
-    for cell in scene_inputs(scene).cells:
+    for cell in about(scene).values:
         inside = cell.path.startswith(("runup.", "rotor.supports.0.", "chambers."))
         assert cell.assumed == inside, cell
 
@@ -269,11 +269,11 @@ def test_a_section_of_its_own_is_named_and_measured() -> None:
     chambers = (Chamber(section=shape, height=0.02, liquid=round_one.liquid, volume=round_one.volume),)
     for name, marked in (("section", 2), ("section_unit", 2), ("section_size", 1), ("height", 0)):
         path = f"chambers.0.{name}"
-        inputs = scene_inputs(scene.altered(chambers=chambers, assumed=(path,)))
+        inputs = about(scene.altered(chambers=chambers, assumed=(path,)))
         (row,) = [row for one in inputs.tables if "section" in one.head for row in one.rows]
         far = printed(math.sqrt(32.0) * 10.0)
         assert [cell.text for cell in row] == ["1", "square <1>.msh", "64", far, "as in the file"]
-        assert sum(cell.assumed for cell in row) >= marked and any(cell.assumed for cell in inputs.cells)
+        assert sum(cell.assumed for cell in row) >= marked and inputs.assumed
 
 
 @pytest.mark.parametrize(
@@ -312,12 +312,12 @@ def test_a_section_of_its_own_is_named_and_measured() -> None:
 def test_a_law_of_temperature_is_told(liquid: dict[str, Any], said: str) -> None:
     table = full("jeffcott")
     table["chambers"][0]["liquid"] = liquid
-    found = told(scene_inputs(scene_from_table(table)))["chambers.0.liquid"]
+    found = told(about(scene_from_table(table)))["chambers.0.liquid"]
     assert found == said
 
 
-def told(inputs: Inputs) -> dict[str, str]:
-    return {cell.path: cell.text for cell in inputs.cells if cell.path}
+def told(what: About) -> dict[str, str]:
+    return {value.path: value.text for value in what.values if value.path}
 
 
 def number(text: str) -> float:
@@ -326,7 +326,7 @@ def number(text: str) -> float:
 
 def test_units() -> None:
     """Every text gives the value of the file back in the unit that stands beside it."""
-    found = told(scene_inputs(scene_from_table(full("jeffcott"))))
+    found = told(about(scene_from_table(full("jeffcott"))))
     stiffness = 4.0 * (1000.0 * 2.0 * math.pi / 60.0) ** 2
     expected = {
         "rotor.mass": 4.0, "rotor.critical_speed": 1000.0, "rotor.stiffness": stiffness,
@@ -358,7 +358,7 @@ def test_units() -> None:
 
 
 def test_units_of_other_rotors() -> None:
-    planes = told(scene_inputs(scene_from_table(full("two_plane", "motor"))))
+    planes = told(about(scene_from_table(full("two_plane", "motor"))))
     for path, value in {
         "rotor.transverse_inertia": 0.7, "rotor.polar_inertia": 0.2, "rotor.supports.0.position": -300.0,
         "rotor.supports.0.stiffness": 4e4, "rotor.supports.0.damping": 80.0,
@@ -367,13 +367,13 @@ def test_units_of_other_rotors() -> None:
     }.items():  # fmt: skip
         assert math.isclose(number(planes[path]), value, rel_tol=6e-4), path
     assert planes["runup.motor.torques"] == "2 N m at 0 rpm, 0 N m at 1200 rpm"
-    tub = told(scene_inputs(scene_from_table(full("tub"))))
+    tub = told(about(scene_from_table(full("tub"))))
     assert tub["rotor.springs.0.position"] == "(200, 0, 200)"
     assert tub["rotor.springs.1.stiffness"] == "(1200, 1300, 1400)"
     assert tub["rotor.dampers.0.damping"] == "155"
     assert tub["rotor.drum_position"] == "(0, 90, 0) mm" and tub["rotor.unbalance_position"] == "80 mm"
     assert tub["rotor.unbalance"] == "185 kg mm"
-    table = told(scene_inputs(scene_from_table(full("exciter"))))
+    table = told(about(scene_from_table(full("exciter"))))
     for path, value in {
         "rotor.platform_mass": 90.1, "rotor.stiffness": 1.4e5, "rotor.damping": 150.0,
         "rotor.unbalance": 10.0, "rotor.balls.count": 2.0, "rotor.balls.mass": 325.0,
@@ -383,7 +383,7 @@ def test_units_of_other_rotors() -> None:
 
 
 def test_units_of_magnetic_bearings() -> None:
-    table = told(scene_inputs(scene_from_table(full("magnetic"))))
+    table = told(about(scene_from_table(full("magnetic"))))
     for path, value in {
         "rotor.mass": 12.0, "rotor.eccentricity": 0.4, "rotor.magnets.gap": 0.2,
         "rotor.magnets.bias_current": 30.0, "rotor.magnets.bandwidth": 2000.0, "rotor.magnets.first": -8.0,
@@ -395,9 +395,9 @@ def test_units_of_magnetic_bearings() -> None:
 
 
 def test_values_that_the_report_does_not_need_stand_apart() -> None:
-    inputs = scene_inputs(scene_from_table(full("jeffcott")), unused=("runup", "optimise"))
-    assert {entry.cells[0].path.partition(".")[0] for entry in inputs.unused} == {"runup", "optimise"}
-    assert not any(entry.cells[0].path.startswith(("runup", "optimise")) for entry in inputs.entries)
+    inputs = about(scene_from_table(full("jeffcott")), unused=("runup", "optimise"))
+    assert {row.values[0].path.partition(".")[0] for row in inputs.unused} == {"runup", "optimise"}
+    assert not any(row.values[0].path.startswith(("runup", "optimise")) for row in inputs.rows)
 
 
 def test_an_aim_from_the_command_line_is_not_marked_as_the_scene_s() -> None:
@@ -406,7 +406,7 @@ def test_an_aim_from_the_command_line_is_not_marked_as_the_scene_s() -> None:
     scene = scene_from_table(table)
     assert scene.optimise is not None
     other = scene.optimise.altered(deflection=2e-3)
-    marked = {cell.path: cell for cell in scene_inputs(scene, other).cells if "optimise" in cell.path}
+    marked = {cell.path: cell for cell in about(scene, task=other).values if "optimise" in cell.path}
     assert marked["optimise.deflection"].text == "2 mm" and not marked["optimise.deflection"].assumed
     assert marked["optimise.clearance"].assumed
 

@@ -20,12 +20,12 @@ from leblanc.core.blocks import Table, flat
 from leblanc.report import optimise as report_optimise
 from leblanc.report import run as report_map
 from leblanc.report import runup as report_runup
-from leblanc.report.page import about
 from leblanc.results.base import ConstraintValue
 from leblanc.results.notes.runup import IN_TABLES
 from leblanc.results.optimum import Feasibility, OptimumResult
 from leblanc.results.runup import RunupResult
 from leblanc.results.whirl_map import WhirlMap
+from leblanc.scene.inputs import about
 from leblanc.scene.scene import scene_from_table
 from leblanc.studies.optimise.optimise import optimise_scene
 from leblanc.studies.run.study import run_scene

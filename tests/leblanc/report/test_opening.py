@@ -11,8 +11,9 @@ import pytest
 
 import leblanc as lb
 from leblanc.cli import main
-from leblanc.report.page import made_on
-from leblanc.report.parts import Cell, doubt, table
+from leblanc.core.blocks import Cell
+from leblanc.core.page import made_on
+from leblanc.report.parts import doubt, table
 from leblanc.report.run import response_checks
 from leblanc.studies.run.words import answer
 

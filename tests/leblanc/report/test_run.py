@@ -15,11 +15,11 @@ import pytest
 
 from leblanc.cli import main
 from leblanc.core.notes import Note
+from leblanc.core.page import LIGHT, all_versions, citation, picture
 from leblanc.core.units import number, ranges
 from leblanc.figures.drawing.page import FigureFiles
 from leblanc.report import page as report
 from leblanc.report import run as report_run
-from leblanc.report.parts import LIGHT, picture
 from leblanc.results.base import FilledChamber
 from leblanc.results.motion.self_excited import SelfExcited
 from leblanc.scene.scene import load_scene
@@ -298,7 +298,7 @@ def test_page_names_machine_model_notes_and_versions(tmp_path: Path) -> None:
     assert "Source: DR18, section 7.2." in text
     assert str(record.notes[0]) in page.of("li")
     assert record.digest in text
-    for package, version in report.versions().items():
+    for package, version in all_versions().items():
         assert f"{package} {version}" in text
     assert f"numpy {np.__version__}" in text
     assert MODELS["statics"][0] in text
@@ -359,7 +359,7 @@ def test_heavy_drawings_are_pictures(tmp_path: Path) -> None:
     for svg, png, kind in (
         (SVG, b"", "svg"), (heavy, PNG, "png"), (heavy, PNG + bytes(2 * LIGHT), "svg"),
     ):  # fmt: skip
-        assert picture(figure(tmp_path, "map", svg, png), "alt").address.startswith(f"data:image/{kind}")
+        assert picture(figure(tmp_path, "map", svg, png), "alt")["address"].startswith(f"data:image/{kind}")
 
 
 def test_the_phase_stands_on_the_page_of_a_rotor_that_tilts_only(tmp_path: Path) -> None:
@@ -385,16 +385,16 @@ def test_captions_are_text_and_cut_from_the_picture(tmp_path: Path) -> None:
         caption = " ".join(line.get_text() for line in lines)
         assert "Scene: A & B." in caption
         written = caption.replace("\N{NO-BREAK SPACE}", " ")
-        assert shown.caption == written.partition(" Scene:")[0]
-        assert shown.shape is not None
+        assert shown["caption"] == written.partition(" Scene:")[0]
+        assert shown["shape"] is not None
         wide, high = one.get_size_inches()
         first = high * (1.0 - lines[0].get_position()[1])
         # Inches. The tallest letters of seven points are 5.3 points high: they are cut off, and no more than
         # a line above them.
-        assert shown.shape[0] == wide
-        assert first - 9.0 / 72.0 < shown.shape[1] < first - 5.3 / 72.0
-        assert shown.alt == one.alt and len(one.alt) > 20
-    assert picture(figure(tmp_path, "bare", SVG), "alt").caption == ""
+        assert shown["shape"][0] == wide
+        assert first - 9.0 / 72.0 < shown["shape"][1] < first - 5.3 / 72.0
+        assert shown["alt"] == one.alt and len(one.alt) > 20
+    assert picture(figure(tmp_path, "bare", SVG), "alt")["caption"] == ""
 
 
 def test_notes_that_the_page_says_elsewhere_are_left_out() -> None:
@@ -475,7 +475,7 @@ def test_the_citation_is_that_of_the_file() -> None:
         re.findall(r'^title: "(.*)"$', text, re.M),
         re.findall(r"- name: (.*)$", text, re.M),
     )
-    assert report.citation() == f"{authors}. {title}. Version {report.versions()['leblanc']}."
+    assert citation() == f"{authors}. {title}. Version {all_versions()['leblanc']}."
 
 
 @pytest.mark.parametrize(

@@ -11,10 +11,11 @@ import pytest
 
 import leblanc as lb
 from leblanc.cli import main
-from leblanc.report.page import About, about
+from leblanc.core.page import About
 from leblanc.report.run import write_run_report
 from leblanc.report.runup import write_runup_report
 from leblanc.results.runup import OF_LIQUID as OF_LIQUID_IN_TIME
+from leblanc.scene.inputs import about
 from leblanc.scene.scene import Scene, scene_from_table
 from leblanc.studies.batch import answer_scenes
 from leblanc.studies.run.answer import OF_LIQUID

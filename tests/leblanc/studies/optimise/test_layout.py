@@ -15,8 +15,8 @@ import leblanc as lb
 from leblanc.cli import main
 from leblanc.figures.machine import places_figure
 from leblanc.report.layout import write_layout_report
-from leblanc.report.page import about
 from leblanc.results.machine.layout import LayoutResult, pair_names
+from leblanc.scene.inputs import about
 from leblanc.scene.schema.load import SceneError
 from leblanc.studies.optimise.layout import separation, suspension_of
 from leblanc.studies.optimise.optimise import optimise_scene

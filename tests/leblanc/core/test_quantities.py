@@ -1,0 +1,180 @@
+"""Quantities of an answer read from its declarations: names, parts, nested records, rows, left out."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Annotated
+
+import numpy as np
+import pytest
+
+from leblanc.core.answer import Answer
+from leblanc.core.netcdf import Variable, variable
+from leblanc.core.notes import Note, NoteCode
+from leblanc.core.quantities import named_arrays, names, plain, quantities
+from meshes.arrays import Array, Complex
+from meshes.quantity import Q
+from tests.mutants import kills
+
+TWO = np.array([1.0, 2.0])
+AT = "leblanc.core.quantities"
+
+
+class Code(NoteCode):
+    """Codes of the notes here."""
+
+    ONE = "one"
+
+
+@dataclass(frozen=True)
+class Motion:
+    """A part: its quantities are the answer's."""
+
+    lean: Annotated[Array, Q("rad", "lean", over=("speed",))]
+    amplitude: Annotated[Array, Q("m", "largest", over=("speed",), key="size", text="zero to peak")]
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """A part that says itself how it is written."""
+
+    cycles: int
+
+    def to_json(self) -> dict[str, int]:
+        return {"cycles": 3 * self.cycles}
+
+    def variables(self) -> dict[str, Variable]:
+        return {"cycles": variable((), 2.0 * self.cycles, "1", "cycles")}
+
+
+@dataclass(frozen=True)
+class Curve:
+    """A record with an axis of its own."""
+
+    speed: Annotated[Array, Q("rad s-1", "speed", over=("speed",))]
+    size: Annotated[Array, Q("m", "size", over=("speed",))]
+    left_out: Annotated[Array, Q("m", "left out", over=("speed",))]
+
+
+@dataclass(frozen=True)
+class Row:
+    """One of several."""
+
+    gain: Annotated[float, Q("1", "gain")]
+    path: Annotated[Array, Q("m", "path", over=("speed",), variable="path")]
+    poles: Annotated[Array, Q("s-1", "poles", over=("pole",), data=False)]
+
+
+@dataclass(frozen=True)
+class Whole(Answer):
+    """An answer with one of each."""
+
+    command = "whole"
+
+    speed: Annotated[Array, Q("rad s-1", "speed", over=("speed",))]
+    deflection: Annotated[Complex, Q("m", "deflection", over=("speed",), axes=("along", "ahead"))]
+    state: Annotated[Array, Q(name="state", over=("speed",), flags="wet unknown dry")]
+    ratio: Annotated[float, Q("1", "ratio", variable="share")]
+    motion: Annotated[Motion | None, Q(part=True)]
+    drawn: Annotated[Drawn | None, Q(part=True)]
+    gap: Annotated[float | None, Q("m", "gap", when="gap")]
+    refined: Annotated[Curve | None, Q(prefix="curve", only=("speed", "size"))]
+    rows: Annotated[tuple[Row, ...], Q(rows="row")]
+    notes: Annotated[tuple[Note, ...], Q(text="what a reader must know", data=False)]
+
+    def blocks(self) -> tuple[()]:
+        return ()
+
+
+@pytest.fixture(autouse=True)
+def read_anew(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Declarations are kept by class; a mutant must read them itself."""
+    monkeypatch.setattr("leblanc.core.quantities._FOUND", {})
+
+
+def whole() -> Whole:
+    """Every way to declare, each with numbers of its own."""
+    return Whole(
+        speed=TWO,
+        deflection=np.array([1 + 2j, complex(math.nan, 5.0)]),
+        state=np.array(["wet", "dry"]),
+        ratio=0.5,
+        motion=Motion(3.0 * TWO, 4.0 * TWO),
+        drawn=Drawn(7),
+        gap=0.25,
+        refined=Curve(np.arange(3.0), 5.0 * np.arange(3.0), np.zeros(3)),
+        rows=(Row(0.5, 6.0 * TWO, np.zeros(1)), Row(0.7, 8.0 * TWO, np.zeros(2))),
+        notes=(Note(Code.ONE, {}, "Mind the gap."),),
+    )
+
+
+@kills(f"{AT}:_declared", "(each.key or name,", "(name,")
+@kills(f"{AT}:to_json", "only and key not in only", "False")
+@kills(f"{AT}:plain", "return value.text", "return str(value.code)")
+def test_json_has_each_quantity_once_under_its_public_name() -> None:
+    assert whole().to_json() == {
+        "speed": [1.0, 2.0],
+        "deflection": [[1.0, 2.0], [None, None]],
+        "state": ["wet", "dry"],
+        "ratio": 0.5,
+        "lean": [3.0, 6.0],
+        "size": [4.0, 8.0],
+        "cycles": 21,
+        "gap": 0.25,
+        "refined": {"speed": [0.0, 1.0, 2.0], "size": [0.0, 5.0, 10.0]},
+        "rows": [
+            {"gain": 0.5, "path": [6.0, 12.0], "poles": [0.0]},
+            {"gain": 0.7, "path": [8.0, 16.0], "poles": [0.0, 0.0]},
+        ],
+        "notes": ["Mind the gap."],
+    }
+
+
+@kills(f"{AT}:_with_parts", 'f"{q.prefix}_{dim}" if dim in own', "dim if dim in own")
+@kills(f"{AT}:_with_parts", "each.q.variable or ", "")
+@kills(f"{AT}:_with_parts", "(q.rows, *each.q.over)", "(*each.q.over, q.rows)")
+@kills(f"{AT}:_variables", "complex(math.nan, math.nan), values)", "values, values)")
+@kills(f"{AT}:_variables", "+ 2 - len(meanings)", "+ 0")
+def test_variables_have_names_units_and_dimensions() -> None:
+    found = named_arrays(whole())
+    everything = found.arrays | found.coords
+    assert {name: one.dims for name, one in everything.items()} == {
+        "speed": ("speed",),
+        "curve_speed": ("curve_speed",),
+        **dict.fromkeys(("deflection_real", "deflection_imag", "state", "lean", "size"), ("speed",)),
+        **dict.fromkeys(("share", "cycles", "gap"), ()),
+        "curve_size": ("curve_speed",),
+        "row_gain": ("row",),
+        "path": ("row", "speed"),
+    }
+    assert set(found.coords) == {"speed", "curve_speed"}
+    np.testing.assert_array_equal(everything["path"].values, [6.0 * TWO, 8.0 * TWO])
+    np.testing.assert_array_equal(everything["deflection_imag"].values, [2.0, math.nan])
+    assert everything["state"].values.tolist() == [-1, 1]
+    assert everything["cycles"].values == 14.0 and everything["curve_speed"].values.size == 3
+
+
+@kills(f"{AT}:_of", "if not each.q.when or", "if True or")
+def test_what_is_not_there_is_left_out() -> None:
+    bare = replace(whole(), gap=None, refined=None, motion=None, drawn=None, rows=())
+    assert {"gap", "refined", "lean", "size", "cycles"}.isdisjoint(bare.to_json())
+    found = named_arrays(bare)
+    assert {*found.arrays, *found.coords} == {"speed", "deflection_real", "deflection_imag", "state", "share"}
+
+
+@kills(f"{AT}:reached", "return None", "continue")
+def test_quantities_of_parts_are_the_answer_s() -> None:
+    """By their public names; None where the answer has no such part, an error where nothing declares them."""
+    answer = whole()
+    np.testing.assert_array_equal(answer.size, 4.0 * TWO)
+    assert getattr(replace(answer, motion=None), "size", "lost") is None
+    assert {"lean", "size", "ratio"} <= names(Whole) and {"lean", "size"} <= set(dir(answer))
+    assert quantities(Motion)["size"].text == "zero to peak"
+    with pytest.raises(AttributeError, match="'Whole' object has no attribute 'breadth'"):
+        answer.breadth  # noqa: B018
+
+
+def test_what_has_no_form_in_json_is_refused() -> None:
+    with pytest.raises(TypeError, match="object has no form in JSON"):
+        plain(object())
