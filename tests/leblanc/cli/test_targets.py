@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -79,6 +80,9 @@ def idle(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     def work(*_: object, **__: object) -> None:
         pytest.fail("the work was begun")
 
+    # All are loaded first: a module that is loaded later would keep the work of another that is put aside here.
+    for name in WORK:
+        import_module(name.rpartition(".")[0])
     for name in WORK:
         monkeypatch.setattr(name, work)
     monkeypatch.chdir(tmp_path)
