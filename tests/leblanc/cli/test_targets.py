@@ -80,7 +80,7 @@ def idle(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     def work(*_: object, **__: object) -> None:
         pytest.fail("the work was begun")
 
-    # All are loaded first: a module that is loaded later would keep the work of another that is put aside here.
+    # All are loaded first: one loaded later would keep what stands here in place of the work of another.
     for name in WORK:
         import_module(name.rpartition(".")[0])
     for name in WORK:
