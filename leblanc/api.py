@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 from leblanc.core.question import called
 from leblanc.registry import answerer
-from leblanc.scene.scene import Scene, dry_rotor, load_scene
+from leblanc.scene.scene import Scene, dry_rotor, scene_of
 from meshes.errors import InputError
 
 if TYPE_CHECKING:
@@ -80,7 +80,7 @@ def run(
     """
     if workers < 1:
         raise InputError("workers", workers, "1 or more")
-    machine = _scene(scene)
+    machine = scene_of(scene)
     if (address := answerer("run", machine.rotor.kind)) is not None:
         answer: Answer = called(address)(machine)
         return answer
@@ -116,7 +116,7 @@ def explain(
     >>> lb.explain(lb.example("horizontal_rig")).critical_speed_dry > 0.0
     True
     """
-    machine = _scene(scene)
+    machine = scene_of(scene)
     if (address := answerer("explain", machine.rotor.kind)) is not None:
         answer: Answer = called(address)(machine)
         return answer
@@ -171,7 +171,7 @@ def run_up(
 
     if workers < 1:
         raise InputError("workers", workers, "1 or more")
-    return runup_scene(_scene(scene), cells, samples, check, progress, frames, ensemble, seed, workers)
+    return runup_scene(scene_of(scene), cells, samples, check, progress, frames, ensemble, seed, workers)
 
 
 def map_whirl(
@@ -205,7 +205,7 @@ def map_whirl(
     >>> lb.map_whirl(lb.example("horizontal_rig"), volumes=3, speeds=5).growth.shape
     (3, 5)
     """
-    machine = _scene(scene)
+    machine = scene_of(scene)
     from leblanc.core.units import VOLUME, parse_option
     from leblanc.questions import friction_of
     from leblanc.studies.whirl_map import map_scene
@@ -251,7 +251,7 @@ def map_balls(
     >>> chart.growing[-1].tolist()  # beyond what two balls hold
     [-1, -1, -1, -1, -1, -1, -1, -1, -1]
     """
-    machine = _scene(scene)
+    machine = scene_of(scene)
     from leblanc.studies.races.chart import chart_scene
 
     paths = (over,) if isinstance(over, str) else tuple(over)
@@ -310,7 +310,7 @@ def optimise(
     >>> bool(best.value < best.baseline)
     True
     """
-    machine = _scene(scene)
+    machine = scene_of(scene)
     from leblanc.questions import optimisation_of, require_no_emulator
     from leblanc.studies.optimise.balls.search import optimise_balls
     from leblanc.studies.optimise.emulated import emulated_vibration
@@ -349,7 +349,7 @@ def compare(scene: SceneOrPath, models: Sequence[str]) -> Comparison:
     >>> lb.compare(lb.example("horizontal_rig"), models=["statics", "linear"]).models
     ('statics', 'linear')
     """
-    machine = _scene(scene)
+    machine = scene_of(scene)
     from leblanc.studies.compare import compare_models
 
     with _keywords():
@@ -400,7 +400,7 @@ def fit(
     >>> round(answer.parameters["rotor.mass"]["value"], 3)
     4.0
     """
-    machine = _scene(scene)
+    machine = scene_of(scene)
     from leblanc.studies.fit import fit_scene
     from leblanc.studies.fitting.measured import read_measured
     from leblanc.studies.fitting.problem import require_scale
@@ -576,11 +576,6 @@ def modes(
     with _keywords():
         question = ask(modes_question, given)
         return answer_modes(**question)
-
-
-def _scene(scene: SceneOrPath) -> Scene:
-    """The scene itself, or the one in that file."""
-    return scene if isinstance(scene, Scene) else load_scene(scene)
 
 
 @contextmanager

@@ -369,6 +369,13 @@ def _holds(table: object, path: str) -> bool:
     return True
 
 
+def scene_of(scene: Scene | str | PathLike[str], field: str = "scene") -> Scene:
+    """A scene itself, or the one in that file; an `InputError` names the field of anything else."""
+    if not isinstance(scene, Scene | str | PathLike):
+        raise InputError(field, type(scene).__name__, "a Scene or the path of its file")
+    return scene if isinstance(scene, Scene) else load_scene(scene)
+
+
 def load_scene(path: str | PathLike[str]) -> Scene:
     """Scene from a TOML file.
 
