@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from leblanc.results.explanation import Explanation
     from leblanc.results.fit import FitResult
     from leblanc.results.layer import FreeWaveResult, LayerPeriodsResult, LayerResult
-    from leblanc.results.liquid import ModesResult
     from leblanc.results.machine.layout import LayoutResult
     from leblanc.results.magnetic.control import MagneticResult
     from leblanc.results.magnetic.explanation import MagneticExplanation
@@ -540,57 +539,6 @@ def layer(
         if question.duration is None:
             return answer_layer(**question.whirl)
         return layer_history(**question.whirl, duration=question.duration, ramp=question.ramp)
-
-
-def modes(
-    *,
-    radius: Quantity,
-    volume: Quantity,
-    height: Quantity,
-    speed: Quantity,
-    count: int = 12,
-    baffles: int = 0,
-    baffle_tip_radius: Quantity = 0.0,
-    baffle_wall_gap: Quantity = 0.0,
-    mesh: str | PathLike[str] | None = None,
-    mesh_unit: Quantity | None = None,
-    mesh_size: Quantity | None = None,
-    liquid: str | Liquid = "water",
-    segments: int = 96,
-    layers: int = 6,
-    order: int = 2,
-) -> ModesResult:
-    """Natural frequencies, damping and shapes of the liquid in a chamber of any section.
-
-    Parameters
-    ----------
-    radius, height : of the chamber, m
-    volume : of the liquid, m^3
-    speed : of the spin, rad/s
-    count : how many modes, the slowest first
-    baffles, baffle_tip_radius, baffle_wall_gap : how many, and their edges from the axis and the wall, m
-    mesh, mesh_unit, mesh_size : file of a section, length of its unit and of the cells at its walls, m
-    liquid : a known name, or a `leblanc.Liquid`; for the damping
-    segments, layers, order : cells around and across the liquid at least, order of the elements
-
-    Raises
-    ------
-    InputError : a value out of its range, a file that cannot be used
-
-    Examples
-    --------
-    >>> import leblanc as lb
-    >>> found = lb.modes(radius=0.15, volume="671 ml", height=0.05, speed=40.0, count=2, segments=32)
-    >>> found.frequency.shape
-    (2,)
-    """
-    given = locals()
-    from leblanc.questions import ask, modes_question
-    from leblanc.studies.modes import answer_modes
-
-    with _keywords():
-        question = ask(modes_question, given)
-        return answer_modes(**question)
 
 
 def _scene(scene: SceneOrPath) -> Scene:

@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from inspect import signature
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from fluid.fill import Fill
@@ -32,7 +31,6 @@ from meshes.errors import InputError
 
 if TYPE_CHECKING:
     from leblanc.studies.models.whirling import AutoWave
-    from leblanc.studies.modes import SectionSource
     from solvers.liquid_model import WaveModel
 
 Quantity = str | float
@@ -186,50 +184,6 @@ def _layer_model(
     return AutoWave(friction, cells, dispersion, TOLERANCE if tolerance is None else tolerance)
 
 
-def modes_question(
-    *,
-    radius: Quantity,
-    volume: Quantity,
-    height: Quantity,
-    speed: Quantity,
-    count: int = 12,
-    baffles: int = 0,
-    baffle_tip_radius: Quantity = 0.0,
-    baffle_wall_gap: Quantity = 0.0,
-    mesh: str | Path | None = None,
-    mesh_unit: Quantity | None = None,
-    mesh_size: Quantity | None = None,
-    liquid: str | Liquid = "water",
-    segments: int = 96,
-    layers: int = 6,
-    order: int = 2,
-) -> dict[str, Any]:
-    """The question of `modes`, by the names of `leblanc.studies.modes.answer_modes`.
-
-    The parameters are those of `leblanc.api.modes`.
-
-    Raises
-    ------
-    InputError : a value that cannot be read, or is out of its range
-    """
-    from leblanc.studies.modes import Resolution  # brings the finite elements, which no other question needs
-
-    chamber = Chamber(
-        parse_option(radius, LENGTH, "--radius"),
-        parse_option(height, LENGTH, "--height"),
-        baffles=baffle_plates(baffles, baffle_tip_radius, baffle_wall_gap),
-    )
-    return {
-        "chamber": chamber,
-        "volume": parse_option(volume, VOLUME, "--volume"),
-        "liquid": liquid_of(liquid),
-        "speed": parse_option(speed, ANGULAR_SPEED, "--speed"),
-        "count": count,
-        "resolution": Resolution(segments, layers, order),
-        "source": _source(mesh, mesh_unit, mesh_size),
-    }
-
-
 def optimisation_of(
     scene: Scene,
     objective: str | None = None,
@@ -307,21 +261,3 @@ def baffle_plates(count: int, tip_radius: Quantity, wall_gap: Quantity) -> Baffl
     if tip != 0.0 or gap != 0.0:
         raise InputError("--baffles", count, "1 or more where their edges are given")
     return None
-
-
-def _source(mesh: str | Path | None, unit: Quantity | None, size: Quantity | None) -> SectionSource | None:
-    """File of a section, None without one."""
-    if mesh is None:
-        for name, value in (("--mesh-unit", unit), ("--mesh-size", size)):
-            if value is not None:
-                raise InputError(name, value, "left out without --mesh")
-        return None
-    from leblanc.studies.modes import SectionSource
-
-    if isinstance(unit, str) and unit.strip()[:1].isalpha():
-        unit = f"1 {unit}"  # the unit by its name alone
-    return SectionSource(
-        Path(mesh),
-        None if unit is None else parse_option(unit, LENGTH, "--mesh-unit"),
-        None if size is None else parse_option(size, LENGTH, "--mesh-size"),
-    )

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from leblanc.scene.scene import Scene
 
 _OUT = "Folder for the files [default: out/<scene name>]."
+_ONLY_OUT = "Folder for the figure; without it none is written."
 _JSON = "Print one JSON object instead of words."
 
 
@@ -36,7 +37,8 @@ def command(question: Callable[..., Any]) -> Callable[..., None]:
     files: tuple[str, ...] = getattr(sys.modules[question.__module__], "FILES", ())
     options = [_typed(one) for one in asked.values()]
     if files:
-        options.append(_parameter("out", Path | None, typer.Option(help=_OUT), None))
+        help_of_out = _OUT if "scene" in asked else _ONLY_OUT
+        options.append(_parameter("out", Path | None, typer.Option(help=help_of_out), None))
     options.append(_parameter("json", bool, typer.Option("--json", help=_JSON), False))
 
     def run(json: bool, out: Path | None = None, **given: Any) -> None:
@@ -75,14 +77,16 @@ def finish(
 
     Faults name `where` they are; `line` is the command that makes the answer again.
     """
-    if folder is not None:
-        write(answer, folder, machine, line)
+    drawn = [] if folder is None else write(answer, folder, machine, line)
     if json:
         print_json(answer.to_json())
     else:
         show(answer.blocks())
-        if folder is not None:
+        if folder is not None and (answer.page or answer.data):
             print(_closing(answer, folder))
+    if not (answer.page or answer.data):
+        for one in drawn:
+            say(f"wrote {one.png}")
     if answer.interrupted:
         raise KeyboardInterrupt
     if answer.failed:
@@ -138,8 +142,8 @@ def _command_line(name: str, asked: Sequence[Asked], given: Mapping[str, Any]) -
     return " ".join(map(shlex.quote, parts))
 
 
-def write(answer: Answer, folder: Path, machine: Scene | None = None, line: str = "") -> None:
-    """All files of an answer: data, pictures, report."""
+def write(answer: Answer, folder: Path, machine: Scene | None = None, line: str = "") -> list[Any]:
+    """All files of an answer: data, pictures, report; those of the pictures."""
     from leblanc.core.blocks import Picture, flat
     from leblanc.core.netcdf import write_netcdf
     from leblanc.core.page import write_page
@@ -154,6 +158,7 @@ def write(answer: Answer, folder: Path, machine: Scene | None = None, line: str 
 
         what = about(machine, line, answer.data, answer.task, answer.unused)
         write_page(answer.title, answer.blocks(), what, figures, folder / answer.page)
+    return list(figures.values())
 
 
 def _drawn(answer: Answer, picture: Any, folder: Path) -> Any:

@@ -14,6 +14,7 @@ from typing import Annotated, Any, get_args, get_origin
 import numpy as np
 
 from leblanc.core.netcdf import NamedArrays, Variable, flags, variable
+from leblanc.core.notes import Note
 from meshes.quantity import Q
 
 
@@ -50,7 +51,8 @@ def _declared(kind: type) -> _Declared:
         written: dict[str, Any] = dict(vars(base).get("__annotations__", {}))
         for name, value in vars(base).items():
             if isinstance(value, property) and value.fget is not None:
-                written[name] = value.fget.__annotations__.get("return", "")
+                said_of = getattr(value.fget, "__annotations__", {})  # none of what `carried` makes
+                written[name] = said_of.get("return", "")
         names = _Names(vars(sys.modules[base.__module__]))
         for name, hint in written.items():
             said: Any = eval(hint, {}, names) if isinstance(hint, str) and "Q(" in hint else hint
@@ -63,7 +65,7 @@ def _declared(kind: type) -> _Declared:
 
 
 def plain(value: Any) -> Any:
-    """A value as JSON knows it: complex numbers as [re, im], None for what is not finite, records by name."""
+    """A value as JSON knows it: complex numbers as [re, im], None for what is not finite, notes as texts."""
     if value is None or isinstance(value, str | bool | int):
         return value
     if isinstance(value, float):
@@ -74,6 +76,8 @@ def plain(value: Any) -> Any:
         return {str(key): plain(each) for key, each in value.items()}
     if isinstance(value, list | tuple):
         return [plain(each) for each in value]
+    if isinstance(value, Note):
+        return value.text
     if is_dataclass(value) and not isinstance(value, type):
         return to_json(value)
     if hasattr(value, "tolist"):  # arrays and their scalars
@@ -125,6 +129,8 @@ def _with_parts(record: Any) -> Iterator[tuple[str, Q, Any]]:
 
 
 def _variables(name: str, q: Q, value: Any) -> dict[str, Variable]:
+    if q.over and isinstance(value, tuple):  # with None for what is not there
+        value = np.array([math.nan if one is None else one for one in value])
     if q.flags:
         return {name: flags(q.over, np.asarray(value), q.flags, q.name, q.text)}
     if q.axes is None:

@@ -25,7 +25,7 @@ WORK = (
     "leblanc.studies.layer.answer_layer",
     "leblanc.studies.layer.layer_history",
     "leblanc.studies.layer.layer_film",
-    "leblanc.studies.modes.answer_modes",
+    "leblanc.studies.modes.study.answer_modes",
     "leblanc.studies.whirl_map.map_scene",
     "leblanc.studies.runup.runup_scene",
     "leblanc.studies.optimise.optimise.optimise_scene",
