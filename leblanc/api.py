@@ -21,11 +21,9 @@ from meshes.errors import InputError
 
 if TYPE_CHECKING:
     from fluid.friction.laws import Friction
-    from fluid.liquid import Liquid
     from leblanc.questions import Quantity
     from leblanc.results.explanation import Explanation
     from leblanc.results.fit import FitResult
-    from leblanc.results.layer import FreeWaveResult, LayerPeriodsResult, LayerResult
     from leblanc.results.machine.layout import LayoutResult
     from leblanc.results.magnetic.control import MagneticResult
     from leblanc.results.magnetic.explanation import MagneticExplanation
@@ -464,81 +462,6 @@ def sweep(
     folder = out_dir(plan.name, None if out is None else Path(out))
     with _keywords():
         return sweep_result(plan, folder, workers, scheduler, fresh, progress)
-
-
-def layer(
-    *,
-    radius: Quantity,
-    volume: Quantity,
-    height: Quantity,
-    speed: Quantity,
-    whirl_speed: Quantity | None = None,
-    whirl_amplitude: Quantity | None = None,
-    model: str = "linear",
-    cells: int | None = None,
-    baffles: int = 0,
-    baffle_tip_radius: Quantity = 0.0,
-    baffle_wall_gap: Quantity = 0.0,
-    dispersion: bool = False,
-    friction: str | Friction = "none",
-    gravity: Quantity = 0.0,
-    liquid: str | Liquid = "water",
-    duration: Quantity | None = None,
-    ramp: Quantity = 0.0,
-    solver: str | None = None,
-    free: float | None = None,
-    mode: int | None = None,
-    tolerance: float | None = None,
-) -> LayerResult | LayerPeriodsResult | FreeWaveResult:
-    """Force and centre of mass of a liquid layer under a prescribed whirl, in the plane; or its free wave.
-
-    Parameters
-    ----------
-    radius, height : of the chamber, m
-    volume : of the liquid, m^3
-    speed, whirl_speed : of the spin and of the whirl in space, rad/s; the second left out where gravity alone
-        drives
-    whirl_amplitude : radius of the whirl, m; none under gravity if left out
-    model : statics, linear, long_wave, kdv, fem or potential; auto takes the cheapest that is good enough
-    cells : round the wall; 256 for long_wave, 96 for fem if None; of potential at most as many from crest to
-        trough, 432 if None, and in time round the wall, 2048 if None
-    baffles : number of radial baffles, for fem
-    baffle_tip_radius, baffle_wall_gap : of their edges from the axis and from the wall, m
-    dispersion : exact linear dispersion, for long_wave and kdv
-    friction : none, stokes, wall[:ROUGHNESS], linear:RATE or quadratic:NUMBER
-    gravity : across the axis, m/s^2
-    liquid : a known name, or a `leblanc.Liquid`
-    duration : start from rest and answer period by period, s; for long_wave and potential
-    ramp : time over which the whirl grows, with a duration, s
-    solver : of py-pde, as runge-kutta or scipy, in place of finite_volume (long_wave), steady_newton (kdv)
-    free : depth at the crest over the mean depth of the free wave asked for, in place of a whirl, by linear
-        or potential
-    mode : its crests round the drum, 1 if None
-    tolerance : of auto, error of the force that is allowed, relative; 0.01 if None
-
-    Raises
-    ------
-    InputError : a value out of its range, or one that the model does not serve
-
-    Examples
-    --------
-    >>> import leblanc as lb
-    >>> found = lb.layer(radius="150 mm", volume="671 ml", height="50 mm", speed=40.0, whirl_speed=32.0,
-    ...                  whirl_amplitude="0.15 mm")
-    >>> found.converged
-    True
-    """
-    given = locals()
-    from leblanc.questions import ask, layer_question
-    from leblanc.studies.layer import answer_layer, free_wave, layer_history
-
-    with _keywords():
-        question = ask(layer_question, given)
-        if question.free is not None:
-            return free_wave(**question.free)
-        if question.duration is None:
-            return answer_layer(**question.whirl)
-        return layer_history(**question.whirl, duration=question.duration, ramp=question.ramp)
 
 
 def _scene(scene: SceneOrPath) -> Scene:

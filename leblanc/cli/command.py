@@ -16,7 +16,7 @@ from leblanc.core.answer import Answer, NotConverged
 from leblanc.core.contents import results_dir
 from leblanc.core.files import out_dir, path_text
 from leblanc.core.progress import working
-from leblanc.core.question import SCENE, Asked, called, parameters
+from leblanc.core.question import SCENE, Asked, called, parameters, read
 from leblanc.core.terminal import print_json, say, show
 from meshes.errors import InputError
 
@@ -31,9 +31,13 @@ _JSON = "Print one JSON object instead of words."
 def command(question: Callable[..., Any]) -> Callable[..., None]:
     """The command of a question: its parameters as arguments and options, its answer in words or as JSON.
 
-    The module of the question may name the `FILES` that its answer writes, the last being the data.
+    The module of the question may name the `FILES` that its answer writes, the last being the data, and have
+    a function `present` of the answer and of further options, which gives back what is shown.
     """
-    asked = {one.name: one for one in parameters(question)}
+    own = {one.name: one for one in parameters(question)}
+    present: Callable[..., Any] | None = getattr(sys.modules[question.__module__], "present", None)
+    more = {one.name: one for one in list(parameters(present))[1:]} if present else {}
+    asked = own | more
     files: tuple[str, ...] = getattr(sys.modules[question.__module__], "FILES", ())
     options = [_typed(one) for one in asked.values()]
     if files:
@@ -50,13 +54,15 @@ def command(question: Callable[..., Any]) -> Callable[..., None]:
                 folder = results_dir(machine.name, out, source, machine.digest, *files)
         elif out is not None:
             folder = out_dir(question.__name__, out)
-        values = {name: _value(asked[name], value) for name, value in given.items()}
+        values = {name: _value(own[name], given[name]) for name in own}
         with working("preparing"):
             try:
+                shown = read(present, {name: given[name] for name in more}) if present else {}
                 answer: Answer = question(**values | ({} if machine is None else {"scene": machine}))
+                answer = present(answer, **shown) if present else answer
             except InputError as error:
                 raise _of_option(error, given) from error
-        line = _command_line(question.__name__, list(asked.values()), given)
+        line = _command_line(question.__name__, list(own.values()), given)
         finish(answer, where, json, folder, machine, line)
 
     run.__doc__ = (question.__doc__ or "").partition("\n")[0]

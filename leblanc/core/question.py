@@ -87,6 +87,8 @@ def read(question: Callable[..., Any], given: Mapping[str, Any]) -> dict[str, An
     """Values by the names of a question's parameters, each read as its type says."""
     values = dict(given)
     for one in parameters(question):
+        if one.name not in given:
+            continue
         if isinstance(one.read, Reader):
             values[one.name] = called(one.read.address)(values[one.name], one.name)
         elif one.read is not None and values[one.name] is not None:

@@ -15,7 +15,6 @@ _HOMES = {
     **dict.fromkeys(
         ("amplitude_figure", "campbell_figure", "liquid_figure", "phase_figure", "write_figures"), "response"
     ),
-    **dict.fromkeys(("animate", "history_figure", "wave_figure"), "wave"),
     "chamber_figure": "chambers",
 }
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import cmath
 import math
+import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from leblanc.core.files import path_of, require_writable
 from leblanc.core.notes import one_line
 from leblanc.core.units import DEGREE, LENGTH, MINUS, MM, RPM, TIMES, with_unit
 from leblanc.figures.drawing.page import (
@@ -28,7 +30,8 @@ from leblanc.figures.drawing.page import (
 )
 from leblanc.figures.response import STRIP
 from leblanc.results.drawn.machine import FILLED, LARGEST_FACTOR, rounded_down
-from leblanc.results.layer import FreeWaveResult, LayerPeriodsResult, LayerResult, Wave, WaveFrames
+from leblanc.studies.layer.answer import FreeWaveAnswer, LayerAnswer, PeriodsAnswer
+from leblanc.studies.layer.wave import Wave, WaveFrames
 from meshes.arrays import Array
 
 RAYS = 721  # half a degree apart, closed
@@ -643,6 +646,15 @@ def history_figure(wave: Wave, history: WaveFrames) -> Figure:
     return figure
 
 
+def film_path(given: str | os.PathLike[str] | None, name: str) -> Path | None:
+    """Where a film goes, tried before the work; None without one."""
+    path = path_of(given, name)
+    if path is not None:
+        require_film(path)
+        require_writable(path)
+    return path
+
+
 def animate(
     wave: Wave, history: WaveFrames, path: Path, drawn: Callable[[int, int], None] | None = None
 ) -> int:
@@ -695,12 +707,12 @@ def _beside(figure: Figure, left: Axes, right: Axes, frame: Frame, caption: str)
     left.set_position((place.x0 - ASIDE / WIDTH, place.y0, place.width, place.height))
 
 
-def layer_figure(result: LayerResult | FreeWaveResult) -> Figure:
+def layer_figure(result: LayerAnswer | FreeWaveAnswer) -> Figure:
     """The main figure of a layer's answer."""
     return wave_figure(result.wave())
 
 
-def periods_figure(result: LayerPeriodsResult) -> Figure:
+def periods_figure(result: PeriodsAnswer) -> Figure:
     """Force on the drum and mean rotation over the whirl periods of a layer that starts from rest."""
     h, model = result.history, result.case.model
     with style():
