@@ -85,7 +85,7 @@ def layer(
 
 
 def present(
-    answer: AnyLayerAnswer,
+    answer: Any,
     *,
     profile: Annotated[bool, Option(("--profile",)), "Add the depth around the wall."] = False,
     animate: Annotated[
