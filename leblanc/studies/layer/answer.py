@@ -26,6 +26,7 @@ from meshes.quantity import Q
 from solvers.liquid_history import LayerHistory
 
 VALIDITY_HEAD = ("The model rests on", "value", "holds for", "that is")
+GAP = Words("", shown="text")  # a line between tables
 MOST_ANGLES = 24  # of a profile on a terminal
 _HELP = {
     "statics": "less liquid or a smaller whirl may help",
@@ -134,8 +135,8 @@ class _Layered(Answer):
         return () if self.converged else (f"{reason}; {_HELP[self.case.model]}",)
 
     def to_json(self) -> dict[str, Any]:
-        found = super().to_json()
-        return found if self.profile else {name: found[name] for name in found.keys() - {"theta", "depth"}}
+        left_out = () if self.profile else ("theta", "depth")
+        return {name: value for name, value in super().to_json().items() if name not in left_out}
 
     @property
     def about(self) -> str:
@@ -157,7 +158,8 @@ class _Layered(Answer):
         return (
             Words(self.about),
             Table(self.facts()),
-            *self.tables(),
+            *(block for table in self.tables() if table.rows for block in (GAP, table)),
+            GAP,
             Table(validity_rows(self.validity), VALIDITY_HEAD),
             Notes(texts(self.notes)),
             *self.pictures(),
