@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from leblanc.core.units import LENGTH, MM, MM_PEAK, RPM, unit_for
+from leblanc.figures import wave
 from leblanc.figures.drawing.page import (
     FILM_DPI,
     RIGHT,
@@ -25,7 +26,6 @@ from leblanc.figures.runup import caption
 from leblanc.results.base import FilledChamber
 from leblanc.results.drawn.machine import film_factor, pool
 from leblanc.results.runup import RunupFrames, RunupResult
-from leblanc.studies.layer import figure as wave
 from meshes.arrays import Array
 
 Axes = Any  # matplotlib's, which no module that only draws imports

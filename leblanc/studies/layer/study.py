@@ -17,6 +17,7 @@ from fluid.liquid import Liquid
 from leblanc.core.notes import Note
 from leblanc.core.progress import update
 from leblanc.core.terminal import say
+from leblanc.results.drawn.wave import Wave, WaveFrames
 from leblanc.results.notes.baffles import smeared_baffles
 from leblanc.results.notes.layer import (
     LayerCode,
@@ -41,7 +42,6 @@ from leblanc.studies.layer.answer import (
     PeriodsAnswer,
     drawn_depth,
 )
-from leblanc.studies.layer.wave import Wave, WaveFrames
 from leblanc.studies.models.liquid import wave_model
 from leblanc.studies.models.validity import judge
 from leblanc.studies.models.whirling import (

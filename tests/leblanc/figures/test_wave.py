@@ -16,9 +16,8 @@ from matplotlib.transforms import Bbox
 from PIL import Image
 
 from leblanc import figures
-from leblanc.studies.layer import figure as wave
-from leblanc.studies.layer import figure as wave_page
-from leblanc.studies.layer.wave import Wave, WaveFrames
+from leblanc.figures import wave, wave_page
+from leblanc.results.drawn.wave import Wave, WaveFrames
 from meshes.errors import InputError
 from tests.leblanc.figures.test_wave_values import (
     R,

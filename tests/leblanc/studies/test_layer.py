@@ -274,7 +274,7 @@ def test_long_wave_that_leaves_its_range_is_exit_code_3(capsys: pytest.CaptureFi
 @pytest.fixture
 def short_films(monkeypatch: pytest.MonkeyPatch) -> None:
     """Films of a few frames: every frame is drawn alike, and drawing takes the time."""
-    monkeypatch.setattr("leblanc.studies.layer.figure.MOST_FRAMES", 12)
+    monkeypatch.setattr("leblanc.figures.wave.MOST_FRAMES", 12)
 
 
 @pytest.mark.usefixtures("short_films")
