@@ -443,7 +443,7 @@ def shape_of(case: LayerCase) -> dict[str, Any]:
 
 def validity_rows(numbers: tuple[Number, ...]) -> list[tuple[str, ...]]:
     """Dimensionless numbers, each with the range of the model: cells of `VALIDITY_HEAD`."""
-    rows = []
+    rows: list[tuple[str, ...]] = []
     for entry in numbers:
         most, least = math.inf if entry.most is None else entry.most, entry.least or 0.0
         allowed = f"at least {number(least)}" if math.isinf(most) else f"{number(least)} to {number(most)}"

@@ -360,6 +360,7 @@ def layer_history(
     whirl = _driven(Whirl(speed, whirl_speed, whirl_amplitude, ramp, gravity))
     choice, exact = _in_time(model, fill, whirl), None
     chosen = choice.model
+    wave: LiquidWave
     if isinstance(chosen, Potential):
         from solvers.potential.histories import simulate as exact_simulate
 

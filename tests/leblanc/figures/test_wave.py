@@ -16,7 +16,8 @@ from matplotlib.transforms import Bbox
 from PIL import Image
 
 from leblanc import figures
-from leblanc.figures import wave, wave_page
+from leblanc.figures import wave
+from leblanc.figures import wave as wave_page
 from leblanc.results.drawn.wave import Wave, WaveFrames
 from meshes.errors import InputError
 from tests.leblanc.figures.test_wave_values import (

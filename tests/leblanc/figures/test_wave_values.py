@@ -9,7 +9,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.markers import MarkerStyle
 
-from leblanc.figures import wave, wave_time
+from leblanc.figures import wave
+from leblanc.figures import wave as wave_time
 from leblanc.results.drawn.wave import Wave, WaveFrames
 
 R, SURFACE, SPIN = 0.15, 0.135, 40.0
