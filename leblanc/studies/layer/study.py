@@ -16,6 +16,7 @@ from fluid.friction.laws import Friction
 from fluid.liquid import Liquid
 from leblanc.core.notes import Note
 from leblanc.core.progress import update
+from leblanc.core.question import called
 from leblanc.core.terminal import say
 from leblanc.results.drawn.wave import Wave, WaveFrames
 from leblanc.results.notes.baffles import smeared_baffles
@@ -152,8 +153,7 @@ def _told(share: float) -> None:
 def present(answer: AnyLayerAnswer, profile: bool, film: Path | None) -> AnyLayerAnswer:
     """The answer with its depth around the wall or without; its film is written."""
     if film is not None and (answer.converged or not isinstance(answer, FreeWaveAnswer)):
-        from leblanc.studies.layer.figure import animate
-
+        animate = called("leblanc.studies.layer.figure:animate")
         update(what="waves through time")
         wave, frames = free_film(answer) if isinstance(answer, FreeWaveAnswer) else layer_film(**answer.asked)
         update(what="drawing")
