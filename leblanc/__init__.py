@@ -15,10 +15,8 @@ if TYPE_CHECKING:
         compare,
         explain,
         fit,
-        layer,
         map_balls,
         map_whirl,
-        modes,
         optimise,
         run,
         run_up,
@@ -31,6 +29,8 @@ if TYPE_CHECKING:
     from leblanc.scene.schema.load import SceneError
     from leblanc.scene.spindle import Spindle
     from leblanc.studies.bearing import bearing
+    from leblanc.studies.layer import layer
+    from leblanc.studies.modes import modes
     from leblanc.studies.volume import volume
     from meshes.chamber import Chamber
     from meshes.errors import InputError
@@ -66,6 +66,7 @@ __all__ = [
 ]
 
 _API = "leblanc.api"
+_QUESTIONS = ("bearing", "layer", "modes", "volume")  # each in a package of its name
 # Where each public name lives: its module, and its name there.
 _HOMES = {
     "Chamber": ("meshes.chamber", "Chamber"),
@@ -80,13 +81,13 @@ _HOMES = {
     "Spindle": ("leblanc.scene.spindle", "Spindle"),
     "TubRotor": ("leblanc.scene.rotors", "TubRotor"),
     "TwoPlaneRotor": ("leblanc.scene.rotors", "TwoPlaneRotor"),
-    **{name: (f"leblanc.studies.{name}", name) for name in ("bearing", "volume")},
+    **{name: (f"leblanc.studies.{name}", name) for name in _QUESTIONS},
     "example": ("leblanc.scene.examples", "example"),
     "load_scene": ("leblanc.scene.scene", "load_scene"),
     **{
         name: (_API, name)
         for name in __all__
-        if name.islower() and name not in ("bearing", "example", "load_scene", "volume")
+        if name.islower() and name not in (*_QUESTIONS, "example", "load_scene")
     },
 }
 

@@ -21,13 +21,10 @@ from meshes.errors import InputError
 
 if TYPE_CHECKING:
     from fluid.friction.laws import Friction
-    from fluid.liquid import Liquid
     from leblanc.core.answer import Answer
     from leblanc.questions import Quantity
     from leblanc.results.explanation import Explanation
     from leblanc.results.fit import FitResult
-    from leblanc.results.layer import FreeWaveResult, LayerPeriodsResult, LayerResult
-    from leblanc.results.liquid import ModesResult
     from leblanc.results.machine.layout import LayoutResult
     from leblanc.results.models.comparison import Comparison
     from leblanc.results.optimum import OptimumResult
@@ -450,132 +447,6 @@ def sweep(
     folder = out_dir(plan.name, None if out is None else Path(out))
     with _keywords():
         return sweep_result(plan, folder, workers, scheduler, fresh, progress)
-
-
-def layer(
-    *,
-    radius: Quantity,
-    volume: Quantity,
-    height: Quantity,
-    speed: Quantity,
-    whirl_speed: Quantity | None = None,
-    whirl_amplitude: Quantity | None = None,
-    model: str = "linear",
-    cells: int | None = None,
-    baffles: int = 0,
-    baffle_tip_radius: Quantity = 0.0,
-    baffle_wall_gap: Quantity = 0.0,
-    dispersion: bool = False,
-    friction: str | Friction = "none",
-    gravity: Quantity = 0.0,
-    liquid: str | Liquid = "water",
-    duration: Quantity | None = None,
-    ramp: Quantity = 0.0,
-    solver: str | None = None,
-    free: float | None = None,
-    mode: int | None = None,
-    tolerance: float | None = None,
-) -> LayerResult | LayerPeriodsResult | FreeWaveResult:
-    """Force and centre of mass of a liquid layer under a prescribed whirl, in the plane; or its free wave.
-
-    Parameters
-    ----------
-    radius, height : of the chamber, m
-    volume : of the liquid, m^3
-    speed, whirl_speed : of the spin and of the whirl in space, rad/s; the second left out where gravity alone
-        drives
-    whirl_amplitude : radius of the whirl, m; none under gravity if left out
-    model : statics, linear, long_wave, kdv, fem or potential; auto takes the cheapest that is good enough
-    cells : round the wall; 256 for long_wave, 96 for fem if None; of potential at most as many from crest to
-        trough, 432 if None, and in time round the wall, 2048 if None
-    baffles : number of radial baffles, for fem
-    baffle_tip_radius, baffle_wall_gap : of their edges from the axis and from the wall, m
-    dispersion : exact linear dispersion, for long_wave and kdv
-    friction : none, stokes, wall[:ROUGHNESS], linear:RATE or quadratic:NUMBER
-    gravity : across the axis, m/s^2
-    liquid : a known name, or a `leblanc.Liquid`
-    duration : start from rest and answer period by period, s; for long_wave and potential
-    ramp : time over which the whirl grows, with a duration, s
-    solver : of py-pde, as runge-kutta or scipy, in place of finite_volume (long_wave), steady_newton (kdv)
-    free : depth at the crest over the mean depth of the free wave asked for, in place of a whirl, by linear
-        or potential
-    mode : its crests round the drum, 1 if None
-    tolerance : of auto, error of the force that is allowed, relative; 0.01 if None
-
-    Raises
-    ------
-    InputError : a value out of its range, or one that the model does not serve
-
-    Examples
-    --------
-    >>> import leblanc as lb
-    >>> found = lb.layer(radius="150 mm", volume="671 ml", height="50 mm", speed=40.0, whirl_speed=32.0,
-    ...                  whirl_amplitude="0.15 mm")
-    >>> found.converged
-    True
-    """
-    given = locals()
-    from leblanc.questions import ask, layer_question
-    from leblanc.studies.layer import answer_layer, free_wave, layer_history
-
-    with _keywords():
-        question = ask(layer_question, given)
-        if question.free is not None:
-            return free_wave(**question.free)
-        if question.duration is None:
-            return answer_layer(**question.whirl)
-        return layer_history(**question.whirl, duration=question.duration, ramp=question.ramp)
-
-
-def modes(
-    *,
-    radius: Quantity,
-    volume: Quantity,
-    height: Quantity,
-    speed: Quantity,
-    count: int = 12,
-    baffles: int = 0,
-    baffle_tip_radius: Quantity = 0.0,
-    baffle_wall_gap: Quantity = 0.0,
-    mesh: str | PathLike[str] | None = None,
-    mesh_unit: Quantity | None = None,
-    mesh_size: Quantity | None = None,
-    liquid: str | Liquid = "water",
-    segments: int = 96,
-    layers: int = 6,
-    order: int = 2,
-) -> ModesResult:
-    """Natural frequencies, damping and shapes of the liquid in a chamber of any section.
-
-    Parameters
-    ----------
-    radius, height : of the chamber, m
-    volume : of the liquid, m^3
-    speed : of the spin, rad/s
-    count : how many modes, the slowest first
-    baffles, baffle_tip_radius, baffle_wall_gap : how many, and their edges from the axis and the wall, m
-    mesh, mesh_unit, mesh_size : file of a section, length of its unit and of the cells at its walls, m
-    liquid : a known name, or a `leblanc.Liquid`; for the damping
-    segments, layers, order : cells around and across the liquid at least, order of the elements
-
-    Raises
-    ------
-    InputError : a value out of its range, a file that cannot be used
-
-    Examples
-    --------
-    >>> import leblanc as lb
-    >>> found = lb.modes(radius=0.15, volume="671 ml", height=0.05, speed=40.0, count=2, segments=32)
-    >>> found.frequency.shape
-    (2,)
-    """
-    given = locals()
-    from leblanc.questions import ask, modes_question
-    from leblanc.studies.modes import answer_modes
-
-    with _keywords():
-        question = ask(modes_question, given)
-        return answer_modes(**question)
 
 
 @contextmanager

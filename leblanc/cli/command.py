@@ -16,7 +16,7 @@ from leblanc.core.answer import Answer, NotConverged
 from leblanc.core.contents import results_dir
 from leblanc.core.files import out_dir, path_text
 from leblanc.core.progress import working
-from leblanc.core.question import SCENE, Asked, called, parameters
+from leblanc.core.question import SCENE, Asked, called, parameters, read
 from leblanc.core.terminal import print_json, say, show
 from meshes.errors import InputError
 
@@ -24,19 +24,25 @@ if TYPE_CHECKING:
     from leblanc.scene.scene import Scene
 
 _OUT = "Folder for the files [default: out/<scene name>]."
+_ONLY_OUT = "Folder for the figure; without it none is written."
 _JSON = "Print one JSON object instead of words."
 
 
 def command(question: Callable[..., Any]) -> Callable[..., None]:
     """The command of a question: its parameters as arguments and options, its answer in words or as JSON.
 
-    The module of the question may name the `FILES` that its answer writes, the last being the data.
+    The module of the question may name the `FILES` that its answer writes, the last being the data, and have
+    a function `present` of the answer and of further options, which gives back what is shown.
     """
-    asked = {one.name: one for one in parameters(question)}
+    own = {one.name: one for one in parameters(question)}
+    present: Callable[..., Any] | None = getattr(sys.modules[question.__module__], "present", None)
+    more = {one.name: one for one in list(parameters(present))[1:]} if present else {}
+    asked = own | more
     files: tuple[str, ...] = getattr(sys.modules[question.__module__], "FILES", ())
     options = [_typed(one) for one in asked.values()]
     if files:
-        options.append(_parameter("out", Path | None, typer.Option(help=_OUT), None))
+        help_of_out = _OUT if "scene" in asked else _ONLY_OUT
+        options.append(_parameter("out", Path | None, typer.Option(help=help_of_out), None))
     options.append(_parameter("json", bool, typer.Option("--json", help=_JSON), False))
 
     def run(json: bool, out: Path | None = None, **given: Any) -> None:
@@ -48,13 +54,15 @@ def command(question: Callable[..., Any]) -> Callable[..., None]:
                 folder = results_dir(machine.name, out, source, machine.digest, *files)
         elif out is not None:
             folder = out_dir(question.__name__, out)
-        values = {name: _value(asked[name], value) for name, value in given.items()}
+        values = {name: _value(own[name], given[name]) for name in own}
         with working("preparing"):
             try:
+                shown = read(present, {name: given[name] for name in more}) if present else {}
                 answer: Answer = question(**values | ({} if machine is None else {"scene": machine}))
+                answer = present(answer, **shown) if present else answer
             except InputError as error:
                 raise _of_option(error, given) from error
-        line = _command_line(question.__name__, list(asked.values()), given)
+        line = _command_line(question.__name__, list(own.values()), given)
         finish(answer, where, json, folder, machine, line)
 
     run.__doc__ = (question.__doc__ or "").partition("\n")[0]
@@ -75,14 +83,16 @@ def finish(
 
     Faults name `where` they are; `line` is the command that makes the answer again.
     """
-    if folder is not None:
-        write(answer, folder, machine, line)
+    drawn = [] if folder is None else write(answer, folder, machine, line)
     if json:
         print_json(answer.to_json())
     else:
         show(answer.blocks())
-        if folder is not None:
+        if folder is not None and (answer.page or answer.data):
             print(_closing(answer, folder))
+    if not (answer.page or answer.data):
+        for one in drawn:
+            say(f"wrote {one.png}")
     if answer.interrupted:
         raise KeyboardInterrupt
     if answer.failed:
@@ -138,8 +148,8 @@ def _command_line(name: str, asked: Sequence[Asked], given: Mapping[str, Any]) -
     return " ".join(map(shlex.quote, parts))
 
 
-def write(answer: Answer, folder: Path, machine: Scene | None = None, line: str = "") -> None:
-    """All files of an answer: data, pictures, report."""
+def write(answer: Answer, folder: Path, machine: Scene | None = None, line: str = "") -> list[Any]:
+    """All files of an answer: data, pictures, report; those of the pictures."""
     from leblanc.core.blocks import Picture, flat
     from leblanc.core.netcdf import write_netcdf
     from leblanc.core.page import write_page
@@ -154,6 +164,7 @@ def write(answer: Answer, folder: Path, machine: Scene | None = None, line: str 
 
         what = about(machine, line, answer.data, answer.task, answer.unused)
         write_page(answer.title, answer.blocks(), what, figures, folder / answer.page)
+    return list(figures.values())
 
 
 def _drawn(answer: Answer, picture: Any, folder: Path) -> Any:

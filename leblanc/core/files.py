@@ -13,10 +13,21 @@ from functools import partial
 from pathlib import Path
 
 from leblanc.core.interrupts import at_forced_end
+from meshes.errors import InputError
 
 _WATCHES: ContextVar[tuple[Callable[[Path], None], ...]] = ContextVar("watches", default=())
 _LONGEST_NAME = 200  # bytes; file systems allow 255
 _RESERVED = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)  # on Windows
+
+
+def path_of(given: str | os.PathLike[str] | None, name: str) -> Path | None:
+    """The path of a file that a question names, None without one."""
+    if given is None:
+        return None
+    try:
+        return Path(given)
+    except TypeError as error:
+        raise InputError(name, repr(given), "the path of a file") from error
 
 
 def chosen_dir(scene_name: str, out: Path | None) -> Path:

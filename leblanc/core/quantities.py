@@ -52,7 +52,8 @@ def _declared(kind: type) -> dict[str, _Declared]:
         written: dict[str, Any] = dict(vars(base).get("__annotations__", {}))
         for name, value in vars(base).items():
             if isinstance(value, property) and value.fget is not None:
-                written[name] = value.fget.__annotations__.get("return", "")
+                said_of = getattr(value.fget, "__annotations__", {})  # none of what `carried` makes
+                written[name] = said_of.get("return", "")
         names = _Names(vars(sys.modules[base.__module__]))
         for name, hint in written.items():
             said: Any = eval(hint, {}, names) if isinstance(hint, str) and "Q(" in hint else hint
@@ -104,7 +105,7 @@ def names(kind: type) -> set[str]:
 
 
 def plain(value: Any) -> Any:
-    """A value as JSON knows it: complex numbers as [re, im], None for what is not finite, records by name."""
+    """A value as JSON knows it: complex numbers as [re, im], None for what is not finite, notes as texts."""
     if value is None or isinstance(value, str | bool | int):
         return value
     if isinstance(value, float):
@@ -188,6 +189,8 @@ def _with_parts(record: Any, only: Collection[str] = ()) -> Iterator[tuple[str, 
 
 
 def _variables(name: str, q: Q, value: Any) -> dict[str, Variable]:
+    if q.over and isinstance(value, tuple):  # with None for what is not there
+        value = np.array([math.nan if one is None else one for one in value])
     if q.flags:
         states = np.asarray(value)
         if states.dtype.kind == "U":

@@ -25,6 +25,9 @@ class Reader:
 
 
 SCENE = Reader("leblanc.scene.scene:scene_of")  # a scene, or the path of its file
+FILE = Reader("leblanc.core.files:path_of")  # the path of a file
+FRICTION = Reader("leblanc.scene.scene:friction_of")  # a law, its text, or its table
+LIQUID = Reader("leblanc.scene.scene:liquid_of")  # a liquid, or a known name
 
 
 @dataclass(frozen=True)
@@ -76,11 +79,18 @@ def ask(question: Callable[..., A], study: str, given: Mapping[str, Any]) -> A:
     ------
     InputError : a quantity that cannot be read, what the study refuses
     """
+    answer: A = called(study)(**read(question, given))
+    return answer
+
+
+def read(question: Callable[..., Any], given: Mapping[str, Any]) -> dict[str, Any]:
+    """Values by the names of a question's parameters, each read as its type says."""
     values = dict(given)
     for one in parameters(question):
+        if one.name not in given:
+            continue
         if isinstance(one.read, Reader):
             values[one.name] = called(one.read.address)(values[one.name], one.name)
         elif one.read is not None and values[one.name] is not None:
             values[one.name] = parse_option(values[one.name], one.read, one.name)
-    answer: A = called(study)(**values)
-    return answer
+    return values

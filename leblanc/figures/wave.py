@@ -27,7 +27,7 @@ from leblanc.figures.drawing.page import (
     write_film,
 )
 from leblanc.results.drawn.machine import FILLED, LARGEST_FACTOR, rounded_down
-from leblanc.results.layer import FreeWaveResult, LayerPeriodsResult, LayerResult, Wave, WaveFrames
+from leblanc.results.drawn.wave import Wave, WaveFrames
 from leblanc.studies.run.figure import STRIP
 from meshes.arrays import Array
 
@@ -693,32 +693,3 @@ def _beside(figure: Figure, left: Axes, right: Axes, frame: Frame, caption: str)
     right.set_position((x, y, 1.0 - RIGHT / WIDTH - x, box.y1 - y))
     place = left.get_position()
     left.set_position((place.x0 - ASIDE / WIDTH, place.y0, place.width, place.height))
-
-
-def layer_figure(result: LayerResult | FreeWaveResult) -> Figure:
-    """The main figure of a layer's answer."""
-    return wave_figure(result.wave())
-
-
-def periods_figure(result: LayerPeriodsResult) -> Figure:
-    """Force on the drum and mean rotation over the whirl periods of a layer that starts from rest."""
-    h, model = result.history, result.case.model
-    with style():
-        figure = Figure()
-        rows = [[figure.add_axes((0, 0, 1, 1), label=name)] for name in ("force", "rotation", "depths")]
-        force, rotation, depths = (row[0] for row in rows)
-        force.plot(h.time, h.force_ratio.real, marker="o", label="force along the deflection")
-        force.plot(h.time, h.force_ratio.imag, marker="s", linestyle="--", label="force 90 deg ahead of it")
-        force.set_ylabel("Force ratio (-)")
-        rotation.plot(h.time, h.mean_rotation, color="0.15", marker="^", label="mean rotation in the drum")
-        rotation.set_ylabel("Rotation (rad/s)")
-        depths.plot(h.time, h.depth_max * MM, label="crest")
-        depths.plot(h.time, h.depth_min * MM, linestyle="--", label="trough")
-        depths.set_ylabel("Depth (mm)")
-        depths.set_xlabel("Time (s)")
-        for axes in (force, rotation):
-            axes.tick_params(labelbottom=False)
-        text = f"Means over periods of the whirl seen from the drum. Liquid model: {model}."
-        lay_out(figure, rows, [1.5, 1.0, 1.2], TIME_FRAME, text, NOTED_LINES)
-        figure.alt = "Curves over time of the force on the drum, the liquid's rotation and its depths."
-    return figure

@@ -47,7 +47,20 @@ from meshes.chamber_section import ChamberSection, chamber_section
 from meshes.errors import InputError
 from meshes.section import Section
 
+_MOST_BAFFLES = 64
 OUTLINES = ".dxf, .step, .stp, .iges, .igs or .brep"
+
+
+def round_chamber(
+    radius: float, height: float, baffles: int, baffle_tip_radius: float, baffle_wall_gap: float
+) -> Walls:
+    """A round chamber with radial baffles or, where there are 0 of them, without any; lengths in m."""
+    if not 0 <= baffles <= _MOST_BAFFLES:
+        raise InputError("baffles", baffles, f"from 0 to {_MOST_BAFFLES}")
+    if not baffles and (baffle_tip_radius != 0.0 or baffle_wall_gap != 0.0):
+        raise InputError("baffles", baffles, "1 or more where their edges are given")
+    plates = Plates(baffles, baffle_tip_radius, baffle_wall_gap) if baffles else None
+    return Walls(radius, height, baffles=plates)
 
 
 def is_outline(path: str | Path) -> bool:

@@ -14,6 +14,7 @@ from pydantic import Discriminator, Field, PlainValidator, Tag, ValidationError
 
 from fluid.fill import Fill
 from fluid.friction.laws import Friction, FrictionLaw
+from fluid.liquid import Liquid, known_liquid
 from leblanc.core import units
 from leblanc.core.units import allowed_as_typed
 from leblanc.scene.cabinet import MAX_POINTS, Cabinet, Point, cabinet_conflicts
@@ -132,6 +133,11 @@ class FrictionRule:
             return value
         if isinstance(value, str) and value in _LAWS:
             return Friction(FrictionLaw(value))
+        if isinstance(value, str) and ":" in value:
+            try:
+                return units.parse_friction(value, "friction")
+            except InputError as error:
+                raise Refused(str(error.allowed)) from error
         if isinstance(value, dict):
             found = FrictionCoefficient.model_validate(value)
             if len(value) == 1 and found.linear is not None:
@@ -148,6 +154,25 @@ class FrictionRule:
         if value.roughness:
             return {value.law.value: {"roughness": value.roughness}}
         return value.law.value if value.law in _LAWS else {value.law.value: value.coefficient}
+
+
+def friction_of(value: object, name: str) -> Friction:
+    """A friction law: itself, its text as "linear:0.5", or its table as a file has it."""
+    if isinstance(value, str):
+        return units.parse_friction(value, name)
+    try:
+        return FrictionRule()(value)
+    except ValueError as error:  # of the law, or of a number in its table
+        raise InputError(name, repr(value), f"{FrictionRule.allowed}, or a text as linear:0.5") from error
+
+
+def liquid_of(value: str | Liquid, name: str) -> Liquid:
+    """A liquid, or the known one of that name."""
+    if isinstance(value, Liquid):
+        return value
+    if not isinstance(value, str):
+        raise InputError(name, repr(value), "the name of a known liquid, or a Liquid")
+    return known_liquid(value)
 
 
 class Model(Part):

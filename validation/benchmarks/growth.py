@@ -14,7 +14,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.studies.layer import answer_layer
+from leblanc.studies.layer.study import answer_layer
 from solvers.layer.state import Numerics
 from solvers.liquid_model import Whirl
 from solvers.pypde.settle import simulate

@@ -15,7 +15,7 @@ from fluid.fill import Fill
 from fluid.friction.laws import Friction, FrictionLaw
 from fluid.liquid import Liquid
 from leblanc.core.notes import texts
-from leblanc.studies.layer import answer_layer, wave_notes
+from leblanc.studies.layer.study import answer_layer, wave_notes
 from meshes.chamber import Chamber
 from solvers.layer.state import Numerics
 from solvers.liquid_model import Whirl

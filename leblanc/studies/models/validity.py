@@ -25,8 +25,8 @@ from leblanc.core.units import (
     rpm_range,
     with_unit,
 )
-from leblanc.results.layer import Number
 from leblanc.results.notes.doubts import DoubtCode, doubt
+from leblanc.results.notes.layer import Number
 from leblanc.scene.rotors import JeffcottRotor, TubRotor, TwoPlaneRotor
 from leblanc.scene.scene import WITHOUT_CHAMBERS, Exciter, MagneticRotor, Scene
 from meshes.errors import InputError

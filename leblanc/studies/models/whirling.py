@@ -14,7 +14,7 @@ from typing import TypeVar
 from fluid.fill import Fill
 from fluid.friction.laws import NO_FRICTION, Friction, FrictionLaw
 from leblanc.core.notes import Note, percent
-from leblanc.results.layer import no_exact_wave
+from leblanc.results.notes.layer import no_exact_wave
 from leblanc.studies.models.liquid import WAVE_MODELS, wave_model
 from leblanc.studies.models.validity import judge
 from meshes.errors import InputError

@@ -18,7 +18,7 @@ from PIL import Image
 from leblanc import figures
 from leblanc.figures import wave
 from leblanc.figures import wave as wave_page
-from leblanc.results.layer import Wave, WaveFrames
+from leblanc.results.drawn.wave import Wave, WaveFrames
 from meshes.errors import InputError
 from tests.leblanc.figures.test_wave_values import (
     R,
@@ -80,7 +80,7 @@ def numbers(figure) -> str:
 
 
 def test_labels_and_numbers():
-    figure = figures.wave_figure(bore())
+    figure = wave.wave_figure(bore())
     left, right = figure.axes
     assert left.get_aspect() == 1.0
     assert right.get_xlabel() == "Angle from the deflection, with the spin (deg)"
@@ -107,7 +107,7 @@ def test_labels_and_numbers():
 def test_drawn_liquid_is_the_record_times_the_factor():
     """The wall is a circle to scale; the drawn depth is the record's times the printed factor."""
     record = bore()
-    left = figures.wave_figure(record).axes[0]
+    left = wave.wave_figure(record).axes[0]
     factor = wave.depth_factor(record, float(record.depth.max()))
     assert factor == 2.0
     points = left.patches[0].get_xy()[:-1]
@@ -120,18 +120,18 @@ def test_drawn_liquid_is_the_record_times_the_factor():
 
 
 def test_a_layer_that_is_drawn_to_scale_says_so():
-    assert "Walls and depth of the layer to scale" in caption(figures.wave_figure(deep(64)))
+    assert "Walls and depth of the layer to scale" in caption(wave.wave_figure(deep(64)))
 
 
 @pytest.mark.parametrize("force", [complex(math.nan), complex(math.inf, 0.0), complex(0.0, math.nan)])
 def test_no_arrow_where_no_force_was_found(force: complex):
-    figure = figures.wave_figure(replace(bore(), force_ratio=force, offset=complex(math.nan)))
+    figure = wave.wave_figure(replace(bore(), force_ratio=force, offset=complex(math.nan)))
     assert "force not converged" in numbers(figure)
     assert not {"force on the drum", "liquid's centre of mass"} & set(legend(figure))
 
 
 def test_dry_patch_is_marked_in_both_drawings():
-    figure = figures.wave_figure(half_dry())
+    figure = wave.wave_figure(half_dry())
     left, right = (labelled(axes, "dry patch on the wall") for axes in figure.axes)
     angle, bar = (np.asarray(values) for values in right.get_data())
     # Half a turn is dry, opposite to the deflection.
@@ -143,11 +143,11 @@ def test_dry_patch_is_marked_in_both_drawings():
     assert right.get_linestyle() == left.get_linestyle() == "--"
     # The deep layer merely touches the wall.
     for record in (bore(), deep(16)):
-        assert "dry patch on the wall" not in legend(figures.wave_figure(record))
+        assert "dry patch on the wall" not in legend(wave.wave_figure(record))
 
 
 def test_nothing_is_drawn_of_no_liquid():
-    figure = figures.wave_figure(nothing())
+    figure = wave.wave_figure(nothing())
     assert not figure.axes[0].patches
     assert "dry patch on the wall" in legend(figure)
     assert numbers(figure) == "force ratio 0\ncentre of mass not found"
@@ -171,8 +171,8 @@ def assert_apart(figure) -> None:
 def test_texts_stay_on_the_page_and_apart(name: str):
     record = EXTREMES[name]()
     history = running(record, count=5)
-    assert_apart(figures.wave_figure(record))
-    assert_apart(figures.history_figure(record, history))
+    assert_apart(wave.wave_figure(record))
+    assert_apart(wave.history_figure(record, history))
     figure, show = wave_page._film(record, history)
     show(3)
     assert_apart(figure)
@@ -180,17 +180,17 @@ def test_texts_stay_on_the_page_and_apart(name: str):
 
 def test_history_without_periods_shows_depths_alone():
     without = replace(running(bore()), force_ratio=None, period_time=None, mean_rotation=None)
-    figure = figures.history_figure(bore(), without)
+    figure = wave.history_figure(bore(), without)
     assert [axes.get_ylabel() for axes in figure.axes] == ["Depth (mm)"]
     assert figure.axes[0].get_xlabel() == "Time (s)"
-    labels = [axes.get_ylabel() for axes in figures.history_figure(bore(), running(bore())).axes]
+    labels = [axes.get_ylabel() for axes in wave.history_figure(bore(), running(bore())).axes]
     assert labels == ["Force ratio (\N{EN DASH})", "Rotation (rad/s)", "Depth (mm)"]
 
 
 def test_periods_without_a_force_leave_a_gap():
     history = running(bore())
     force = np.where(np.arange(4) == 1, complex(math.nan, 1.0), history.force_ratio)
-    axes = figures.history_figure(bore(), replace(history, force_ratio=force)).axes[0]
+    axes = wave.history_figure(bore(), replace(history, force_ratio=force)).axes[0]
     assert [np.isnan(line.get_ydata()).tolist() for line in axes.lines] == [[False, True, False, False]] * 2
 
 
@@ -198,7 +198,7 @@ def test_film_has_its_frames(tmp_path: Path):
     record, seen = bore(), []
     history = running(record, count=12)
     path = tmp_path / "new" / "wave.gif"
-    assert figures.animate(record, history, path, lambda *done: seen.append(done)) == 12
+    assert wave.animate(record, history, path, lambda *done: seen.append(done)) == 12
     assert seen == [(i, 12) for i in range(1, 13)]
     with Image.open(path) as film:
         assert film.n_frames == 12
@@ -211,21 +211,21 @@ def test_film_has_its_frames(tmp_path: Path):
 
 def test_same_history_same_film_whatever_the_user_sets(tmp_path: Path):
     history = running(bore(), count=3)
-    figures.animate(bore(), history, tmp_path / "a.gif")
+    wave.animate(bore(), history, tmp_path / "a.gif")
     with matplotlib.rc_context({"lines.linewidth": 9.0, "font.size": 30.0, "savefig.dpi": 20}):
-        figures.animate(bore(), history, tmp_path / "b.gif")
+        wave.animate(bore(), history, tmp_path / "b.gif")
     assert (tmp_path / "a.gif").read_bytes() == (tmp_path / "b.gif").read_bytes()
 
 
 def test_same_record_same_figure(tmp_path: Path):
-    one, other = (figures.save(figures.wave_figure(bore()), tmp_path / name, "wave", "W") for name in "ab")
+    one, other = (figures.save(wave.wave_figure(bore()), tmp_path / name, "wave", "W") for name in "ab")
     assert one.png.read_bytes() == other.png.read_bytes()
     assert one.svg.read_bytes() == other.svg.read_bytes()
 
 
 def test_film_of_one_time(tmp_path: Path):
     history = running(half_dry(), count=1)
-    assert figures.animate(half_dry(), history, tmp_path / "one.GIF") == 1
+    assert wave.animate(half_dry(), history, tmp_path / "one.GIF") == 1
 
 
 def test_arrow_grows_with_the_deflection():
@@ -256,9 +256,9 @@ def test_caption_of_a_film_tells_time():
 def test_mp4_needs_an_ffmpeg(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setenv("PATH", str(tmp_path))
     with pytest.raises(InputError, match="no ffmpeg was found"):
-        figures.animate(bore(), running(bore(), count=2), tmp_path / "new" / "wave.mp4")
+        wave.animate(bore(), running(bore(), count=2), tmp_path / "new" / "wave.mp4")
     with pytest.raises(InputError, match=r"\.gif or \.mp4"):
-        figures.animate(bore(), running(bore(), count=2), tmp_path / "new" / "wave.avi")
+        wave.animate(bore(), running(bore(), count=2), tmp_path / "new" / "wave.avi")
     assert not list(tmp_path.iterdir())
 
 
@@ -272,7 +272,7 @@ def test_mp4_gets_every_frame(tmp_path: Path):
     figure, _ = wave_page._film(bore(), running(bore(), count=3))
     width, height = (round(side * 100.0) for side in figure.get_size_inches())
     with matplotlib.rc_context({"animation.ffmpeg_path": str(player)}):
-        assert figures.animate(bore(), running(bore(), count=3), path) == 3
+        assert wave.animate(bore(), running(bore(), count=3), path) == 3
     assert width % 2 == height % 2 == 0
     assert path.stat().st_size == 3 * 4 * width * height
 
@@ -326,6 +326,6 @@ def test_bad_history_is_refused(field: str, values: dict[str, object]):
 def test_history_deeper_than_the_drum_is_refused():
     history = replace(running(bore(), count=3), depth=np.full((3, 360), 0.2))
     with pytest.raises(InputError, match="depth"):
-        figures.history_figure(bore(), history)
+        wave.history_figure(bore(), history)
     with pytest.raises(InputError, match="depth"):
-        figures.animate(bore(), history, Path("never.gif"))
+        wave.animate(bore(), history, Path("never.gif"))

@@ -9,10 +9,9 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.markers import MarkerStyle
 
-from leblanc import figures
 from leblanc.figures import wave
 from leblanc.figures import wave as wave_time
-from leblanc.results.layer import Wave, WaveFrames
+from leblanc.results.drawn.wave import Wave, WaveFrames
 
 R, SURFACE, SPIN = 0.15, 0.135, 40.0
 
@@ -138,7 +137,7 @@ def test_arrows_and_marks_have_their_directions() -> None:
     """Deflection to the right, force and centre of mass at their angles, which run with the spin."""
     for force in (2.0j, -1.0 - 1.0j, 0.3 + 0.0j):
         record = replace(bore(), force_ratio=force, offset=0.001 + 0.004j)
-        axes = figures.wave_figure(record).axes[0]
+        axes = wave.wave_figure(record).axes[0]
         assert abs(np.angle(ends(marked(axes, "deflection")))) < 1e-12
         arrow = marked(axes, "force on the drum")
         assert abs(np.angle(ends(arrow) / force)) < 1e-12
@@ -152,7 +151,7 @@ def test_arrows_and_marks_have_their_directions() -> None:
 def test_senses_of_rotation() -> None:
     """Counter-clockwise is the spin; a whirl against it is drawn clockwise."""
     for whirl, sense in ((30.0, 1.0), (-30.0, -1.0)):
-        axes = figures.wave_figure(bore(whirl)).axes[0]
+        axes = wave.wave_figure(bore(whirl)).axes[0]
         for name, expected in (("spin", 1.0), ("whirl", sense)):
             x, y = marked(axes, name).get_data()
             assert np.all(expected * (x[:-1] * y[1:] - x[1:] * y[:-1]) > 0.0)
@@ -160,7 +159,7 @@ def test_senses_of_rotation() -> None:
 
 def test_profile_is_in_mm_over_degrees() -> None:
     record = bore()
-    curve = labelled(figures.wave_figure(record).axes[1], "depth of the layer")
+    curve = labelled(wave.wave_figure(record).axes[1], "depth of the layer")
     angle, depth = curve.get_data()
     # The first angle is -180 degrees, which the closed curve has at its other end as well.
     np.testing.assert_allclose(angle[:-1], np.degrees(record.theta), rtol=1e-12, atol=1e-12)
@@ -216,7 +215,7 @@ def test_frames_can_be_followed() -> None:
 def test_history_has_its_values() -> None:
     record = bore()
     history = running(record)
-    force, rotation, depths = figures.history_figure(record, history).axes[:3]
+    force, rotation, depths = wave.history_figure(record, history).axes[:3]
     along, ahead = (
         labelled(force, f"force {name}") for name in ("along the deflection", "90\N{DEGREE SIGN} ahead of it")
     )
@@ -233,7 +232,7 @@ def test_history_has_its_values() -> None:
 
 def test_caption_converts() -> None:
     """40 rad/s are 381.97 rpm, 30 rad/s 286.48 rpm."""
-    text = caption(figures.wave_figure(bore()))
+    text = caption(wave.wave_figure(bore()))
     for part in ("spin 40 rad/s (382 rpm)", "whirl 30 rad/s (286.5 rpm)", "mean depth 15 mm"):
         assert part in text
     assert "\N{MINUS SIGN}10 rad/s seen from the drum" in text
@@ -248,7 +247,7 @@ def test_a_layer_deeper_than_its_room_is_cut_at_the_inner_wall_and_said_to_be() 
     record = bore()
     deepest = float(record.depth.max())
     for inner in (R - 0.5 * (record.mean_depth + deepest), 0.5 * R):
-        figure = figures.wave_figure(replace(record, inner_radius=inner))
+        figure = wave.wave_figure(replace(record, inner_radius=inner))
         axes = figure.axes[0]
         (liquid,) = [patch for patch in axes.patches if patch.get_label() == "liquid"]
         away = np.hypot(*liquid.get_path().vertices.T) * 1e-3

@@ -11,8 +11,8 @@ import pytest
 
 import leblanc as lb
 from leblanc.cli import main
-from leblanc.results.layer import FreeWaveResult, LayerPeriodsResult, LayerResult
-from leblanc.studies.layer import free_film, steady_film
+from leblanc.studies.layer.answer import FreeWaveAnswer, LayerAnswer, PeriodsAnswer
+from leblanc.studies.layer.study import free_film, steady_film
 from meshes.errors import InputError
 from solvers.liquid_model import Whirl
 from tests.mutants import kills
@@ -23,7 +23,7 @@ LAYER = ["layer", "--radius", "0.1", "--volume", repr(VOLUME), "--height", "0.02
 WHIRL = ["--whirl-speed", "52", "--whirl-amplitude", "0.2 mm", "--model", "potential"]
 
 
-def called(**more: object) -> LayerResult | LayerPeriodsResult | FreeWaveResult:
+def called(**more: object) -> LayerAnswer | PeriodsAnswer | FreeWaveAnswer:
     found = {"radius": R, "volume": VOLUME, "height": HEIGHT, "speed": SPIN, "model": "potential"} | more
     return lb.layer(**found)  # type: ignore[arg-type]
 
@@ -43,7 +43,7 @@ def test_steady(capsys: pytest.CaptureFixture[str]) -> None:
     assert found["converged"] and found["in_range"] and 0.0 < found["crest_number"] < 0.1  # type: ignore[operator]
     assert len(found["theta"]) == len(found["depth"])  # type: ignore[arg-type]
     result = called(radius="100 mm", whirl_speed=52.0, whirl_amplitude="0.2 mm")
-    assert isinstance(result, LayerResult) and result.exact is not None
+    assert isinstance(result, LayerAnswer) and result.exact is not None
     ratio = [result.force_ratio.real, result.force_ratio.imag]
     assert ratio == pytest.approx(found["force_ratio"], abs=1e-11)
     assert {"crest", "trough", "crest_number"} <= {number.name for number in result.validity}
@@ -66,12 +66,14 @@ def test_no_wave_ends_with_code_3(capsys: pytest.CaptureFixture[str]) -> None:
 def test_lee_waves_are_noted() -> None:
     layer = math.pi * R**2 * 0.3 * 1.7 * HEIGHT
     found = called(volume=layer, whirl_speed=28.0, whirl_amplitude=0.012 * 0.3 * R)
-    assert isinstance(found, LayerResult) and found.exact is not None
+    assert isinstance(found, LayerAnswer) and found.exact is not None
     assert found.exact.branch == "lee_waves" and any("shorter waves" in note.text for note in found.notes)
     assert found.in_range
 
 
-@kills("leblanc.studies.layer:free_wave", "np.array(wave.whirl_speed)", "np.array(wave.whirl_speed[::-1])")
+@kills(
+    "leblanc.studies.layer.study:free_wave", "np.array(wave.whirl_speed)", "np.array(wave.whirl_speed[::-1])"
+)
 def test_free(capsys: pytest.CaptureFixture[str]) -> None:
     """Retrograde and prograde in space; the linear theory does not know of the height."""
     found = printed(capsys, "--free", "1.3", "--model", "potential", "--profile")
@@ -85,7 +87,7 @@ def test_free(capsys: pytest.CaptureFixture[str]) -> None:
     assert linear["whirl_speed"][0] / SPIN - 1.0 == pytest.approx(-0.235602983589, abs=1e-10)  # type: ignore[index]
     assert linear["in_range"] and linear["branch"] is None
     five = called(free=1.1, mode=5)
-    assert isinstance(five, FreeWaveResult) and five.branch == "many_crests" and five.mode == 5
+    assert isinstance(five, FreeWaveAnswer) and five.branch == "many_crests" and five.mode == 5
     # Five crests as high as the one that was asked for.
     assert np.count_nonzero(five.depth > (1.1 - 1e-9) * 0.1 * R) == 5
 
@@ -157,14 +159,14 @@ def test_refused_from_python() -> None:
 def test_figures_and_films(tmp_path: Path) -> None:
     """A figure of each kind; of a free wave the film's crest keeps its height wherever it is."""
     free = called(free=1.5)
-    assert isinstance(free, FreeWaveResult)
+    assert isinstance(free, FreeWaveAnswer)
     _, frames = free_film(free)
     assert np.abs(frames.depth.max(axis=1) / free.depth.max() - 1.0).max() < 5e-3
     highest = frames.theta[frames.depth.argmax(axis=1)]
     apart = np.angle(np.exp(1j * highest) / np.exp(1j * np.angle(frames.deflection)))
     assert np.abs(apart).max() < 0.01
     held = called(whirl_speed=28.0, whirl_amplitude=1e-3)
-    assert isinstance(held, LayerResult)
+    assert isinstance(held, LayerAnswer)
     # Angles that hardly crowd stay as they are.
     assert steady_film(held, Whirl(SPIN, 28.0, 1e-3), 1.0).theta.size == held.theta.size
     for name, result in (("free", free), ("held", held)):

@@ -14,11 +14,11 @@ from fluid.friction.laws import Friction
 from fluid.liquid import known_liquid
 from leblanc.cli import main
 from leblanc.core.units import number
-from leblanc.questions import layer_question
-from leblanc.results.layer import LayerCode, LayerResult
-from leblanc.studies.layer import answer_layer, steady_film
+from leblanc.results.notes.layer import LayerCode
+from leblanc.studies.layer import layer
+from leblanc.studies.layer.answer import LayerAnswer
+from leblanc.studies.layer.study import answer_layer, steady_film
 from leblanc.studies.models.liquid import wave_model
-from leblanc.text.liquid import layer_summary
 from meshes.chamber import Chamber
 from solvers.liquid_model import Whirl, drag_frequency
 from solvers.potential.steady import forced, linear_detuning
@@ -31,7 +31,7 @@ VOLUME = math.pi * (R**2 - A**2) * H
 FILL = Fill(Chamber(R, H), known_liquid("water"), VOLUME)
 
 
-def _first_moment(answer: LayerResult) -> float:
+def _first_moment(answer: LayerAnswer) -> float:
     """int x dA of the drawn layer over its area: the surface is r_s = R - depth."""
     surface = R - answer.depth
     area = np.mean(R**2 - surface**2) / 2.0
@@ -130,7 +130,7 @@ def test_the_estimated_error_holds_the_exact_wave(model: str) -> None:
     # The median estimate is a twentieth above; cells and settling of the long waves may take some of it away.
     assert 0.2 * answer.error_estimate < error < answer.error_estimate
     assert answer.to_json()["error_estimate"] == answer.error_estimate
-    assert ("Its estimated error", number(answer.error_estimate)) in layer_summary(answer)
+    assert ("Its estimated error", number(answer.error_estimate)) in answer.facts()
     codes = {note.code for note in answer.notes}
     assert LayerCode.NO_SMOOTH_WAVE not in codes
 
@@ -147,7 +147,7 @@ def test_a_note_where_no_smooth_wave_follows_the_whirl(ratio: float) -> None:
         if beyond:
             assert notes[0].data["fold"] is (ratio > 1.0) and 0.004 < notes[0].data["largest"] < 0.02
             assert ("it turns back" in notes[0].text) is (ratio > 1.0)
-            assert "Its estimated error" not in dict(layer_summary(answer))
+            assert "Its estimated error" not in dict(answer.facts())
 
 
 @pytest.mark.parametrize(
@@ -358,12 +358,13 @@ def test_bad_kdv_input(capsys: pytest.CaptureFixture[str], change: list[str], na
     assert named in capsys.readouterr().err
 
 
-def _driven_by_gravity(law: str, whirl_speed: float | None, amplitude: float | None = 0.0) -> LayerResult:
-    question = layer_question(
+def _driven_by_gravity(law: str, whirl_speed: float | None, amplitude: float | None = 0.0) -> LayerAnswer:
+    found = layer(
         radius=0.05, volume=4.71e-4, height=0.2, speed=40.0, whirl_speed=whirl_speed, gravity=9.81,
         whirl_amplitude=amplitude, model="long_wave", cells=16, friction=law,
     )  # fmt: skip
-    return answer_layer(**question.whirl)
+    assert isinstance(found, LayerAnswer)
+    return found
 
 
 @pytest.mark.parametrize("law", ["stokes", "wall"])

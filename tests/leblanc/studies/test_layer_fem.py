@@ -11,9 +11,9 @@ import pytest
 from fluid.fill import Fill, compartment_share
 from fluid.liquid import known_liquid
 from leblanc.cli import main
-from leblanc.questions import layer_question
-from leblanc.results.layer import LayerResult
-from leblanc.studies.layer import answer_layer
+from leblanc.studies.layer import layer
+from leblanc.studies.layer.answer import LayerAnswer
+from leblanc.studies.layer.study import answer_layer
 from leblanc.studies.models.liquid import wave_model
 from meshes.baffles import Baffles
 from meshes.chamber import Chamber
@@ -30,7 +30,7 @@ def fill(baffles: Baffles | None = None) -> Fill:
     return Fill(Chamber(WALL, HEIGHT, baffles=baffles), WATER, VOLUME)
 
 
-def answer(whirl: float, model: str, baffles: Baffles | None = None) -> LayerResult:
+def answer(whirl: float, model: str, baffles: Baffles | None = None) -> LayerAnswer:
     return answer_layer(fill(baffles), SPIN, whirl, 1e-4, wave_model(model))
 
 
@@ -91,18 +91,17 @@ def test_without_an_amplitude_the_limit() -> None:
 @pytest.mark.parametrize(
     ("change", "field"),
     [
-        ({"friction": "stokes"}, "--friction"),
-        ({"gravity": 9.81}, "--gravity"),
-        ({"cells": 5000}, "--cells"),
+        ({"friction": "stokes"}, "friction"),
+        ({"gravity": 9.81}, "gravity"),
+        ({"cells": 5000}, "cells"),
     ],
 )
 def test_what_elements_do_not_take(change: dict[str, object], field: str) -> None:
     with pytest.raises(InputError, match=field):
-        asked = layer_question(
+        layer(
             radius=WALL, volume=VOLUME, height=HEIGHT, speed=SPIN, whirl_speed=33.0, whirl_amplitude=1e-4,
             model="fem", **change,  # type: ignore[arg-type]
         )  # fmt: skip
-        answer_layer(**asked.whirl)
 
 
 def test_baffles_are_for_elements() -> None:

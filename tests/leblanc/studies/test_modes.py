@@ -13,8 +13,8 @@ import pytest
 
 from fluid.liquid import known_liquid
 from leblanc.cli import main
-from leblanc.studies.modes import Resolution, SectionSource, answer_modes
-from leblanc.text.liquid import modes_table
+from leblanc.core.blocks import Table
+from leblanc.studies.modes.study import Resolution, SectionSource, answer_modes
 from meshes.baffles import Baffles
 from meshes.chamber import Chamber
 from meshes.files.exchange import write_section
@@ -32,16 +32,16 @@ CALL = ["modes", "--radius", "0.15", "--height", "5 cm", "--volume", str(VOLUME)
 
 
 @kills(
-    "leblanc.studies.modes:_error",
+    "leblanc.studies.modes.study:_error",
     "np.abs(other / size - 1.0) / (4.0**order - 1.0)",
     "np.abs(other / size - 1.0)",
 )
 @kills(
-    "leblanc.studies.modes:_exact",
+    "leblanc.studies.modes.study:_exact",
     "np.where(modes.frequency > 0.0, *both)",
     "np.where(modes.frequency < 0.0, *both)",
 )
-@kills("leblanc.studies.modes:answer_modes", "damping.rate / size", "damping.rate * size")
+@kills("leblanc.studies.modes.study:answer_modes", "damping.rate / size", "damping.rate * size")
 def test_ring() -> None:
     """Frequencies, exact values beside them, errors estimated within a factor of two, damping by hand."""
     answer = answer_modes(Chamber(R, H), VOLUME, WATER, 40.0, 6, Resolution(64, 4))
@@ -58,7 +58,7 @@ def test_ring() -> None:
     assert answer.converged and not answer.notes
 
 
-@kills("leblanc.text.liquid:modes_table", "k += same", "k += 1")
+@kills("leblanc.studies.modes.answer:_rows", "k += same", "k += 1")
 def test_closed_sectors() -> None:
     """Six compartments: one frequency six times, against the series of sines."""
     chamber = Chamber(R, H, baffles=Baffles(6))
@@ -69,16 +69,16 @@ def test_closed_sectors() -> None:
     assert np.allclose(np.abs(answer.frequency), [first] * 6 + [second] * 2, rtol=1e-4)
     assert answer.multiplicity.tolist() == [6] * 8 and answer.exact == (None,) * 8
     assert np.all(np.abs(answer.travelling) < 0.5)
-    lines = modes_table(answer)
-    assert len(lines) == 3 and "stands" in lines[1] and " 6 " in lines[1]
+    (table,) = (block for block in answer.blocks() if isinstance(block, Table))
+    assert [(row[1], row[3]) for row in table.rows] == [("6", "stands")] * 2
 
 
 @kills(
-    "leblanc.studies.modes:section_of_file",
+    "leblanc.studies.modes.study:section_of_file",
     "surface_radius_of(section, volume / chamber.height)",
     "surface_radius_of(section, volume)",
 )
-@kills("leblanc.studies.modes:section_of_file", "[liquid, halved(liquid)]", "[liquid, liquid]")
+@kills("leblanc.studies.modes.study:section_of_file", "[liquid, halved(liquid)]", "[liquid, liquid]")
 def test_file(tmp_path: Path) -> None:
     """A disc from a file, in millimetres, has the ring's waves."""
     path = tmp_path / "disc.msh"

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fluid.liquid import known_liquid
-from leblanc.studies.modes import Resolution, answer_modes
+from leblanc.studies.modes.study import Resolution, answer_modes
 from meshes.baffles import Baffles
 from meshes.chamber import Chamber
 from meshes.rings.quadrilaterals import ring

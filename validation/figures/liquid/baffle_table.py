@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from leblanc.studies.modes import Resolution, ring_sections
+from leblanc.studies.modes.study import Resolution, ring_sections
 from meshes.baffles import Baffles
 from solvers.sloshing.forced import forced_response, mode_damping
 from solvers.sloshing.modes import sloshing_modes, spectrum

@@ -11,8 +11,9 @@ from fluid.fill import Fill
 from fluid.friction.laws import NO_FRICTION, Friction
 from fluid.liquid import known_liquid
 from leblanc.cli import main
-from leblanc.results.layer import LayerCode, LayerResult, Number
-from leblanc.studies.layer import answer_layer
+from leblanc.results.notes.layer import LayerCode, Number
+from leblanc.studies.layer.answer import LayerAnswer
+from leblanc.studies.layer.study import answer_layer
 from leblanc.studies.models.liquid import wave_model
 from leblanc.studies.models.validity import MEANING
 from meshes.chamber import Chamber
@@ -29,7 +30,7 @@ def layer(relative_depth: float, liquid: str = "water") -> Fill:
     return Fill(Chamber(R, H), known_liquid(liquid), math.pi * (R**2 - surface**2) * H)
 
 
-def outside(answer: LayerResult) -> set[str]:
+def outside(answer: LayerAnswer) -> set[str]:
     return {number.name for number in answer.validity if not number.in_range}
 
 
@@ -76,7 +77,7 @@ DEEP, RATIO, FOLD = 0.1, 1.1, 0.010372250  # of the exact wave, by another code 
 
 def beside_the_fold(
     model: str, share: float, friction: Friction = NO_FRICTION, speed: float = 0.0, gravity: float = 0.0
-) -> tuple[Number | None, LayerResult]:
+) -> tuple[Number | None, LayerAnswer]:
     """A whirl of a share of the largest that a smooth wave follows, at a detuning unless a speed is given."""
     fill, asked = layer(DEEP), wave_model(model, friction, 32 if model == "long_wave" else None)
     at = speed or SPIN / (1.0 + RATIO * math.sqrt(linear_detuning(DEEP)))

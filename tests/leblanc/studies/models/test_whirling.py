@@ -13,7 +13,8 @@ import leblanc as lb
 from fluid.fill import Fill
 from fluid.friction.laws import NO_FRICTION, Friction
 from leblanc.cli import main
-from leblanc.results.layer import LayerCode, LayerResult
+from leblanc.results.notes.layer import LayerCode
+from leblanc.studies.layer.answer import LayerAnswer
 from leblanc.studies.models.whirling import (
     AutoWave,
     WaveChoice,
@@ -21,7 +22,6 @@ from leblanc.studies.models.whirling import (
     choose_in_time,
     choose_wave,
 )
-from leblanc.text.liquid import layer_summary
 from meshes.baffles import Baffles
 from meshes.chamber import Chamber
 from meshes.errors import InputError
@@ -173,8 +173,8 @@ def test_the_answer_tells_model_and_reason(capsys: pytest.CaptureFixture[str]) -
     assert found["force_ratio"] == named["force_ratio"]
     options = {"radius": 0.15, "volume": 6.71e-4, "height": 0.05, "speed": 40.0, "whirl_speed": 32.0}
     tight = lb.layer(**options, whirl_amplitude=1.5e-4, model="auto", tolerance=1e-3)
-    assert isinstance(tight, LayerResult) and tight.model == "potential"
-    assert tight.exact is not None and ("Why that model", tight.model_reason) in layer_summary(tight)
+    assert isinstance(tight, LayerAnswer) and tight.model == "potential"
+    assert tight.exact is not None and ("Why that model", tight.model_reason) in tight.facts()
     assert tight.named_arrays().attrs["reason"] == tight.model_reason
 
 

@@ -4,26 +4,25 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import replace
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from fluid import waves
 from fluid.fill import Fill
+from fluid.friction.laws import Friction
+from fluid.liquid import Liquid
 from leblanc.core.notes import Note
-from leblanc.results.layer import (
-    ExactPeriods,
-    ExactWave,
-    FreeWaveResult,
-    LayerCase,
-    LayerPeriodsResult,
-    LayerResult,
-    Wave,
-    WaveFrames,
+from leblanc.core.progress import update
+from leblanc.core.question import called
+from leblanc.core.terminal import say
+from leblanc.results.drawn.wave import Wave, WaveFrames
+from leblanc.results.notes.baffles import smeared_baffles
+from leblanc.results.notes.layer import (
+    LayerCode,
     against_whirl,
-    drawn_depth,
     dry_wall,
     friction_frequency,
     inner_wall,
@@ -33,9 +32,23 @@ from leblanc.results.layer import (
     out_of_range,
     two_grids,
 )
-from leblanc.results.notes.baffles import smeared_baffles
+from leblanc.scene.chambers import round_chamber
+from leblanc.studies.layer.answer import (
+    AnyLayerAnswer,
+    ExactPeriods,
+    ExactWave,
+    FreeWaveAnswer,
+    LayerAnswer,
+    LayerCase,
+    PeriodsAnswer,
+    drawn_depth,
+)
+from leblanc.studies.models.liquid import wave_model
 from leblanc.studies.models.validity import judge
 from leblanc.studies.models.whirling import (
+    AUTO,
+    LAYER_MODELS,
+    TOLERANCE,
     AutoWave,
     WaveChoice,
     choose_free,
@@ -47,7 +60,7 @@ from meshes.errors import InputError, require_not_negative, require_positive
 from solvers.liquid_model import LiquidWave, WaveModel, Whirl, drag_frequency
 from solvers.potential.model import Potential, PotentialWave
 from solvers.potential.steady import Branch
-from solvers.pypde.models import LongWave, OneFamily, Progress
+from solvers.pypde.models import LongWave, OneFamily
 from solvers.synchronous.models import LINEAR, Linear
 from solvers.wave_error import detuning_ratio
 
@@ -57,6 +70,97 @@ _GRIDS = "grid_gap"  # likewise
 _ONE_WAY = 1e-6  # part of the answer that may go the other way round before it is worth a note
 
 
+def answer(
+    radius: float,
+    volume: float,
+    height: float,
+    speed: float,
+    whirl_speed: float | None,
+    whirl_amplitude: float | None,
+    free: float | None,
+    mode: int | None,
+    model: str,
+    tolerance: float | None,
+    cells: int | None,
+    baffles: int,
+    baffle_tip_radius: float,
+    baffle_wall_gap: float,
+    dispersion: bool,
+    friction: Friction,
+    gravity: float,
+    liquid: Liquid,
+    duration: float | None,
+    ramp: float,
+    solver: str | None,
+) -> AnyLayerAnswer:
+    """Answer to a whirl, settled or from rest over a duration, or the free wave of a crest height."""
+    chamber = round_chamber(radius, height, baffles, baffle_tip_radius, baffle_wall_gap)
+    fill = Fill(chamber, liquid, volume)
+    if free is not None:
+        unused = {
+            "whirl_speed": whirl_speed, "whirl_amplitude": whirl_amplitude, "duration": duration,
+            "solver": solver, "dispersion": dispersion or None, "baffles": baffles or None,
+            "gravity": gravity or None, "ramp": ramp or None,
+        }  # fmt: skip
+        for name, value in unused.items():
+            if value is not None:
+                raise InputError(name, value, "left out where free is given")
+        made = _named(model, friction, cells, tolerance=tolerance)
+        return free_wave(fill, speed, float(free), 1 if mode is None else mode, made)
+    if mode is not None:
+        raise InputError("mode", mode, "left out without free")
+    if gravity > 0.0 and not whirl_amplitude:  # alone it drives: nothing whirls
+        whirl_speed, whirl_amplitude = speed if whirl_speed is None else whirl_speed, 0.0
+    if whirl_speed is None or whirl_amplitude is None:
+        name = "whirl_amplitude" if whirl_amplitude is None else "whirl_speed"
+        raise InputError(name, None, "given, or free in its place")
+    made = _named(model, friction, cells, dispersion, solver, tolerance)
+    asked: dict[str, Any] = {
+        "fill": fill, "speed": speed, "whirl_speed": whirl_speed, "whirl_amplitude": whirl_amplitude,
+        "model": made, "gravity": gravity,
+    }  # fmt: skip
+    if duration is None:
+        return replace(answer_layer(**asked), asked=asked | {"ramp": ramp})
+    asked |= {"duration": duration, "ramp": ramp}
+    return replace(layer_history(**asked), asked=asked)
+
+
+def _named(
+    name: str,
+    friction: Friction,
+    cells: int | None,
+    dispersion: bool = False,
+    solver: str | None = None,
+    tolerance: float | None = None,
+) -> WaveModel | AutoWave:
+    """The model that is named, or what stands for it until the whirl is known."""
+    if name not in LAYER_MODELS:
+        raise InputError("model", name, "one of " + ", ".join(LAYER_MODELS))
+    if name != AUTO:
+        if tolerance is not None:
+            raise InputError("tolerance", tolerance, f"left out for {name}; auto has one")
+        return wave_model(name, friction, cells, dispersion, solver)
+    if solver is not None:
+        raise InputError("solver", solver, "left out for auto; long_wave and kdv have one")
+    return AutoWave(friction, cells, dispersion, TOLERANCE if tolerance is None else tolerance)
+
+
+def _told(share: float) -> None:
+    """Say which share of the time is done."""
+    update(share, 1.0)
+
+
+def present(answer: AnyLayerAnswer, profile: bool, film: Path | None) -> AnyLayerAnswer:
+    """The answer with its depth around the wall or without; its film is written."""
+    if film is not None and (answer.converged or not isinstance(answer, FreeWaveAnswer)):
+        animate = called("leblanc.studies.layer.figure:animate")
+        update(what="waves through time")
+        wave, frames = free_film(answer) if isinstance(answer, FreeWaveAnswer) else layer_film(**answer.asked)
+        update(what="drawing")
+        say(f"wrote {film}, {animate(wave, frames, film, update)} frames")
+    return replace(answer, profile=profile)
+
+
 def answer_layer(
     fill: Fill,
     speed: float,
@@ -64,24 +168,24 @@ def answer_layer(
     whirl_amplitude: float,
     model: WaveModel | AutoWave,
     gravity: float = 0.0,
-    progress: Progress = None,
-) -> LayerResult:
-    """Answer of the liquid in one chamber to a circular whirl of its axis.
+) -> LayerAnswer:
+    """Answer of the liquid in one chamber to a circular whirl of its axis; SI units.
 
-    Without an amplitude statics, linear theory and elements give the limit of the force ratio; under gravity
-    across the axis nothing whirls then, and the spin takes the whirl's place.
+    The whirl speed is that in space, not 0, negative against the spin; without an amplitude under gravity the
+    spin takes its place. Without an amplitude statics, linear theory and elements give the limit of the force
+    ratio, the others no force. A model is one of `leblanc.studies.models.liquid.wave_model`, or
+    what stands for the cheapest that is good enough. Gravity acts across the axis.
     """
-    require_positive("--speed", speed)
-    require_not_negative("--whirl-amplitude", whirl_amplitude)
-    require_positive("--volume", fill.volume)
-    require_not_negative("--gravity", gravity)
+    require_positive("speed", speed)
+    require_not_negative("whirl_amplitude", whirl_amplitude)
+    require_positive("volume", fill.volume)
+    require_not_negative("gravity", gravity)
     if not math.isfinite(whirl_speed) or whirl_speed == 0.0:
-        raise InputError("--whirl-speed", whirl_speed, "a finite number other than 0")
+        raise InputError("whirl_speed", whirl_speed, "a finite number other than 0")
     begin = time.perf_counter()
     whirl = _driven(Whirl(speed, whirl_speed, whirl_amplitude, gravity=gravity))
-    with as_options():
-        choice = choose_wave(model, fill, whirl) if isinstance(model, AutoWave) else WaveChoice(model)
-        wave = choice.wave or watched(_with_baffles(choice.model, fill), progress).wave(fill, whirl)
+    choice = choose_wave(model, fill, whirl) if isinstance(model, AutoWave) else WaveChoice(model)
+    wave = choice.wave or watched(_with_baffles(choice.model, fill), _told).wave(fill, whirl)
     taken, model = time.perf_counter() - begin, choice.model
     grids, apart = _both_grids(wave)
     notes = (*wave_notes(wave), *_beyond_waves(fill, whirl, wave), *(grids if apart else ()))
@@ -96,7 +200,7 @@ def answer_layer(
     if exact is not None and exact.branch == Branch.LEE_WAVES:
         notes = (*notes, lee_waves())
     kappa = (fill.chamber.radius / surface) ** 2 if gravity else math.nan
-    return LayerResult(
+    return LayerAnswer(
         case=_case(fill, whirl, choice),
         force_ratio=_force_ratio(fill, whirl, wave),
         offset=complex(wave.answer.offset[0]),
@@ -139,7 +243,7 @@ def _friction_notes(model: WaveModel, fill: Fill, whirl: Whirl) -> tuple[Note, .
 def _with_baffles(model: WaveModel, fill: Fill) -> WaveModel:
     """The model, if it takes the baffles that there may be."""
     if not model.takes_baffles and fill.chamber.baffles is not None:
-        allowed = f"0 for --model {model.name}; fem takes them"
+        allowed = f"0 for {model.name}; fem takes them"
         raise InputError("baffles", fill.chamber.baffles.count, allowed)
     return model
 
@@ -158,23 +262,21 @@ def _exact(wave: PotentialWave) -> ExactWave:
 
 def free_wave(
     fill: Fill, speed: float, crest: float, crests: int, model: WaveModel | AutoWave
-) -> FreeWaveResult:
-    """The wave that runs round the drum by itself with crests of a given height."""
-    require_positive("--speed", speed)
-    require_positive("--volume", fill.volume)
-    with as_options():
-        choice = choose_free(model) if isinstance(model, AutoWave) else WaveChoice(model)
+) -> FreeWaveAnswer:
+    """The wave that runs round the drum by itself, its crests so many mean depths deep, more than 1."""
+    require_positive("speed", speed)
+    require_positive("volume", fill.volume)
+    choice = choose_free(model) if isinstance(model, AutoWave) else WaveChoice(model)
     model = choice.model
     if not isinstance(model, Potential | Linear):
-        raise InputError("--model", model.name, "auto, linear or potential where --free is given")
+        raise InputError("model", model.name, "auto, linear or potential where free is given")
     begin = time.perf_counter()
-    with as_options():
-        wave = model.free_wave(fill, speed, crest, crests)
+    wave = model.free_wave(fill, speed, crest, crests)
     taken, numbers = time.perf_counter() - begin, judge(wave.numbers, wave.ranges)
     notes = (*([no_answer(wave.reason)] if wave.reason else []), *out_of_range(numbers))
     if wave.converged and float(wave.depth.max()) > fill.chamber.radius - fill.chamber.inner_radius:
         notes = (*notes, inner_wall())
-    return FreeWaveResult(
+    return FreeWaveAnswer(
         case=_case(fill, Whirl(speed, wave.whirl_speed[0] if wave.converged else speed, 0.0), choice),
         mode=crests,
         whirl_speed=np.array(wave.whirl_speed),
@@ -201,16 +303,6 @@ def _beyond_waves(fill: Fill, whirl: Whirl, wave: LiquidWave) -> tuple[Note, ...
     size, layer = whirl.amplitude / fill.depth, fill.depth / fill.chamber.radius
     above = float(detuning_ratio(layer, whirl.detuning)) > 1.0
     return (no_smooth_wave(size, size / wave.numbers[_SMOOTH], above),)
-
-
-@contextmanager
-def as_options() -> Iterator[None]:
-    """Name what a model refuses as the options of the command line."""
-    try:
-        yield
-    except InputError as fault:
-        option = "--" + fault.field.replace("_", "-")
-        raise InputError(option, fault.value, fault.allowed) from fault
 
 
 def _force_ratio(fill: Fill, whirl: Whirl, wave: LiquidWave) -> complex:
@@ -260,45 +352,45 @@ def layer_history(
     duration: float,
     ramp: float = 0.0,
     gravity: float = 0.0,
-    progress: Progress = None,
-) -> LayerPeriodsResult:
-    """Layer from rest in the drum, whirl period by whirl period, its whirl growing over the ramp, s."""
-    whirl = _driven(Whirl(speed, whirl_speed, whirl_amplitude, ramp, gravity))
-    choice = _in_time(model, fill, whirl)
-    model = choice.model
-    if isinstance(model, Potential):
-        return _exact_history(fill, whirl, duration, choice, model, progress)
-    if not isinstance(model, LongWave):
-        raise InputError("--model", model.name, "auto, long_wave or potential where a --duration is given")
-    from solvers.pypde.settle import simulate
+) -> PeriodsAnswer:
+    """Layer from rest in the drum, whirl period by whirl period; the whirl grows over the ramp, s.
 
-    with as_options():
-        history = simulate(fill, whirl, duration, model.friction, model.numerics, model.solver, progress)
-    wave = model.wave_at_end(fill, whirl, history)
-    numbers = judge(wave.numbers, wave.ranges)
-    notes = (*wave_notes(wave), *_friction_notes(model, fill, whirl))
-    return LayerPeriodsResult(_case(fill, whirl, choice), history, notes, numbers)
+    The other parameters are those of `answer_layer`.
+    """
+    whirl = _driven(Whirl(speed, whirl_speed, whirl_amplitude, ramp, gravity))
+    choice, exact = _in_time(model, fill, whirl), None
+    chosen = choice.model
+    wave: LiquidWave
+    if isinstance(chosen, Potential):
+        from solvers.potential.histories import simulate as exact_simulate
+
+        found = exact_simulate(fill, whirl, duration, chosen.steps, _told)
+        history, wave = found.periods, chosen.wave_at_end(fill, whirl, found)
+        names = ("crest", "trough", "crest_number", "nodes", "force_gap")
+        exact = ExactPeriods(state=found.state, **{name: getattr(found, name) for name in names})
+        notes = wave_notes(wave)
+    elif isinstance(chosen, LongWave):
+        from solvers.pypde.settle import simulate
+
+        history = simulate(fill, whirl, duration, chosen.friction, chosen.numerics, chosen.solver, _told)
+        wave = chosen.wave_at_end(fill, whirl, history)
+        notes = (*wave_notes(wave), *_friction_notes(chosen, fill, whirl))
+    else:
+        raise InputError("model", chosen.name, "auto, long_wave or potential where a duration is given")
+    return PeriodsAnswer(
+        case=_case(fill, whirl, choice),
+        history=history,
+        converged=history.converged,
+        in_range=all(note.code == LayerCode.FRICTION_FREQUENCY for note in notes),
+        notes=notes,
+        validity=judge(wave.numbers, wave.ranges),
+        exact=exact,
+    )
 
 
 def _in_time(model: WaveModel | AutoWave, fill: Fill, whirl: Whirl) -> WaveChoice:
     """The model that goes through time."""
-    with as_options():
-        return choose_in_time(model, fill, whirl) if isinstance(model, AutoWave) else WaveChoice(model)
-
-
-def _exact_history(
-    fill: Fill, whirl: Whirl, duration: float, choice: WaveChoice, model: Potential, progress: Progress
-) -> LayerPeriodsResult:
-    """Exact waves from rest, until they break."""
-    from solvers.potential.histories import simulate
-
-    with as_options():
-        found = simulate(fill, whirl, duration, model.steps, progress)
-    wave = model.wave_at_end(fill, whirl, found)
-    names = ("crest", "trough", "crest_number", "nodes", "force_gap")
-    exact = ExactPeriods(state=found.state, **{name: getattr(found, name) for name in names})
-    numbers = judge(wave.numbers, wave.ranges)
-    return LayerPeriodsResult(_case(fill, whirl, choice), found.periods, wave_notes(wave), numbers, exact)
+    return choose_in_time(model, fill, whirl) if isinstance(model, AutoWave) else WaveChoice(model)
 
 
 def layer_film(
@@ -310,31 +402,27 @@ def layer_film(
     gravity: float = 0.0,
     duration: float | None = None,
     ramp: float = 0.0,
-    progress: Progress = None,
 ) -> tuple[Wave, WaveFrames]:
     """A layer in the drum frame for a film; the parameters are `layer_history`'s.
 
     Long waves start from rest and run for six whirl periods unless a duration is given, exact ones where one
-    is given; other waves are steady in the frame of the deflection and run round the drum for two.
-
-    Walls and speeds with the wave at the end, and the wave over time.
+    is given; other waves are steady in the frame of the deflection and run round the drum for two. The first
+    answer is the wave at the end.
     """
     whirl = _driven(Whirl(speed, whirl_speed, whirl_amplitude, ramp, gravity))
     if isinstance(model, AutoWave):
-        with as_options():
-            model = (choose_wave if duration is None else choose_in_time)(model, fill, whirl).model
+        model = (choose_wave if duration is None else choose_in_time)(model, fill, whirl).model
     steady = not isinstance(model, LongWave) and (duration is None or not isinstance(model, Potential))
     if steady:
-        answer = answer_layer(fill, speed, whirl_speed, whirl_amplitude, model, gravity, progress)
+        answer = answer_layer(fill, speed, whirl_speed, whirl_amplitude, model, gravity)
         return answer.wave(), steady_film(answer, whirl, 2.0 * whirl.period)
-    with as_options():
-        frames = _film_from_rest(fill, whirl, watched(model, progress), duration or 6.0 * whirl.period)
+    frames = _film_from_rest(fill, whirl, watched(model, _told), duration or 6.0 * whirl.period)
     linear = answer_layer(fill, speed, whirl_speed, whirl_amplitude, LINEAR, gravity)
     last = replace(linear.wave(), model=model.name, theta=frames.theta, depth=frames.depth[-1], notes=())
     return last, frames
 
 
-def free_film(result: FreeWaveResult) -> tuple[Wave, WaveFrames]:
+def free_film(result: FreeWaveAnswer) -> tuple[Wave, WaveFrames]:
     """A free wave in the drum frame for a film, twice round the drum."""
     whirl = Whirl(result.case.speed, result.wave().whirl_speed, 0.0)
     frames = steady_film(result, whirl, 2.0 * whirl.period)
@@ -361,7 +449,7 @@ def _film_from_rest(fill: Fill, whirl: Whirl, model: WaveModel, duration: float)
     return WaveFrames(time=shots.time, theta=shots.theta, depth=shots.depth, deflection=shots.deflection)
 
 
-def steady_film(answer: LayerResult | FreeWaveResult, whirl: Whirl, duration: float) -> WaveFrames:
+def steady_film(answer: LayerAnswer | FreeWaveAnswer, whirl: Whirl, duration: float) -> WaveFrames:
     """Pictures of a wave that is steady in the frame of the deflection, as it runs round the drum."""
     frames = int(np.clip(60.0 * duration / whirl.period, 60, 2000))
     time = duration * np.arange(frames) / frames

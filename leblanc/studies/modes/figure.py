@@ -1,4 +1,4 @@
-"""The liquid of one chamber drawn: its optimal volume across the deflection, its modes along the axis."""
+"""Shapes of the liquid's modes, seen along the axis."""
 
 from __future__ import annotations
 
@@ -9,15 +9,10 @@ from numpy.typing import NDArray
 
 from leblanc.core.units import MM, RPM
 from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, style
-from leblanc.figures.drawing.page import save as save  # a figure is drawn and written together
 from leblanc.results.drawn.machine import rounded_down
-from leblanc.results.liquid import ModesResult
+from leblanc.studies.modes.answer import ModesAnswer
 from meshes.arrays import Array
 from meshes.liquid_section import LiquidSection
-
-VOLUME_FRAME = Frame(left=0.72, top=0.2, between=0.12, below=0.42)
-WALL, LIQUID = "0.15", "#56B4E9"
-POINTS = 400  # of the surface
 
 Axes = Any  # matplotlib's, which no module that only draws imports
 
@@ -35,13 +30,8 @@ CUTS = {
 }
 
 
-def modes_figure(result: ModesResult) -> Figure:
-    """The slowest modes at the instant of the strongest flow, one shape of those with equal frequencies.
-
-    Parameters
-    ----------
-    result : the modes
-    """
+def modes_figure(result: ModesAnswer) -> Figure:
+    """The slowest modes at the instant of the strongest flow, one shape of those with equal frequencies."""
     modes = result.shapes
     shown = _distinct(modes.multiplicity)[:MOST]
     stretch = _stretch(result.section)
@@ -89,7 +79,7 @@ def _placed(section: LiquidSection, points: Array, stretch: float, inward: Array
     return np.asarray(points * (drawn / radius)[:, None])
 
 
-def _draw(axes: Axes, result: ModesResult, k: int, stretch: float) -> None:
+def _draw(axes: Axes, result: ModesAnswer, k: int, stretch: float) -> None:
     """Stream lines, free surface and walls of one mode."""
     section, modes = result.section, result.shapes
     outer = float(np.hypot(*section.points.T).max())
@@ -119,12 +109,7 @@ def _draw(axes: Axes, result: ModesResult, k: int, stretch: float) -> None:
 
 
 def least_depth(section: LiquidSection) -> float:
-    """From the free surface to the nearest wall outside it, m; walls across the surface, as baffles, apart.
-
-    Parameters
-    ----------
-    section : the liquid at rest
-    """
+    """From the free surface to the nearest wall outside it, m; walls across it, as baffles, do not count."""
     plane = section.points[:, 0] + 1j * section.points[:, 1]
     start, end = plane[section.wall[:, 0]], plane[section.wall[:, 1]]
     along = ((end - start) * (0.5 * (start + end)).conj()) / np.abs(end - start)
@@ -141,7 +126,7 @@ def _lines(axes: Axes, points: Array, sides: NDArray[np.int64], **look: Any) -> 
     axes.plot(*np.concatenate([path, gap], axis=1).reshape(-1, 2).T, **look)
 
 
-def _title(result: ModesResult, k: int) -> str:
+def _title(result: ModesAnswer, k: int) -> str:
     modes = result.shapes
     sigma, crests, same = float(modes.frequency[k]), int(modes.crests[k]), int(modes.multiplicity[k])
     runs = "stands"
@@ -152,13 +137,13 @@ def _title(result: ModesResult, k: int) -> str:
     return f"{number(float(f'{sigma:.5g}'))} rad/s{times}\n{crests} {plural}, {runs}"
 
 
-def _caption(result: ModesResult, stretch: float) -> str:
+def _caption(result: ModesAnswer, stretch: float) -> str:
     depth = "" if stretch == 1.0 else f" Depths are drawn {number(stretch)} times larger."
     surface, rpm = result.section.surface_radius * MM, result.speed * RPM
     return (
         "Slowest modes of the liquid in the frame of the drum, spin counter-clockwise. Lines: stream lines, "
         "solid where liquid circles counter-clockwise, dashed where clockwise; blue: free surface at that "
-        f"instant, dotted: at rest. {result.title}, free surface at {surface:.5g} mm, "
+        f"instant, dotted: at rest. {result.chamber}, free surface at {surface:.5g} mm, "
         f"{result.speed:.4g} rad/s = {rpm:.4g} rpm. "
         f"Model: finite elements, plane and inviscid.{depth} Assumed: nothing."
     )
