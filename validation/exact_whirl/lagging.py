@@ -157,7 +157,7 @@ def small_whirl(
 
 
 def onset(layer: float, mass_ratio: float, damping: float, friction: float) -> tuple[float, float] | None:
-    """Omega/omega_n and omega_w/omega_n at which a whirl begins to grow on the way up; None up to `_FASTEST`."""
+    """Omega/omega_n and omega_w/omega_n of the onset on the way up; None up to `_FASTEST`."""
     from scipy.optimize import brentq
 
     def growth(speed: float) -> float:

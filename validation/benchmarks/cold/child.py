@@ -80,7 +80,7 @@ def _name(inner: FrameType | None, command: str) -> str:
 
 
 def watch(arguments: list[str]) -> dict[str, object]:
-    """Run a command: `code` of its exit; `notes` (call, kind, library, count); `modules` loaded at the end."""
+    """Run a command: `code` of its exit; `notes` (call, kind, library, count); `modules` loaded then."""
     notes: Counter[tuple[str, str, str]] = Counter()
     command = arguments[0]
 

@@ -8,7 +8,7 @@ from meshes.arrays import Array
 from validation.cases.case import MEASURED, Case, Effect, shape_verdict
 from validation.cases.fill_sweep.contact import of_kept
 from validation.cases.fill_sweep.fitted import SCATTER, bands, kept, measured, ratios
-from validation.cases.rotors.rigs import data
+from validation.study import data
 
 _GROUP = "fill_sweep"
 _SOURCE = "washing machine with a balance ring, see fill_sweep.json"
@@ -35,7 +35,7 @@ def cases() -> list[Case]:
 
 
 def off(measured: Array, computed: Array) -> Array:
-    """Factor by which the five fills between are off, at least 1, shape (f - 2,); both over the first fill."""
+    """Factor by which the five fills between are off, at least 1, shape (f - 2,); over the first fill."""
     return np.asarray(np.exp(np.abs(np.log(computed[1:-1] / measured[1:-1]))))
 
 
