@@ -99,7 +99,7 @@ def read(file: Path, kind: type[_Kept]) -> _Kept:
 
 def _built(found: Any, kind: Any) -> Any:
     origin, parts = get_origin(kind), get_args(kind)
-    if is_dataclass(kind):
+    if isinstance(kind, type) and is_dataclass(kind):
         hints = get_type_hints(kind)
         return kind(**{name: _built(value, hints[name]) for name, value in found.items()})
     if origin in (tuple, list):

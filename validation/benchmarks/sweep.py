@@ -1,6 +1,6 @@
 """What a sweep costs: time over the number of workers, memory, the share that is not the answers themselves.
 
-`python -m validation.benchmarks.sweep [SAMPLES]` prints a table.
+`python -m validation.benchmarks.sweep [--samples N]` prints a table.
 """
 
 from __future__ import annotations

@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any
 
 from leblanc.core.units import MM, RPM
-from leblanc.figures.drawing.page import save_png
 from leblanc.scene.examples import example
 from leblanc.scene.scene import Scene
 from leblanc.studies.runup import runup_scene
@@ -26,8 +25,8 @@ def with_and_without(scene: Scene, check: bool = False) -> tuple[RunupHistory, R
 
 
 def draw(wet: RunupHistory, dry: RunupHistory, scene: Scene, directory: Path) -> Path:
-    """Speed and amplitude over time as PNG and SVG."""
-    from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, style
+    """Speed and amplitude over time as PNG."""
+    from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save_png, style
 
     looks: list[tuple[RunupHistory, dict[str, Any]]] = [
         (wet, {"color": "#0072B2", "linewidth": 1.8, "label": "with liquid"}),

@@ -18,7 +18,6 @@ from typing import Any
 import numpy as np
 
 from fluid.friction.laws import Friction, FrictionLaw
-from leblanc.figures.drawing.page import save_png
 from leblanc.results.runup import turn_mean
 from meshes.arrays import Array, Complex
 from solvers.runup.machine import Ramp
@@ -134,8 +133,8 @@ def table(lags: Sequence[Lag], damping_ratio: float) -> str:
 
 
 def draw(lags: Sequence[Lag], damping_ratio: float, directory: Path) -> Path:
-    """Angle over speed and error over rate as PNG and SVG; lags by falling rate."""
-    from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, style
+    """Angle over speed and error over rate as PNG; lags by falling rate."""
+    from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save_png, style
 
     with style():
         figure = Figure()

@@ -14,7 +14,6 @@ from typing import Any
 import numpy as np
 
 from leblanc.core.units import LITRE, MM, RPM
-from leblanc.figures.drawing.page import save_png
 from validation.cases.rotors.runup import GIVEN, Point, band, best_volume, run, steady_end, sweep
 from validation.study import launch
 
@@ -60,8 +59,8 @@ def table(points: Sequence[Point]) -> str:
 
 
 def draw(points: Sequence[Point], dry: Point, directory: Path) -> Path:
-    """Trends as PNG and SVG, with the run-up without liquid."""
-    from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, style
+    """Trends as PNG, with the run-up without liquid."""
+    from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save_png, style
 
     volumes = list(dict.fromkeys(point.volume for point in points))
     litres = np.array(volumes) * LITRE
