@@ -36,7 +36,7 @@ _MAP = 400
 
 
 def runups(cells: tuple[int, ...] = (32, 64, 128, 256), repeats: int = 3) -> list[Sample]:
-    """Run-ups of 20 s with one layer; error over the largest amplitude, reference 1024 cells."""
+    """Run-ups of 20 s with one layer; error: of the amplitude over its largest, reference 1024 cells."""
     exact = _history(_FINE).amplitude
 
     def runner(n: int) -> Callable[[], Callable[[], Go]]:

@@ -46,8 +46,7 @@ def fill() -> Fill:
 
 
 def spectrum(values: Array, first: float = 0.0) -> Complex:
-    """Fourier coefficients of e^{i n xi}, n = 1 ... (points - 1) // 2, of a field on equal steps round the
-    drum.
+    """Coefficients of e^{i n xi}, n = 1 ... (points - 1) // 2, of a field on equal steps.
 
     The mean is left out; `first` is the angle of the first point, rad.
     """

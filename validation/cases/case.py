@@ -53,7 +53,7 @@ def shape_verdict(same: bool, effect: Effect | None = None) -> Verdict:
 
 @dataclass(frozen=True)
 class Origin:
-    """Origin of the value beside the computed one; InputError for an unnamed code, scan or closed form."""
+    """Origin of the value beside the computed one; InputError for a code, scan or closed form unnamed."""
 
     #: `printed` in a source, as a number or a statement; `measured` by a source's authors or others; by a
     #: `second code`; a `scan` of our own; a `closed form`, a limit or a conservation law

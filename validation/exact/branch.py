@@ -75,8 +75,7 @@ def held_waves(layer: float, ratio: float, whirls: Sequence[float], end: float =
 
 
 def end(layer: float, ratio: float) -> End:
-    """End of the waves of whirls that grow from nothing, at p/p_1 other than 1; `WIDEST` without fold if
-    none.
+    """End of whirls that grow from nothing, at p/p_1 other than 1; `WIDEST` where no fold is.
 
     Against the deflection, p > p_1, they are followed in their height, with it in the whirl.
     """

@@ -44,8 +44,7 @@ class LaggingWave:
 def lagging_wave(
     layer: float, slip: float, whirl: float, friction: float, near: Array | None = None
 ) -> LaggingWave:
-    """Wave of a whirl w_0/R in liquid with friction k/omega_w, from surface `near`, (m,), or the layer at
-    rest.
+    """Wave of a whirl w_0/R in liquid with friction k/omega_w, from a surface, (m,), or from rest.
 
     Slip p = 1 - Omega/omega_w.
 
@@ -157,7 +156,7 @@ def small_whirl(
 
 
 def onset(layer: float, mass_ratio: float, damping: float, friction: float) -> tuple[float, float] | None:
-    """Omega/omega_n and omega_w/omega_n of the onset on the way up; None up to `_FASTEST`."""
+    """Omega/omega_n and omega_w/omega_n at which a whirl grows on the way up; None up to `_FASTEST`."""
     from scipy.optimize import brentq
 
     def growth(speed: float) -> float:

@@ -244,7 +244,7 @@ Lying = tuple[Jeffcott | TwoPlane | Tub, list[Fill], float, Friction]
 
 
 def _random_layers(rng: np.random.Generator, reach: float = 0.0) -> tuple[float, list[Fill]]:
-    """A size, and one or two layers in chambers of at most that radius, up to `reach` sizes off."""
+    """A size, and one or two layers in chambers of at most that radius, `reach` sizes along the axis."""
     largest, fills = between(rng, 0.05, 0.4), []
     for _ in range(int(rng.integers(1, 3))):
         radius = largest * between(rng, 0.4, 1.0)

@@ -7,11 +7,11 @@ from collections.abc import Iterator
 import numpy as np
 
 from leblanc.results.models.comparison import ModelAnswer
-from leblanc.results.response import RunResult
 from leblanc.scene.examples import example
 from leblanc.scene.scene import Scene
 from leblanc.studies.compare import compare_models
 from leblanc.studies.held.holding import Holding, cores
+from leblanc.studies.run.answer import RunResult
 from solvers.synchronous.response import distance
 from validation.models import ModelRow, ModelTable, keep
 from validation.study import launch

@@ -241,7 +241,7 @@ _OFF, _SMALL, _PERIODS = 0.8, 0.01, 3  # its whirl over the spin; whirl over the
 
 
 def lone_layer(scene: Scene) -> tuple[Fill, Whirl, Friction]:
-    """First layer of a scene under a small whirl at the last of its speeds, and its friction."""
+    """First layer of a scene under a small whirl at the last of its speeds, and the friction taken."""
     spin = float(scene.speed_array()[-1])
     for fill in scene.fills:
         if 0.0 < fill.volume < fill.chamber.capacity * (1.0 - 1e-9):

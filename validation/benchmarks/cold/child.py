@@ -44,8 +44,7 @@ def library(file: str) -> str | None:
 
 
 def place(frame: FrameType | None, command: str) -> tuple[str, str, str]:
-    """Call of the command function under way, "import", "physics" or "work", and library of the innermost
-    frame.
+    """Call under way, "import", "physics" or "work", and library of the innermost frame.
 
     The command's name is that of its module and of its function.
     """
@@ -80,7 +79,7 @@ def _name(inner: FrameType | None, command: str) -> str:
 
 
 def watch(arguments: list[str]) -> dict[str, object]:
-    """Run a command: `code` of its exit; `notes` (call, kind, library, count); `modules` loaded then."""
+    """Run a command: `code` of its exit; `notes` (call, kind, library, count); `modules` at the end."""
     notes: Counter[tuple[str, str, str]] = Counter()
     command = arguments[0]
 

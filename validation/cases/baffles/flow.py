@@ -59,8 +59,7 @@ def plane_ring(run: dict[str, Any]) -> Fill:
 
 @cache
 def lagging(name: str, cells: int = 128, smeared: bool = False) -> Lagging:
-    """Long waves through a computed run, without friction on the wall; smeared: baffles are a sink
-    everywhere.
+    """Long waves through a computed run, without wall friction; smeared: a sink everywhere.
 
     Heun's steps of the compiled rates; the drive of the driven runs acts as the force of a spin-up does, over
     the whole radius. The impulse by which the reference's projection starts the flow between the baffles is

@@ -16,7 +16,7 @@ import numpy as np
 from leblanc.scene.chambers import Chamber
 from leblanc.scene.examples import example
 from leblanc.scene.scene import Scene
-from leblanc.studies.run import run_scene
+from leblanc.studies.run.study import run_scene
 from leblanc.studies.runup import runup_scene
 from validation.cases.case import Case, Verdict, shape_verdict
 

@@ -27,9 +27,7 @@ class Contact:
     clearance: Array  #: over the deflection with the first fill, shape (n,)
 
     def within(self, seen: Array, factor: float) -> float:
-        """Share of the pairs that meet all fills between the fitted ones, measured (f,), within a factor
-        above 1.
-        """
+        """Share of pairs that meet all fills between the fitted ones, (f,), within a factor above 1."""
         off = np.abs(np.log(self.shaking / seen))[:, 1:-1]
         return float(np.mean((off <= np.log(factor)).all(axis=1)))
 

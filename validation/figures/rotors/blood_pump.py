@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 
 from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save_png, style
-from leblanc.figures.magnetic.control import magnetic_figure
 from leblanc.scene.examples import example
-from leblanc.studies.magnetic.run import run_magnetic
+from leblanc.wings.magnetic.figure import magnetic_figure
+from leblanc.wings.magnetic.study import run_magnetic
 from meshes.arrays import Array
 from solvers.rotor.magnetic.control import Controller, Pid
 from solvers.rotor.magnetic.linear import closed_loop, margins
