@@ -13,8 +13,8 @@ from solvers.potential.strip import nodes
 from validation.breaking import kept
 from validation.cases.case import Case
 from validation.cases.liquid.exact_wave import cases, last_place
-from validation.cases.rotors.rigs import data
 from validation.figures.liquid.exact_wave import NEAR, climbed, free_figure, last_crests, sharp_figure
+from validation.study import data
 
 
 @cache

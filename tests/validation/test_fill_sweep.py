@@ -11,7 +11,7 @@ import pytest
 from tests.mutants import kills
 from validation.cases.fill_sweep import cases, contact, fitted, judged, machine
 from validation.cases.fill_sweep.machine import Values
-from validation.cases.rotors.rigs import data
+from validation.study import data
 
 VALUES = Values(unbalance=0.2, damping_ratio=0.1, torque=7.0, ring=7e-4, loss=5.0)
 

@@ -20,13 +20,13 @@ from validation.cases.case import Case, Origin, compare
 from validation.cases.liquid import fill_optimum, layer
 from validation.cases.rotors import runup as runup_given
 from validation.cases.rotors import tub
-from validation.cases.rotors.rigs import data
 from validation.cases.rotors.runup import GIVEN, Point
 from validation.figures.liquid import volume as volume_figures
 from validation.figures.liquid.layer import bore_summary
 from validation.figures.rotors import rigs as rig_figures
 from validation.figures.rotors import whirl as whirl_figures
 from validation.notebook_page import Table, case_table, from_markdown, picture, verdicts
+from validation.study import data
 from validation.trade import again, kept, names
 from validation.trade.answers import Case as TradeCase
 from validation.trade.cases import Question, response_question

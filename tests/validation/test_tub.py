@@ -78,7 +78,7 @@ def test_vertical_resonance() -> None:
 
 
 def test_six_figures(tmp_path: Path) -> None:
-    main(["--out", str(tmp_path)])
+    main(tmp_path)
     assert len(list(tmp_path.glob("tub_fig*.png"))) == 6 and not list(tmp_path.glob("*.svg"))
     for plot in plots():
         axes = draw(plot).axes[0]

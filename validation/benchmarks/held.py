@@ -6,10 +6,13 @@ The motions that `held = "auto"` asks for on the shipped scenes, in one process.
 
 from __future__ import annotations
 
-import argparse
 import os
 import time
+from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Literal
+
+from validation.study import launch
 
 for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(variable, "1")
@@ -73,21 +76,18 @@ def cost(name: str, stride: int = 1, cells: int | None = None, liquid: str | Non
     return Cost(name, choice.holding[at], taken[: at.size], float(taken[at.size :].sum()))
 
 
-def main() -> None:
-    """Print the table."""
-    parser = argparse.ArgumentParser(prog="python -m validation.benchmarks.held", description=__doc__)
-    parser.add_argument("scenes", nargs="*", help="names of shipped scenes [default: six]")
-    parser.add_argument("--stride", type=int, default=1, help="only every so many of the speeds")
-    parser.add_argument("--cells", type=int, help="round each wall [default: the scene's]")
-    parser.add_argument("--liquid", choices=("long_wave", "potential"), help="what is held [the scene's]")
-    chosen = parser.parse_args()
-    print(
-        "foretold and taken, s; each speed's ratio of the two: 5 and 50 and 95 in 100; within half and twice"
-    )
-    print(f"{'scene':18}{'speeds':>6}{'foretold':>10}{'taken':>9}{'carried':>9}{'ratio':>7}")
-    for name in chosen.scenes or SCENES:
-        print(cost(name, chosen.stride, chosen.cells, chosen.liquid).line, flush=True)
+def main(
+    *scenes: str,
+    stride: int = 1,
+    cells: int | None = None,
+    liquid: Literal["long_wave", "potential"] | None = None,
+) -> Iterator[str]:
+    """Table of shipped scenes; parameters as for `cost`."""
+    yield "foretold and taken, s; each speed's ratio of them: 5 and 50 and 95 in 100; within half and twice"
+    yield f"{'scene':18}{'speeds':>6}{'foretold':>10}{'taken':>9}{'carried':>9}{'ratio':>7}"
+    for name in scenes or SCENES:
+        yield cost(name, stride, cells, liquid).line
 
 
 if __name__ == "__main__":
-    main()
+    launch(main)

@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -23,6 +23,7 @@ from solvers.runup.runup import RunupHistory, RunupNumerics, run_up
 from solvers.whirl.growth import growth_map
 from validation.benchmarks.timing import Answer, Contestant, Go, Sample, measure, one_core
 from validation.cases.rotors.tub import suspended_tub
+from validation.study import launch
 
 _OURS = "leblanc"
 _ROTOR = Jeffcott(30.0, 30.0 * 25.0**2, 2.0 * 0.06 * 30.0 * 25.0, 0.1)
@@ -131,15 +132,15 @@ def table(samples: list[Sample]) -> str:
     return "\n".join(lines)
 
 
-def main() -> None:
-    """Print the tables."""
+def main() -> Iterator[str]:
+    """Tables of one run on one core."""
     from threadpoolctl import threadpool_limits
 
     one_core()
     with threadpool_limits(1):
-        for name, run in (("Run-up of 20 s", runups), ("Map of 400 x 400", maps), ("Tub", tub)):
-            print(f"\n### {name}\n\n{table(run())}", flush=True)
+        for name, study in (("Run-up of 20 s", runups), ("Map of 400 x 400", maps), ("Tub", tub)):
+            yield f"\n### {name}\n\n{table(study())}"
 
 
 if __name__ == "__main__":
-    main()
+    launch(main)

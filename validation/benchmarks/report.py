@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import importlib
-import json
 import logging
 import math
 import platform
 import sys
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import asdict, dataclass, replace
-from importlib import resources
+from dataclasses import dataclass, replace
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -23,6 +21,8 @@ from validation.benchmarks import ours as layers
 from validation.benchmarks.growth import Growth
 from validation.benchmarks.problems import WANTED, distance, steady_problem, travelling_problem
 from validation.benchmarks.timing import Answer, Contestant, Sample, measure, version
+from validation.study import read
+from validation.study import write as write_json
 
 _FILE = "results.json"
 
@@ -30,33 +30,13 @@ _FILE = "results.json"
 def keep(results: Results, folder: Path | None = None) -> Path:
     """Write a run beside this module (or to `folder`), null for what is not a number."""
     file = (folder or Path(__file__).parent) / _FILE
-    text = json.dumps(_without_nan(asdict(results)), indent=1, allow_nan=False)
-    file.write_text(text + "\n", encoding="utf-8")
+    write_json(file, results)
     return file
 
 
-def kept_results(folder: Path | None = None) -> Results:
-    """Run that `keep` wrote."""
-    place = resources.files("validation.benchmarks") if folder is None else folder
-    found: dict[str, Any] = json.loads(place.joinpath(_FILE).read_text(encoding="utf-8"))
-    sections = []
-    for section in found["sections"]:
-        samples = tuple(Sample(**_with_nan(row)) for row in section["samples"])
-        sections.append(Section(**(section | {"samples": samples, "missing": tuple(section["missing"])})))
-    grown = {name: [Growth(**row) for row in found[name]] for name in ("over_cells", "over_speeds")}
-    return Results(**(found | {"sections": sections} | grown))
-
-
-def _without_nan(value: Any) -> Any:
-    if isinstance(value, dict):
-        return {key: _without_nan(entry) for key, entry in value.items()}
-    if isinstance(value, list | tuple):
-        return [_without_nan(entry) for entry in value]
-    return None if isinstance(value, float) and not math.isfinite(value) else value
-
-
-def _with_nan(row: dict[str, Any]) -> dict[str, Any]:
-    return {key: math.nan if value is None else value for key, value in row.items()}
+def kept_results() -> Results:
+    """Run that `keep` wrote beside this module."""
+    return read(Path(__file__).parent / _FILE, Results)
 
 
 @dataclass(frozen=True)

@@ -5,11 +5,10 @@
 
 from __future__ import annotations
 
-import argparse
 import json
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass
 
 import numpy as np
@@ -25,6 +24,7 @@ from solvers.layer.state import Numerics, ring
 from solvers.layer.step import march, scratch
 from solvers.liquid_model import Whirl, drag_frequency
 from solvers.pypde.settle import simulate
+from validation.study import launch
 
 PERIODS, CELLS, REPEATS = 100, 128, 15
 _COURANT = 0.8
@@ -118,32 +118,18 @@ def _cpu_time(run: Callable[[], None]) -> float:
     return time.process_time() - begin
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Measure and print.
-
-    Parameters
-    ----------
-    arguments : of the command line; None: the process's own
-
-    Returns
-    -------
-    Exit code
-    """
-    parser = argparse.ArgumentParser(prog="python -m validation.benchmarks.road", description=__doc__)
-    parser.add_argument("--periods", type=int, default=PERIODS)
-    parser.add_argument("--cells", type=int, default=CELLS)
-    parser.add_argument("--repeats", type=int, default=REPEATS)
-    parser.add_argument("--json", action="store_true", help="print one JSON object")
-    chosen = parser.parse_args(arguments)
-    found = measure(chosen.periods, chosen.cells, chosen.repeats)
-    if chosen.json:
-        print(json.dumps(asdict(found)))
-    else:
-        told = f"kernel {found.bare:.3f} s, by py-pde {found.road:.3f} s of processor time"
-        more = f"{100.0 * found.overhead:+.1f} %, least of {chosen.repeats} turns"
-        print(f"{found.periods} whirl periods on {found.cells} cells: {told}; {more}")
-    return 0
+def main(
+    periods: int = PERIODS, cells: int = CELLS, repeats: int = REPEATS, as_json: bool = False
+) -> Iterator[str]:
+    """Measure and print, in words or as one JSON object."""
+    found = measure(periods, cells, repeats)
+    if as_json:
+        yield json.dumps(asdict(found))
+        return
+    told = f"kernel {found.bare:.3f} s, by py-pde {found.road:.3f} s of processor time"
+    more = f"{100.0 * found.overhead:+.1f} %, least of {repeats} turns"
+    yield f"{found.periods} whirl periods on {found.cells} cells: {told}; {more}"
 
 
 if __name__ == "__main__":
-    raise SystemExit(main())
+    launch(main)

@@ -1,16 +1,16 @@
 """What a sweep costs: time over the number of workers, memory, the share that is not the answers themselves.
 
-`python -m validation.benchmarks.sweep [SAMPLES]` prints a table.
+`python -m validation.benchmarks.sweep [--samples N]` prints a table.
 """
 
 from __future__ import annotations
 
 import os
 import resource
-import sys
 import tempfile
 import threading
 import time
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -18,6 +18,7 @@ from leblanc.scene.examples import example_path
 from leblanc.scene.schema.load import read_toml
 from leblanc.studies.sweep.study import Sweep, load_sweep
 from leblanc.studies.sweep.sweep import run_sweep
+from validation.study import launch
 
 _STUDY = """
 scene = "scene.toml"
@@ -117,17 +118,17 @@ def _children(process: int) -> list[int]:
     return found
 
 
-def main(samples: int) -> None:
-    """Print the table up to this number of samples."""
-    print("| samples | workers | s | processor s | us a sample | largest process, MB | first process, MB |")
-    print("|---|---|---|---|---|---|---|")
+def main(samples: int = 100_000) -> Iterator[str]:
+    """Table up to this number of samples."""
+    yield "| samples | workers | s | processor s | us a sample | largest process, MB | first process, MB |"
+    yield "|---|---|---|---|---|---|---|"
     for count, workers in ((samples // 10, 0), (samples, 0), (samples, 1), (samples, 2)):
         found = cost(count, workers)
         any_, own = (size / 1e6 for size in found.memory)
         each = found.processor / count * 1e6
-        print(f"| {count} | {workers} | {found.seconds:.1f} | {found.processor:.1f} | {each:.0f} "
-              f"| {any_:.0f} | {own:.0f} |", flush=True)  # fmt: skip
+        yield (f"| {count} | {workers} | {found.seconds:.1f} | {found.processor:.1f} | {each:.0f} "
+               f"| {any_:.0f} | {own:.0f} |")  # fmt: skip
 
 
 if __name__ == "__main__":
-    main(int(sys.argv[1]) if len(sys.argv) > 1 else 100_000)
+    launch(main)

@@ -5,9 +5,10 @@
 
 from __future__ import annotations
 
-import json
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
+
+from validation.study import read, write
 
 KEPT = Path(__file__).parent / "results.json"
 
@@ -66,15 +67,9 @@ class Kept:
 
 def kept() -> Kept:
     """What was computed last."""
-    found = json.loads(KEPT.read_text(encoding="utf-8"))
-    series = ("force", "time", "exact", "crest")
-    return Kept(
-        endings=tuple(Ending(**row) for row in found["endings"]),
-        highest=tuple(Highest(**row) for row in found["highest"]),
-        beside=tuple(Beside(**row | {key: tuple(row[key]) for key in series}) for row in found["beside"]),
-    )
+    return read(KEPT, Kept)
 
 
 def keep(results: Kept) -> None:
     """Write what was computed."""
-    KEPT.write_text(json.dumps(asdict(results), indent=1) + "\n", encoding="utf-8")
+    write(KEPT, results)

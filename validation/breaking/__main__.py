@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import argparse
+import itertools
 import math
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from solvers.potential.unsteady import still
 from solvers.pypde import settle
 from validation.breaking import Beside, Ending, Highest, Kept, crests, keep
 from validation.breaking.crests import resonant
+from validation.study import launch
 
 DEPTHS = (0.1, 0.3, 0.5, 0.7)
 WHIRLS = (0.1, 0.05, 0.02, 0.01, 0.005, 0.002)
@@ -105,38 +107,22 @@ def _steepness(depth: Array) -> float:
     return float(np.abs(np.roll(depth, -WITHIN) - depth).max()) / height
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Compute, keep, print.
-
-    Parameters
-    ----------
-    arguments : of the command line; None: the process's own
-
-    Returns
-    -------
-    Exit code
-    """
-    parser = argparse.ArgumentParser(prog="python -m validation.breaking", description=__doc__)
-    parser.parse_args(arguments)
-    endings = []
-    for depth in DEPTHS:
-        for whirl in WHIRLS:
-            endings.append(ending(depth, whirl))
-            print(endings[-1], flush=True)
-    high = []
+def main() -> Iterator[object]:
+    """Compute, keep, print."""
+    endings, high, pairs = [], [], []
+    for depth, whirl in itertools.product(DEPTHS, WHIRLS):
+        endings.append(ending(depth, whirl))
+        yield endings[-1]
     for depth in CREST_DEPTHS:
         high.append(highest(depth))
-        print(high[-1], flush=True)
+        yield high[-1]
     until = {(each.depth, each.whirl): each.periods for each in endings}
-    pairs = []
-    for depth, whirl in BESIDE:
-        for dispersion in (False, True):
-            pairs.append(beside(depth, whirl, dispersion, until[depth, whirl]))
-            print(depth, whirl, dispersion, pairs[-1].force, pairs[-1].front, flush=True)
+    for (depth, whirl), dispersion in itertools.product(BESIDE, (False, True)):
+        pairs.append(beside(depth, whirl, dispersion, until[depth, whirl]))
+        yield f"{depth} {whirl} {dispersion} {pairs[-1].force} {pairs[-1].front}"
     keep(Kept(tuple(endings), tuple(high), tuple(pairs)))
     crests.keep(crests.computed())
-    return 0
 
 
 if __name__ == "__main__":
-    raise SystemExit(main())
+    launch(main)

@@ -6,10 +6,9 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -23,6 +22,7 @@ from solvers.potential.histories import whirl_push
 from solvers.potential.in_time import BREAKING, Steps, course
 from solvers.potential.steady import linear_detuning
 from solvers.potential.unsteady import node_angles, seen, still
+from validation.study import read, write
 
 KEPT = Path(__file__).parent / "crests.json"
 # Layer and whirl over it, nodes at most, and moments, the last of which no number of nodes reaches.
@@ -107,14 +107,12 @@ def followed(most: int, times: Sequence[float] = TIMES, breaking: float = BREAKI
 
 def kept() -> tuple[Crest, ...]:
     """What was computed last, for each number of nodes its moments."""
-    rows = json.loads(KEPT.read_text(encoding="utf-8"))
-    return tuple(Crest(**row | {"depth": tuple(row["depth"])}) for row in rows)
+    return read(KEPT, tuple[Crest, ...])
 
 
 def keep(found: Sequence[Crest]) -> None:
     """Write the moments of each number of nodes."""
-    rows = (json.dumps(asdict(row), separators=(",", ":")) for row in found)
-    KEPT.write_text("[\n" + ",\n".join(rows) + "\n]\n", encoding="utf-8")
+    write(KEPT, found, compact=True)
 
 
 def computed() -> list[Crest]:

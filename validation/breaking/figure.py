@@ -5,7 +5,6 @@
 
 from __future__ import annotations
 
-import argparse
 import math
 from collections.abc import Sequence
 from pathlib import Path
@@ -16,6 +15,7 @@ import numpy as np
 from leblanc.figures.drawing.page import Figure, Frame, fill, lay_out, number, save_png, style
 from validation.breaking import Beside, Kept, crests, kept
 from validation.breaking.crests import Crest
+from validation.study import launch
 
 _FRAME = Frame(left=0.62, top=0.15, between=0.62, below=0.42)
 _LOOKS = {
@@ -201,17 +201,5 @@ def draw(out: Path) -> list[Path]:
     ]
 
 
-def main(arguments: Sequence[str] | None = None) -> None:
-    """Draw the figures.
-
-    Parameters
-    ----------
-    arguments : of the command line; None: the process's own
-    """
-    parser = argparse.ArgumentParser(prog="python -m validation.breaking.figure", description=__doc__)
-    parser.add_argument("--out", type=Path, required=True, help="folder of the figures")
-    print(*draw(parser.parse_args(arguments).out), sep="\n")
-
-
 if __name__ == "__main__":
-    main()
+    launch(draw)

@@ -6,15 +6,14 @@ detunings are ratios p/p_1 to that of small free waves.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from meshes.arrays import Array, Flags
+from validation.study import read, write
 
 KEPT = Path(__file__).parent / "results.json"
 # Models by their names here; one family answers the whirl behind the drum and its twin ahead, which the
@@ -83,41 +82,9 @@ class Measured:
 
 def kept() -> Measured:
     """What was measured last."""
-    found = json.loads(KEPT.read_text(encoding="utf-8"))
-    return Measured(
-        maps=_cases(found["maps"]),
-        drawn=_cases(found["drawn"]),
-        ends=Ends(**{key: _array(value) for key, value in found["ends"].items()}),
-        marched=Marched(**{key: _array(value) for key, value in found["marched"].items()}),
-        seconds=found["seconds"],
-    )
-
-
-def _cases(found: Mapping[str, Any]) -> Cases:
-    arrays = {item.name: _array(found[item.name]) for item in fields(Cases) if item.name != "models"}
-    return Cases(**arrays, models={name: _array(found["models"][name]) for name in MODELS})
-
-
-def _array(values: list[Any]) -> Any:
-    """Numbers with nan where there are none; flags as flags."""
-    if all(isinstance(value, bool) for value in values):
-        return np.array(values, dtype=bool)
-    return np.array([np.nan if value is None else value for value in values], dtype=float)
+    return read(KEPT, Measured)
 
 
 def keep(measured: Measured) -> None:
-    """Write what was measured."""
-    KEPT.write_text(json.dumps(_plain(measured), separators=(",", ":")) + "\n", encoding="utf-8")
-
-
-def _plain(value: Any) -> Any:
-    """As JSON has it: no nan, nine digits, more than any model is right to."""
-    if isinstance(value, np.ndarray):
-        return [_plain(entry) for entry in value.tolist()]
-    if isinstance(value, float):
-        return None if np.isnan(value) else float(f"{value:.9g}")
-    if isinstance(value, Mapping):
-        return {key: _plain(entry) for key, entry in value.items()}
-    if hasattr(value, "__dataclass_fields__"):
-        return {item.name: _plain(getattr(value, item.name)) for item in fields(value)}
-    return value
+    """Write what was measured, nine digits of it: more than any model is right to."""
+    write(KEPT, measured, digits=9, compact=True)

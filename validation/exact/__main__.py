@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import argparse
 import time
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from validation.exact.answers import beside, layer_fill
 from validation.exact.branch import WIDEST, End, Held, detuning, end, held_waves
 from validation.exact.choice import choices, words
 from validation.exact.long_wave import choking, steady_long_wave
+from validation.study import launch
 
 LAYERS = (0.02, 0.03, 0.04, 0.055, 0.075, 0.1, 0.135, 0.18, 0.24, 0.3, 0.4, 0.5, 0.6, 0.7)
 _AWAY = (0.015, 0.025, 0.04, 0.06, 0.08, 0.1, 0.13, 0.17, 0.22, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8)
@@ -113,32 +114,20 @@ def _marched() -> Marched:
     )
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Measure, keep, print.
-
-    Parameters
-    ----------
-    arguments : of the command line; None: the process's own
-
-    Returns
-    -------
-    Exit code
-    """
-    parser = argparse.ArgumentParser(prog="python -m validation.exact", description=__doc__)
-    text = "only ask what --model auto takes and how good it is at the kept draws"
-    parser.add_argument("--auto", action="store_true", help=text)
-    if parser.parse_args(arguments).auto:
-        return _tell_choices(kept())
-    measured = measure()
-    keep(measured)
-    for name in measured.maps.models:
-        error = measured.maps.error(name)
-        worst = np.nanquantile(error, (0.5, 0.9, 1.0))
-        print(
-            f"{name:14} error: median {worst[0]:.1e}, nine in ten below {worst[1]:.1e}, most {worst[2]:.1e}"
-        )
-    print(f"{measured.seconds:.0f} s, {np.count_nonzero(measured.maps.smooth)} smooth waves on the maps")
-    return _tell_choices(measured)
+def main(auto: bool = False) -> Iterator[str]:
+    """Measure, keep, print; auto: only what --model auto takes and how good it is at the kept draws."""
+    measured = kept() if auto else measure()
+    if not auto:
+        keep(measured)
+        for name in measured.maps.models:
+            error = measured.maps.error(name)
+            half, nine, most = np.nanquantile(error, (0.5, 0.9, 1.0))
+            yield f"{name:14} error: median {half:.1e}, nine in ten below {nine:.1e}, most {most:.1e}"
+        yield f"{measured.seconds:.0f} s, {np.count_nonzero(measured.maps.smooth)} smooth waves on the maps"
+    yield "| tolerance | linear | kdv | potential | long_wave | covered | largest error | no smooth wave |"
+    yield "|---|---|---|---|---|---|---|---|"
+    for tolerance in TOLERANCES:
+        yield words(measured.drawn, tolerance, choices(measured.drawn, tolerance))
 
 
 def _tell_choices(measured: Measured) -> int:
@@ -151,4 +140,4 @@ def _tell_choices(measured: Measured) -> int:
 
 
 if __name__ == "__main__":
-    raise SystemExit(main())
+    launch(main)

@@ -6,7 +6,6 @@ keeps them in better_long_wave.json.
 
 from __future__ import annotations
 
-import json
 import math
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -20,6 +19,7 @@ from solvers.layer.step import centre, march, scratch
 from solvers.potential import steady as exact
 from solvers.potential.strip import nodes
 from validation.exact.better_steady import Model, Wave, steady
+from validation.study import launch, write
 
 KEPT = Path(__file__).with_suffix(".json")
 DEPTHS = (0.1, 0.2, 0.3, 0.5)
@@ -170,14 +170,12 @@ def compute() -> dict[str, list[dict[str, object]]]:
     }
 
 
-def main() -> None:
+def main() -> list[object]:
     """Compute, keep and print."""
     found = compute()
-    KEPT.write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
-    for rows in found.values():
-        for row in rows:
-            print(row)
+    write(KEPT, found)
+    return [row for rows in found.values() for row in rows]
 
 
 if __name__ == "__main__":
-    main()
+    launch(main)

@@ -5,8 +5,6 @@
 
 from __future__ import annotations
 
-import argparse
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +13,7 @@ import numpy as np
 from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save_png, style
 from meshes.arrays import Array
 from validation.exact import Cases, Ends, kept
+from validation.study import launch
 
 # Panels: a model and its name; the whirls of the two figures' halves, over h_0.
 _MODELS = (
@@ -170,17 +169,5 @@ def draw(out: Path) -> list[Path]:
     ]
 
 
-def main(arguments: Sequence[str] | None = None) -> None:
-    """Draw the figures.
-
-    Parameters
-    ----------
-    arguments : of the command line; None: the process's own
-    """
-    parser = argparse.ArgumentParser(prog="python -m validation.exact.figure", description=__doc__)
-    parser.add_argument("--out", type=Path, required=True, help="folder of the figures")
-    print(*draw(parser.parse_args(arguments).out), sep="\n")
-
-
 if __name__ == "__main__":
-    main()
+    launch(draw)

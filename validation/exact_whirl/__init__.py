@@ -5,13 +5,12 @@
 
 from __future__ import annotations
 
-import json
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
-from validation.exact_whirl.in_time import Grown, Setting
+from validation.exact_whirl.in_time import Grown
 from validation.exact_whirl.lagging import Circle
+from validation.study import read, write
 
 KEPT = Path(__file__).parent / "results.json"
 
@@ -49,41 +48,9 @@ class Kept:
 
 def kept() -> Kept:
     """What was computed last."""
-    found = json.loads(KEPT.read_text(encoding="utf-8"))
-    ways = [
-        Way(way["layer"], way["mass_ratio"], tuple(Circle(**each) for each in way["circles"]))
-        for way in found["ways"]
-    ]
-    onsets = [
-        Onset(**{key: float("nan") if value is None else value for key, value in each.items()})
-        for each in found["onsets"]
-    ]
-    return Kept(
-        damping=found["damping"],
-        friction=found["friction"],
-        onsets=tuple(onsets),
-        ways=tuple(ways),
-        settled=tuple(_grown(each) for each in found["settled"]),
-        grown=tuple(_grown(each) for each in found["grown"]),
-    )
-
-
-def _grown(found: dict[str, Any]) -> Grown:
-    series = {key: tuple(found[key]) for key in ("time", "whirl")}
-    return Grown(**(found | series | {"setting": Setting(**found["setting"])}))
+    return read(KEPT, Kept)
 
 
 def keep(results: Kept) -> None:
-    """Write what was computed."""
-    KEPT.write_text(json.dumps(_plain(asdict(results)), separators=(",", ":")) + "\n", encoding="utf-8")
-
-
-def _plain(value: object) -> object:
-    """As JSON has it: no nan, nine digits."""
-    if isinstance(value, float):
-        return None if value != value else float(f"{value:.9g}")
-    if isinstance(value, dict):
-        return {key: _plain(entry) for key, entry in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(entry) for entry in value]
-    return value
+    """Write what was computed, nine digits of it."""
+    write(KEPT, results, digits=9, compact=True)

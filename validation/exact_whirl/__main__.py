@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import argparse
 import math
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import Any
+from typing import Any, Literal, get_args
 
 from validation.exact_whirl import Kept, Onset, Way, keep, kept
 from validation.exact_whirl.in_time import Grown, Setting, grown
 from validation.exact_whirl.lagging import circles
+from validation.study import launch
 
-PARTS = ("onsets", "ways", "settled", "grown")
+Part = Literal["onsets", "ways", "settled", "grown"]
 # Losses of onsets and ways.
 DAMPING, FRICTION = 0.02, 0.03
 LAYERS = (0.02, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9)
@@ -60,34 +60,21 @@ def grown_at(layer: float, speed: float, friction: float) -> Grown:
     return replace(found, time=(), whirl=())
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Compute, keep, print.
-
-    Parameters
-    ----------
-    arguments : of the command line; None: the process's own
-
-    Returns
-    -------
-    Exit code
-    """
-    parser = argparse.ArgumentParser(prog="python -m validation.exact_whirl", description=__doc__)
-    parser.add_argument("--only", choices=PARTS, help="part that is computed anew [default: all]")
-    only = parser.parse_args(arguments).only
+def main(only: Part | None = None) -> Iterator[object]:
+    """Compute one part or all, keep, print."""
     results = Kept(DAMPING, FRICTION, (), (), (), ()) if only is None else kept()
-    for part in PARTS if only is None else (only,):
+    for part in get_args(Part) if only is None else (only,):
         found = []
         for row in computed(part):
             found.append(row)
-            print(row, flush=True)
+            yield row
         changes: dict[str, Any] = {part: tuple(found)}
         results = replace(results, **changes)
     keep(results)
-    return 0
 
 
-def computed(part: str) -> Iterator[Onset | Way | Grown]:
-    """Rows of one of `PARTS`, one after another."""
+def computed(part: Part) -> Iterator[Onset | Way | Grown]:
+    """Rows of a part, one after another."""
     if part == "onsets":
         yield from (onset_of(layer, ratio) for layer in LAYERS for ratio in MASS_RATIOS)
     elif part == "ways":
@@ -99,4 +86,4 @@ def computed(part: str) -> Iterator[Onset | Way | Grown]:
 
 
 if __name__ == "__main__":
-    raise SystemExit(main())
+    launch(main)

@@ -5,8 +5,6 @@
 
 from __future__ import annotations
 
-import argparse
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +13,7 @@ import numpy as np
 from leblanc.figures.drawing.page import Figure, Frame, lay_out, save_png, style
 from validation.exact_whirl import Kept, Way, kept
 from validation.exact_whirl.edges import soft_mass_ratio
+from validation.study import launch
 
 _FRAME = Frame(left=0.62, top=0.15, between=0.62, below=0.42)
 _LOOKS = (("#0072B2", ":"), ("#D55E00", "-."), ("#009E73", "-"), ("#CC79A7", "--"))
@@ -106,17 +105,5 @@ def draw(out: Path) -> Path:
     return save_png(whirl_figure(), out, "exact_whirl", "How a whirl with an exact layer begins")
 
 
-def main(arguments: Sequence[str] | None = None) -> None:
-    """Draw the figure.
-
-    Parameters
-    ----------
-    arguments : of the command line; None: the process's own
-    """
-    parser = argparse.ArgumentParser(prog="python -m validation.exact_whirl.figure", description=__doc__)
-    parser.add_argument("--out", type=Path, required=True, help="folder of the figure")
-    print(draw(parser.parse_args(arguments).out))
-
-
 if __name__ == "__main__":
-    main()
+    launch(draw)

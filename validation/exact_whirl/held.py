@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import argparse
-import json
 import math
 import time
-from dataclasses import asdict, dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 from leblanc.scene.examples import example
@@ -17,6 +16,7 @@ from solvers.held.hold import compile_kernels, start
 from solvers.held.state import HoldNumerics
 from solvers.synchronous.response import response
 from solvers.whirl.growth import asynchronous_growth
+from validation.study import launch, read, write
 
 KEPT = Path(__file__).parent / "held.json"
 # Example, rpm, nodes of the exact wave, cells of the long ones.
@@ -80,32 +80,19 @@ def pair(name: str, rpm: float, nodes: int, cells: int) -> Pair:
     return Pair(name, rpm, held_at(name, rpm, "potential", nodes), held_at(name, rpm, "long_wave", cells))
 
 
-def kept() -> list[Pair]:
+def kept() -> tuple[Pair, ...]:
     """What was computed last."""
-    found = json.loads(KEPT.read_text(encoding="utf-8"))
-    return [Pair(each["example"], each["rpm"], Told(**each["exact"]), Told(**each["long"])) for each in found]
+    return read(KEPT, tuple[Pair, ...])
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Compute, keep, print.
-
-    Parameters
-    ----------
-    arguments : of the command line; None: the process's own
-
-    Returns
-    -------
-    Exit code
-    """
-    parser = argparse.ArgumentParser(prog="python -m validation.exact_whirl.held", description=__doc__)
-    parser.parse_args(arguments)
+def main() -> Iterator[str]:
+    """Compute, keep, print."""
     pairs = []
     for case in CASES:
         pairs.append(pair(*case))
-        print(pairs[-1], f"{pairs[-1].apart:.2e}", flush=True)
-        KEPT.write_text(json.dumps([asdict(each) for each in pairs], indent=1) + "\n", encoding="utf-8")
-    return 0
+        write(KEPT, pairs)
+        yield f"{pairs[-1]} {pairs[-1].apart:.2e}"
 
 
 if __name__ == "__main__":
-    raise SystemExit(main())
+    launch(main)

@@ -5,7 +5,6 @@
 
 from __future__ import annotations
 
-import argparse
 import json
 import os
 import re
@@ -27,6 +26,7 @@ from xml.etree import ElementTree
 import numpy as np
 
 from leblanc.core.netcdf import read_values
+from validation.study import launch
 
 _EXAMPLES = Path(__file__).parents[2] / "examples"
 _RIG = _EXAMPLES / "vertical_rig.toml"
@@ -248,26 +248,26 @@ def on_a_full_disk(
     return counts, found
 
 
-def main() -> int:
-    """Print a table; 1 if anything was not as promised."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--trials", type=int, default=5, help="of each command and each way to end")
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--commands", nargs="*", default=list(COMMANDS), choices=list(COMMANDS))
-    parser.add_argument("--mount", action="store_true", help="full disks are mounted in memory, as root")
-    chosen = parser.parse_args()
+def main(
+    trials: int = 5, seed: int = 1, commands: tuple[str, ...] = tuple(COMMANDS), mount: bool = False
+) -> Iterator[str]:
+    """Table of so many trials of each command and each way to end; exit code 1 if one was not as promised.
+
+    Mount: full disks are mounted in memory, as root.
+    """
     every: list[str] = []
-    for command in chosen.commands:
+    for command in commands:
         for name in SIGNALS:
-            counts, found = by_signal(command, name, chosen.trials, chosen.seed)
-            print(f"{command:18}{name:12}{json.dumps(counts)}", flush=True)
+            counts, found = by_signal(command, name, trials, seed)
+            yield f"{command:18}{name:12}{json.dumps(counts)}"
             every += found
-        counts, found = on_a_full_disk(command, chosen.trials, chosen.seed, chosen.mount)
-        print(f"{command:18}{'full disk':12}{json.dumps(counts)}", flush=True)
+        counts, found = on_a_full_disk(command, trials, seed, mount)
+        yield f"{command:18}{'full disk':12}{json.dumps(counts)}"
         every += found
-    print("\n".join(every))
-    return 1 if every else 0
+    yield from every
+    if every:
+        raise SystemExit(1)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    launch(main)

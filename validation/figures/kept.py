@@ -6,9 +6,9 @@ validation.trade` and `python -m validation.benchmarks --keep`.
 
 from __future__ import annotations
 
-import argparse
-from collections.abc import Sequence
 from pathlib import Path
+
+from validation.study import launch
 
 # Scenes whose comparison is drawn.
 PICTURED = ("runup", "horizontal_rig")
@@ -16,35 +16,21 @@ PICTURED = ("runup", "horizontal_rig")
 
 def draw(out: Path) -> list[Path]:
     """Draw all as PNG."""
+    from leblanc.figures.drawing.page import save_png
     from validation.benchmarks.report import accuracy_figure, growth_figure, kept_results
     from validation.trade import again
-    from validation.trade.figure import save, trade_figure
+    from validation.trade.figure import trade_figure
 
     files = []
     for name in PICTURED:
-        drawn = save(trade_figure(again.record(name)), out, f"trade_{name}", "Accuracy against cost")
-        files.append(drawn.png)
+        figure = trade_figure(again.record(name))
+        files.append(save_png(figure, out, f"trade_{name}", "Accuracy against cost"))
     results = kept_results()
     files += [accuracy_figure(section, out) for section in results.sections]
     files.append(growth_figure(results.over_cells, "benchmark_cells", out))
     files.append(growth_figure(results.over_speeds, "benchmark_speeds", out))
-    for file in files:
-        file.with_suffix(".svg").unlink()
     return files
 
 
-def main(arguments: Sequence[str] | None = None) -> None:
-    """Draw the figures.
-
-    Parameters
-    ----------
-    arguments : of the command line; None: the process's own
-    """
-    parser = argparse.ArgumentParser(prog="python -m validation.figures.kept", description=__doc__)
-    parser.add_argument("--out", type=Path, required=True, help="folder of the figures")
-    for file in draw(parser.parse_args(arguments).out):
-        print(file)
-
-
 if __name__ == "__main__":
-    main()
+    launch(draw)

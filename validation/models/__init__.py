@@ -5,11 +5,11 @@
 
 from __future__ import annotations
 
-import json
 import math
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+
+from validation.study import read, write
 
 KEPT = Path(__file__).parent / "results.json"
 
@@ -47,28 +47,12 @@ class ModelTable:
 
 def kept() -> tuple[ModelTable, ...]:
     """What was measured last."""
-    found = json.loads(KEPT.read_text(encoding="utf-8"))
-    return tuple(ModelTable(**table | {"rows": tuple(map(_read, table["rows"]))}) for table in found)
-
-
-def _read(row: dict[str, Any]) -> ModelRow:
-    """A row as it was kept, with nan for what is not known."""
-    missing = {key: math.nan for key in ("error", "estimate") if row[key] is None}
-    return ModelRow(**row | missing)
+    return read(KEPT, tuple[ModelTable, ...])
 
 
 def keep(tables: tuple[ModelTable, ...]) -> None:
     """Write what was measured."""
-    rows = [
-        asdict(table) | {"rows": [{k: _plain(v) for k, v in asdict(row).items()} for row in table.rows]}
-        for table in tables
-    ]
-    KEPT.write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
-
-
-def _plain(value: object) -> object:
-    """JSON has no nan."""
-    return None if isinstance(value, float) and math.isnan(value) else value
+    write(KEPT, tables)
 
 
 def error_words(row: ModelRow, best: float) -> str:

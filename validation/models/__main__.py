@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import argparse
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from leblanc.studies.held.holding import Holding, cores
 from leblanc.studies.run.answer import RunResult
 from solvers.synchronous.response import distance
 from validation.models import ModelRow, ModelTable, keep
+from validation.study import launch
 
 STEADY = ("linear", "kdv", "fem", "statics")
 CELLS = (32, 64, 128)
@@ -87,28 +88,16 @@ def row_of(model: str, cells: int | None, answer: ModelAnswer, reference: RunRes
     )
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Measure, keep, print.
-
-    Parameters
-    ----------
-    arguments : of the command line; None: the process's own
-
-    Returns
-    -------
-    Exit code
-    """
-    parser = argparse.ArgumentParser(prog="python -m validation.models", description=__doc__)
-    parser.parse_args(arguments)
+def main() -> Iterator[str]:
+    """Measure, keep, print."""
     tables = tuple(measure(name) for name in SCENES)
     keep(tables)
     for table in tables:
-        print(f"{table.scene}: {table.about}; best to {table.best_error:.2g}")
+        yield f"{table.scene}: {table.about}; best to {table.best_error:.2g}"
         for row in table.rows:
             told = f"{row.error:10.2e}{row.estimate:10.2e}{1e3 * row.time:10.3g} ms"
-            print(f"  {row.name:22}{told}, no answer at {row.lost} speeds")
-    return 0
+            yield f"  {row.name:22}{told}, no answer at {row.lost} speeds"
 
 
 if __name__ == "__main__":
-    raise SystemExit(main())
+    launch(main)

@@ -5,14 +5,13 @@
 
 from __future__ import annotations
 
-import argparse
 import math
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save_png, style
 from validation.models import ModelRow, ModelTable, kept
+from validation.study import launch
 
 _FRAME = Frame(left=0.72, top=0.15, between=0.12, below=0.42)
 _LOOKS = {
@@ -101,17 +100,5 @@ def draw(out: Path) -> Path:
     return save_png(models_figure(), out, "models", "Error of each liquid model over its time")
 
 
-def main(arguments: Sequence[str] | None = None) -> None:
-    """Draw the figure.
-
-    Parameters
-    ----------
-    arguments : of the command line; None: the process's own
-    """
-    parser = argparse.ArgumentParser(prog="python -m validation.models.figure", description=__doc__)
-    parser.add_argument("--out", type=Path, required=True, help="folder of the figure")
-    print(draw(parser.parse_args(arguments).out))
-
-
 if __name__ == "__main__":
-    main()
+    launch(draw)

@@ -48,10 +48,10 @@ from fluid.pool import pool_of, sloshing_number
 from leblanc.studies.run.figure import amplitude_figure, liquid_figure
 from leblanc.studies.run.study import run_scene
 from validation.cases.rotors import rigs, vector_model
-from validation.cases.rotors.rigs import data
 from validation.figures.rotors import runup_lag
 from validation.figures.rotors.rigs import angle_figure
 from validation.notebook_page import Table, case_table, picture, verdicts
+from validation.study import data
 
 # %% [markdown]
 # ## The horizontal rig

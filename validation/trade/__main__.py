@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import argparse
 import json
 import os
 import platform
@@ -13,6 +12,7 @@ from importlib import metadata
 from pathlib import Path
 from typing import Any
 
+from validation.study import launch
 from validation.trade import fingerprint, kept, names
 
 _HERE = Path(__file__).parent
@@ -21,33 +21,23 @@ _PACKAGES = ("numba", "scikit-fem")
 _MILLI = 1e3
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Measure, keep, print the table.
+def main(
+    examples: Path = Path("examples"),
+    only: tuple[str, ...] = (),
+    question: str | None = None,
+    table: bool = False,
+    out: Path | None = None,
+) -> list[str]:
+    """Measure scenes (those that are kept by default) or one question of them, keep, and print the table.
 
-    Parameters
-    ----------
-    arguments : of the command line; None: the process's own
-
-    Returns
-    -------
-    Exit code
+    Table: of what is kept, nothing is measured; out: folder for two figures.
     """
-    parser = argparse.ArgumentParser(prog="python -m validation.trade", description=__doc__)
-    parser.add_argument("--examples", type=Path, default=Path("examples"), help="folder of the scenes")
-    parser.add_argument("--only", nargs="*", help="stems of scenes [default: those that are kept]")
-    parser.add_argument("--question", help="measure this one alone; the others stay as they are kept")
-    parser.add_argument(
-        "--table", action="store_true", help="print the table of what is kept, measure nothing"
-    )
-    parser.add_argument("--out", type=Path, help="folder for two figures")
-    chosen = parser.parse_args(arguments)
-    if not chosen.table:
+    if not table:
         for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
             os.environ[variable] = "1"
-        for name in chosen.only or names():
-            keep(chosen.examples / f"{name}.toml", chosen.out, chosen.question)
-    print("\n".join(table()))
-    return 0
+        for name in only or names():
+            keep(examples / f"{name}.toml", out, question)
+    return rows()
 
 
 def keep(path: Path, out: Path | None = None, question: str | None = None) -> None:
@@ -86,7 +76,7 @@ def keep(path: Path, out: Path | None = None, question: str | None = None) -> No
         save_png(trade_figure(record), out, f"trade_{path.stem}", "Accuracy against cost")
 
 
-def table() -> list[str]:
+def rows() -> list[str]:
     """What is kept, as a table in Markdown: default, recommended and best of each scene and question."""
     lines = [
         "| scene | question | best answer (its own error) | default took: error, time "
@@ -130,4 +120,4 @@ def _pair(row: dict[str, Any]) -> str:
 
 
 if __name__ == "__main__":
-    raise SystemExit(main())
+    launch(main)

@@ -11,7 +11,7 @@ from fluid.liquid import Liquid
 from meshes.baffles import Baffles
 from meshes.chamber import Chamber
 from tests.mutants import kills
-from validation.cases.rotors.rigs import data
+from validation.study import data
 
 RUNS = data("baffles.json")["cases"]
 

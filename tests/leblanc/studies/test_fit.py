@@ -24,7 +24,8 @@ from meshes.arrays import Array
 from meshes.errors import InputError
 from tests.leblanc.studies.random_fits import DRY, covered, drawn
 from tests.mutants import kills
-from validation.cases.rotors.rigs import _fit, _liquid_angle, data, horizontal_rig
+from validation.cases.rotors.rigs import _fit, _liquid_angle, horizontal_rig
+from validation.study import data
 
 RIG = lb.example("horizontal_rig")
 # Most of these tests are of statistics: a machine without liquid answers ten times sooner.

@@ -22,7 +22,7 @@ from solvers.potential.strip import nodes
 from solvers.potential.unsteady import invariants, started
 from solvers.synchronous.models import LINEAR, STATICS
 from tests.mutants import kills
-from validation.cases.rotors.rigs import data
+from validation.study import data
 
 MODEL = Potential()
 

@@ -25,7 +25,7 @@ from solvers.potential.steady import (
 )
 from solvers.potential.strip import nodes
 from tests.mutants import kills
-from validation.cases.rotors.rigs import data
+from validation.study import data
 
 
 def detuning(whirl_ratio: float) -> float:

@@ -12,7 +12,6 @@ order, and nothing of ours. Compiled kernels come from numba's cache: an untimed
 
 from __future__ import annotations
 
-import argparse
 import json
 import os
 import statistics
@@ -20,12 +19,13 @@ import subprocess
 import sys
 import tempfile
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
 from validation.benchmarks.cold.child import FRONT, OURS
+from validation.study import launch, write
 
 KEPT = Path(__file__).with_name("cold_start.json")
 ROOT = Path(__file__).resolve().parents[3]
@@ -185,37 +185,16 @@ def front_doors(repeats: int) -> dict[str, float]:
     return medians({name: ([sys.executable, "-c", code], "") for name, code in programs.items()}, repeats)
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Measure and print.
-
-    Parameters
-    ----------
-    arguments : of the command line; None: the process's own
-
-    Returns
-    -------
-    Exit code
-    """
-    parser = argparse.ArgumentParser(
-        prog="python -m validation.benchmarks.cold.start",
-        description=__doc__,
-        formatter_class=argparse.RawTextHelpFormatter,
-    )
-    parser.add_argument("--repeats", type=int, default=5, help="of each measurement [default: 5]")
-    parser.add_argument("--json", type=Path, metavar="FILE", help="write the numbers there as well")
-    parser.add_argument("command", nargs=argparse.REMAINDER, help="what stands behind `leblanc`")
-    chosen = parser.parse_args(arguments)
-    doors = front_doors(2 * chosen.repeats)
-    print(*(f"{seconds:.3f} s {name}" for name, seconds in doors.items()), sep="\n", flush=True)
+def main(*command: str, repeats: int = 5, json: Path | None = None) -> Iterator[str]:
+    """Measure and print the usual commands or one, and write the numbers to a file as well."""
+    doors = front_doors(2 * repeats)
+    yield "\n".join(f"{seconds:.3f} s {name}" for name, seconds in doors.items())
     found = []
-    for command in [tuple(chosen.command)] if chosen.command else COMMANDS:
-        found.append(cold_start(command, chosen.repeats))
-        print(f"\n{text(found[-1])}", flush=True)
-    if chosen.json is not None:
-        rows = ",\n".join(json.dumps(_plain(start)) for start in found)
-        whole = f'{{"imports": {json.dumps(doors)}, "commands": [\n{rows}\n]}}\n'
-        chosen.json.write_text(whole, encoding="utf-8")
-    return 0
+    for each in [command] if command else COMMANDS:
+        found.append(cold_start(each, repeats))
+        yield f"\n{text(found[-1])}"
+    if json is not None:
+        write(json, {"imports": doors, "commands": [_plain(start) for start in found]})
 
 
 def _plain(found: ColdStart) -> dict[str, Any]:
@@ -237,4 +216,4 @@ def kept() -> list[ColdStart]:
 
 
 if __name__ == "__main__":
-    raise SystemExit(main())
+    launch(main)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from types import ModuleType
 from typing import Any
@@ -21,6 +21,7 @@ from solvers.rotor.system import RotorSystem
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
 from solvers.rotor.vibration import unbalance_response
 from validation.benchmarks.timing import Contestant, Go, Sample, measure, one_core
+from validation.study import launch
 
 CODE, PACKAGE = "ROSS", "ross/ross-rotordynamics"
 _OURS = "leblanc"
@@ -156,20 +157,16 @@ def _system(rotor: Any, size: float) -> RotorSystem:
     )
 
 
-def main() -> None:
-    """Print the times of one run on one core."""
+def main() -> Iterator[str]:
+    """Times of one run on one core."""
     from threadpoolctl import threadpool_limits
 
     one_core()
     with threadpool_limits(1):
         samples = compare()
-    for sample in samples:
-        milliseconds = 1e3 * sample.seconds
-        print(
-            f"{sample.code:8} {sample.setting:42} {milliseconds:9.2f} ms  "
-            f"error {sample.error:.1e} {sample.note}"
-        )
+    for one in samples:
+        yield f"{one.code:8} {one.setting:42} {1e3 * one.seconds:9.2f} ms  error {one.error:.1e} {one.note}"
 
 
 if __name__ == "__main__":
-    main()
+    launch(main)

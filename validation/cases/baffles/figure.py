@@ -5,15 +5,14 @@ python -m validation.cases.baffles.figure --out docs/images
 
 from __future__ import annotations
 
-import argparse
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save, style
+from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save_png, style
 from validation.cases.baffles.flow import lagging, reference
+from validation.study import launch
 
 _FRAME = Frame(left=0.72, top=0.15, between=0.35, below=0.42)
 # Of each run: what it is, colour and line.
@@ -66,23 +65,11 @@ def _draw(axes: Any, looks: dict[str, tuple[str, str, Any]]) -> None:
         axes.plot(time[some], lag[some], color=color, **look)
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Draw the figure.
-
-    Parameters
-    ----------
-    arguments : of the command line; None: the process's own
-
-    Returns
-    -------
-    Exit code
-    """
-    parser = argparse.ArgumentParser(prog="python -m validation.cases.baffles.figure", description=__doc__)
-    parser.add_argument("--out", type=Path, required=True, help="folder of the figure")
+def draw(out: Path) -> Path:
+    """Write it as PNG."""
     title = "The lag of a layer with baffles, beside computed flow"
-    save(lag_figure(), parser.parse_args(arguments).out, "baffles_decay", title)
-    return 0
+    return save_png(lag_figure(), out, "baffles_decay", title)
 
 
 if __name__ == "__main__":
-    raise SystemExit(main())
+    launch(draw)

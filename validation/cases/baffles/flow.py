@@ -19,7 +19,7 @@ from solvers.layer.baffles import TORQUE
 from solvers.layer.inside import Inside, inside_of
 from solvers.sloshing.blocked import blocked_share
 from validation.cases.case import COMPUTED_FLOW, Case, Effect, compare, shape_verdict
-from validation.cases.rotors.rigs import data
+from validation.study import data
 
 _SOURCE = "interFoam, baffles.json"
 # Lag of a decay, as a share of the spin; loss of a driven run, relative.

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import argparse
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save, style
+from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save_png, style
 from validation.cases.claims.chambers import COUNTS, KINDS, gain
+from validation.study import launch
 
 _FRAME = Frame(left=0.72, top=0.15, between=0.35, below=0.42)
 # Of each measure: what it is, colour and mark.
@@ -48,23 +47,10 @@ def rings_figure() -> Figure:
     return figure
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Draw the figure.
-
-    Parameters
-    ----------
-    arguments : of the command line; None: the process's own
-
-    Returns
-    -------
-    Exit code
-    """
-    parser = argparse.ArgumentParser(prog="python -m validation.cases.claims.figure", description=__doc__)
-    parser.add_argument("--out", type=Path, required=True, help="folder of the figure")
-    title = "Equal liquid in one to four rings"
-    save(rings_figure(), parser.parse_args(arguments).out, "claims_rings", title)
-    return 0
+def draw(out: Path) -> Path:
+    """Write it as PNG."""
+    return save_png(rings_figure(), out, "claims_rings", "Equal liquid in one to four rings")
 
 
 if __name__ == "__main__":
-    raise SystemExit(main())
+    launch(draw)

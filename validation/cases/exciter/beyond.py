@@ -6,7 +6,6 @@ validation.cases.exciter.beyond` makes anew.
 
 from __future__ import annotations
 
-import argparse
 import json
 import math
 from collections import Counter
@@ -32,6 +31,7 @@ from solvers.rotor.exciter.stability import (
 from solvers.rotor.exciter.tangent import follow
 from validation.cases.case import Case, compare
 from validation.cases.exciter.speeds import sample
+from validation.study import launch
 
 DATA = Path(__file__).parents[2] / "data" / "exciter_beyond.json"
 _SOURCE = "YF17, section 5.3"
@@ -328,11 +328,9 @@ def measure(workers: int = 1) -> dict[str, Any]:
     return {"runs": runs, "chaos": chaos, "sweeps": sweeps}
 
 
-def main() -> None:
-    """Measure and keep."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--workers", type=int, default=1, help="threads (default 1)")
-    kept = measure(parser.parse_args().workers)
+def main(workers: int = 1) -> None:
+    """Measure in threads, and keep one run a line."""
+    kept = measure(workers)
     about = "Beyond the critical speed of YF17: maps, chaos, run-ups; by validation.cases.exciter.beyond."
     rows = ",\n".join(
         f' "{name}": [\n' + ",\n".join("  " + json.dumps(row) for row in kept[name]) + "\n ]" for name in kept
@@ -341,4 +339,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    launch(main)

@@ -6,7 +6,6 @@ validation.cases.exciter.traces` makes anew.
 
 from __future__ import annotations
 
-import argparse
 import json
 import math
 from dataclasses import dataclass
@@ -26,6 +25,7 @@ from solvers.rotor.exciter.machine import (
 )
 from solvers.rotor.exciter.motion import Trace, critical_speeds, trace
 from validation.cases.case import Case, compare
+from validation.study import launch, write
 
 DATA = Path(__file__).parents[2] / "data" / "exciter_more.json"
 TYPICAL = Dimensionless(smallness=0.01, drag=0.4, unbalance=0.25, damping=0.03)
@@ -209,9 +209,8 @@ def measure() -> dict[str, Any]:
 
 def main() -> None:
     """Measure and keep."""
-    argparse.ArgumentParser(description=__doc__).parse_args()
-    DATA.write_text(json.dumps(measure(), indent=1) + "\n", encoding="utf-8")
+    write(DATA, measure())
 
 
 if __name__ == "__main__":
-    main()
+    launch(main)

@@ -7,9 +7,7 @@ validation.cases.fill_sweep.fitted` draws again, runs all fills with each draw, 
 
 from __future__ import annotations
 
-import argparse
 import json
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
@@ -19,7 +17,7 @@ import numpy as np
 from meshes.arrays import Array
 from validation.cases.fill_sweep import machine
 from validation.cases.fill_sweep.machine import RANGES, Values
-from validation.cases.rotors.rigs import data
+from validation.study import data, launch
 
 KEPT = Path(__file__).parent / "answers.json"
 DRAWS, SEED = 400, 11
@@ -187,23 +185,11 @@ def _read(found: dict[str, list[list[float]]]) -> Answers:
     return Answers(**{name: np.array(value) for name, value in found.items()})
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Draw, run, keep.
-
-    Parameters
-    ----------
-    arguments : of the command line; None: the process's own
-
-    Returns
-    -------
-    Exit code
-    """
-    parser = argparse.ArgumentParser(prog="python -m validation.cases.fill_sweep.fitted", description=__doc__)
-    parser.add_argument("--draws", type=int, default=DRAWS, help="how many")
-    answers = run(drawn(parser.parse_args(arguments).draws))
+def main(draws: int = DRAWS) -> None:
+    """Draw, run, keep."""
+    answers = run(drawn(draws))
     keep(answers, fit(answers))
-    return 0
 
 
 if __name__ == "__main__":
-    raise SystemExit(main())
+    launch(main)

@@ -8,7 +8,7 @@ from meshes.arrays import Array
 from validation.cases.case import MEASURED, Case, Effect, shape_verdict
 from validation.cases.fill_sweep.contact import of_kept
 from validation.cases.fill_sweep.fitted import SCATTER, bands, kept, measured, ratios
-from validation.cases.rotors.rigs import data
+from validation.study import data
 
 _GROUP = "fill_sweep"
 _SOURCE = "washing machine with a balance ring, see fill_sweep.json"

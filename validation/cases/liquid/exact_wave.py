@@ -20,8 +20,8 @@ from solvers.potential.unsteady import Surface, force, invariants, started
 from validation.breaking import kept
 from validation.cases.case import COMPUTED_FLOW, Case, Origin, Value, Verdict
 from validation.cases.liquid.layer import bore_reference, plane_layer
-from validation.cases.rotors.rigs import data
 from validation.exact.long_wave import steady_long_wave
+from validation.study import data
 
 _SOURCE = "two other codes, exact_wave.json"
 _FLOW = "interFoam, openfoam_layer.json"

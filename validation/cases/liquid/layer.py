@@ -27,7 +27,7 @@ from solvers.pypde.settle import settle, simulate
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.runup.long_wave import couple
 from validation.cases.case import COMPUTED_FLOW, Case, Effect, Origin, compare, shape_verdict
-from validation.cases.rotors.rigs import data
+from validation.study import data
 
 _SOURCE = "interFoam, openfoam_layer.json"
 _HEIGHT = 0.01  # the flow is plane: any height will do

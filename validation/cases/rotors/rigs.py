@@ -8,11 +8,8 @@ compensates below, at and above resonance.
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Callable
-from importlib import resources
-from typing import Any
 
 import numpy as np
 
@@ -25,13 +22,7 @@ from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.vector_model import deflection_lag
 from solvers.synchronous.response import critical_speed, response
 from validation.cases.case import MEASURED, Case, Effect, shape_verdict
-
-
-def data(name: str) -> dict[str, Any]:
-    """Content of a data file of this package."""
-    text = resources.files("validation").joinpath("data", name).read_text(encoding="utf-8")
-    content: dict[str, Any] = json.loads(text)
-    return content
+from validation.study import data
 
 
 def horizontal_rig() -> tuple[Fill, ...]:

@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-import argparse
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +14,7 @@ from leblanc.scene.examples import example
 from leblanc.scene.scene import Scene
 from leblanc.studies.runup import runup_scene
 from solvers.runup.runup import RunupHistory
+from validation.study import launch
 
 
 def with_and_without(scene: Scene, check: bool = False) -> tuple[RunupHistory, RunupHistory]:
@@ -24,8 +25,8 @@ def with_and_without(scene: Scene, check: bool = False) -> tuple[RunupHistory, R
 
 
 def draw(wet: RunupHistory, dry: RunupHistory, scene: Scene, directory: Path) -> Path:
-    """Speed and amplitude over time as PNG and SVG."""
-    from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save, style
+    """Speed and amplitude over time as PNG."""
+    from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save_png, style
 
     looks: list[tuple[RunupHistory, dict[str, Any]]] = [
         (wet, {"color": "#0072B2", "linewidth": 1.8, "label": "with liquid"}),
@@ -54,26 +55,17 @@ def draw(wet: RunupHistory, dry: RunupHistory, scene: Scene, directory: Path) ->
             "in time, linear wall friction. Every value is assumed."
         )
         lay_out(figure, [[upper], [lower]], [1.6, 1.6], Frame(0.72, 0.12, 0.12, 0.42), text)
-    return save(figure, directory, "runup_weak_motor", "A weak motor at the resonance").png
+    return save_png(figure, directory, "runup_weak_motor", "A weak motor at the resonance")
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Run both and draw.
-
-    Parameters
-    ----------
-    arguments : of the command line; None: the process's own
-    """
-    parser = argparse.ArgumentParser(prog="python -m validation.cases.rotors.weak_motor", description=__doc__)
-    parser.add_argument("--out", type=Path, required=True, help="folder of the figure")
-    chosen = parser.parse_args(arguments)
+def main(out: Path) -> Iterator[str]:
+    """Run both and draw."""
     scene = example("weak_motor")
     wet, dry = with_and_without(scene)
-    draw(wet, dry, scene, chosen.out)
+    draw(wet, dry, scene, out)
     for name, history in (("with liquid", wet), ("without", dry)):
-        print(f"{name}: {history.speed[-1]:.2f} rad/s, {history.amplitude[-1] * MM:.2f} mm at the end")
-    return 0
+        yield f"{name}: {history.speed[-1]:.2f} rad/s, {history.amplitude[-1] * MM:.2f} mm at the end"
 
 
 if __name__ == "__main__":
-    raise SystemExit(main())
+    launch(main)

@@ -6,7 +6,6 @@ validation.cases.two_plane.damping` makes them anew.
 
 from __future__ import annotations
 
-import argparse
 import json
 from dataclasses import dataclass, replace
 from functools import cache
@@ -24,6 +23,7 @@ from solvers.rotor.balls.two_plane_balance import dynamic_balancing, of_two_plan
 from solvers.rotor.two_plane import TwoPlane
 from validation.cases.case import Case
 from validation.cases.two_plane.machine import BALLS, LONG, RACES, SCATTERED, bare_deflection
+from validation.study import launch, write
 
 DAMPINGS = (0.5, 5.0, 40.0, 8000.0)  # N s/m, of each support
 SIDES = (0.98, 1.02)  # of the edge, at which motions in time are looked at
@@ -231,12 +231,11 @@ def measure() -> dict[str, Any]:
     }
 
 
-def main() -> None:
+def main() -> str:
     """Measure and keep."""
-    argparse.ArgumentParser(description=__doc__).parse_args()
-    DATA.write_text(json.dumps(measure(), indent=1) + "\n", encoding="utf-8")
-    print(DATA.read_text(encoding="utf-8"))
+    write(DATA, measure())
+    return DATA.read_text(encoding="utf-8")
 
 
 if __name__ == "__main__":
-    main()
+    launch(main)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import argparse
 import json
 from collections.abc import Callable
 from pathlib import Path
@@ -10,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save, style
+from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save_png, style
 from meshes.arrays import Array
 from solvers.rotor.exciter.machine import Dimensionless
 from solvers.rotor.exciter.regimes import Kind
@@ -26,6 +25,7 @@ from validation.cases.exciter.beyond import (
     start_state,
     three_frequencies,
 )
+from validation.study import launch
 
 _APART = 0.65  # inches between two plots side by side
 # Of a map: which runs are meant, the shift of the mark to the side, and its looks.
@@ -79,7 +79,7 @@ def beyond_figure(directory: Path) -> Path:
                 box = axes.get_position()
                 shift = 0.5 * _APART / 6.3 if axes is pair[1] else 0.0
                 axes.set_position((box.x0 + shift, box.y0, box.width - 0.5 * _APART / 6.3, box.height))
-    return save(figure, directory, "exciter_beyond", "Beyond the critical speed").png
+    return save_png(figure, directory, "exciter_beyond", "Beyond the critical speed")
 
 
 def _three(axes: Any) -> None:
@@ -142,14 +142,5 @@ def _bound(rows: list[dict[str, Any]], drag: float, smallness: float, damping: f
     return capture_unbalance(Dimensionless(smallness, drag, 0.0, damping), float(speeds.mean()), 0.5)
 
 
-def main() -> None:
-    """Draw it."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--out", type=Path, default=Path("docs/images"))
-    path = beyond_figure(parser.parse_args().out)
-    path.with_suffix(".svg").unlink()
-    print(path)
-
-
 if __name__ == "__main__":
-    main()
+    launch(beyond_figure)

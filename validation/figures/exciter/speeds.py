@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import argparse
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
@@ -11,13 +11,14 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save, style
+from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save_png, style
 from leblanc.wings.exciter.figure import exciter_figure
 from leblanc.wings.exciter.study import answer_exciter
 from meshes.arrays import Array
 from solvers.rotor.exciter.machine import Dimensionless, Exciter, characteristic_speeds
 from solvers.rotor.exciter.motion import Start, critical_speeds, printed_critical_speed
 from validation.cases.exciter.speeds import COUNT, sample
+from validation.study import launch
 
 _FRAME = Frame(left=0.72, top=0.15, between=0.0, below=0.45)
 _APART = 0.6  # inches between two plots side by side
@@ -103,7 +104,7 @@ def regression_figure(found: Comparison, directory: Path) -> Path:
             f"{outside} printed values lie outside the plot."
         )
         lay_out(figure, [[axes]], [3.2], _FRAME, text)
-    return save(figure, directory, "exciter_regression", "Printed regression of the critical speed").png
+    return save_png(figure, directory, "exciter_regression", "Printed regression of the critical speed")
 
 
 def start_figure(directory: Path) -> Path:
@@ -148,7 +149,7 @@ def start_figure(directory: Path) -> Path:
             box = axes.get_position()
             shift = 0.5 * _APART / 6.3 if axes is right else 0.0
             axes.set_position((box.x0 + shift, box.y0, box.width - 0.5 * _APART / 6.3, box.height))
-    return save(figure, directory, "exciter_start", "Critical speed by the start of the motion").png
+    return save_png(figure, directory, "exciter_start", "Critical speed by the start of the motion")
 
 
 def vibratory_table(ball_damping: float = 0.03) -> Exciter:
@@ -161,25 +162,14 @@ def machine_figure(directory: Path) -> Path:
     speed = np.linspace(100.0, 6000.0, 296) * math.pi / 30.0
     of = {"name": "vibratory table", "assumed": ("speeds.start", "speeds.stop")}
     record = answer_exciter(vibratory_table(), speed, checks=8, of=of)
-    return save(exciter_figure(record), directory, "exciter_table", "Vibratory table").png
+    return save_png(exciter_figure(record), directory, "exciter_table", "Vibratory table")
 
 
-def main() -> None:
+def main(out: Path = Path("docs/images"), count: int = COUNT) -> Iterator[Path | str]:
     """Draw all figures and print the table."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--out", type=Path, default=Path("docs/images"))
-    parser.add_argument("--count", type=int, default=COUNT)
-    options = parser.parse_args()
-    found = compare(options.count)
-    for path in (
-        machine_figure(options.out),
-        start_figure(options.out),
-        regression_figure(found, options.out),
-    ):
-        path.with_suffix(".svg").unlink()
-        print(path)
-    print(table(found))
+    found = compare(count)
+    yield from (machine_figure(out), start_figure(out), regression_figure(found, out), table(found))
 
 
 if __name__ == "__main__":
-    main()
+    launch(main)

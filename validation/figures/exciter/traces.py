@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import argparse
 import json
 from pathlib import Path
 from typing import Any
 
-from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save, style
+from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save_png, style
 from validation.cases.exciter.traces import DATA, FIGURES, traces
+from validation.study import launch
 
 _FRAME = Frame(left=0.72, top=0.2, between=0.3, below=0.45)
 _APART = 0.65  # inches between two plots side by side
@@ -51,7 +51,7 @@ def trace_figure(directory: Path) -> Path:
             "(theory: balls, eq. 7), whose phase is fitted."
         )
         lay_out(figure, [[axes] for axes in panels], [1.2, 1.5, 1.2], _FRAME, text)
-    return save(figure, directory, "exciter_traces", "Traces of the dual-frequency motion").png
+    return save_png(figure, directory, "exciter_traces", "Traces of the dual-frequency motion")
 
 
 def trend_figure(directory: Path) -> Path:
@@ -99,18 +99,13 @@ def trend_figure(directory: Path) -> Path:
                 box = axes.get_position()
                 shift = 0.5 * _APART / 6.3 if axes is row[1] else 0.0
                 axes.set_position((box.x0 + shift, box.y0, box.width - 0.5 * _APART / 6.3, box.height))
-    return save(figure, directory, "exciter_trends", "Critical speed over the numbers").png
+    return save_png(figure, directory, "exciter_trends", "Critical speed over the numbers")
 
 
-def main() -> None:
+def main(out: Path = Path("docs/images")) -> tuple[Path, Path]:
     """Draw both."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--out", type=Path, default=Path("docs/images"))
-    out = parser.parse_args().out
-    for path in (trace_figure(out), trend_figure(out)):
-        path.with_suffix(".svg").unlink()
-        print(path)
+    return trace_figure(out), trend_figure(out)
 
 
 if __name__ == "__main__":
-    main()
+    launch(main)

@@ -5,8 +5,7 @@ python -m validation.figures.liquid.baffles --out docs/images
 
 from __future__ import annotations
 
-import argparse
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -15,12 +14,13 @@ import numpy as np
 
 from fluid.fill import Fill
 from fluid.friction.laws import NO_FRICTION, Friction, FrictionLaw
-from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save, style
+from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save_png, style
 from meshes.baffles import Baffles
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.whirl.edges import unstable_bands
 from solvers.whirl.growth import asynchronous_growth
 from validation.cases.rotors.whirl import NATURAL, layered_rotor
+from validation.study import launch
 
 _FRAME = Frame(left=0.72, top=0.15, between=0.0, below=0.42)
 _ZETA = 0.05
@@ -130,23 +130,11 @@ def _words(bands: Sequence[tuple[float, float]]) -> str:
     return ", ".join(f"{low:.4g} to {high:.4g}" for low, high in bands) or "none"
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Draw the figure and print the table.
-
-    Parameters
-    ----------
-    arguments : of the command line; None: the process's own
-    """
-    parser = argparse.ArgumentParser(prog="python -m validation.figures.liquid.baffles", description=__doc__)
-    parser.add_argument("--out", type=Path, default=Path("docs/images"), help="folder of the picture")
-    parser.add_argument("--table", action="store_true", help="print the table as well")
-    chosen = parser.parse_args(arguments)
-    chosen.out.mkdir(parents=True, exist_ok=True)
-    save(growth_figure(), chosen.out, "whirl_baffles", "Growth with baffles")
-    if chosen.table:
-        print("\n".join(rows(table())))
-    return 0
+def main(out: Path = Path("docs/images")) -> Iterator[Path | str]:
+    """Draw the figure and print the table."""
+    yield save_png(growth_figure(), out, "whirl_baffles", "Growth with baffles")
+    yield from rows(table())
 
 
 if __name__ == "__main__":
-    raise SystemExit(main())
+    launch(main)

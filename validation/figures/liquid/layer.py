@@ -12,7 +12,7 @@ from solvers.layer.state import Numerics
 from solvers.liquid_model import Whirl
 from solvers.pypde.settle import settle
 from validation.cases.liquid.layer import bore_histories, bore_reference, plane_layer
-from validation.cases.rotors.rigs import data
+from validation.study import data
 
 _FRAME = Frame(left=0.72, top=0.15, between=0.12, below=0.42)
 _FLOW = {"color": "black", "marker": "s", "linestyle": "none", "markerfacecolor": "white", "zorder": 4}

@@ -7,8 +7,7 @@ machine of the literature [RCFW08] over speed, unbalance and damping, and both k
 
 from __future__ import annotations
 
-import argparse
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -16,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save, style
+from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save_png, style
 from meshes.arrays import Array
 from solvers.rotor.balls.balancers import BallRace
 from solvers.rotor.balls.charts import Chart, Crossing, Machine, State, stability_chart
@@ -27,6 +26,7 @@ from solvers.rotor.system import RotorSystem
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
 from validation.cases.two_plane.damping import DAMPINGS, SIDES, damped, edge
 from validation.cases.two_plane.machine import BALLS, LONG, RACES
+from validation.study import launch
 
 _FRAME = Frame(left=0.7, top=0.15, between=0.0, below=0.5)
 _APART = 0.65  # inches between two plots side by side
@@ -179,7 +179,7 @@ def damping_figure(directory: Path) -> Path:
             "where hatched. Rotor of 10 kg, balls of 15 g, drag of the races 0.3 N s/m. Made-up machine."
         )
         lay_out(figure, [[axes]], [2.9], _FRAME, text)
-    return save(figure, directory, "balls_damping", "Stability over speed and damping").png
+    return save_png(figure, directory, "balls_damping", "Stability over speed and damping")
 
 
 def reference_figure(directory: Path) -> Path:
@@ -203,7 +203,7 @@ def reference_figure(directory: Path) -> Path:
         )
         lay_out(figure, [panels], [2.7], _FRAME, text)
         _part(panels)
-    return save(figure, directory, "balls_reference", "Stability of the reference machine").png
+    return save_png(figure, directory, "balls_reference", "Stability of the reference machine")
 
 
 def unlike_figure(directory: Path) -> Path:
@@ -221,7 +221,7 @@ def unlike_figure(directory: Path) -> Path:
             "hatched. Unbalances 5e-5, drag of the races over a ball's mass 0.01."
         )
         lay_out(figure, [[axes]], [2.9], _FRAME, text)
-    return save(figure, directory, "balls_unlike", "Stability on unlike supports").png
+    return save_png(figure, directory, "balls_unlike", "Stability on unlike supports")
 
 
 def states_figure(directory: Path) -> Path:
@@ -255,7 +255,7 @@ def states_figure(directory: Path) -> Path:
         )
         lay_out(figure, [panels], [2.7], replace(_FRAME, top=0.35), text)
         _part(panels)
-    return save(figure, directory, "balls_charts", "Stability of two states").png
+    return save_png(figure, directory, "balls_charts", "Stability of two states")
 
 
 def _part(panels: Sequence[Any]) -> None:
@@ -282,19 +282,12 @@ def table() -> str:
     return "\n".join(lines)
 
 
-def main() -> None:
+def main(out: Path = Path("docs/images")) -> Iterator[Path | str]:
     """Draw the figures and print the table."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--out", type=Path, default=Path("docs/images"))
-    parser.add_argument("--table", action="store_true", help="print the table as well")
-    options = parser.parse_args()
     for draw in (damping_figure, reference_figure, unlike_figure, states_figure):
-        path = draw(options.out)
-        path.with_suffix(".svg").unlink()
-        print(path)
-    if options.table:
-        print(table())
+        yield draw(out)
+    yield table()
 
 
 if __name__ == "__main__":
-    main()
+    launch(main)

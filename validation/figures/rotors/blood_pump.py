@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import argparse
 import math
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -10,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save, style
+from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save_png, style
 from leblanc.scene.examples import example
 from leblanc.wings.magnetic.figure import magnetic_figure
 from leblanc.wings.magnetic.study import run_magnetic
@@ -18,6 +17,7 @@ from meshes.arrays import Array
 from solvers.rotor.magnetic.control import Controller, Pid
 from solvers.rotor.magnetic.linear import closed_loop, margins
 from validation.cases.rotors.blood_pump import MACHINE, SPEED, control
+from validation.study import launch
 
 HERTZ = 2.0 * math.pi
 BANDWIDTHS = np.geomspace(300.0, 5e6, 43)  # of the coils, Hz
@@ -104,25 +104,19 @@ def coils_figure(directory: Path) -> Path:
         )
         frame = Frame(left=0.72, top=0.12, between=0.12, below=0.42)
         lay_out(figure, [[above], [below]], [1.7, 1.4], frame, text)
-    return save(figure, directory, "blood_pump_coils", "Coils that take time").png
+    return save_png(figure, directory, "blood_pump_coils", "Coils that take time")
 
 
 def trial_figure(directory: Path) -> Path:
     """Trial of the scene in time and its unbalance response."""
     result = run_magnetic(example("blood_pump"))
-    return save(magnetic_figure(result), directory, "blood_pump", "Blood pump in magnetic bearings").png
+    return save_png(magnetic_figure(result), directory, "blood_pump", "Blood pump in magnetic bearings")
 
 
-def main() -> None:
+def main(out: Path = Path("docs/images")) -> tuple[Path | str, ...]:
     """Draw all figures and print the table."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--out", type=Path, default=Path("docs/images"))
-    options = parser.parse_args()
-    for path in (trial_figure(options.out), coils_figure(options.out)):
-        path.with_suffix(".svg").unlink()
-        print(path)
-    print(table())
+    return trial_figure(out), coils_figure(out), table()
 
 
 if __name__ == "__main__":
-    main()
+    launch(main)

@@ -5,15 +5,14 @@ python -m validation.figures.rotors.fill_sweep --out docs/images
 
 from __future__ import annotations
 
-import argparse
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save, style
+from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save_png, style
 from meshes.arrays import Array
 from validation.cases.fill_sweep.contact import of_kept
 from validation.cases.fill_sweep.fitted import NEAREST, bands, kept, measured, ratios
+from validation.study import launch
 
 _FRAME = Frame(left=0.78, top=0.28, between=0.34, below=0.42)
 _LINE, _TOUCHES = "#0072B2", "#009E73"
@@ -75,25 +74,11 @@ def _draw_contact(axes: Any, added: Array) -> None:
     axes.plot(added, middle, color=_TOUCHES, linewidth=1.3, label="with a clearance, middle")
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Draw the figure.
-
-    Parameters
-    ----------
-    arguments : of the command line; None: the process's own
-
-    Returns
-    -------
-    Exit code
-    """
-    parser = argparse.ArgumentParser(
-        prog="python -m validation.figures.rotors.fill_sweep", description=__doc__
-    )
-    parser.add_argument("--out", type=Path, required=True, help="folder of the figure")
+def draw(out: Path) -> Path:
+    """Write it as PNG."""
     title = "The measured fill sweep, and what one machine makes of it"
-    save(sweep_figure(), parser.parse_args(arguments).out, "fill_sweep", title)
-    return 0
+    return save_png(sweep_figure(), out, "fill_sweep", title)
 
 
 if __name__ == "__main__":
-    raise SystemExit(main())
+    launch(draw)

@@ -8,8 +8,8 @@ import numpy as np
 
 from leblanc.core.units import RPM
 from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, style
-from validation.cases.rotors.rigs import data
 from validation.figures.rotors.runup_lag import steady
+from validation.study import data
 
 _FRAME = Frame(left=0.72, top=0.15, between=0.0, below=0.42)
 _READING = 15.0  # deg

@@ -6,7 +6,6 @@ docs/runup.md.
 
 from __future__ import annotations
 
-import argparse
 import math
 from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
@@ -24,7 +23,8 @@ from meshes.arrays import Array, Complex
 from solvers.runup.machine import Ramp
 from solvers.runup.runup import RunupNumerics, run_up
 from solvers.synchronous.response import response
-from validation.cases.rotors.rigs import data, horizontal_rig, horizontal_rotor
+from validation.cases.rotors.rigs import horizontal_rig, horizontal_rotor
+from validation.study import data, launch
 
 _RPM = 2.0 * math.pi / 60.0
 RATES = (40.0, 20.0, 10.0, 5.0, 2.5, 1.25)  # rad/s^2
@@ -133,8 +133,8 @@ def table(lags: Sequence[Lag], damping_ratio: float) -> str:
 
 
 def draw(lags: Sequence[Lag], damping_ratio: float, directory: Path) -> Path:
-    """Angle over speed and error over rate as PNG and SVG; lags by falling rate."""
-    from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save, style
+    """Angle over speed and error over rate as PNG; lags by falling rate."""
+    from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save_png, style
 
     with style():
         figure = Figure()
@@ -155,7 +155,7 @@ def draw(lags: Sequence[Lag], damping_ratio: float, directory: Path) -> Path:
             "of the chambers."
         )
         lay_out(figure, [[upper], [lower]], [2.3, 1.6], frame, text, 8)
-    return save(figure, directory, "runup_lag", "Lag of a run-up behind the steady response").png
+    return save_png(figure, directory, "runup_lag", "Lag of a run-up behind the steady response")
 
 
 def _draw_angles(axes: Any, lags: Sequence[Lag], damping_ratio: float) -> None:
@@ -201,30 +201,14 @@ def _draw_errors(axes: Any, lags: Sequence[Lag]) -> None:
     axes.set_ylabel("Error (%)")
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Run the study.
-
-    Parameters
-    ----------
-    arguments : of the command line; None: the process's own
-
-    Returns
-    -------
-    Exit code
-    """
-    parser = argparse.ArgumentParser(
-        prog="python -m validation.figures.rotors.runup_lag", description=__doc__
-    )
-    parser.add_argument("--out", type=Path, required=True, help="folder of the figure")
-    parser.add_argument("--workers", type=int, default=2, help="processes [default: 2]")
-    chosen = parser.parse_args(arguments)
+def main(out: Path, workers: int = 2) -> tuple[str, ...]:
+    """Run the study in processes, draw and print it."""
     damping_ratio = fitted_damping()
-    with ProcessPoolExecutor(max_workers=chosen.workers) as pool:
+    with ProcessPoolExecutor(max_workers=workers) as pool:
         lags = list(pool.map(partial(lag, damping_ratio=damping_ratio), RATES))
-    draw(lags, damping_ratio, chosen.out)
-    print(f"damping ratio {damping_ratio:.4f}", "", table(lags, damping_ratio), sep="\n")
-    return 0
+    draw(lags, damping_ratio, out)
+    return f"damping ratio {damping_ratio:.4f}", "", table(lags, damping_ratio)
 
 
 if __name__ == "__main__":
-    raise SystemExit(main())
+    launch(main)

@@ -6,7 +6,6 @@ docs/runup.md.
 
 from __future__ import annotations
 
-import argparse
 import math
 from collections.abc import Sequence
 from pathlib import Path
@@ -16,6 +15,7 @@ import numpy as np
 
 from leblanc.core.units import LITRE, MM, RPM
 from validation.cases.rotors.runup import GIVEN, Point, band, best_volume, run, steady_end, sweep
+from validation.study import launch
 
 _LOOKS: tuple[tuple[str, str, Any], ...] = (
     ("#0072B2", "o", "-"),
@@ -59,8 +59,8 @@ def table(points: Sequence[Point]) -> str:
 
 
 def draw(points: Sequence[Point], dry: Point, directory: Path) -> Path:
-    """Trends as PNG and SVG, with the run-up without liquid."""
-    from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save, style
+    """Trends as PNG, with the run-up without liquid."""
+    from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save_png, style
 
     volumes = list(dict.fromkeys(point.volume for point in points))
     litres = np.array(volumes) * LITRE
@@ -90,7 +90,7 @@ def draw(points: Sequence[Point], dry: Point, directory: Path) -> Path:
         panels[-1].set_xlabel("Water (l)")
         frame = Frame(left=0.72, top=0.12, between=0.12, below=0.42)
         lay_out(figure, [[axes] for axes in panels], [1.7, 1.4, 1.4], frame, _CAPTION, 8)
-    return save(figure, directory, "runup_trends", "Run-up over volume and friction").png
+    return save_png(figure, directory, "runup_trends", "Run-up over volume and friction")
 
 
 _DRY: dict[str, Any] = {"color": "0.3", "linewidth": 1.0, "linestyle": (0, (1, 1.5)), "label": "no liquid"}
@@ -128,28 +128,12 @@ def _whirl(axes: Any, volumes: Sequence[float], friction: float) -> None:
     axes.fill_between(x * LITRE, low * RPM, high * RPM, **look, label="self-excited whirl", zorder=0.5)
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Run the study.
-
-    Parameters
-    ----------
-    arguments : of the command line; None: the process's own
-
-    Returns
-    -------
-    Exit code
-    """
-    parser = argparse.ArgumentParser(
-        prog="python -m validation.figures.rotors.runup_trends", description=__doc__
-    )
-    parser.add_argument("--out", type=Path, required=True, help="folder of the figure")
-    parser.add_argument("--workers", type=int, default=2, help="processes [default: 2]")
-    chosen = parser.parse_args(arguments)
-    points = sweep(workers=chosen.workers)
-    draw(points, run(0.0, 0.0), chosen.out)
-    print(comparison(), "", table(points), sep="\n")
-    return 0
+def main(out: Path, workers: int = 2) -> tuple[str, ...]:
+    """Run the study in processes, draw and print it."""
+    points = sweep(workers=workers)
+    draw(points, run(0.0, 0.0), out)
+    return comparison(), "", table(points)
 
 
 if __name__ == "__main__":
-    raise SystemExit(main())
+    launch(main)

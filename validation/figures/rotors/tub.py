@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import argparse
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,6 +13,7 @@ import numpy as np
 from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save_png, style
 from solvers.rotor.tub import Tub
 from validation.cases.rotors.tub import FARTHEST, amplitude, suspended_tub
+from validation.study import launch
 
 _RPM = math.pi / 30.0
 _FRAME = Frame(left=0.72, top=0.46, between=0.0, below=0.42)
@@ -112,19 +112,10 @@ def draw(plot: Plot) -> Figure:
     return figure
 
 
-def main(arguments: Sequence[str] | None = None) -> None:
-    """Write the figures as PNG.
-
-    Parameters
-    ----------
-    arguments : of the command line; those of this process if None
-    """
-    parser = argparse.ArgumentParser(prog="python -m validation.figures.rotors.tub", description=__doc__)
-    parser.add_argument("--out", type=Path, default=Path("out/tub"), help="folder for the figures")
-    folder = parser.parse_args(arguments).out
-    for plot in plots():
-        print(save_png(draw(plot), folder, plot.name, plot.title))
+def main(out: Path = Path("out/tub")) -> list[Path]:
+    """Write the figures as PNG."""
+    return [save_png(draw(plot), out, plot.name, plot.title) for plot in plots()]
 
 
 if __name__ == "__main__":
-    main()
+    launch(main)

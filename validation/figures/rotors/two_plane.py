@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-import argparse
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from leblanc.core.units import MM
-from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save, style
+from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save_png, style
 from solvers.rotor.balls.balancers import simulate
 from solvers.rotor.balls.two_plane_balance import dynamic_balancing, of_two_planes
 from solvers.rotor.two_plane import TwoPlane
 from validation.cases.two_plane.machine import BALLS, LONG, RACES, SCATTERED, SHORT, bare_deflection
+from validation.study import launch
 
 _FRAME = Frame(left=0.74, top=0.3, between=0.42, below=0.45)
 _SPEEDS = (30.0, 120.0)
@@ -47,7 +47,7 @@ def balls_figure(directory: Path, duration: float = 12.0) -> Path:
                 box = axes.get_position()
                 shift = _GAP / 6.3 if axes is row[1] else 0.0
                 axes.set_position((box.x0 + shift, box.y0, box.width - _GAP / 6.3, box.height))
-    return save(figure, directory, "two_plane_balls", "Two ball balancers in time").png
+    return save_png(figure, directory, "two_plane_balls", "Two ball balancers in time")
 
 
 def _draw(axes: Any, name: str, rotor: TwoPlane, speed: float, duration: float) -> None:
@@ -83,14 +83,5 @@ def _draw(axes: Any, name: str, rotor: TwoPlane, speed: float, duration: float) 
     axes.set_xlim(0.0, duration)
 
 
-def main() -> None:
-    """Draw the figure."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--out", type=Path, default=Path("docs/images"))
-    path = balls_figure(parser.parse_args().out)
-    path.with_suffix(".svg").unlink()
-    print(path)
-
-
 if __name__ == "__main__":
-    main()
+    launch(balls_figure)

@@ -6,19 +6,19 @@ and prints its table.
 
 from __future__ import annotations
 
-import argparse
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save, style
+from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save_png, style
 from meshes.arrays import Array
 from solvers.cycles.cycles import Branch, LimitCycles, limit_cycles
 from solvers.runup.runup import RunupNumerics
 from solvers.whirl.edges import unstable_bands
 from validation.cases.rotors.whirl import BANDED, NATURAL, banded_rotor, slow_passage
+from validation.study import launch
 from validation.whirl_in_time import Passage, passage
 
 RATES = (8.0, 4.0, 2.0, 1.0)  # rad/s^2, of the table
@@ -126,21 +126,12 @@ def _smooth(values: Array) -> Array:
     return np.asarray(np.convolve(np.pad(values, width // 2, mode="edge"), np.ones(width) / width, "valid"))
 
 
-def main(arguments: Sequence[str] | None = None) -> None:
-    """Draw the figure and print the table.
-
-    Parameters
-    ----------
-    arguments : of the command line; None: the process's own
-    """
-    parser = argparse.ArgumentParser(
-        prog="python -m validation.figures.rotors.whirl_passage", description=__doc__
-    )
-    parser.add_argument("--out", type=Path, required=True, help="folder of the figure")
+def main(out: Path) -> Iterator[Path | str]:
+    """Draw the figure and print the table."""
     found, name = cycles(), "Run-up through a band of self-excited whirl"
-    print(save(passage_figure(passed(), found), parser.parse_args(arguments).out, "whirl_passage", name).png)
-    print(table(found, [slow_passage(rate) for rate in RATES]))
+    yield save_png(passage_figure(passed(), found), out, "whirl_passage", name)
+    yield table(found, [slow_passage(rate) for rate in RATES])
 
 
 if __name__ == "__main__":
-    main()
+    launch(main)
