@@ -1,8 +1,8 @@
 """Exact waves of the Korteweg-de Vries equation on the drum: solitary and cnoidal waves.
 
 All for eta_t + lambda0 eta_theta + alpha eta eta_theta + delta eta_theta_theta_theta = 0
-[theory: kdv, eq. 1]. The waves are humps where alpha and delta have one sign, as in both families of waves in
-the layer, and troughs where they have two.
+[theory: kdv, eq. 1]; humps where alpha and delta have one sign, as in both families of waves in the layer,
+else troughs.
 """
 
 from __future__ import annotations
@@ -36,10 +36,10 @@ class TravellingWave:
     complement: float  #: 1 - m of the elliptic functions; 0 for a solitary wave
 
     def profile(self, theta: ArrayLike, time: ArrayLike = 0.0) -> Array:
-        """Field eta (m^2) at given angles and times; a crest (or trough) passes theta = 0 at time 0.
+        """Field eta (m^2) at angles (rad) and times; a crest (or trough) passes theta = 0 at time 0.
 
         [theory: steppers, eq. 12-13]; narrow crests as a sum over neighbours [theory: steppers, eq. 15]. A
-        solitary wave is cut half way round the drum.
+        solitary wave is cut half way round the drum from its crest.
         """
         from scipy.special import ellipj, ellipkm1
 
@@ -59,12 +59,10 @@ class TravellingWave:
 
 
 def solitary_wave(c: KdvCoefficients, height: float, mean_zero: bool = False) -> TravellingWave:
-    """Solitary wave of the KdV equation on the drum [theory: steppers, eq. 12].
+    """Solitary wave on the drum; height, m^2, of the sign of alpha delta [theory: steppers, eq. 12].
 
-    A solution up to its tails, 4 H e^{-2 pi kappa} at the far side; the cnoidal wave has no such restriction.
-
-    Height of the sign of steepening times dispersion, m^2; with `mean_zero` its level is lowered so that it
-    holds no liquid beyond the mean.
+    A solution up to its tails, 4 H e^{-2 pi kappa} at the far side, unlike the cnoidal wave. With `mean_zero`
+    its level is lowered so that it holds no liquid beyond the mean.
     """
     sharpness = math.sqrt(_sharpness_squared(c, height))
     level = -height * math.tanh(math.pi * sharpness) / (math.pi * sharpness) if mean_zero else 0.0
@@ -73,10 +71,9 @@ def solitary_wave(c: KdvCoefficients, height: float, mean_zero: bool = False) ->
 
 
 def cnoidal_wave(c: KdvCoefficients, height: float, crests: int = 1, mean: float = 0.0) -> TravellingWave:
-    """Periodic wave of the KdV equation of a given height [theory: steppers, eq. 13-14].
+    """Periodic wave of a height from trough to crest, m^2, on the drum [theory: steppers, eq. 13-14].
 
-    Height from trough to crest, m^2, of the sign of steepening times dispersion; an `InputError` where the
-    crests would be shocks.
+    The height has the sign of alpha delta; an `InputError` where the crests would be shocks.
     """
     from scipy.optimize import brentq
     from scipy.special import ellipkm1
@@ -100,7 +97,7 @@ def cnoidal_wave(c: KdvCoefficients, height: float, crests: int = 1, mean: float
 
 
 def _sharpness_squared(c: KdvCoefficients, height: float) -> float:
-    """alpha H/(12 delta)."""
+    """kappa^2 of crests of height H, alpha H/(12 delta)."""
     if not (math.isfinite(height) and c.steepening * height * c.dispersion > 0.0):
         raise InputError("height", height, "a finite number of the sign of steepening times dispersion")
     return c.steepening * height / (12.0 * c.dispersion)

@@ -21,8 +21,7 @@ FULL = 1.0 - 1e-9  # of the capacity; beyond it there is no free surface
 def compartment_share(count: int) -> float:
     """Part of the added mass of a free surface that closed compartments take away [theory: sections, eq. 8].
 
-    In each of n equal sectors the liquid keeps its volume, so its surface cannot shift as a whole: (n/pi)^2
-    sin^2(pi/n), the mean over all directions of the deflection.
+    (n/pi)^2 sin^2(pi/n), the mean over all directions of the deflection: each sector keeps its volume.
     """
     return 0.0 if count == 1 else (count / math.pi * math.sin(math.pi / count)) ** 2
 

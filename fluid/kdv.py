@@ -36,7 +36,7 @@ class KdvCoefficients:
 
     @property
     def layer_log(self) -> float:
-        """L = ln(R/a)."""
+        """Depth of the layer in conformal measure, L = ln(R/a)."""
         return math.log(self.radius / self.surface_radius)
 
     @property
@@ -51,9 +51,9 @@ class KdvCoefficients:
 
 
 def coefficients(radius: float, surface_radius: float, spin: float, family: int) -> KdvCoefficients:
-    """Coefficients of one family of waves, +1 prograde, -1 retrograde.
+    """Coefficients of a family of waves, +1 prograde, -1 retrograde [theory: kdv, eq. 5, 8, 9, 11].
 
-    [theory: kdv, eq. 5, 8, 9, 11], from the annular long-wave equations and the exact dispersion.
+    From the annular long-wave equations and the exact dispersion.
     """
     require_positive("radius", radius)
     require_positive("surface_radius", surface_radius)
@@ -81,20 +81,15 @@ def coefficients(radius: float, surface_radius: float, spin: float, family: int)
 
 
 def forcing(c: KdvCoefficients, acceleration: ArrayLike) -> Array:
-    """Strength q with which the whirling axis forces the waves of the family.
+    """Strength q with which the whirling axis forces the waves of the family, m^2/s [theory: kdv, eq. 11].
 
-    q = +-L a F/(2 S) [theory: kdv, eq. 11].
-
-    Shape (...,), m^2/s; positive for the prograde family.
+    q = +-L a F/(2 S), F = omega_w^2 w0 the axis' acceleration; positive for the prograde family.
     """
     return np.asarray(c.coupling * np.asarray(acceleration, dtype=float))
 
 
 def decay(c: KdvCoefficients, friction_rate: ArrayLike) -> Array:
-    """Rate gamma at which a linear wall friction damps the waves of the family.
-
-    gamma = k |lambda0|/(2 S), about k/2 [theory: kdv, eq. 12].
-    """
+    """Decay rate of the family under a friction -k u per mass, k |lambda0|/(2 S) [theory: kdv, eq. 12]."""
     k = np.asarray(friction_rate, dtype=float)
     if not bool(np.all(np.isfinite(k) & (k >= 0.0))):
         raise InputError("friction_rate", friction_rate, "a finite number, 0 or above")
@@ -102,10 +97,9 @@ def decay(c: KdvCoefficients, friction_rate: ArrayLike) -> Array:
 
 
 def wave_frequency(mode: ArrayLike, c: KdvCoefficients, whitham: bool) -> Array:
-    """Frequency omega(n) of a free wave eta ~ exp(i n theta - i omega t) of vanishing height.
+    """Frequency omega(n) of a free wave eta ~ exp(i n theta - i omega t) of vanishing height, odd in n.
 
-    KdV: n lambda0 - delta n^3 [theory: kdv, eq. 10]; Whitham: the exact sigma(n) of the family
-    [theory: waves, eq. 7]. Both are odd in n.
+    KdV: n lambda0 - delta n^3 [theory: kdv, eq. 10]; Whitham: the exact sigma(n) [theory: waves, eq. 7].
     """
     n = np.asarray(mode, dtype=float)
     if not whitham:
@@ -116,11 +110,9 @@ def wave_frequency(mode: ArrayLike, c: KdvCoefficients, whitham: bool) -> Array:
 
 
 def rescaling(c: KdvCoefficients, steepening: float, dispersion: float) -> tuple[float, float]:
-    """Scales of field (1/m^2) and angle that lead to u_t + p u u_x + d u_xxx = 0 in the frame of linear long
-    waves.
+    """Scales of field (1/m^2) and angle that lead to u_t + p u u_x + d u_xxx = 0 [theory: kdv, eq. 14].
 
-    u = field_scale * eta, x = angle_scale * (theta - lambda0 t), the time kept; a negative angle scale
-    mirrors the drum [theory: kdv, eq. 14].
+    u = field_scale * eta, x = angle_scale * (theta - lambda0 t); a negative angle scale mirrors the drum.
     """
     for name, value in (("steepening", steepening), ("dispersion", dispersion)):
         if not math.isfinite(value) or value == 0.0:
@@ -130,13 +122,11 @@ def rescaling(c: KdvCoefficients, steepening: float, dispersion: float) -> tuple
 
 
 def offset(c: KdvCoefficients, profile: ArrayLike) -> Complex:
-    """Offset of the liquid's centre of mass from the drum's axis for a given wave.
+    """Offset of the liquid's centre of mass from the drum's axis for a wave, m [theory: kdv, eq. 15].
 
-    a/(2 pi A0) times the integral of eta e^{i xi} [theory: kdv, eq. 15]. What it leaves out is smaller than
-    the terms kept by eta/a^2, while eta itself is known to a part eta/A0.
-
-    eta at equal steps of xi = theta - s t all round; real part along the deflection, imaginary part 90 deg
-    ahead of it, m.
+    a/(2 pi A0) times the integral of eta e^{i xi}, eta at equal steps of xi = theta - s t, shape (...,
+    points); the imaginary part lies 90 deg ahead of the deflection. What it leaves out is smaller than the
+    terms kept by eta/a^2, while eta itself is known to a part eta/A0.
     """
     eta = np.asarray(profile, dtype=float)
     angle = 2.0 * np.pi * np.arange(eta.shape[-1]) / eta.shape[-1]

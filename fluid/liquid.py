@@ -87,7 +87,7 @@ class TemperatureLaw:
     reference = REFERENCE
 
     def relative(self, temperature: float) -> tuple[float, float]:
-        """As `GivenLaw.relative`."""
+        """Density and kinematic viscosity at a temperature, K, over those at the reference."""
         return _relative(self.density, self.viscosity, temperature)
 
 
@@ -196,12 +196,7 @@ SALTS = {
 
 @dataclass(frozen=True)
 class BrineLaw:
-    """A salt in water over temperature [theory: liquids, eq. 6, 7].
-
-    Raises
-    ------
-    InputError : another salt, a mass fraction out of its range
-    """
+    """A salt in water over temperature [theory: liquids, eq. 6, 7]."""
 
     salt: str  #: one of `SALTS`
     mass_fraction: float  #: of the salt in the solution
@@ -243,7 +238,7 @@ class BrineLaw:
         return 1e-3 * math.pow(water, 1.0 - share) * math.pow(salt, share)
 
     def relative(self, temperature: float) -> tuple[float, float]:
-        """As `GivenLaw.relative`."""
+        """Density and kinematic viscosity at a temperature, K, over those at the reference."""
         return _relative(self.density, self.viscosity, temperature)
 
 
@@ -285,7 +280,7 @@ _GRADED = CELSIUS + 25.0  # K, at which silicone oils have the viscosity that th
 def silicone_law(grade: float, density: float) -> GivenLaw:
     """A silicone oil (polydimethylsiloxane) over temperature [KF96].
 
-    Grade in m^2/s, from 100 mm^2/s up, and density, both at 25 degrees Celsius.
+    Its grade, m^2/s, from 100 mm^2/s up, and its density, both at 25 degrees Celsius.
     """
     span = CELSIUS - 25.0, CELSIUS + 250.0
     thickness = Vogel(grade * math.exp(-SILICONE_SLOPE / _GRADED), SILICONE_SLOPE, 0.0, *span)
@@ -315,16 +310,7 @@ LAWS: dict[str, TemperatureLaw | BrineLaw | GivenLaw] = {
 
 
 def law_of(liquid: Liquid) -> TemperatureLaw | BrineLaw | GivenLaw | None:
-    """How a liquid changes with temperature: its own law, or that of the known liquid that it is.
-
-    Parameters
-    ----------
-    liquid : of any kind
-
-    Returns
-    -------
-    None where no law is known
-    """
+    """How a liquid changes with temperature: its own law, or that of the known liquid that it is, or None."""
     if liquid.law is not None:
         return liquid.law
     return LAWS.get(liquid.name) if KNOWN_LIQUIDS.get(liquid.name) == liquid else None
@@ -369,14 +355,5 @@ def liquid_at(liquid: Liquid, temperature: float) -> Liquid:
 
 
 def expansion(liquid: Liquid, temperature: float) -> float:
-    """Volume of a mass of liquid over that at the temperature of its values [theory: optimum, eq. 9].
-
-    Parameters
-    ----------
-    liquid, temperature : as for `liquid_at`
-
-    Raises
-    ------
-    InputError : as `liquid_at`
-    """
+    """Volume of a mass of liquid over that at the temperature of its values [theory: optimum, eq. 9]."""
     return liquid.density / liquid_at(liquid, temperature).density

@@ -25,10 +25,7 @@ def layer_log(area: Real) -> Real:
 
 
 def static_head(area: Real, surface: Real, spin: float, pull: Real) -> Real:
-    """Bernoulli's function of the liquid at rest, B = Omega^2 A - r_s f_r [theory: long_wave, eq. 5].
-
-    It is constant along the wall wherever the liquid is in equilibrium.
-    """
+    """Bernoulli's function at rest, Omega^2 A - r_s f_r, one constant [theory: long_wave, eq. 5]."""
     return spin * spin * area - surface * pull
 
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Symbol:
-    """One quantity."""
+    """A symbol of the theory and the quantity that it stands for."""
 
     name: str  #: as arguments and fields are called
     sign: str  #: in the theory pages, TeX

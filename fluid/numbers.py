@@ -29,10 +29,7 @@ class LayerNumbers:
 
 
 def layer_numbers(fill: Fill, speed: ArrayLike, gravity: float, axial_gravity: float) -> LayerNumbers:
-    """Numbers of one chamber's layer [theory: statics, eq. 2].
-
-    A number whose denominator is 0 is infinite.
-    """
+    """Numbers of one chamber's layer; inf where a denominator is 0 [theory: statics, eq. 2]."""
     spin = np.asarray(speed, dtype=float)
     radius, viscosity = fill.chamber.radius, fill.liquid.viscosity
     surface = fill.surface_radius

@@ -21,10 +21,10 @@ CYLINDER_STEEPNESS = 1e30
 
 
 def steepness(speed: ArrayLike, gravity: ArrayLike, radius: ArrayLike, height: ArrayLike) -> Array:
-    """Rise of the free surface over the chamber's radius, in chamber heights, 0 (flat) to
-    `CYLINDER_STEEPNESS`.
+    """Rise of the free surface over the chamber's radius, in chamber heights [theory: statics, eq. 2].
 
-    B = beta R^2/h with beta = Omega^2/(2 g) [theory: statics, eq. 2]; 0 where both speed and gravity are 0.
+    B = beta R^2/h with beta = Omega^2/(2 g), from 0 (flat; also without speed and gravity) to
+    `CYLINDER_STEEPNESS`.
     """
     spin, g, wall, h = np.broadcast_arrays(
         *(np.asarray(x, dtype=float) for x in (speed, gravity, radius, height))
@@ -75,7 +75,7 @@ def lens_moments(disc_radius: ArrayLike, radius: float, eccentricity: ArrayLike)
     """Moments A, S, J and T of a disc about the rotation axis cut by the chamber's disc at a distance e.
 
     Holds whether the circles cross, one lies in the other, or they are apart [theory: statics, eq. 5-6].
-    Rounding is a few units in the last place of (r + R + e)^n, n the dimension of the moment.
+    Rounding is a few units in the last place of (r + R + e)^n, n the dimension: slivers have fewer digits.
     """
     require_positive("radius", radius)
     r, e = np.broadcast_arrays(np.asarray(disc_radius, dtype=float), np.asarray(eccentricity, dtype=float))
@@ -115,10 +115,7 @@ def lens_moments(disc_radius: ArrayLike, radius: float, eccentricity: ArrayLike)
 
 
 def _half_angles(r: Array, radius: float, e: Array) -> tuple[Array, Array]:
-    """Half the angle of the chord seen from the rotation axis and from the chamber's centre.
-
-    None of the factors is a difference of squares.
-    """
+    """Half the chord's angle from the rotation axis and the chamber's centre, by no difference of squares."""
     total = r + radius + e
     # The clip takes back what rounding puts beyond tangency.
     short_e = np.maximum(np.where(e > radius, r - (e - radius), (r - e) + radius), 0.0)

@@ -43,10 +43,7 @@ class Pool:
 
 
 def pool_of(fill: Fill) -> Pool | None:
-    """The liquid of a chamber lying at its bottom.
-
-    None where there is no free surface: an empty or a full chamber.
-    """
+    """The liquid lying at the bottom of a chamber; None where there is no free surface (empty or full)."""
     chamber = fill.chamber
     if not 0.0 < fill.volume < chamber.capacity * FULL:
         return None
@@ -85,9 +82,10 @@ def sloshing_number(half_angle: float) -> float:
 
 
 def wall_torque(fill: Fill, pool: Pool, friction: Friction, rotation: ArrayLike) -> Array:
-    """Torque of walls and baffles on a pool past which they move [theory: pool, eq. 6-7].
+    """Torque of walls and baffles on a pool past which they move, N m [theory: pool, eq. 6-7].
 
-    N m, of the sign of the rotation; the laminar law at the frequency at which a point of the wall comes by.
+    Of the sign of `rotation`, the chamber's relative to the pool; the laminar law at the frequency at which a
+    point of the wall comes by.
     """
     turn = np.asarray(rotation, dtype=float)
     pushed = _baffle_factor(fill, pool) * turn * np.abs(turn)
@@ -139,11 +137,9 @@ def _baffle_factor(fill: Fill, pool: Pool) -> float:
 
 
 def balance_speed(fill: Fill, pool: Pool, friction: Friction, gravity: float) -> float:
-    """Spin speed at which the walls' drag lifts a pool to the height of the axis [theory: pool, eq. 8].
+    """Spin speed at which the walls' drag lifts a pool to the axis' height, rad/s [theory: pool, eq. 8].
 
-    Above it gravity cannot hold the pool: it is carried round.
-
-    rad/s; inf where no speed up to 1e9 times the pendulum's frequency suffices.
+    Above it gravity cannot hold the pool; inf where 1e9 times the pendulum's frequency does not suffice.
     """
     weight = pool.mass * gravity * pool.arm
 
@@ -175,10 +171,7 @@ class _Segment:
 
 
 def _segment(radius: float, height: float) -> _Segment:
-    """Part of a disc that lies at least so far below its centre [theory: pool, eq. 1-2].
-
-    The height of the centre above the level is negative where more than half lies below.
-    """
+    """Part of a disc that lies at least `height` below its centre [theory: pool, eq. 1-2]."""
     if radius <= height:
         return _Segment(0.0, 0.0, 0.0, 0.0, 0.0)
     if height <= -radius:

@@ -1,7 +1,8 @@
-"""Formulas as the sources print them, each next to its corrected form.
+"""Formulas as the sources print them, each next to its corrected form, for chambers without an inner wall.
 
-None of the functions named `..._as_printed` is right; they serve the comparison in the validation report
-[theory: errata]. The sources' constant C* has the opposite sign of the package's: z = beta r^2 - C*.
+Of the functions named `..._as_printed` only the dry radius is right; they serve the comparison in the
+validation report [theory: errata]. The sources' constant C* has the opposite sign of the package's: z = beta
+r^2 - C*.
 """
 
 from __future__ import annotations
@@ -21,10 +22,9 @@ def dry_radius_as_printed(chamber: Chamber, eccentricity: float) -> float:
 
 
 def optimal_volume_as_printed(chamber: Chamber, eccentricity: float, speed: float, gravity: float) -> float:
-    """Optimal volume (m^3) of a chamber without an inner wall as printed: far too large [DR18, eq. 18].
+    """Optimal volume as printed, m^3: far too large [DR18, eq. 18].
 
-    The polar moment of the air's section at the lid is taken about a point of its rim (3/32 s^4) where the
-    rotation axis is meant.
+    The polar moment of the air's section at the lid is about a point of its rim, not the rotation axis.
     """
     return _disc_volume(chamber, eccentricity, speed, gravity, corrected=False)
 
@@ -34,8 +34,7 @@ def optimal_volume_disc_corrected(
 ) -> float:
     """Optimal volume with the polar moment about the rotation axis [DR18, eq. 18; theory: errata, eq. 1].
 
-    Still an approximation: the air's section at the lid is a lens, for which the source puts the disc with
-    the same extent along the deflection.
+    Still an approximation: the air's section at the lid is a lens, taken as a disc of its extent along e.
     """
     return _disc_volume(chamber, eccentricity, speed, gravity, corrected=True)
 
@@ -47,8 +46,6 @@ def dry_volume_as_printed(
 
     A square root is missing, a tangent stands for an arctangent, the sector's angle is halved and taken on
     the wet side.
-
-    The constant C* is that of the source, z = beta r^2 - C*, m.
     """
     beta, chord, cosine = _floor_crossing(chamber, surface_constant, eccentricity, speed, gravity)
     R, h, e, c = chamber.radius, chamber.height, eccentricity, surface_constant
@@ -83,8 +80,6 @@ def liquid_volume_by_lens(
     """Volume of liquid under the paraboloid, exact, in closed form [theory: statics, eq. 7].
 
     Chamber minus air: digits are lost as beta R^2/h grows and as the fill shrinks.
-
-    For C* of the source, z = beta r^2 - C*, m.
     """
     beta = _steepness(chamber, speed, gravity)
     require_not_negative("eccentricity", eccentricity)
@@ -105,9 +100,10 @@ def optimal_volume_by_lens(chamber: Chamber, eccentricity: float, speed: float, 
 
 
 def liquid_angle_as_printed(lag: float, ratio: float) -> float:
-    """Angle from the liquid to the rotor's unbalance as printed [DR18, eq. 25; DG21, eq. 4].
+    """Angle from the liquid to the rotor's unbalance as printed, rad [DR18, eq. 25; DG21, eq. 4].
 
-    Right for k = 1 only: the cosine has lost a factor 1/k; the right form is in `solvers.rotor.vector_model`.
+    Of delta and k, the rotor's unbalance over the liquid's; right for k = 1 only: the cosine has lost a
+    factor 1/k, the right form is in `solvers.rotor.vector_model`.
     """
     require_positive("ratio", ratio)
     if not math.isfinite(lag):

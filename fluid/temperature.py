@@ -20,7 +20,7 @@ _LEAST_WALTHER = 2.0  # mm^2/s, below which that constant is another one
 
 
 class PropertyLaw(Protocol):
-    """One property over temperature."""
+    """A property of a liquid over temperature."""
 
     @property
     def lowest(self) -> float:
@@ -52,10 +52,9 @@ class Constant:
 
 @dataclass(frozen=True)
 class Tabulated:
-    """A property from a table [theory: liquids, eq. 1].
+    """A property from a table, its logarithm a monotone piecewise cubic (PCHIP) [theory: liquids, eq. 1].
 
-    A piecewise cubic that never leaves the range of its points (PCHIP), of the logarithm of the property; its
-    error falls with the third power of the distance of even points.
+    The error falls with the third power of the distance of even points; two points make a straight line.
     """
 
     temperatures: tuple[float, ...]  #: rising, K; at least two
@@ -152,10 +151,7 @@ class Walther:
 
 @dataclass(frozen=True)
 class Vogel:
-    """Kinematic viscosity nu = a exp(b / (T - c)) [theory: liquids, eq. 4, 5].
-
-    With c = 0 it is Andrade's law.
-    """
+    """Kinematic viscosity nu = a exp(b / (T - c)), with c = 0 Andrade's law [theory: liquids, eq. 4, 5]."""
 
     a: float  #: m^2/s
     b: float  #: K

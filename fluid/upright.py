@@ -70,12 +70,12 @@ def free_surface_term(
     gravity: float,
     density: float,
 ) -> Array:
-    """What the freedom of the liquid's surface takes from the stability of the upright rotation, a, N m.
+    """What the freedom of the surface takes from the stability of the upright rotation, a, N m.
 
-    a = rho g int int (1 + Omega^2 z/g)^2 r^3 cos(phi)^2 dr dphi over the plan of the free surface, z the
-    height of the surface above the fixed point
-    [DR18, eq. 22, whose integral over the angle lacks cos(phi)^2; theory: statics, eq. 19]. `floor` is the
-    height of the chamber's floor above that point, C counts from the floor; 0 without a free surface.
+    a = rho g int int (1 + Omega^2 z/g)^2 r^3 cos(phi)^2 dr dphi over the plan of the free surface, z its
+    height above the fixed point
+    [DR18, eq. 22, whose integral over the angle lacks cos(phi)^2; theory: statics, eq. 19]; 0 without one.
+    `floor` counts from the fixed point, C from the floor.
     """
     constant, beta = _surface(floor, surface_constant, speed, gravity, density)
     inner, outer = _waterlines(chamber, constant, beta)
@@ -91,10 +91,9 @@ def free_surface_term(
 def cylinder_terms(
     chamber: Chamber, floor: float, volume: ArrayLike, speed: ArrayLike, density: float
 ) -> tuple[FrozenLiquid, Array]:
-    """Both without gravity, where the surface is a cylinder [theory: statics, eq. 20 and below eq. 21].
+    """Frozen moments and surface term without gravity [theory: statics, eq. 20 and below eq. 21].
 
-    a = rho pi Omega^2 a_s^2 int z^2 dz over the chamber's height, a_s the surface's radius: the limit of (19)
-    for g to 0.
+    The surface is a cylinder; a = rho pi Omega^2 a_s^2 int z^2 dz over the height, the limit of (19).
     """
     require_positive("density", density)
     amount, omega = np.broadcast_arrays(np.asarray(volume, dtype=float), np.asarray(speed, dtype=float))

@@ -1,8 +1,9 @@
 """Linear layer with friction on a whirling drum: offset, force, free waves, neutral whirl.
 
-Plane flow with a drag against the velocity relative to the drum. Everything is a function of
-T = tanh(L) = (R^2 - a^2)/(R^2 + a^2), which runs from 0 (no liquid) to 1 (full) and of which no formula here
-loses digits. Frequencies may be complex: whirls as e^{i omega t} grow where the imaginary part is negative.
+Plane flow with a drag against the velocity relative to the drum. Everything is a function of T = tanh(L) =
+(R^2 - a^2)/(R^2 + a^2), from 0 (no liquid) to 1 (full), of which no formula here loses digits. The whirl
+speed omega in the standing frame and the slip s = omega - Omega may be complex: e^{i omega t} grows where the
+imaginary part is negative. The rate k is complex with the inertia of wall layers.
 """
 
 from __future__ import annotations
@@ -33,8 +34,8 @@ class Layer:
 def plane_layer(fill: Fill, friction: Friction) -> Layer | None:
     """Layer of a fill under a law of friction; None without liquid or without a free surface.
 
-    Quadratic friction damps in proportion to the motion, so it is no friction to an infinitesimal whirl, and
-    of the law of the wall it feels the part of the waves, which is the laminar one.
+    Quadratic friction is none to an infinitesimal whirl; of the law of the wall the laminar part of the waves
+    acts.
     """
     radius = fill.chamber.radius
     if fill.volume == 0.0 or is_full(fill):
@@ -62,8 +63,7 @@ def wall_share(layer_tanh: float, crests: int = 1) -> float:
 def plate_rate(layer_tanh: ArrayLike, spin: ArrayLike, slip: ArrayLike) -> Complex:
     """Drag of floor and lid on a wave over 2 sqrt(nu)/h_c, complex, s^(-1/2) [theory: whirl, eq. 12].
 
-    The flow is the sum of two circles, whose layers the Coriolis force makes unlike: of the energy (1 - T)/2
-    goes round as e^{i s t} and (1 + T)/2 the other way.
+    Of two circles, made unlike by the Coriolis force: (1 - T)/2 of the energy goes round as e^{i s t}.
     """
     return plate_terms(layer_tanh, spin, slip)[0]
 
@@ -94,10 +94,10 @@ def steady_rate(layer: Layer, spin: ArrayLike) -> Complex:
 
 
 def body_force_rate(fill: Fill, friction: Friction, spin: float) -> float:
-    """k of a force -k u on all the liquid that damps its slower free wave as its walls do, 1/s.
+    """Rate k of a force -k u on all the liquid that damps its slower free wave as its walls do, 1/s.
 
-    Such a force leaves a flow without vorticity without any, which walls do not: of theirs it has the drag on
-    waves, and no wall layers [theory: potential, eq. 30]. 0 without liquid or without a free surface.
+    It makes no vorticity, unlike walls: it has their drag on waves, not their layers
+    [theory: potential, eq. 30]. 0 without liquid or without a free surface.
     """
     layer = plane_layer(fill, friction)
     if layer is None:
@@ -119,8 +119,8 @@ def is_full(fill: Fill) -> bool:
 def stokes_rate(stokes: ArrayLike, slip: ArrayLike) -> Complex:
     """Drag of a laminar oscillating layer, stokes sqrt(i s), 1/s [theory: whirl, eq. 12].
 
-    Of both roots the one with a positive real part: the layer decays away from the wall. For a real s its
-    real part is the decay rate [theory: long_wave, eq. 10] and its imaginary part, as large, the inertia.
+    The root with a positive real part, the decay rate for a real s [theory: long_wave, eq. 10]; the imaginary
+    part, as large, is the inertia.
     """
     return np.asarray(np.asarray(stokes) * np.sqrt(1j * np.asarray(slip, dtype=complex)))
 
@@ -134,10 +134,7 @@ def wave_function(layer_tanh: ArrayLike, spin: ArrayLike, slip: ArrayLike, rate:
 def offset_with_friction(
     layer_tanh: ArrayLike, spin: ArrayLike, whirl_speed: ArrayLike, rate: ArrayLike
 ) -> Complex:
-    """Offset of the liquid's centre of mass from the drum's axis over the deflection of the axis.
-
-    d/w = -(1 - T)/2 omega^2/E [theory: whirl, eq. 4].
-    """
+    """Offset of the centre of mass over the deflection, d/w = -(1 - T)/2 omega^2/E [theory: whirl, eq. 4]."""
     omega = np.asarray(whirl_speed, dtype=complex)
     share = 0.5 * (1.0 - np.asarray(layer_tanh))
     resonance = wave_function(layer_tanh, spin, omega - np.asarray(spin), rate)
@@ -147,21 +144,16 @@ def offset_with_friction(
 def force_with_friction(
     layer_tanh: ArrayLike, spin: ArrayLike, whirl_speed: ArrayLike, rate: ArrayLike
 ) -> Complex:
-    """Force of the layer on its drum over that of a full drum, m_f omega^2 w.
-
-    G = 2 T/(1 + T) (1 + d/w): Newton's law for the liquid [theory: whirl, eq. 5].
-    """
+    """Force of the layer on its drum over m_f omega^2 w, G = 2 T/(1 + T) (1 + d/w) [theory: whirl, eq. 5]."""
     t = np.asarray(layer_tanh)
     filled = 2.0 * t / (1.0 + t)
     return np.asarray(filled * (1.0 + offset_with_friction(t, spin, whirl_speed, rate)))
 
 
 def drag_power(layer: Layer, spin: ArrayLike, whirl_speed: float | Array, force: ArrayLike) -> Array:
-    """Heat by friction in a layer under a force on its mass that goes round [theory: loads, eq. 18].
+    """Heat by friction in a layer under a force on its mass that goes round, W [theory: loads, eq. 18].
 
-    The force is omega^2 w in a drum whose axis whirls, or gravity, which stands still.
-
-    W, for a force of that size per mass, m/s^2, at omega in the standing frame.
+    The force per mass, m/s^2, is omega^2 w of a whirling axis, or gravity, for which omega is 0.
     """
     slip = np.asarray(whirl_speed - np.asarray(spin))
     wave = wave_function(layer.layer_tanh, spin, slip, layer_rate(layer, spin, slip))
@@ -170,11 +162,9 @@ def drag_power(layer: Layer, spin: ArrayLike, whirl_speed: float | Array, force:
 
 
 def damped_waves(layer_tanh: ArrayLike, spin: ArrayLike, rate: ArrayLike) -> tuple[Complex, Complex]:
-    """Free waves with one crest under linear friction: slips, complex; they decay with the imaginary part.
+    """Slips of the free waves with one crest under linear friction, prograde first [theory: whirl, eq. 9].
 
-    s = b +- sqrt(b^2 + T Omega^2), b = T Omega + i k/2 [theory: whirl, eq. 9].
-
-    Of the prograde wave and of the retrograde wave, rad/s.
+    b +- sqrt(b^2 + T Omega^2), b = T Omega + i k/2, rad/s; the waves decay with the imaginary part.
     """
     t, omega = np.asarray(layer_tanh), np.asarray(spin)
     centre = t * omega + 0.5j * np.asarray(rate)
@@ -183,11 +173,9 @@ def damped_waves(layer_tanh: ArrayLike, spin: ArrayLike, rate: ArrayLike) -> tup
 
 
 def covering_speed(fill: Fill, gravity: float) -> float:
-    """Spin speed above which the layer in an upright chamber covers the wall and clears the inner one.
+    """Spin speed above which a layer about a vertical axis covers the wall and clears the inner one.
 
-    Omega^2 min(R^2 - a^2, a^2 - R_i^2) = g h_c [theory: whirl, eq. 18].
-
-    0 without gravity, without liquid or without a free surface.
+    Omega^2 min(R^2 - a^2, a^2 - R_i^2) = g h_c [theory: whirl, eq. 18]; 0 without gravity or free surface.
     """
     if gravity == 0.0 or fill.volume == 0.0 or is_full(fill):
         return 0.0

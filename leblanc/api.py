@@ -22,26 +22,23 @@ from meshes.errors import InputError
 if TYPE_CHECKING:
     from fluid.friction.laws import Friction
     from fluid.liquid import Liquid
+    from leblanc.core.answer import Answer
     from leblanc.questions import Quantity
     from leblanc.results.explanation import Explanation
     from leblanc.results.fit import FitResult
     from leblanc.results.layer import FreeWaveResult, LayerPeriodsResult, LayerResult
     from leblanc.results.liquid import ModesResult
     from leblanc.results.machine.layout import LayoutResult
-    from leblanc.results.magnetic.control import MagneticResult
-    from leblanc.results.magnetic.explanation import MagneticExplanation
     from leblanc.results.models.comparison import Comparison
     from leblanc.results.optimum import OptimumResult
     from leblanc.results.races.chart import BallChart
     from leblanc.results.races.design import BallDesignResult
     from leblanc.results.races.numbers import BallExplanation
     from leblanc.results.races.states import BallsResult
-    from leblanc.results.response import RunResult
     from leblanc.results.runup import RunupResult
-    from leblanc.results.spindles.unit import SpindleResult
     from leblanc.results.sweep import SweepResult
     from leblanc.results.whirl_map import WhirlMap
-    from leblanc.wings.exciter.answer import ExciterAnswer, ExciterExplanation
+    from leblanc.studies.run.answer import RunResult
 
 SceneOrPath = Scene | str | PathLike[str]
 
@@ -50,7 +47,7 @@ _OPTION = re.compile(r"--([a-z][a-z-]*)")
 
 def run(
     scene: SceneOrPath, *, workers: int = 1, solver: str | None = None, cycles: bool = False
-) -> RunResult | ExciterAnswer | MagneticResult | SpindleResult | BallsResult:
+) -> RunResult | Answer | BallsResult:
     """Response and the liquid's centre of mass at each speed of a scene.
 
     Parameters
@@ -85,22 +82,14 @@ def run(
         raise InputError("workers", workers, "1 or more")
     machine = _scene(scene)
     if (address := answerer("run", machine.rotor.kind)) is not None:
-        answer: ExciterAnswer = called(address)(machine)
+        answer: Answer = called(address)(machine)
         return answer
-    if machine.rotor.kind == "magnetic":
-        from leblanc.studies.magnetic.run import run_magnetic
-
-        return run_magnetic(machine)
-    if machine.rotor.kind == "spindle":
-        from leblanc.studies.spindles.unit import run_spindle
-
-        return run_spindle(machine)
     if machine.balls:
         from leblanc.studies.races.balls import run_balls
 
         return run_balls(machine)
     from leblanc.studies.held.holding import Holding
-    from leblanc.studies.run import run_scene
+    from leblanc.studies.run.study import run_scene
     from solvers.held.state import COUPLED
 
     return run_scene(machine, holding=Holding(workers, solver=solver or COUPLED), cycles=cycles)
@@ -108,7 +97,7 @@ def run(
 
 def explain(
     scene: SceneOrPath,
-) -> Explanation | ExciterExplanation | MagneticExplanation | BallExplanation:
+) -> Explanation | Answer | BallExplanation:
     """A scene's dimensionless numbers, the liquid model that answers at each speed, and why.
 
     Of balls in races: what they hold and from which speed on they balance.
@@ -129,12 +118,8 @@ def explain(
     """
     machine = _scene(scene)
     if (address := answerer("explain", machine.rotor.kind)) is not None:
-        answer: ExciterExplanation = called(address)(machine)
+        answer: Answer = called(address)(machine)
         return answer
-    if machine.rotor.kind == "magnetic":
-        from leblanc.studies.magnetic.explain import explain_magnetic
-
-        return explain_magnetic(machine)
     if machine.balls:
         from leblanc.studies.explain import explain_balls
 

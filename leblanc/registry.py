@@ -8,6 +8,15 @@ WINGS: dict[str, dict[str, str]] = {
         "run": "leblanc.wings.exciter.study:run_exciter",
         "explain": "leblanc.wings.exciter.study:explain_exciter",
     },
+    "magnetic": {
+        "run": "leblanc.wings.magnetic.study:run_magnetic",
+        "explain": "leblanc.wings.magnetic.study:explain_magnetic",
+        "view": "leblanc.wings.magnetic.geometry:magnetic_view",
+    },
+    "spindle": {
+        "run": "leblanc.wings.spindle.study:run_spindle",
+        "view": "leblanc.wings.spindle.geometry:spindle_view",
+    },
 }
 
 

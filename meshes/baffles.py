@@ -49,9 +49,7 @@ class Baffles:
         return np.asarray(self.first_angle + 2.0 * math.pi / self.count * np.arange(self.count))
 
     def wetted_span(self, radius: float, surface_radius: float) -> tuple[float, float] | None:
-        """Radii between which a baffle stands in the liquid, m, set to a or R where it reaches them; None if
-        it stays dry.
-        """
+        """Radii of a baffle's part in the liquid, m, at most from a to R; None if it stays dry."""
         inner, outer = self.tip_radius, radius - self.wall_gap
         if inner >= outer:
             raise InputError("tip_radius", inner, f"below radius - wall_gap ({outer:g} m)")

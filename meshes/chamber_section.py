@@ -32,7 +32,7 @@ class ChamberSection:
 
     @property
     def area(self) -> float:
-        """m^2."""
+        """Area of the section, m^2."""
         from meshes.section import section_area
 
         return section_area(self.mesh)

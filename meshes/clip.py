@@ -31,15 +31,12 @@ class Remainder:
 
     @property
     def area(self) -> float:
-        """Inside the loops, m^2."""
+        """Area inside the loops, m^2."""
         return 0.5 * sum(float(np.sum((loop.conj() * np.roll(loop, -1)).imag)) for loop in self.loops)
 
 
 def wall_loops(section: Section) -> tuple[Complex, ...]:
-    """Walls of a section as closed lines with it on their left, m, shape (k,) each.
-
-    Quadratic sides are cut into straight pieces.
-    """
+    """Walls of a section as closed lines with it on their left, m; quadratic sides are cut into pieces."""
     sides = free_sides(section.triangles)
     plane = section.points[:, 0] + 1j * section.points[:, 1]
     after: dict[int, list[int]] = {}

@@ -40,9 +40,7 @@ class Finding:
 
 
 def mesh_findings(mesh: Section | LiquidSection | Body) -> tuple[Finding, ...]:
-    """Faults of the cells of a mesh, the worst place of each kind: folded, angles near 180 degrees, sizes
-    that jump.
-    """
+    """Faults of a mesh, the worst place of each: folded cells, angles near 180 degrees, sizes that jump."""
     if isinstance(mesh, Body):
         return _folded(mesh.points, mesh.cells, body_jacobians(mesh.points, mesh.cells))
     cells = mesh.triangles if isinstance(mesh, Section) else mesh.cells
@@ -51,7 +49,7 @@ def mesh_findings(mesh: Section | LiquidSection | Body) -> tuple[Finding, ...]:
 
 
 def wave_findings(liquid: LiquidSection, mode: int) -> tuple[Finding, ...]:
-    """Where a mesh does not resolve n crests along the free surface and across the liquid to 1 %."""
+    """Where a mesh does not resolve n crests along and across the liquid to 1 % of the squared frequency."""
     found = []
     points = points_per_wave(liquid, mode)
     error = wave_error(points, liquid.order)
@@ -89,12 +87,10 @@ def points_per_wave(liquid: LiquidSection, mode: int) -> float:
 
 
 def wave_error(points: float, order: int) -> float:
-    """Relative error of a squared frequency of waves along a line on even finite elements.
+    """Relative error, at most 1, of a squared frequency of waves along a line on even finite elements.
 
-    The leading term: (k s)^2/12 for linear elements of length s, (k s)^4/720 for quadratic ones, with k s = 2
+    (k s)^2/12 for linear elements of length s, (k s)^4/720 for quadratic ones, to leading order, with k s = 2
     pi p/N for N nodes on a wavelength and degree p.
-
-    For N nodes on a wavelength; 1 at most.
     """
     step = 2.0 * math.pi * order / points
     return min(1.0, step**2 / 12.0 if order == 1 else step**4 / 720.0)

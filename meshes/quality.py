@@ -43,8 +43,7 @@ class Quality:
 
 
 def edge_polynomials(nodes: Array) -> tuple[Array, Array, Array]:
-    """Sides of cells as curves c0 + c1 t + c2 t^2, 0 <= t <= 1, counter-clockwise, shape (M, sides, 2) each,
-    m.
+    """Sides of cells as curves c0 + c1 t + c2 t^2, 0 <= t <= 1, counter-clockwise, (M, sides, 2) each, m.
 
     From nodes (M, K, 2), K = 3 or 6 for triangles, 4 or 9 for quadrilaterals; c2 is exactly zero for a
     straight side.
@@ -60,10 +59,9 @@ def edge_polynomials(nodes: Array) -> tuple[Array, Array, Array]:
 
 
 def jacobians(points: Array, cells: Indices) -> Array:
-    """Jacobian determinants of the maps from the reference triangle or square.
+    """Jacobian determinants of the maps from the reference triangle or square, shape (M, K), m^2.
 
-    Shape (M, K), m^2, at points that include the nodes: twice the area of a straight triangle, the area of a
-    parallelogram.
+    At points that include the nodes: twice the area of a straight triangle, the area of a parallelogram.
     """
     nodes = points[cells]
     if cells.shape[1] == 3:
@@ -108,10 +106,7 @@ def _square_slopes(count: int) -> Array:
 
 
 def cell_areas(points: Array, cells: Indices) -> Array:
-    """Area of each cell by Green's theorem along its sides, exact for curved ones.
-
-    Shape (M,), m^2; negative for clockwise cells.
-    """
+    """Area of each cell by Green's theorem along its sides, m^2, exact if curved; negative if clockwise."""
     nodes = points[cells]
     # Measured from a corner, so that a small cell far from the origin keeps its digits.
     c0, c1, c2 = edge_polynomials(nodes - nodes[:, :1])
@@ -124,15 +119,12 @@ def cell_areas(points: Array, cells: Indices) -> Array:
 
 
 def triangle_areas(points: Array, triangles: Indices) -> Array:
-    """`cell_areas` of triangles."""
+    """Area of each triangle, m^2, as `cell_areas`."""
     return cell_areas(points, triangles)
 
 
 def vertex_angles(points: Array, cells: Indices) -> Array:
-    """Angles at the vertices of cells, between tangents if the sides are curved.
-
-    Shape (M, vertices), rad, from 0 to pi.
-    """
+    """Angles at the vertices of cells, between tangents of curved sides, (M, vertices), rad, from 0 to pi."""
     _, c1, c2 = edge_polynomials(points[cells])
     leaving = c1
     arriving = np.roll(c1 + 2.0 * c2, 1, axis=1)  # tangent of the side that ends where this one starts
@@ -142,10 +134,7 @@ def vertex_angles(points: Array, cells: Indices) -> Array:
 
 
 def aspect_ratios(points: Array, cells: Indices) -> Array:
-    """Longest side of each cell over its breadth across that side, 1 for regular cells.
-
-    Of the chords; infinite for a cell without area.
-    """
+    """Longest chord of each cell over its breadth across it, 1 for regular cells, inf without area."""
     corners = 3 if cells.shape[1] in (3, 6) else 4
     nodes = points[cells[:, :corners]]
     longest = np.max(np.sum((np.roll(nodes, -1, axis=1) - nodes) ** 2, axis=2), axis=1)
@@ -158,10 +147,7 @@ def aspect_ratios(points: Array, cells: Indices) -> Array:
 
 
 def assess(points: Array, triangles: Indices) -> Quality:
-    """Quality of a plane mesh, valid or not.
-
-    Angles and aspect ratio of a cell without area are 0 or infinite.
-    """
+    """Quality of a plane mesh, valid or not; angles and aspect ratio without area are 0 or infinite."""
     angles = vertex_angles(points, triangles)
     regular = np.pi / 3.0 if angles.shape[1] == 3 else np.pi / 2.0
     areas = cell_areas(points, triangles)

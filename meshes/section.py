@@ -17,10 +17,7 @@ _FULL_DEPTH = math.sqrt(3.0) / 2.0  # a ring of equilateral triangles is that de
 
 @dataclass(frozen=True, eq=False)
 class Section:
-    """Triangulated section of a chamber; the arrays are copied and cannot be written to.
-
-    The arrays are checked: no triangle inverted, without area, or overlapping along an edge.
-    """
+    """Triangulated section of a chamber; the arrays are checked, copied and cannot be written to."""
 
     points: Array  #: nodes, shape (N, 2), m, from the chamber's geometric axis
     #: node numbers, counter-clockwise: shape (M, 3) for straight edges; (M, 6) for curved ones, the three
@@ -58,8 +55,7 @@ def disc(
     wall_layer: float | None = None,
     growth: float = 1.3,
 ) -> Section:
-    """Disc about the origin, with a node on the x axis; with straight edges the polygon inscribed in the
-    circle.
+    """Disc about the origin, with a node on the x axis; with straight edges an inscribed polygon.
 
     `wall_layer` is the largest depth of the triangles at the wall, m (None: as deep as wide), `growth` the
     depth of a ring of triangles over that of the ring outside it.

@@ -1,7 +1,7 @@
 """Curves of solutions of m equations in m + 1 unknowns, followed by their arc length through every turn.
 
 Made for few unknowns: the derivative is taken by central differences. Waves and limit cycles, which have
-hundreds, are followed by their own rooms, whose equations know their derivatives.
+hundreds, have solvers of their own, whose equations know their derivatives.
 """
 
 from __future__ import annotations
@@ -60,10 +60,11 @@ def follow(
 ) -> Curve:
     """Follow a curve from a point on it by pseudo-arclength, through its turns.
 
-    Lengths are measured on `unit`, the size of each unknown; the curve is wanted in the box from `low` to
-    `high`; `way` is the direction in which the first unknown that changes grows or falls; `renew` is called
-    with each new point, for equations that move their own frame along. Where no point is found near the start
-    the curve is that alone, with `End.LOST` or `End.NOWHERE`.
+    `unit` is the size of each unknown, in which `step`, the first and longest one, and `tolerance`, the
+    change at which a point counts as found, are measured; the box from `low` to `high` bounds the curve;
+    `way` is the direction in which the first unknown that changes grows or falls; `renew` is called with each
+    new point, for equations that move their own frame along. Equations are nan where there are none. Where no
+    point is found near the start the curve is that alone, with `End.LOST` or `End.NOWHERE`.
     """
     require_positive("step", step)
     size, begin = np.asarray(unit, dtype=float), np.asarray(start, dtype=float)

@@ -1,4 +1,4 @@
-"""What is told of a layer in time, whichever solver took it there: whirl periods, and pictures."""
+"""Records of a layer in time, whichever solver took it there: whirl periods, and pictures."""
 
 from __future__ import annotations
 

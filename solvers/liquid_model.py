@@ -1,10 +1,9 @@
 """What a liquid model is: asked with whirls, it answers with force, centre of mass, range and error.
 
-Every solver that needs the liquid takes such an object and asks it in the same way. `answer` takes many
-whirls at once. A model that also knows the wave of one whirl has `wave`, and its `answer` follows from that.
-
-Complex numbers of an answer are seen along the deflection: the real part lies along it, the imaginary part
-90 deg ahead of it in the sense of the spin.
+Every solver that needs the liquid asks such an object in the same way, with many whirls at once. A model that
+also knows the wave of one whirl has `wave`, from which its `answer` follows. Complex numbers of an answer are
+seen along the deflection: the real part lies along it, the imaginary part 90 deg ahead of it in the sense of
+the spin.
 """
 
 from __future__ import annotations
@@ -71,10 +70,10 @@ class Whirl:
 
 
 def drag_frequency(fill: Fill, whirl: Whirl) -> float:
-    """Frequency in the drum of what moves the liquid, which laminar friction takes, rad/s, 0 or above.
+    """Frequency in the drum of what moves the liquid, for laminar friction, rad/s, 0 or above.
 
-    The slip of a whirl, the spin under gravity across the axis. Under both, that at which the drag takes as
-    much as from the two small waves apart: the roots of the frequencies weighted with their energies
+    The slip of a whirl, or the spin under gravity across the axis. Under both, that at which the drag takes
+    as much as from the two small waves apart: the roots of the frequencies weighted with their energies
     [theory: friction, eq. 11].
     """
     if whirl.gravity == 0.0:
@@ -92,7 +91,7 @@ def drag_frequency(fill: Fill, whirl: Whirl) -> float:
 
 
 def grown(time: Array | float, ramp: float) -> Array:
-    """Share to which a whirl has grown, tau - sin(2 pi tau)/(2 pi), tau = time/ramp up to 1."""
+    """Share to which a whirl has grown, tau - sin(2 pi tau)/(2 pi), tau = time/ramp up to 1; 1 at ramp 0."""
     if ramp == 0.0:
         return np.ones_like(time, dtype=float)
     part = np.minimum(np.asarray(time) / ramp, 1.0)
@@ -172,11 +171,8 @@ class LiquidAnswer:
     ) -> LiquidAnswer:
         """Answer of liquid at rest in the drum, which only a synchronous whirl leaves it in.
 
-        Parameters
-        ----------
-        fills, whirls : what was asked
-        unbalance, slope, error : as of the class; the unbalance is real
-        dry_patch, converged, limits : None where the wall is wet, every answer is found, no other limit holds
+        Arguments as of the class, the unbalance real; None: the wall is wet, every answer is found, no other
+        limit holds.
         """
         yes = np.ones(unbalance.shape, dtype=bool)
         mass = fills.mass
@@ -213,7 +209,7 @@ class LiquidAnswer:
 
     @property
     def in_range(self) -> Flags:
-        """Every limit of the model is kept."""
+        """Whether every limit of the model is kept."""
         kept = np.ones(self.converged.shape, dtype=bool)
         for limit in self.limits.values():
             kept &= limit
@@ -222,9 +218,7 @@ class LiquidAnswer:
     def real_unbalance(self) -> Array:
         """Unbalance of liquid that pulls along the deflection alone, kg m.
 
-        Raises
-        ------
-        InputError : some pull across it, as liquid has that does not stand still in the drum
+        An `InputError` where some pulls across it, as liquid does that does not stand still in the drum.
         """
         across = np.abs(self.unbalance.imag) > _ACROSS * np.abs(self.unbalance)
         if across.any():
@@ -233,12 +227,7 @@ class LiquidAnswer:
         return np.asarray(self.unbalance.real)
 
     def force(self, whirls: Whirls) -> Complex:
-        """Force on the chamber in the standing frame at the instant of the deflections, N.
-
-        Parameters
-        ----------
-        whirls : that were asked about
-        """
+        """Force on the chamber in the standing frame at the instant of the deflections, N."""
         towards = np.exp(1j * np.angle(whirls.deflection))
         return np.asarray(np.square(whirls.speed) * self.unbalance * towards)
 
@@ -254,7 +243,7 @@ class LiquidModel(Protocol):
 
     @property
     def name(self) -> str:
-        """By which results tell it, with its resolution if it has one."""
+        """Name in results, with the resolution if it has one."""
         ...
 
     def answer(self, fills: Fills, whirls: Whirls) -> LiquidAnswer:
@@ -270,8 +259,8 @@ class LiquidModel(Protocol):
     def pull(self, fills: Fills, whirls: Whirls) -> Array:
         """Unbalance of liquid that pulls along the deflection alone, kg m, shape (n,).
 
-        A model that need not find the whole answer for it saves time; parameters and errors as of `answer`
-        and `LiquidAnswer.real_unbalance`.
+        A model that need not find the whole answer for it saves time; arguments and errors as of `answer` and
+        `LiquidAnswer.real_unbalance`.
         """
         return self.answer(fills, whirls).real_unbalance()
 
@@ -399,9 +388,9 @@ class WaveModel(LiquidModel, Protocol):
         ...
 
     def at_rest(self, fills: Fills, whirls: Whirls) -> LiquidAnswer | None:
-        """Answers of synchronous whirls without gravity across the axis, where they are known in closed form.
+        """Answers of synchronous whirls without gravity across the axis, where a closed form is known.
 
-        Parameters are those of `answer`; None, as here, sends them to `wave` like any others.
+        None, as here, sends them to `wave` like any others.
         """
         return None
 
@@ -432,13 +421,9 @@ def whirl_answer(
 ) -> LiquidAnswer:
     """Answer to one whirl from the ratio that wave theories give.
 
-    Parameters
-    ----------
-    fill, whirl : what was asked
-    force_ratio : force over that of a full drum, m_f omega^2 w; without a deflection the limit of a small one
-    offset : of the liquid's centre of mass from the chamber's axis, m
-    limits, dry_patch, converged, error : as of `LiquidAnswer`
-    small : the theory is linear, the force goes with the deflection
+    `force_ratio`: force over that of a full drum, m_f omega^2 w; without a deflection the limit of a small
+    one. `offset` of the liquid's centre of mass from the chamber's axis, m; `small`: the theory is linear,
+    the force goes with the deflection. Others as of `LiquidAnswer`.
     """
     # The parts one by one: a product of complex numbers makes nan of an infinite one.
     full = fill.full_mass
@@ -458,7 +443,7 @@ def whirl_answer(
 
 
 def require_crest(fill: Fill, crest: float, crests: int) -> None:
-    """Raise `InputError` unless a free wave may have such crests."""
+    """Raise `InputError` unless a free wave may have such crests, of a depth over the mean depth."""
     most = fill.chamber.radius / fill.depth
     if not 1.0 < crest < most:
         raise InputError("free", crest, f"above 1 and below {most:g}, where the crest reaches the axis")
@@ -493,8 +478,8 @@ def numbers_of(fill: Fill, whirl: Whirl, found: Mapping[str, float]) -> dict[str
 def smooth_whirl(fill: Fill, whirl: Whirl) -> dict[str, float]:
     """Size of a whirl over the largest that a smooth steady wave follows [theory: model_error, eq. 32-33].
 
-    By its name among the numbers of a wave, 0 between the resonances of one and of two crests, where no end
-    is told; none in a synchronous whirl, under gravity and with baffles.
+    By its name among the numbers of a wave; 0 between the resonances of one and of two crests, where no limit
+    is known; none in a synchronous whirl, under gravity and with baffles.
     """
     if whirl.slip == 0.0 or whirl.gravity != 0.0 or fill.chamber.baffles is not None:
         return {}

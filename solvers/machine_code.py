@@ -1,8 +1,8 @@
-"""The one door to numba: compiled functions, their machine code kept where nobody else can write.
+"""Compiled functions of numba, imported here alone, their machine code kept where nobody else can write.
 
-numba keys what it keeps by the file of a function, not by what that calls, and raises where neither the
-package nor HOME can be written. Here each state of the sources has a folder of its own below the user's
-caches; where there is none, each process compiles for itself.
+numba keys its cache by the file of a function, not by what that calls, and raises where neither the package
+nor HOME can be written. Here each state of the sources has a folder of its own below the user's caches;
+without one each process compiles for itself.
 """
 
 from __future__ import annotations
@@ -66,9 +66,9 @@ def cache_folder() -> Path | None:
 
 
 def private_folder(name: str) -> Path | None:
-    """A folder below the user's own caches that no other user can have put anything into.
+    """Folder below the user's own caches that no other user can have put anything into, or None.
 
-    numba unpickles what it finds there. None where there is no such place.
+    numba unpickles what it finds there.
     """
     caches = platformdirs.user_cache_path("leblanc", appauthor=False)
     folder = caches / name
@@ -97,13 +97,13 @@ def _writable(folder: Path) -> bool:
 
 
 def _is_private(found: os.stat_result) -> bool:
-    """A folder of this user's, into which nobody else may write."""
+    """Whether a folder is this user's, and nobody else may write into it."""
     own = not hasattr(os, "getuid") or found.st_uid == os.getuid()
     return own and stat.S_ISDIR(found.st_mode) and not (os.name == "posix" and found.st_mode & 0o022)
 
 
 def _remove_unused(caches: Path) -> None:
-    """Machine code of sources that are no longer in use."""
+    """Remove machine code of sources that are no longer in use."""
     for folder in caches.glob("machine-code-*"):
         if folder.lstat().st_mtime < time.time() - _UNUSED and not folder.is_symlink():
             shutil.rmtree(folder, ignore_errors=True)

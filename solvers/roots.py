@@ -20,9 +20,9 @@ def bracketed_root(
 ) -> tuple[Array, NDArray[np.bool_]]:
     """Root of each of n functions between the ends of its bracket, and whether it was found [Chandrupatla97].
 
-    The function takes points and which of the n functions each belongs to, shape (m,). An end of the bracket
-    where the function does not change its sign. Steps by inverse quadratic interpolation where the last three
-    points allow it, otherwise by halving.
+    `function` takes points and which of the n functions each belongs to, shape (m,). Steps by inverse
+    quadratic interpolation where the last three points allow it, otherwise by halving, until the bracket is
+    `relative` of its larger end. Without a change of sign the root is an end of the bracket.
     """
     # The newest point, the one across the root from it, and the one before.
     new, across = low.astype(float), high.astype(float)
@@ -99,11 +99,11 @@ class _Points(NamedTuple):
     at_before: Array
 
     def at(self, which: NDArray[np.bool_]) -> _Points:
-        """Those of some functions."""
+        """Points of some functions."""
         return _Points(*(x[which] for x in self))
 
     def step(self, x: Array, fx: Array) -> _Points:
-        """With a further point inside the bracket."""
+        """Points with a further one inside the bracket."""
         same = np.sign(fx) == np.sign(self.at_new)
         return _Points(
             new=x,

@@ -77,9 +77,8 @@ def best_of(judged: Judgement, cost: Array, margin: float = 1e-6, tie: float | N
     """Index of the best of the points judged [theory: optimum, eq. 6].
 
     Those that exceed their constraints least, of these the least objective, of those within a margin of it
-    the least cost, and of those the one that is farthest from exceeding anything.
-
-    `tie` is the margin of cost and of the room to the limits; that of the objective if None.
+    the least cost, and of those the one that is farthest from exceeding anything. `tie` is the margin of cost
+    and of the room to the limits; None: that of the objective.
     """
     over = np.maximum(judged.excess, 0.0)
     left = np.flatnonzero(over <= over.min() * (1.0 + margin))
@@ -119,13 +118,12 @@ def search(
     plan: SearchPlan | None = None,
     stage: Callable[[float], None] | None = None,
 ) -> Found:
-    """Best point of a box, the same answer to the same question; least excess where none satisfies the
-    constraints.
+    """Best point of a box, the same for the same question; least excess where none is allowed.
 
-    `cost` decides between points of equal objective; `starts` are points where an edge or a kink is expected;
-    coordinates of a group in `alike` may be exchanged without a change and are ordered by falling value. No
-    point that was judged beats the answer in the order of `best_of`. A Ctrl-C ends the search with what it
-    has.
+    `cost` decides between points of equal objective; `starts` are points where an edge or a kink is expected,
+    whose coordinates become levels; coordinates of a group in `alike` may be exchanged without a change and
+    are ordered by falling value. No point that was judged beats the answer in the order of `best_of`. A
+    Ctrl-C ends the search with what it has.
     """
     plan = plan or SearchPlan()
     if not (np.all(np.isfinite(low)) and np.all(np.isfinite(high)) and np.all(low <= high)):

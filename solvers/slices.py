@@ -1,4 +1,4 @@
-"""Compiled loops in slices, and how many steps they may take: nothing runs for ever or deaf.
+"""Compiled loops in slices, and how many steps they may take: nothing runs for ever or past a Ctrl-C.
 
 Python sees a Ctrl-C between two slices only. What a loop carries from step to step stands in arrays that
 outlive the slice, so that no digit of an answer depends on where a slice ends.
@@ -27,8 +27,9 @@ def step_budget(time: float, spin: float, cells: int, courant: float) -> int:
 
 
 def slices(steps: int, size: int, most: int = 0) -> Iterator[int]:
-    """Numbers of steps that make up a number of them, each as many as take a fraction of a second, at most
-    `most`.
+    """Numbers of steps that make up a number of them, each as many as take a fraction of a second.
+
+    `size` counts the cells or coordinates that a step moves; `most` bounds a slice, 0: not.
     """
     length = max(1, SLICE // size)
     length = min(length, most) if most > 0 else length

@@ -48,10 +48,7 @@ def detuning_ratio(layer: ArrayLike, detuning: ArrayLike) -> Array:
 
 
 def small_force(layer: ArrayLike, detuning: ArrayLike, dispersion: ArrayLike | None = None) -> Array:
-    """G of a whirl of vanishing size [theory: model_error, eq. 28].
-
-    `dispersion` stands for tanh(L); the exact one if None.
-    """
+    """G of a vanishing whirl; `dispersion` for tanh(L), None: the exact one [theory: model_error, eq. 28]."""
     square = np.square(1.0 - np.asarray(layer, dtype=float))
     t = layer_tanh(layer) if dispersion is None else np.asarray(dispersion)
     x = np.asarray(detuning, dtype=float)
@@ -60,7 +57,7 @@ def small_force(layer: ArrayLike, detuning: ArrayLike, dispersion: ArrayLike | N
 
 
 def force_change(layer: ArrayLike, detuning: ArrayLike) -> Array:
-    """What the wave's height adds to G, over (w_0/a)^2, exactly [theory: model_error, eq. 29]."""
+    """What the height adds to G, over (w_0/a)^2, by the exact equations [theory: model_error, eq. 29]."""
     t, x = layer_tanh(layer), np.asarray(detuning, dtype=float)
     first, second = (1.0 + t) * x - t, (1.0 + t + t * t) * x - t
     above = x * (8.0 * t**3 - 21.0 * t * t + 14.0 * t - 5.0) - 4.0 * t * (1.0 - t) ** 2
@@ -68,7 +65,7 @@ def force_change(layer: ArrayLike, detuning: ArrayLike) -> Array:
 
 
 def long_wave_change(layer: ArrayLike, detuning: ArrayLike) -> Array:
-    """The same by long waves without dispersion [theory: model_error, eq. 30]."""
+    """`force_change` by long waves without dispersion [theory: model_error, eq. 30]."""
     surface, x = 1.0 - np.asarray(layer, dtype=float), np.asarray(detuning, dtype=float)
     log = -np.log(surface)
     first = (1.0 + log) * x - log
@@ -77,7 +74,7 @@ def long_wave_change(layer: ArrayLike, detuning: ArrayLike) -> Array:
 
 
 def nonlinearity(layer: ArrayLike, detuning: ArrayLike, whirl: ArrayLike) -> Array:
-    """By what part the height changes the place of the liquid [theory: model_error, eq. 31]."""
+    """Share by which the height changes the place of the liquid [theory: model_error, eq. 31]."""
     square = np.square(1.0 - np.asarray(layer, dtype=float))
     offset = small_force(layer, detuning) - (1.0 - square)
     return np.asarray(_quotient(_added(layer, detuning, whirl), np.abs(offset)))
@@ -87,9 +84,7 @@ def largest_whirl(layer: ArrayLike, detuning: ArrayLike) -> Array:
     """w_0/h_0 beyond which no smooth steady wave follows a whirl that grows [theory: model_error, eq. 32-33].
 
     Above the resonance, p > p_1, the fold; below the free waves of two crests the choking of a thin layer,
-    which a thick one comes to earlier.
-
-    inf between the resonances of one and of two crests.
+    which a thick one comes to earlier; between the resonances of one and of two crests inf.
     """
     t, x = np.broadcast_arrays(layer_tanh(layer), np.asarray(detuning, dtype=float))
     first, second = t / (1.0 + t), t / (1.0 + t + t * t)
@@ -104,13 +99,7 @@ def largest_whirl(layer: ArrayLike, detuning: ArrayLike) -> Array:
 
 @_AT_RESONANCE
 def linear_error(layer: ArrayLike, detuning: ArrayLike, whirl: ArrayLike) -> Array:
-    """Estimated error of the force by linear theory [theory: model_error, eq. 34].
-
-    Examples
-    --------
-    >>> float(linear_error(0.1, 0.0, 0.5))  # at rest in a synchronous whirl
-    0.0
-    """
+    """Estimated error of the force by linear theory [theory: model_error, eq. 34]."""
     found = _added(layer, detuning, whirl) * _growth(layer, detuning, whirl)
     return _told(found, layer, detuning, whirl)
 

@@ -38,7 +38,7 @@ def test_help_loads_nothing_heavy() -> None:
 
 def test_the_main_job_loads_no_mesh() -> None:
     loaded = _loaded(
-        "from leblanc.scene.scene import load_scene\nfrom leblanc.studies.run import run_scene\n"
+        "from leblanc.scene.scene import load_scene\nfrom leblanc.studies.run.study import run_scene\n"
         "run_scene(load_scene('examples/horizontal_rig.toml'))"
     )
     assert not loaded & {"pde", "skfem", "meshio", "pyvista", "matplotlib", "sympy"}

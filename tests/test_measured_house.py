@@ -31,7 +31,7 @@ def run():
     "solvers/roots.py": "from meshes import border\n\n\n\n",
     "leblanc/__init__.py": "",
     "leblanc/__main__.py": "from leblanc.cli.run import run\n",
-    "leblanc/core/units.py": "",
+    "leblanc/units.py": "",
     "leblanc/api.py": "from leblanc import cli\n",
     "leblanc/tools.py": "import leblanc.api\n",
     "leblanc/cli/__init__.py": "",
@@ -55,7 +55,7 @@ def test_modules_and_imports_are_counted(tmp_path: Path) -> None:
     by_name = {module.name: module for module in tree(tmp_path)}
     assert len(by_name) == len(TREE)
     assert by_name["solvers.rotor.system"].imports == {"solvers.roots", "meshes.border"}
-    assert by_name["leblanc.cli.run"].imports == {"leblanc.core.units", "solvers.rotor"}
+    assert by_name["leblanc.cli.run"].imports == {"leblanc.units", "solvers.rotor"}
     rows = {row.package: row for row in house.table(list(by_name.values()))}
     assert [*rows] == ["meshes", "solvers", "leblanc", "all"]
     assert (rows["solvers"].modules, rows["solvers"].lines, rows["solvers"].middle) == (4, 9, 2.5)

@@ -52,17 +52,7 @@ _VERDICTS = ("agrees", "erratum", "trend", "differs")
 def all_cases(
     group: str | None = None, progress: Callable[[int, int, str], object] = lambda *_: None
 ) -> list[Case]:
-    """Cases of one group, or of all.
-
-    Parameters
-    ----------
-    group : its name; all if None
-    progress : called with the number of groups done and of all, and the name of the next
-
-    Raises
-    ------
-    InputError : no such group
-    """
+    """Cases of one group, or of all; progress: groups done, groups, name of the next."""
     from meshes.errors import InputError
 
     if group is not None and group not in GROUPS:

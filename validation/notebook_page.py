@@ -85,10 +85,6 @@ def case_table(cases: Sequence[Case]) -> Table:
     """Cases as reference, computed, difference and verdict, with what a reader must know to judge them.
 
     The reference is printed in the source unless the row says where it comes from.
-
-    Parameters
-    ----------
-    cases : in the order of the table
     """
     rows = []
     for case in cases:
@@ -108,12 +104,7 @@ def case_table(cases: Sequence[Case]) -> Table:
 
 
 def verdicts(cases: Sequence[Case]) -> dict[str, set[str]]:
-    """Names of the cases, without their group, by verdict; verdicts that none has are left out.
-
-    Parameters
-    ----------
-    cases : of one group
-    """
+    """Names of the cases, without their group, by verdict; verdicts that none has are left out."""
     found = {
         verdict: {case.name.partition("/")[2] for case in cases if case.verdict == verdict}
         for verdict in get_args(Verdict)
@@ -122,12 +113,7 @@ def verdicts(cases: Sequence[Case]) -> dict[str, set[str]]:
 
 
 def picture(figure: Figure | Path) -> Picture:
-    """A figure, drawn here or read from a PNG.
-
-    Parameters
-    ----------
-    figure : of the page's size, or a file with its title
-    """
+    """Figure of the page's size, or a PNG file with its title."""
     from PIL import Image
 
     from leblanc.figures.drawing.page import WIDTH, style
@@ -143,12 +129,7 @@ def picture(figure: Figure | Path) -> Picture:
 
 
 def drawn(draw: Callable[[Path], Path]) -> Picture:
-    """A figure that is only to be had as a file.
-
-    Parameters
-    ----------
-    draw : writes it to a folder and returns where
-    """
+    """Figure that `draw` writes to a folder."""
     with TemporaryDirectory() as folder:
         return picture(draw(Path(folder)))
 
@@ -176,11 +157,6 @@ def _difference(value: Value) -> str:
 
 
 def from_markdown(lines: Sequence[str]) -> Table:
-    """A table that another module prints in Markdown.
-
-    Parameters
-    ----------
-    lines : header, rule and rows
-    """
+    """Table that another module prints in Markdown: header, rule and rows."""
     cells = [tuple(cell.strip() for cell in line.strip().strip("|").split("|")) for line in lines]
     return Table(cells[0], tuple(cells[2:]))

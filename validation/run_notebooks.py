@@ -92,12 +92,7 @@ def texts() -> list[Path]:
 
 
 def _text(name: str) -> Path:
-    """File of a notebook by its name, or that file.
-
-    Raises
-    ------
-    InputError : neither
-    """
+    """File of a notebook by its name, or that file."""
     from meshes.errors import InputError
 
     known = {path.stem: path for path in texts()}
@@ -108,12 +103,7 @@ def _text(name: str) -> Path:
 
 
 def require_jupyter() -> None:
-    """The libraries that execute notebooks are installed.
-
-    Raises
-    ------
-    InputError : one of them is not
-    """
+    """Refuse where a library that executes notebooks is not installed."""
     from meshes.errors import InputError
 
     for name in _NEEDED:
@@ -122,17 +112,7 @@ def require_jupyter() -> None:
 
 
 def execute(path: Path, out: Path) -> str:
-    """Execute one notebook and write it, with its outputs, as .ipynb and HTML.
-
-    Parameters
-    ----------
-    path : the text
-    out : folder for both files, made if it is missing
-
-    Returns
-    -------
-    What went wrong; empty if nothing did
-    """
+    """Execute one notebook, write it with its outputs as .ipynb and HTML; return what went wrong, or ""."""
     import jupytext
     from nbclient import NotebookClient
     from nbclient.exceptions import CellExecutionError, CellTimeoutError, DeadKernelError
@@ -180,14 +160,7 @@ def _complaints(book: Any) -> str:
 
 
 def write_pages(book: Any, stem: str, out: Path) -> None:
-    """Write a notebook as .ipynb and as a page that needs nothing else.
-
-    Parameters
-    ----------
-    book : with its outputs
-    stem : name of both files
-    out : their folder, made if it is missing
-    """
+    """Write a notebook with its outputs as .ipynb and as a page that needs nothing else."""
     import nbformat
     from nbconvert import HTMLExporter
 

@@ -44,16 +44,8 @@ def whirl_in_time(
 ) -> WhirlInTime:
     """Let go a rotor with liquid at a constant speed from a tiny deflection [theory: coupling].
 
-    Parameters
-    ----------
-    system, fills, friction : as for `solvers.runup.runup.run_up`, at least one chamber with a layer
-    spin : rad/s
-    duration : s; long enough for the mode that grows most, or dies slowest, to outlast the others
-    numerics : resolution
-
-    Raises
-    ------
-    InputError : no layer, a time or speed that is not positive
+    The duration, s, must be long enough for the mode that grows most, or decays slowest, to outlast the
+    others.
     """
     require_positive("duration", duration)
     require_positive("spin", spin)
@@ -104,17 +96,9 @@ def large_whirl_in_time(
 ) -> LargeWhirl:
     """Kick a rotor with uniform layers sideways at a constant speed and wait [theory: coupling].
 
-    Parameters
-    ----------
-    rotor, fills, friction : as for `solvers.cycles.cycles.limit_cycles`
-    spin : rad/s
-    kick : deflection of the first chamber's axis at first, m
-    cells : of each layer
-    whirl_speed : rad/s, whose slip the laminar friction is taken at; that of a free wave if None
-
-    Returns
-    -------
-    LargeWhirl, nan where the machine does not get so far
+    `kick`: deflection of the first chamber's axis at first, m; `whirl_speed`, rad/s: the laminar friction is
+    taken at its slip, None: at that of a natural wave. LargeWhirl is nan where the machine does not get so
+    far.
     """
     if whirl_speed is not None:
         fills = [_at_slip(fill, spin, whirl_speed - spin) for fill in fills]
@@ -157,13 +141,7 @@ class Passage:
     converged: bool  #: the run came to its end
 
     def at(self, speed: float, back: bool = False) -> float:
-        """Amplitude at a speed on the way up or down, m.
-
-        Parameters
-        ----------
-        speed : rad/s
-        back : on the way down
-        """
+        """Amplitude at a speed on the way up or down, m."""
         known = (self.speed_down, self.amplitude_down) if back else (self.speed, self.amplitude)
         return float(np.interp(speed, *known))
 
@@ -183,13 +161,8 @@ def passage(
 ) -> Passage:
     """Run a rotor with one layer up and at once down again, with next to no unbalance [theory: coupling].
 
-    Parameters
-    ----------
-    rotor, fill, friction : the machine
-    speeds : first and last, rad/s
-    rate : of the ramp, rad/s^2
-    numerics : resolution; the samples are as many as tell the whirl's frequency
-    seed : offset of the rotor's mass from the axis over the layer's depth
+    The numerics' samples are as many as tell the whirl's frequency; `seed`: offset of the rotor's mass from
+    the axis over the layer's depth.
     """
     first, last = speeds
     ramp = Ramp(first, last, rate, (last - first) / rate, back=True)

@@ -48,7 +48,6 @@ SECTIONS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     ),
     ("Errors", "What is wrong with the input, in full.", ("InputError", "SceneError")),
 )
-RESULTS = "leblanc.results"
 _RESULT = "Result"  # class that all results inherit from
 _CITED = re.compile(r"\s*\[[^\]]*(?:theory|\d\d)[^\]]*\]")
 
@@ -63,7 +62,7 @@ class Member:
     directive : what autodoc calls it
     summary : first line of its docstring, without citations
     full : dotted name under which it is described; below `leblanc` itself if it is one of its public names
-    bases : names of the classes that it inherits from, as they are written
+    bases : names of the classes that it inherits from, as written, through private ones of its module
     """
 
     name: str
@@ -110,13 +109,18 @@ def modules(root: Path) -> Iterator[Module]:
             own = parts[-1] == "__init__"
             name = ".".join(parts[:-1] if own else parts)
             tree = ast.parse(path.read_text(encoding="utf-8"))
+            bases = {
+                node.name: [*map(ast.unparse, node.bases)]
+                for node in tree.body
+                if isinstance(node, ast.ClassDef)
+            }
             members = tuple(
                 Member(
                     node.name,
                     _DIRECTIVE[type(node)],
                     summary(node),
                     public.get((name, node.name), f"{name}.{node.name}"),
-                    tuple(map(ast.unparse, node.bases)) if isinstance(node, ast.ClassDef) else (),
+                    tuple(_inherited(node.name, bases)),
                 )
                 for node in tree.body
                 if isinstance(node, ast.FunctionDef | ast.ClassDef) and not node.name.startswith("_")
@@ -124,6 +128,14 @@ def modules(root: Path) -> Iterator[Module]:
             if own and not members:
                 continue
             yield Module(name, ".".join(parts[:-1]), summary(tree), members)
+
+
+def _inherited(name: str, bases: dict[str, list[str]]) -> Iterator[str]:
+    """Names that a class inherits from, each private one of its module with its own."""
+    for base in bases.get(name, ()):
+        yield base
+        if base.startswith("_"):
+            yield from _inherited(base, bases)
 
 
 def public_homes() -> dict[tuple[str, str], str]:
@@ -138,19 +150,13 @@ def public_homes() -> dict[tuple[str, str], str]:
 
 
 def results(found: Iterable[Module] | None = None) -> list[Member]:
-    """The classes of results, the one that they inherit from first.
-
-    Parameters
-    ----------
-    found : all modules; read anew if None
-    """
-    classes = [
-        member
-        for module in (modules(source_root()) if found is None else found)
-        if module.package == RESULTS
-        for member in module.members
-        if _RESULT in (member.name, *member.bases)
-    ]
+    """All classes of results in a list of modules (all if None), the one that they inherit from first."""
+    members = [m for module in (modules(source_root()) if found is None else found) for m in module.members]
+    names, known = {_RESULT}, 0
+    while len(names) > known:
+        known = len(names)
+        names |= {member.name for member in members if names.intersection(member.bases)}
+    classes = [m for m in members if m.name == _RESULT or names.intersection(m.bases)]
     return sorted(classes, key=lambda member: (member.name != _RESULT, member.name))
 
 

@@ -46,19 +46,15 @@ def loss_coefficient(share: Real) -> Real:
 
 
 def lid_length(share: Real) -> Real:
-    """Length of channel over its depth with the inertia that a baffle adds, under a rigid lid.
-
-    [theory: baffles, eq. 15]
-    """
+    """Channel length over its depth with a baffle's inertia, under a rigid lid [theory: baffles, eq. 15]."""
     return -4.0 / math.pi * np.log(np.sin(0.5 * math.pi * share))
 
 
 def pile_up(depth: Array, tip: float, gap: float, head: Array) -> tuple[Array, Array]:
-    """Loss coefficient of the mean flow (inf where nothing flows past) and the depth that piles up before the
-    baffles, m.
+    """Loss coefficient of the mean flow, and the depth that piles up before the baffles, m.
 
-    A fixed point: the deeper the layer stands, the less it loses [theory: baffles, eq. 3]; `head` is u^2/(4
-    g), u the mean flow past the baffles and g what holds it to the wall, m.
+    A fixed point: the deeper the layer stands, the less it loses [theory: baffles, eq. 3]. `head` is u^2/(4
+    g), m, u the mean flow and g what holds it to the wall; the coefficient is inf where nothing flows past.
     """
     depth, head = np.broadcast_arrays(np.asarray(depth, dtype=float), np.asarray(head, dtype=float))
     # The depth before the baffles is the root of a function that falls: bisection.
@@ -98,10 +94,7 @@ class BaffleTorque:
 
 
 def baffle_torque(fill: Fill, spin: float, lag: Array) -> BaffleTorque:
-    """Torque by which baffles carry a layer that lags behind its drum [theory: baffles, eq. 4].
-
-    The lag over the spin, from 0 to 1, shape (n,).
-    """
+    """Torque of baffles on a layer that lags by 0 to 1 of the spin, shape (n,) [theory: baffles, eq. 4]."""
     baffles, radius = fill.chamber.baffles, fill.chamber.radius
     depth, inner = fill.depth, fill.surface_radius
     assert baffles is not None

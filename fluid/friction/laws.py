@@ -1,8 +1,8 @@
 """Friction of the liquid on its walls: laws for a thin layer, and the laminar layers under an oscillation.
 
-The laws are in lengths of the wall radius; the wall shear is tau/rho = k h u [theory: long_wave, eq. 9].
-Outside the laminar layers the flow is plane, irrotational and free of divergence, with frequency sigma in the
-frame of the drum. These layers are thin beside the liquid.
+The laws are in lengths of the wall radius, tau/rho = k h u [theory: long_wave, eq. 9]. Outside the laminar
+layers, thin beside the liquid, the flow is plane, irrotational and free of divergence, with frequency sigma
+in the frame of the drum.
 """
 
 from __future__ import annotations
@@ -49,18 +49,7 @@ _SLOWEST = 1e-9
 
 @dataclass(frozen=True)
 class Friction:
-    """Friction of the liquid on its chamber.
-
-    Raises
-    ------
-    InputError : no such law, a coefficient or a roughness that is negative or not finite, a roughness that
-        the law does not know
-
-    Examples
-    --------
-    >>> Friction(FrictionLaw.LINEAR, 0.5).at(1e-6, 30.0, 0.25)
-    (1, 0.5)
-    """
+    """Friction of the liquid on its chamber: a law and what it takes."""
 
     law: FrictionLaw = FrictionLaw.NONE  #: a `FrictionLaw` or its name
     #: k for the linear law, 1/s; c_f for the quadratic one, a number; 0 for the others. Stokes' (laminar) law
@@ -81,8 +70,8 @@ class Friction:
     def at(self, viscosity: float, frequency: float, radius: float) -> tuple[int, float]:
         """Law and coefficient as `damping_rate` and compiled code take them [theory: long_wave, eq. 10].
 
-        Of the law of the wall the part of the waves; s is the frequency seen from the drum, on which only the
-        laminar laws depend.
+        Of the wall law the part of the waves; the frequency, seen from the drum, matters to laminar laws
+        alone.
         """
         if not self.law.laminar:
             return self.law.number, self.coefficient
@@ -102,9 +91,9 @@ NO_FRICTION = Friction()
 def damping_rate(law: int, coefficient: float, lid: float, depth: Any, area: Any, velocity: Any) -> Any:
     """Rate of decay of u, tau R/(rho u A) in the units of the coefficient [theory: long_wave, eq. 9].
 
-    Serves arrays and, compiled, scalars. Coefficient: k of the linear law, 1/s; sqrt(nu |s|/2)/R of Stokes'
-    and of the wall's, whose rate is that of small waves; c_f of the quadratic one, with u in units that make
-    c_f |u| a rate. `lid` is 2 R/h_c, 0 without floor and lid; depth and area over R and R^2.
+    Coefficient: k of the linear law, 1/s; sqrt(nu |s|/2)/R of Stokes' and the wall law, 1/s (the rate of
+    small waves); c_f of the quadratic one, for which c_f |u| is a rate. `lid` as from `Friction.lid`; depth
+    over R, area over R^2. Serves arrays and, compiled, scalars.
     """
     if law == LINEAR:
         return coefficient * depth / area
@@ -117,7 +106,7 @@ def damping_rate(law: int, coefficient: float, lid: float, depth: Any, area: Any
 
 
 def stokes_coefficient(viscosity: ArrayLike, frequency: ArrayLike) -> Array:
-    """Shear over velocity of an oscillating laminar layer, sqrt(nu |s|/2) [theory: long_wave, eq. 10]."""
+    """Shear over velocity in an oscillating layer, sqrt(nu |s|/2), m/s [theory: long_wave, eq. 10]."""
     squared = 0.5 * np.asarray(viscosity, dtype=float) * np.abs(np.asarray(frequency, dtype=float))
     return np.asarray(np.sqrt(squared))
 
@@ -130,8 +119,8 @@ def layer_thickness(viscosity: ArrayLike, frequency: ArrayLike) -> Array:
 def plate_drags(viscosity: ArrayLike, frequency: ArrayLike, spin: ArrayLike) -> tuple[Array, Array]:
     """Shear over velocity on floor and lid for the two circles of an oscillation e^{-i sigma t}, m/s.
 
-    sqrt(nu |2 Omega - sigma|/2) for the circle that goes round as e^{-i sigma t} and sqrt(nu |2 Omega +
-    sigma|/2) for the other [theory: sloshing, eq. 21].
+    sqrt(nu |2 Omega -+ sigma|/2), first of the circle that goes round as e^{-i sigma t}
+    [theory: sloshing, eq. 21].
     """
     sigma, twice = np.asarray(frequency, dtype=float), 2.0 * np.asarray(spin, dtype=float)
     return stokes_coefficient(viscosity, twice - sigma), stokes_coefficient(viscosity, twice + sigma)
@@ -140,8 +129,8 @@ def plate_drags(viscosity: ArrayLike, frequency: ArrayLike, spin: ArrayLike) -> 
 def plate_factor(frequency: float, spin: float) -> float:
     """Drag of floor and lid on waves in a thin layer over that of the wall [theory: friction, eq. 9].
 
-    Floor and lid bound a straight-line flow: both circles have equal weight. At s below a billionth of the
-    spin, where no wave is, s is not told from 0.
+    Half from either circle of a straight-line flow; 1 without spin. The frequency counts as a billionth of
+    the spin at least: no wave is slower.
     """
     slow = max(abs(frequency), _SLOWEST * abs(spin), 1e-300)
     twice = 2.0 * abs(spin)
@@ -151,8 +140,7 @@ def plate_factor(frequency: float, spin: float) -> float:
 def edge_weight(distance: ArrayLike, thickness: ArrayLike) -> Array:
     """Share of the squared outer velocity that counts near the edge of a thin baffle, d/(d + delta).
 
-    The outer velocity grows as d^(-1/2) towards the edge and its square has no integral. A layer cannot
-    follow it nearer than its own thickness [theory: sloshing, eq. 23].
+    It grows as d^(-1/2) there; a layer cannot follow it nearer than its thickness [theory: sloshing, eq. 23].
     """
     return np.asarray(1.0 / (1.0 + np.asarray(thickness, dtype=float) / np.asarray(distance, dtype=float)))
 
@@ -165,12 +153,12 @@ def decay_rate(
     height: float,
     drags: tuple[ArrayLike, ArrayLike, ArrayLike],
 ) -> Array:
-    """Rate at which the amplitude of a mode decays, 1/s: loss of energy over twice the energy.
+    """Decay rate of a mode's amplitude, 1/s: loss of energy over twice the energy.
 
     [g w + (g_1 (k + c) + g_2 (k - c))/h]/(k + b) [theory: sloshing, eq. 22], with w = oint |d psi/dn|^2 ds on
-    all walls, k = int |grad psi|^2, c = Im oint psi* psi_theta dtheta on the free surface, b =
-    (Omega/sigma)^2 oint |psi_theta|^2 dtheta, drags g on the walls, g_1 and g_2 of `plate_drags`, m/s; an
-    infinite height leaves floor and lid out.
+    all walls, k = int |grad psi|^2, on the free surface c = Im oint psi* psi_theta dtheta and b =
+    (Omega/sigma)^2 oint |psi_theta|^2 dtheta; drags g on the walls, g_1 and g_2 of `plate_drags`, m/s; h is
+    inf without floor and lid.
     """
     g, first, second = (np.asarray(drag, dtype=float) for drag in drags)
     k, c = np.asarray(kinetic, dtype=float), np.asarray(sense, dtype=float)

@@ -56,10 +56,7 @@ def friction_factor(reynolds: ArrayLike, roughness: ArrayLike = 0.0) -> Array:
 
 
 def hydraulic_diameter(depth: ArrayLike, height: ArrayLike) -> Array:
-    """Four times the area of the layer's section over its wet sides, D_h = 4 h h_c/(h_c + 2 h), m.
-
-    Wet are the wall, the floor and the lid, not the free surface [theory: friction, eq. 3].
-    """
+    """Hydraulic diameter 4 h h_c/(h_c + 2 h), m; the free surface is not wetted [theory: friction, eq. 3]."""
     h = np.asarray(depth, dtype=float)
     return np.asarray(4.0 * h / (1.0 + 2.0 * h / np.asarray(height, dtype=float)))
 
@@ -79,8 +76,7 @@ def drag_speed(velocity: ArrayLike, diameter: ArrayLike, viscosity: ArrayLike, r
 def steady_lag(
     acceleration: float, radius: float, diameter: float, viscosity: float, roughness: float = 0.0
 ) -> float:
-    """Velocity against the wall at which friction gives the liquid the drum's acceleration, m/s; inf without
-    friction.
+    """Slip speed at which friction gives the liquid the drum's acceleration, m/s; inf without friction.
 
     dOmega/dt R = (f_D/2) u^2/D_h [theory: friction, eq. 4].
     """
@@ -100,7 +96,7 @@ def steady_lag(
 
 
 def bisected(below: Callable[[float], bool], low: float, high: float) -> float:
-    """Where a condition ceases to hold between two numbers, to rounding."""
+    """Where a condition that holds at `low` and not at `high` ceases to hold, to rounding."""
     while True:
         middle = 0.5 * (low + high)
         if not low < middle < high:
@@ -111,11 +107,9 @@ def bisected(below: Callable[[float], bool], low: float, high: float) -> float:
 def spin_up_time(
     share: ArrayLike, velocity: float, diameter: float, viscosity: float, roughness: float = 0.0
 ) -> Array:
-    """Time in which a lag comes down to a share of what it was, the drum's speed kept, s.
+    """Time in which a lag falls to a share of itself at constant spin, s [theory: friction, eq. 5].
 
-    The integral of du/dt = -(f_D/2) u |u|/D_h [theory: friction, eq. 5].
-
-    Shape (...,); inf without friction, 0 without a lag.
+    The integral of du/dt = -(f_D/2) u |u|/D_h; inf without friction, 0 without a lag.
     """
     wanted = np.asarray(share, dtype=float)
     if velocity == 0.0:

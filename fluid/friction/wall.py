@@ -25,19 +25,15 @@ NO_TABLE = np.zeros((0, 2))
 
 
 class WallDrag(NamedTuple):
-    """What a time step knows of the law of the wall; rates in the unit of the frequency given.
+    """What a time step knows of the law of the wall; rates in the unit of the frequency given."""
 
-    `coefficient` of the waves' part on the wall sqrt(nu |s|/2)/R, 1/s; `plates` 2 R/h_c times the drag of
-    floor and lid over that of the wall; `lid` 2 R/h_c; `thin` thickness of the oscillating layer over R;
-    `top` last velocity of the table over R, 1/s; `table` f_D u/8 over that velocity, and (1 - p)/2 or 0, p
-    the power of u in it, at equal steps of the fourth root of u/top, shape (m, 2).
-    """
-
-    coefficient: float
-    plates: float
-    lid: float
-    thin: float
-    top: float
+    coefficient: float  #: of the waves' part on the wall, sqrt(nu |s|/2)/R, 1/s
+    plates: float  #: 2 R/h_c times the drag of floor and lid over that of the wall
+    lid: float  #: 2 R/h_c
+    thin: float  #: thickness of the oscillating layer over R
+    top: float  #: last velocity of the table over R, 1/s
+    #: f_D u/8 over that velocity, and (1 - p)/2 or 0, p the power of u in it, at equal steps of the fourth
+    #: root of u/top, shape (m, 2)
     table: Array
 
     def per(self, unit: float) -> WallDrag:

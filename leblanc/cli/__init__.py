@@ -173,12 +173,7 @@ def _version(wanted: bool) -> None:
 
 
 def application(wanted: str = "") -> typer.Typer:
-    """All commands: those of this package and those that installed packages announce.
-
-    Parameters
-    ----------
-    wanted : if it names a command of this package, that one alone, since each takes time to get ready
-    """
+    """All commands, those of installed packages too; only the wanted one of this package if it is named."""
     found = typer.Typer(
         name="leblanc", add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False
     )

@@ -41,8 +41,8 @@ def compare(
 
     from leblanc.core.netcdf import write_netcdf
     from leblanc.figures.comparison import comparison_figure, save
+    from leblanc.studies.run.words import unanswered
     from leblanc.text.explanation import basis, comparison_head, comparison_rows, refusals
-    from leblanc.text.run import unanswered
 
     write_netcdf(found.named_arrays(), folder / "compare.nc")
     files = save(comparison_figure(found), folder, "compare", "Amplitude over speed by liquid model")

@@ -29,17 +29,6 @@ def explain(
     if (address := answerer("explain", machine.rotor.kind)) is not None:
         finish(called(address)(machine), str(scene), json)
         return
-    if machine.rotor.kind == "magnetic":
-        from leblanc.studies.magnetic.explain import explain_magnetic
-        from leblanc.text.magnetic import explanation_rows
-
-        told = explain_magnetic(machine)
-        if json:
-            print_json(told.to_json())
-        else:
-            print(told.name)
-            print_table(explanation_rows(told), indent=2)
-        return
     if machine.balls:
         balls = explain_balls(machine)
         if json:
@@ -69,6 +58,7 @@ def _print_balls(answer: BallExplanation) -> None:
 def _print(answer: Explanation) -> None:
     """The explanation as text; of the liquid only where there is any."""
     from leblanc.core.notes import percent
+    from leblanc.studies.run.words import described
     from leblanc.text.closed_forms import closed_form_rows
     from leblanc.text.explanation import (
         ESTIMATES,
@@ -79,7 +69,6 @@ def _print(answer: Explanation) -> None:
         span_heading,
         span_rows,
     )
-    from leblanc.text.run import described
 
     print(answer.name)
     print_table(machine_rows(answer), indent=2)

@@ -51,16 +51,13 @@ def run(
             answer = called(address)(machine)
         finish(answer, str(scene), json, folder, machine, command_line("run", scene))
         return
-    if kind in _OTHERS:
-        _OTHERS[kind](machine, scene, folder, json)
-        return
     if machine.balls:
         _run_balls(machine, scene, folder, json)
         return
 
     with working("preparing") as update:
         from leblanc.studies.held.holding import Holding
-        from leblanc.studies.run import run_scene
+        from leblanc.studies.run.study import run_scene
         from solvers.held.state import COUPLED
 
         holding = Holding(processes(workers), folder, fresh, solver or COUPLED)
@@ -68,13 +65,13 @@ def run(
 
     from leblanc.core.netcdf import write_netcdf
     from leblanc.core.units import amplitude_sentence
-    from leblanc.figures.response import write_figures
     from leblanc.report.run import write_run_report
     from leblanc.results.notes.baffles import BaffleCode
-    from leblanc.results.notes.response import RunCode
+    from leblanc.studies.run.figure import write_figures
+    from leblanc.studies.run.notes import RunCode
+    from leblanc.studies.run.words import amplitude_place, comparison_table, limit_rows, unanswered
     from leblanc.text.closed_forms import closed_form_rows
     from leblanc.text.machine import load_table
-    from leblanc.text.run import amplitude_place, comparison_table, limit_rows, unanswered
 
     write_netcdf(result.named_arrays(), folder / "response.nc")
     figures = write_figures(result, folder)
@@ -157,71 +154,3 @@ def _run_balls(machine: Scene, scene: Path, folder: Path, json: bool) -> None:
 
         raise NotConverged([f"{scene}: no state of the balls was found at some speeds; they are empty"])
     say(f"{result.name}: {result.speed.size} speeds done")
-
-
-def _run_magnetic(machine: Scene, scene: Path, folder: Path, json: bool) -> None:
-    """Poles, margins, deflections and a trial in time of a rotor in magnetic bearings."""
-    with working("control") as update:
-        from leblanc.studies.magnetic.run import run_magnetic
-
-        result = run_magnetic(machine, lambda what: update(what=what))
-
-    from leblanc.core.netcdf import write_netcdf
-    from leblanc.figures.magnetic.control import write_magnetic_figure
-    from leblanc.report.page import about, command_line
-    from leblanc.report.run import write_magnetic_report
-    from leblanc.text.magnetic import heads, limits, lines, rows
-
-    write_netcdf(result.named_arrays(), folder / "response.nc")
-    figure = write_magnetic_figure(result, folder)
-    what = about(
-        machine, command_line("run", scene), "response.nc", unused=("model", "runup", "programme", "optimise")
-    )
-    write_magnetic_report(result, what, figure, folder / "summary.html")
-    if json:
-        print_json(result.to_json())
-    else:
-        print("\n".join(lines(result)))
-        print_table(rows(result), heads(result), right=True)
-        print("\nLimits of the answer")
-        print_table([(limit.label, limit.where) for limit in limits(result)], indent=2)
-        print(f"Read {folder / 'summary.html'}; the data are in {folder / 'response.nc'}")
-    if not result.converged:
-        from leblanc.core.answer import NotConverged
-
-        raise NotConverged([f"{result.name}: the trial in time did not come to its end"])
-    say(f"{result.name}: {result.speed.size} speeds done")
-
-
-def _run_spindle(machine: Scene, scene: Path, folder: Path, json: bool) -> None:
-    """Compliances and natural frequencies of a spindle unit."""
-    from leblanc.core.netcdf import write_netcdf
-    from leblanc.figures.spindles.unit import write_figures
-    from leblanc.report.page import about, command_line
-    from leblanc.report.spindle import write_spindle_report
-    from leblanc.studies.spindles.unit import run_spindle
-    from leblanc.text.spindles.unit import HEAD, answer, cage_rows, compliance_rows, limits
-
-    with working("compliances"):
-        result = run_spindle(machine)
-    write_netcdf(result.named_arrays(), folder / "response.nc")
-    figures = write_figures(result, folder)
-    what = about(machine, command_line("run", scene), "response.nc", unused=("model", "runup", "optimise"))
-    write_spindle_report(result, what, figures, folder / "summary.html")
-    if json:
-        print_json(result.to_json())
-    else:
-        print(answer(result))
-        print()
-        print_table(compliance_rows(result), HEAD, right=True)
-        if cages := cage_rows(result):
-            print()
-            print_table(cages)
-        print("\nLimits of the answer")
-        print_table([(limit.label, limit.where) for limit in limits(result)], indent=2)
-        print(f"Read {folder / 'summary.html'}; the data are in {folder / 'response.nc'}")
-    say(f"{result.name}: {result.frequency.size} frequencies, {len(result.modes)} natural ones done")
-
-
-# Kinds with an answer of their own.
-_OTHERS = {"magnetic": _run_magnetic, "spindle": _run_spindle}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, cast
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -12,17 +12,13 @@ from leblanc.cli.terminal.output import load
 from leblanc.core.contents import results_dir
 from leblanc.core.files import require_writable
 from leblanc.core.progress import working
+from leblanc.core.question import called
 from leblanc.core.terminal import print_json, say
 
 if TYPE_CHECKING:
-    from leblanc.results.drawn.machine import ModeView
-    from leblanc.results.drawn.magnetic import MagneticView
-    from leblanc.results.drawn.spindle import SpindleView
     from leblanc.scene.scene import Scene
     from leblanc.view.film import Film
     from leblanc.view.parts import Picture
-
-    Drawn = ModeView | SpindleView | MagneticView  # what has a film of its own
 
 
 def view(
@@ -67,6 +63,7 @@ def view(
 ) -> None:
     """Three-dimensional picture, film or browser page."""
     from leblanc.core.units import ANGULAR_SPEED, parse_option
+    from leblanc.registry import answerer
 
     machine = load(scene)
     spin = None if speed is None else parse_option(speed, ANGULAR_SPEED, "--speed")
@@ -76,25 +73,18 @@ def view(
         return
     if not window:
         screenshot = _target(machine, scene, screenshot, animate, out)
-    wave: Drawn | None
-    if machine.rotor.kind == "spindle":
-        from leblanc.studies.spindles.drawn import spindle_view
-        from leblanc.view.spindle import spindle_picture
+    wave = None  # what has a film of its own
+    with working("solving"):
+        if (address := answerer("view", machine.rotor.kind)) is not None:
+            wave = called(address)(machine, mode, spin, factor)
+        elif mode is not None:
+            from leblanc.studies.shapes.machine import mode_view
 
-        unit = spindle_view(machine, mode, spin, factor)
-        wave, picture, numbers = unit, spindle_picture(unit), unit.to_json()
-    elif machine.rotor.kind == "magnetic":
-        from leblanc.studies.magnetic.drawn import magnetic_view
-        from leblanc.view.magnetic import magnetic_picture
-
-        _require_no_mode(mode)
-        with working("motion in time"):
-            held = magnetic_view(machine, spin, factor)
-        wave, picture, numbers = held, magnetic_picture(held), held.to_json()
-    else:
-        wave = None if mode is None else _mode(machine, mode, spin, chamber)
-        with working("solving"):
-            picture, numbers = _still(machine, spin, factor) if wave is None else _of_mode(wave)
+            wave = mode_view(machine, mode, spin, chamber)
+        if wave is None:
+            picture, numbers = _still(machine, spin, factor)
+        else:
+            picture, numbers = called(wave.picture)(wave), wave.to_json()
     if window:
         from leblanc.view.files import open_window
 
@@ -160,28 +150,6 @@ def _target(
     return screenshot
 
 
-def _mode(machine: Scene, number: int, speed: float | None, chamber: int) -> ModeView:
-    """A sloshing mode as drawn."""
-    from leblanc.studies.shapes.machine import mode_view
-
-    return mode_view(machine, number, speed, chamber)
-
-
-def _require_no_mode(mode: int | None) -> None:
-    """A rotor in magnetic bearings has no sloshing mode."""
-    from meshes.errors import InputError
-
-    if mode is not None:
-        raise InputError("--mode", mode, "left out for a rotor in magnetic bearings")
-
-
-def _of_mode(wave: ModeView) -> tuple[Picture, dict[str, object]]:
-    """Picture of a sloshing mode and its numbers."""
-    from leblanc.view.film import mode_picture
-
-    return mode_picture(wave), wave.to_json()
-
-
 def _still(machine: Scene, speed: float | None, factor: float | None) -> tuple[Picture, dict[str, object]]:
     """Picture of a machine at one speed and its numbers."""
     if machine.rotor.kind == "exciter":
@@ -206,7 +174,7 @@ def _still(machine: Scene, speed: float | None, factor: float | None) -> tuple[P
 def _files(
     machine: Scene,
     picture: Picture,
-    wave: Drawn | None,
+    wave: Any,
     screenshot: Path | None,
     animate: Path | None,
     frames: int | None,
@@ -225,27 +193,15 @@ def _files(
     return made
 
 
-def _film(machine: Scene, wave: Drawn | None, path: Path, frames: int | None, factor: float | None) -> None:
+def _film(machine: Scene, wave: Any, path: Path, frames: int | None, factor: float | None) -> None:
     """Write a film, with a bar on a terminal."""
     from leblanc.view.film import FRAMES, require_frames, write_film
 
     if wave is None:
         require_frames(frames or FRAMES)
     with working("solving") as update:
-        if machine.rotor.kind == "spindle":
-            from leblanc.view.film import ROUND
-            from leblanc.view.spindle import spindle_film
-
-            film = spindle_film(cast("SpindleView", wave), frames or ROUND)
-        elif machine.rotor.kind == "magnetic":
-            from leblanc.view.film import FRAMES
-            from leblanc.view.magnetic import magnetic_film
-
-            film = magnetic_film(cast("MagneticView", wave), frames or FRAMES)
-        elif wave is not None:
-            from leblanc.view.film import ROUND, mode_film
-
-            film = mode_film(cast("ModeView", wave), frames or ROUND)
+        if wave is not None:
+            film = called(wave.film)(wave, **({} if frames is None else {"frames": frames}))
         else:
             film = _film_of(machine, frames or FRAMES, factor, lambda done: update(done, 1.0))
         update(0.0, film.count, "drawing")

@@ -154,13 +154,16 @@ class Answer(Result):
 
     def __getattr__(self, name: str) -> Any:
         """A quantity of one of its parts; None where it has no such part."""
-        from leblanc.core import quantities
+        from leblanc.core.quantities import reached
 
-        part = quantities.part_with(type(self), name)
-        if part is None:
-            raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
-        record = getattr(self, part)
-        return None if record is None else getattr(record, name)
+        if name.startswith("__"):
+            raise AttributeError(name)
+        return reached(self, name)
+
+    def __dir__(self) -> list[str]:
+        from leblanc.core.quantities import names
+
+        return sorted({*super().__dir__(), *names(type(self))})
 
     @abstractmethod
     def blocks(self) -> Sequence[Block]:

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import builtins
+import cmath
 import math
 import sys
-from collections.abc import Iterator, Mapping
-from dataclasses import fields, is_dataclass, replace
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass, fields, is_dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import Annotated, Any, get_args, get_origin
 
 import numpy as np
 
-from leblanc.core.netcdf import NamedArrays, Variable, flags, variable
+from leblanc.core.netcdf import NamedArrays, Variable, finite, flags, variable
+from leblanc.core.notes import Note
 from meshes.quantity import Q
 
 
@@ -24,28 +26,28 @@ class _Names(dict[str, Any]):
         return getattr(builtins, name, Any)
 
 
-_Declared = dict[str, tuple[Q, tuple[type, ...]]]
-_FOUND: dict[type, _Declared] = {}
+@dataclass(frozen=True)
+class _Declared:
+    """A quantity as it is declared: by which attribute, what, of which classes."""
+
+    attribute: str
+    q: Q
+    types: tuple[type, ...]
+
+
+_FOUND: dict[type, dict[str, _Declared]] = {}
 
 
 def quantities(kind: type) -> Mapping[str, Q]:
-    """Declared quantities of an answer by name: those of its bases first, fields before properties."""
-    return {name: q for name, (q, _) in _declared(kind).items()}
+    """Declared quantities of an answer by public name: those of its bases first, fields before properties."""
+    return {key: each.q for key, each in _declared(kind).items()}
 
 
-def part_with(kind: type, name: str) -> str | None:
-    """The part of an answer whose record declares a quantity; None where none does."""
-    for part, (q, types) in _declared(kind).items():
-        if q.part and any(name in quantities(one) or part_with(one, name) for one in types):
-            return part
-    return None
-
-
-def _declared(kind: type) -> _Declared:
-    """The same with the classes that stand in its type; read once a class."""
+def _declared(kind: type) -> dict[str, _Declared]:
+    """Declarations by public name; read once a class."""
     if kind in _FOUND:
         return _FOUND[kind]
-    found: _Declared = {}
+    found: dict[str, _Declared] = {}
     for base in reversed(kind.__mro__):
         written: dict[str, Any] = dict(vars(base).get("__annotations__", {}))
         for name, value in vars(base).items():
@@ -57,9 +59,48 @@ def _declared(kind: type) -> _Declared:
             if get_origin(said) is Annotated:
                 what, *beside = get_args(said)
                 types = tuple(one for one in (what, *get_args(what)) if isinstance(one, type))
-                found |= [(name, (each, types)) for each in beside if isinstance(each, Q)]
+                found |= [
+                    (each.key or name, _Declared(name, each, types)) for each in beside if isinstance(each, Q)
+                ]
     _FOUND[kind] = found
     return found
+
+
+def _of(record: Any) -> Iterator[tuple[str, Q, Any]]:
+    """Public name, declaration and value of each quantity that a record has."""
+    for key, each in _declared(type(record)).items():
+        if not each.q.when or getattr(record, each.q.when) is not None:
+            yield key, each.q, getattr(record, each.attribute)
+
+
+def reached(record: Any, key: str) -> Any:
+    """A quantity by its public name, of a record or of one of its parts; None where it has no such part.
+
+    Raises
+    ------
+    AttributeError : no quantity of that name is declared
+    """
+    for each in _declared(type(record)).values():
+        if each.q.part and any(_has(kind, key) for kind in each.types):
+            part = getattr(record, each.attribute)
+            if part is None:
+                return None
+            own = _declared(type(part)).get(key)
+            return reached(part, key) if own is None else getattr(part, own.attribute)
+    raise AttributeError(f"{type(record).__name__!r} object has no attribute {key!r}")
+
+
+def _has(kind: type, key: str) -> bool:
+    declared = _declared(kind)
+    return key in declared or any(
+        each.q.part and any(_has(one, key) for one in each.types) for each in declared.values()
+    )
+
+
+def names(kind: type) -> set[str]:
+    """Public names of all quantities of an answer, those of its parts among them."""
+    parts = (one for each in _declared(kind).values() if each.q.part for one in each.types)
+    return set(_declared(kind)).union(*(names(one) for one in parts))
 
 
 def plain(value: Any) -> Any:
@@ -69,13 +110,17 @@ def plain(value: Any) -> Any:
     if isinstance(value, float):
         return value if math.isfinite(value) else None
     if isinstance(value, complex):
-        return [plain(value.real), plain(value.imag)]
+        return [value.real, value.imag] if cmath.isfinite(value) else [None, None]
     if isinstance(value, Mapping):
         return {str(key): plain(each) for key, each in value.items()}
     if isinstance(value, list | tuple):
         return [plain(each) for each in value]
+    if isinstance(value, Note):
+        return value.text
     if is_dataclass(value) and not isinstance(value, type):
         return to_json(value)
+    if isinstance(value, np.ndarray) and value.dtype.kind in "fc" and value.ndim:
+        return finite(value)
     if hasattr(value, "tolist"):  # arrays and their scalars
         return plain(value.tolist())
     if isinstance(value, Path):
@@ -83,16 +128,24 @@ def plain(value: Any) -> Any:
     raise TypeError(f"{type(value).__name__} has no form in JSON")
 
 
-def to_json(record: Any) -> dict[str, Any]:
-    """Declared quantities of a record by name, all fields of one that declares none."""
-    declared = quantities(type(record))
-    if not declared:
+def to_json(record: Any, only: Collection[str] = ()) -> dict[str, Any]:
+    """Declared quantities of a record by public name, all fields of one that declares none.
+
+    A part may bring its own `to_json`.
+    """
+    if not _declared(type(record)):
         return {field.name: plain(getattr(record, field.name)) for field in fields(record)}
     found: dict[str, Any] = {}
-    for name, q in declared.items():
-        value = getattr(record, name)
-        if q.json and not (q.part and value is None):
-            found |= to_json(value) if q.part else {name: plain(value)}
+    for key, q, value in _of(record):
+        if not q.json or (only and key not in only):
+            continue
+        if q.part:
+            if value is not None:
+                found |= value.to_json() if hasattr(value, "to_json") else to_json(value)
+        elif q.prefix and value is not None:
+            found[key] = to_json(value, q.only)
+        elif not q.prefix:
+            found[key] = plain(value)
     return found
 
 
@@ -101,36 +154,57 @@ def named_arrays(record: Any, attrs: Mapping[str, Any] = MappingProxyType({})) -
     arrays: dict[str, Variable] = {}
     coordinates: dict[str, Variable] = {}
     for name, q, value in _with_parts(record):
-        if not q.data or not (q.unit or q.flags) or (value is None and q.over):
-            continue
-        place = coordinates if q.coordinate or q.over == (name,) else arrays
-        place |= _variables(q.variable or name, q, math.nan if value is None else value)
+        if isinstance(value, Variable):
+            arrays[name] = value
+        elif (q.unit or q.flags) and not (value is None and q.over):
+            place = coordinates if q.coordinate or q.over == (name,) else arrays
+            place |= _variables(name, q, math.nan if value is None else value)
     return NamedArrays(arrays, coordinates, attrs)
 
 
-def _with_parts(record: Any) -> Iterator[tuple[str, Q, Any]]:
-    """Quantities of a record, of its parts, and of the records in rows."""
-    for name, q in quantities(type(record)).items():
-        value = getattr(record, name)
-        if not q.data or (value is None and (q.part or q.rows)):
+def _with_parts(record: Any, only: Collection[str] = ()) -> Iterator[tuple[str, Q, Any]]:
+    """Variables of a record, of its parts, of records in rows; a part may bring its own `variables`."""
+    for key, q, value in _of(record):
+        if not q.data or (only and key not in only) or (value is None and (q.part or q.prefix or q.rows)):
             continue
-        if q.part:
+        if q.part and hasattr(value, "variables"):
+            yield from ((name, q, variable) for name, variable in value.variables().items())
+        elif q.part:
             yield from _with_parts(value)
+        elif q.prefix:
+            own = {name for name, _, _ in _with_parts(value, q.only)}
+            for name, inner, each in _with_parts(value, q.only):
+                over = tuple(f"{q.prefix}_{dim}" if dim in own else dim for dim in inner.over)
+                text = ", ".join(part for part in (q.text, inner.text) if part)
+                yield f"{q.prefix}_{name}", replace(inner, over=over, text=text), each
         elif q.rows:
-            for inner, each in quantities(type(value[0])).items() if value else ():
-                column = np.array([getattr(row, inner) for row in value])
-                yield f"{q.rows}_{inner}", replace(each, over=(q.rows, *each.over), variable=""), column
+            for name, each in _declared(type(value[0])).items() if value else ():
+                if each.q.data:
+                    column = np.array([getattr(row, each.attribute) for row in value])
+                    over = (q.rows, *each.q.over)
+                    yield each.q.variable or f"{q.rows}_{name}", replace(each.q, over=over), column
         else:
-            yield name, q, value
+            yield q.variable or key, q, value
 
 
 def _variables(name: str, q: Q, value: Any) -> dict[str, Variable]:
     if q.flags:
-        return {name: flags(q.over, np.asarray(value), q.flags, q.name, q.text)}
+        states = np.asarray(value)
+        if states.dtype.kind == "U":
+            meanings = q.flags.split()
+            states = np.array([meanings.index(each) for each in states.tolist()], int) + 2 - len(meanings)
+        return {name: flags(q.over, states, q.flags, q.name, q.text)}
     if q.axes is None:
         return {name: variable(q.over, value, q.unit, q.name, q.text)}
     values = np.asarray(value)
+    values = np.where(np.isnan(values), complex(math.nan, math.nan), values)
     return {
-        f"{name}_{part}": variable(q.over, getattr(values, part), q.unit, f"{q.name}, {where}", q.text)
-        for part, where in zip(("real", "imag"), q.axes, strict=True)
+        f"{name}_{end}": variable(
+            q.over,
+            getattr(values, end),
+            q.unit,
+            f"{q.name}, {part} part",
+            "; ".join(filter(None, (where, q.text))),
+        )
+        for end, part, where in zip(("real", "imag"), ("real", "imaginary"), q.axes, strict=True)
     }

@@ -11,16 +11,17 @@ from typing import Any
 
 # Names handed on, and their modules, each loaded when its name is first used.
 _HOMES = {
-    **dict.fromkeys(("FigureFiles", "save", "style"), "drawing.page"),
+    **dict.fromkeys(("FigureFiles", "save", "style"), "leblanc.figures.drawing.page"),
     **dict.fromkeys(
-        ("amplitude_figure", "campbell_figure", "liquid_figure", "phase_figure", "write_figures"), "response"
+        ("amplitude_figure", "campbell_figure", "liquid_figure", "phase_figure", "write_figures"),
+        "leblanc.studies.run.figure",
     ),
-    **dict.fromkeys(("animate", "history_figure", "wave_figure"), "wave"),
-    "chamber_figure": "chambers",
+    **dict.fromkeys(("animate", "history_figure", "wave_figure"), "leblanc.figures.wave"),
+    "chamber_figure": "leblanc.figures.chambers",
 }
 
 
 def __getattr__(name: str) -> Any:
     if name not in _HOMES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
+    return getattr(import_module(_HOMES[name]), name)

@@ -27,8 +27,8 @@ from leblanc.figures.drawing.page import (
 from leblanc.results.base import FilledChamber
 from leblanc.results.drawn.machine import chord, rounded_down
 from leblanc.results.motion.held import HELD_MODELS
-from leblanc.results.response import RunResult, peak, phase
-from leblanc.text.run import alts, amplitude_place
+from leblanc.studies.run.answer import RunResult, peak, phase
+from leblanc.studies.run.words import alts, amplitude_place
 from meshes.arrays import Array, Complex
 from meshes.baffles import Baffles
 from meshes.clip import Remainder, area_within, outside_circle, wall_loops
@@ -65,17 +65,10 @@ class Exaggeration:
 
 
 def liquid_outline(chamber: FilledChamber, centre: complex, depth: float) -> tuple[Array, Array, Array]:
-    """Liquid between the wall and the circle about the rotation axis that leaves the right area of it.
+    """Rays about the rotation axis, rad, and inner and outer end of the liquid on each, m; shape (361,).
 
-    Parameters
-    ----------
-    chamber : its walls are drawn to scale
-    centre : geometric centre as drawn, so near that the rotation axis lies inside the inner wall, m
-    depth : mean depth of the layer as drawn, m
-
-    Returns
-    -------
-    Angles of rays about the rotation axis, rad; inner and outer end of the liquid on each, m; shape (361,).
+    The surface is the circle about the rotation axis that leaves the right area; `depth` is the mean depth as
+    drawn, m, `centre` the geometric centre, which must leave that axis inside the inner wall.
     """
     angle = np.linspace(-math.pi, math.pi, RAYS)
     outer = chord(chamber.radius, centre, angle)
@@ -98,14 +91,8 @@ def exaggeration(
 ) -> Exaggeration:
     """Factors that make deflection and layer visible and leave what the liquid touches as it is.
 
-    Wet walls stay wet, dry patches dry, and a surface that meets no inner wall meets none as drawn. Where it
-    does meet one nothing is enlarged.
-
-    Parameters
-    ----------
-    chambers : those that are drawn
-    deflections : that are drawn, complex or their sizes, m
-    bends : 2 g/Omega^2 at each of them, by which the surface's squared radius grows along the axis, m
+    Where the surface meets an inner wall nothing is enlarged. `deflections` as drawn, m; `bends` is 2
+    g/Omega^2 at each, by which the surface's squared radius grows along the axis, m.
     """
     found = _visible(chambers, tuple(abs(w) for w in deflections))
     for share in np.linspace(1.0, 0.0, SHARES):
@@ -162,13 +149,8 @@ def meets_inner_wall(
 ) -> bool:
     """The liquid reaches an inner wall, a core, or past the inner edges of closed baffles.
 
-    Parameters
-    ----------
-    chamber : its walls are to scale
-    centre : geometric centre from the rotation axis, m
-    depth_factor : by which the layer is deeper
-    bend : as for `exaggeration`
-    gap : it comes as near as this to one, over the chamber's radius
+    Or comes as near as `gap` chamber radii; `centre` is the geometric centre from the rotation axis, m, the
+    layer is `depth_factor` times as deep, `bend` as for `exaggeration`.
     """
     if chamber.volume == 0.0 or chamber.least_depth <= 0.0:
         return False
@@ -183,12 +165,7 @@ def meets_inner_wall(
 
 
 def side_by_side(chambers: tuple[FilledChamber, ...]) -> list[tuple[FilledChamber, ...]]:
-    """Chambers sorted into drawings: those that lie inside one another share one, equal ones are drawn once.
-
-    Parameters
-    ----------
-    chambers : of the rotor, in any order
-    """
+    """Chambers sorted into drawings: those inside one another share one, equal ones are drawn once."""
     drawings: list[list[FilledChamber]] = []
     for chamber in sorted(dict.fromkeys(chambers), key=lambda c: -c.radius):
         for drawing in drawings:
@@ -214,13 +191,7 @@ class LiquidOutline:
 def walls(chamber: FilledChamber) -> tuple[tuple[Complex, ...], ...]:
     """Walls of each body of liquid that cannot mix with the others, about the geometric centre.
 
-    Parameters
-    ----------
-    chamber : with circular walls, baffles, or a section of its own
-
-    Returns
-    -------
-    Closed lines with the inside of the chamber on their left, m
+    Closed lines, m, with the inside on their left.
     """
     if chamber.section is not None:
         return (wall_loops(chamber.section.mesh),)
@@ -249,14 +220,7 @@ def bodies(
 ) -> list[LiquidOutline]:
     """Each body of liquid in its walls, outside the circle about the rotation axis that leaves its area.
 
-    Under gravity along the axis the circle widens from floor to lid: r^2 = C + bend z.
-
-    Parameters
-    ----------
-    chamber : its walls are drawn to scale
-    centre : geometric centre as drawn, from the rotation axis, m
-    depth_factor : by which the layer is drawn deeper, everywhere as much as where it is thinnest
-    bend : as for `exaggeration`
+    Under gravity along the axis r^2 = C + bend z. `depth_factor` is taken where the layer is thinnest.
     """
     found = []
     for loops, level in zip(walls(chamber), levels(chamber, centre, depth_factor, bend), strict=True):
@@ -275,10 +239,6 @@ def levels(chamber: FilledChamber, centre: complex, depth_factor: float, bend: f
     """Square of the free surface's distance from the rotation axis in each body, m^2.
 
     On the floor, if the surface is a bowl; below 0 where it covers the axis there.
-
-    Parameters
-    ----------
-    chamber, centre, depth_factor, bend : as for `bodies`
     """
     rest = max(chamber.mean_surface_radius - (depth_factor - 1.0) * chamber.least_depth, 0.0)
     ramp, found = bend * chamber.height, []
@@ -301,14 +261,10 @@ def _is_upright(chamber: FilledChamber, square: float, ramp: float) -> bool:
 
 
 def _square(taken: Callable[[Array], Array], area: float, farthest: float, ramp: float) -> float:
-    """Square of the surface's radius on the floor that leaves an area outside it in the mean over the height.
+    """Square of the surface's radius on the floor, m^2, that leaves an area outside it in the mean.
 
-    Parameters
-    ----------
-    taken : areas inside some radii, and the whole area inside an infinite one
-    area : outside of it, m^2
-    farthest : square of the farthest wall's distance, m^2
-    ramp : growth of the square from floor to lid, m^2
+    `taken` is the area inside some radii (the whole inside an infinite one), `ramp` the growth of the square
+    from floor to lid, m^2.
     """
     whole, low, high = float(taken(np.array([math.inf]))[0]), -ramp, farthest
     share, weight = np.polynomial.legendre.leggauss(HEIGHTS) if ramp > 0.0 else (np.zeros(1), np.full(1, 2.0))
@@ -361,15 +317,7 @@ def _inside(chamber: FilledChamber, depth_factor: float) -> list[Complex]:
 def plates(
     baffles: Baffles, radius: float, depth_factor: float, inner_radius: float = 0.0
 ) -> list[tuple[complex, complex]]:
-    """Ends of each baffle from the geometric centre, m; distances from the wall grow as the layer does.
-
-    Parameters
-    ----------
-    baffles : of the chamber
-    radius : of its wall, m
-    depth_factor : by which layers are drawn deeper
-    inner_radius : of its inner wall, m, 0 without one
-    """
+    """Ends of each baffle from the geometric centre, m; distances from the wall grow as the layer does."""
     inner = max(radius - (radius - baffles.tip_radius) * depth_factor, inner_radius)
     outer = max(radius - baffles.wall_gap * depth_factor, inner)
     return [(inner * complex(turn), outer * complex(turn)) for turn in np.exp(1j * baffles.angles)]
@@ -433,9 +381,7 @@ def chamber_figure(result: RunResult) -> Figure:
 def choose_views(result: RunResult) -> Views:
     """The chambers at the resonance peak and at the working speed, the last one.
 
-    Parameters
-    ----------
-    result : the study; a speed at which nothing was found is not drawn
+    Speeds without an answer are not drawn.
     """
     curve = result.curve
     deflection = curve.deflection
@@ -470,12 +416,7 @@ def choose_views(result: RunResult) -> Views:
 
 
 def bend_at(result: RunResult, index: int) -> float:
-    """Growth of the squared radius of the free surface along the axis at a speed, 2 g/Omega^2, m.
-
-    Parameters
-    ----------
-    result, index : the study, which of the speeds of its curve
-    """
+    """Growth of the squared radius of the free surface along the axis at a speed, 2 g/Omega^2, m."""
     return 2.0 * result.axial_gravity / float(result.curve.speed[index]) ** 2
 
 
@@ -568,16 +509,10 @@ def draw_chambers(
     bend: float = 0.0,
     zero: str = "unbalance",
 ) -> None:
-    """Walls, liquid, axes, unbalance and spin.
+    """Walls, liquid, axes, unbalance and spin of chambers inside one another, the widest first.
 
-    Parameters
-    ----------
-    axes : an empty drawing
-    chambers : that lie inside one another, the widest first
-    deflection : complex, the unbalance along the real axis, m
-    views, scale : of all drawings; how much deflection and layer are exaggerated in this one
-    bend : as for `exaggeration`
-    zero : what the real axis points to
+    The deflection, m, is complex from the unbalance; `bend` as for `exaggeration`, `zero` is what the real
+    axis points to.
     """
     centre = deflection * scale.deflection * MM
     widest = chambers[0].radius * MM
@@ -641,14 +576,7 @@ def _draw_walls(axes: Axes, chamber: FilledChamber, centre: complex, depth_facto
 
 
 def write_numbers(axes: Axes, result: RunResult, views: Views, index: int) -> None:
-    """Heading above and numbers below the drawings of one view.
-
-    Parameters
-    ----------
-    axes : the first of its drawings; the others follow to the right
-    result, views : the study and what is shown of it
-    index : of the view's speed
-    """
+    """Heading above and numbers below the drawings of one view, from the first of them to the right."""
     middle = 0.5 * len(views.drawings)
     place = {"xycoords": "axes fraction", "textcoords": "offset points", "ha": "center"}
     # Above names of the drawings if there are several.

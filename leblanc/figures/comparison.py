@@ -21,10 +21,10 @@ from leblanc.figures.drawing.page import (
     style,
 )
 from leblanc.figures.drawing.page import save as save  # a figure is drawn and written together
-from leblanc.figures.response import DRY, OUT_OF_RANGE, SHADE, SHARE, value_axis, wider_words
 from leblanc.results.models.comparison import Comparison
-from leblanc.results.notes.response import plane_label
-from leblanc.results.response import RunResult
+from leblanc.studies.run.answer import RunResult
+from leblanc.studies.run.figure import DRY, OUT_OF_RANGE, SHADE, SHARE, value_axis, wider_words
+from leblanc.studies.run.notes import plane_label
 from leblanc.text.explanation import comparison_alt
 from meshes.arrays import Array
 

@@ -9,7 +9,7 @@ from leblanc.core.notes import EXACT, one_line
 from leblanc.core.units import RPM
 from leblanc.figures.drawing.page import Caption, Figure, Frame, add_rate_axis, lay_out, number, style
 from leblanc.results.explanation import Explanation
-from leblanc.text.run import error_words, speeds_words
+from leblanc.studies.run.words import error_words, speeds_words
 
 FRAME = Frame(left=0.72, top=0.46, between=0.12, below=0.42)
 COLOURS = {"statics": "#0072B2", "linear": "#E69F00", "fem": "#009E73"}  # after Okabe and Ito
@@ -18,12 +18,7 @@ MOST = 1.0  # relative error that is drawn at most
 
 
 def model_figure(answer: Explanation) -> Figure:
-    """Estimated error over speed, with the liquid model that answers there.
-
-    Parameters
-    ----------
-    answer : the scene in numbers
-    """
+    """Estimated error over speed, with the liquid model that answers there."""
     with style():
         figure = Figure()
         axes: Any = figure.add_axes((0, 0, 1, 1))

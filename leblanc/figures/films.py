@@ -43,22 +43,7 @@ LIQUID, SURFACE, WALL, AXIS = "#56B4E9", "#0072B2", "0.15", "#D55E00"
 def animate(
     result: RunupResult, frames: RunupFrames, path: Path, drawn: Callable[[int, int], None] | None = None
 ) -> int:
-    """Write the film of a run-up, in the frame of the drum.
-
-    Parameters
-    ----------
-    result, frames : the run-up and its layers at regular times
-    path : a .gif, or an .mp4 if there is an ffmpeg
-    drawn : called after each frame with the number of frames drawn and of all
-
-    Returns
-    -------
-    Number of frames.
-
-    Raises
-    ------
-    InputError : another kind of file, an .mp4 without an ffmpeg
-    """
+    """Write the film of a run-up in the frame of the drum; its number of frames, as of `write_film`."""
     count = range(frames.time.size)
     return write_film(lambda: film_figure(result, frames), count, FRAME_RATE, path, drawn)
 
@@ -180,11 +165,7 @@ def liquid_shape(
 ) -> tuple[Any, Any]:
     """Closed outline of the liquid in a chamber and its free surface, about the chamber's centre, mm.
 
-    Parameters
-    ----------
-    chamber, frames : the chamber, the frames
-    index, j : of the frame and of the chamber
-    factor : of a layer's depth; a pool is drawn to scale
+    Depths of a layer grow by `factor`; a pool is drawn to scale.
     """
     radius, depth = chamber.radius * MM, frames.depth[index, j]
     if not np.isnan(depth).any():

@@ -84,13 +84,7 @@ def _caption(result: FitResult) -> Caption:
 
 
 def write_figures(result: FitResult, directory: Path) -> FigureFiles:
-    """Draw the figure of a fit.
-
-    Parameters
-    ----------
-    result : the fit
-    directory : where the files go; made if it is missing
-    """
+    """Draw the figure of a fit."""
     return save(fit_figure(result), directory, "fit", "Measured and fitted")
 
 

@@ -32,13 +32,7 @@ ROOM = 0.08  # above and below what is drawn
 
 
 def machine_figure(loads: MachineLoads, caption: Callable[[str], Caption]) -> Figure:
-    """What a machine is judged by, panels above one another.
-
-    Parameters
-    ----------
-    loads : of a machine
-    caption : makes the whole caption from what the figure shows
-    """
+    """What a machine is judged by, panels above one another."""
     panels: list[tuple[float, Callable[[Axes, MachineLoads, Array], None]]] = []
     if loads.points:
         panels.append((1.5, _draw_clearances if loads.clearances else _draw_movements))
@@ -127,12 +121,7 @@ def _limit(axes: Axes, label: str) -> None:
 
 
 def places_figure(result: LayoutResult) -> Figure:
-    """Where the mounts of a tub sit before and after, seen along the axis of the drum and from the side.
-
-    Parameters
-    ----------
-    result : of a search for the layout of a tub's mounts
-    """
+    """Where the mounts of a tub sit before and after, seen along the axis of the drum and from the side."""
     everywhere = np.array([[mount.position_before, mount.position] for mount in result.mounts]) * MM
     size = float(np.abs(everywhere).max()) or 1.0
     with style():
@@ -185,12 +174,7 @@ def _draw_mount(axes: Axes, mount: MountPlace, places: Array, across: int, size:
 
 
 def layout_figure(result: LayoutResult) -> Figure:
-    """Couplings of stiffness and damping, and natural frequencies, before and after.
-
-    Parameters
-    ----------
-    result : of a search for the layout of a tub's mounts
-    """
+    """Couplings of stiffness and damping, and natural frequencies, before and after."""
     names = pair_names()
     largest = np.max([np.abs(table).max(axis=0) for table in result.couplings.values()], axis=0)
     shown = np.flatnonzero(largest > _NOTHING).tolist() or [0]

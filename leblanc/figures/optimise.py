@@ -23,8 +23,8 @@ from leblanc.figures.drawing.page import (
     save,
     style,
 )
-from leblanc.results.notes.response import plane_label
 from leblanc.results.optimum import ConditionTable, OptimumResult
+from leblanc.studies.run.notes import plane_label
 from leblanc.text.optimum import amplitude_plane, load_words, worst_condition
 from meshes.arrays import Array, Flags
 
@@ -45,13 +45,7 @@ LEAST = 1e-4  # of what a chamber holds, below which a map is no longer logarith
 
 
 def write_figures(result: OptimumResult, directory: Path) -> tuple[FigureFiles, ...]:
-    """Draw what there is to draw and write each figure as PNG and SVG.
-
-    Parameters
-    ----------
-    result : the optimum
-    directory : where the files go; made if it is missing
-    """
+    """Draw what there is to draw and write each figure as PNG and SVG."""
     files = []
     if result.candidates.volume.shape[0] > 2:
         title = "Objective over the volumes"

@@ -26,10 +26,10 @@ from leblanc.figures.drawing.page import (
     style,
 )
 from leblanc.figures.machine import machine_figure
-from leblanc.figures.response import DRY, SHADE, UNSTABLE, WET
-from leblanc.results.notes.response import plane_label
 from leblanc.results.races.balls import in_race
 from leblanc.results.runup import RunupResult
+from leblanc.studies.run.figure import DRY, SHADE, UNSTABLE, WET
+from leblanc.studies.run.notes import plane_label
 from leblanc.text.runup import describe_model, largest, largest_dry
 from meshes.arrays import Array, Flags
 
@@ -54,13 +54,7 @@ LAYERS = ((WET, "-"), (DRY, (0, (3.5, 1.5))), ("#009E73", (0, (1, 1.2))))  # col
 
 
 def write_figures(result: RunupResult, directory: Path) -> tuple[FigureFiles, ...]:
-    """Draw all figures of a run-up and write each as PNG and SVG.
-
-    Parameters
-    ----------
-    result : the run-up
-    directory : where the files go; made if it is missing
-    """
+    """Draw all figures of a run-up and write each as PNG and SVG."""
     figures = [
         ("runup_speed", "Amplitude over speed on the run-up", speed_figure),
         ("runup_time", "Run-up over time", time_figure),
@@ -142,12 +136,7 @@ def _ways(result: RunupResult) -> list[tuple[str, Array, Array]]:
 
 
 def largest_drawn(result: RunupResult) -> float:
-    """Largest amplitude of the run, with liquid or without, m.
-
-    Parameters
-    ----------
-    result : the run-up
-    """
+    """Largest amplitude of the run, with liquid or without, m."""
     ensemble = 0.0 if result.spread is None else float(np.nanmax(result.spread.amplitude_max))
     if result.spread is None and not np.isnan(result.amplitude_error).all():
         ensemble = float(np.nanmax(result.amplitude + result.amplitude_error))
@@ -205,11 +194,9 @@ def _shade(axes: Axes, result: RunupResult, limits: tuple[float, float]) -> None
 
 
 def _steady(axes: Axes, result: RunupResult) -> float:
-    """Branches of the steady response, thin; the rotor without liquid as well.
+    """Draw branches of the steady response, thin, also without liquid; the largest value to hold, mm.
 
-    Returns
-    -------
-    Largest value that the axes must hold for them, mm; a peak far above the run's is told in words instead
+    A peak far above the run's is told in words instead.
     """
     answer = result.steady
     if answer is None:
@@ -235,13 +222,7 @@ def _steady(axes: Axes, result: RunupResult) -> float:
 
 
 def steady_lines(rpm: Array, branches: Any, calm: Flags) -> tuple[Line, Line]:
-    """Amplitudes of the stable and of the unstable branches as two lines with gaps, rpm and mm.
-
-    Parameters
-    ----------
-    rpm : rising, shape (n,)
-    branches, calm : complex deflections, m, nan where there are fewer, and whether stable, shape (n, b)
-    """
+    """Amplitudes of the stable and of the unstable branches as two lines with gaps, rpm and mm."""
     bounded = np.where(np.isfinite(branches), branches, complex(math.nan, math.nan))
     chain, size = link(bounded), np.abs(bounded) * MM
     stable, unstable = [], []

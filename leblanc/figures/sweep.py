@@ -19,9 +19,9 @@ from leblanc.figures.drawing.page import (
     number,
     style,
 )
-from leblanc.figures.response import DRY, SHARE, WET, value_axis, wider_words
-from leblanc.results.notes.response import plane_label
 from leblanc.results.sweep import SweepResult
+from leblanc.studies.run.figure import DRY, SHARE, WET, value_axis, wider_words
+from leblanc.studies.run.notes import plane_label
 from leblanc.text.sweep import alt
 from meshes.arrays import Array
 

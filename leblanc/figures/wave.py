@@ -26,9 +26,9 @@ from leblanc.figures.drawing.page import (
     style,
     write_film,
 )
-from leblanc.figures.response import STRIP
 from leblanc.results.drawn.machine import FILLED, LARGEST_FACTOR, rounded_down
 from leblanc.results.layer import FreeWaveResult, LayerPeriodsResult, LayerResult, Wave, WaveFrames
+from leblanc.studies.run.figure import STRIP
 from meshes.arrays import Array
 
 RAYS = 721  # half a degree apart, closed

@@ -138,18 +138,10 @@ def _draw_whirl(figure: Figure, axes: Axes, result: WhirlMap) -> Axes | None:
 
 
 def signed_distance(result: WhirlMap) -> Array:
-    """Distance of each point from the nearest edge of its volume's bands, positive inside a band, rad/s.
+    """Distance from the nearest edge of its volume's bands, positive inside a band, rad/s, shape (v, n).
 
     Along a row it is linear next to an edge, so that a contour at zero passes through the refined edges of
     every band that is some steps wide. The ends of the range of speeds are no edges.
-
-    Parameters
-    ----------
-    result : the map
-
-    Returns
-    -------
-    Over volume and speed, shape (v, n)
     """
     first, last = result.speed[0], result.speed[-1]
     rows = []

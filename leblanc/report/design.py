@@ -41,15 +41,7 @@ def constraints(result: BallDesignResult) -> Table:
 
 
 def write_design_report(result: BallDesignResult, what: About, figure: FigureFiles, path: Path) -> None:
-    """Write the report.
-
-    Parameters
-    ----------
-    result : of the search
-    what : it is about
-    figure : of it
-    path : the file to write or replace
-    """
+    """Write the report."""
     checks = limit_checks(limits(result))
     parts = {
         "title": "Best balls",

@@ -27,12 +27,7 @@ if TYPE_CHECKING:
 
 
 def layout_checks(result: LayoutResult) -> Table:
-    """What the layout must keep to.
-
-    Parameters
-    ----------
-    result : of the search
-    """
+    """What the layout must keep to."""
     sag = result.constraints["sag"]
     text = f"{with_unit(sag.value, LENGTH)}, at most {with_unit(sag.limit, LENGTH)}"
     rows = [("Sag under the weight", Cell(text, warning=not sag.satisfied))]
@@ -42,15 +37,7 @@ def layout_checks(result: LayoutResult) -> Table:
 def write_layout_report(
     result: LayoutResult, what: About, figures: Sequence[FigureFiles], path: Path
 ) -> None:
-    """Write the report.
-
-    Parameters
-    ----------
-    result : of the search
-    what : it is about
-    figures : of it
-    path : the file to write or replace
-    """
+    """Write the report."""
     about = "for the least couplings of stiffness and damping"
     if result.measure == "separation":
         about = "for natural frequencies far from the running speeds"

@@ -76,12 +76,7 @@ def volumes(result: OptimumResult) -> Table:
 
 
 def facts(result: OptimumResult) -> list[tuple[str, str]]:
-    """What else a reader wants to know: label and value.
-
-    Parameters
-    ----------
-    result : the optimum
-    """
+    """What else a reader wants to know: label and value."""
     return [
         ("Working speed", in_rpm(result.working_speed)),
         ("Mass of the liquid", with_unit(result.mass, MASS)),
@@ -164,15 +159,7 @@ def checks(result: OptimumResult) -> Table:
 def write_optimise_report(
     result: OptimumResult, what: About, figures: Sequence[FigureFiles], path: Path
 ) -> None:
-    """Write the report.
-
-    Parameters
-    ----------
-    result : the optimum
-    what : it is about
-    figures : of it
-    path : the file to write or replace
-    """
+    """Write the report."""
     names = [span.model for span in result.models] + (["long_wave"] if result.in_time else [])
     place = amplitude_plane(result) if result.unit in ("m", "kg", "kg m") else ""
     loads = None if result.response is None else result.response.loads

@@ -19,7 +19,7 @@ from leblanc.report.parts import Inputs, Table, scene_inputs, table
 from leblanc.results.choice import ModelSpan
 from leblanc.scene.scene import Scene
 from leblanc.scene.tasks import Optimisation
-from leblanc.text.run import described, error_words, speeds_words
+from leblanc.studies.run.words import described, error_words, speeds_words
 
 # What the numbers, the files and the figures come from.
 PACKAGES = (
@@ -49,14 +49,9 @@ def about(
     task: Optimisation | None = None,
     unused: tuple[str, ...] = (),
 ) -> About:
-    """What a report of a scene is about.
+    """What a report of a scene is about; as for `About`, `task` of an optimisation in place of the scene's.
 
-    Parameters
-    ----------
-    scene : the machine
-    command, data : as in `About`
-    task : of an optimisation, in place of the scene's
-    unused : tables of the scene that the report's numbers do not depend on
+    `unused` are tables of the scene that the report's numbers do not depend on.
     """
     inputs = scene_inputs(scene, task, unused)
     paths = [cell.path for cell in inputs.cells if cell.assumed]
@@ -71,11 +66,7 @@ def about(
 def command_line(name: str, scene: Path, *options: tuple[str, object, object]) -> str:
     """The command that makes the same report again, wherever its files go.
 
-    Parameters
-    ----------
-    name : of the command
-    scene : the file, as it was given
-    options : name, value and default of each; those at their default are left out, a flag stands alone
+    Options are name, value and default; those at their default are left out, a flag stands alone.
     """
     parts = ["leblanc", name, path_text(scene)]
     for option, value, default in options:
@@ -95,12 +86,7 @@ def citation() -> str:
 
 
 def why(spans: Sequence[ModelSpan]) -> Table:
-    """Which liquid model answers at which speeds, how well, and why.
-
-    Parameters
-    ----------
-    spans : ranges of speed
-    """
+    """Which liquid model answers at which speeds, how well, and why."""
     rows = [
         (
             speeds_words(span),
@@ -114,24 +100,12 @@ def why(spans: Sequence[ModelSpan]) -> Table:
 
 
 def models(names: Sequence[str], held: bool = False) -> list[tuple[str, str]]:
-    """Each liquid model that was used, and what it does and takes for granted.
-
-    Parameters
-    ----------
-    names : of the models
-    held : waves were held in time
-    """
+    """Each liquid model that was used, and what it does and takes for granted."""
     return described(names, held)
 
 
 def notes(given: Iterable[Note | str], elsewhere: Collection[NoteCode] = ()) -> list[str]:
-    """Sentences of a result's notes without those that the page says in another place.
-
-    Parameters
-    ----------
-    given : of the result
-    elsewhere : of these
-    """
+    """Sentences of a result's notes without those that the page says in another place."""
     said = [str(note) for note in given if isinstance(note, str) or note.code not in elsewhere]
     return [line for line in map(one_line, said) if line]
 
@@ -147,15 +121,7 @@ def made_on() -> str:
 
 
 def write_page(body: str, what: About, parts: Mapping[str, Any], path: Path) -> None:
-    """Write a report.
-
-    Parameters
-    ----------
-    body : name of its template
-    what : it is about
-    parts : of the template, besides those of all reports
-    path : the file to write or replace
-    """
+    """Write a report from the template of its body, which takes the parts."""
     from jinja2 import Environment, FunctionLoader, StrictUndefined
 
     page = Environment(

@@ -46,23 +46,13 @@ class Table:
 def table(
     title: str, head: Sequence[str], rows: Sequence[Sequence[str | Cell]], sentences: bool = False
 ) -> Table:
-    """Table of texts and cells.
-
-    Parameters
-    ----------
-    title, head, rows, sentences : as for `Table`; a text becomes a cell
-    """
+    """Table of texts and cells."""
     cells = tuple(tuple(cell if isinstance(cell, Cell) else Cell(cell) for cell in row) for row in rows)
     return Table(title, tuple(head), cells, sentences)
 
 
 def load_part(loads: MachineLoads | None) -> Table | None:
-    """What a machine is judged by, as one table; None where the scene asks for nothing.
-
-    Parameters
-    ----------
-    loads : of a machine
-    """
+    """What a machine is judged by, as one table; None where the scene asks for nothing."""
     if loads is None:
         return None
     time = ("after (s)",) if loads.in_time else ()
@@ -107,10 +97,7 @@ def _weight(label: str) -> int:
 def doubt(checks: Table, holds: str = "") -> str:
     """What must not be relied on in an answer, in one sentence of two clauses; the rest is in the table.
 
-    Parameters
-    ----------
-    checks : a row for each, its label and what fails it
-    holds : what is said of an answer that passes all, after that
+    `holds` is said of an answer that passes all checks, after that.
     """
     failed = [(label.text, found.text) for label, found in checks.rows if found.warning]
     failed.sort(key=lambda row: _weight(row[0]))  # of one weight in their order
@@ -134,13 +121,7 @@ class Picture:
 
 
 def picture(files: FigureFiles, alt: str = "") -> Picture:
-    """A figure on disk as a page shows it, with its caption as text.
-
-    Parameters
-    ----------
-    files : of the figure
-    alt : what it shows and the numbers a reader would take from it; the figure's own if empty
-    """
+    """A figure on disk as a page shows it, with its caption and alternative text (its own if empty)."""
     lightest = min((files.svg, files.png), key=lambda file: file.stat().st_size)
     chosen = files.svg if files.svg.stat().st_size <= LIGHT else lightest
     content = base64.b64encode(chosen.read_bytes()).decode("ascii")
@@ -180,11 +161,7 @@ class Inputs:
 def scene_inputs(scene: Scene, optimise: Optimisation | None = None, unused: tuple[str, ...] = ()) -> Inputs:
     """Everything that a scene says.
 
-    Parameters
-    ----------
-    scene : the scene
-    optimise : what the liquid is chosen for, in place of the scene's
-    unused : tables of the scene that the report's numbers do not depend on
+    `optimise` stands in place of the scene's; numbers of the report do not depend on the tables `unused`.
     """
     found = inputs_of(scene, optimise)
     entries = [Entry(row.label, tuple(map(_cell, row.values))) for row in found.rows]

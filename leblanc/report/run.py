@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,18 +12,11 @@ from numpy.typing import NDArray
 from leblanc.core.units import LENGTH, NOT_FOUND, RPM, VOLUME, in_peak, number, ranges, unit_for
 from leblanc.report.page import About, models, notes, why, write_page
 from leblanc.report.parts import Cell, Table, doubt, load_part, picture, table
-from leblanc.results.magnetic.control import MagneticResult
-from leblanc.results.notes.response import OF_MODELS, RunCode
 from leblanc.results.races.states import STATE_NAMES, BallsResult
-from leblanc.results.response import RunResult
 from leblanc.results.whirl_map import WhirlMap
-from leblanc.text import magnetic
-from leblanc.text.closed_forms import HEAD as VECTOR
-from leblanc.text.closed_forms import closed_form_rows, vector_rows
-from leblanc.text.races.balls import answer as balls_answer
-from leblanc.text.races.balls import facts as balls_facts
-from leblanc.text.races.balls import limits as balls_limits
-from leblanc.text.run import (
+from leblanc.studies.run.answer import RunResult
+from leblanc.studies.run.notes import OF_MODELS, RunCode
+from leblanc.studies.run.words import (
     WHIRL,
     Limit,
     answer,
@@ -35,6 +27,11 @@ from leblanc.text.run import (
     machine,
     remarks,
 )
+from leblanc.text.closed_forms import HEAD as VECTOR
+from leblanc.text.closed_forms import closed_form_rows, vector_rows
+from leblanc.text.races.balls import answer as balls_answer
+from leblanc.text.races.balls import facts as balls_facts
+from leblanc.text.races.balls import limits as balls_limits
 from leblanc.text.whirl_map import answer as whirl_map_answer
 from leblanc.text.whirl_map import band_words
 from leblanc.text.whirl_map import facts as whirl_map_facts
@@ -169,41 +166,6 @@ def limit_checks(found: Iterable[Limit]) -> Table:
     """Where an answer of a rotor without layers is not what it seems."""
     rows = [(limit.label, Cell(limit.where, warning=limit.failed)) for limit in found]
     return table("", ("Limits of the answer", "at"), rows)
-
-
-def write_magnetic_report(result: MagneticResult, what: About, figure: FigureFiles, path: Path) -> None:
-    """Write the report of a rotor in magnetic bearings.
-
-    Parameters
-    ----------
-    result : the answer
-    what : it is about
-    figure : of it
-    path : the file to write or replace
-    """
-    low, high = number(float(result.speed[0]) * RPM), number(float(result.speed[-1]) * RPM)
-    machine = (
-        f"A rigid rotor of {number(result.machine.mass * 1e3)} g in two magnetic bearings, from {low} to "
-        f"{high} rpm in {result.speed.size} speeds."
-    )
-    numbers = [
-        (text, number(getattr(result.numbers, name)))
-        for name, text in magnetic.NUMBERS.items()
-        if math.isfinite(getattr(result.numbers, name))
-    ]
-    parts = {
-        "title": "Magnetic bearings and their control",
-        "machine": machine,
-        "answer": magnetic.answer(result),
-        "doubt": doubt(limit_checks(magnetic.limits(result))),
-        "controllers": table("", magnetic.heads(result), magnetic.rows(result)),
-        "numbers": table("", ("Dimensionless numbers", ""), numbers),
-        "checks": limit_checks(magnetic.limits(result)),
-        "pictures": [picture(figure)],
-        "models": [("control", magnetic.CONTROL)],
-        "remarks": list(magnetic.load_words(result)),
-    }
-    write_page("magnetic", what, parts, path)
 
 
 def ball_states(result: BallsResult) -> Table:

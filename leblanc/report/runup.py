@@ -27,10 +27,10 @@ from leblanc.core.units import (
 )
 from leblanc.report.page import About, models, notes, write_page
 from leblanc.report.parts import Cell, Table, doubt, load_part, picture, table
-from leblanc.results.notes.response import CLOSURE
 from leblanc.results.notes.runup import ERROR, IN_TABLES
-from leblanc.results.response import peak
 from leblanc.results.runup import RunupResult
+from leblanc.studies.run.answer import peak
+from leblanc.studies.run.notes import CLOSURE
 from leblanc.text.runup import answer, ball_rows, describe_model, largest_dry, rounding
 from leblanc.text.runup import moments as main_moments
 
@@ -57,13 +57,7 @@ GAINS = ("unbalance", "drive", "gravity", "captured")
 
 
 def times(time: NDArray[np.float64], mask: NDArray[np.bool_]) -> str:
-    """Times at which a condition holds, in words.
-
-    Parameters
-    ----------
-    time : rising, s, shape (k,)
-    mask : the condition, shape (k,)
-    """
+    """Times at which a condition holds, in words."""
     if not mask.any():
         return "none"
     if mask.all():
@@ -120,12 +114,7 @@ def passages(result: RunupResult) -> Table:
 
 
 def facts(result: RunupResult) -> list[tuple[str, str]]:
-    """The end of the run, its resolution and its errors: label and value.
-
-    Parameters
-    ----------
-    result : the run-up
-    """
+    """The end of the run, its resolution and its errors: label and value."""
     mass = float(result.layer_mass.sum())
     where = "none"
     if mass > 0.0:
@@ -239,15 +228,7 @@ def why(result: RunupResult) -> Table:
 
 
 def write_runup_report(result: RunupResult, what: About, figures: Sequence[FigureFiles], path: Path) -> None:
-    """Write the report.
-
-    Parameters
-    ----------
-    result : the run-up
-    what : it is about
-    figures : of it
-    path : the file to write or replace
-    """
+    """Write the report."""
     balls = sum(race.count for race in result.races)
     rolling = f", {balls} ball{'' if balls == 1 else 's'} in {len(result.races)} race"
     rolling = f"{rolling}{'' if len(result.races) == 1 else 's'}" if balls else ""

@@ -114,13 +114,7 @@ class SpeedEstimate:
 
 
 def speed_estimates(choice: Choice, speed: Array) -> tuple[SpeedEstimate, ...]:
-    """What is expected at every speed.
-
-    Parameters
-    ----------
-    choice : the models
-    speed : rad/s, shape (n,)
-    """
+    """What is expected at every speed."""
     waves = choice.gravity
     columns = (
         speed,

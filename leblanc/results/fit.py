@@ -212,13 +212,7 @@ def quantile(freedom: int, stated: bool) -> float:
 
 
 def poor_note(rms: float, reason: str) -> Note:
-    """That noise does not explain what is left, and why.
-
-    Parameters
-    ----------
-    rms : root of the mean square of what is left, over that of what was measured
-    reason : a clause
-    """
+    """That noise does not explain what is left (rms over that of what was measured), and why, in a clause."""
     text = (
         f"The scene does not meet the data: {100.0 * rms:.2g} % of their size are left, and {reason}. "
         "There are no standard errors."
@@ -271,13 +265,7 @@ def lopsided_note(path: str, low: float, high: float) -> Note:
 
 
 def flat_note(paths: Sequence[str], powers: Sequence[float]) -> Note:
-    """That some unknowns are known in a combination only.
-
-    Parameters
-    ----------
-    paths : the unknowns
-    powers : relative changes of each that leave the data as they are
-    """
+    """That some unknowns are known in a combination only, and which changes leave the data as they are."""
     largest = max(abs(power) for power in powers)
     changes = ", ".join(
         f"{path} by {100.0 * power / largest / 10.0:+.2g} %"
@@ -296,16 +284,10 @@ def fit_notes(
     shown: Sequence[bool],
     span: Array,
 ) -> list[Note]:
-    """What the data cannot tell, in words.
+    """What the data cannot tell of p unknowns, in words; their correlation has shape (p, p).
 
-    Parameters
-    ----------
-    unknown : paths, p of them
-    value, std : found and standard errors, shape (p,)
-    correlation : shape (p, p)
-    at_bound : whether the search ended at the edge of what it looks at, shape (p,)
-    shown : whether another note has said what is not known of it, shape (p,)
-    span : of unknowns that may have either sign, a length or angle that is large, nan of others, shape (p,)
+    `at_bound`: the search ended there; `shown`: another note has said what is not known; `span`: large for an
+    unknown of either sign, a length or an angle, nan of others.
     """
     found = []
     told = zip(unknown, value.tolist(), std.tolist(), at_bound, shown, span.tolist(), strict=True)

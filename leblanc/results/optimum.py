@@ -17,8 +17,8 @@ from leblanc.core.notes import Note, NoteCode, texts
 from leblanc.core.units import LENGTH, VOLUME, in_rpm, with_unit
 from leblanc.results.base import ConstraintValue
 from leblanc.results.choice import ModelSpan
-from leblanc.results.response import RunResult
 from leblanc.results.sweep import EmulatorError
+from leblanc.studies.run.answer import RunResult
 from meshes.arrays import Array, Flags
 
 
@@ -48,10 +48,7 @@ class OptimumCode(NoteCode):
 def given_deflection(deflection: float, speed: float, gap: float) -> Note:
     """The volumes are the least that wet the walls at a deflection, m, and a speed, rad/s.
 
-    Parameters
-    ----------
-    deflection, speed : given
-    gap : largest relative difference of search and closed form
+    `gap` is the largest relative difference of search and closed form.
     """
     text = (
         f"The deflection is given, {with_unit(deflection, LENGTH)} at {in_rpm(speed)}: the volumes are the "
@@ -97,14 +94,7 @@ def too_deep(chamber: int, limit: float) -> Note:
 
 
 def parted(chamber: int, count: int, volume: float) -> Note:
-    """Baffles cut the liquid of a chamber into compartments up to some volume.
-
-    Parameters
-    ----------
-    chamber : its place in the scene, from 0
-    count : of its baffles
-    volume : from which on the liquid passes them, m^3
-    """
+    """Baffles cut the liquid of a chamber into compartments up to some volume, m^3."""
     text = (
         f"Chamber {chamber + 1}: below {with_unit(volume, VOLUME)} its {count} baffles cut the liquid into "
         "compartments. There the steady answer is that of finite elements for small deflections, with an "
@@ -123,13 +113,7 @@ def laminar() -> Note:
 
 
 def no_liquid(by_mass: bool, forbidden: tuple[str, ...]) -> Note:
-    """The answer is no liquid at all.
-
-    Parameters
-    ----------
-    by_mass : the least liquid for a limit was asked for
-    forbidden : constraints that forbid volumes with a smaller vibration; none where there are no such volumes
-    """
+    """The answer is no liquid: it is the least for a limit, or constraints forbid what vibrates less."""
     if by_mass:
         text = "The limit is met without liquid."
     elif forbidden:

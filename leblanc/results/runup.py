@@ -20,9 +20,9 @@ from leblanc.results.base import FilledChamber
 from leblanc.results.machine.keys import Loaded
 from leblanc.results.machine.loads import MachineLoads
 from leblanc.results.motion.passages import Passage, falling, pieces
-from leblanc.results.notes.response import plane_words
 from leblanc.results.races.balls import RaceOfBalls, ball_moment, in_race
-from leblanc.results.response import phase
+from leblanc.studies.run.answer import phase
+from leblanc.studies.run.notes import plane_words
 from meshes.arrays import Array, Complex, Flags
 from solvers.layer.records import Outcome
 from solvers.runup.ensemble import Spread
@@ -376,16 +376,9 @@ class RunupResult(Loaded, Result):
         return _crest(self.history, self._way(self.history, back))
 
     def curve(self, back: bool = False, dry: bool = False) -> tuple[Array, Array, Array]:
-        """Time, speed and amplitude of the samples on the way up or back, with the largest among them.
+        """Time, speed and amplitude, s, rad/s, m, on the way up or back, the largest among them.
 
-        Parameters
-        ----------
-        back : on the way back
-        dry : without liquid; empty where that was not run
-
-        Returns
-        -------
-        s, rad/s and m, each of shape (p,), in order of time; nan between parts of a programme
+        nan between parts of a programme; `dry` is without liquid, empty where that was not run.
         """
         history = self.history_dry if dry else self.history
         if history is None or (back and not self.turns_back):
@@ -414,13 +407,7 @@ class RunupResult(Loaded, Result):
         return time, speed, amplitude
 
     def pieces(self, history: RunupHistory, back: bool) -> list[slice]:
-        """Parts of the way up or of the way back, each from where it turns.
-
-        Parameters
-        ----------
-        history : with liquid or without
-        back : on the way back
-        """
+        """Parts of the way up or of the way back, each from where it turns."""
         return pieces(self._way(history, back))
 
     def _way(self, history: RunupHistory, back: bool) -> Flags:
@@ -622,18 +609,10 @@ def run_faults(history: RunupHistory, chambers: Sequence[FilledChamber]) -> tupl
 
 
 def turn_mean(values: Complex, angle: Array) -> Complex:
-    """Mean over the turns of the rotor around each time: what is fixed in space drops out of it.
+    """Mean over the turn around each time, or turns of eight samples: what rests in space drops out.
 
-    The mean is taken over one turn, or over as many whole turns as hold eight samples.
-
-    Parameters
-    ----------
-    values : in the drum frame, shape (k,)
-    angle : of rotation, rising, rad, shape (k,)
-
-    Returns
-    -------
-    Means, shape (k,); near the ends over the turns that there are
+    Of values in the drum frame over the rising angle of rotation, rad, shape (k,); near the ends over the
+    turns that there are.
     """
     if angle.size < 3:
         return values.copy()

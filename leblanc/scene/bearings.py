@@ -34,15 +34,15 @@ class Rolls(Protocol):
 
     @property
     def ball_diameter(self) -> float | None:
-        """Of a ball, m."""
+        """Diameter of a ball, m."""
 
     @property
     def pitch_diameter(self) -> float | None:
-        """Of the circle of the balls' centres, m."""
+        """Diameter of the circle of the balls' centres, m."""
 
     @property
     def contact_angle(self) -> float:
-        """Rad."""
+        """Contact angle of the balls, rad."""
 
 
 @dataclass(frozen=True)
@@ -56,12 +56,7 @@ class CagedBearing:
 
 
 def caged(named: Sequence[tuple[str, Rolls]]) -> tuple[CagedBearing, ...]:
-    """Those of some parts whose balls are given.
-
-    Parameters
-    ----------
-    named : parts with their names
-    """
+    """Bearings of those named parts whose balls are given."""
     return tuple(
         CagedBearing(name, part.ball_diameter, part.pitch_diameter, part.contact_angle)
         for name, part in named
@@ -70,13 +65,7 @@ def caged(named: Sequence[tuple[str, Rolls]]) -> tuple[CagedBearing, ...]:
 
 
 def rolling_conflicts(values: Mapping[str, Any], given: Mapping[str, Any]) -> Iterator[Conflict]:
-    """Balls and their circle belong together.
-
-    Parameters
-    ----------
-    values : of the part, checked
-    given : what the file says
-    """
+    """Conflicts of a part's balls with the circle they run on: both are given, or neither."""
     ball, pitch = values.get("ball_diameter"), values.get("pitch_diameter")
     for key, other in (("ball_diameter", "pitch_diameter"), ("pitch_diameter", "ball_diameter")):
         if key in given and other not in given:
@@ -88,16 +77,9 @@ def rolling_conflicts(values: Mapping[str, Any], given: Mapping[str, Any]) -> It
 
 
 def rolling_columns(parts: Sequence[Rolls], field: str) -> tuple[tuple[str, ...], list[tuple[Value, ...]]]:
-    """Balls of parts as columns of a table for readers; none where no balls are given.
+    """Balls of parts as columns of a table: heads, and the cells of each part.
 
-    Parameters
-    ----------
-    parts : of a scene
-    field : their path in it
-
-    Returns
-    -------
-    Heads of the columns, and for each part its cells
+    None where no balls are given. `field`: path of the parts in the scene.
     """
     if all(part.ball_diameter is None for part in parts):
         return (), [()] * len(parts)

@@ -50,13 +50,13 @@ class Cabinet(Part):
     )
 
     def standing(self) -> Standing:
-        """As the solvers take it."""
+        """The cabinet as the solvers take it."""
         from solvers.rotor.loads.floor import Cabinet as Standing
 
         return Standing(self.mass, self.centre_of_mass, self.feet, self.friction)
 
     def rows(self) -> list[Row]:
-        """What it says once, for readers."""
+        """Rows of the cabinet, for readers."""
         return [
             row("Cabinet mass", with_unit(self.mass, MASS), "cabinet.mass"),
             row(
@@ -68,7 +68,7 @@ class Cabinet(Part):
         ]
 
     def tables(self) -> list[RowTable]:
-        """Its feet, for readers."""
+        """Feet of the cabinet, for readers."""
         lines = tuple(
             (Value(f"{k + 1}"), Value(f"({three(foot, MM)})", ("cabinet.feet",)))
             for k, foot in enumerate(self.feet)
@@ -109,19 +109,14 @@ class Point(Part):
             yield Conflict(("direction",), "three pure numbers that are not all 0")
 
     def moving(self) -> Moving:
-        """As the solvers take it."""
+        """The point as the solvers take it."""
         from solvers.rotor.loads.machine import Point as Moving
 
         return Moving(self.name, self.position, self.on, self.gap, self.direction)
 
 
 def point_table(points: tuple[Point, ...]) -> RowTable:
-    """Named points, for readers.
-
-    Parameters
-    ----------
-    points : of a scene
-    """
+    """Table of the named points, for readers."""
     lines = []
     for k, point in enumerate(points):
         at = f"points.{k}"
@@ -143,12 +138,9 @@ _ALONE = {"exciter": "an exciter", "magnetic": "a rotor in magnetic bearings", "
 
 
 def cabinet_conflicts(values: Mapping[str, Any], kind: object) -> Iterator[Conflict]:
-    """What a scene's cabinet and points must keep to together with its rotor.
+    """Conflicts of a scene's cabinet and points with its rotor's kind.
 
-    Parameters
-    ----------
-    values : of the scene, checked; those without a fault of their own
-    kind : of its rotor
+    `values`: of the scene, those without a fault of their own.
     """
     names = [point.name for point in values.get("points", ())]
     for k, name in enumerate(names):

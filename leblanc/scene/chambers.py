@@ -51,12 +51,7 @@ OUTLINES = ".dxf, .step, .stp, .iges, .igs or .brep"
 
 
 def is_outline(path: str | Path) -> bool:
-    """Whether a file is a drawing or a model by its ending.
-
-    Parameters
-    ----------
-    path : of the file
-    """
+    """Whether a file is a drawing or a model by its ending."""
     from meshes.files.outline import SUFFIXES
 
     return Path(path).suffix.lower() in SUFFIXES
@@ -65,23 +60,11 @@ def is_outline(path: str | Path) -> bool:
 def section_of_any_file(
     path: str | Path, unit: float | None, size: float | None, names: tuple[str, str]
 ) -> Section:
-    """Section from a mesh file or from an outline, about the file's origin.
+    """Section from a mesh file, or from an outline with quadratic cells, about the file's origin.
 
-    Parameters
-    ----------
-    path : of the file
-    unit : its unit of length, m; None for the one that it names, of a mesh for 1 m
-    size : of the cells at walls of an outline, m; None for a hundredth of its largest extent
-    names : what the user calls unit and size
-
-    Returns
-    -------
-    The section; that of an outline has quadratic cells.
-
-    Raises
-    ------
-    InputError : a file that cannot be used, a size for a mesh file, which has its cells, a unit that is
-        missing, or given where the file names it, a library of the extra `cad` that is missing
+    `unit` of length, m (None: the one that the file names, of a mesh 1 m) and `size` of the cells at walls of
+    an outline, m (None: a hundredth of its largest extent) are what the user calls `names`. An `InputError`
+    also where the extra `cad` is missing.
     """
     if not is_outline(path):
         if size is not None:
@@ -175,7 +158,7 @@ class DensityLaw(Part):
             yield from _broken(lambda: _density_law(values))
 
     def made(self) -> PropertyLaw:
-        """As the liquids take it."""
+        """The law as the liquids take it."""
         return _density_law(self.__dict__)
 
 
@@ -219,7 +202,7 @@ class ViscosityLaw(Part):
             yield from _broken(lambda: _viscosity_law(values))
 
     def made(self) -> PropertyLaw:
-        """As the liquids take it."""
+        """The law as the liquids take it."""
         return _viscosity_law(self.__dict__)
 
 
@@ -337,12 +320,7 @@ class LiquidRule:
 
     @staticmethod
     def written(value: Liquid) -> object:
-        """As a file says it; a liquid with a name of its own and no law stays what it is.
-
-        Parameters
-        ----------
-        value : the liquid
-        """
+        """The liquid as a file says it; one with a name of its own and no law stays what it is."""
         if KNOWN_LIQUIDS.get(value.name) == value:
             return value.name
         law, name = value.law, {} if value.name == "liquid" else {"name": value.name}
@@ -418,11 +396,7 @@ class SectionRule:
 def section_from_file(path: str, unit: float | None, size: float | None = None) -> ChamberSection:
     """Section of a chamber from a mesh file or an outline, about the file's origin.
 
-    Parameters
-    ----------
-    path : of the file
-    unit : its unit of length, m; None for the one that it names, of a mesh for 1 m
-    size : of the cells at walls of an outline, m; None for a hundredth of its largest extent
+    `unit` and `size` as of `section_of_any_file`.
     """
     mesh = section_of_any_file(path, unit, size, ("section_unit", "section_size"))
     if size is None and is_outline(path):
@@ -526,11 +500,7 @@ class Chamber(Part):
         return self._fill
 
     def holding(self, volume: float) -> Chamber:
-        """The same chamber with another volume of its liquid.
-
-        Parameters
-        ----------
-        volume : m^3
+        """The same chamber with another volume of its liquid, m^3.
 
         Raises
         ------

@@ -68,12 +68,7 @@ def example(name: str) -> Scene:
 
 
 def example_title(name: str) -> str:
-    """What an example is, on one line: the name in its file, or its first comment.
-
-    Parameters
-    ----------
-    name : of `example_names`
-    """
+    """What an example is, on one line: the name in its file, or its first comment."""
     path = example_path(name)
     title = read_toml(path).get("name")
     if isinstance(title, str):

@@ -52,10 +52,7 @@ class SceneInputs:
 def inputs_of(scene: Scene, optimise: Optimisation | None = None) -> SceneInputs:
     """Everything that a scene says.
 
-    Parameters
-    ----------
-    scene : the scene
-    optimise : what the liquid is chosen for, in place of the scene's; what differs from it is not marked
+    `optimise` takes the place of the scene's; what differs from that is not marked as assumed.
     """
     rows = [
         *scene.rotor.rows(),
@@ -87,8 +84,8 @@ def about(
 ) -> About:
     """What a report of a scene is about.
 
-    The task is that of an optimisation in place of the scene's; `unused` are tables of the scene that the
-    report's numbers do not depend on.
+    `task` takes the place of the scene's optimisation; the report's numbers do not depend on its `unused`
+    tables.
     """
     found = inputs_of(scene, task)
     aside = tuple(row for row in found.rows if row.path.partition(".")[0] in unused)
@@ -114,12 +111,9 @@ def about(
 def input_rows(
     scene: Scene, roots: tuple[str, ...] = ("rotor", "cabinet", "points", "chambers", "speeds")
 ) -> tuple[tuple[str, str, str], ...]:
-    """Label, value with its unit and field path of each value of some tables, as data files keep them.
+    """Label, value with its unit and field path of each value under some tables, as data files keep them.
 
-    Parameters
-    ----------
-    scene : the scene
-    roots : tables and keys of the scene, or parts of them, in their order
+    `roots`: those tables, keys or parts of them, in their order.
     """
     found = inputs_of(scene)
     single = [*found.rows, *(entry for table in found.tables for entry in table.single())]
@@ -134,11 +128,7 @@ def input_rows(
 def runup_rows(scene: Scene, cells: int, dispersion: bool) -> tuple[tuple[str, str, str], ...]:
     """Label, value with its unit and field path of what a run-up takes from its scene.
 
-    Parameters
-    ----------
-    scene : the scene, with a run-up
-    cells : of each layer, in place of the scene's
-    dispersion : in place of the scene's
+    `cells` of each layer and `dispersion` take the place of the scene's.
     """
     assert scene.speed_plan is not None
     plan, name = scene.speed_plan.altered(cells=cells, dispersion=dispersion), "runup"
@@ -351,12 +341,7 @@ _OVER = {
 
 
 def optimise_rows(wanted: Optimisation) -> list[Row]:
-    """Values that differ from the defaults, and the objective.
-
-    Parameters
-    ----------
-    wanted : what the liquid is chosen for
-    """
+    """Rows of the objective and of what differs from the defaults."""
     said = [row("Objective", wanted.objective, "optimise.objective")]
     for name, label, text in (
         ("working_speed", "Working speed", _speed(wanted.working_speed)),

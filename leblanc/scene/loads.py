@@ -29,7 +29,7 @@ class Sheds(Part):
     )
 
     def words(self) -> str:
-        """For readers."""
+        """What leaves, for readers."""
         share, time = number(100.0 * self.share), number(self.time_constant)
         mass = "" if self.mass is None else f", {with_unit(self.mass, MASS)}"
         return f"{share} % in {time} s above {in_rpm(self.above)}{mass}"
@@ -63,11 +63,7 @@ class Load(Part):
 def unbalance_table(name: str, field: str, parts: Sequence[PlaneUnbalance | Load]) -> RowTable:
     """Unbalances for readers; a column of what leaves where something does.
 
-    Parameters
-    ----------
-    name : what one of them is called
-    field : their path in the scene
-    parts : at least one
+    `name` of one of them, `field` their path in the scene; at least one part.
     """
     unit = unit_for(UNBALANCE, *(part.size for part in parts))
     leaves = any(part.sheds is not None for part in parts)

@@ -130,7 +130,7 @@ class OuterLoad(Part):
     )
 
     def load(self) -> Load:
-        """As the solvers take it."""
+        """The load as the solvers take it."""
         from solvers.rotor.magnetic.motion import Load
 
         return Load(self.force, self.moment, self.frequency, self.start)
@@ -258,7 +258,7 @@ class MagneticRotor(Part):
         return tuple(found)
 
     def rows(self) -> list[Row]:
-        """What it says, for readers."""
+        """Rows of the rotor, for readers."""
         across, about = f"{number(self.transverse_inertia)} kg m²", f"{number(self.polar_inertia)} kg m²"
         found = [
             row("Rotor", f"{self.kind}, {self.axis} axis", "rotor.axis", "rotor.kind"),
@@ -281,7 +281,7 @@ class MagneticRotor(Part):
         return found
 
     def tables(self) -> list[RowTable]:
-        """Its loads, for readers."""
+        """Loads of the rotor, for readers."""
         if not self.loads:
             return []
         lines = []

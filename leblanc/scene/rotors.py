@@ -127,7 +127,7 @@ class JeffcottRotor(Part):
         return self._machine
 
     def rows(self) -> list[Row]:
-        """What it says, for readers."""
+        """Rows of the rotor, for readers."""
         machine = self.machine()
         speed, ratio = in_rpm(machine.natural_frequency), number(machine.damping_ratio)
         stiffness, damping = f"{number(machine.stiffness)} N/m", f"{number(machine.damping)} N s/m"
@@ -143,7 +143,7 @@ class JeffcottRotor(Part):
         ]
 
     def tables(self) -> list[RowTable]:
-        """It has no parts."""
+        """No tables: the rotor has no parts."""
         return []
 
 
@@ -243,7 +243,7 @@ class TwoPlaneRotor(Part):
         return caged([(f"support {k + 1}", support) for k, support in enumerate(self.supports)])
 
     def rows(self) -> list[Row]:
-        """What it says once, for readers."""
+        """Rows of the rotor, for readers."""
         across, about = f"{number(self.transverse_inertia)} kg m²", f"{number(self.polar_inertia)} kg m²"
         return [
             _kind(self),
@@ -254,7 +254,7 @@ class TwoPlaneRotor(Part):
         ]
 
     def tables(self) -> list[RowTable]:
-        """Its supports and unbalances, for readers."""
+        """Supports and unbalances, for readers."""
         balls, columns = rolling_columns(self.supports, "rotor.supports")
         supports = tuple(
             (
@@ -302,7 +302,7 @@ class _Mounted(Part):
             yield Conflict((key,), several if along is None else single)
 
     def mount(self) -> Mount:
-        """As the solvers take it."""
+        """The mount as the solvers take it."""
         from solvers.rotor.tub import Mount
 
         value = getattr(self, self.COEFFICIENT)
@@ -312,12 +312,7 @@ class _Mounted(Part):
         return Mount(self.position, coefficient=value, direction=self.direction)
 
     def values(self, at: str) -> tuple[Value, ...]:
-        """Place, size and direction, for readers.
-
-        Parameters
-        ----------
-        at : its path in the scene
-        """
+        """Place, size and direction for readers; `at` is its path in the scene."""
         size = getattr(self, self.COEFFICIENT)
         text = f"({three(size)})" if isinstance(size, tuple) else number(size)
         way = Value("along x, y, z")
@@ -449,7 +444,7 @@ class TubRotor(Part):
         return self._machine
 
     def rows(self) -> list[Row]:
-        """What it says once, for readers."""
+        """Rows of the rotor, for readers."""
         about, across = number(self.drum_polar_inertia), number(self.drum_transverse_inertia)
         heavy = self.drum_position[1] if self.unbalance_position is None else self.unbalance_position
         return [
@@ -471,7 +466,7 @@ class TubRotor(Part):
         ]
 
     def tables(self) -> list[RowTable]:
-        """Its springs, dampers and loads, for readers."""
+        """Springs, dampers and loads, for readers."""
         mounts: tuple[tuple[str, str, Sequence[_Mounted]], ...] = (
             ("Spring", "N/m", self.springs),
             ("Damper", "N s/m", self.dampers),
@@ -548,7 +543,7 @@ class Exciter(Part):
 
     @property
     def axis(self) -> Axis:
-        """Its shaft lies across the vibration."""
+        """Axis of the shaft, which lies across the vibration."""
         return "horizontal"
 
     @cached_property
@@ -575,7 +570,7 @@ class Exciter(Part):
         return self._machine
 
     def rows(self) -> list[Row]:
-        """What it says, for readers."""
+        """Rows of the exciter, for readers."""
         balls = self.balls
         what = "rotor.balls.pendulum_inertia" if balls.kind is None else "rotor.balls.kind"
         found = [
@@ -597,7 +592,7 @@ class Exciter(Part):
         return found
 
     def tables(self) -> list[RowTable]:
-        """Its balls are all alike."""
+        """No tables: the balls are all alike."""
         return []
 
 

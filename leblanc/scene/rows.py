@@ -24,15 +24,13 @@ class Value:
 
     @property
     def path(self) -> str:
-        """Its own path; empty for a label."""
+        """Path of the value itself; empty for a label."""
         return self.paths[0] if self.paths else ""
 
     def marked(self, assumed: Sequence[str]) -> Value:
-        """The value with its mark; one that is worked out is as doubtful as what it comes from.
+        """The value with its mark: assumed where it, what it is part of or what it is worked out from is.
 
-        Parameters
-        ----------
-        assumed : paths in the scene, of values or of whole tables
+        `assumed`: paths in the scene, of values or of whole tables.
         """
         doubtful = any(
             own == path or own.startswith(f"{path}.") or path.startswith(f"{own}.")
@@ -51,7 +49,7 @@ class Row:
 
     @property
     def path(self) -> str:
-        """That of its first value."""
+        """Path of the first value."""
         return self.values[0].path
 
 
@@ -74,13 +72,7 @@ class RowTable:
 
 
 def row(label: str, text: str, *paths: str) -> Row:
-    """A row of one value.
-
-    Parameters
-    ----------
-    label : what it is
-    text, paths : as in `Value`
-    """
+    """Row of one value."""
     return Row(label, (Value(text, paths),))
 
 
@@ -88,12 +80,7 @@ _MOST = 6  # points of a motor's curve that are listed one by one
 
 
 def curve_words(speeds: Sequence[float], torques: Sequence[float]) -> str:
-    """A motor's curve for readers; of many points both ends.
-
-    Parameters
-    ----------
-    speeds, torques : rad/s and N m
-    """
+    """A motor's curve, rad/s and N m, for readers; of many points both ends."""
     pairs = zip(speeds, torques, strict=True)
     points = [f"{number(torque)} N m at {in_rpm(speed)}" for speed, torque in pairs]
     if len(points) <= _MOST:
@@ -102,63 +89,32 @@ def curve_words(speeds: Sequence[float], torques: Sequence[float]) -> str:
 
 
 def rpm(speed: float) -> str:
-    """A speed in both units.
-
-    Parameters
-    ----------
-    speed : rad/s
-    """
+    """Speed of rad/s in both units."""
     return f"{in_rpm(speed)} ({number(speed)} rad/s)"
 
 
 def mm(length: float) -> str:
-    """A length.
-
-    Parameters
-    ----------
-    length : m
-    """
+    """Length of m in mm, for readers."""
     return with_unit(length, LENGTH)
 
 
 def unbalance(size: float) -> str:
-    """Mass times its distance from the axis.
-
-    Parameters
-    ----------
-    size : kg m
-    """
+    """Unbalance of kg m, for readers."""
     return with_unit(size, UNBALANCE)
 
 
 def three(values: Sequence[float], unit: float = 1.0) -> str:
-    """Three values along x, y, z.
-
-    Parameters
-    ----------
-    values : SI
-    unit : how many of the shown unit one SI unit is
-    """
+    """Three SI values along x, y, z, times `unit`, for readers."""
     return ", ".join(number(float(f"{value * unit:.10g}")) for value in values)
 
 
 def degrees(angle: float) -> str:
-    """An angle.
-
-    Parameters
-    ----------
-    angle : rad
-    """
+    """Angle of rad in degrees, for readers."""
     return number(math.degrees(angle))
 
 
 def baffle_words(baffles: Baffles) -> str:
-    """How many, and from where to where.
-
-    Parameters
-    ----------
-    baffles : of a chamber
-    """
+    """How many baffles, and from where to where, for readers."""
     inner = f"{mm(baffles.tip_radius)} from the axis" if baffles.tip_radius > 0.0 else "the axis"
     outer = f"{mm(baffles.wall_gap)} off the wall" if baffles.wall_gap > 0.0 else "the wall"
     return f"{baffles.count}, from {outer} to {inner}"

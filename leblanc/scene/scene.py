@@ -79,12 +79,7 @@ class Speeds(Part):
 
     @classmethod
     def at(cls, speed: float) -> Speeds:
-        """A single speed, which is not checked.
-
-        Parameters
-        ----------
-        speed : rad/s
-        """
+        """A single speed, rad/s, which is not checked."""
         return cls.model_construct(start=speed, stop=speed, count=1)
 
     @classmethod
@@ -149,12 +144,7 @@ class FrictionRule:
 
     @staticmethod
     def written(value: Friction) -> object:
-        """As a file says it.
-
-        Parameters
-        ----------
-        value : law and coefficient
-        """
+        """Law and coefficient as a file says them."""
         if value.roughness:
             return {value.law.value: {"roughness": value.roughness}}
         return value.law.value if value.law in _LAWS else {value.law.value: value.coefficient}
@@ -404,14 +394,7 @@ def load_scene(path: str | PathLike[str]) -> Scene:
 def fault_in(path: str | PathLike[str], error: InputError) -> SceneError | None:
     """What a study refuses of a scene as a fault of its file: the value as it stands there, and its line.
 
-    Parameters
-    ----------
-    path : the file; it has been read
-    error : of the study
-
-    Returns
-    -------
-    None where the error is not about a value of a scene
+    None where the error is not about a value of a scene.
     """
     if error.field.partition(".")[0] not in Scene.model_fields:
         return None
@@ -422,17 +405,7 @@ def fault_in(path: str | PathLike[str], error: InputError) -> SceneError | None:
 
 
 def scene_from_table(table: Mapping[str, Any], file: str = "scene") -> Scene:
-    """Scene from the content of a TOML file.
-
-    Parameters
-    ----------
-    table : keys and values as `tomllib` reads them
-    file : what to call it in messages
-
-    Raises
-    ------
-    SceneError : with everything that is wrong
-    """
+    """Scene from the content of a TOML file, named `file` in the faults of the `SceneError`."""
     if "vary" in table and "rotor" not in table:
         text = "a scene; this is a study of many scenes, which `leblanc sweep` answers"
         raise SceneError([SceneFault(file, "", None, text)])
@@ -443,29 +416,16 @@ def scene_from_table(table: Mapping[str, Any], file: str = "scene") -> Scene:
 
 
 def jeffcott(scene: Scene) -> Jeffcott:
-    """The scene's planar rotor without liquid.
-
-    Raises
-    ------
-    InputError : the scene's rotor is of another kind
-    """
+    """The scene's planar rotor without liquid; an `InputError` for a rotor of another kind."""
     if not isinstance(scene.rotor, JeffcottRotor):
         raise InputError("rotor.kind", scene.rotor.kind, "jeffcott for this")
     return scene.rotor.machine()
 
 
 def require_clear(scene: Scene, what: str, baffles: bool = False) -> None:
-    """Refuse sections of other shapes, and baffles, where nothing knows them.
+    """Refuse sections from files, and baffles unless they are known.
 
-    Parameters
-    ----------
-    scene : the machine
-    what : what is asked for, in words that follow "left out for"
-    baffles : these are known
-
-    Raises
-    ------
-    InputError : a chamber with a section from a file, or with baffles that are not known
+    `what` is asked for, in words that follow "left out for".
     """
     for k, fill in enumerate(scene.fills):
         if fill.chamber.section is not None:
@@ -477,48 +437,19 @@ def require_clear(scene: Scene, what: str, baffles: bool = False) -> None:
 
 
 def require_whirl(scene: Scene) -> None:
-    """Refuse a spindle and a rotor in magnetic bearings where one that whirls with liquid is asked for.
-
-    Parameters
-    ----------
-    scene : the machine
-
-    Raises
-    ------
-    InputError : its rotor is a spindle, or in magnetic bearings
-    """
+    """Refuse a spindle and a rotor in magnetic bearings where one that whirls with liquid is asked for."""
     if isinstance(scene.rotor, MagneticRotor | Spindle):
         raise InputError("rotor.kind", scene.rotor.kind, "jeffcott, two_plane or tub for this")
 
 
 def require_no_balls(scene: Scene, what: str) -> None:
-    """Refuse balls where nothing knows them.
-
-    Parameters
-    ----------
-    scene : the machine
-    what : what is asked for, in words that follow "left out for"
-
-    Raises
-    ------
-    InputError : a race with balls
-    """
+    """Refuse balls for `what`, which follows "left out for"."""
     if scene.balls:
         raise InputError(f"chambers.{len(scene.liquids)}.kind", "balls", f"left out for {what}")
 
 
 def require_chambers(scene: Scene, what: str) -> None:
-    """What is only asked of a machine with chambers.
-
-    Parameters
-    ----------
-    scene : the machine
-    what : needs them, in words that follow "for"
-
-    Raises
-    ------
-    InputError : the scene has none, and is not of a kind that never has
-    """
+    """Refuse a scene without chambers for `what`, unless its kind of rotor never has any."""
     if not scene.chambers and not isinstance(scene.rotor, WITHOUT_CHAMBERS):
         raise InputError("chambers", "none", f"at least one for {what}")
 
@@ -526,9 +457,7 @@ def require_chambers(scene: Scene, what: str) -> None:
 def dry_rotor(scene: Scene) -> Jeffcott | TwoPlane | Tub:
     """The scene's rotor without liquid, whose `system()` gives its equations of motion.
 
-    Raises
-    ------
-    InputError : the scene is that of a rotor without chambers: an exciter, a spindle, or in magnetic bearings
+    An `InputError` for a rotor without chambers: an exciter, a spindle, or in magnetic bearings.
     """
     if isinstance(scene.rotor, WITHOUT_CHAMBERS):
         raise InputError("rotor.kind", scene.rotor.kind, "jeffcott, two_plane or tub for this")
@@ -539,22 +468,12 @@ _DIGITS = 10  # of each number; spellings of one value differ in the sixteenth
 
 
 def fingerprint(content: dict[str, Any]) -> str:
-    """SHA-256 of what a scene says.
-
-    Parameters
-    ----------
-    content : tables, lists and values
-    """
+    """SHA-256 of what a scene says, numbers to ten digits."""
     return hashlib.sha256(json.dumps(_rounded(content), sort_keys=True).encode()).hexdigest()
 
 
 def rotor_content(rotor: AnyRotor) -> dict[str, Any]:
-    """What the machine is, whichever of two alternatives says so.
-
-    Parameters
-    ----------
-    rotor : of a scene
-    """
+    """What the machine is, whichever of two alternatives says so."""
     if isinstance(rotor, JeffcottRotor):
         return asdict(rotor.machine()) | {"kind": rotor.kind, "axis": rotor.axis}
     if isinstance(rotor, Exciter):
@@ -578,12 +497,7 @@ def _leaving(rotor: AnyRotor) -> dict[str, Any]:
 
 
 def chamber_content(fill: Fill) -> dict[str, Any]:
-    """What a chamber is and holds; a part that came later counts only where there is one.
-
-    Parameters
-    ----------
-    fill : of a scene
-    """
+    """What a chamber is and holds; a part that came later counts only where there is one."""
     chamber = fill.chamber
     walls: dict[str, Any] = {
         "radius": chamber.radius,
@@ -613,23 +527,13 @@ def _kinds(law: object) -> list[str]:
 
 
 def runup_content(plan: Runup) -> dict[str, Any]:
-    """How the speed goes and how that is resolved.
-
-    Parameters
-    ----------
-    plan : of a scene
-    """
+    """How the speed goes and how that is resolved."""
     usual = {"bore": "none", "capture": "carried"}
     return plan.model_dump(exclude={key for key, value in usual.items() if getattr(plan, key) == value})
 
 
 def machine_content(scene: Scene) -> dict[str, Any]:
-    """Cabinet, points, bearings and balls, as far as there are any.
-
-    Parameters
-    ----------
-    scene : the machine
-    """
+    """Cabinet, points, bearings and balls, as far as there are any."""
     bearings = getattr(scene.rotor, "bearings", ())
     caged = scene.rotor.caged() if isinstance(scene.rotor, TubRotor | TwoPlaneRotor) else ()
     parts = {
@@ -643,23 +547,13 @@ def machine_content(scene: Scene) -> dict[str, Any]:
 
 
 def race_content(race: BallRace) -> dict[str, Any]:
-    """What a race is, whichever of two alternatives says so.
-
-    Parameters
-    ----------
-    race : of a scene
-    """
+    """What a race is, whichever of two alternatives says so."""
     liquid = None if race.liquid is None else asdict(race.liquid)
     return asdict(race.race()) | {"start": race.start, "liquid": liquid, "diameter": race.diameter}
 
 
 def optimise_content(wanted: Optimisation) -> dict[str, Any]:
-    """What the liquid is chosen for.
-
-    Parameters
-    ----------
-    wanted : of a scene
-    """
+    """What the liquid is chosen for."""
     duty = [(stage.speed, stage.weight) for stage in wanted.duty]
     later = {"balance_quality", "floor_force", "walking_margin", "point_clearance", "balls"}
     later = {name for name in later if getattr(wanted, name) is None}

@@ -38,13 +38,7 @@ _STATION_TEXT = 'the name of a beam and the number of its station from 0, such a
 
 
 def without_liquid(values: Mapping[str, Any], given: Mapping[str, Any]) -> Iterator[Conflict]:
-    """What a scene leaves out where its rotor is a spindle.
-
-    Parameters
-    ----------
-    values : of the scene, checked
-    given : what the file says
-    """
+    """Conflicts of what a scene leaves out where its rotor is a spindle."""
     for key in ("chambers", "model", "runup", "programme", "optimise"):
         if key in values and key in given and values[key] not in ((), None):
             yield Conflict((key,), "left out for a spindle, which holds no liquid and is driven by a force")
@@ -221,26 +215,16 @@ class Spindle(Part):
 
     @property
     def axis(self) -> Axis:
-        """Gravity has no part in small vibrations; the vibration is across a lying axis."""
+        """Always horizontal: gravity has no part in small vibrations, and these are across the axis."""
         return "horizontal"
 
     def station(self, name: str) -> Station:
-        """A station as the solvers number it.
-
-        Parameters
-        ----------
-        name : as the scene says it
-        """
+        """A station as the solvers number it."""
         beam, _, place = name.partition(".")
         return [part.name for part in self.beams].index(beam), int(place)
 
     def coordinate(self, name: str) -> Coordinate:
-        """The deflection of a station.
-
-        Parameters
-        ----------
-        name : as the scene says it
-        """
+        """The deflection of a station."""
         from solvers.rotor.shaft.structure import Coordinate
 
         return Coordinate(self.station(name))
@@ -279,7 +263,7 @@ class Spindle(Part):
         return caged([(f"{joint.station} to {joint.to}", joint) for joint in self.joints])
 
     def content(self) -> dict[str, Any]:
-        """For a fingerprint; what came later counts only where it is given."""
+        """The spindle for a fingerprint; what came later counts only where it is given."""
         found = self.model_dump()
         if self.rotation is None:
             del found["rotation"]
@@ -294,7 +278,7 @@ class Spindle(Part):
         return self._machine
 
     def rows(self) -> list[Row]:
-        """What it says once, for readers."""
+        """Rows of the spindle, for readers."""
         return [
             row("Rotor", "spindle", "rotor.kind"),
             row("Beam theory", self.theory, "rotor.theory"),
@@ -322,7 +306,7 @@ class Spindle(Part):
         ]
 
     def tables(self) -> list[RowTable]:
-        """Its sections and joints, for readers."""
+        """Sections and joints, for readers."""
         sections = tuple(
             (
                 Value(f"{beam.name}.{k} to {k + 1}"),

@@ -251,12 +251,7 @@ class Optimisation(Part):
 
 
 def pairs_of(ranges: _Pair | tuple[_Pair, ...]) -> tuple[_Pair, ...]:
-    """Ranges of unbalance one by one; a single one is the first of one.
-
-    Parameters
-    ----------
-    ranges : as in `Optimisation.unbalance`
-    """
+    """Ranges of unbalance one by one; a single one is the first of one."""
     found: list[_Pair] = []
     for entry in ranges:
         if not isinstance(entry, tuple):

@@ -10,24 +10,14 @@ from leblanc.scene.spindle import Spindle
 
 
 def polar_inertia_of(rotor: AnyRotor) -> float | None:
-    """Moment of inertia about the axis of what spins, without the liquid, kg m^2; None where it is not told.
-
-    Parameters
-    ----------
-    rotor : of a scene
-    """
+    """Moment of inertia about the axis of what spins, without liquid, kg m^2; None where it is not given."""
     if isinstance(rotor, TubRotor):
         return rotor.drum_polar_inertia
     return rotor.polar_inertia if isinstance(rotor, TwoPlaneRotor) else None
 
 
 def unbalances_of(rotor: AnyRotor) -> tuple[float, ...]:
-    """Size of each unbalance of a rotor, kg m.
-
-    Parameters
-    ----------
-    rotor : of a scene
-    """
+    """Size of each unbalance of a rotor, kg m."""
     if isinstance(rotor, TwoPlaneRotor):
         return tuple(part.size for part in rotor.unbalances)
     if isinstance(rotor, Spindle):
@@ -39,12 +29,7 @@ def unbalances_of(rotor: AnyRotor) -> tuple[float, ...]:
 
 
 def unbalance_places_of(rotor: AnyRotor) -> tuple[float, ...]:
-    """Place of the plane of each unbalance along the axis, in the order of `unbalances_of`, m.
-
-    Parameters
-    ----------
-    rotor : of a scene
-    """
+    """Place of the plane of each unbalance along the axis, in the order of `unbalances_of`, m."""
     if isinstance(rotor, TwoPlaneRotor):
         return tuple(part.position for part in rotor.unbalances)
     if isinstance(rotor, TubRotor):
@@ -54,12 +39,7 @@ def unbalance_places_of(rotor: AnyRotor) -> tuple[float, ...]:
 
 
 def sheds_of(rotor: AnyRotor) -> tuple[Sheds | None, ...]:
-    """What leaves of each unbalance of a rotor, in the order of `unbalances_of`.
-
-    Parameters
-    ----------
-    rotor : of a scene
-    """
+    """What leaves of each unbalance of a rotor, in the order of `unbalances_of`."""
     if isinstance(rotor, TwoPlaneRotor):
         return tuple(part.sheds for part in rotor.unbalances)
     if isinstance(rotor, TubRotor):
@@ -70,13 +50,7 @@ def sheds_of(rotor: AnyRotor) -> tuple[Sheds | None, ...]:
 
 
 def with_unbalances(rotor: AnyRotor, sizes: Sequence[float]) -> AnyRotor:
-    """The same rotor with unbalances of other sizes at the same places and angles.
-
-    Parameters
-    ----------
-    rotor : of a scene
-    sizes : of its unbalances, in their order, kg m
-    """
+    """The same rotor with unbalances of other sizes, kg m, at the same places and angles."""
     if isinstance(rotor, TwoPlaneRotor):
         parts = zip(rotor.unbalances, sizes, strict=True)
         return rotor.altered(unbalances=tuple(part.altered(size=size) for part, size in parts))
@@ -92,12 +66,7 @@ def with_unbalances(rotor: AnyRotor, sizes: Sequence[float]) -> AnyRotor:
 
 
 def left_in_the_end(rotor: AnyRotor) -> float:
-    """Share of the sizes of all unbalances that is left when all has left that does.
-
-    Parameters
-    ----------
-    rotor : of a scene
-    """
+    """Share of the sizes of all unbalances that is left when all has left that does."""
     sizes, sheds = unbalances_of(rotor), sheds_of(rotor)
     gone = sum(size * part.share for size, part in zip(sizes, sheds, strict=True) if part is not None)
     return 1.0 - gone / sum(sizes) if sum(sizes) > 0.0 else 1.0

@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.results.response import phase
 from leblanc.scene.scene import JeffcottRotor, Scene
 from leblanc.studies.models.choose import choose_all, prepare
 from leblanc.studies.models.liquid import synchronous_model
 from leblanc.studies.peaks import responses_between
 from leblanc.studies.races.balls import run_balls
-from leblanc.studies.run import run_scene
+from leblanc.studies.run.answer import phase
+from leblanc.studies.run.study import run_scene
 from meshes.arrays import Array, Flags, Index
 from meshes.errors import InputError
 from solvers.synchronous.peaks import highest
@@ -59,27 +59,7 @@ _OF_BALLS = ("amplitude_without", "state", "balanced")  # and their first speed,
 
 
 def answer_scenes(scenes: Sequence[Scene]) -> Answers:
-    """Outputs of `run` of several scenes, equal to those of each one alone to rounding.
-
-    Parameters
-    ----------
-    scenes : at least one, all with the same number of speeds
-
-    Returns
-    -------
-    Answers, in the order of the scenes
-
-    Raises
-    ------
-    InputError : no scene, different numbers of speeds, an exciter, a model that does not answer this
-
-    Examples
-    --------
-    >>> from leblanc.scene.scene import load_scene
-    >>> answers = answer_scenes([load_scene("examples/horizontal_rig.toml")] * 3)
-    >>> answers.amplitude.shape
-    (3, 201)
-    """
+    """Outputs of `run` of several scenes, equal to those of each one alone to rounding."""
     counts = {scene.speeds.count for scene in scenes}
     if len(counts) != 1:
         raise InputError("scenes", sorted(counts), "at least one, all with one number of speeds")

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from leblanc.results.models.comparison import Comparison, ModelAnswer
 from leblanc.scene.scene import LIQUID_MODELS, WITHOUT_CHAMBERS, Scene, require_chambers, require_no_balls
 from leblanc.studies.held.holding import HERE, Holding
-from leblanc.studies.run import run_scene
+from leblanc.studies.run.study import run_scene
 from meshes.errors import InputError
 
 FIELD = "--models"
@@ -20,26 +20,7 @@ def compare_models(scene: Scene, models: Sequence[str], holding: Holding = HERE)
     A model that does not answer the scene is an entry with the reason. The processor time is that of this
     process and of its workers, and includes libraries that a model alone needs and that are loaded for it.
 
-    Parameters
-    ----------
-    scene : the machine; its own liquid model does not count
-    models : names as in `model.liquid`, by rising exactness: differences are taken from the last that answers
-    holding : on how many cores waves are held in time; what other processes cost counts as well
-
-    Returns
-    -------
-    The answers side by side
-
-    Raises
-    ------
-    InputError : a name that is unknown or stands twice, no model that answers, an exciter
-
-    Examples
-    --------
-    >>> from leblanc.scene.examples import example
-    >>> found = compare_models(example("horizontal_rig"), ["kdv", "linear", "statics"])
-    >>> [answer.answered for answer in found.answers], found.reference
-    ([True, True, True], 'statics')
+    Models by rising exactness: differences are taken from the last that answers.
     """
     _check(scene, models)
     found, refusals = [], []

@@ -30,12 +30,7 @@ from solvers.runup.runup import RunupHistory, RunupNumerics
 
 
 def planned(scene: Scene) -> Runup | Programme:
-    """The run-up or the programme of a scene.
-
-    Raises
-    ------
-    InputError : it has none, or is of a kind whose motion in time is another's
-    """
+    """The run-up or the programme of a scene."""
     if isinstance(scene.rotor, MagneticRotor):
         missing = "" if scene.rotor.trial is not None else ", once the scene has that table"
         allowed = (
@@ -54,13 +49,7 @@ def planned(scene: Scene) -> Runup | Programme:
 
 
 def drive_of(plan: Runup | Programme, rotor: AnyRotor | None = None) -> Drive:
-    """Ramp or motor of a run-up, or the stages of a programme.
-
-    Parameters
-    ----------
-    plan : of a scene
-    rotor : of the scene, whose moment of inertia a coasting drum has where the programme names none
-    """
+    """Ramp or motor of a run-up, or the stages of a programme."""
     if isinstance(plan, Programme):
         own = None if rotor is None else polar_inertia_of(rotor)
         inertia = own or None if plan.inertia is None else plan.inertia
@@ -102,12 +91,7 @@ def numerics_of(
 
 
 def rotor_in_time(scene: Scene) -> RotorSystem:
-    """The dry rotor of a scene with what leaves of its unbalances.
-
-    Parameters
-    ----------
-    scene : the machine
-    """
+    """The dry rotor of a scene with what leaves of its unbalances."""
     system, sizes, found = dry_rotor(scene).system(), unbalances_of(scene.rotor), []
     for k, sheds in enumerate(sheds_of(scene.rotor)):
         if sheds is None:
@@ -127,15 +111,7 @@ def water_mass(scene: Scene, part: int, mass: float) -> tuple[Array, float]:
     It goes round at the radius at which it makes its share of the unbalance, in the plane of that; over a
     turn it counts as a mass on the axis [theory: coupling, eq. 17].
 
-    Parameters
-    ----------
-    scene : the machine
-    part : number of the unbalance
-    mass : of the water, kg
-
-    Returns
-    -------
-    kg and kg m^2, shape (n, n); kg m^2
+    kg and kg m^2, shape (n, n); kg m^2.
     """
     rotor = dry_rotor(scene)
     frame, sheds = frame_of(rotor, scene.rotor.axis == "vertical"), sheds_of(scene.rotor)[part]
@@ -146,13 +122,7 @@ def water_mass(scene: Scene, part: int, mass: float) -> tuple[Array, float]:
 
 
 def unbalance_left(scene: Scene, history: RunupHistory) -> Array | None:
-    """Sizes of all unbalances over what they were at first, shape (k,); None where none of them leaves.
-
-    Parameters
-    ----------
-    scene : the machine
-    history : of its run-up
-    """
+    """Sizes of all unbalances over what they were at first, shape (k,); None where none of them leaves."""
     sizes = unbalances_of(scene.rotor)
     pairs = zip(sizes, sheds_of(scene.rotor), strict=True)
     leaving = np.array([size * sheds.share for size, sheds in pairs if sheds is not None])
@@ -164,15 +134,7 @@ def unbalance_left(scene: Scene, history: RunupHistory) -> Array | None:
 def programme_notes(
     scene: Scene, history: RunupHistory, drive: Drive, passages: Sequence[Passage]
 ) -> tuple[Note, ...]:
-    """What was assumed of a spin programme, and which of its steps did not come to their speeds.
-
-    Parameters
-    ----------
-    scene : the machine
-    history : of its programme
-    drive : that it is
-    passages : steps that were reached
-    """
+    """What was assumed of a spin programme, and which of its steps did not come to their speeds."""
     plan = scene.programme
     if plan is None or not isinstance(drive, programme.Programme):
         return ()

@@ -39,7 +39,7 @@ from leblanc.studies.models.choose import (
 )
 from leblanc.studies.models.liquid import synchronous_model
 from leblanc.studies.races.numbers import ball_numbers
-from leblanc.studies.run import rest_modes
+from leblanc.studies.run.study import rest_modes
 from meshes.errors import InputError
 from solvers.cycles.estimate import largest_estimate
 from solvers.rotor.jeffcott import Jeffcott
@@ -50,12 +50,7 @@ from solvers.whirl.growth import asynchronous_growth
 
 
 def explain_scene(scene: Scene) -> Explanation:
-    """Dimensionless numbers of a scene and the model that each speed takes.
-
-    Raises
-    ------
-    InputError : the scene names a liquid model that does not know its chambers
-    """
+    """Dimensionless numbers of a scene and the model that each speed takes."""
     scene = scene.as_read()
     machine = prepare(scene, free=True)
     gravity, (choice,) = machine.axial_gravity, choose_all([machine])
@@ -104,16 +99,7 @@ def explain_scene(scene: Scene) -> Explanation:
 
 
 def explain_balls(scene: Scene) -> BallExplanation:
-    """Numbers of a scene with balls, beside those of the same scene without.
-
-    Parameters
-    ----------
-    scene : with races
-
-    Raises
-    ------
-    InputError : no race, or as for the scene without them
-    """
+    """Numbers of a scene with balls, beside those of the same scene without."""
     if not scene.balls:
         raise InputError("chambers", len(scene.chambers), "with one of kind balls for this")
     machine = replace(explain_scene(scene.without_balls()), digest=scene.digest, runup=runup_outlook(scene))

@@ -76,24 +76,9 @@ def fit_scene(
 ) -> FitResult:
     """Values of a scene that bring its answer closest to what was measured [theory: fit, eq. 1-13].
 
-    Parameters
-    ----------
-    scene : the machine; its values are the first guess
-    measurement : of the steady response over speed, of the scene's run-up over time, or of amplitude at its
-        last speed and largest amplitude over liquid added
-    unknown : paths of the unknowns in the scene; "A=B" ties B to A
-    starts : searches at least, the first from the scene's values; more follow until the best values have been
-        found twice and noise may explain what they leave
-    seed : of the others
-    scale : "given"; "free": that of the measured lengths is not known, one factor for all of them is found as
-        well; "each": one for every quantity
-    progress : called with the share of the starts that is done
-    noise : "estimate", "3 %" of each reading, or an error such as "0.1 mm"
-    file : of the scene, whose units the values are shown in
-
-    Raises
-    ------
-    InputError : no unknown, one that is no number above 0 in the scene, fewer points than unknowns
+    The scene's values are the first guess; "A=B" ties B to A. After at least `starts` searches more follow
+    until the best values have been found twice and noise may explain what they leave. Scale "free" finds one
+    factor for all measured lengths, "each" one for every quantity; values are shown in the units of `file`.
     """
     if measurement.over != "time":
         require_no_balls(scene, f"a fit over {measurement.over}; with balls it takes a run-up over time")

@@ -68,22 +68,8 @@ def answer_layer(
 ) -> LayerResult:
     """Answer of the liquid in one chamber to a circular whirl of its axis.
 
-    Parameters
-    ----------
-    fill : chamber and liquid, with some liquid in it
-    speed : spin speed Omega, rad/s
-    whirl_speed : omega_w in space, rad/s, not 0; negative against the spin; without an amplitude under
-        gravity nothing whirls, and the spin takes its place
-    whirl_amplitude : A, m; without any, statics, linear theory and elements give the limit of the force
-        ratio, the others no force
-    model : of the liquid, with its friction and resolution, as by `leblanc.studies.models.liquid.wave_model`;
-        or what stands for the cheapest that is good enough
-    gravity : across the axis, m/s^2; for the linear and the long-wave model
-    progress : called with the share of the longest time that is done, by models that go through time
-
-    Raises
-    ------
-    InputError : a value out of its range, or one that the model does not serve
+    Without an amplitude statics, linear theory and elements give the limit of the force ratio; under gravity
+    across the axis nothing whirls then, and the spin takes the whirl's place.
     """
     require_positive("--speed", speed)
     require_not_negative("--whirl-amplitude", whirl_amplitude)
@@ -173,20 +159,7 @@ def _exact(wave: PotentialWave) -> ExactWave:
 def free_wave(
     fill: Fill, speed: float, crest: float, crests: int, model: WaveModel | AutoWave
 ) -> FreeWaveResult:
-    """The wave that runs round the drum by itself with crests of a given height.
-
-    Parameters
-    ----------
-    fill : chamber and liquid, with some liquid in it
-    speed : spin speed Omega, rad/s
-    crest : depth at the crest over the mean depth, above 1
-    crests : round the drum
-    model : linear theory or the exact wave, for which auto stands
-
-    Raises
-    ------
-    InputError : a value out of its range, another model
-    """
+    """The wave that runs round the drum by itself with crests of a given height."""
     require_positive("--speed", speed)
     require_positive("--volume", fill.volume)
     with as_options():
@@ -289,18 +262,7 @@ def layer_history(
     gravity: float = 0.0,
     progress: Progress = None,
 ) -> LayerPeriodsResult:
-    """Layer from rest in the drum, whirl period by whirl period; the parameters are `answer_layer`'s.
-
-    Parameters
-    ----------
-    duration : time answered, s
-    ramp : time over which the whirl amplitude grows, s
-    progress : called with the share of the time that is done
-
-    Raises
-    ------
-    InputError : a value out of its range, a model other than the long waves and the exact one
-    """
+    """Layer from rest in the drum, whirl period by whirl period, its whirl growing over the ramp, s."""
     whirl = _driven(Whirl(speed, whirl_speed, whirl_amplitude, ramp, gravity))
     choice = _in_time(model, fill, whirl)
     model = choice.model
@@ -355,13 +317,7 @@ def layer_film(
     Long waves start from rest and run for six whirl periods unless a duration is given, exact ones where one
     is given; other waves are steady in the frame of the deflection and run round the drum for two.
 
-    Returns
-    -------
-    Walls and speeds with the wave at the end, and the wave over time
-
-    Raises
-    ------
-    InputError : a value out of its range
+    Walls and speeds with the wave at the end, and the wave over time.
     """
     whirl = _driven(Whirl(speed, whirl_speed, whirl_amplitude, ramp, gravity))
     if isinstance(model, AutoWave):
@@ -379,12 +335,7 @@ def layer_film(
 
 
 def free_film(result: FreeWaveResult) -> tuple[Wave, WaveFrames]:
-    """A free wave in the drum frame for a film, twice round the drum.
-
-    Parameters
-    ----------
-    result : with its profile
-    """
+    """A free wave in the drum frame for a film, twice round the drum."""
     whirl = Whirl(result.case.speed, result.wave().whirl_speed, 0.0)
     frames = steady_film(result, whirl, 2.0 * whirl.period)
     # What the arrow points to is the crest: no whirl deflects the drum.
@@ -411,14 +362,7 @@ def _film_from_rest(fill: Fill, whirl: Whirl, model: WaveModel, duration: float)
 
 
 def steady_film(answer: LayerResult | FreeWaveResult, whirl: Whirl, duration: float) -> WaveFrames:
-    """Pictures of a wave that is steady in the frame of the deflection, as it runs round the drum.
-
-    Parameters
-    ----------
-    answer : with its profile
-    whirl : that it answers
-    duration : s
-    """
+    """Pictures of a wave that is steady in the frame of the deflection, as it runs round the drum."""
     frames = int(np.clip(60.0 * duration / whirl.period, 60, 2000))
     time = duration * np.arange(frames) / frames
     # Angles that crowd at a crest are too far apart for it where it runs to.

@@ -22,17 +22,7 @@ from solvers.runup.runup import RunupHistory
 
 
 def loaded_machine(scene: Scene, fills: Sequence[Fill] | None = None) -> LoadedMachine | None:
-    """The machine of a scene with its cabinet, points and bearings; None where it has none of them.
-
-    Parameters
-    ----------
-    scene : the machine
-    fills : in place of the scene's
-
-    Raises
-    ------
-    InputError : a cabinet that does not stand
-    """
+    """The machine of a scene with its cabinet, points and bearings; None where it has none of them."""
     bearings = scene.rotor.bearings if isinstance(scene.rotor, TubRotor) else ()
     if scene.cabinet is None and not scene.points and not bearings:
         return None
@@ -60,16 +50,9 @@ def loads_over_speed(
 ) -> MachineLoads:
     """Loads of steady motions, each over its turn [theory: loads, eq. 14-16 and 18-19].
 
-    Parameters
-    ----------
-    machine : of a scene
-    friction : of its liquid
-    speed : rad/s, shape (k,)
-    coordinates : complex amplitudes, shape (k, n)
-    asked : which of the speeds are those of the scene
-    held : motions held in time by their speed, whose own turns and heat count there
-    lost : power that is lost besides what supports and liquid take, W, shape (k,)
-    counts : speeds at which the answer holds, of which the worst is taken; all if None or if it holds at none
+    `asked` are the speeds of the scene; `held` motions held in time, whose own turns and heat count there;
+    `lost` power besides what supports and liquid take, W; `counts` the speeds of which the worst is taken,
+    all if None or none.
     """
     power = steady_power(machine, friction, coordinates, speed) + lost
     worst, states = turn_extremes(machine, coordinates, speed), held or {}
@@ -89,31 +72,13 @@ def loads_over_speed(
 
 
 def steady_power(machine: LoadedMachine, friction: Friction, coordinates: Complex, speed: Array) -> Array:
-    """Power of the motor that holds a steady motion [theory: loads, eq. 16 and 18-19].
-
-    Parameters
-    ----------
-    machine : of a scene
-    friction : of its liquid
-    coordinates : complex amplitudes, shape (k, n)
-    speed : rad/s, shape (k,)
-
-    Returns
-    -------
-    W, shape (k,)
-    """
+    """Power of the motor that holds a steady motion [theory: loads, eq. 16 and 18-19]."""
     supports = damping_power(machine, coordinates, speed)
     return supports + liquid_power(machine, friction, coordinates, speed)
 
 
 def loads_over_time(scene: Scene, machine: LoadedMachine, history: RunupHistory) -> MachineLoads | None:
-    """Loads of a run-up, the worst of each interval; None without a path [theory: loads, eq. 14 and 17].
-
-    Parameters
-    ----------
-    scene, machine : the same machine
-    history : its run-up
-    """
+    """Loads of a run-up, the worst of each interval; None without a path [theory: loads, eq. 14 and 17]."""
     if history.path is None:
         return None
     h, plan = history, scene.runup
@@ -152,12 +117,7 @@ def _coasting(scene: Scene, history: RunupHistory) -> Flags:
 
 
 def spinning_inertia(scene: Scene) -> float:
-    """Moment of inertia of what spins without the liquid, kg m^2; 0 where the scene has none.
-
-    Parameters
-    ----------
-    scene : the machine
-    """
+    """Moment of inertia of what spins without the liquid, kg m^2; 0 where the scene has none."""
     rotor = scene.rotor
     if scene.programme is not None and scene.programme.inertia is not None:
         return scene.programme.inertia

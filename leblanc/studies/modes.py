@@ -44,12 +44,7 @@ _MOST_SEGMENTS = 1200
 
 @dataclass(frozen=True)
 class Resolution:
-    """Mesh of the liquid.
-
-    Raises
-    ------
-    InputError : a number out of its range
-    """
+    """Mesh of the liquid."""
 
     segments: int = 96  #: cells around and across, at least
     layers: int = 6
@@ -78,14 +73,7 @@ class SectionSource:
 def ring_sections(
     radius: float, surface_radius: float, baffles: Baffles | None, fineness: Resolution
 ) -> list[LiquidSection]:
-    """The liquid in a round chamber on a mesh and, before it, on one with cells twice as large.
-
-    Parameters
-    ----------
-    radius, surface_radius : R and a, m
-    baffles : None without any
-    fineness : of the finer mesh
-    """
+    """The liquid in a round chamber on a mesh and, before it, on one with cells twice as large."""
     from meshes.rings.quadrilaterals import ring
 
     # In a deep layer waves with many crests keep to the surface.
@@ -103,19 +91,7 @@ def ring_sections(
 def round_sections(
     chamber: Chamber, volume: float, liquid: Liquid, fineness: Resolution
 ) -> tuple[list[LiquidSection], list[Note], str]:
-    """Coarser and finer mesh of the liquid in a round chamber, notes, and a description of the chamber.
-
-    Parameters
-    ----------
-    chamber : with its baffles
-    volume : of the liquid, m^3
-    liquid : what it is
-    fineness : of the finer mesh
-
-    Raises
-    ------
-    InputError : more liquid than the chamber holds, or too little for a layer
-    """
+    """Coarser and finer mesh of the liquid in a round chamber, notes, and a description of the chamber."""
     fill = Fill(chamber, liquid, volume)
     a, radius = fill.surface_radius, chamber.radius
     if a <= 0.01 * radius or a <= chamber.inner_radius or fill.depth < 1e-6 * radius:
@@ -137,19 +113,7 @@ def round_sections(
 def section_of_file(
     chamber: Chamber, volume: float, fineness: Resolution, source: SectionSource
 ) -> tuple[list[LiquidSection], list[Note], str]:
-    """Coarser and finer mesh of the liquid in a chamber from a file, notes, and a description of the section.
-
-    Parameters
-    ----------
-    chamber : its height counts; its radius is compared
-    volume : of the liquid, m^3
-    fineness : longest side at the surface, as cells around
-    source : the file
-
-    Raises
-    ------
-    InputError : baffles besides those of the file, a file that cannot be used, more liquid than it holds
-    """
+    """Coarser and finer mesh of the liquid in a chamber from a file, notes, and the section described."""
     from meshes.findings import mesh_findings
     from meshes.refine.bisection import halved, straightened
     from meshes.refine.waterline import liquid_outside, surface_radius_of
@@ -192,23 +156,7 @@ def answer_modes(
     source: SectionSource | None = None,
     progress: Callable[[str], object] = lambda _: None,
 ) -> ModesResult:
-    """Modes of the liquid in one chamber.
-
-    Parameters
-    ----------
-    chamber : a round one, with baffles or without; with `source` its height and, for comparison, its radius
-    volume : of the liquid, m^3
-    liquid : for its viscosity
-    speed : spin, rad/s
-    count : how many modes
-    resolution : of the mesh; with `source` the longest side at the surface, as cells around
-    source : file with the section of the chamber
-    progress : called with what is done next
-
-    Raises
-    ------
-    InputError : a value out of its range
-    """
+    """Modes of the liquid in one chamber."""
     begin = time.perf_counter()
     require_positive("--speed", speed)
     require_positive("--volume", volume)

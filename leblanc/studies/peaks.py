@@ -72,18 +72,9 @@ def responses_between(
 ) -> list[Response]:
     """Responses of machines at as many further speeds as it takes to find their largest amplitudes.
 
-    Parameters
-    ----------
-    machines : all of them planar, or all of one rotor with its chambers and other volumes
-    answers : of each, at its own speeds
-    dry : find the largest amplitudes without liquid as well
-    drawn : show the shape of the resonances, as a figure needs it
-
-    Returns
-    -------
-    Response of each between its first and its last speed, by rising speed; at no speed at all where it has
-    just one. Deflections are infinite where they have no bound. The liquid model is chosen at every speed as
-    at the others. Where the answer holds at some speeds alone, the largest amplitude of those is found too
+    Between the first and the last speed of each, by rising speed; at none where it has just one. Deflections
+    are infinite without a bound. Where the answer holds at some speeds alone, the largest amplitude of those
+    is found too. `drawn`: show the shape of the resonances.
     """
     nowhere = np.zeros(0, dtype=np.intp)
     if all(machine.speed[-1] <= machine.speed[0] for machine in machines):

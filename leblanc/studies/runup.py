@@ -61,50 +61,26 @@ MOST_FRAMES = 2000
 
 
 def require_layers(scene: Scene) -> None:
-    """A film shows the layers cell by cell.
-
-    Raises
-    ------
-    InputError : the scene's liquid model has no cells
-    """
+    """A film shows the layers cell by cell."""
     if scene.model.liquid == "linear":
         raise InputError("model.liquid", "linear", "auto or long_wave for a film")
 
 
 def require_room(scene: Scene) -> None:
-    """Compartments are for long waves.
-
-    Raises
-    ------
-    InputError : linear layers where baffles cut the liquid into compartments
-    """
+    """Compartments are for long waves."""
     if scene.model.liquid == "linear" and any(fill.compartments > 1 for fill in scene.fills):
         text = "auto or long_wave where baffles cut the liquid into compartments"
         raise InputError("model.liquid", "linear", text)
 
 
 def require_frames(frames: int) -> None:
-    """A number of frames that a film can have.
-
-    Raises
-    ------
-    InputError : too few or too many
-    """
+    """A number of frames that a film can have."""
     if not 2 <= frames <= MOST_FRAMES:
         raise InputError("frames", frames, f"from 2 to {MOST_FRAMES}")
 
 
 def runup_frames(history: RunupHistory) -> RunupFrames | None:
-    """The layers that a run-up kept [theory: coupling].
-
-    Parameters
-    ----------
-    history : of a run with snapshots
-
-    Returns
-    -------
-    In the drum frame; None where no snapshots were kept
-    """
+    """The layers that a run-up kept [theory: coupling]."""
     kept = history.snapshots
     if kept is None:
         return None
@@ -123,12 +99,7 @@ def runup_frames(history: RunupHistory) -> RunupFrames | None:
 
 
 def liquid_model(scene: Scene) -> str:
-    """Most exact liquid model that a scene's run-up may take: the one that it names, or long waves.
-
-    Raises
-    ------
-    InputError : the scene names a model that does not go through time
-    """
+    """Most exact liquid model that a scene's run-up may take: the one that it names, or long waves."""
     liquid = scene.model.liquid
     if liquid not in ("auto", *RUNUP_MODELS):
         raise InputError("model.liquid", liquid, "auto, " + " or ".join(RUNUP_MODELS) + " for a run-up")
@@ -142,15 +113,7 @@ def judged(scene: Scene, history: RunupHistory, model: str | None = None) -> tup
     [theory: long_wave, eq. 4], and a linear one must leave the inner wall clear; long waves fill the gap
     there [theory: long_wave, eq. 18].
 
-    Parameters
-    ----------
-    scene : the machine
-    history : its run-up, k times
-    model : of its layers; if None the one that the scene names, or long waves
-
-    Returns
-    -------
-    Truth values, shape (k,), and one note for each reason
+    Truth values, shape (k,), and one note for each reason.
     """
     good = np.ones(history.time.shape, dtype=bool)
     found: list[Note | None] = []
@@ -223,15 +186,6 @@ def chosen_run(
     Linear layers take a twentieth of the time of long waves and are tried first. What they cannot have rules
     them out before: a motor that feels the wave, friction that small waves do not feel, and a tolerance that
     not even the smallest waves are known to meet.
-
-    Parameters
-    ----------
-    scene : the machine
-    drive, gravity, numerics, progress, snapshots, follow : as in `solvers.runup.runup.run_up`
-
-    Raises
-    ------
-    InputError : the scene names a model that does not go through time, or its axis is free to move
     """
     scene = scene.as_read()
     require_supported(scene)
@@ -299,25 +253,9 @@ def runup_scene(
 ) -> RunupResult:
     """Run the machine of a scene through its speeds [theory: coupling].
 
-    Parameters
-    ----------
-    scene : with a table `runup`
-    cells, samples : in place of the scene's
-    check : run once more with half the cells to estimate the error
-    progress : called with the share of the work that is done
-    frames : how many times the layers are kept for a film; not at all if None
-    ensemble : how many times the run is repeated with its unbalance changed in the last digits; 0 leaves out
-        what rounding does
-    seed : of those changes
-    workers : processes that repeat it; this one alone if 1. The answer is the same with any number
-
-    Returns
-    -------
-    RunupResult; with what was reached if the run did not come to its end
-
-    Raises
-    ------
-    InputError : no run-up in the scene, a rotor without linear equations of motion, a value out of its range
+    `check`: once more with half the cells to estimate the error; `frames` times at which the layers are kept
+    for a film; `ensemble` repetitions with the unbalance changed in the last digits, the same with any number
+    of workers. What was reached if the run did not come to its end.
     """
     scene = scene.as_read()
     require_clear(scene, "a run-up, whose waves run in a ring with circular walls", baffles=True)
@@ -390,13 +328,7 @@ def runup_scene(
 
 
 def model_of(scene: Scene, name: str) -> RunupModel:
-    """A liquid model by its name, with the balls of a scene beside it.
-
-    Parameters
-    ----------
-    scene : the machine
-    name : "long_wave" or "linear"
-    """
+    """A liquid model by its name, with the balls of a scene beside it."""
     if not scene.balls:
         return runup_model(name)
     made = couple_linear if name == "linear" else couple
@@ -423,18 +355,7 @@ def _ball_notes(scene: Scene, history: RunupHistory) -> Iterator[Note]:
 def ensemble_tasks(
     scene: Scene, drive: Drive, gravity: float, numerics: RunupNumerics, count: int, seed: int
 ) -> list[EnsembleTask]:
-    """The runs of an ensemble, with long waves until it is known which model is taken.
-
-    Parameters
-    ----------
-    scene : the machine
-    drive, gravity, numerics : of its run-up
-    count, seed : as for `solvers.runup.ensemble.ensemble`; none for a count of 0
-
-    Raises
-    ------
-    InputError : a count or seed out of its range
-    """
+    """The runs of an ensemble, with long waves until it is known which model is taken."""
     if count == 0:
         return []
     system, friction = rotor_in_time(scene), scene.model.friction
@@ -445,16 +366,7 @@ def ensemble_tasks(
 def rounding_spread(
     taken: RunupChoice, tasks: list[EnsembleTask], seed: int, workers: int, progress: Progress = None
 ) -> Spread | None:
-    """The range that rounding leaves a run-up; None where none was asked for or the run did not end.
-
-    Parameters
-    ----------
-    taken : the unchanged run
-    tasks : the changed ones, with the same model
-    seed : of the changes
-    workers : processes; with 1 they are run here
-    progress : called with the share of them that is done
-    """
+    """The range that rounding leaves a run-up; None where none was asked for or the run did not end."""
     if not tasks or not taken.history.converged:
         return None
     members = [member_of(taken.history)]
@@ -483,18 +395,7 @@ def _each(tasks: list[EnsembleTask], workers: int) -> Iterator[Member]:
 def dry_run(
     scene: Scene, history: RunupHistory, drive: Drive, gravity: float, numerics: RunupNumerics
 ) -> RunupHistory | None:
-    """The rotor of a scene on the same way without liquid and balls, to be compared with.
-
-    Parameters
-    ----------
-    scene : the machine
-    history : of its run-up with liquid
-    drive, gravity, numerics : of that run
-
-    Returns
-    -------
-    None where the user has stopped the run with liquid
-    """
+    """The rotor of a scene on the same way without liquid and balls, to be compared with."""
     if history.outcome is Outcome.INTERRUPTED:
         return None
     if history.layer_mass.sum() == 0.0 and not scene.balls:
@@ -581,11 +482,6 @@ def whirl_on_the_way(scene: Scene, bands: Bands | None) -> tuple[float, float] |
     """Estimated amplitude of the largest whirl that grows by itself, m, and its spin speed, rad/s.
 
     None where nothing grows, nothing bounds it, or it is no circle, as with gravity across the axis.
-
-    Parameters
-    ----------
-    scene : the machine
-    bands : of the speeds that were passed, rad/s
     """
     from solvers.cycles.estimate import largest_estimate
 

@@ -52,19 +52,8 @@ def map_scene(
 ) -> WhirlMap:
     """Growth rate and whirl speed of self-excited whirl over the scene's speeds and over volume.
 
-    Parameters
-    ----------
-    scene : the machine; with several chambers their volumes grow by a common factor
-    volumes, speeds : how many of each, at least 2
-    max_volume : in all chambers together, m^3; as much as fits if None
-    friction : in place of the scene's
-    progress : called now and then with the number of volumes done and of all
-    cycles : find how large the whirls of the scene as it stands grow as well
-    found : called with the number of those whirls found so far and the spin speed of the last one, rad/s
-
-    Raises
-    ------
-    InputError : a number out of its range, a range of speeds of no width
+    With several chambers their volumes grow by a common factor; up to what fits where no largest volume is
+    given. `cycles`: find how large the whirls of the scene as it stands grow.
     """
     _check(scene, volumes, speeds)
     law = scene.model.friction if friction is None else friction
@@ -126,13 +115,7 @@ def _limit_cycles(
 
 
 def large_whirl(machine: Prepared, growth: Array) -> tuple[LargeWhirl, tuple[Note, ...]]:
-    """How large the self-excited whirl becomes at each speed of a machine, and what is to be said of it.
-
-    Parameters
-    ----------
-    machine : its friction acts in the liquid
-    growth : of the small whirl that grows most, 1/s, shape (n,)
-    """
+    """How large the self-excited whirl becomes at each speed of a machine, and what is to be said of it."""
     found = _limit_cycles(machine, machine.scene.model.friction, None)
     largest = [_largest_stable(found, speed) for speed in machine.speed.tolist()]
     size = np.array([0.0 if whirl is None else whirl.amplitude for whirl in largest])
@@ -197,16 +180,6 @@ def fills_over_volume(
     """The chambers with rising volumes, from none to the most; their ratios stay.
 
     Chambers without any liquid all the same share it by what they hold.
-
-    Parameters
-    ----------
-    fills : the chambers as the scene fills them
-    count : of volumes
-    max_volume : in all together, m^3; where the first chamber is full if None
-
-    Raises
-    ------
-    InputError : a largest volume that is not positive or does not fit
     """
     capacity = np.array([fill.chamber.capacity for fill in fills])
     parts = np.array([fill.volume for fill in fills])

@@ -22,12 +22,7 @@ _SHOWN = 9  # speeds in the table of angles
 
 
 def closed_form_rows(forms: ClosedForms | None) -> Rows:
-    """What closed forms say, in a line each; label and text.
-
-    Parameters
-    ----------
-    forms : of a scene; None where nobody asked
-    """
+    """What closed forms say, in a line each; label and text."""
     if forms is None:
         return []
     return [
@@ -51,13 +46,7 @@ def _vector(found: VectorModel) -> str:
 
 
 def vector_rows(speed: Array, found: VectorModel) -> list[tuple[str, ...]]:
-    """Angles at some of the speeds, as `HEAD` heads them.
-
-    Parameters
-    ----------
-    speed : of the answer, rad/s, shape (n,)
-    found : its angles
-    """
+    """Angles at some of the speeds, as `HEAD` heads them."""
     picked = sorted({round(k * (speed.size - 1) / (_SHOWN - 1)) for k in range(_SHOWN)})
     return [
         (

@@ -28,7 +28,7 @@ from leblanc.results.explanation import (
 )
 from leblanc.results.models.comparison import Comparison, ModelAnswer
 from leblanc.results.motion.tilting import RestMode
-from leblanc.text.run import amplitude_place, error_words, speeds_words
+from leblanc.studies.run.words import amplitude_place, error_words, speeds_words
 from meshes.arrays import Array
 
 Rows = list[tuple[str, str]]
@@ -139,12 +139,7 @@ def _spin_up_rows(found: SpinUp) -> Rows:
 
 
 def carrying_words(found: BaffleOutlook) -> str:
-    """Torque that the baffles can exert against what the ramp asks.
-
-    Parameters
-    ----------
-    found : of a layer
-    """
+    """Torque that the baffles can exert against what the ramp asks."""
     able = f"{with_unit(found.available, TORQUE)} at {in_rpm(found.speed)}"
     text = f"the ramp asks for {with_unit(found.asked, TORQUE)}, they can {able}"
     if not found.left_behind:
@@ -161,12 +156,7 @@ _SHOWN = 9  # speeds in the table of estimates
 
 
 def estimate_rows(answer: Explanation) -> list[tuple[str, ...]]:
-    """What is expected at some of the speeds, as `ESTIMATES` heads it; none where no gravity lies across.
-
-    Parameters
-    ----------
-    answer : the explanation
-    """
+    """What is expected at some of the speeds, as `ESTIMATES` heads it; none where no gravity lies across."""
     every = answer.estimates
     if not any(each.liquid_ripple != 0.0 for each in every):
         return []
@@ -211,12 +201,7 @@ def _rpm(speed: float) -> str:
 
 
 def comparison_head(found: Comparison) -> tuple[str, ...]:
-    """Headings of the table of models.
-
-    Parameters
-    ----------
-    found : the comparison
-    """
+    """Headings of the table of models."""
     place = next((amplitude_place(result) for result in found.results.values()), "")
     amplitude = f"largest amplitude{f' {place}' if place else ''}, {ZERO_TO_PEAK} ({_unit(found).name})"
     held = ("held states",) if _any_held(found) else ()
@@ -244,12 +229,7 @@ def _unit(found: Comparison) -> Unit:
 
 
 def comparison_rows(found: Comparison) -> list[tuple[str, ...]]:
-    """A row of the table for each model, as `comparison_head` says.
-
-    Parameters
-    ----------
-    found : the comparison
-    """
+    """A row of the table for each model, as `comparison_head` says."""
     return [_comparison_row(found, answer) for answer in found.answers]
 
 
@@ -282,25 +262,14 @@ def _estimate(answer: ModelAnswer) -> str:
 
 
 def held_words(answer: ModelAnswer) -> str:
-    """How many motions held in time are of each kind; none where a model is steady.
-
-    Parameters
-    ----------
-    answer : of a model
-    """
+    """How many motions held in time are of each kind; none where a model is steady."""
     if answer.held is None:
         return "none"
     return ", ".join(f"{count} {kind.replace('_', ' ')}" for kind, count in answer.held.items() if count)
 
 
 def difference(found: Comparison, model: str) -> str:
-    """Largest difference of a model from the reference, per cent.
-
-    Parameters
-    ----------
-    found : the comparison
-    model : one that answers
-    """
+    """Largest difference of a model from the reference, per cent."""
     size = found.largest_difference(model)
     if size is None:
         return NOT_FOUND
@@ -308,22 +277,12 @@ def difference(found: Comparison, model: str) -> str:
 
 
 def refusals(found: Comparison) -> list[str]:
-    """Why models do not answer, a line for each.
-
-    Parameters
-    ----------
-    found : the comparison
-    """
+    """Why models do not answer, a line for each."""
     return [f"{answer.model}: {one_line(answer.reason)}" for answer in found.answers if not answer.answered]
 
 
 def basis(found: Comparison) -> str:
-    """What the differences are, in one sentence.
-
-    Parameters
-    ----------
-    found : the comparison
-    """
+    """What the differences are, in one sentence."""
     return (
         f"Differences are the largest over the speeds, from {found.reference}, as a share of its largest "
         "amplitude.\nEstimates are the largest error that a model knows of itself; in range is the part of "
@@ -332,12 +291,7 @@ def basis(found: Comparison) -> str:
 
 
 def comparison_facts(found: Comparison) -> list[tuple[str, str]]:
-    """Main numbers: label and value.
-
-    Parameters
-    ----------
-    found : the comparison
-    """
+    """Main numbers: label and value."""
     return [
         ("Scene", one_line(found.name)),
         *((answer.model, _fact(found, answer)) for answer in found.answers),
@@ -364,12 +318,7 @@ def _size(answer: ModelAnswer) -> str:
 
 
 def comparison_alt(found: Comparison) -> str:
-    """What the figure shows and the numbers a reader would take from it.
-
-    Parameters
-    ----------
-    found : the comparison
-    """
+    """What the figure shows and the numbers a reader would take from it."""
     peaks = [f"{answer.model} {_size(answer)}" for answer in found.answers if answer.answered]
     below = "; below, their differences" if len(peaks) > 1 else ""
     held = [f"{a.model} held in time: {held_words(a)}" for a in found.answers if a.held]

@@ -11,12 +11,7 @@ HEAD = ("Unknown", "unit", "first guess", "found", "standard error", "of it", "9
 
 
 def fit_rows(result: FitResult) -> list[tuple[str, ...]]:
-    """One line for each unknown, as `HEAD` heads it.
-
-    Parameters
-    ----------
-    result : the fit
-    """
+    """One line for each unknown, as `HEAD` heads it."""
     found: list[tuple[str, ...]] = []
     columns = (result.first.tolist(), result.value.tolist(), result.std.tolist(), result.interval.tolist())
     for k, (path, first, value, std, ends) in enumerate(zip(result.unknown, *columns, strict=True)):
@@ -38,24 +33,14 @@ def summary(result: FitResult) -> list[tuple[str, str]]:
 
 
 def left_words(result: FitResult) -> str:
-    """What is left between measured and fitted.
-
-    Parameters
-    ----------
-    result : the fit
-    """
+    """What is left between measured and fitted."""
     count = sum(part.value.size for part in result.measured)
     left = f"{100.0 * result.residual_rms:.2g} % of the measured size, over {count} values"
     return f"{left}; {'accepted' if result.accepted else 'not accepted'}"
 
 
 def noise_words(result: FitResult) -> str:
-    """Noise that the values are weighted by.
-
-    Parameters
-    ----------
-    result : the fit
-    """
+    """Noise that the values are weighted by."""
     parts = []
     units_of = {part.name: part.unit for part in result.measured}
     for name, size in zip(result.noise.names, result.noise.size, strict=True):

@@ -19,12 +19,7 @@ _SHOWN = 5e-4  # couplings below are printed as 0
 
 
 def answer(result: LayoutResult) -> str:
-    """What the layout gains, in one sentence.
-
-    Parameters
-    ----------
-    result : of the search
-    """
+    """What the layout gains, in one sentence."""
     was, now = (_measured(result, value) for value in (result.baseline, result.value))
     if result.measure == "couplings":
         text = f"The squared couplings of stiffness and damping add up to {now} in place of {was}"
@@ -41,12 +36,7 @@ def _measured(result: LayoutResult, value: float) -> str:
 
 
 def facts(result: LayoutResult) -> list[tuple[str, str]]:
-    """Main numbers: label and value.
-
-    Parameters
-    ----------
-    result : of the search
-    """
+    """Main numbers: label and value."""
     limit = result.constraints["sag"]
     before, after = (
         ", ".join(number(float(rate) / (2.0 * math.pi)) for rate in row) for row in result.frequency
@@ -74,12 +64,7 @@ def _mass(result: LayoutResult) -> str:
 
 
 def frequency_rows(result: LayoutResult) -> Rows:
-    """Natural frequencies at rest by rising frequency, as `FREQUENCIES` heads them.
-
-    Parameters
-    ----------
-    result : of the search
-    """
+    """Natural frequencies at rest by rising frequency, as `FREQUENCIES` heads them."""
     hertz = result.frequency / (2.0 * math.pi)
     return [
         (f"{k + 1}", number(float(after)), number(float(before)))
@@ -88,12 +73,7 @@ def frequency_rows(result: LayoutResult) -> Rows:
 
 
 def remarks(result: LayoutResult) -> list[str]:
-    """What the search assumes, a sentence or two each.
-
-    Parameters
-    ----------
-    result : of the search
-    """
+    """What the search assumes, a sentence or two each."""
     found = [
         "A layout is judged at rest and without liquid: frequencies are those without damping and spin, "
         "which couples alpha and gamma whatever the layout.",
@@ -107,12 +87,7 @@ def remarks(result: LayoutResult) -> list[str]:
 
 
 def mount_rows(result: LayoutResult) -> Rows:
-    """Places and directions, a row for each mount, as `MOUNTS` heads them.
-
-    Parameters
-    ----------
-    result : of the search
-    """
+    """Places and directions, a row for each mount, as `MOUNTS` heads them."""
     return [_mount(mount) for mount in result.mounts]
 
 
@@ -128,12 +103,7 @@ def _mount(mount: MountPlace) -> tuple[str, ...]:
 
 
 def coupling_rows(result: LayoutResult) -> Rows:
-    """Couplings that there are or were, as `PAIR_HEAD` heads them.
-
-    Parameters
-    ----------
-    result : of the search
-    """
+    """Couplings that there are or were, as `PAIR_HEAD` heads them."""
     tables = result.couplings["stiffness"], result.couplings["damping"]
     rows = []
     for k, pair in enumerate(pair_names()):

@@ -26,12 +26,7 @@ class LoadRow:
 
 
 def load_rows(loads: MachineLoads) -> list[LoadRow]:
-    """The worst of each quantity, what matters most first.
-
-    Parameters
-    ----------
-    loads : of a machine
-    """
+    """The worst of each quantity, what matters most first."""
     found = [_clearance(loads, name, worst) for name, worst in loads.clearances.items()]
     if loads.stands:
         walking = loads.walking
@@ -118,12 +113,7 @@ def _sized(value: float, unit: str) -> str:
 
 
 def verdict(loads: MachineLoads) -> str:
-    """Whether the machine stays where it is and whole, in a sentence or two; empty where nothing tells.
-
-    Parameters
-    ----------
-    loads : of a machine
-    """
+    """Whether the machine stays where it is and whole, in a sentence or two; empty where nothing tells."""
     told = []
     if loads.stands and not math.isnan(loads.walking.value):
         left = f"{_percent(loads.walking.value)} of its hold left at {in_rpm(loads.walking.speed)}"
@@ -145,12 +135,7 @@ def verdict(loads: MachineLoads) -> str:
 
 
 def load_table(loads: MachineLoads) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
-    """Head and rows for a terminal.
-
-    Parameters
-    ----------
-    loads : of a machine
-    """
+    """Head and rows for a terminal."""
     time = ("after (s)",) if loads.in_time else ()
     rows = [
         (row.label, row.size, row.speed, *((row.time,) if time else ()), row.remark)

@@ -22,18 +22,13 @@ from leblanc.core.units import (
     with_unit,
 )
 from leblanc.results.optimum import ConditionTable, OptimumCode, OptimumResult
-from leblanc.text.run import amplitude_place, quality_words
+from leblanc.studies.run.words import amplitude_place, quality_words
 
 _DIMENSIONS = {dimension.unit.replace("*", " "): dimension for dimension in (LENGTH, MASS, UNBALANCE)}
 
 
 def describe_optimum(result: OptimumResult) -> list[str]:
-    """The answer, what it keeps to, and the closed forms beside it, line by line.
-
-    Parameters
-    ----------
-    result : the optimum
-    """
+    """The answer, what it keeps to, and the closed forms beside it, line by line."""
     return [
         *_answer(result),
         *_constraints(result),
@@ -64,12 +59,7 @@ def summary(result: OptimumResult) -> list[tuple[str, str]]:
 
 
 def answer(result: OptimumResult) -> str:
-    """The best volumes and what they give, in one sentence.
-
-    Parameters
-    ----------
-    result : the optimum
-    """
+    """The best volumes and what they give, in one sentence."""
     volumes = " and ".join(with_unit(volume, VOLUME) for volume in result.volume.tolist())
     liquid = f"{volumes}, {with_unit(result.mass, MASS)}" if result.volume.any() else "no liquid"
     kept = "" if result.feasible else f" ({result.feasibility.value})"
@@ -84,12 +74,7 @@ def answer(result: OptimumResult) -> str:
 
 
 def amplitude_plane(result: OptimumResult) -> str:
-    """Plane of the amplitudes, in words; empty for a rotor that moves in one plane.
-
-    Parameters
-    ----------
-    result : the optimum
-    """
+    """Plane of the amplitudes, in words; empty for a rotor that moves in one plane."""
     return "" if result.response is None else amplitude_place(result.response)
 
 
@@ -162,12 +147,7 @@ LISTED = 7  # temperatures, or unbalances, of a table on the terminal
 
 
 def over_conditions(table: ConditionTable) -> tuple[list[str], list[list[str]]]:
-    """Amplitudes, mm, over some of the temperatures and unbalances: head and rows.
-
-    Parameters
-    ----------
-    table : of an optimum for the objective robust
-    """
+    """Amplitudes, mm, over some of the temperatures and unbalances: head and rows."""
     length = unit_for(LENGTH, *table.amplitude.ravel().tolist(), *table.amplitude_dry.tolist())
     loads = [load_words(size) for size in table.unbalance.tolist()]
     dry = [length.number(size) for size in table.amplitude_dry.tolist()]
@@ -204,12 +184,7 @@ def worst_condition(table: ConditionTable) -> str:
 
 
 def load_words(sizes: list[float]) -> str:
-    """Unbalances in one unit.
-
-    Parameters
-    ----------
-    sizes : kg m
-    """
+    """Unbalances in one unit."""
     unit = unit_for(UNBALANCE, *sizes)
     return f"{', '.join(map(unit.number, sizes))} {unit.name}"
 

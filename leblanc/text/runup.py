@@ -9,20 +9,12 @@ import numpy as np
 from leblanc.core.notes import percent
 from leblanc.core.units import LENGTH, TIME, UNBALANCE, amplitudes_are, in_rpm, number, with_unit
 from leblanc.results.notes.runup import SETTLED
-from leblanc.results.response import peak
 from leblanc.results.runup import Moment, RunupResult
+from leblanc.studies.run.answer import peak
 
 
 def describe_model(model: str, cells: int, dispersion: bool, bore: str = "none") -> str:
-    """Liquid model of a run-up with its resolution.
-
-    Parameters
-    ----------
-    model : "long_wave" or "linear"
-    cells : round each wall
-    dispersion : of the finite depth
-    bore : what bores leave behind
-    """
+    """Liquid model of a run-up ("long_wave" or "linear") with its resolution and what bores leave behind."""
     if model == "linear":
         return f"exact linear theory in time, steps as of {cells} cells"
     shallow = "with dispersion" if dispersion else "without dispersion"
@@ -39,12 +31,7 @@ def moments(result: RunupResult) -> list[tuple[str, Moment]]:
 
 
 def answer(result: RunupResult) -> str:
-    """The largest amplitude, that of the steady response and that at the end, in one sentence.
-
-    Parameters
-    ----------
-    result : the run-up
-    """
+    """The largest amplitude, that of the steady response and that at the end, in one sentence."""
     first, *rest = [moment for _, moment in moments(result)]
     dry = largest_dry(result)
     steady, highest = "", None if result.steady is None else peak(result.steady.deflection)
@@ -78,12 +65,7 @@ def _fair(result: RunupResult) -> str:
 
 
 def peak_known(result: RunupResult) -> str:
-    """Error of the run's largest amplitude in words, with its cause where it is large; or nothing.
-
-    Parameters
-    ----------
-    result : the run-up
-    """
+    """Error of the run's largest amplitude in words, with its cause where it is large; or nothing."""
     parts = {name: size for name, size in result.peak_error.items() if not math.isnan(size)}
     largest = float(result.history.largest.max())
     if not parts or largest == 0.0:
@@ -107,12 +89,7 @@ def _size_and_speed(moment: Moment) -> str:
 
 
 def answer_rows(result: RunupResult) -> list[tuple[str, str]]:
-    """The largest amplitudes and that at the end: label and value.
-
-    Parameters
-    ----------
-    result : the run-up
-    """
+    """The largest amplitudes and that at the end: label and value."""
     rows = [
         (label, f"{_amplitude(result, moment)}, after {with_unit(moment.time, TIME)}")
         for label, moment in moments(result)
@@ -131,12 +108,7 @@ def answer_rows(result: RunupResult) -> list[tuple[str, str]]:
 
 
 def passage_rows(result: RunupResult) -> list[tuple[str, str]]:
-    """The largest amplitude of each step of a programme: label and value; none of a run-up.
-
-    Parameters
-    ----------
-    result : the run-up
-    """
+    """The largest amplitude of each step of a programme: label and value; none of a run-up."""
     rows = []
     for passage in result.passages:
         moment = Moment(passage.amplitude, passage.speed, passage.time)
@@ -149,12 +121,7 @@ def passage_rows(result: RunupResult) -> list[tuple[str, str]]:
 
 
 def ball_rows(result: RunupResult) -> list[tuple[str, str]]:
-    """What the balls do at the end: label and value; nothing without balls.
-
-    Parameters
-    ----------
-    result : the run-up
-    """
+    """What the balls do at the end: label and value; nothing without balls."""
     if not result.races:
         return []
     behind = result.speed[-1] - result.ball_speed[-1]
@@ -189,12 +156,7 @@ def largest(result: RunupResult) -> str:
 
 
 def largest_dry(result: RunupResult) -> str:
-    """The largest amplitude on the way up without liquid, as it follows that with liquid; or nothing.
-
-    Parameters
-    ----------
-    result : the run-up
-    """
+    """The largest amplitude on the way up without liquid, as it follows that with liquid; or nothing."""
     peak = result.peak_dry
     if math.isnan(peak["amplitude"]) or result.bare:
         return ""

@@ -10,12 +10,7 @@ _SHARED = ("peak_amplitude", "last_amplitude", "peak_growth")  # whose sensitivi
 
 
 def lines(result: SweepResult) -> list[str]:
-    """Statistics and sensitivities for a terminal.
-
-    Parameters
-    ----------
-    result : the sweep
-    """
+    """Statistics and sensitivities for a terminal."""
     found = [f"{'':24}{'mean':>12}{'deviation':>12}{'5 %':>12}{'50 %':>12}{'95 %':>12}  unit"]
     for name, values in result.single.items():
         numbers = [
@@ -56,12 +51,7 @@ def _shares(result: SweepResult) -> list[str]:
 
 
 def summary(result: SweepResult) -> list[tuple[str, str]]:
-    """Main numbers: label and value.
-
-    Parameters
-    ----------
-    result : the sweep
-    """
+    """Main numbers: label and value."""
     rows = [
         ("Scene", one_line(result.scene)),
         ("Samples done", f"{result.done} of {result.samples}, {result.method}, seed {result.seed}"),
@@ -77,13 +67,7 @@ def summary(result: SweepResult) -> list[tuple[str, str]]:
 
 
 def spread(result: SweepResult, name: str) -> str:
-    """Median of an amplitude and the range of nine samples in ten.
-
-    Parameters
-    ----------
-    result : the sweep
-    name : of the output
-    """
+    """Median of an amplitude and the range of nine samples in ten."""
     sizes = [float(size) for size in result.single[name].quantiles[0, [0, 2, 4]]]
     unit = unit_for(LENGTH, *sizes)
     low, middle, high = map(unit.number, sizes)
@@ -91,12 +75,7 @@ def spread(result: SweepResult, name: str) -> str:
 
 
 def alt(result: SweepResult) -> str:
-    """What the figure shows and the numbers a reader would take from it.
-
-    Parameters
-    ----------
-    result : the sweep
-    """
+    """What the figure shows and the numbers a reader would take from it."""
     if result.speed is not None and result.speed.size > 1:
         what = "Median and ranges of the amplitude over speed; largest amplitude"
         return f"{what}: {spread(result, 'peak_amplitude')}."

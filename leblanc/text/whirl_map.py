@@ -16,12 +16,7 @@ MOST_BANDS = 4  # listed one by one
 
 
 def answer(found: WhirlMap) -> str:
-    """Where a whirl grows, in one sentence.
-
-    Parameters
-    ----------
-    found : the map
-    """
+    """Where a whirl grows, in one sentence."""
     values = dict(facts(found))
     if not (found.growth > 0.0).any():
         if found.not_known == found.growth.size:
@@ -57,12 +52,7 @@ def _within(found: WhirlMap) -> list[dict[str, Any]]:
 
 
 def cycle_facts(found: WhirlMap) -> list[tuple[str, str]]:
-    """What the limit cycles say in numbers: label and value; nothing where there are none.
-
-    Parameters
-    ----------
-    found : the map
-    """
+    """What the limit cycles say in numbers: label and value; nothing where there are none."""
     rows = _within(found)
     if not rows:
         return []
@@ -95,12 +85,7 @@ def band_words(bands: Sequence[tuple[float, float]]) -> str:
 
 
 def facts(found: WhirlMap) -> list[tuple[str, str]]:
-    """What the map says in numbers: label and value.
-
-    Parameters
-    ----------
-    found : the map
-    """
+    """What the map says in numbers: label and value."""
     growth, size = found.growth, found.growth.size
     unstable = growth > 0.0
     fastest, turning = "none grows", "none grows"

@@ -28,12 +28,7 @@ def with_balls(
 ) -> Picture:
     """The picture with the balls of each race as spheres.
 
-    Parameters
-    ----------
-    picture : without them
-    stage, instant : what is fixed and what moves
-    races : as drawn
-    angle : of each ball from the zero mark of the drum, rad, shape (N,)
+    `angle` of each ball from the zero mark of the drum, rad, shape (N,).
     """
     pieces: list[Piece] = []
     labels: list[Label] = []
@@ -50,12 +45,7 @@ def with_balls(
 
 
 def stage_with_balls(view: BallView) -> Stage:
-    """What is fixed in pictures of a machine with balls.
-
-    Parameters
-    ----------
-    view : the machine
-    """
+    """What is fixed in pictures of a machine with balls."""
     size = np.nan_to_num(np.abs(view.deflection))
     return Stage(
         fills=view.fills,
@@ -69,14 +59,9 @@ def stage_with_balls(view: BallView) -> Stage:
 
 
 def ball_still(view: BallView, index: int, turn: float = 0.0, said: str = "") -> Picture:
-    """Picture of a machine with balls at one of its speeds.
+    """Picture of a machine with balls at one of its speeds, the drum turned by `turn`, rad.
 
-    Parameters
-    ----------
-    view : the machine
-    index : of the speed
-    turn : of the drum, rad
-    said : sentence of a film about it, in place of that of a still
+    `said`: sentence of a film about it, in place of that of a still.
     """
     stage = stage_with_balls(view)
     lean = complex(view.lean[index])

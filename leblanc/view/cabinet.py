@@ -16,16 +16,7 @@ NAMED = 4  # points whose names are written
 
 
 def around(stage: Stage, instant: Instant) -> tuple[list[Piece], list[Piece], list[Label]]:
-    """Cabinet and points.
-
-    Parameters
-    ----------
-    stage, instant : what is fixed and what moves
-
-    Returns
-    -------
-    Pieces that turn with the drum, pieces that do not, and names of some of these
-    """
+    """Cabinet and points: pieces that turn with the drum, pieces that do not, names of some of these."""
     if stage.parts is None:
         return [], [], []
     size = stage.parts.drum.radius * MM
@@ -46,10 +37,6 @@ def corners(stage: Stage) -> Array:
     """Feet of the cabinet and as many corners above them, mm, shape (2, f, 3).
 
     The top is as far above the axis, or above the machine's middle, as the feet are below it.
-
-    Parameters
-    ----------
-    stage : what is fixed
     """
     assert stage.parts is not None
     feet = stage.parts.feet
@@ -64,7 +51,7 @@ def _at(stage: Stage, spot: Spot) -> Array:
 
 
 def _cabinet(stage: Stage) -> list[Piece]:
-    """Its feet, and its edges as lines."""
+    """Feet of the cabinet, and its edges as lines."""
     assert stage.parts is not None
     if not stage.parts.feet:
         return []

@@ -18,12 +18,7 @@ HALF, THICK, BELOW, SPRING, BALL, SPOT = 1.9, 0.18, 1.5, 1.2, 0.22, 0.09
 
 
 def table_picture(table: TableView) -> Picture:
-    """Picture of a table with balls at the moment when balls and unbalance point along the vibration.
-
-    Parameters
-    ----------
-    table : its motion
-    """
+    """Picture of a table with balls at the moment when balls and unbalance point along the vibration."""
     track, factor = table.track_radius, table.factor
     pieces = _table(track) + _rotor(track, table.balls)
     swing, names = _swing(track, factor * (table.slow + table.fast))

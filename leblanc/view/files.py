@@ -1,7 +1,8 @@
 """A picture as a file (PNG, a page that turns it), in a window, or as a page with a slider for the speed.
 
-The page of a slider is rendered here and sent as images by trame, whose one door this is; it needs nothing
-from elsewhere. All speeds of the scene are solved before the page opens; the slider steps through them.
+The page of a slider is rendered here and sent as images by trame, which is imported here alone; it needs
+nothing from elsewhere. All speeds of the scene are solved before the page opens; the slider steps through
+them.
 """
 
 from __future__ import annotations
@@ -61,16 +62,9 @@ html, body, #app { margin: 0; height: 100%; }
 
 
 def write_picture(picture: Picture, path: Path) -> None:
-    """Write a picture as PNG, or as a page that turns it in a browser.
+    """Write a picture as .png, or as .html, a page that turns it in a browser.
 
-    Parameters
-    ----------
-    picture : what to write
-    path : a .png or an .html
-
-    Raises
-    ------
-    InputError : another ending, nothing to draw with, the page's libraries are missing
+    An `InputError` for another ending, without anything to draw with, without the page's libraries.
     """
     kind = require_picture(path)
     plot = plotter(picture)
@@ -85,12 +79,7 @@ def write_picture(picture: Picture, path: Path) -> None:
 
 
 def require_picture(path: Path) -> str:
-    """Ending of a picture's path.
-
-    Raises
-    ------
-    InputError : it is neither .png nor .html
-    """
+    """Ending of a picture's path; an `InputError` if it is neither .png nor .html."""
     kind = path.suffix.lower()
     if kind not in (".png", ".html"):
         raise InputError("--screenshot", str(path), "a file that ends in .png or .html")
@@ -98,16 +87,7 @@ def require_picture(path: Path) -> str:
 
 
 def open_window(picture: Picture) -> None:
-    """Show a picture in a window until the user closes it.
-
-    Parameters
-    ----------
-    picture : what to show
-
-    Raises
-    ------
-    InputError : there is no screen
-    """
+    """Show a picture in a window until the user closes it; an `InputError` without a screen."""
     require_screen()
     plot = plotter(picture, off_screen=False)
     plot.show(title=picture.title)
@@ -116,14 +96,8 @@ def open_window(picture: Picture) -> None:
 def write_html(plot: Plotter, picture: Picture, path: Path) -> None:
     """Write a page that turns the picture in a browser, without a server and without a network.
 
-    Parameters
-    ----------
-    plot, picture : what to write; its texts stand on the page
-    path : an .html; its folder is made if it is missing
-
-    Raises
-    ------
-    InputError : the libraries for it are not installed
+    The page has the picture's texts; its folder is made if it is missing. An `InputError` without its
+    libraries.
     """
     if find_spec("trame_pyvista") is None:
         allowed = "a .png without the extra: pip install leblanc[browser]"
@@ -185,15 +159,10 @@ def frames_of_speeds(
     dry: Sequence[Sequence[bool]],
     speed: float | None = None,
 ) -> Frames:
-    """Pictures of all speeds of a machine.
+    """Pictures of all speeds of a machine, at first the one nearest to `speed`, rad/s; the last if None.
 
-    Parameters
-    ----------
-    motion : the machine
-    scale : common to all pictures
-    liquid : gives it as drawn at a speed, by the index of that, with the common scale or with one that fits
-    dry : the wall of each chamber is dry in part, at each speed
-    speed : the one nearest to it is shown first, rad/s; the last if None
+    `liquid` gives it as drawn at the speed of an index, with the common scale or with one that fits; `dry`:
+    the wall of each chamber is dry in part, at each speed.
     """
     stage = stage_of(motion, scale)
 
@@ -208,12 +177,7 @@ def frames_of_speeds(
 
 
 def require_trame() -> None:
-    """The libraries of the page are installed.
-
-    Raises
-    ------
-    InputError : one of them is not
-    """
+    """Raise an `InputError` where libraries of the page are not installed."""
     for name in ("trame", "trame_vtk"):
         if find_spec(name) is None:
             allowed = "left out without the extra: pip install leblanc[browser]"
@@ -221,19 +185,10 @@ def require_trame() -> None:
 
 
 def serve(name: str, frames: Frames, host: str, port: int, ready: Callable[[str], None]) -> None:
-    """Serve the page until interrupted.
+    """Serve the page until interrupted; port 0 takes a free one.
 
-    Parameters
-    ----------
-    name : of the machine
-    frames : its pictures
-    host, port : where to listen; port 0 takes a free one
-    ready : called with the address, which carries a token, once the page can be opened
-
-    Raises
-    ------
-    InputError : trame is not installed, or there is nothing to draw with
-    OSError : the address cannot be listened at
+    `ready` is called with the address, which carries a token, once the page can be opened. An `InputError`
+    without trame or anything to draw with, an OSError where the address cannot be listened at.
     """
     require_trame()
     plot = plotter(frames.picture(frames.first, False), PAGE_SIZE)

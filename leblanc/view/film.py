@@ -55,18 +55,9 @@ class Film:
 def sweep_film(
     motion: MachineMotion, scale: Scale, liquid: Callable[[int], DrawnLiquid], frames: int = FRAMES
 ) -> Film:
-    """Steady states over the speeds of a machine, evenly chosen.
+    """Steady states over the speeds of a machine, evenly chosen, in at most so many frames.
 
-    Parameters
-    ----------
-    motion : the machine
-    scale : common to all frames
-    liquid : gives it as drawn at a speed, by the index of that
-    frames : how many at most
-
-    Raises
-    ------
-    InputError : too few frames or too many
+    `liquid` gives it as drawn at the speed of an index; `scale` is common to all frames.
     """
     require_frames(frames)
     last = motion.speed.size - 1
@@ -92,17 +83,7 @@ def sweep_film(
 
 
 def ball_film(view: BallView, frames: int = FRAMES) -> Film:
-    """Steady states over the speeds of a machine with balls, evenly chosen.
-
-    Parameters
-    ----------
-    view : the machine at all its speeds
-    frames : how many at most
-
-    Raises
-    ------
-    InputError : too few frames or too many
-    """
+    """Steady states over the speeds of a machine with balls, evenly chosen, in at most so many frames."""
     require_frames(frames)
     speed, amplitude = view.result.speed, view.result.amplitude
     chosen = np.unique(np.linspace(0, speed.size - 1, min(frames, speed.size)).round().astype(int)).tolist()
@@ -125,23 +106,13 @@ def ball_film(view: BallView, frames: int = FRAMES) -> Film:
 
 
 def require_frames(frames: int) -> None:
-    """A number of frames that a film can have.
-
-    Raises
-    ------
-    InputError : too few or too many
-    """
+    """Raise an `InputError` for a number of frames that no film can have."""
     if not 2 <= frames <= MOST_FRAMES:
         raise InputError("--frames", frames, f"from 2 to {MOST_FRAMES}")
 
 
 def runup_film(view: RunupView) -> Film:
-    """A run-up in time, with the layers as they are at each moment.
-
-    Parameters
-    ----------
-    view : the run-up and its layers as drawn
-    """
+    """A run-up in time, with the layers as they are at each moment."""
     stage = Stage(
         fills=view.fills,
         places=view.places,
@@ -206,21 +177,10 @@ def _instant(stage: Stage, view: RunupView, k: int) -> Instant:
 
 
 def write_film(film: Film, path: Path, drawn: Callable[[int, int], None] | None = None) -> int:
-    """Write a film whole or not at all, the same each time.
+    """Write a film whole or not at all, the same each time; the number of its frames.
 
-    Parameters
-    ----------
-    film : its pictures
-    path : a .gif, an .mp4 if there is an ffmpeg, or a folder for one PNG each
-    drawn : called after each frame with the number of frames drawn and of all
-
-    Returns
-    -------
-    Number of frames.
-
-    Raises
-    ------
-    InputError : another kind of file, an .mp4 without an ffmpeg, nothing to draw with
+    `path`: a .gif, an .mp4 if there is an ffmpeg, or a folder for one PNG each. `drawn` is called after each
+    frame with the number of frames drawn and of all.
     """
     kind = require_film(path)
     shown: list[Pixels] = []
@@ -251,12 +211,7 @@ def write_film(film: Film, path: Path, drawn: Callable[[int, int], None] | None 
 
 
 def require_film(path: Path) -> str:
-    """Ending of a film's path, empty for a folder.
-
-    Raises
-    ------
-    InputError : another ending; an .mp4 without an ffmpeg
-    """
+    """Ending of a film's path, empty for a folder; an `InputError` for an .mp4 without an ffmpeg."""
     kind = path.suffix.lower()
     if kind not in (".gif", ".mp4", ""):
         raise InputError(
@@ -329,13 +284,9 @@ def _body_of(mode: ModeView, phase: float, lift: float) -> LiquidBodies:
 
 
 def shape_of(mode: ModeView, phase: float, lift: float) -> LiquidShape | LiquidBodies:
-    """Liquid of a mode at a phase of its oscillation; the area per angle swings, so that the volume stays.
+    """Liquid of a mode at a phase sigma t of its oscillation, rad, with the largest displacement `lift`, m.
 
-    Parameters
-    ----------
-    mode : the oscillation
-    phase : sigma t, rad
-    lift : largest displacement, m
+    The area per angle swings, so that the volume stays.
     """
     if mode.section is not None:
         return _body_of(mode, phase, lift)
@@ -350,13 +301,7 @@ def shape_of(mode: ModeView, phase: float, lift: float) -> LiquidShape | LiquidB
 
 
 def mode_picture(mode: ModeView, phase: float = 0.0) -> Picture:
-    """Picture of a mode at a phase of its oscillation.
-
-    Parameters
-    ----------
-    mode : the oscillation
-    phase : sigma t, rad
-    """
+    """Picture of a mode at a phase sigma t of its oscillation, rad."""
     scale = Scale(depth=mode.depth_factor)
     stage = Stage((mode.fill,), (0.0,), mode.lying, scale, 0.0, zero="", gravity=not mode.lying)
     sense = "with the spin" if mode.frequency > 0.0 else "against the spin"
@@ -386,13 +331,7 @@ def mode_picture(mode: ModeView, phase: float = 0.0) -> Picture:
 
 
 def mode_film(mode: ModeView, frames: int = ROUND) -> Film:
-    """One period of a mode.
-
-    Parameters
-    ----------
-    mode : the oscillation
-    frames : of the period
-    """
+    """One period of a mode in so many frames."""
     sense = 1.0 if mode.frequency > 0.0 else -1.0
     # The phase sigma t runs backwards for a wave against the spin.
     return Film(frames, lambda k: mode_picture(mode, sense * 2.0 * math.pi * k / frames))

@@ -16,13 +16,7 @@ NO_STORE = {"Cache-Control": "no-store", "Referrer-Policy": "no-referrer", "X-Fr
 
 
 def address_of(host: str, port: int, token: str) -> str:
-    """Address that opens the page.
-
-    Parameters
-    ----------
-    host, port : where the server listens
-    token : without which it does not answer
-    """
+    """Address that opens the page; without its token the server does not answer."""
     return f"http://{f'[{host}]' if ':' in host else host}:{port}/?token={token}"
 
 
@@ -32,11 +26,6 @@ def gate(host: str, token: str) -> Any:
     The address carries the token once; from then on the browser has it in a cookie that no script can read. A
     request that names another host, as after a change of what a name means, and one that comes from another
     page are refused even with it.
-
-    Parameters
-    ----------
-    host : where the server listens
-    token : that was printed with its address
     """
     from aiohttp import web
 

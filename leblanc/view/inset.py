@@ -18,13 +18,7 @@ POINT = 0.35  # radius of the moving point over the size of the letters
 
 
 def with_inset(shown: Any, inset: Inset) -> Any:
-    """A frame with its curve in the upper right corner.
-
-    Parameters
-    ----------
-    shown : pixels, shape (height, width, 3)
-    inset : the curve and where on it the frame is
-    """
+    """A frame with its curve in the upper right corner; pixels, shape (height, width, 3)."""
     from PIL import Image
 
     high, wide = shown.shape[:2]
@@ -37,10 +31,7 @@ def with_inset(shown: Any, inset: Inset) -> Any:
 def points_of(inset: Inset, values: Array, size: tuple[int, int], letter: int) -> Array:
     """A curve's points in its picture, pixels from the upper left corner, shape (n, 2).
 
-    Parameters
-    ----------
-    inset, values : the curve, shape (n,)
-    size, letter : of the picture and of its letters, pixels
+    `size` of the picture and of its letters, pixels.
     """
     left, right, top, bottom = _field(len(inset.curves), size, letter)
     span, most = max(float(np.ptp(inset.across)), 1e-300), max(float(values.max()), 1e-300)
@@ -49,12 +40,7 @@ def points_of(inset: Inset, values: Array, size: tuple[int, int], letter: int) -
 
 
 def point_at(inset: Inset, values: Array, size: tuple[int, int], letter: int) -> tuple[float, float]:
-    """Where the moving point stands on a curve, pixels from the upper left corner.
-
-    Parameters
-    ----------
-    inset, values, size, letter : as for `points_of`
-    """
+    """Where the moving point stands on a curve, pixels from the upper left corner; as `points_of`."""
     x, y = points_of(inset, values, size, letter).T
     return float(np.interp(inset.at, inset.across, x)), float(np.interp(inset.at, inset.across, y))
 

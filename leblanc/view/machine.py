@@ -28,17 +28,9 @@ RIBS = np.radians([60.0, 180.0, 300.0])
 
 
 def tube(points: Array, radius: float, sides: int = SIDES) -> tuple[Array, Indices]:
-    """A round bar along a line.
+    """A round bar along a line of n points: points (n * sides, 3) and faces (m, 4).
 
-    Parameters
-    ----------
-    points : of the line, shape (n, 3)
-    radius : in the unit of the points
-    sides : of its section
-
-    Returns
-    -------
-    Points, shape (n * sides, 3), and faces, shape (m, 4)
+    The radius is in the unit of the points.
     """
     along = np.gradient(points, axis=0)
     along /= np.linalg.norm(along, axis=1, keepdims=True)
@@ -59,13 +51,7 @@ def tube(points: Array, radius: float, sides: int = SIDES) -> tuple[Array, Indic
 
 
 def coil(start: Array, end: Array, radius: float) -> Array:
-    """Line of a coil spring between two points, straight at both ends, shape (n, 3).
-
-    Parameters
-    ----------
-    start, end : shape (3,)
-    radius : of the coil
-    """
+    """Line of a coil spring between two points, straight at both ends, shape (n, 3)."""
     along = end - start
     size = float(np.linalg.norm(along))
     way = along / size
@@ -85,13 +71,7 @@ def coil(start: Array, end: Array, radius: float) -> Array:
 
 
 def cylinder(name: str, look: str, start: Array, end: Array, radius: float) -> list[Piece]:
-    """A cylinder with its ends closed.
-
-    Parameters
-    ----------
-    name, look : of its pieces
-    start, end, radius : mm, shape (3,)
-    """
+    """A cylinder with its ends closed, mm."""
     points, faces = tube(np.stack([start, end]), radius, 2 * SIDES)
     count = 2 * SIDES
     caps = []
@@ -104,25 +84,13 @@ def cylinder(name: str, look: str, start: Array, end: Array, radius: float) -> l
 
 
 def spring(name: str, start: Array, end: Array, size: float) -> list[Piece]:
-    """A coil spring.
-
-    Parameters
-    ----------
-    name : of its pieces
-    start, end : mm, shape (3,)
-    size : of the machine, mm
-    """
+    """A coil spring in a machine of a size, mm."""
     points, faces = tube(coil(start, end, COIL * size), WIRE * size)
     return [Piece(name, points, faces, "spring")]
 
 
 def damper(name: str, start: Array, end: Array, size: float) -> list[Piece]:
-    """A cylinder at the end and a rod in it from the start.
-
-    Parameters
-    ----------
-    name, start, end, size : as for `spring`
-    """
+    """A cylinder at the end and a rod in it from the start, in a machine of a size, mm."""
     inside, mouth = start + 0.6 * (end - start), start + 0.42 * (end - start)
     return [
         *cylinder(name, "rod", start, inside, ROD * size),
@@ -131,29 +99,15 @@ def damper(name: str, start: Array, end: Array, size: float) -> list[Piece]:
 
 
 def ground(name: str, end: Array, way: Array, size: float) -> list[Piece]:
-    """A plate where a spring or damper ends, across it.
+    """A plate where a spring or damper ends, across it, in a machine of a size, mm.
 
-    Parameters
-    ----------
-    name : of its piece
-    end : mm, shape (3,)
-    way : unit vector towards the ground, shape (3,)
-    size : of the machine, mm
+    `way`: unit vector towards the ground.
     """
     return cylinder(name, "ground", end, end + 0.03 * size * way, 0.5 * GROUND * size)
 
 
 def machine(stage: Stage, instant: Instant) -> tuple[list[Piece], list[Piece], list[Label]]:
-    """What carries the chambers and what holds them.
-
-    Parameters
-    ----------
-    stage, instant : what is fixed and what moves
-
-    Returns
-    -------
-    Pieces that turn with the drum, pieces that do not, and names of some of these
-    """
+    """Pieces of the machine that turn with the drum, pieces that do not, names of some of these."""
     parts = stage.parts
     if parts is None:
         return [], [], []
@@ -170,13 +124,7 @@ def machine(stage: Stage, instant: Instant) -> tuple[list[Piece], list[Piece], l
 
 
 def moved(stage: Stage, instant: Instant, place: Array | float) -> Complex:
-    """Deflection of the axis as drawn, seen from the drum, m.
-
-    Parameters
-    ----------
-    stage, instant : what is fixed and what moves
-    place : along the axis, m
-    """
+    """Deflection of the axis as drawn at a place along it, seen from the drum, m."""
     first = instant.deflection[0] if instant.deflection else 0j
     middle = stage.places[0] if stage.places else 0.0
     return np.asarray(stage.scale.deflection * (first + instant.lean * (np.asarray(place) - middle)))
@@ -214,19 +162,13 @@ def _struts(stage: Stage, instant: Instant, parts: MachineParts) -> tuple[list[P
 
 
 def ground_end(stage: Stage, strut: Strut) -> Array:
-    """Where a spring or damper stands on the ground, mm, shape (3,).
-
-    Parameters
-    ----------
-    stage : what is fixed
-    strut : the spring or damper
-    """
+    """Where a spring or damper stands on the ground, mm, shape (3,)."""
     plane = np.array([strut.across + strut.length * strut.aside])
     return np.asarray(placed(stage, plane, strut.axial + strut.length * strut.along)[0])
 
 
 def _lug(stage: Stage, instant: Instant, parts: MachineParts, strut: Strut, name: str) -> list[Piece]:
-    """From the housing's wall to a spring or damper that holds it farther out."""
+    """Piece from the housing's wall to a spring or damper that holds it farther out."""
     shell = parts.housing
     if shell is None or abs(strut.across) <= 1.001 * shell.radius:
         return []

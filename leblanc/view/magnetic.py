@@ -9,11 +9,11 @@ import numpy as np
 
 from leblanc.core.notes import one_line
 from leblanc.core.units import LENGTH, MM, in_rpm, number, unit_for, with_unit
-from leblanc.results.drawn.magnetic import MagneticView
-from leblanc.text.magnetic import NAMES
-from leblanc.view.film import Film
+from leblanc.view.film import FRAMES, Film
 from leblanc.view.machine import cylinder
 from leblanc.view.parts import Inset, Label, Picture, Piece, bar_length, circle, line
+from leblanc.wings.magnetic.answer import NAMES
+from leblanc.wings.magnetic.geometry import MagneticView
 from meshes.arrays import Array, Complex, Indices
 
 POLE, HALF, DEEP = math.radians(30.0), 0.2, 0.45  # half angle, half length and depth over the rotor's radius
@@ -21,14 +21,7 @@ _ARC = 13  # points of a pole along its arc
 
 
 def magnetic_picture(view: MagneticView, index: int = 0, last: int | None = None) -> Picture:
-    """Picture of a rotor in magnetic bearings at an instant.
-
-    Parameters
-    ----------
-    view : rotor and path
-    index : of the instant
-    last : up to which instant the path is drawn; all of it if None
-    """
+    """Picture of a rotor in magnetic bearings at an instant, with the path up to the instant `last`."""
     moved = view.path_factor * view.displacement[:, 0::2] + 1j * view.path_factor * view.displacement[:, 1::2]
     ends = 0.5 * view.length * np.array([-1.0, 1.0])
     top, tail = (_placed(view, _axis(view, moved[index], end), end)[0] for end in (ends[1], ends[0]))
@@ -71,14 +64,8 @@ def magnetic_picture(view: MagneticView, index: int = 0, last: int | None = None
     )
 
 
-def magnetic_film(view: MagneticView, frames: int) -> Film:
-    """The trial in time, or a turn of the orbit.
-
-    Parameters
-    ----------
-    view : rotor and path
-    frames : how many
-    """
+def magnetic_film(view: MagneticView, frames: int = FRAMES) -> Film:
+    """The trial in time, or a turn of the orbit, in so many frames."""
     chosen = np.linspace(0, view.time.size - 1, frames).round().astype(int).tolist()
     distance = np.hypot(view.displacement[:, 0::2], view.displacement[:, 1::2]).max(axis=1)
     curve = (f"deflection, up to {with_unit(float(distance.max()), LENGTH)}", distance)

@@ -81,7 +81,7 @@ class Stage:
 
     @property
     def radius(self) -> float:
-        """Of the widest chamber, or of the drum, m."""
+        """Radius of the widest chamber, or of the drum, m."""
         bare = 0.1 if self.parts is None else self.parts.drum.radius
         return max((fill.chamber.radius for fill in self.fills), default=bare)
 
@@ -103,7 +103,7 @@ class Stage:
 
     @property
     def ends(self) -> tuple[float, float]:
-        """Of all chambers along the axis, m."""
+        """Ends of all chambers along the axis, m."""
         halves = [0.5 * fill.chamber.height for fill in self.fills]
         low = min((p - h for p, h in zip(self.places, halves, strict=True)), default=-0.02)
         return low, max((p + h for p, h in zip(self.places, halves, strict=True)), default=0.02)
@@ -123,18 +123,9 @@ class Instant:
 
 
 def placed(stage: Stage, plane: Array | Complex, height: Array | float, along: float = 0.0) -> Array:
-    """Points of the picture from complex places across the axis and heights along it.
+    """Points of the picture, mm, (n, 3), from complex places across the axis and heights along it, m.
 
-    Parameters
-    ----------
-    stage : whether the machine lies
-    plane : complex, m, shape (n,)
-    height : along the axis, m
-    along : added to it, m
-
-    Returns
-    -------
-    mm, shape (n, 3)
+    `along` is added to the heights, m.
     """
     across = np.atleast_1d(np.asarray(plane, dtype=complex))
     axial = np.broadcast_to(np.asarray(height, dtype=float) + along, across.shape)
@@ -160,12 +151,7 @@ NO_CELLS: Indices = np.zeros((0, 2), dtype=np.int64)
 
 
 def axes(stage: Stage, instant: Instant) -> tuple[list[Piece], list[Label]]:
-    """Axis at rest, about which the machine turns, and the drum's own, which the deflection has moved away.
-
-    Parameters
-    ----------
-    stage, instant : what is fixed and what moves
-    """
+    """Axis at rest, about which the machine turns, and the drum's own, away from it by the deflection."""
     low, high = stage.whole
     ends = np.array([low - BELOW * stage.radius, high + ABOVE * stage.radius])
     middle = stage.places[0] if stage.places else 0.0
@@ -186,12 +172,7 @@ def axes(stage: Stage, instant: Instant) -> tuple[list[Piece], list[Label]]:
 
 
 def marks(stage: Stage, instant: Instant) -> tuple[list[Piece], list[Label]]:
-    """The heavy spot on the rim, or the zero mark, which turn with the drum.
-
-    Parameters
-    ----------
-    stage, instant : what is fixed and what moves
-    """
+    """The heavy spot on the rim, or the zero mark, which turn with the drum."""
     if not stage.zero:
         return [], []
     centre, top, _ = _widest(stage, instant)
@@ -205,12 +186,7 @@ def marks(stage: Stage, instant: Instant) -> tuple[list[Piece], list[Label]]:
 
 
 def signs(stage: Stage, instant: Instant) -> tuple[list[Piece], list[Label]]:
-    """Sense of the spin, gravity, scale bar, which stand.
-
-    Parameters
-    ----------
-    stage, instant : what is fixed and what moves
-    """
+    """Sense of the spin, gravity, scale bar, which stand."""
     _, top, bottom = _widest(stage, instant)
     away = max(AWAY * stage.radius + stage.swing, 1.04 * stage.reach)
     # Between the springs and dampers of a standing machine.
@@ -240,14 +216,7 @@ def _widest(stage: Stage, instant: Instant) -> tuple[complex, float, float]:
 
 
 def turned(stage: Stage, points: Array, turn: float) -> Array:
-    """Points turned about the axis at rest, with the spin.
-
-    Parameters
-    ----------
-    stage : whether the machine lies
-    points : mm, shape (n, 3)
-    turn : rad
-    """
+    """Points, mm, (n, 3), turned by an angle of rad about the axis at rest, with the spin."""
     if turn == 0.0:
         return points
     first = 1 if stage.lying else 0
@@ -267,25 +236,14 @@ def _gravity(stage: Stage, bottom: float) -> Array:
 
 
 def bar_length(radius: float) -> float:
-    """Length of the scale bar, m: 1, 2 or 5 of a decade.
-
-    Parameters
-    ----------
-    radius : of the machine, m
-    """
+    """Length of the scale bar of a machine of a radius, m: 1, 2 or 5 of a decade."""
     most = BAR * radius
     decade = 10.0 ** math.floor(math.log10(most))
     return max(step * decade for step in (1.0, 2.0, 5.0) if step * decade <= most * (1.0 + 1e-9))
 
 
 def scale_bar(stage: Stage, height: float) -> Piece:
-    """Bar of a round length beside the machine, across its axis.
-
-    Parameters
-    ----------
-    stage : what is fixed
-    height : where it lies along the axis, m
-    """
+    """Bar of a round length beside the machine, across its axis, at a height along it, m."""
     half = 0.5 * bar_length(stage.radius)
     # Beside what holds a lying machine, in front of a standing one.
     middle = complex(1.5, -1.05) * stage.reach if stage.lying else -1.15j * stage.reach

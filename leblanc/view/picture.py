@@ -1,4 +1,4 @@
-"""Rendering of three-dimensional pictures: the one door of the study to PyVista."""
+"""Rendering of three-dimensional pictures; PyVista is imported here alone."""
 
 from __future__ import annotations
 
@@ -88,23 +88,13 @@ LOOKS = {
 
 
 def require_screen() -> None:
-    """There is a screen to open a window on.
-
-    Raises
-    ------
-    InputError : there is none
-    """
+    """Raise an `InputError` where there is no screen to open a window on."""
     if sys.platform == "linux" and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
         raise InputError("--window", "no display", "left out where there is no screen; a file or --browser")
 
 
 def prepare_off_screen() -> None:
-    """Let VTK draw without a screen, and say what is missing before it crashes.
-
-    Raises
-    ------
-    InputError : no library to draw with
-    """
+    """Let VTK draw without a screen; an `InputError` that says what is missing before it crashes."""
     if sys.platform != "linux" or os.environ.get("DISPLAY"):
         return
     if _loads("libEGL.so.1"):
@@ -126,18 +116,7 @@ def _loads(library: str) -> bool:
 
 @held()
 def plotter(picture: Picture, size: tuple[int, int] = SIZE, off_screen: bool = True) -> Plotter:
-    """PyVista's plotter with the picture in it.
-
-    Parameters
-    ----------
-    picture : what to draw
-    size : pixels
-    off_screen : without a window
-
-    Raises
-    ------
-    InputError : nothing to draw with
-    """
+    """PyVista's plotter with the picture in it, `size` in pixels; an `InputError` if nothing can draw."""
     if off_screen:
         prepare_off_screen()
     import pyvista
@@ -159,10 +138,7 @@ def plotter(picture: Picture, size: tuple[int, int] = SIZE, off_screen: bool = T
 def fill(plot: Plotter, picture: Picture, placed: Layout | None = None) -> None:
     """Put a picture into a plotter in place of what is there; the camera stays.
 
-    Parameters
-    ----------
-    plot, picture : where, what
-    placed : where its names stand; nowhere if None
+    `placed`: where its names stand; without it there are none.
     """
     import pyvista
 
@@ -245,12 +221,7 @@ def _joined(pieces: Sequence[Piece]) -> list[Piece]:
 
 
 def normals(piece: Piece) -> NDArray[np.float64]:
-    """Normal of a smooth face at each of its points, weighted by area, shape (n, 3).
-
-    Parameters
-    ----------
-    piece : of faces
-    """
+    """Normal of a smooth face at each of its points, weighted by area, shape (n, 3)."""
     corners = piece.points[piece.cells]
     across = np.cross(corners[:, 2] - corners[:, 0], corners[:, -1] - corners[:, 1])
     total = np.zeros_like(piece.points)
@@ -285,13 +256,7 @@ def _words(plot: Plotter, picture: Picture, pyvista: Any) -> None:
 
 
 def point_camera(plot: Plotter, picture: Picture, placed: Layout) -> None:
-    """Point the camera so that the whole picture lies between its texts.
-
-    Parameters
-    ----------
-    plot, picture : where, what
-    placed : its camera
-    """
+    """Point the camera so that the whole picture lies between its texts."""
     sight = placed.sight
     far = 4.0 * float(np.linalg.norm(np.ptp(picture.frame, axis=0)))
     camera = plot.camera
@@ -302,12 +267,7 @@ def point_camera(plot: Plotter, picture: Picture, placed: Layout) -> None:
 
 @held()
 def pixels(plot: Plotter) -> Pixels:
-    """What the plotter shows, shape (height, width, 3).
-
-    Parameters
-    ----------
-    plot : off the screen
-    """
+    """What the plotter, off the screen, shows, shape (height, width, 3)."""
     plot.render_window.Render()  # what was put in since the last time is not drawn by itself
     return np.asarray(plot.screenshot(return_img=True), dtype=np.uint8)
 
@@ -315,10 +275,7 @@ def pixels(plot: Plotter) -> Pixels:
 def write_png(shown: Pixels, path: Path) -> None:
     """Write a picture in 256 colours, whole or not at all, without the time of writing.
 
-    Parameters
-    ----------
-    shown : as from `pixels`
-    path : a .png; its folder is made if it is missing
+    Its folder is made if it is missing.
     """
     from PIL import Image
 

@@ -16,7 +16,7 @@ from leblanc.core.units import DEGREE, LENGTH, MINUS, Unit, in_rpm, unit_for
 from leblanc.figures.chambers import plates
 from leblanc.figures.drawing.page import zero_of
 from leblanc.results.drawn.machine import DrawnLiquid, LiquidBodies, LiquidShape, MachineMotion, Scale, strips
-from leblanc.text.run import amplitude_place
+from leblanc.studies.run.words import amplitude_place
 from leblanc.view.cabinet import around, corners
 from leblanc.view.machine import ground_end, machine
 from leblanc.view.parts import (
@@ -62,12 +62,7 @@ class Outline:
 
 
 def outline(section: Section) -> Outline:
-    """Walls of a section, those without thickness apart.
-
-    Parameters
-    ----------
-    section : about the geometric axis
-    """
+    """Walls of a section about the geometric axis, those without thickness apart."""
     sides = free_sides(section.triangles)
     plane = section.points[:, 0] + 1j * section.points[:, 1]
     curved = sides.shape[1] == 3
@@ -118,10 +113,7 @@ def _first(start: Complex, end: Complex, same: float) -> NDArray[np.int64]:
 def plates_of(chamber: Chamber, depth: float) -> Complex:
     """Baffles as lines from the geometric axis, m, shape (m, k).
 
-    Parameters
-    ----------
-    chamber : with baffles of its own or in its section
-    depth : by which the liquid layer is drawn deeper; distances of baffles from the wall grow with it
+    `depth`: by which the liquid layer is drawn deeper, m; distances of baffles from the wall grow with it.
     """
     if chamber.section is not None:
         return outline(chamber.section.mesh).plates
@@ -133,15 +125,9 @@ def plates_of(chamber: Chamber, depth: float) -> Complex:
 
 
 def baffles(stage: Stage, lines: Complex, k: int, centre: complex, floor: float, lid: float) -> list[Piece]:
-    """Plates over the whole height.
+    """Plates over the whole height of chamber k, counted from 0; lines as from `plates_of`.
 
-    Parameters
-    ----------
-    stage : what is fixed
-    lines : as from `plates_of`
-    k : number of the chamber, from 0
-    centre : of the chamber as drawn, m
-    floor, lid : places along the axis, m
+    `centre` of the chamber as drawn, `floor` and `lid` along the axis, m.
     """
     return [_ruled(stage, f"baffle {k + 1}", "metal", centre + plate[None], floor, lid) for plate in lines]
 
@@ -149,16 +135,10 @@ def baffles(stage: Stage, lines: Complex, k: int, centre: complex, floor: float,
 def section_walls(
     stage: Stage, section: ChamberSection, k: int, centre: complex, floor: float, lid: float, skin: float
 ) -> list[Piece]:
-    """Walls, floor, lid and their rims.
+    """Walls, floor, lid and their rims of chamber k, counted from 0.
 
-    Parameters
-    ----------
-    stage : what is fixed
-    section : of the chamber
-    k : number of the chamber, from 0
-    centre : of the chamber as drawn, m
-    floor, lid : places along the axis, m
-    skin : how much outside the liquid walls are drawn, m
+    `centre` of the chamber as drawn, `floor` and `lid` along the axis, m; walls are drawn by `skin` outside
+    the liquid, m.
     """
     sides = outline(section.mesh)
     walls = centre + sides.walls + skin * sides.outwards
@@ -178,12 +158,7 @@ def section_walls(
 
 
 def straight(triangles: Indices) -> Indices:
-    """Triangles with straight sides, four for one with curved sides.
-
-    Parameters
-    ----------
-    triangles : node numbers, shape (m, 3) or (m, 6)
-    """
+    """Triangles with straight sides, four for one with curved sides; shape (m, 3) or (m, 6)."""
     return triangles if triangles.shape[1] == 3 else triangles[:, _PARTS].reshape(-1, 3)
 
 
@@ -200,12 +175,7 @@ def _ruled(stage: Stage, name: str, look: str, lines: Complex, floor: float, lid
 
 
 def compose(stage: Stage, instant: Instant) -> Picture:
-    """Picture of a machine at one instant.
-
-    Parameters
-    ----------
-    stage, instant : what is fixed and what moves
-    """
+    """Picture of a machine at one instant."""
     factor = stage.scale.deflection
     pieces: list[Piece] = []
     for k, (fill, place) in enumerate(zip(stage.fills, stage.places, strict=True)):
@@ -386,13 +356,7 @@ def _shore(surface: Indices, wall: Indices) -> Indices:
 
 
 def stage_of(motion: MachineMotion, scale: Scale) -> Stage:
-    """What is fixed in pictures of a machine.
-
-    Parameters
-    ----------
-    motion : the machine
-    scale : common to all pictures
-    """
+    """What is fixed in pictures of a machine, of a scale common to all."""
     size = np.nan_to_num(np.abs(motion.deflection))
     tilting = motion.response.motion
     return Stage(
@@ -414,16 +378,10 @@ def still(
     turn: float = 0.0,
     said: str = "",
 ) -> Picture:
-    """Picture of a machine at one of its speeds.
+    """Picture of a machine at one of its speeds, the drum turned by `turn`, rad.
 
-    Parameters
-    ----------
-    motion : the machine
-    index : of the speed
-    liquid : as drawn at that speed
-    stage : of several pictures, for this one alone if None
-    turn : of the drum, rad
-    said : sentence of a film about it, in place of that of a still
+    `stage` of several pictures; of this one alone if None. `said`: sentence of a film about it, in place of
+    that of a still.
     """
     found = motion.deflection[index]
     deflection = np.where(np.isfinite(found), found, 0.0)
@@ -441,23 +399,14 @@ def still(
 
 
 def describe_speed(name: str, speed: float) -> str:
-    """Title of a picture.
-
-    Parameters
-    ----------
-    name : of the scene
-    speed : rad/s
-    """
+    """Title of a picture at a speed, rad/s."""
     return f"{one_line(name)}: {in_rpm(speed)} ({speed:.4g} rad/s)"
 
 
 def describe_state(motion: MachineMotion, index: int, dry: Sequence[bool]) -> list[str]:
     """Deflection and liquid of a machine at one of its speeds, a line each.
 
-    Parameters
-    ----------
-    motion, index : the machine, which speed
-    dry : the wall of each chamber is dry in part there
+    `dry`: the wall of each chamber is dry in part there.
     """
     found, answer = motion.deflection[index], motion.response.response
     if not np.isfinite(found).all():
@@ -490,25 +439,13 @@ def describe_state(motion: MachineMotion, index: int, dry: Sequence[bool]) -> li
 
 
 def unit_at(motion: MachineMotion, index: int) -> Unit:
-    """The unit of all amplitudes and deflections that stand beside a picture.
-
-    Parameters
-    ----------
-    motion, index : the machine, which of its speeds
-    """
+    """The unit of all amplitudes and deflections that stand beside a picture."""
     found = np.abs(motion.deflection[index]).tolist()
     return unit_for(LENGTH, float(motion.response.amplitude[index]), *found)
 
 
 def place_in_words(deflection: complex, zero: str, unit: Unit) -> str:
-    """Size and angle of a deflection.
-
-    Parameters
-    ----------
-    deflection : m
-    zero : what angles count from
-    unit : of its size
-    """
+    """Size and angle of a deflection of m, in words; `zero`: what angles count from."""
     if deflection == 0.0:
         return "none"
     angle = f"{math.degrees(cmath.phase(deflection)):.0f}"
@@ -517,13 +454,7 @@ def place_in_words(deflection: complex, zero: str, unit: Unit) -> str:
 
 
 def describe_drawing(motion: MachineMotion, index: int, liquid: DrawnLiquid, seen: str) -> list[str]:
-    """How a machine is drawn, sentence by sentence.
-
-    Parameters
-    ----------
-    motion, index, liquid : the machine, which speed, its liquid as drawn
-    seen : from where, a sentence
-    """
+    """How a machine is drawn, sentence by sentence; `seen` says from where."""
     scale = liquid.scale
     parts = [scale.in_words(), seen]
     if motion.fills and scale != Scale():

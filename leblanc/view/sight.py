@@ -47,26 +47,18 @@ class Sight:
 
     @property
     def scale(self) -> float:
-        """Pixels per mm."""
+        """Scale of the picture, pixels per mm."""
         return 0.5 * self.size[1] / self.half
 
     def project(self, points: Array) -> Array:
-        """Where points lie in the picture, pixels from its lower left corner, shape (n, 2).
-
-        Parameters
-        ----------
-        points : mm, shape (n, 3)
-        """
+        """Where points of mm, (n, 3), lie in the picture, pixels from its lower left corner, shape (n, 2)."""
         away = (points - self.focus) @ np.stack([self.right, self.over], axis=-1)
         return np.asarray(0.5 * np.array(self.size) + self.scale * away)
 
     def lift(self, pixel: Array, beside: Array) -> Array:
-        """The point behind a place in the picture, as far away as another point, mm, shape (3,).
+        """The point behind a place in the picture, as far away as the point `beside`, mm, shape (3,).
 
-        Parameters
-        ----------
-        pixel : from the lower left corner, shape (2,)
-        beside : mm, shape (3,)
+        `pixel` from the lower left corner.
         """
         x, y = (pixel - self.project(beside[None])[0]) / self.scale
         return np.asarray(beside + x * self.right + y * self.over)
@@ -82,7 +74,7 @@ class Placed:
 
     @property
     def middle(self) -> Array:
-        """Of its box, pixels, shape (2,)."""
+        """Middle of its box, pixels, shape (2,)."""
         left, low, right, high = self.box
         return np.array([0.5 * (left + right), 0.5 * (low + high)])
 
@@ -101,12 +93,7 @@ def letters(size: tuple[int, int]) -> int:
 
 
 def words_of(picture: Picture, size: tuple[int, int]) -> tuple[list[str], list[str]]:
-    """Lines of text above and below the machine.
-
-    Parameters
-    ----------
-    picture, size : whose; pixels
-    """
+    """Lines of text above and below the machine in a picture of so many pixels."""
     most = int(size[0] / (0.58 * letters(size))) - 3
     above = [textwrap.shorten(picture.title, int(most / 1.3), placeholder="..."), *picture.state.split("\n")]
     return above, textwrap.wrap(picture.caption, most)
@@ -115,11 +102,7 @@ def words_of(picture: Picture, size: tuple[int, int]) -> tuple[list[str], list[s
 def layout(picture: Picture, size: tuple[int, int], view: str = VIEWS[0]) -> Layout:
     """Camera and names so that the machine fills the room between the texts and no name covers another or it.
 
-    Parameters
-    ----------
-    picture : what is drawn
-    size : of the picture, pixels
-    view : one of `VIEWS`
+    `size` in pixels; `view` is one of `VIEWS`.
     """
     sight, room = _camera(picture, size, view)
     points = np.concatenate([picture.frame, *(piece.points for piece in picture.pieces)])
@@ -242,12 +225,7 @@ def font_file() -> Path | None:
 
 @lru_cache(maxsize=256)
 def width(text: str, size: int) -> float:
-    """Width of a line of text, pixels.
-
-    Parameters
-    ----------
-    text, size : the line; of its letters, pixels
-    """
+    """Width of a line of text in letters of a size, pixels."""
     from PIL import ImageFont
 
     path = font_file()

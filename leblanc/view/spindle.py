@@ -8,10 +8,10 @@ import numpy as np
 
 from leblanc.core.notes import one_line
 from leblanc.core.units import MM, number
-from leblanc.results.drawn.spindle import DrawnBeam, DrawnJoint, SpindleView
-from leblanc.view.film import Film
+from leblanc.view.film import ROUND, Film
 from leblanc.view.machine import cylinder, ground, spring
 from leblanc.view.parts import NO_CELLS, Label, Picture, Piece, bar_length, line
+from leblanc.wings.spindle.geometry import DrawnBeam, DrawnJoint, SpindleView
 from meshes.arrays import Array, Indices
 
 SIDES = 48  # round a section
@@ -24,13 +24,7 @@ SPOT, COLLAR = 0.09, 0.07
 
 
 def spindle_picture(view: SpindleView, phase: float = 0.0) -> Picture:
-    """Picture of a spindle unit at a phase of its natural motion.
-
-    Parameters
-    ----------
-    view : the unit
-    phase : rad, 0 at the largest deflection
-    """
+    """Picture of a spindle unit at a phase of its natural motion, rad, 0 at the largest deflection."""
     size, swing = max(beam.radius for beam in view.beams), view.factor * math.cos(phase)
     below = _offsets(view)
     pieces: list[Piece] = []
@@ -72,14 +66,8 @@ def spindle_picture(view: SpindleView, phase: float = 0.0) -> Picture:
     )
 
 
-def spindle_film(view: SpindleView, frames: int) -> Film:
-    """A period of a natural motion.
-
-    Parameters
-    ----------
-    view : the unit
-    frames : how many
-    """
+def spindle_film(view: SpindleView, frames: int = ROUND) -> Film:
+    """A period of a natural motion in so many frames."""
     return Film(frames, lambda k: spindle_picture(view, 2.0 * math.pi * k / frames))
 
 
@@ -120,17 +108,10 @@ def _beam(beam: DrawnBeam, swing: float, offset: float) -> list[Piece]:
 def revolved(
     place: Array, height: Array, radius: float, bore: float, opened: bool = False
 ) -> tuple[Array, list[Indices]]:
-    """A round section along a bent axis: outer wall, bore, and its ends.
+    """A round section along a bent axis, m: points (2 n a, 3), faces of outer wall, bore and each end.
 
-    Parameters
-    ----------
-    place, height : of points of the axis, m, shape (n,)
-    radius, bore : of the outer and of the inner wall, m; 0 for none
-    opened : cut away before the eye
-
-    Returns
-    -------
-    Points, m, shape (2 n a, 3), and the faces of each wall and end, outward normals where they are closed
+    Normals of the faces point outwards where they are closed; a bore of 0 is none; `opened`: cut away before
+    the eye.
     """
     turn = (
         np.linspace(EYE + OPEN, EYE + 2.0 * math.pi - OPEN, SIDES + 1)

@@ -73,8 +73,8 @@ def columns(
     """Liquid that stands on the floor above a plane triangulation of six-node triangles, counter-clockwise.
 
     `depth` is that of the liquid at each node, m; columns of depth 0 are single points, and where it reaches
-    the height the liquid wets the lid. Columns in `open_top` end in the free surface, those in `open_side`
-    stand in it. An `InputError` above a million nodes.
+    the height the liquid wets the lid. Columns in `open_top` (the lid's waterline among them) end in the free
+    surface, those in `open_side` stand in it.
     """
     require_few_nodes("layers", layers, len(points) * (2.0 * layers + 1.0))
     depth = depth.copy()
@@ -153,10 +153,7 @@ def _body(points: Array, cells: Indices, airy: NDArray[np.bool_], height: float)
 
 
 def body_jacobians(points: Array, cells: Indices) -> Array:
-    """Jacobian determinants of tetrahedra at their nodes, six times the volume for straight edges.
-
-    Of nodes (N, 3) in cells (M, 4) or (M, 10), m^3.
-    """
+    """Jacobian determinants of tetrahedra at their nodes, six times the volume for straight edges, m^3."""
     nodes = points[cells]
     if cells.shape[1] == 4:
         return np.asarray(np.linalg.det(nodes[:, 1:] - nodes[:, :1]))[:, None]

@@ -29,11 +29,10 @@ def wave_body(
     layers: int = 2,
     order: int = 2,
 ) -> Body:
-    """Liquid between the wall r = R and the free surface r = r_s(theta), from floor to lid; dry wall carries
-    none.
+    """Liquid between the wall r = R and the free surface r = r_s(theta), from floor to lid.
 
-    r_s at rising angles within one turn (evenly spaced from 0 if None), 8 or more, an even number for
-    quadratic edges: every other sample lies between the ends of an edge.
+    r_s, R where the wall is dry, at 8 or more rising angles within one turn (None: even from 0); an even
+    number for quadratic edges, every other sample between the ends of an edge.
     """
     inner = np.array(surface_radius, dtype=np.float64)
     count = inner.size
@@ -68,7 +67,7 @@ def wave_body(
 def _merged(row: Indices, column: Indices, thickness: Array) -> Indices:
     """Number of each node of the grid: where the wall is dry, all nodes of a ray are one.
 
-    The cell beside it is a triangle, whose diagonal takes that side's middle.
+    The cell beside it is a triangle: its diagonal has become a side and takes that side's middle.
     """
     dry = thickness == 0.0
     before, after = np.roll(dry, 1)[column], np.roll(dry, -1)[column]

@@ -32,7 +32,7 @@ def meet(points: Array) -> tuple[Indices, Array]:
 def closed_loops(path: str | Path, ends: Indices, places: Array) -> list[list[int]]:
     """Numbers of the curves of each outline, in order, from the places of their ends.
 
-    An `InputError` tells where an outline is open or branches.
+    An `InputError` names the place where an outline is open or branches.
     """
     degree = np.bincount(ends.ravel(), minlength=len(places))
     if np.any(degree != 2):
@@ -80,8 +80,7 @@ class Curve:
 
 
 def read_drawing(path: str | Path) -> tuple[list[Curve], float | None]:
-    """Curves in the model space of a DXF drawing, and the length of its unit in metres, None if it does not
-    say.
+    """Curves in the model space of a DXF drawing, and the length of its unit, m, None if it has none.
 
     Text, dimensions, hatches and similar entities are skipped, blocks are opened. An `InputError` for curves
     outside one plane z = constant, splines that do not end on their control points, no curve at all.

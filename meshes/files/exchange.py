@@ -54,9 +54,7 @@ class FileContents:
 def plane_cells(
     path: str | Path, contents: FileContents, scale: float, kinds: tuple[str, ...]
 ) -> tuple[Array, Indices, Indices]:
-    """The one kind of plane cells of a file: points in m, cells counter-clockwise, new number of each point
-    or -1.
-    """
+    """Points, m, and counter-clockwise cells of a file, all of one kind; new number of each point or -1."""
     found = sorted({kind for kind, data in contents.blocks if kind not in _DROPPED and len(data)})
     shapes = "triangles or quadrilaterals" if "quad" in kinds else "triangles"
     if len(found) != 1 or found[0] not in kinds:
@@ -78,9 +76,7 @@ def plane_cells(
 
 
 def named_lines(contents: FileContents, number: Indices) -> dict[str, Indices]:
-    """End nodes of the lines of each physical group, by its name or "group 3"; lines in no group are left
-    out.
-    """
+    """End nodes of the lines of each physical group, by its name or "group 3"; other lines are left out."""
     found: dict[str, list[Indices]] = {}
     for (kind, data), groups in zip(contents.blocks, contents.groups, strict=True):
         if kind not in LINES.values():
@@ -169,8 +165,7 @@ def _pairs(ends: Indices) -> Indices:
 
 
 def read_section(path: str | Path, scale: float = 1.0) -> Section:
-    """Section from a mesh file (`.msh` of Gmsh 2.2 or 4.1, `.vtu`, `.xdmf`), the file's origin its geometric
-    axis.
+    """Section from a mesh file (`.msh` of Gmsh 2.2 or 4.1, `.vtu`, `.xdmf`), its origin the geometric axis.
 
     `scale` is the length of the file's unit, m. Triangles may be straight or quadratic; points, lines and
     nodes that no triangle uses are dropped, clockwise triangles are turned round.
@@ -193,9 +188,7 @@ def read_walls(path: str | Path, scale: float = 1.0, slits: Sequence[str] = ()) 
 
 
 def read_liquid_section(path: str | Path, scale: float = 1.0) -> LiquidSection:
-    """Section of liquid at rest from a mesh file; the nodes nearest to the origin are taken for the free
-    surface.
-    """
+    """Section of liquid at rest from a mesh file; the nodes nearest to the origin are the free surface."""
     contents = _contents(path, scale)
     points, cells, _ = plane_cells(path, contents, scale, tuple(PLANE.values()))
     try:
@@ -211,8 +204,9 @@ def write_section(
     point_data: Mapping[str, ArrayLike] | None = None,
     cell_data: Mapping[str, ArrayLike] | None = None,
 ) -> None:
-    """Write a section, and fields at its nodes and on its triangles, to a `.msh` (4.1, binary), `.vtu` or
-    `.xdmf` file.
+    """Write a section, and fields at its nodes and on its triangles, to a mesh file.
+
+    `.msh` (Gmsh 4.1, binary; 1, 3 or 9 components), `.vtu`, or `.xdmf` with an `.h5` file beside it.
     """
     block = (PLANE[section.triangles.shape[1]], section.triangles)
     _write(path, section.points, [block], point_data, cell_data)

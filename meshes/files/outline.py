@@ -72,8 +72,7 @@ def outline_section(
     height: float | None = None,
     slits: Sequence[str] = (),
 ) -> Section:
-    """Section from an outline drawn elsewhere (DXF, STEP, IGES, BREP), its geometric axis at the drawing's
-    origin.
+    """Section from an outline (DXF, STEP, IGES, BREP), its geometric axis at the drawing's origin.
 
     The largest closed outline is the outer wall; the others within it are inner walls and obstacles. Only
     what CAD shows and plots counts; the same file and sizes give the same mesh. Sizes in m: `wall_size` a

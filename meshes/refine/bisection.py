@@ -28,8 +28,9 @@ def quadratic_triangles(section: Section) -> tuple[Array, Indices]:
 
 
 def edge_numbers(triangles: Indices) -> tuple[Indices, Indices]:
-    """Number the edges of triangles: those of 0-1, 1-2, 2-0 of each, (M, 3), and nodes of each edge, (E, 2 or
-    3).
+    """Numbers of the edges 0-1, 1-2, 2-0 of each triangle, (M, 3), and nodes of each edge, (E, 2 or 3).
+
+    Ends, the lower number first, then the node between.
     """
     width = 2 if triangles.shape[1] == 3 else 3
     every = triangles[:, EDGES[:, :width]].reshape(-1, width)
@@ -58,8 +59,7 @@ def refine(points: Array, triangles: Indices, size: Callable[[Array], Array]) ->
 
 
 def bisect(points: Array, triangles: Indices, marked: NDArray[np.bool_]) -> tuple[Array, Indices]:
-    """Halve the marked edges (in the order of `edge_numbers`), and the longest edges of all triangles this
-    touches.
+    """Halve the marked edges, in the order of `edge_numbers`, and the longest edges of the triangles touched.
 
     The halves are halved once more if another edge of theirs is: no angle becomes less than half of the
     smallest.
@@ -141,9 +141,7 @@ _INNER = np.array(
 
 
 def halved(liquid: LiquidSection) -> LiquidSection:
-    """The same liquid with all sides of its quadratic triangles half as long; walls and surface keep their
-    shape.
-    """
+    """The same liquid with its quadratic triangles quartered; walls and surface keep their shape."""
     if liquid.cells.shape[1] != 6:
         raise InputError("liquid", liquid.cells.shape, "a mesh of quadratic triangles")
     points, cells = _quartered(liquid.points, liquid.cells)

@@ -48,11 +48,10 @@ class Circle:
 def follow_circle(
     points: Array, triangles: Indices, circle: Circle, locked: NDArray[np.bool_] | None = None
 ) -> tuple[Array, Indices, NDArray[np.bool_]]:
-    """Make the edges of a triangulation follow a circle: points, triangles, and which lie outside, shape
-    (M,).
+    """Make the edges of a triangulation follow a circle; which triangles lie outside it, shape (M,).
 
     The triangles near the circle must be small against its radius. Edges on it become quadratic arcs; walls
-    keep their shape, but for smooth ones, where a vertex may slide along. `locked` vertices must not move.
+    keep their shape, but for smooth ones, where a vertex may slide along. `locked` vertices do not move.
     """
     fixed = np.zeros(len(points), dtype=bool) if locked is None else locked.copy()
     points, triangles = _split_double_crossings(points, triangles, circle)
@@ -286,10 +285,10 @@ def cut_along(
     *,
     outside: bool,
 ) -> tuple[Array, Indices]:
-    """Quadratic triangulation of a section with edges along circles, given the refined points and triangles.
+    """Quadratic triangulation of a section with edges along circles, which the refined mesh decides.
 
-    With `outside` what lies inside the last circle is dropped. Cells may still be folded if a wall touches a
-    circle.
+    `size` as in `refine`. With `outside` what lies inside the last circle is dropped, so that there may be no
+    triangle; points may be unused, cells still folded if a wall touches a circle.
     """
     start = quadratic_triangles(section)
     spots = np.empty((0, 3))

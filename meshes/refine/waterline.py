@@ -60,10 +60,7 @@ class Arcs:
 
 
 def monotone_arcs(section: Section, axis: tuple[float, float]) -> Arcs:
-    """Cut the edges of a section's triangles where their distance from the axis is least or largest.
-
-    At most twelve arcs to a triangle.
-    """
+    """Cut triangles' edges where their distance from the axis is least or largest: 12 arcs to one at most."""
     coefficients = edge_polynomials(section.points[section.triangles] - np.array(axis))
     curve = np.array([c.reshape(-1, 2).T for c in coefficients])
     triangle = np.repeat(np.arange(len(section.triangles)), 3)
@@ -106,8 +103,7 @@ def distance_range(arcs: Arcs, triangles: int) -> tuple[Array, Array]:
 
 
 def beyond(arcs: Arcs, least: Array, largest: Array, floor: float, lid: float) -> tuple[Array, Array, Array]:
-    """Quadrature rule for the parts of triangles that lie outside the floor's waterline: x, y from the axis,
-    weights.
+    """Quadrature rule for the parts of triangles outside the floor's waterline: x, y from the axis, weights.
 
     `floor` and `lid` are squared radii of the waterlines, m^2, the first below zero if the liquid covers the
     axis; weights (m^2) have either sign. Exact to rounding for what is polynomial up to the lid's waterline
@@ -203,10 +199,7 @@ _COARSEST = 0.25
 
 
 def area_outside(section: Section, radius: float, axis: tuple[float, float] = (0.0, 0.0)) -> float:
-    """Area of the part of a section outside a circle.
-
-    Exact on the mesh to about 1e-9, m^2.
-    """
+    """Area of the part of a section outside a circle, m^2, exact on the mesh to about 1e-9."""
     if not (math.isfinite(radius) and radius >= 0.0):
         raise InputError("radius", radius, "a finite number, 0 or above")
     arcs = monotone_arcs(section, axis)
@@ -226,10 +219,7 @@ def area_outside(section: Section, radius: float, axis: tuple[float, float] = (0
 
 
 def surface_radius_of(section: Section, liquid_area: float) -> float:
-    """Radius of the free surface that leaves a given area of liquid, its volume over the chamber's height.
-
-    a, m, to the accuracy of `area_outside`.
-    """
+    """Radius of the free surface that leaves an area of liquid, volume over height, m; as `area_outside`."""
     require_positive("liquid_area", liquid_area)
     whole = section_area(section)
     if liquid_area >= whole:

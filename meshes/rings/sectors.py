@@ -22,9 +22,9 @@ def compartment(
     *,
     order: int = 2,
 ) -> Section:
-    """Section between a baffle and the next one, the baffles taken as walls from one circle to the other.
+    """Section between a baffle, counted from 0, and the next one, taken as walls from circle to circle.
 
-    A single baffle leaves the whole chamber, slit along it.
+    A single baffle leaves the whole chamber, slit along it; the baffles' lengths do not matter.
     """
     if not 0 <= number < baffles.count:
         raise InputError("number", number, f"0 to {baffles.count - 1}")
@@ -42,8 +42,9 @@ def sector(
     *,
     order: int = 2,
 ) -> Section:
-    """Part of a disc (inner radius 0) or an annulus between two rays, `segments` triangles along the outer
-    wall.
+    """Part of a disc (inner radius 0) or an annulus from the ray at `start` over `angle` to another, rad.
+
+    `segments` are triangles along the outer wall.
     """
     _check(radius, start, angle, inner_radius, segments, order)
     require_few_nodes("segments", segments, segments * order**2)

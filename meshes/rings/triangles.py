@@ -16,8 +16,7 @@ from meshes.liquid_section import SIDES, LiquidSection, liquid_section
 
 
 def open_slits(points: Array, cells: Indices, slits: Indices) -> tuple[Array, Indices]:
-    """Part the cells of a mesh along some of its sides, given by end nodes (K, 2); copies of nodes at the
-    end.
+    """Part the cells of a mesh along some of its sides, given by end nodes (K, 2); copies come last.
 
     A node is doubled where the sides cut its cells into groups: along a slit and where it meets the boundary.
     At a tip inside the mesh the node stays one. An `InputError` for a slit that opens nothing.
@@ -72,8 +71,7 @@ def _key(ends: Indices) -> Indices:
 def graded(
     length: float, largest: float, start: float, end: float, growth: float = 1.5, least: int = 1
 ) -> Array:
-    """Divide a line into steps that grow from both ends by a ratio up to `growth`: positions from 0 to
-    `length`.
+    """Positions from 0 to `length` in steps that grow from both ends by a ratio up to `growth`.
 
     The steps are stretched or shrunk alike, so that a whole number of them, at least `least`, fills the line.
     """
@@ -189,8 +187,10 @@ def _grid(radii: Array, angles: Array, order: int) -> tuple[Array, Indices]:
 
 
 def polar_triangles(outwards: int, around: int, order: int) -> Indices:
-    """Triangles, two to each cell, of a grid of nodes numbered counter-clockwise, row by row, from the inside
-    outwards.
+    """Triangles, two to each cell, of a grid of nodes that closes around, row by row from the inside.
+
+    Rows (`outwards` is their number less one) are counter-clockwise; order 2 has vertices at every other row
+    and node.
     """
     i, j = np.meshgrid(np.arange(0, outwards, order), np.arange(0, around, order), indexing="ij")
 

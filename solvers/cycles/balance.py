@@ -1,7 +1,7 @@
-"""A rotor whose axis goes round in circles, with its layers: what has to balance [theory: whirl, eq. 24].
+"""Balance of a rotor whose axis goes round in circles, with its layers [theory: whirl, eq. 24].
 
-All that moves in circles with the spin is written in complex coordinates c, of which the rotor has half as
-many as real ones: the deflection of an axis is row c, and the whirl c e^{i omega t}.
+All that moves in circles with the spin is written in complex coordinates c, half as many as the rotor's real
+ones: the deflection of an axis is row c, and the whirl c e^{i omega t}.
 """
 
 from __future__ import annotations
@@ -65,8 +65,7 @@ class Circular:
 def circular(system: RotorSystem, fills: Sequence[Fill], friction: Friction) -> Circular:
     """A rotor's circles and the layers on them.
 
-    A `NotCircularError` for supports that are not the same in all directions, baffles in the liquid, no
-    layer.
+    A `NotCircularError` for unlike supports, baffles in the liquid, no layer.
     """
     if any(fill.uneven for fill in fills if fill.volume > 0.0):
         raise NotCircularError(
@@ -139,7 +138,7 @@ def _places(fills: Sequence[Fill], wet: dict[int, Layer], rows: Complex) -> tupl
 def _circles(system: RotorSystem, mass: Array, planes: Sequence[Array]) -> Complex:
     """Coordinates that circles of the chambers' axes bring with them, of unit mass, shape (n, p).
 
-    The smallest space that holds the answers to pushes on the chambers which turn with the spin. In isotropic
+    The smallest space that holds the answers to forces on the chambers which turn with the spin; in isotropic
     supports no axis moves against the spin in it.
     """
     root = np.linalg.cholesky(mass)

@@ -1,8 +1,7 @@
-"""A branch of limit cycles, followed by its arc length through folds [theory: whirl, eq. 24-26].
+"""A branch of limit cycles, followed by its arc length through turning points [theory: whirl, eq. 24-26].
 
-Unknown are every cell of every layer, the whirl's shape and frequency, and the spin: Newton's method on all
-of them at once. It knows no difference between parts of a branch that a machine would come to rest on and
-parts that it would leave, nor between layers that would settle under a prescribed whirl and others.
+Newton's method on every cell of every layer, the whirl's shape and frequency, and the spin at once: stable
+and unstable parts of a branch are alike to it.
 """
 
 from __future__ import annotations
@@ -62,7 +61,7 @@ class _Point:
     vector: Array
 
     def moved(self, change: Array) -> _Point:
-        """Further on by a change of all of them."""
+        """The point further on by a change of all unknowns."""
         count = self.state.size
         return _Point(self.state + change[:count].reshape(self.state.shape), self.vector + change[count:])
 
@@ -77,8 +76,7 @@ class _Left:
 
 
 class Follower:
-    """Finds limit cycles one after the other, of `cells` to a layer; `speed` is the unit of spin and
-    frequency, rad/s.
+    """Follows limit cycles, of `cells` to a layer; `speed`, rad/s, scales spin and frequency.
 
     Unknowns of the rotor are real and imaginary parts of the coordinates over `unit`, whirl speed over 0.05
     `speed` and spin over 0.1 `speed`.
@@ -97,7 +95,7 @@ class Follower:
         self._rounds = 0
 
     def unknowns(self, moved: Complex, whirl_speed: float, spin: float) -> Array:
-        """Those of the rotor, shape (2 p + 2,)."""
+        """Unknowns of the rotor, shape (2 p + 2,)."""
         part = moved / self.unit
         speeds = (whirl_speed / (_SPREAD * self.speed), spin / (_RANGE * self.speed))
         return np.concatenate([part.real, part.imag, speeds])
@@ -109,7 +107,7 @@ class Follower:
         return moved, float(vector[-2]) * _SPREAD * self.speed, float(vector[-1]) * _RANGE * self.speed
 
     def given(self, vector: Array) -> list[Whirling]:
-        """What drives each layer."""
+        """Whirl that drives each layer."""
         moved, whirl_speed, spin = self.parts(vector)
         sizes = np.abs(self._rows @ moved) / self._radius
         return [
@@ -145,8 +143,7 @@ class Follower:
         lag: float = 0.0,
         hold_size: bool = False,
     ) -> Cycle | None:
-        """A limit cycle at a spin, looked for near a whirl of a shape and size (over the layer's depth); None
-        if none is found.
+        """Limit cycle at a spin near a whirl of a shape and size over the layer's depth; None if not found.
 
         `lag` of the liquid behind the drum at first, rad/s; with `hold_size` one of that size, at whatever
         spin.

@@ -1,4 +1,4 @@
-"""Limit cycles of a rotor with liquid layers over speed: where branches start, and what is told of them."""
+"""Limit cycles of a rotor with liquid layers over speed: where branches start, and their properties."""
 
 from __future__ import annotations
 
@@ -77,18 +77,18 @@ class Branch:
 
     @property
     def stable(self) -> Flags:
-        """Small disturbances die out, shape (k,)."""
+        """Whether small disturbances decay, shape (k,)."""
         return np.asarray(self.growth < 0.0)
 
     @property
     def power(self) -> Array:
-        """Of the drive on top, W, shape (k,)."""
+        """Power of the drive on top, W, shape (k,)."""
         return np.asarray(self.torque * self.speed)
 
     def at(self, speed: float) -> list[HeldWhirl]:
         """Amplitude, whirl speed, lag and stability of every whirl of the branch at a speed.
 
-        Between two whirls of the branch values go along a smooth curve.
+        Values between two whirls go along a smooth curve.
         """
         found = []
         for k in range(self.speed.size - 1):
@@ -151,9 +151,8 @@ def limit_cycles(
 ) -> LimitCycles:
     """Self-excited whirls of finite size over a range of speeds [theory: whirl, eq. 21-28].
 
-    Without unbalance and gravity, in isotropic supports: the whirl is a circle. Branches are followed
-    somewhat further below the first speed. Without branches, and with the reason, where the supports are not
-    isotropic, the chambers have baffles, or no friction or no damping settles how large the whirl is.
+    Circles, without unbalance and gravity; branches are followed somewhat below the first speed. No branches,
+    with the reason, for unlike supports, baffles, or without the friction or damping that bounds the whirl.
     """
     first, last = speeds
     if not 0.0 < first < last:
@@ -177,10 +176,9 @@ def largest_whirl(
 ) -> float:
     """Amplitude of the largest self-excited whirl at any of some speeds, m, on few cells; see `limit_cycles`.
 
-    The largest whirl at a speed is a stable one, whether a small one grows there or a kick has to start it:
-    the unstable branch lies below. A layer so thin that a whirl lays it dry is answered by the estimate.
-
-    0 where no whirl grows by itself, infinite where nothing bounds one.
+    A stable one, whether a small one grows there or an impulse has to start it: the unstable branch lies
+    below. The estimate where the whirl would lay a thin layer dry; 0 where none grows, infinite where nothing
+    bounds one.
     """
     if not any(plane_layer(fill, friction) for fill in fills):
         return 0.0
@@ -203,9 +201,8 @@ def largest_whirl(
 class _Finder:
     """Branches of a machine within a range of speeds; `judged`: find what becomes of disturbances.
 
-    `branches` is what has been found, `missed` bands of the undamped machine in which no whirl was found
-    (their edges and a frequency), `lost` spins of edges from which no branch could be followed, `tried`
-    starts, from edges and inside bands.
+    `missed`: bands of the undamped machine without a whirl found (edges and a frequency); `lost`: spins of
+    edges from which no branch could be followed; `tried`: starts, from edges and inside bands.
     """
 
     def __init__(
@@ -258,7 +255,7 @@ class _Finder:
         return "; ".join(said)
 
     def _from_edge(self, edge: Edge) -> None:
-        """The branch from an edge of a band, at which a small whirl neither grows nor dies."""
+        """The branch from an edge of a band, at which a small whirl neither grows nor decays."""
         follower = Follower(self.machine, self.friction, self.cells, edge.spin)
         start = None
         for trough in _FIRST:
@@ -298,7 +295,7 @@ class _Finder:
             self.missed.append((lower, upper, near))
 
     def _known(self, follower: Follower, cycle: Cycle) -> bool:
-        """A limit cycle lies on a branch that has been found."""
+        """Whether a limit cycle lies on a branch that has been found."""
         unit, thick = follower.speed, _THICK / follower.depth
         size = float(np.abs(self.machine.rows @ cycle.moved)[0])
         point = np.array([cycle.spin / unit, cycle.whirl_speed / unit, thick * size])

@@ -1,8 +1,7 @@
-"""Where small whirls of a rotor with layers neither grow nor die: a branch of limit cycles begins at each.
+"""Where small whirls of a rotor with layers neither grow nor decay: a branch of limit cycles begins at each.
 
-Every mode is followed over the spin, not only the one that grows most: with several layers the branch of one
-mode may begin or end inside the band of another. The friction is that of the waves, a rate that is real
-[theory: whirl, eq. 30].
+Every mode is followed over the spin: with several layers the branch of one mode may begin or end inside the
+band of another. The friction is that of the waves, a real rate [theory: whirl, eq. 30].
 """
 
 from __future__ import annotations
@@ -21,7 +20,7 @@ _NEUTRAL = 1e-9  # of the spin: a growth below it is that of a mode without any 
 
 
 class Edge(NamedTuple):
-    """A small whirl that neither grows nor dies."""
+    """A small whirl that neither grows nor decays."""
 
     #: spin and whirl_speed: Omega and omega_w, rad/s
     spin: float
@@ -31,7 +30,7 @@ class Edge(NamedTuple):
 
 
 def small_whirl_edges(machine: Circular, range_: tuple[float, float]) -> tuple[Edge, ...]:
-    """All small whirls with the spin that neither grow nor die, by rising spin."""
+    """All small whirls with the spin that neither grow nor decay, by rising spin."""
     spins = np.linspace(*range_, _GRID)
     found: list[Edge] = []
     last: tuple[Complex, Complex] | None = None

@@ -1,4 +1,4 @@
-"""How large a self-excited whirl grows, in one line: the layer's lag by rule, no wave solved."""
+"""Estimated size of a self-excited whirl: the layer's lag by rule, no wave solved."""
 
 from __future__ import annotations
 
@@ -43,10 +43,9 @@ def estimated_whirl(
 ) -> Estimate:
     """Frequency, shape and size of a large whirl [theory: whirl, eq. 29].
 
-    It whirls as if the chambers were full of solid, drags the liquid back to about the band's lower edge
-    without friction and damping, and is as large as the torque of the lagging liquid on the wall can feed
-    against the supports' damping: 0 without friction, infinite without damping. `near` is the frequency at
-    that edge.
+    It whirls as if the chambers were full of solid, drags the liquid back to about the lower edge of the
+    undamped band, and is as large as the lagging liquid's torque on the wall can feed against damping: 0
+    without friction, infinite without damping. `near`: frequency at that edge, rad/s.
     """
     whirl_speed, shape = _full(machine, near, spin)
     rows = np.array([place.row for place in machine.places])
@@ -146,8 +145,8 @@ def _by_rule(
 def _shares(rotor: Rotor, fills: Sequence[Fill], speeds: Array, friction: Friction) -> Array:
     """Share of the whole whirl that weak growth leaves at speeds inside undamped bands, shape (n,).
 
-    Where friction and damping take most of the growth the whirl does not drag the liquid back to the edge of
-    the band: its own wave is steep before.
+    Where friction and damping take most of the growth, the whirl's own wave is steep before it drags the
+    liquid back to the edge of the band.
     """
     at = np.zeros(len(speeds), dtype=int)
     own = growth_at(rotor, [fills], at, speeds, friction)[0]
@@ -165,10 +164,8 @@ def largest_estimate(
 ) -> Estimate | None:
     """The largest of the whirls in the middles of the bands, by rule; None where nothing grows by itself.
 
-    A middle is that of what a band has in common with one without friction and damping. Next to the upper
-    edge of that one [theory: whirl, eq. 31] leaps, as the undamped growth goes to nothing there.
-
-    Bands in which some whirl grows, rad/s; solved for if None.
+    The middle of what a band shares with an undamped one, next to whose upper edge [theory: whirl, eq. 31]
+    leaps, as growth vanishes there. `bands` in which some whirl grows, rad/s; solved for if None.
     """
     machine = _settling(rotor, fills, friction)
     if machine is None:

@@ -1,7 +1,7 @@
-"""What becomes of a small disturbance of a limit cycle: Floquet multipliers [theory: whirl, eq. 27-28].
+"""Stability of a limit cycle against small disturbances: Floquet multipliers [theory: whirl, eq. 27-28].
 
-Rotor and layers in the frame of the whirl, where the limit cycle stands: one step takes them through the time
-of a cell, and as many steps as there are cells through a turn of the whirl in the drum.
+In the whirl's frame, where the limit cycle stands: one step takes rotor and layers through the time of a
+cell, as many steps as cells through a turn of the whirl in the drum.
 """
 
 from __future__ import annotations
@@ -34,9 +34,9 @@ class _Follows:
 
 
 def disturbance_growth(machine: Circular, waves: Sequence[StandingWave], cycle: Cycle) -> float | None:
-    """Growth of the disturbance of a limit cycle that grows most, 1/s; None where a layer breaks down.
+    """Growth rate of the disturbance of a limit cycle that grows most, 1/s; None where a layer breaks down.
 
-    A turn of the whole whirl is no disturbance and left out.
+    A turn of the whole whirl does not count as one.
     """
     parts = []
     layers = zip(waves, cycle.given, cycle.state, cycle.force.tolist(), cycle.derivatives, strict=True)
@@ -80,7 +80,7 @@ def _follows(
 
 
 def _momentum(state: Array, cells: int) -> Complex:
-    """Of the liquid relative to its axis, over its mass, R Omega and as one complex number, shape (...,).
+    """Momentum of the liquid relative to its axis, over its mass and R Omega, complex, shape (...,).
 
     [theory: coupling, eq. 3], in the drum's axes at the moment the deflection points to the first cell.
     """
@@ -108,7 +108,7 @@ def _step(
 ) -> Array:
     """Rotor and layers through the time of a cell: layers one after the other, then place and rate.
 
-    The rotor by the trapezium, in the frame of the whirl; its mean acceleration pushes the layers.
+    The rotor by the trapezium, in the whirl's frame; its mean acceleration drives the layers.
     """
     p, size = moved.size, len(parts[0].step)
     count = size * len(parts)

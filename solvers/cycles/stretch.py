@@ -16,7 +16,7 @@ _jit: Any = machine_code(**COMPILED)
 def advance_each(
     areas, momenta, pace, start, time, parts, drive, wall, angles, inside, courant, most, spare, loads
 ):
-    """Advance states of a layer, one after the other, in place, in equal steps; whether all came to the end.
+    """Advance states of a layer, in place, through a time in equal steps; whether all came to the end.
 
     Arguments as of `solvers.layer.step.advance`; the loads of each state are added to `loads`, shape (m,).
     """

@@ -1,9 +1,9 @@
 """A layer under a prescribed whirl whose wave stands in the whirl's frame, by finite volumes in time.
 
-Seen from the drum the whirl turns at the slip. After the time in which it turns by one cell the layer is as
-it was, but one cell further on: a fixed point of that short map is the steady wave, with whatever bores and
-dry cells it has. The scheme keeps mass and angular momentum, so that the wave's force and the wall's torque
-agree to rounding. Lengths over R, times over 1/Omega [theory: whirl, eq. 21-23].
+When the whirl has turned by one cell, at the slip as seen from the drum, the layer is as it was, but one cell
+further on: a fixed point of that short map is the steady wave, with its bores and dry cells. Mass and angular
+momentum are kept, so that the wave's force and the wall's torque agree to rounding. Lengths over R, times
+over 1/Omega [theory: whirl, eq. 21-23].
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ class Answer(NamedTuple):
 
 @dataclass(frozen=True)
 class Derivatives:
-    """Of the map over the time of one cell at a state, the states having 2 n components."""
+    """Derivatives of the map over the time of one cell at a state, the states having 2 n components."""
 
     state: Array  #: of the state after it, shape (2 n, 2 n)
     given: Array  #: by ratio, size and drag, shape (2 n, 3)
@@ -112,7 +112,7 @@ class StandingWave:
     def settle(self, given: Whirling) -> Answer | None:
         """Go on until G stays; None where it does not, or where the layer breaks down.
 
-        First one period is compared with the next, then means of 4 and of 12.
+        One period is compared with the next, later means of 4 and of 12.
         """
         for length, tries in _MEANS:
             last = complex(math.inf)
@@ -129,9 +129,9 @@ class StandingWave:
         return None
 
     def cell(self, state: Array, given: Whirling, turned: float = 0.0) -> Answer | None:
-        """The map: a state after the time of one cell, moved back by it; None where the layer breaks down.
+        """A state after the time of one cell, moved back by it; None where the layer breaks down.
 
-        The push is ahead of the frame the state is in by `turned`, rad.
+        The forcing is ahead of the state's frame by `turned`, rad.
         """
         slip, n = given.ratio - 1.0, self.cells
         if not abs(slip) > _SLOWEST:

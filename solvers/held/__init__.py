@@ -1,5 +1,5 @@
-"""A rotor with its waves held at constant speed until nothing changes any more [theory: held].
+"""Time-integrated steady states: a rotor with its waves at constant speed until converged [theory: held].
 
-`hold` finds the state of one speed on py-pde's road, or with exact waves by
-`exact`, `branch` those of many with the states carried up and down from speed to speed.
+`hold` finds the state of one speed on py-pde, or with exact waves by `exact`; `branch` those of many, carried
+up and down from speed to speed.
 """

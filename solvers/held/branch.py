@@ -1,7 +1,7 @@
 """Many speeds: each from its synchronous motion, then with neighbours' motions carried up and down.
 
-A motion that lives on beyond the speed at which it began is found only on the way: the first pass takes every
-speed by itself, the second goes on from speed to speed wherever two neighbours are of different kinds.
+A motion that exists beyond the speed at which it began is found only from a neighbour: the second pass goes
+from speed to speed wherever two neighbours are of different kinds.
 """
 
 from __future__ import annotations
@@ -69,9 +69,9 @@ def held_branches(
     forks: Flags | None = None,
     done: Callable[[int], object] = lambda _: None,
 ) -> HeldBranches:
-    """Held states over rising speeds, up and down; the same whatever the order in which the runner answers.
+    """Held states over rising speeds, up and down; the same in whatever order the runner answers.
 
-    `forks` says where several steady motions are known to exist, so that neighbours are tried.
+    `forks`: where several steady motions are known to exist, so that neighbours are tried.
     """
     found: dict[int, HeldState] = {}
     for k, state in run(tasks):

@@ -1,4 +1,4 @@
-"""What it takes to hold a motion: turns until it has settled, steps in a turn, cells in a step."""
+"""Cost of holding a motion: turns until it has converged, steps in a turn, cells in a step."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ _HEAPED, _MOST = 80.0, 22.0  # by what a turn takes longer where gravity heaps t
 
 
 def settling_turns(spin: Array, growth: Array, strength: Array, numerics: HoldNumerics) -> Array:
-    """Turns that motions take to settle, about [theory: held, eq. 11].
+    """Turns that motions take to converge, about, shape (2, n) [theory: held, eq. 11].
 
-    With all cells, and once more with half of them, shape (2, n). Growth rate of the small whirl that grows
-    most or decays last, nan where it is not known; `strength`: gravity across the axis over the centrifugal
-    acceleration at the surface.
+    With all cells, and with half of them. `growth`: rate of the small whirl that grows most or decays last,
+    1/s, nan where it is not known; `strength`: gravity across the axis over the centrifugal acceleration at
+    the surface.
     """
     change = np.abs(np.where(np.isnan(growth), math.inf, growth)) * 2.0 * math.pi / spin
     slow = np.full(change.shape, math.inf)
@@ -44,11 +44,10 @@ def hold_seconds(
     numerics: HoldNumerics | None = None,
     exact: bool = False,
 ) -> Array:
-    """Processor time to hold motions until they converge, half the cells for the error included, s, shape
-    (n,).
+    """Processor time to hold motions until they converge, with half the cells for the error, s, shape (n,).
 
-    Of one core of the machine that it was measured on, to a factor of two [theory: held, eq. 12 and 13]; of
-    exact waves [theory: held, eq. 14].
+    Of one core of the machine it was measured on, to a factor of two [theory: held, eq. 12 and 13]; of exact
+    waves [theory: held, eq. 14].
     """
     numerics = numerics or HoldNumerics()
     surfaces = [fill.surface_radius for fill in fills if fill.volume > 0.0 and fill.surface_radius > 0.0]

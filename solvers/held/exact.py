@@ -1,4 +1,4 @@
-"""Exact waves on the road of a held state: a turn at a time, judged as long waves are [theory: held]."""
+"""Held states with exact waves: a turn at a time, judged as long waves are [theory: held]."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def exact_machine(machine: HeldMachine, spin: float, layers: Flags, nodes: int) 
 
 
 def begin(machine: HeldMachine, spin: float, nodes: int, motion: Complex, kick: float) -> Moment:
-    """Rotor in a synchronous motion with its liquid at rest in the drum, as `solvers.held.hold.start`.
+    """Rotor in a synchronous motion with its liquid at rest in the drum.
 
     `motion`: complex amplitudes of the coordinates; `kick`: velocity of the axis beside that, over the
     layers' depth times the spin.
@@ -86,9 +86,9 @@ def begin(machine: HeldMachine, spin: float, nodes: int, motion: Complex, kick: 
 def _wave(layer: ExactLayer, spin: float, deflection: complex, gravity: float, nodes: int) -> Array:
     """Wave under a circle about the rotation axis, and on it the small one of gravity, at rest in space.
 
-    Deflection over R in the drum frame, gravity over Omega^2 R along the first direction. Liquid that gravity
-    comes to all of a sudden would ripple for long. Both are lower together where they would leave the wall
-    dry [theory: whirl, eq. 1-3].
+    `deflection` over R in the drum frame, `gravity` over Omega^2 R along the first direction; without its
+    wave the liquid would ripple for long. Both are lower together where they would leave the wall dry
+    [theory: whirl, eq. 1-3].
     """
     depth, inner = layer.layer, 1.0 - layer.layer
     tanh = (1.0 - inner**2) / (1.0 + inner**2)
@@ -131,7 +131,7 @@ def require_own_steps(numerics: HoldNumerics) -> None:
 def march(
     machine: HeldMachine, moment: Moment, numerics: HoldNumerics, watch: Watch
 ) -> tuple[Moment, Outcome]:
-    """Turn by turn until the watch has seen enough, the turns have run out or a wave is none any more.
+    """Advance turn by turn until the watch has seen enough, the turns have run out or a wave breaks down.
 
     Where nodes were too few it goes on with twice as many.
     """
@@ -208,7 +208,7 @@ def _steps(exact: ExactMachine, begin: Parts, course: Course, turn: float) -> Ar
 
 
 def again(machine: HeldMachine, moment: Moment, nodes: int) -> Moment:
-    """A moment with another number of nodes."""
+    """The moment with another number of nodes."""
     exact = exact_machine(machine, moment.spin, moment.layers, nodes)
     state = exact.rest()
     parts = exact.parts(state)

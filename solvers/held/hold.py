@@ -79,7 +79,7 @@ def _circle(fill: Fill, deflection: complex, cells: int) -> Array:
 
 
 def _levelled(fill: Fill, area: Array) -> Array:
-    """The same with as much liquid in each compartment as at rest: none passes closed baffles."""
+    """Areas with as much liquid in each compartment as at rest: none passes closed baffles."""
     if fill.compartments < 2:
         return area
     faces = np.sort(table_of(fill, area.size)[:, FACE].astype(int))
@@ -96,11 +96,10 @@ def hold(
     slowest: float = 0.0,
     trackers: Sequence[Any] = (),
 ) -> HeldState:
-    """Hold a machine at the spin of a moment until its motion has settled.
+    """Hold a machine at the spin of a moment until its motion has converged.
 
-    `slowest` is the rate at which the slowest small motion decays or grows, 1/s, 0 where it is not known: a
-    limit cycle is told from a motion that decays slowly by windows long against it. `trackers` of py-pde are
-    called beside our own.
+    `slowest`: rate at which the slowest small motion decays or grows, 1/s, 0 where it is not known; windows
+    long against it tell a limit cycle from slow decay. `trackers` of py-pde are called beside our own.
     """
     numerics = numerics or HoldNumerics()
     require_positive("speed", begin.spin)
@@ -150,9 +149,9 @@ _SHARE = 0.5  # of what half the cells change; a third where the scheme is of se
 def hold_with_error(
     machine: HeldMachine, begin: Moment, numerics: HoldNumerics, slowest: float = 0.0
 ) -> HeldState:
-    """`hold`, and from where it ends once more with half the cells, to estimate the error.
+    """`hold`, and from its end once more with half the cells, to estimate the error.
 
-    With less than 16 cells, or 8 in a compartment, there is no estimate.
+    No estimate with less than 16 cells, or 8 in a compartment.
     """
     found = hold(machine, begin, numerics, slowest)
     half = replace(numerics, cells=numerics.cells // 2)
@@ -170,7 +169,7 @@ def hold_with_error(
 
 
 def _resampled(machine: HeldMachine, moment: Moment, cells: int) -> Moment:
-    """The same with another number of cells; what a layer and a compartment hold stays."""
+    """The moment with another number of cells; what a layer and a compartment hold stays."""
     if machine.exact:
         from solvers.held.exact import again as with_nodes
 
@@ -191,8 +190,9 @@ def _resampled(machine: HeldMachine, moment: Moment, cells: int) -> Moment:
 def _march(
     machine: HeldMachine, moment: Moment, numerics: HoldNumerics, watch: Watch, trackers: Sequence[Any]
 ) -> tuple[Moment, Outcome]:
-    """On py-pde until the watch has seen enough, the turns have run out or the steps have failed; exact waves
-    apart.
+    """Advance on py-pde until the watch has seen enough, the turns have run out or the steps have failed.
+
+    Exact waves by `solvers.held.exact`.
     """
     if machine.exact:
         from solvers.held import exact

@@ -74,7 +74,7 @@ class Moment:
 
 @dataclass(frozen=True)
 class HeldState:
-    """What rotor and liquid do at one speed; n coordinates, l chambers.
+    """Motion of rotor and liquid at one speed; n coordinates, l chambers.
 
     Deflections are those of the first chamber's axis, or of the axis at position 0 without one, from where it
     rests without motion.
@@ -118,13 +118,13 @@ class HeldState:
 
     @property
     def settled(self) -> bool:
-        """It came to an answer."""
+        """Whether it came to an answer."""
         return self.kind is not HeldKind.NOT_SETTLED
 
 
 @dataclass(frozen=True)
 class HeldMachine:
-    """What is held."""
+    """Machine that is held."""
 
     system: RotorSystem  #: the dry rotor
     fills: tuple[Fill, ...]  #: its chambers with their liquid

@@ -1,7 +1,7 @@
-"""How a motion is judged by its turns: whether it has settled, to what, and where it is bound for.
+"""How a motion is judged by its turns: whether it has converged, to what, and where it is bound for.
 
-A turn of the drum is the unit of time. Of every turn three numbers are kept, the mean, the least and the
-largest distance of the axis from where it rests; from how they still change it is judged what the motion is.
+Of every turn of the drum, the unit of time, three numbers are kept: mean, least and largest distance of the
+axis from where it rests; their changes decide what the motion is.
 """
 
 from __future__ import annotations
@@ -181,7 +181,7 @@ class Watch:
         self.sizes = self.sizes[:0]
 
     def _deflection(self, steps: Array) -> Complex:
-        """Of the axis that is watched, standing frame, at every step."""
+        """Deflection of the axis that is watched, standing frame, at every step."""
         place = steps[:, 2 : 2 + self.seen.shape[1]]
         return np.asarray(place @ self.seen[0] + 1j * (place @ self.seen[1]))
 
@@ -208,7 +208,7 @@ class Watch:
         return done % (self.window // 2) == 0 and self._bounded(sizes, scale)
 
     def _repeating(self, wobble: float) -> HeldKind:
-        """What a motion is that repeats every turn and wobbles by so much of the amplitude.
+        """Kind of a motion that repeats every turn and wobbles by so much of the amplitude.
 
         Gravity across the axis makes every layer ripple, however little of that the axis shows.
         """
@@ -243,7 +243,7 @@ class Watch:
         return late * max(1.0, share / max(1.0 - share, 1e-3))
 
     def _died(self, sizes: Array, scale: float) -> bool:
-        """Whether a whirl has died that linear theory lets grow: unbalance and gravity may hold the layer.
+        """Whether a whirl has decayed that grows in linear theory: unbalance and gravity may hold the layer.
 
         Over windows in which it would have grown visibly, and to far below the tolerance.
         """
@@ -368,8 +368,7 @@ class Watch:
 
 
 def _limit(marks: list[Array], coordinates: int) -> Array | None:
-    """Where the states at the ends of some turns are bound for, by reduced rank extrapolation; None if
-    unsound.
+    """State that the ends of some turns are bound for, by reduced rank extrapolation; None if unsound.
 
     Its weights have the sum 1, so that no liquid is lost or made.
     """
@@ -427,7 +426,7 @@ def _centres(machine: HeldMachine, moments: Array, which: Index, weight: Array) 
 
 
 def _mean_rotation(machine: HeldMachine, spin: float, area: Array, momentum: Array, which: Index) -> Array:
-    """Of each layer relative to the drum, rad/s: u L over the area, as in a run-up."""
+    """Rotation of each layer relative to the drum, rad/s: u L over the area, as in a run-up."""
     radius = np.array([machine.fills[j].chamber.radius for j in which.tolist()])[:, None]
     a, q = area / np.square(radius), momentum / radius**4
     log = -0.5 * np.log1p(-2.0 * np.minimum(a, 0.4999))
@@ -460,7 +459,7 @@ def _other_speed(time: Array, deflection: Complex, spin: float) -> float:
 
 
 def _lost(machine: HeldMachine, moment: Moment, outcome: Outcome) -> HeldState:
-    """Where not even one turn was made."""
+    """State where not even one turn was made."""
     count = len(machine.fills)
     return HeldState(
         spin=moment.spin, kind=HeldKind.NOT_SETTLED, amplitude=math.nan, crest=math.nan, least=math.nan,

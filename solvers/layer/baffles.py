@@ -59,8 +59,8 @@ _CLOSED, _BEFORE = baffles.CLOSED, baffles.BEFORE
 def table_of(fill: Fill, cells: int, smeared: bool | None = None) -> Array:
     """A layer's table of baffles: each at the nearest face between two cells, or all of them smeared.
 
-    Shape (k, COLUMNS), k = 0 without baffles, 1 with smeared ones; None: the cells decide. An `InputError`
-    for compartments with less than four cells in each.
+    Shape (k, COLUMNS), k = 0 without baffles, 1 with smeared ones; `smeared` None: the cells decide.
+    Compartments with less than four cells in each are refused.
     """
     plates, radius = fill.chamber.baffles, fill.chamber.radius
     if plates is None:
@@ -183,11 +183,10 @@ def _through(sides, row, most):
 
 @_jit
 def _aside(ratio):
-    """Slope of a cell beside a baffle over its difference from the next one, of `ratio` to the difference
-    after that.
+    """Slope of a cell beside a baffle over its difference from the next one.
 
-    3/2 - ratio/2 is right to second order. Where the profile turns over there is no jump: rotor and liquid
-    would not agree on an acceleration.
+    3/2 - ratio/2 is right to second order, `ratio` being the difference after that over this one. Where the
+    profile turns over there is no jump: rotor and liquid would not agree on an acceleration.
     """
     return min(1.0, 2.0 * ratio, max(1.5 - 0.5 * ratio, 0.0))
 
@@ -196,7 +195,7 @@ def _aside(ratio):
 def slope_aside(table, area, full, value, half, ghosts):
     """Put half slopes of cells beside baffles, which know their own side alone, to second order, in place.
 
-    Values and slopes are continued beyond both ends of the ring by `ghosts` cells.
+    Values and slopes of the cells have shape (n + 2 ghosts,).
     """
     n = area.size
     # The two ends of a short piece would share cells and make a stiff whole of it: no slopes there.
@@ -224,7 +223,10 @@ def slope_aside(table, area, full, value, half, ghosts):
 
 @_jit
 def straighten(table, n, value, bent, ghosts):
-    """Make straight again, in place, the cells beside baffles, where they were parabolas."""
+    """Make straight again, in place, the cells beside baffles, where they were parabolas.
+
+    `bent` are the means of what cells have at their two faces, with ghosts as `value`.
+    """
     for k in range(2 * table.shape[0]):
         i, way = int(table[k // 2, FACE]), 2 * (k % 2) - 1
         if i < 0:
@@ -243,7 +245,8 @@ def obstruct(table, area, spin, full, slot, pull_face, before, after, mass, flow
 
     The flux of momentum that stays is that of the cell before the face; the one after it gets less by what
     the baffle takes, the column TORQUE. `before` and `after` have the states on the two sides of each face,
-    rows A, q, flux of mass and of momentum, pressure; `mass` and `flow` the fluxes of an open face.
+    rows A, q, flux of mass and of momentum, pressure, shape (5 or more, n + 1); `mass` and `flow` the fluxes
+    of an open face.
     """
     n = pull_face.size
     for k in range(table.shape[0]):
@@ -306,8 +309,9 @@ def take(table, step, d_q):
 def smeared_resistance(depth, head, row):
     """`resistance` of one of many baffles to the flow of a layer that piles up before each.
 
-    The depth before them grows from that of the layer to the fixed point by Newton's method; the function is
-    convex and falls, so that no step goes too far [theory: baffles, eq. 3 and 11].
+    The depth before them grows from that of the layer to the fixed point by Newton's method, `head` being
+    u^2/(4 g) of the flow past them; the function is convex and falls, so that no step goes too far
+    [theory: baffles, eq. 3 and 11].
     """
     if row[LOSS] >= 0.0:
         return 0.5 * row[LOSS] / max(depth, 1e-12)
@@ -332,10 +336,10 @@ def smeared_resistance(depth, head, row):
 
 @_jit
 def smear(table, area, q, spin, step, dt, d_q):
-    """Take from all cells what smeared baffles take (`d_q`, TORQUE, POWER); rows of baffles at faces stay as
-    they are.
+    """Take from all cells what smeared baffles take, in `d_q`, TORQUE and POWER.
 
-    A step by Heun's method with these rates is of second order and stops no flow beyond rest.
+    Rows of baffles at faces stay as they are. A step by Heun's method with these rates is of second order and
+    stops no flow beyond rest.
     """
     for k in range(table.shape[0]):
         row = table[k]

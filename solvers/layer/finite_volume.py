@@ -665,7 +665,8 @@ def solve_ring(diagonal, side, value, spare):
     """Solve diagonal_i y_i - side_i y_{i-1} - side_{i+1} y_{i+1} = value_i round a ring, in place.
 
     Elimination, and the two corners by the formula of Sherman and Morrison. The matrix must be positive
-    definite.
+    definite. `diagonal` is left with the pivots' inverses; `side` has n + 1 entries, the last the first once
+    more.
     """
     n = value.size
     last, first, share = n - 1, diagonal[0], side[0] / diagonal[0]

@@ -38,8 +38,5 @@ def full_area(fill: Fill) -> float:
 
 
 def inside_of(fill: Fill, cells: int, smeared: bool | None = None) -> Inside:
-    """Obstacles of a chamber.
-
-    Baffles are smeared or not; None: the cells decide.
-    """
+    """Obstacles of a chamber, baffles smeared over the layer or not; None: the cells decide."""
     return Inside(table_of(fill, cells, smeared), full_area(fill), SLOT_SPEED**2)

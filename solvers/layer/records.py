@@ -66,7 +66,7 @@ PACE = floats("time", "fastest")
 
 
 class Outcome(IntEnum):
-    """How a stretch of time steps ended, of a layer or of a rotor with layers; compiled code knows it too."""
+    """How a stretch of time steps ended, of a layer or of a rotor with layers; shared with compiled code."""
 
     DONE = 0
     TOO_LONG = 1

@@ -1,8 +1,8 @@
 """Time steps of a finite-volume layer: their parts, and a layer's way under a prescribed whirl.
 
 Heun's method in two stages between two half steps of friction, exact but for the law of the wall
-[theory: long_wave, eq. 11]. The coupled
-machine takes the parts and puts its own forces to them. Lengths over R, times in the unit of the spin given.
+[theory: long_wave, eq. 11]. The coupled machine takes the parts and puts its own forces to them. Lengths over
+R, times in the unit of the spin given.
 """
 
 from __future__ import annotations
@@ -157,7 +157,7 @@ def calm(area, q, spin):
 
 @_part
 def predict(area, q, rate_a, rate_q, dt, next_a, next_q):
-    """Euler step; tells whether the surface stays off the axis and every number is one."""
+    """Euler step; whether the surface stays off the axis and every number is finite."""
     wrong = 0
     for i in range(area.size):
         next_a[i] = np.maximum(area[i] + dt * rate_a[i], 0.0)
@@ -177,7 +177,7 @@ def predict_energy(energy, rate, dt, next_energy):
 
 @_part
 def correct_energy(energy, rate, dt, next_energy):
-    """Second stage of Heun's method for it."""
+    """Second stage of Heun's method for the energy of the fluctuations."""
     for i in range(energy.size):
         energy[i] = 0.5 * (energy[i] + np.maximum(next_energy[i] + dt * rate[i], 0.0))
 
@@ -261,7 +261,7 @@ def stage_rates(
 
 
 def scratch(cells: int) -> NDArray[np.float64]:
-    """Scratch that `advance` wants for a ring of so many cells."""
+    """Scratch of `advance` for a ring of so many cells."""
     return np.zeros((WORK + 9, cells + 2 * GHOSTS))
 
 
@@ -304,7 +304,6 @@ def _cell_loads(area, q, spin, pull, cosine, sine, full, slot):
 
 @_sum_part
 def _bounds(values):
-    """Least and largest of them."""
     least, largest = values[0], values[0]
     for i in range(values.size):
         least = values[i] if values[i] < least else least
@@ -353,12 +352,11 @@ def tally(area, q, spin, pull, angles, cosine, sine, share, full, slot, sums):
 
 @_jit
 def advance(area, q, energy, pace, stop, drive, wall, angles, inside, courant, most, spare, loads):
-    """Advance a layer under a prescribed whirl, in place, and add its loads to `loads`; Outcome, and the
-    steps tried.
+    """Advance a layer under a prescribed whirl, in place, and add its loads to `loads`.
 
     `energy` is A e of the fluctuations behind bores, (n,), or (0,) without them; `pace` a record PACE, how
     far it has come: after RAN_OUT the next call goes on as if there had been none between. `angles` as of
-    `stage_rates`; rows of the scratch `spare` are reused.
+    `stage_rates`; rows of the scratch `spare` are reused. Returns Outcome, and the steps tried.
     """
     n = area.size
     step = 2.0 * np.pi / n
@@ -442,10 +440,9 @@ def march(
     energy: Array | None = None,
     inside: Inside = NOTHING,
 ) -> tuple[Outcome, int]:
-    """`advance` from one time to another in slices, between which Python sees a Ctrl-C; Outcome, and the
-    steps tried.
+    """`advance` from one time to another in slices, between which Python sees a Ctrl-C.
 
-    At most `most` steps, by default `solvers.slices.step_budget`.
+    At most `most` steps, by default `solvers.slices.step_budget`. Returns Outcome, and the steps tried.
     """
     pace, outcome, taken = records(PACE), Outcome.RAN_OUT, 0
     pace[0].time = start

@@ -1,4 +1,4 @@
-"""A rotor with exact layers through time: no iteration, since a layer's force is a straight line of the push.
+"""A rotor with exact layers through time: no iteration, since a layer's force is linear in the body force.
 
 Plane vectors are complex numbers in the standing frame, their real part along the first direction
 [theory: potential, eq. 25-32]. Dimensional but for the waves, whose lengths are over R and whose times are in
@@ -41,13 +41,13 @@ class Ended(StrEnum):
 
 
 def ramp(start: float, rate: float = 0.0) -> Spinning:
-    """A spin that changes evenly; at the time 0 the drum's zero mark lies along the first direction."""
+    """Spin that changes evenly, rad/s, rad/s^2; at time 0 the zero mark lies along the first direction."""
     return lambda time: (start * time + 0.5 * rate * time**2, start + rate * time, rate)
 
 
 @dataclass(frozen=True)
 class ExactLayer:
-    """A layer as the rotor knows it."""
+    """A layer and how it moves with the rotor."""
 
     plane: Array  #: displacement of its chamber's axis for unit coordinates, shape (2, n)
     weight: float  #: rho h_c, kg/m^2
@@ -57,7 +57,7 @@ class ExactLayer:
 
     @property
     def mass(self) -> float:
-        """Of the liquid, kg."""
+        """Mass of the liquid, kg."""
         return self.weight * math.pi * self.radius**2 * self.layer * (2.0 - self.layer)
 
 
@@ -83,7 +83,7 @@ class Powers:
 
     @property
     def gain(self) -> float:
-        """All of them together."""
+        """Rate of change of the energy: what is brought less what is taken."""
         return self.unbalance + self.gravity + self.drive - self.support - self.friction
 
 
@@ -100,13 +100,13 @@ class ExactMachine:
     damping: float = 0.0  #: of the shortest waves, over the unit, see `solvers.potential.unsteady.rates`
 
     def rest(self) -> Array:
-        """No deflection, liquid at rest in the drum."""
+        """State without deflection, its liquid at rest in the drum."""
         n, turned = len(self.system.coordinates), np.array([[0.0, self.unit]] * len(self.layers))
         waves = [still(layer.layer, self.nodes).state for layer in self.layers]
         return np.concatenate((np.zeros(2 * n), turned.ravel(), *waves))
 
     def parts(self, state: Array) -> Parts:
-        """A state taken apart; what is changed in the parts is changed in the state."""
+        """State of shape (2n + 2l + 2ml,) taken apart; what is changed in the parts is changed in it."""
         n, count = len(self.system.coordinates), len(self.layers)
         turned = state[2 * n : 2 * (n + count)].reshape(count, 2)
         return Parts(
@@ -154,7 +154,7 @@ class ExactMachine:
         return np.asarray(np.linalg.solve(left, right), dtype=float), answers
 
     def energy(self, state: Array) -> float:
-        """Of rotor and layers, J [theory: potential, eq. 31]."""
+        """Energy of rotor and layers, J [theory: potential, eq. 31]."""
         parts, system = self.parts(state), self.system
         total = 0.5 * (parts.rate @ system.mass @ parts.rate + parts.place @ system.stiffness @ parts.place)
         for layer, (turned, own), wave in zip(self.layers, parts.turned.tolist(), parts.waves, strict=True):
@@ -166,7 +166,7 @@ class ExactMachine:
         return float(total)
 
     def powers(self, time: float, state: Array) -> Powers:
-        """What changes the energy."""
+        """Powers that change the energy at a time."""
         parts, system, (angle, speed, rate) = self.parts(state), self.system, self.spin(time)
         push = ((speed**2 - 1j * rate) * system.unbalance * cmath.exp(1j * angle)).real
         fall = drive = friction = 0.0
@@ -183,7 +183,7 @@ class ExactMachine:
         return Powers(float(push @ parts.rate), fall, drive, support, friction)
 
     def _momentum(self, layer: ExactLayer, turned: float, own: float, wave: Array) -> complex:
-        """Of the liquid relative to its axis, kg m/s, standing frame."""
+        """Momentum of the liquid relative to its axis, kg m/s, standing frame."""
         found = answer(wave)
         relative = found.momentum + 1j * own / self.unit * found.moment
         return layer.weight * layer.radius**3 * self.unit * relative * cmath.exp(1j * turned)
@@ -216,10 +216,10 @@ def coupled(
     nodes: int = 128,
     damping: float = 0.0,
 ) -> ExactMachine:
-    """A rotor with exact layers, of all chambers that hold one; a full one is a mass, an empty one nothing.
+    """Rotor with exact layers, of all chambers that hold one; a full one is a mass, an empty one nothing.
 
     `friction` is k of each chamber's liquid, 1/s; gravity across the axis, standing frame, complex, m/s^2;
-    `damping` that of the shortest waves, over the spin at the time 0.
+    `nodes` of each surface, even; `damping` that of the shortest waves, over the spin at the time 0.
     """
     rates = tuple(friction) or (0.0,) * len(fills)
     if len(rates) != len(fills):
@@ -245,8 +245,8 @@ def advance(
 ) -> Course:
     """Take a machine through time, by steps that the fastest of its waves allows.
 
-    Where a wave breaks, or the nodes do not carry it, up to there. Tolerance of a step, relative; a
-    thousandth of it of the radius, the unit and so on.
+    The course ends where a wave breaks or the nodes do not carry it. `tolerance` of a step is relative; the
+    absolute one is a thousandth of it, of the radius, the unit and so on.
     """
     from scipy.integrate import DOP853
 
@@ -295,7 +295,7 @@ def advance(
 
 
 def shapes(machine: ExactMachine, time: float, state: Array) -> list[Watch]:
-    """What the wave of each layer has come to."""
+    """Shape of each layer's wave."""
     parts, change = machine.parts(state), machine.parts(machine.rates(time, state))
     volumes = [math.pi * layer.layer * (2.0 - layer.layer) for layer in machine.layers]
     return [
@@ -321,7 +321,7 @@ def rough(machine: ExactMachine, state: Array, most: float) -> bool:
 
 
 def finer(machine: ExactMachine, state: Array) -> tuple[ExactMachine, Array]:
-    """The same on twice as many nodes."""
+    """Machine and state on twice as many nodes."""
     parts, onto = machine.parts(state), replace(machine, nodes=2 * machine.nodes)
     waves = np.array([resampled(wave, onto.nodes) for wave in parts.waves])
     return onto, onto.joined(replace(parts, waves=waves))

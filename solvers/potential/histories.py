@@ -1,7 +1,7 @@
 """A layer under a prescribed circular whirl by the exact wave in time; SI units.
 
 What `solvers.pypde.settle` does by long waves: from the uniform layer at rest in the drum, whirl period by
-whirl period, or as pictures. A wave that breaks ends it, for beyond that it owes no force.
+whirl period, or as pictures. A wave that breaks ends it: beyond that the model has no force.
 """
 
 from __future__ import annotations
@@ -55,8 +55,9 @@ class PotentialHistory:
 def simulate(
     fill: Fill, whirl: Whirl, duration: float, steps: Steps | None = None, progress: Progress = None
 ) -> PotentialHistory:
-    """Layer from rest in the drum, uniform, whirl period by whirl period, at least one; a clear circular
-    chamber.
+    """Layer from rest in the drum, uniform, whirl period by whirl period.
+
+    Whole periods within `duration`, s, are answered, at least one; the chamber is circular and clear.
     """
     require_positive("duration", duration)
     steps = steps or Steps()
@@ -94,10 +95,7 @@ def film(
     steps: Steps | None = None,
     progress: Progress = None,
 ) -> LayerFilm:
-    """Layer from rest in the drum, as pictures at equal intervals.
-
-    It ends early where the wave breaks.
-    """
+    """Layer from rest in the drum, as pictures at equal intervals; a wave that breaks ends it early."""
     if frames < 1:
         raise InputError("frames", frames, "1 or more")
     require_positive("periods", periods)
@@ -156,10 +154,7 @@ def _sample(surface: Surface, time: float, push: Push, friction: float) -> _Samp
 
 @dataclass
 class _Means:
-    """Means over whirl periods, and how well momentum, energy and angular momentum balance.
-
-    [theory: potential, eq. 20-22]
-    """
+    """Means over whirl periods, and how well the balances hold [theory: potential, eq. 20-22]."""
 
     whirl: Whirl  #: what drives the layer
     push: Push

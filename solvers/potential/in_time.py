@@ -1,7 +1,7 @@
-"""The exact wave driven through time: limited steps, nodes as its spectrum wants them, and an honest end.
+"""The exact wave through time: limited steps, nodes as its spectrum needs them, and where it breaks.
 
 A wave is `resolved`, or carries `short_waves` that its nodes do not resolve, or is `broken`. Its spectrum
-alone never says that it is broken: short waves fill it while the crest may be falling. Its crest does, where
+alone never shows that it is broken: short waves fill it while the crest may be falling. Its crest does, where
 the liquid is nearly as fast as the crest itself, and a surface that overhangs [theory: potential, eq. 23].
 """
 
@@ -80,7 +80,7 @@ class Steps:
 
 @dataclass(frozen=True)
 class Watch:
-    """What a wave has come to."""
+    """Shape of a wave, and how well its nodes carry it."""
 
     crest: float  #: greatest and least depth, over R
     trough: float
@@ -90,7 +90,7 @@ class Watch:
     tail: float  #: largest coefficient in the last tenth of the spectrum over the largest
 
     def since(self, before: Watch) -> Watch:
-        """The extremes of before and now; the tail is that of now."""
+        """Extremes of before and now; the tail is that of now."""
         return Watch(
             crest=max(self.crest, before.crest),
             trough=min(self.trough, before.trough),
@@ -115,10 +115,10 @@ class Moment:
 def course(
     begin: Surface, times: Array, push: Push | None = None, steps: Steps | None = None
 ) -> Iterator[Moment]:
-    """A wave at some rising times in 1/Omega, the last at a step's end and the others from within the steps.
+    """A wave at rising times, in 1/Omega: the last at a step's end, the others from within the steps.
 
-    The surface is taken to the nodes of `steps` where it has fewer; `push` is f over time, None: none. A wave
-    that breaks comes last, as it was found, and tells why.
+    The surface is taken to the nodes of `steps` where it has fewer. A wave that breaks comes last, as it was
+    found, with the reason.
     """
     if times.size == 0:
         return
@@ -154,13 +154,13 @@ def course(
 
 
 def advance(begin: Surface, time: float, push: Push | None = None, steps: Steps | None = None) -> Moment:
-    """A wave after a time, or where it broke."""
+    """A wave after a time in 1/Omega, or where it broke."""
     *_, last = course(begin, np.array([time]), push, steps)
     return last
 
 
 def judged(now: Watch, nodes: int, most: int, breaking: float = BREAKING) -> tuple[WaveState, str]:
-    """What is known of a wave, and why it is broken or nothing [theory: potential, eq. 23]."""
+    """State of a wave, and why it is broken, or empty [theory: potential, eq. 23]."""
     broken = WaveState.BROKEN
     if now.slope > 0.5 * math.pi:
         return broken, "the surface overhangs"
@@ -172,7 +172,7 @@ def judged(now: Watch, nodes: int, most: int, breaking: float = BREAKING) -> tup
 
 
 def watched(state: Array, change: Array, volume: float) -> Watch:
-    """The shape of a wave."""
+    """Shape of a wave by its state and rates, shape (2n,), and the volume that it began with, over R^2."""
     n = state.size // 2
     height, waves, depth = fft.rfft(state[:n]), wave_numbers(n), float(state[:n].mean())
     flux = np.concatenate(([0.0], waves.k[1:] / np.tanh(np.minimum(waves.k[1:] * depth, LARGE))))
@@ -225,15 +225,16 @@ def _crest_number(state: Array, change: Array) -> float:
 
 
 def carried(acceleration: Callable[[float], complex]) -> Push:
-    """The force f of a drum whose axis moves anyhow, while it spins anyhow [theory: potential, eq. 24].
+    """Force f of a drum whose axis moves anyhow, while it spins anyhow [theory: potential, eq. 24].
 
-    The acceleration over Omega^2 R, complex; gravity is one in its direction with the other sign.
+    The acceleration of the axis in space is over Omega^2 R, complex; gravity is one in its direction with the
+    other sign.
     """
     return lambda time: -acceleration(time) * complex(math.cos(time), -math.sin(time))
 
 
 def _changes(push: Push | None, steps: Steps) -> Callable[[float, Array], Array]:
-    """Rates over time."""
+    """Function that gives the rates at a time."""
 
     def change(time: float, state: Array) -> Array:
         return rates(state, 0j if push is None else push(time), steps.damping, steps.friction)
@@ -242,7 +243,7 @@ def _changes(push: Push | None, steps: Steps) -> Callable[[float, Array], Array]
 
 
 def _solver(change: Callable[[float, Array], Array], state: Array, start: float, stop: float) -> DOP853:
-    """Runge and Kutta's steps that the fastest of the waves allows."""
+    """Runge-Kutta steps that the fastest of the waves allows."""
     from scipy.integrate import DOP853
 
     # A method that tries longer ones fills the spectrum with what its tolerance lets through.

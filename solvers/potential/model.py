@@ -1,6 +1,6 @@
 """The exact wave as a liquid model: steady waves of one whirl, and free waves.
 
-In SI units; the solvers of this room count lengths in radii and times in 1/Omega.
+In SI units; the solvers below count lengths in radii and times in 1/Omega.
 """
 
 from __future__ import annotations
@@ -203,7 +203,7 @@ class Potential(WaveModel):
         )
 
     def free_wave(self, fill: Fill, spin: float, crest: float, crests: int = 1) -> FreeWave:
-        """The free wave of n crests, the depth at a crest over the mean depth given, above 1.
+        """Free wave of so many crests, `crest` being the depth there over the mean depth, above 1.
 
         Its error is the distance from the same one on half as many nodes again.
         """
@@ -369,7 +369,7 @@ def _crest_number(wave: SteadyWave) -> float:
 
 
 def _mass_error(wave: SteadyWave) -> float:
-    """Of the surface as it is drawn, on nodes of its own."""
+    """Relative error of the mass under the surface as it is drawn, on nodes of its own."""
     return abs(wave.volume / (wave.layer * (2.0 - wave.layer)) - 1.0)
 
 

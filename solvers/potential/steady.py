@@ -1,9 +1,10 @@
 """Exact waves that stand in the frame of their whirl, by Newton's method with an analytic Jacobian.
 
-Lengths over R, times in 1/Omega. Unknown are the surface y at the nodes, Bernoulli's constant, the detuning
-p^2 = (1 - Omega/omega_w)^2 and the whirl w_0; two conditions choose among p^2, w_0, the depth of the crest
-and the height of the wave [theory: potential, eq. 7-8]. The wave depends on p^2 and not on the sign of p:
-whirl speeds come in twins [theory: potential, eq. 9].
+Lengths over R, times in 1/Omega; `layer` is h_0/R, `crest` the depth there over h_0, `most` the steps from
+crest to trough that nodes may have. Unknown are the surface y at the nodes, Bernoulli's constant, the
+detuning p^2 = (1 - Omega/omega_w)^2 and the whirl w_0; two conditions choose among p^2, w_0, the depth of the
+crest and the height of the wave [theory: potential, eq. 7-8]. The wave depends on p^2 and not on the sign of
+p: whirl speeds come in twins [theory: potential, eq. 9].
 """
 
 from __future__ import annotations
@@ -74,7 +75,7 @@ class SteadyWave:
 
     @property
     def trough(self) -> float:
-        """Depth at the trough, half way between two crests, likewise."""
+        """Depth at the trough, half way between two crests, over that of the layer at rest."""
         return float(-np.expm1(-self.surface[-1])) / self.layer
 
     @property
@@ -182,10 +183,10 @@ def at_rest(layer: float, at: Nodes) -> SteadyWave:
 def solve(begin: SteadyWave, wanted: Mapping[str, float], same: bool = False) -> SteadyWave:
     """The wave that meets two conditions, from one that is near and whose nodes are kept.
 
-    Conditions are two of "detuning" p^2, "whirl" w_0/R, "crest" and "height" over h_0. With `same` it stays
-    on the branch of `begin`: where rounds after the first, along its tangent, change the surface by more than
-    half as much again, they have come to another. Where there is none near the one that it began with, not
-    converged.
+    Conditions are two of "detuning" p^2, "whirl" w_0/R, "crest" and, crest less trough, "height", both over
+    h_0. With `same` it stays on the branch of `begin`: where rounds after the first, along its tangent,
+    change the surface by more than half as much again, they have come to another. Where none is near it is
+    `begin`, not converged.
     """
     if len(wanted) != 2 or not set(wanted) <= set(CONDITIONS):
         raise InputError("wanted", ", ".join(wanted), "two of " + ", ".join(CONDITIONS))
@@ -242,8 +243,7 @@ def follow(
 
     For a free wave a step that puts shorter waves on it fails too: it has come to another branch. A whirl
     brings such waves along in its lee; there a step fails that leaves the tangent. Nodes follow the spectrum,
-    up to `most` steps from crest to trough. The last wave that was found; `converged` is False if it is not
-    the one wanted.
+    up to `most` (0: those of `begin` stay). Where it is not reached, the last wave found, not converged.
     """
     parameters = np.concatenate((begin.surface, [0.0, begin.detuning, begin.whirl]))
     start = {key: _value(parameters, begin.layer, key) for key in wanted}
@@ -264,9 +264,7 @@ def follow(
 
 
 def refined(wave: SteadyWave, wanted: Mapping[str, float], most: int = MOST) -> SteadyWave:
-    """The same wave on nodes that its spectrum wants, up to `most`: more of them, as crowded as its crest is
-    sharp.
-    """
+    """The same wave on nodes that its spectrum needs, up to `most`, as crowded as its crest is sharp."""
     while wave.tail > RESOLVED and wave.surface.size - 1 < most:
         # A crest is as wide as the layer is deep, and shrinks with the square of its speed as it nears 0.
         sharp = _CROWDED * wave.at.crests * wave.layer * wave.crest_speed**2
@@ -367,7 +365,7 @@ def _equations(at: Nodes, layer: float, state: Array, wanted: Mapping[str, float
 
 
 def _value(state: Array, layer: float, key: str) -> float:
-    """What a condition is about."""
+    """Value of the quantity that a condition names."""
     if key in ("detuning", "whirl"):
         return float(state[-2] if key == "detuning" else state[-1])
     crest, trough = -np.expm1(-state[0]) / layer, -np.expm1(-state[-4]) / layer
@@ -375,7 +373,7 @@ def _value(state: Array, layer: float, key: str) -> float:
 
 
 def _gradient(state: Array, layer: float, key: str) -> Array:
-    """Its derivative by the state."""
+    """Derivative of that quantity by the state."""
     found = np.zeros(state.size)
     if key in ("detuning", "whirl"):
         found[-2 if key == "detuning" else -1] = 1.0

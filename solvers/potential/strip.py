@@ -56,9 +56,7 @@ class Strip:
 
 @lru_cache(maxsize=8)
 def nodes(count: int, crests: int = 1, cluster: float = 1.0) -> Nodes:
-    """Nodes from crest to trough: `count` steps of n crests; L, at most 1, is the step at the crest over even
-    ones.
-    """
+    """The `count` + 1 nodes from crest to trough of n crests round the drum; `cluster` is L, at most 1."""
     if count < FEWEST:
         raise InputError("count", count, f"at least {FEWEST}")
     if crests < 1:
@@ -101,7 +99,7 @@ def _placed(count: int, crests: int, cluster: float) -> tuple[Array, Array, Arra
 def _waves_in_u(count: int, cluster: float) -> Array:
     """Waves in u of one crest from those in xi, without the mean [theory: potential, eq. 13].
 
-    The nodes themselves are too far apart for them at the trough.
+    Shape (count - 2, count + 1): the nodes themselves are too far apart for them at the trough.
     """
     j, away = np.arange(count + 1), (1.0 - cluster) / (1.0 + cluster)
     # exp(iu) = (w + away)/(1 + away w) as a power series in w = exp(i xi), and what multiplies one by it.
@@ -116,7 +114,7 @@ def _waves_in_u(count: int, cluster: float) -> Array:
 
 
 def strip(at: Nodes, depth: float) -> Strip:
-    """Operators for a strip of this depth."""
+    """Operators for a strip of this depth K."""
     require_positive("depth", depth)
     most = min(math.ceil(_DEEP / (at.crests * depth)), at.taken.shape[0])
     k = at.crests * np.arange(1, most + 1)

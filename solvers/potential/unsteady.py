@@ -1,9 +1,9 @@
 """The exact wave in time: rates of change of its surface, the force that it exerts, what it conserves.
 
-On even nodes all round the drum, by Fourier transforms [theory: potential, eq. 16-27]. Lengths over R, times
-in 1/Omega, with the spin Omega that the liquid had when it was at rest in its drum. Forces are seen in the
-frame that turns at that spin for ever, whatever the drum does later [theory: potential, eq. 24]; with f = 0
-volume, energy and angular momentum stay. `solvers.potential.in_time` takes a wave through time.
+A state is y and phi on n even nodes all round the drum, n even, shape (2n,); by Fourier transforms
+[theory: potential, eq. 16-27]. Lengths over R, times in 1/Omega, with the spin Omega that the liquid had when
+it was at rest in its drum. Forces are seen in the frame that turns at that spin for ever, whatever the drum
+does later [theory: potential, eq. 24]; with f = 0 volume, energy and angular momentum stay.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ class Surface:
 
     @property
     def state(self) -> Array:
-        """Both in one, shape (2n,)."""
+        """Height and potential in one, shape (2n,)."""
         return np.concatenate((self.height, self.potential))
 
 
@@ -138,7 +138,7 @@ def started(wave: SteadyWave, slip: float, count: int) -> Surface:
 
 
 def rates(state: Array, push: complex, damping: float = 0.0, friction: float = 0.0) -> Array:
-    """Rates of change of a surface, y and phi, shape (2n,) [theory: potential, eq. 16-18].
+    """Rates of change of a surface, shape (2n,) [theory: potential, eq. 16-18].
 
     `push` is f, minus the acceleration of the axis, over Omega^2 R; `damping` that of the shortest waves that
     are kept, over Omega, falling with the eighth power of the wave number; `friction` k of a body force -k
@@ -227,7 +227,7 @@ def _momentum(flow: _Flow) -> complex:
 
 @dataclass(frozen=True)
 class Answer:
-    """What a layer does under any force: its rates and its own force are straight lines of f."""
+    """What a layer does under any force: its rates and its own force are linear in f."""
 
     still: Array  #: rates without f, shape (2n,)
     lever: Array  #: rates of phi for f = 1 and f = i, shape (2, n)
@@ -246,8 +246,8 @@ class Answer:
 def answer(state: Array, spin: float = 1.0, friction: float = 0.0, damping: float = 0.0) -> Answer:
     """Rates and force of a layer under any force at once [theory: potential, eq. 25-27].
 
-    Friction turns the drum's pressure by nothing; `spin` of the frame in which the flow has no vorticity,
-    over the unit of the spin.
+    Friction turns the drum's pressure by nothing; `spin` is that of the frame in which the flow has no
+    vorticity, over the unit of the spin.
     """
     n, flow, whole = state.size // 2, _flow(state), 2.0 * np.pi
     arms = flow.radius * np.stack((np.cos(flow.angle), np.sin(flow.angle)))
@@ -280,7 +280,8 @@ def _moment(flow: _Flow) -> complex:
 def invariants(state: Array, spin: float = 1.0) -> Invariants:
     """Volume, energy, angular momentum and first moments [theory: potential, eq. 20].
 
-    `spin` of the frame in which the flow has no vorticity, over the unit of the spin; 0 leaves phi alone.
+    `spin` is that of the frame in which the flow has no vorticity, over the unit of the spin; 0 leaves phi
+    alone.
     """
     n, flow, whole = state.size // 2, _flow(state), 2.0 * np.pi
     square, phi = np.square(flow.radius), state[n:]
@@ -303,7 +304,8 @@ def invariants(state: Array, spin: float = 1.0) -> Invariants:
 def laid(radius: Callable[[Array], Array], count: int) -> Surface:
     """Liquid at rest in the drum under a surface of a given shape [theory: potential, eq. 2].
 
-    An `ArithmeticError` where the surface is too steep for these nodes.
+    `radius` of the surface over R, between 0 and 1, at angles; its waves are lower than the layer is deep. An
+    `ArithmeticError` where it is too steep for these nodes.
     """
     angle = wave_numbers(count).angle
     for _ in range(_ROUNDS):
@@ -315,7 +317,7 @@ def laid(radius: Callable[[Array], Array], count: int) -> Surface:
 
 
 def levelled(state: Array, volume: float) -> Array:
-    """The same surface, moved out or in until it holds a volume, shape (2n,).
+    """The same surface, moved out or in until it holds a volume over R^2, shape (2n,).
 
     An `ArithmeticError` where there is no such surface near by.
     """
@@ -359,10 +361,9 @@ def node_angles(state: Array) -> Array:
 
 
 def seen(state: Array, at: Array) -> tuple[Array, Array]:
-    """Radius of the surface over R, and velocity along the wall over R times the unit of the spin, at given
-    angles.
+    """Radius of the surface, and velocity along the wall, at given angles in the frame of the spin, rad.
 
-    Of a surface that does not overhang; angles in the frame of the spin, rad, shape (m,).
+    Over R, and over R times the unit of the spin, shape (m,); of a surface that does not overhang.
     """
     flow = _flow(state)
     k, inner = flow.waves.k[1:-1], np.minimum(flow.waves.k[1:-1] * flow.depth, LARGE)

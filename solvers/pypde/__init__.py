@@ -1,22 +1,12 @@
 """The waves as py-pde equations, and their steppers as py-pde solvers; its trackers and storages serve both.
 
-`AnnularLongWavePDE` is the nonlinear layer, `KdvBurgersPDE` the waves of one family; both live on a `circle`.
-Importing an equation registers its solver, "finite_volume" or "exponential", and takes py-pde's seconds: the
-names below are fetched when they are used.
-
-Settle a layer under a whirl on py-pde:
-
-    from solvers.pypde import AnnularLongWavePDE, circle
+`AnnularLongWavePDE` is the nonlinear layer, `KdvBurgersPDE` the waves of one family, whose field is the
+liquid area above its mean; both live on a `circle`. Importing an equation registers its solver,
+"finite_volume" or "exponential", and takes py-pde's seconds: the names below are fetched when they are used.
 
     equation = AnnularLongWavePDE(fill, whirl, friction=friction, dispersion=True)
-    state = equation.start(circle(256))
-    state = equation.solve(state, 3.0, solver="finite_volume")
+    state = equation.solve(equation.start(circle(256)), 3.0, solver="finite_volume")
     equation.force(state, 3.0), equation.offset(state)
-
-and waves of one family, whose field is the liquid area above its mean:
-
-    from pde import ScalarField
-    from solvers.pypde import KdvBurgersPDE, circle
 
     equation = KdvBurgersPDE(family, damping=0.1, forcing=q, whirl_speed=s)
     equation.solve(ScalarField(circle(256)), 3.0, solver="exponential")

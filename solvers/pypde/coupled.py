@@ -43,12 +43,11 @@ _ROWS = 4096  # steps written down between two looks of Python
 class RotorLayersPDE(CirclePDE):  # type: ignore[no-untyped-call]
     """Rotor and layers at a constant spin [theory: coupling, eq. 1-5].
 
-    The state is a collection on a grid as from `circle`: "area" of each captured layer and "momentum" of each
-    as of `AnnularLongWavePDE`, then the coordinates of the rotor by their names and their rates, uniform
-    fields. At time 0 the drum's zero mark lies along the first direction. Liquid of a full chamber, or where
-    no annular layer exists, is a mass; `layers` says which chambers hold a layer, None takes those whose
-    liquid rides with the drum. The laminar law takes the frequency of the slower free wave; gravity acts
-    across the axis, against the first direction.
+    The state is a collection on a `circle`: "area" and "momentum" of each layer as of `AnnularLongWavePDE`,
+    then the coordinates of the rotor by their names and their rates, uniform fields. At time 0 the drum's
+    zero mark lies along the first direction; gravity, m/s^2, acts across the axis, against it. Liquid of a
+    full chamber, or where no annular layer exists, is a mass; `layers` says which chambers hold a layer,
+    None: those whose liquid rides with the drum. The laminar law takes the frequency of the slower free wave.
     """
 
     def __init__(
@@ -71,7 +70,7 @@ class RotorLayersPDE(CirclePDE):  # type: ignore[no-untyped-call]
         self._still: dict[int, Coupled] = {}  # by the number of cells: what does not change with the state
 
     def machine(self, cells: int) -> Coupled:
-        """The same for the compiled steps, at rest, with its layers as they are caught at this spin."""
+        """Machine of the compiled steps at rest, with the annular layers of this spin."""
         given = (self.system, self.fills, self.spin, self.friction, self.gravity, cells, self.dispersion)
         found = couple(*given)
         if hasattr(self, "layers") and not np.array_equal(found.active, self.layers):
@@ -87,9 +86,9 @@ class RotorLayersPDE(CirclePDE):  # type: ignore[no-untyped-call]
         area: Array | None = None,
         momentum: Array | None = None,
     ) -> Any:
-        """State of so many cells; n coordinates, l captured layers.
+        """State of 8 or more cells round each wall, at rest and uniform where nothing is given.
 
-        At rest and uniform where nothing is given: A, m^2, and q, m^4/s, shape (l, cells).
+        Coordinates and rates of the rotor have shape (n,), areas A, m^2, and momenta q, m^4/s, (l, cells).
         """
         rest, n = self.machine(cells), len(self.system.coordinates)
         square = np.square(rest.machine.layers.radius)[:, None]
@@ -186,7 +185,7 @@ class RotorLayersPDE(CirclePDE):  # type: ignore[no-untyped-call]
 
     @property
     def sizes(self) -> tuple[float, ...]:
-        """Of each field, for tolerances: layers at rest, their least depth, that times the spin."""
+        """Size of each field, for tolerances: layers at rest, their least depth, that times the spin."""
         fills, n = [self.fills[j] for j in np.flatnonzero(self.layers).tolist()], len(self.system.coordinates)
         areas = [0.5 * (fill.chamber.radius**2 - fill.surface_radius**2) for fill in fills]
         depth = min((fill.depth for fill in fills), default=1.0)
@@ -194,13 +193,13 @@ class RotorLayersPDE(CirclePDE):  # type: ignore[no-untyped-call]
         return *areas, *(self.spin * area**2 for area in areas), *moving
 
     def row(self, state: Any, t: float) -> Array:
-        """A moment as the compiled steps write it down: see `solvers.runup.state.State.trace`."""
+        """A moment as a row of `solvers.runup.state.State.trace`, shape (2 + n + 2 l,)."""
         moments = [layer.moment for layer in self._moving(state, t)]
         parts = [part for moment in moments for part in (moment.real, moment.imag)]
         return np.array([t, self.spin * t, *self.parts(state)[2], *parts])
 
     def deflection(self, state: Any) -> Complex:
-        """Of each chamber's axis in the standing frame, m, complex, shape (l,)."""
+        """Deflection of each chamber's axis in the standing frame, m, complex, shape (l,)."""
         place = self.parts(state)[2]
         return np.array([complex(*(self.system.at(fill.chamber.plane) @ place)) for fill in self.fills])
 
@@ -238,7 +237,7 @@ class _Layer:
         return np.asarray(0.5 * (faces + np.roll(faces, -1)))
 
     def _flow_inertia(self) -> Array:
-        """Of the flow under a body force, standing frame, kg, shape (2, 2) [theory: coupling, eq. 4]."""
+        """Inertia of the flow under a body force, standing frame, kg, (2, 2) [theory: coupling, eq. 4]."""
         step = 2.0 * math.pi / self.a.size
         seen = self.across * self.turn
         parts = np.stack([seen.real, seen.imag])
@@ -329,9 +328,7 @@ class CoupledSolver(SolverBase):  # type: ignore[no-untyped-call]
         self.equation, self.courant, self.follow = pde, courant, follow
 
     def make_stepper(self, state: Any, dt: float | None = None) -> Any:
-        """Function that advances a state from one time to another; the Courant number sets the steps, `dt`
-        must be None.
-        """
+        """Function that advances a state over a time; `dt` must be None (steps by the Courant number)."""
         if dt is not None:
             raise InputError("dt", dt, "left out: `courant` sets the steps")
         self.equation.parts(state)
@@ -409,13 +406,13 @@ def run(
 
 
 class TurnTracker(TrackerBase):  # type: ignore[no-untyped-call]
-    """Hands on what the steps of each turn have left, until that is enough.
+    """Tracker that hands the steps of each turn to `enough`, until that is true.
 
-    `enough` is called with the steps of a turn (rows of `solvers.runup.state.State.trace`), the layers at its
-    `marks` (areas A, m^2, shape (marks, l, c)) and the state at its end, which it may change, and tells
-    whether the run may end. The solver "coupled" with `follow` tells every step; of other solvers the moments
-    are taken at which this is called. `balances` has works and heats of each turn as
-    `solvers.runup.state.WORKS`, and last the energy gained, J.
+    `enough` takes the steps of a turn (rows of `solvers.runup.state.State.trace`), the layers at its `marks`
+    (areas A, m^2, shape (marks, l, c)) and the state at its end, which it may change. The solver "coupled"
+    with `follow` gives every step, others the moments at which this is called. `balances` are works and heats
+    of each turn as `solvers.runup.state.WORKS`, and last the energy that rotor and liquid gain, J; empty
+    where the solver does not give them.
     """
 
     def __init__(
@@ -433,12 +430,12 @@ class TurnTracker(TrackerBase):  # type: ignore[no-untyped-call]
         self._balance: Array | float = 0.0
 
     def initialize(self, field: Any, info: dict[str, Any] | None = None) -> float:
-        """Keep a hand on what the solver tells."""
+        """Keep the solver's `info`."""
         self.info: dict[str, Any] = {} if info is None else info
         return super().initialize(field, info)
 
     def handle(self, field: Any, t: float) -> None:
-        """Take what has come since the last time."""
+        """Take the steps since the last call."""
         told = self.info["solver"]
         steps = told["followed"] if "followed" in told else self.equation.row(field, t)[None, :]
         if steps is None or t == 0.0:

@@ -56,7 +56,7 @@ class FamilyLaw:
 
     @property
     def steepest(self) -> float:
-        """No smaller than any slope that `shares` has."""
+        """Upper bound of the slopes that `shares` has."""
         fine = np.linspace(0.0, self.reach, 20 * STEPS)
         # Between two of these points the slope of a spline is off by less than a part of its steps.
         return 1.02 * float(max(self.shares(fine)[1].max(), 1.0))
@@ -64,8 +64,9 @@ class FamilyLaw:
 
 @lru_cache(maxsize=4096)
 def family_law(surface: float, dispersion: bool) -> FamilyLaw:
-    """The law of a layer, by the radius of its mean surface over the wall's: of the family whose resonance is
-    nearer.
+    """Law of a layer by the radius of its mean surface over the wall's.
+
+    Of the retrograde family, whose resonance is nearer.
     """
     c = kdv.coefficients(1.0, surface, 1.0, -1)
     depth, whole = 1.0 - surface, surface**2 / (2.0 * c.mean_area)
@@ -108,7 +109,7 @@ class Standing:
 
 
 def standing(fills: Fills, deflection: Array, dispersion: bool) -> Standing:
-    """The waves of some layers, each law solved once."""
+    """Waves of some layers, each law solved once; deflections of the chambers' axes, m, shape (n,)."""
     radius, depth = fills.chamber.radius, fills.depth
     surface = 1.0 - depth / radius
     waves = (fills.volume > 0.0) & (fills.volume < FULL * fills.chamber.capacity) & (surface > 0.0)

@@ -14,7 +14,10 @@ from meshes.errors import InputError
 
 
 def circle(points: int) -> CartesianGrid:
-    """The grid of the waves: at least 8 evenly spaced cells all round the drum, theta at their centres."""
+    """Periodic grid of the waves: at least 8 even cells all round the drum, theta at their centres.
+
+    An even number with small factors is fastest.
+    """
     if points < 8:
         raise InputError("points", points, "8 or more")
     return CartesianGrid([(0.0, 2.0 * math.pi)], points, periodic=True)

@@ -36,10 +36,10 @@ _LOST = "the surface came to the axis, or a film outran the steps,"
 class AnnularLongWavePDE(CirclePDE):  # type: ignore[no-untyped-call]
     """Nonlinear long waves on the wall of a whirling drum [theory: long_wave, eq. 1 and 4].
 
-    The state is a collection of two scalar fields on a grid as from `solvers.pypde.grid.circle`, in the drum
-    frame: "area", the liquid area per radian A in m^2, and "momentum", the relative angular momentum q = R u
-    A - Omega A^2 in m^4/s. Both are small numbers: absolute tolerances of py-pde's and scipy's steppers want
-    to be of some 1e-6 of them. Parameters as of `solvers.pypde.terms.LongWaveTerms`.
+    The state is a collection of two scalar fields on a `circle` in the drum frame: "area", the liquid area
+    per radian A, m^2, and "momentum", the relative angular momentum q = R u A - Omega A^2, m^4/s. Both are
+    small numbers: absolute tolerances of py-pde's and scipy's steppers should be some 1e-6 of them.
+    Parameters as of `solvers.pypde.terms.LongWaveTerms`.
     """
 
     def __init__(
@@ -58,10 +58,10 @@ class AnnularLongWavePDE(CirclePDE):  # type: ignore[no-untyped-call]
     def start(
         self, grid: GridBase, depth: ArrayLike | None = None, velocity: ArrayLike = 0.0, time: float = 0.0
     ) -> Any:
-        """State from depth R - r_s (m; None: the fill, uniform) and velocity along the wall, relative to the
-        drum, m/s.
+        """State from depth R - r_s, m, and velocity along the wall, relative to the drum, m/s.
 
-        The momentum is relative to the spin that the drum has at `time`.
+        Each of shape (n,) or one number; depth None: the fill, uniform. The momentum is relative to the
+        drum's spin at `time`.
         """
         n, fill = _cells(grid), self.terms.fill
         h = np.broadcast_to(np.asarray(fill.depth if depth is None else depth, dtype=float), (n,))
@@ -133,13 +133,11 @@ class AnnularLongWavePDE(CirclePDE):  # type: ignore[no-untyped-call]
         return terms.angular_momentum(self.terms, *_parts(state), t)
 
     def evolution_rate(self, state: Any, t: float = 0.0) -> Any:
-        """Right-hand side of the equation, for py-pde's own solvers.
+        """Right-hand side of the equation, for py-pde's own solvers; nan where the surface is at the axis.
 
         Wall friction is a source in it, stiff in thin films for all laws but the linear one. Their steps must
         resolve the waves, dt < dtheta/|lambda| [theory: long_wave, eq. 3], and beside a dry patch may leave
         cells a little below zero, which count as dry.
-
-        nan where the surface has come to the axis.
         """
         area, momentum = _parts(state)
         return _collection(state.grid, *terms.layer_rates(self.terms, area, momentum, t))
@@ -200,9 +198,7 @@ class FiniteVolumeSolver(SolverBase):  # type: ignore[no-untyped-call]
         self.terms, self.courant = pde.terms, courant
 
     def make_stepper(self, state: Any, dt: float | None = None) -> Any:
-        """Function that advances a state from one time to another; the Courant number sets the steps, `dt`
-        must be None.
-        """
+        """Function that advances a state over a time; `dt` must be None (steps by the Courant number)."""
         if dt is not None:
             raise InputError("dt", dt, "left out: `courant` sets the steps")
         _parts(state)

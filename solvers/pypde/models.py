@@ -157,7 +157,7 @@ class LongWave(WaveModel):
         )
 
     def _error(self, fill: Fill, whirl: Whirl) -> float:
-        """Of a smooth wave without friction; nan where there is none."""
+        """Error of a smooth wave without friction; nan where there is none."""
         layer, size = fill.depth / fill.chamber.radius, whirl.amplitude / fill.depth
         numerics = self.numerics
         return float(long_wave_error(layer, whirl.detuning, size, numerics.dispersion, numerics.cells))

@@ -101,7 +101,7 @@ class KdvBurgersPDE(SplitPDE):  # type: ignore[no-untyped-call]
         return np.array([place.real, place.imag])
 
     def place(self, state: Any, t: float) -> complex:
-        """The same as a complex number, real along the deflection."""
+        """Offset of the centre of mass as a complex number, m, real along the deflection."""
         ahead = circle_points(state.grid)[1] - self.terms.whirl_speed * t
         return complex(kdv.offset(self.terms.c, state.data)) * cmath.exp(1j * ahead)
 
@@ -138,8 +138,8 @@ class ExponentialSolver(SolverBase):  # type: ignore[no-untyped-call]
 
     Method "etdrk4", "krogstad" or "ifrk4". Without `dt` the steps follow the tolerance, the error of a step
     over the field, both root mean squares; with it they are as long as `dt` or, to land on the times of
-    trackers, shorter. Hooks after each step are not called. `frame` is the angular speed of the frame in
-    which the rest of the split is followed, rad/s.
+    trackers, shorter. Hooks after each step are not called. The rest of the split is followed in a frame of
+    angular speed `frame`, rad/s; None: the equation's.
     """
 
     name = "exponential"

@@ -42,9 +42,10 @@ def simulate(
     solver: str = OURS,
     progress: Progress = None,
 ) -> LayerHistory:
-    """Layer from rest in the drum, uniform, whirl period by whirl period, at least one.
+    """Layer from rest in the drum, uniform, whirl period by whirl period.
 
-    The laminar law takes the frequency of the whirl seen from the drum.
+    Whole periods within `duration`, s, are answered, at least one. The laminar law takes the frequency of the
+    whirl seen from the drum.
     """
     require_positive("duration", duration)
     equation, state = _start(fill, whirl, friction, numerics or Numerics())
@@ -97,10 +98,7 @@ def film(
     solver: str = OURS,
     progress: Progress = None,
 ) -> LayerFilm:
-    """Layer from rest in the drum, as pictures at equal intervals.
-
-    It ends early where the surface came to the axis.
-    """
+    """Layer from rest in the drum, as pictures at equal intervals; a surface at the axis ends it early."""
     equation, state = _start(fill, whirl, friction, numerics or Numerics())
     if solver != OURS:
         require_solver(equation, solver)

@@ -40,8 +40,7 @@ def steady_state(
     solver: str,
     progress: Callable[[float], object] | None = None,
 ) -> tuple[Array, str]:
-    """The wave that is left of rest under a whirl that has grown gently: heights, and why it is not steady,
-    or empty.
+    """Wave left of rest under a whirl that has grown gently, and why it is not steady, or empty.
 
     Heights at equal steps of the angle from the deflection, m^2, shape (points,).
     """

@@ -65,10 +65,7 @@ def steady_problem(terms: WaveTerms) -> WaveProblem:
 
 
 def drawn(wave: SteadyWave, grid: GridBase, time: float) -> Array:
-    """Heights of a steady wave on a grid in the drum, m^2, shape (points,).
-
-    The grid may be too coarse for all modes.
-    """
+    """Heights of a steady wave on a grid, which may be too coarse for all modes, m^2, shape (points,)."""
     points, first = circle_points(grid)
     modes = wave.modes
     turn = np.exp(1j * np.arange(1, modes.size + 1) * (first - wave.speed * time))

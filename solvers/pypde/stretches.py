@@ -53,7 +53,7 @@ class Stretches:
         return np.asarray(self.start + self.period * np.cumsum((0, *self.periods)))
 
     def stops(self, samples: int) -> Array:
-        """The same with stops between them, so many in each whirl period, s."""
+        """`ends` with stops between them, so many in each whirl period, s."""
         ends = self.ends
         counts = [n * samples + 1 for n in self.periods]
         parts = [np.linspace(*span)[1:] for span in zip(ends, ends[1:], counts, strict=False)]
@@ -82,11 +82,11 @@ def settling(whirl: Whirl, synchronous: bool) -> Stretches:
 
 
 class StretchMeans(TrackerBase):  # type: ignore[no-untyped-call]
-    """Means over stretches of time, and an end to the run where two neighbours agree within `settled`; None:
-    at its end.
+    """Tracker of means over stretches of time, which ends the run where two neighbours agree.
 
-    Loads come from the solver, if its `info` adds them up as "loads"; else they are taken at `samples` stops
-    in each whirl period and joined by straight lines.
+    They agree where their first means differ by less than `settled`, relative; None: never. Loads come from
+    the solver, if its `info` adds them up as "loads" (`samples` 0); else they are taken at `samples` stops in
+    each whirl period and joined by straight lines.
     """
 
     name = "stretch_means"
@@ -112,7 +112,7 @@ class StretchMeans(TrackerBase):  # type: ignore[no-untyped-call]
         return float(super().initialize(field, info))
 
     def handle(self, field: Any, t: float) -> None:
-        """See `pde.TrackerBase`."""
+        """See `pde.TrackerBase`; raises `FinishedSimulation` where the means no longer change."""
         loads = self._taken(field, t) if self.samples else self._solver["loads"]
         if t < self._ends[len(self.rows) + (self.last is not None)] - self._early:
             return

@@ -69,7 +69,7 @@ class LongWaveTerms:
         return Wall(law, coefficient, drag.lid, self.dispersion, drag.plates, drag.thin, drag.top, drag.table)
 
     def spin(self, time: float) -> float:
-        """Omega at a time, rad/s."""
+        """Omega at a time, rad/s; refused where the drum does not spin forward."""
         spin = self.whirl.spin + self.spin_rate * time
         if spin <= 0.0:
             raise InputError("time", time, "one at which the drum spins forward")
@@ -86,7 +86,7 @@ def _wall_drag(friction: Friction, fill: Fill, slip: float, spin: float) -> Wall
 def body_force(terms: LongWaveTerms, time: float) -> complex:
     """Minus the acceleration of the drum's axis, and gravity [theory: long_wave, eq. 8].
 
-    f in the drum frame, m/s^2, real along theta = 0.
+    In the drum frame, m/s^2, real along theta = 0.
     """
     whirl = terms.whirl
     # The drum has turned by the time and the mean spin so far.
@@ -97,11 +97,11 @@ def body_force(terms: LongWaveTerms, time: float) -> complex:
 
 
 def layer_rates(terms: LongWaveTerms, area: Array, momentum: Array, time: float) -> tuple[Array, Array]:
-    """Rates of change of a layer, m^2/s and m^4/s^2 [theory: long_wave, eq. 1 and 4], discretised as in eq.
-    11 there.
+    """Rates of change of a layer, m^2/s and m^4/s^2 [theory: long_wave, eq. 1 and 4].
 
-    A cell below zero, where a time step has taken more than there was, counts as dry. Where the surface has
-    come to the axis all rates are nan, which steppers that adapt their steps take as too long a step.
+    Discretised as in eq. 11 there. A cell below zero, where a time step has taken more than there was, counts
+    as dry. Where the surface has come to the axis all rates are nan, which adaptive steppers take as too long
+    a step.
     """
     radius, n, spin = terms.fill.chamber.radius, area.size, terms.spin(time)
     a, q = scaled(terms, area, momentum)
@@ -120,8 +120,7 @@ def layer_rates(terms: LongWaveTerms, area: Array, momentum: Array, time: float)
 class Marcher:
     """Heun steps on one ring in which no cell falls below zero, at a constant spin.
 
-    The integrals of loads are added to a record LOADS of `solvers.layer.records`, shape (1,); lengths over R,
-    times in s.
+    They add loads to a record LOADS of `solvers.layer.records`, shape (1,); lengths over R, times in s.
     """
 
     def __init__(self, terms: LongWaveTerms, cells: int, courant: float, loads: Record | None = None) -> None:
@@ -144,8 +143,7 @@ class Marcher:
         self._told = np.zeros((2, cells))
 
     def march(self, state: Array, start: float, stop: float) -> tuple[Outcome, int]:
-        """Advance a layer (A and q, shape (2, n), in place unless the steps fail): how it ended, number of
-        steps.
+        """Advance a layer, A and q, shape (2, n), in place unless the steps fail; how it ended, steps.
 
         One that is as the last call left it goes on without a rounding.
         """
@@ -167,9 +165,7 @@ class Marcher:
 
 
 def loads_at(terms: LongWaveTerms, area: Array, momentum: Array, time: float) -> Array:
-    """What a `Marcher` adds up over time, at one moment: fields of a record LOADS, lengths over R, times in
-    s.
-    """
+    """Fields of a record LOADS at one moment, as a `Marcher` adds them up; lengths over R, times in s."""
     a, q = scaled(terms, area, momentum)
     n, slip, found = a.size, terms.whirl.slip, records(LOADS)
     turn = cmath.exp(1j * slip * time)
@@ -183,19 +179,14 @@ def loads_at(terms: LongWaveTerms, area: Array, momentum: Array, time: float) ->
 
 
 class Place(NamedTuple):
-    """Where the liquid is and how it moves: offset from the drum's axis, m, and its rate, m/s, real along the
-    deflection.
-    """
+    """Offset of the centre of mass from the drum's axis, m, and its rate, m/s, real along the deflection."""
 
     offset: complex
     rate: complex
 
 
 def place_at(terms: LongWaveTerms, area: Array, momentum: Array, time: float) -> Place:
-    """Offset of the centre of mass and its rate of change, as the finite volumes move the liquid.
-
-    nan where there is no layer.
-    """
+    """Offset of the centre of mass and its rate, as the finite volumes move it; nan without a layer."""
     slip, radius = terms.whirl.slip, terms.fill.chamber.radius
     turn = cmath.exp(-1j * slip * time)
     offset = offset_of(area, radius) * turn
@@ -210,8 +201,8 @@ def load_means(terms: LongWaveTerms, loads: Array, length: float, ends: tuple[Pl
     """Means over a time of what a `Marcher` has added up, shape (6,) [theory: long_wave, eq. 7].
 
     Force over that of a full drum by the liquid's momentum, offset, m, turning, rad/s, least and largest
-    depth, m, force by the pressure on the wall as the first; without deflection no force. `ends` are of
-    `place_at`.
+    depth, m, force by the pressure on the wall as the first; without deflection no force. `ends` are the
+    `place_at` of both ends.
     """
     whirl, radius = terms.whirl, terms.fill.chamber.radius
     mass = terms.fill.volume / (terms.fill.chamber.height * radius**2)
@@ -300,10 +291,7 @@ def depth(terms: LongWaveTerms, area: Array) -> Array:
 
 
 def velocity(terms: LongWaveTerms, area: Array, momentum: Array, time: float) -> Array:
-    """Velocity along the wall relative to the drum, u = (q + Omega A^2)/(R A); 0 in dry cells.
-
-    m/s.
-    """
+    """Velocity along the wall relative to the drum, m/s: u = (q + Omega A^2)/(R A); 0 in dry cells."""
     radius = terms.fill.chamber.radius
     a, q = scaled(terms, area, momentum)
     return radius * faded_velocity(a, q, terms.spin(time))
@@ -344,7 +332,7 @@ def liquid_offset(terms: LongWaveTerms, area: Array) -> complex:
 
 
 def offset_of(area: Array, radius: float) -> complex:
-    """The same of what is known to be a layer; nan without liquid."""
+    """`liquid_offset` of what is known to be a layer; nan without liquid."""
     return complex(*compiled(centre, area / radius**2, ring(area.size))) * radius
 
 

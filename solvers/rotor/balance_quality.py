@@ -1,8 +1,8 @@
 """Balance quality: residual unbalance over mass times the service speed, and the grades of ISO 21940-11.
 
-The standard speaks of a rigid rotor without liquid. With liquid the total unbalance that turns with the rotor
-takes its place: what a rotor without liquid would need to move as the machine does
-[theory: balance_quality, eq. 1-3].
+The standard speaks of a rigid rotor without liquid; its G is no measured vibration velocity. With liquid the
+total unbalance that turns with the rotor takes its place: what a rotor without liquid would need to move as
+the machine does [theory: balance_quality, eq. 1-3].
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ def grade_name(grade: float) -> str:
 def permissible_unbalance(grade: float, mass: float, speed: ArrayLike) -> Array:
     """Residual unbalance that a grade permits, U_per = G m/Omega [ISO16; theory: balance_quality, eq. 1].
 
-    Grade in m/s, speed in rad/s, shape (...,); result in kg m.
+    Grade in m/s, mass in kg, speed in rad/s, shape (...,); result in kg m.
     """
     require_positive("grade", grade)
     require_positive("mass", mass)
@@ -69,9 +69,9 @@ class TolerancePlane:
 def tolerance_planes(rotor: Rotor) -> tuple[TolerancePlane, ...]:
     """Planes in which the unbalance of a rotor is judged [theory: balance_quality, eq. 3].
 
-    Two for a rigid rotor in supports at two places and more, the outermost ones, each with its share of the
-    mass, from 0.3 to 0.7. One for a Jeffcott rotor, a tub and supports at one place (the resultant, no
-    couple); none where no mass spins.
+    Two for a rigid rotor on supports at two or more places: the outermost ones, each with its share of the
+    mass, from 0.3 to 0.7. One (resultant, no couple) for a Jeffcott rotor, a tub and supports at one place;
+    none where no mass spins.
     """
     if isinstance(rotor, Tub):
         return (TolerancePlane(0.0, rotor.drum_mass),) if rotor.drum_mass > 0.0 else ()
@@ -103,10 +103,10 @@ def residual_unbalance(system: RotorSystem, generalised: Complex, positions: Arr
 
 
 def balance_quality(rotor: Rotor, speed: ArrayLike, coordinates: Complex | None = None) -> Array:
-    """Balance quality of a machine, m/s [theory: balance_quality, eq. 1-3].
+    """Balance quality of a machine, m/s, shape (s,) [theory: balance_quality, eq. 1-3].
 
-    Of the worst plane, shape (s,): of the rotor by itself if the complex amplitudes with liquid, shape (s,
-    n), are None; infinite where the motion is, nan where no mass spins.
+    That of the worst plane, from the complex amplitudes with liquid, shape (s, n), or of the rotor by itself
+    if these are None; infinite where the motion is, nan where no mass spins.
 
     Examples
     --------

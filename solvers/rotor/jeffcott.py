@@ -45,7 +45,7 @@ class Jeffcott:
         return float(self.damping / (2.0 * np.sqrt(self.stiffness * self.mass)))
 
     def dynamic_stiffness(self, speed: Array) -> NDArray[np.complex128]:
-        """K - M Omega^2 + i C Omega of the dry rotor in the drum frame, N/m, shape of `speed`."""
+        """K - M Omega^2 + i C Omega of the rotor without liquid in the drum frame, N/m, shape of `speed`."""
         return np.asarray(
             self.stiffness - self.mass * np.square(speed) + 1j * self.damping * speed, dtype=complex
         )

@@ -101,8 +101,8 @@ def natural_frequencies(stiffness: Array, mass: Array) -> Array:
 def sag(stiffness: Array, weight: Array) -> Array:
     """How far the point sinks under a weight in it, and how far the tub turns with it.
 
-    Along the force (N, shape (3,)), m, and largest turn, rad, shape (2, m), from stiffness (m, 6, 6);
-    infinite where nothing holds the tub.
+    Distance along the force (N, shape (3,)), m, and largest turn, rad, shape (2, m), from stiffness (m, 6,
+    6); infinite where nothing holds the tub.
     """
     force = np.concatenate([weight, np.zeros(3)])
     held = np.linalg.eigvalsh(stiffness)

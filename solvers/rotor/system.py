@@ -1,4 +1,4 @@
-"""The small interface of the dry rotors: linear equations, where a chamber sits, how bearings turn."""
+"""Small interface of rotors without liquid: linear equations, where a chamber sits, how bearings turn."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ def cage_speed(
     ball_diameter: ArrayLike,
     contact_angle: ArrayLike = 0.0,
 ) -> Array:
-    """Speed of the cage when the balls roll without slip, inner ring turning, outer ring at rest, in the unit
-    of n_s.
+    """Speed of the cage when the balls roll without slip, inner ring turning, outer ring at rest.
 
-    n_c = (n_s/2) (d_0 - d_b cos(beta))/d_0 [DR18, eq. 9; theory: rotor, eq. 32]. It is n_s/2 only where the
-    balls are small against their circle, also for beta = 0, where the source drops d_b [DR18, eq. 10].
+    n_c = (n_s/2) (d_0 - d_b cos(beta))/d_0 in the unit of n_s, d_0 of the circle of the balls' centres
+    [DR18, eq. 9; theory: rotor, eq. 32]. It is n_s/2 only where the balls are small against their circle,
+    also for beta = 0, where the source drops d_b [DR18, eq. 10].
     """
     shaft, pitch, ball, angle = (
         np.asarray(x, dtype=float) for x in (shaft_speed, pitch_diameter, ball_diameter, contact_angle)
@@ -50,10 +50,11 @@ class Shed:
 
 @dataclass(frozen=True)
 class RotorSystem:
-    """M q'' + (C + Omega G) q' + K q = Re[(Omega^2 - i Omega') U e^{i phi}] [theory: rotor, eq. 15].
+    """Linear equations of motion of a rotor, n coordinates from the static equilibrium in the standing frame.
 
-    The spin turns the first direction across the axis into the second; complex numbers have their real parts
-    along the first. n coordinates, measured in the standing frame from the static equilibrium.
+    M q'' + (C + Omega G) q' + K q = Re[(Omega^2 - i Omega') U e^{i phi}] [theory: rotor, eq. 15]. The spin
+    turns the first direction across the axis into the second; complex numbers have their real parts along the
+    first.
     """
 
     coordinates: tuple[str, ...]  #: their names
@@ -84,16 +85,16 @@ class RotorSystem:
         return np.asarray(self.centre + position * self.lean)
 
     def system(self) -> RotorSystem:
-        """Itself: equations of motion are a rotor, whatever they were written down for."""
+        """The equations themselves: they are a rotor, of whatever kind they were written for."""
         return self
 
 
 class Rotor(Protocol):
-    """A dry rotor to which chambers can be fitted.
+    """A rotor without liquid to which chambers can be fitted.
 
     Solvers that know more about a kind of rotor ask for that kind, never for the shape of its matrices.
     """
 
     def system(self) -> RotorSystem:
-        """Its equations of motion."""
+        """Equations of motion of the rotor."""
         ...

@@ -34,12 +34,12 @@ def balance_residual(angle: ArrayLike, lag: ArrayLike, ratio: ArrayLike) -> Arra
 
 
 def balance_angles(lag: ArrayLike, ratio: ArrayLike) -> tuple[Array, Array]:
-    """Both angles at which the tangential forces balance, rad; an `InputError` below k = sin(delta), where
-    none does.
+    """Both angles at which the tangential forces balance, rad.
 
     alpha_0 = delta + phi_C with sin(phi_C) = sin(delta)/k; their cosines are those of the source's solution
     with its lost factor 1/k put back [DR18, eq. 25; theory: rotor, eq. 13]. For k >= 1 only the first is an
-    equilibrium; for k < 1 both are while delta < pi/2 and none beyond.
+    equilibrium; for k < 1 both are while delta < pi/2 and none beyond. An `InputError` below k = sin(delta),
+    where no angle balances.
     """
     delta, k = (np.asarray(x, dtype=float) for x in (lag, ratio))
     if not np.all((delta >= 0.0) & (delta <= np.pi)):

@@ -1,4 +1,4 @@
-"""Linear vibration of a dry rotor: modes, unbalance response, orbits, critical speeds."""
+"""Linear vibration of a rotor without liquid: modes, unbalance response, orbits, critical speeds."""
 
 from __future__ import annotations
 
@@ -139,7 +139,7 @@ def unbalance_response(system: RotorSystem, speed: ArrayLike) -> Complex:
 
 
 def solve_each(matrix: Complex, right: Complex) -> Complex:
-    """Solution of each of s linear systems; infinite where its matrix is singular."""
+    """Solution of each of s linear systems, shape (s, n); infinite where its matrix is singular."""
     try:
         return np.asarray(np.linalg.solve(matrix, right[..., None])[..., 0])
     except np.linalg.LinAlgError:
@@ -153,7 +153,10 @@ def solve_each(matrix: Complex, right: Complex) -> Complex:
 
 
 def orbit(system: RotorSystem, answer: Complex, position: float) -> Orbit:
-    """Orbit of the axis at a position for q = Re(answer e^{i Omega t}) [theory: rotor, eq. 26]."""
+    """Orbit of the axis at a position for q = Re(answer e^{i Omega t}) [theory: rotor, eq. 26].
+
+    `forward` infinite where the answer is.
+    """
     bounded = np.asarray(np.isfinite(answer).all(axis=-1))
     first, second = np.moveaxis(np.where(bounded[..., None], answer, 0.0) @ system.at(position).T, -1, 0)
     forward, backward = 0.5 * (first + 1j * second), 0.5 * np.conj(first - 1j * second)
@@ -162,11 +165,11 @@ def orbit(system: RotorSystem, answer: Complex, position: float) -> Orbit:
 
 
 def whirl_direction(system: RotorSystem, shape: Complex) -> Array:
-    """Sense in which the axis goes round, from -1, backward circles, to 1, forward ones; 0 for straight
-    lines.
+    """Sense in which the axis goes round, from -1, backward circles, to 1, forward ones.
 
     (|f|^2 - |b|^2)/(|f|^2 + |b|^2), f and b summed over the displacement of the axis and its lean, the latter
-    times the length at which an impulse moves the axis as much by turning as by shifting the rotor.
+    times the length at which an impulse moves the axis as much by turning as by shifting the rotor. 0 for
+    straight lines and where the axis does not move.
     """
     forward, backward = np.zeros(shape.shape[:-1]), np.zeros(shape.shape[:-1])
     shift, turn = (

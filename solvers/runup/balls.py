@@ -81,10 +81,9 @@ def balls_energy(
 
 
 def balls_inertia(balls: Record, races: Array, roll: Array) -> tuple[Array, Array]:
-    """What the balls add to the rotor's inertia against an impulse, (n, n), and how their rates answer one,
-    (N, n).
+    """What the balls add to the rotor's inertia against an impulse, and how their rates answer one.
 
-    kg and kg m^2; fall of the balls' rates for unit jumps of the rotor's rates.
+    kg and kg m^2, (n, n); fall of the balls' rates for unit jumps of the rotor's rates, (N, n).
     """
     along, moving = _along(races, roll), balls.mass * balls.radius
     whole = np.einsum("j,jin,jim->nm", balls.mass, races, races)

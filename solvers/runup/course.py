@@ -47,10 +47,7 @@ def marked(drive: Drive, samples: int, moments: Array) -> list[float]:
 
 
 def legs(drive: Drive, machine: RunupMachine, samples: int) -> Iterator[Leg]:
-    """The legs of a run; each is to be gone before the next is asked for.
-
-    Where a drum coasts its spin decides what is next.
-    """
+    """Legs of a run; each is to be gone before the next is asked for: the spin of a coasting drum decides."""
     if isinstance(drive, Programme):
         yield from _programme(drive, machine, _step(drive, samples))
         return
@@ -111,12 +108,11 @@ def _limited(
     aim: tuple[float, float],
     load: _Load,
 ) -> Iterator[Leg]:
-    """A stage with a given speed as far as the motor's torque suffices, `aim`: its time and end speed
-    [theory: coupling, eq. 16].
+    """Legs of a stage with a given speed as far as the motor's torque suffices [theory: coupling, eq. 16].
 
-    From leg to leg: where the rate asks for more than the motor gives at that speed, its curve takes over. A
-    rise goes on until its speed is reached, at no more than its rate; a hold ends with its time, and what it
-    has lost in speed is made up for with all the torque there is.
+    `aim`: time, s, and end speed. Where the rate asks for more than the motor gives its curve takes over. A
+    rise goes on until its speed is reached, at no more than its rate; a hold ends with its time, and speed it
+    has lost is made up for with all the torque there is.
     """
     assert drive.inertia is not None
     lasts, stop = aim
@@ -160,7 +156,7 @@ class _Load:
             del self._known[0]
 
     def torque(self) -> float:
-        """N m; 0 before the first leg."""
+        """Mean torque on the drum, N m; 0 before the first leg."""
         (first, before), (last, after) = self._known[0], self._known[-1]
         return (after - before) / (last - first) if last > first else 0.0
 
@@ -168,11 +164,10 @@ class _Load:
 def _coast(
     drive: Programme, machine: RunupMachine, step: float, number: int, stage: Stage, stop: float
 ) -> Iterator[Leg]:
-    """Until the drum has come down to a speed or its time is over.
+    """Legs until the drum has come down to a speed, stands, or its time is over.
 
     Where a straight line through the last leg comes down to the speed before the next sample, the leg ends
-    there: a drum that is slowed ever less comes to its speed in a few ever shorter ones. It ends as well
-    where the drum stands before that.
+    there: an ever slower drum comes to its speed in a few ever shorter ones.
     """
     assert stage.duration is not None and drive.inertia is not None
     end = machine.time + stage.duration

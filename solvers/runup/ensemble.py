@@ -1,7 +1,6 @@
-"""What rounding does to a run-up: the same run many times, its unbalance changed in the last digits.
+"""Range of a run-up under rounding: the same run many times, its unbalance changed in the last digits.
 
-Where walls run dry a difference in the last digits grows until it is seen: then a run shows one of many
-courses, and the range over them belongs to the answer.
+Where walls run dry such a difference grows until it is seen: one run is then one of many possible ones.
 """
 
 from __future__ import annotations
@@ -88,10 +87,7 @@ def ensemble(
     count: int,
     seed: int = 0,
 ) -> list[EnsembleTask]:
-    """Runs whose unbalance is changed by up to `CHANGE`, each by a number of its own.
-
-    What a run gets depends on the seed and its number alone.
-    """
+    """Runs whose unbalance is changed by up to `CHANGE`, by numbers that depend on seed and run alone."""
     if not 1 <= count <= MOST:
         raise InputError("ensemble", count, f"from 1 to {MOST}")
     if seed < 0:
@@ -152,5 +148,5 @@ def _at_times_of(first: Member, run: Member) -> Array:
 
 
 def _lost(run: Member, count: int) -> bool:
-    """The run did not come to its end."""
+    """Whether a run did not come to its end."""
     return run.amplitude.size < count if run.ended is None else not run.ended

@@ -1,7 +1,7 @@
 """Rotor and liquid layers through time together [theory: coupling].
 
 Each step looks for the mean acceleration of every chamber's axis that makes the layers' change of momentum
-and the rotor's trapezium agree: momentum is handed over to rounding, and the rotor's part is stable for any
+and the rotor's trapezium agree: momentum is exchanged to rounding, and the rotor's part is stable for any
 stiffness. SI units; layers over their wall radius.
 """
 
@@ -80,9 +80,9 @@ def motor_torque(curve, spin):
 
 @_jit
 def resisted(curve, weight, aim):
-    """Where x + weight T(x) = aim, T by straight lines between the points of a curve; the slope of T there.
+    """Where x + weight T(x) = aim, and the slope of T there, T by straight lines between points of a curve.
 
-    So a torque at the middle of a step is taken there and not before it.
+    With it a torque is that of the middle of a step, not of its beginning.
     """
     low, high = 0, curve.shape[1] - 1
     if aim <= curve[0, 0] + weight * curve[1, 0]:
@@ -103,8 +103,8 @@ def resisted(curve, weight, aim):
 def dragged(curve, inertia, slip, freely, dt):
     """Impulse of the drag on what slips past its walls, and how much of other torques it lets through.
 
-    The drag is that of the mean slip, and can at most stop the slip: neither its heat is ever below zero nor
-    does it turn the slip round [theory: pool, eq. 13]. `freely` is the slip at the end if there were no drag.
+    The drag is that of the mean slip and at most stops it: its heat is never below zero
+    [theory: pool, eq. 13]. `freely` is the slip at the end without drag.
     """
     both = 0.5 * (slip + freely)
     mean, slope = resisted(curve, 0.5 * dt / inertia, abs(both))
@@ -165,7 +165,7 @@ def layer_scratch(layers: int, cells: int) -> NDArray[np.float64]:
 def measure(area, q, spin, angles, plates, spare, out):
     """Fill `out`, a record MEASURES, for a layer [theory: coupling, eq. 2, 4 and 7].
 
-    `plates` is the layer's table of baffles as the last evaluation of its rates left it.
+    `plates`: the layer's table of baffles as the last evaluation of its rates left it.
     """
     n = area.size
     profile(area, q, spin, spare[_VELOCITY, :n], spare[_SURFACE, :n], spare[_LOG, :n])
@@ -174,7 +174,7 @@ def measure(area, q, spin, angles, plates, spare, out):
 
 @_unwrapped
 def measure_profile(area, q, spin, angles, plates, spare, out):
-    """The same of a layer whose profile stands in its scratch, as `layer_step` leaves it."""
+    """Fill `out` as `measure`, for a layer whose profile stands in its scratch, as `layer_step` leaves it."""
     n = area.size
     velocity, surface, log = spare[_VELOCITY, :n], spare[_SURFACE, :n], spare[_LOG, :n]
     step = 2.0 * np.pi / n
@@ -257,8 +257,8 @@ def _held_back(plates, velocity, log, across, along, step, out):
 def _power(area, velocity, surface, log, rate_a, spin, x, y, cosine, sine):
     """Power of the body force in the frame that does not turn, and what the flow's profile misses, a cell.
 
-    The second is over the change of the spin: the Euler force acts on the angular momentum, which the profile
-    does not turn into energy to the last digit [theory: coupling, eq. 8].
+    The second over the change of the spin: the profile does not turn all of the Euler force's work on the
+    angular momentum into energy [theory: coupling, eq. 8].
     """
     moment_x, moment_y, rate_x, rate_y, missed = 0.0, 0.0, 0.0, 0.0, 0.0
     for i in range(area.size):
@@ -277,8 +277,8 @@ def _rub(area, q, held, velocity, log, kept, pushed, spin, full, slot):
     """Let friction leave its share of the velocities and add to them; sums over the cells, over rho h_c R^4.
 
     Impulse of the wall's torque, heat, and the energy in the frame that does not turn before and after
-    [theory: coupling, eq. 7]; that of a full gap with it [theory: long_wave, eq. 19]. `q` and `held` are
-    angular momenta after it and before it.
+    [theory: coupling, eq. 7], of a full gap too [theory: long_wave, eq. 19]. `q` and `held`: angular momenta
+    after and before.
     """
     torque, heat, before, after = 0.0, 0.0, 0.0, 0.0
     for i in range(area.size):
@@ -328,11 +328,11 @@ def _half_friction(area, q, spin, layer, drags, dt, inside, spare, gains):
 def layer_step(
     area, q, rolling, spins, force, layer, coefficient, thin, table, dt, angles, inside, spare, gains
 ):
-    """Advance a layer by one time step, in place; a step that fails leaves nothing to go on with.
+    """Advance a layer by one time step, in place; a step that fails leaves nothing of use.
 
-    `spins` and `force` (body force over R in the drum frame, two parts each) at both ends; `coefficient`,
-    `thin` and `table` are those of the friction at these spins; the profile at the end is left in `spare`,
-    results in `gains`, a record GAINS. Returns Outcome.DONE, TOO_LONG or AT_AXIS, and the largest speed met.
+    Outcome.DONE, TOO_LONG or AT_AXIS, and the largest speed met. `spins` and `force` (body force over R in
+    the drum frame, two parts each) at both ends; friction's `coefficient`, `thin` and `table` at these spins.
+    The profile at the end is left in `spare`, results in `gains`, a record GAINS.
     """
     n = area.size
     step, euler, dispersion = 2.0 * np.pi / n, (spins[1] - spins[0]) / dt, layer.dispersion
@@ -401,7 +401,7 @@ _SWING = 0.25
 
 @_unwrapped
 def _move_pools(machine, state, room, dt):
-    """All pools through one step under the guessed accelerations, by the midpoint [theory: pool, eq. 5]."""
+    """Move all pools one step under the guessed accelerations, by the midpoint [theory: pool, eq. 5]."""
     spin, first = 0.5 * (room.spins[0] + room.spins[1]), machine.layers.shape[0]
     for j in range(machine.pools.shape[0]):
         pool, own, drag = machine.pools[j], first + j, machine.drags[j]
@@ -427,7 +427,7 @@ def _move_pools(machine, state, room, dt):
 
 @_inner
 def _move_layers(machine, state, room, dt):
-    """All layers through one step under the guessed accelerations; what went wrong, the fastest wave."""
+    """Move all layers through one step under the guessed accelerations; what went wrong, the fastest wave."""
     fastest, spins, turn, force = 0.0, room.spins, room.turn, room.force
     copy(room.area, state.area)
     copy(room.momentum, state.momentum)
@@ -486,12 +486,10 @@ def _measure_layers(machine, state, room):
 
 @_unwrapped
 def add_ball(ball, b, gravity, row, moving, spins, dt, n, left, right):
-    """Row and column of a ball, on a straight line about its way so far; its rolling resistance
-    [theory: races, eq. 2-3].
+    """Row and column of a ball, on a straight line about its way so far [theory: races, eq. 2-3].
 
-    `b` is the displacement of the axis in its plane for unit coordinates, `row` its own equation, `moving`
-    its angle in the standing frame and its rate, `spins` those at both ends; returned is what it resists to
-    rolling, as a drag.
+    `b`: displacement of the axis in its plane for unit coordinates; `row`: its own equation; `moving`: its
+    angle in the standing frame and its rate. Returns its rolling resistance as a drag.
     """
     angle, rate = moving
     spin, gained = 0.5 * (spins[0] + spins[1]), spins[1] - spins[0]
@@ -786,10 +784,9 @@ def _keep(state, room, row):
 def advance(machine, state, room, stop, courant, most, resumed):
     """Advance rotor and layers to a time, in place: Outcome, and the steps tried.
 
-    The rotor turns in a step by at most the Courant number's share of a cell; `resumed`: the call before
-    ended with RAN_OUT, and nothing has changed since. Every step is written down in the state's trace if that
-    has rows: as many as there are steps. NOT_COUPLED: the accelerations did not agree in the shortest steps;
-    STOPPED: the motor stands.
+    The rotor turns in a step by at most the Courant number's share of a cell. `resumed`: the call before
+    ended with RAN_OUT, and nothing has changed since. Every step goes into the state's trace if that has
+    rows. NOT_COUPLED: the accelerations did not agree in the shortest steps; STOPPED: the motor stands.
     """
     shaft, pace, sums = state.shaft[0], state.pace[0], state.sums[0]
     cell, taken = 2.0 * np.pi / machine.angles.shape[1], 0

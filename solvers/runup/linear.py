@@ -51,13 +51,13 @@ class LinearCoupled(CoupledRotor):
 
     @property
     def sloshing(self) -> slice:
-        """Rows of the layers among place and rate, two each."""
+        """Rows of the layers among `place` and `rate`, two each."""
         n = len(self.system.coordinates)
         return slice(n, n + 2 * len(self.fills))
 
     @property
     def rolling(self) -> slice:
-        """Rows of the balls."""
+        """Rows of the balls among `place` and `rate`."""
         return slice(self.sloshing.stop, None)
 
     @property
@@ -130,7 +130,7 @@ class LinearCoupled(CoupledRotor):
         return found
 
     def mass_error(self) -> float:
-        """None: the layer keeps its mass by construction."""
+        """Always 0: the layer keeps its mass by construction."""
         return 0.0
 
     def energy(self) -> float:
@@ -203,7 +203,7 @@ class LinearCoupled(CoupledRotor):
         return np.array([moving.real, moving.imag])
 
     def fall(self, outcome: Outcome) -> None:
-        """Nothing falls: small waves are not thrown down."""
+        """Always None: small waves do not fall."""
 
     def read(self) -> Reading:
         """The moment as the history keeps it."""
@@ -324,9 +324,9 @@ def couple_linear(
 
 
 def plate_curves(fills: Sequence[Fill]) -> Array:
-    """Smeared baffles of layers that lag: zeta N r_m/(4 pi R) over the lag [theory: baffles, eq. 13].
+    """Smeared baffles, zeta N r_m/(4 pi R) over the lag from 0 to the spin [theory: baffles, eq. 13].
 
-    At lags that rise evenly from 0 to the spin, shape (l, p); p = 0 where no baffle stands in liquid.
+    At even lags, shape (l, p); p = 0 where no baffle stands in liquid.
     """
     wet = [j for j, fill in enumerate(fills) if fill.uneven and not is_full(fill)]
     found, lags = np.zeros((len(fills), _LAGS if wet else 0)), np.linspace(0.0, 1.0, _LAGS)

@@ -1,7 +1,4 @@
-"""Rotor and linear layers through time by the trapezium [theory: coupling, eq. 11-13].
-
-SI units.
-"""
+"""Rotor and linear layers through time by the trapezium, in SI units [theory: coupling, eq. 11-13]."""
 
 from __future__ import annotations
 
@@ -253,10 +250,9 @@ _PLAIN, _SECANT = 6, 12
 
 @_jit
 def advance_linear(m, stop, angle_step, most):
-    """Advance rotor and layers to a time.
+    """Advance rotor and layers to a time, by at most `angle_step` rad a step, in at most so many steps.
 
-    At most `angle_step` a step, rad. Outcome.DONE, RAN_OUT, STOPPED where the motor stands, or NOT_COUPLED
-    where its load grows without bound.
+    Outcome.DONE, RAN_OUT, STOPPED where the motor stands, or NOT_COUPLED where its load grows without bound.
     """
     n, spins, taken, shaft, share = m.unbalance.size, (0.0, 0.0), 0, m.shaft[0], 1.0
     longest = swing_time(m.pools, m.gravity)

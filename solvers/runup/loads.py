@@ -16,10 +16,9 @@ _ENDS = 4  # moments at the ends of a path whose accelerations are not those of 
 
 
 def path_extremes(machine: LoadedMachine, path: RotorPath, time: Array) -> Extremes:
-    """The worst of each interval up to a sample, the first sample alone [theory: loads, eq. 14].
+    """Extremes of each interval up to a sample, the first sample alone [theory: loads, eq. 14].
 
-    Where liquid is caught or falls they are those before and after: of the impulse itself see
-    `bearing_impulses`.
+    Where liquid is caught or falls those before and after; of the impulse itself see `bearing_impulses`.
     """
     every = np.union1d(path.time, time)
     every = every[(every >= time[0]) & (every <= time[-1])]
@@ -40,9 +39,9 @@ def path_extremes(machine: LoadedMachine, path: RotorPath, time: Array) -> Extre
 
 
 def bearing_impulses(machine: LoadedMachine, path: RotorPath) -> Array:
-    """What each hand-over of liquid does to the bearings at once [theory: loads, eq. 20].
+    """Impulse of each pool-annulus transition on the bearings, N s, shape (j, b) [theory: loads, eq. 20].
 
-    N s, shape (j, b); b = 0 where bearings are not known.
+    b = 0 where bearings are not known.
     """
     kicks = path.kicks()
     if machine.bearings is None or not isinstance(machine.rotor, Tub):
@@ -53,9 +52,9 @@ def bearing_impulses(machine: LoadedMachine, path: RotorPath) -> Array:
 
 
 def held_extremes(machine: LoadedMachine, spin: float, path: Array) -> Extremes:
-    """The worst over the last turns of a motion that is held at a speed [theory: loads, eq. 14].
+    """Extremes over the last turns of a motion that is held at a speed [theory: loads, eq. 14].
 
-    Time and coordinates as of `solvers.held.state.HeldState`, (m, 1 + n); nan where the path is too short.
+    `path`: time and coordinates as of `solvers.held.state.HeldState`, (m, 1 + n); nan where it is too short.
     """
     if len(path) <= 4 * _ENDS:
         nothing = np.full((1, len(machine.rotor.system().coordinates)), np.nan, dtype=complex)
@@ -75,10 +74,10 @@ def held_extremes(machine: LoadedMachine, spin: float, path: Array) -> Extremes:
 def drive_torque(
     path: RotorPath, time: Array, speed: Array, angle: Array, inertia: Array, motor: bool
 ) -> Array:
-    """Mean torque on the shaft from each sample to the next [theory: loads, eq. 17].
+    """Mean torque on the shaft from each sample to the next, N m, shape (k,) [theory: loads, eq. 17].
 
-    N m, shape (k,), the first that of the interval after it; `inertia` of what spins without the liquid, kg
-    m^2. A motor's own work counts.
+    The first is that of the interval after it. `inertia` of what spins without liquid, kg m^2; `motor`: its
+    own work counts.
     """
     if time.size < 2:
         return np.zeros(time.shape)

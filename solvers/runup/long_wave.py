@@ -221,7 +221,7 @@ class Coupled(CoupledRotor):
     def switch(self) -> float:
         """Catch the liquid that can be a layer by now, let go what cannot; energy brought in, J.
 
-        The momentum of rotor and liquid stays, and, of liquid that the drum does not take along, its angular
+        Keeps the momentum of rotor and liquid and, of liquid that the drum does not take along, its angular
         momentum about the chamber's axis [theory: pool, eq. 9-11].
         """
         riding = self.handover is Handover.RIDING
@@ -231,7 +231,7 @@ class Coupled(CoupledRotor):
     def fall(self, outcome: Outcome) -> float | None:
         """Let the deepest layer fall to the bottom where gravity has won; energy brought in, J.
 
-        It is caught again at a speed higher by a fifth. None where the outcome has another reason.
+        It is caught again at a speed higher by a fifth. None where the steps failed for another reason.
         """
         thrown = outcome in (Outcome.AT_AXIS, Outcome.NOT_COUPLED)
         if not (thrown and self.machine.gravity.any() and self.active.any()):
@@ -293,7 +293,7 @@ class Coupled(CoupledRotor):
         return np.asarray(-lag * (1.0 - self.area) * self.area - self.spin * np.square(self.area))
 
     def _assemble(self) -> None:
-        """Make machine, state and room anew for the layers and pools of now, other liquid being masses."""
+        """Make machine, state and scratch anew for the present layers and pools; other liquid is a mass."""
         old, active, pooled = self.state, self.active, self.pooled
         planes, mass = planes_of(self.system, self.fills), self.system.mass.copy()
         if self.lost_mass is not None:
@@ -391,8 +391,8 @@ def couple(
 ) -> Coupled:
     """Rotor without deflection, liquid at rest in the drum, balls where they start, by long waves.
 
-    `enstrophy`: bores carry fluctuations behind them [theory: long_wave, eq. 15-17]; `handover`: how liquid
-    at the bottom becomes a layer; `position` of the plane whose amplitude counts where there is no chamber.
+    `enstrophy`: bores carry fluctuations behind them [theory: long_wave, eq. 15-17]; `position` of the plane
+    whose amplitude counts where there is no chamber, m.
     """
     rest = at_rest(system, fills, spin, gravity, position)
     n, count = len(system.coordinates), len(fills)

@@ -1,9 +1,6 @@
-"""What turns the rotor in a run-up, and what a run-up asks of a liquid model.
+"""What turns the rotor in a run-up (ramp or motor), and what a run-up asks of a liquid model.
 
-The speed over time is given, follows from a motor with its torque curve, or does both in turn in a
-programme. A liquid model is a function
-that makes a rotor with its liquid at one moment; `solvers.runup.runup.run_up` drives any such machine
-through time.
+A liquid model is a function that makes a rotor with its liquid at one moment, a `RunupMachine`.
 """
 
 from __future__ import annotations
@@ -182,8 +179,7 @@ class RunupMachine(Protocol):
         """Set the unbalance from here on, kg m and kg m^2, shape (n,)."""
 
     def lighten(self, mass: Array, inertia: float) -> float:
-        """Set the mass matrix and spin inertia of what has left the drum by now; the energy brought in, below
-        0, J.
+        """Set mass matrix and spin inertia of what has left the drum; the energy brought in, J, below 0.
 
         What leaves keeps its velocity, so that no speed changes [theory: coupling, eq. 17].
         """
@@ -198,13 +194,13 @@ class RunupMachine(Protocol):
         """Let liquid fall that gravity has thrown down; energy brought in, J, or None where none has been."""
 
     def energy(self) -> float:
-        """Of rotor and liquid, J."""
+        """Energy of rotor and liquid, J."""
 
     def mass_error(self) -> float:
         """Largest relative change of a layer's volume since the beginning."""
 
     def watch(self) -> None:
-        """From here on look for the largest amplitude anew."""
+        """Look for the largest amplitude anew from here on."""
 
     def read(self) -> Reading:
         """The moment as the history keeps it."""

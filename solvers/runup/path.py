@@ -1,4 +1,4 @@
-"""The motion of the rotor all along a run-up, fine enough for velocities and accelerations [theory: loads].
+"""Motion of the rotor all along a run-up, fine enough for velocities and accelerations [theory: loads].
 
 `Recorder` keeps it while a machine runs; the run is the same with it and without. SI units.
 """
@@ -38,8 +38,7 @@ class RotorPath:
     def motion(self, time: Array) -> tuple[Array, Array, Array, Array]:
         """Angle, coordinates, their rates and accelerations at rising times, by cubic splines between jumps.
 
-        At a jump the motion is that after it; nan where two jumps are so close that derivatives are not
-        known.
+        At a jump the motion after it; nan where two jumps are too close for derivatives.
         """
         angle, n = np.interp(time, self.time, self.angle), self.coordinates.shape[1]
         if self.time.size < _LEAST:
@@ -58,9 +57,9 @@ class RotorPath:
         return angle, found[0], found[1], found[2]
 
     def kicks(self) -> Array:
-        """By how much the rates change at each jump, m/s and rad/s, shape (j, n).
+        """Changes of the rates at each jump, m/s and rad/s, shape (j, n).
 
-        Not a number where the motion before it or after it is not known.
+        nan where the motion before or after is not known.
         """
         ends, found = np.concatenate([[-np.inf], self.jumps, [np.inf]]), []
         for k, time in enumerate(self.jumps.tolist()):

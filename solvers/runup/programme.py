@@ -89,7 +89,7 @@ class Programme:
 
     @property
     def highest(self) -> float:
-        """Highest speed that it asks for, rad/s."""
+        """Highest speed of the programme, rad/s."""
         return max(self.start, *(stage.stop or 0.0 for stage in self.stages if not stage.free), 0.0)
 
     @property
@@ -120,7 +120,7 @@ class Programme:
     def corners(self) -> Array:
         """Times at which stages begin and end and the speeds there, shape (2, k).
 
-        Where the drum coasts they are estimates: those of a drum without liquid that does not whirl.
+        Estimates where the drum coasts: those of a drum without liquid that does not whirl.
         """
         time, spin = 0.0, max(self.start, self.floor)
         points = [(time, spin)]

@@ -1,6 +1,6 @@
 """Rotor and liquid layers through time: run-up, run-down, hold, and their error [theory: coupling].
 
-How far linear layers are from long waves is estimated from the linear run alone.
+The distance of linear layers from long waves is estimated from the linear run alone.
 """
 
 from __future__ import annotations
@@ -187,7 +187,7 @@ class RunupHistory:
 
     @property
     def converged(self) -> bool:
-        """It came to the end."""
+        """Whether the run came to its end."""
         return self.outcome is Outcome.DONE
 
     @property
@@ -220,13 +220,12 @@ def run_up(
 ) -> RunupHistory:
     """Run a rotor with liquid layers through its speeds; at first liquid and rotor are at rest in the drum.
 
-    Empty chambers do nothing, full ones are a solid mass. The laminar law takes the frequency of the slower
-    free wave. Gravity acts across the axis, against the first direction; liquid that it holds at the bottom
-    is a pool that the walls carry round, or, under the rule `riding`, a mass that moves with the axis.
-    `model` makes the liquid through time: long waves, or `solvers.runup.linear.couple_linear` at a hundredth
-    of the cost. `snapshots` are times at which the layers are kept cell by cell, each at the recorded time
-    next to it; `follow` keeps the path of the rotor; neither changes anything in the run. What was reached if
-    it did not come to the end.
+    Gravity acts across the axis, against the first direction; liquid that it holds at the bottom is a pool
+    that the walls carry round or, under the rule `riding`, a mass that moves with the axis. The laminar law
+    takes the frequency of the slower free wave. `model` makes the liquid: long waves, or
+    `solvers.runup.linear.couple_linear` at a hundredth of the cost. Layers are kept cell by cell at the
+    recorded times next to `snapshots`, s; `follow` keeps the rotor's path; neither changes the run. If the
+    run ends early, what was reached.
     """
     numerics = numerics or RunupNumerics()
     start = drive.corners()[1, 0]
@@ -282,7 +281,7 @@ def _with_errors(history: RunupHistory, coarse: RunupHistory, early: RunupHistor
 def _gap(run: RunupHistory, other: RunupHistory, own: Array, others: Array) -> Array:
     """Difference of two quantities at the times of a run, nan where the other has none, shape (k,).
 
-    Where the speed was free the ways have corners of their own; the other times are the same.
+    A free speed gives each run corners of its own; the other times are the same.
     """
     _, here, there = np.intersect1d(run.time, other.time, assume_unique=True, return_indices=True)
     found = np.full(run.time.shape, np.nan)
@@ -293,7 +292,7 @@ def _gap(run: RunupHistory, other: RunupHistory, own: Array, others: Array) -> A
 def _over_a_turn(run: RunupHistory) -> Array:
     """Largest amplitude within half a turn before and after each time, m, shape (k,).
 
-    Beats that come a little earlier or later cross: at one time alone they may differ by all of it.
+    At one time alone, beats that come a little earlier or later may differ by all of it.
     """
     first = np.searchsorted(run.angle, run.angle - np.pi)
     last = np.searchsorted(run.angle, run.angle + np.pi, side="right")
@@ -310,7 +309,7 @@ def _march(
     snapshots: Array,
     recorder: Recorder | None = None,
 ) -> RunupHistory:
-    """The run itself, sample by sample."""
+    """Run a machine sample by sample."""
     top, last = highest(drive), float(drive.corners()[0, -1])
     energy, captured, outcome = machine.energy(), 0.0, Outcome.DONE
     wanted, kept, depths = marked(drive, numerics.samples, snapshots), [0], [machine.depth()]

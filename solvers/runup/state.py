@@ -1,7 +1,7 @@
-"""What the coupled time steps work on, and how every run-up begins. SI units.
+"""What the coupled time steps work on, and how every run-up begins; SI units.
 
-The steps take the machine, its chambers, its state and scratch. Numbers that change one by one stand in
-records, see `solvers.layer.records`.
+The steps take machine, chambers, state and scratch; single numbers that change stand in records, see
+`solvers.layer.records`.
 """
 
 from __future__ import annotations
@@ -61,10 +61,7 @@ LAYER = np.dtype([(name, _KINDS.get(name, np.float64)) for name in LayerProperti
 
 
 def layer_properties(fill: Fill, friction: Friction, dispersion: bool) -> LayerProperties:
-    """What the steps know of a chamber's layer.
-
-    The laminar law takes the frequency of the slower free wave.
-    """
+    """Properties of a chamber's layer for the steps; the laminar law at the slower free wave's frequency."""
     chamber, slip = fill.chamber, unit_slip(fill)
     law, coefficient = friction.at(fill.liquid.viscosity, slip, chamber.radius)
     laminar = friction.law.laminar and slip > 0.0
@@ -117,9 +114,9 @@ _TURNS = np.concatenate(([0.0], np.geomspace(1e-5, 1e4, 430)))
 def drag_curves(
     fills: Sequence[Fill], pools: Sequence[Pool | None], friction: Friction, gravity: float
 ) -> Array:
-    """Relative rotation of the walls and their torque on each pool, as the steps take it.
+    """Relative rotation of the walls and their torque on each pool, as the steps take it, shape (l, 2, k).
 
-    rad/s, rising from 0, and N m, 0 where there is no pool, shape (l, 2, k).
+    rad/s, rising from 0, and N m, 0 where there is no pool.
     """
     found = np.zeros((len(fills), 2, _TURNS.size))
     for j, (fill, pool) in enumerate(zip(fills, pools, strict=True)):
@@ -347,7 +344,7 @@ class CoupledRotor(ABC):
     def caught(self, active: Flags, own: Array) -> Flags:
         """Which liquids are layers from now on [theory: pool, eq. 9-10].
 
-        `own` rotation of the liquid itself: of layers, and of pools once they were spread, rad/s.
+        `own`: rotation of the liquid itself: of layers, and of pools once they were spread, rad/s.
         """
         if self.handover is Handover.RIDING:
             return np.asarray(self.spin > np.where(active, RELEASE * self.capture, self.capture))

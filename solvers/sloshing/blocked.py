@@ -16,8 +16,7 @@ _AROUND, _ACROSS = 192, 12
 def blocked_inertia(section: LiquidSection) -> float:
     """Moment of inertia of the liquid that its walls take along at once, over density and height, m^4.
 
-    The flow of a stroke has a potential, 0 on the free surface and with the walls' normal velocity on them
-    [theory: baffles, eq. 14].
+    The flow has a potential, 0 on the free surface, and the walls' normal velocity [theory: baffles, eq. 14].
     """
     push = _push(section)
     unknown = np.zeros(len(section.points), dtype=bool)

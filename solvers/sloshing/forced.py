@@ -1,8 +1,8 @@
 """The liquid's answer to a whirl of its drum, for a section of any shape, and the damping of its modes.
 
 Amplitudes go with e^{i s t} in the drum's frame, s the whirl speed in space less the spin. The body force f
-is minus the acceleration of the axis; gravity across the axis is one with s = -Omega. Damping comes from
-laminar layers on walls, baffles, floor and lid.
+is minus the acceleration of the axis, or gravity across it, for which s = -Omega. Damping comes from laminar
+layers on walls, baffles, floor and lid.
 """
 
 from __future__ import annotations
@@ -40,8 +40,8 @@ class ModeDamping:
 def mode_damping(system: Condensed, modes: SloshingModes, viscosity: float, height: float) -> ModeDamping:
     """Damping of each mode, to first order in the thickness of the layers [theory: sloshing, eq. 18-23].
 
-    Laminar, without separation at the edges of baffles, which damps more and grows with amplitude; an
-    infinite height leaves floor and lid out.
+    Laminar: separation at the edges of baffles damps more, and grows with amplitude. An infinite height
+    leaves floor and lid out.
     """
     require_not_negative("viscosity", viscosity)
     if height != np.inf:
@@ -132,8 +132,7 @@ def forced_response(
 ) -> ForcedResponse:
     """Force of the liquid on a whirling drum, a sum over all modes [theory: sloshing, eq. 14-16].
 
-    Whirl speeds in space, rad/s: 0 serves gravity across the axis, the spin itself a synchronous whirl;
-    infinite where the whirl meets a free wave.
+    Whirl speeds in space, rad/s: 0 is gravity across the axis, the spin synchronous; inf at a free wave.
     """
     require_positive("spin", spin)
     omega = np.asarray(whirl_speed, dtype=float)
@@ -164,10 +163,8 @@ def _moments_of(
 ) -> tuple[list[Complex], NDArray[np.bool_]]:
     """Moment of the displaced liquid over f at unit spin, times 1, sigma and sigma^2, shape (..., 2, 2) each.
 
-    Also where sigma meets a mode that moves the centre of mass, shape (...,).
-
-    sum p p* sigma_k^(j+1)/(sigma_k - sigma) over both signs of every mode, less what has to cancel for large
-    sigma: sum p p* sigma_k = 0.
+    Also where sigma meets a mode that moves the centre of mass, (...,). sum p p* sigma_k^(j+1)/(sigma_k -
+    sigma) over both signs of every mode, less what has to cancel for large sigma: sum p p* sigma_k = 0.
     """
     p = modes.amplitude @ moment.T
     both = np.concatenate([modes.frequency, -modes.frequency])
@@ -184,28 +181,27 @@ def _moments_of(
 
 
 def displacement_field(system: LiquidSystem, spin: float, slip: float, force: Complex) -> Complex:
-    """Stream function of the displacement under a body force, by one dense solution
-    [theory: sloshing, eq. 13].
+    """Stream function of the displacement by one dense solution, m^2, (n,) [theory: sloshing, eq. 13].
 
-    In the condensed unknowns, m^2, shape (n,), for the amplitude of f, m/s^2, shape (2,).
+    In the condensed unknowns, for the amplitude of a body force f, m/s^2, shape (2,).
     """
     matrix = spin**2 * system.surface - slip**2 * system.inertia + 2j * slip * spin * system.gyration
     return np.asarray(np.linalg.solve(matrix, -(system.moment.T @ force)))
 
 
 def newton_force(system: LiquidSystem, spin: float, slip: float, force: Complex, field: Complex) -> Complex:
-    """Force on the drum over rho h from the motion of the liquid's centre of mass [theory: sloshing, eq. 15].
+    """Force on the drum over rho h by the motion of the centre of mass, (2,), m^3/s^2.
 
-    Amplitudes in both directions, m^3/s^2, for the field that `displacement_field` returns.
+    For the field that `displacement_field` returns [theory: sloshing, eq. 15].
     """
     change = 1j * slip * np.eye(2) + spin * TURN
     return np.asarray(system.liquid_area * force + change @ change @ (system.moment @ field))
 
 
 def pressure_force(system: LiquidSystem, spin: float, slip: float, force: Complex, field: Complex) -> Complex:
-    """Force on the drum over rho h from the pressure on all walls [theory: sloshing, eq. 17].
+    """Force on the drum over rho h by the pressure on all walls, (2,), m^3/s^2 [theory: sloshing, eq. 17].
 
-    The slope of the pressure along the walls follows from the velocity there, pressure itself where a wall
+    The slope of the pressure along the walls follows from the velocity, the pressure itself where a wall
     meets the free surface. An independent statement of `newton_force`, less accurate.
     """
     section, walls = system.section, wall_points(system.section)

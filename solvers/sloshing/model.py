@@ -101,7 +101,7 @@ class SmallWaves(WaveModel):
         return np.full(speed.shape, np.inf)
 
     def wave(self, fill: Fill, whirl: Whirl) -> LiquidWave:
-        """See `WaveModel`: the part of the answer that turns with the whirl.
+        """The part of the answer that turns with the whirl, see `WaveModel`.
 
         Depths are those at an instant when the deflection lies along the first baffle.
         """

@@ -1,8 +1,7 @@
 """Free oscillations of the liquid in a spinning drum of any section.
 
-Fields vary as e^{-i sigma t} in the drum's frame. A mode and its complex conjugate at -sigma are one motion;
-it is written with the sign for which its crests run as e^{i n theta} with n > 0, so that a positive frequency
-is a prograde wave.
+Fields vary as e^{-i sigma t} in the drum's frame. A mode and its complex conjugate at -sigma are one motion,
+written with the sign for which crests run as e^{i n theta}, n > 0: a positive frequency is a prograde wave.
 """
 
 from __future__ import annotations
@@ -74,10 +73,10 @@ def spectrum(system: LiquidSystem) -> Spectrum:
 def sloshing_modes(
     system: Condensed, spin: float, count: int = 12, modes: Spectrum | None = None
 ) -> SloshingModes:
-    """Slowest modes of the liquid in the drum's frame [theory: sloshing, eq. 10-12].
+    """Slowest modes in the drum's frame, fewer if the mesh has fewer [theory: sloshing, eq. 10-12].
 
-    `modes` of the system are at least the first one beyond those counted and all with its frequency; None:
-    all of them, for which the system has to be dense. Fewer are returned if the mesh has fewer.
+    `modes` hold at least the first one beyond those counted and all with its frequency; None: all of them,
+    for which the system has to be dense.
     """
     require_positive("spin", spin)
     if count < 1 or count != int(count):
@@ -138,8 +137,7 @@ def _with(eta: Complex, product: Complex) -> Complex:
 def _told_apart(system: Condensed, eta: Complex, group: Indices) -> Complex:
     """Within each cluster of equal frequencies the combinations that differ most in their harmonics.
 
-    Any combination of them is a mode. Those given have their first harmonics, one after the other, in one
-    mode each: at most two of a cluster then push the drum.
+    Any combination is a mode. The first harmonics lie in one mode each: at most two then push the drum.
     """
     found = eta.copy()
     for cluster in np.flatnonzero(np.bincount(group) > 1):
@@ -164,7 +162,7 @@ def _residual(sigma: Array, kinetic: Array, travel: Array, tension: Array) -> Ar
 def surface_displacement(section: LiquidSection, eta: Complex) -> tuple[Indices, Complex]:
     """Nodes on the surface and displacement xi = eta_theta/a along the radius there, m, shape (k, S).
 
-    As a smooth function fitted on each stretch of surface [theory: sloshing, eq. 3]. Where the surface meets
+    A smooth function fitted on each stretch of surface [theory: sloshing, eq. 3]. Where the surface meets
     both sides of a baffle it has a node on either side.
     """
     nodes = np.unique(section.surface)
@@ -216,9 +214,9 @@ def _along_sides(section: LiquidSection, eta: Complex) -> tuple[Array, Complex, 
 
 
 def harmonics(section: LiquidSection, eta: Complex, most: int) -> Complex:
-    """Fourier coefficients of the displacement, (1/2 pi) oint xi e^{-i n theta} dtheta.
+    """Fourier coefficients of the displacement, (1/2 pi) oint xi e^{-i n theta} dtheta, m.
 
-    For n = -most ... most, m, shape (k, 2 most + 1).
+    For n = -most ... most, shape (k, 2 most + 1).
     """
     angle, _, rise = _along_sides(section, eta)
     n = np.arange(-most, most + 1)

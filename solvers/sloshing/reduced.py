@@ -48,8 +48,7 @@ class ReducedLiquid:
     def compliance(self, slip_ratio: ArrayLike) -> Complex:
         """First moment of the displaced liquid for a uniform force [theory: sections, eq. 2].
 
-        Q Omega^2/(rho h f) over the two directions, shape (k, 2, 2), m^2, for a force f e^{i s t} in the
-        drum's frame, its s/Omega of shape (k,).
+        Q Omega^2/(rho h f), shape (k, 2, 2), m^2, for f e^{i s t} in the drum's frame at s/Omega, shape (k,).
         """
         s = np.asarray(slip_ratio, dtype=complex)[:, None, None]
         matrix = -np.square(s) * self.inertia + 2j * s * self.gyration + self.surface
@@ -97,10 +96,7 @@ def reduce_liquid(system: LiquidSystem) -> ReducedLiquid:
 
 
 def spanned(vectors: Any, distinct: float = _DISTINCT) -> Any:
-    """Orthonormal columns that span others, but for what rounding and near repetition add.
-
-    `distinct`: part of a vector that must stand across the others.
-    """
+    """Orthonormal columns that span others, save vectors with less than `distinct` across the ones before."""
     kept: list[Any] = []
     for vector in vectors.T:
         left = vector / np.linalg.norm(vector)
@@ -128,7 +124,7 @@ class SectionLayer:
 def section_layer(fill: Fill, friction: Friction) -> SectionLayer | None:
     """Layer of a fill under a law of friction; None without liquid or without a free surface.
 
-    A clear ring is known in closed form; with baffles in the liquid it is computed by finite elements.
+    A clear ring is known in closed form, baffles and other sections are computed by finite elements.
     """
     if fill.volume == 0.0 or is_full(fill):
         return None
@@ -180,8 +176,7 @@ def _of_baffles(fill: Fill, cut: float) -> tuple[ReducedLiquid, Array]:
 def section_layers(fills: Sequence[Fill], friction: Friction) -> tuple[float, list[SectionLayer]]:
     """Mass of all liquid that has no free surface, kg, and the layers of chambers that move alike.
 
-    Equal layers count as one: against one another they slosh as if the rotor were not there, and such motion
-    does not grow.
+    Equal layers count as one: sloshing against one another they leave the rotor alone and do not grow.
     """
     solid, found = 0.0, dict[tuple[object, ...], list[Fill]]()
     for fill in fills:
@@ -236,11 +231,10 @@ def _reduced(mesh: LiquidSection, cut: float) -> tuple[ReducedLiquid, Array]:
 
 
 def wall_drag(section: LiquidSection, motions: Array, cut: float = 0.0) -> Array:
-    """Integral of the product of tangential displacements along walls and both sides of baffles, shape (m,
-    m).
+    """Integral of products of tangential displacements along walls and both sides of baffles, (m, m).
 
-    Stream functions on the nodes, (m, N), m^2; `cut` is the thickness of the layer that does not see the
-    edges of baffles, m [theory: sloshing, eq. 23].
+    1/m for motions without unit, stream functions on the nodes, (m, N); `cut` is the thickness of the layer
+    that does not see the edges of baffles, m [theory: sloshing, eq. 23].
     """
     from solvers.sloshing.forced import wall_weights
 

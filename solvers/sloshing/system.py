@@ -63,10 +63,7 @@ class WallPoints:
 
 
 def stiffness(section: LiquidSection) -> csr_array:
-    """K = int grad psi . grad v over the liquid [theory: sloshing, eq. 6].
-
-    Symmetric, over the nodes of the mesh, a pure number.
-    """
+    """K = int grad psi . grad v over the liquid, symmetric, over the nodes [theory: sloshing, eq. 6]."""
     basis = CellBasis(*_mesh(section), intorder=_DEGREE[section.cells.shape[1]], disable_doflocs=True)
     raw = BilinearForm(_gradients).assemble(basis).tocoo()
     node = _node_of_unknown(section, basis.element_dofs)
@@ -103,8 +100,9 @@ def wall_points(section: LiquidSection) -> WallPoints:
 
 
 def gradients(section: LiquidSection) -> tuple[csr_array, csr_array]:
-    """Matrices from psi at the nodes to d psi/dx and d psi/dy at the middles of the cells, u = (d psi/dy, -d
-    psi/dx).
+    """Matrices from psi at the nodes to d psi/dx and d psi/dy at the cells' middles, (M, N), 1/m.
+
+    The velocity is u = (d psi/dy, -d psi/dx).
     """
     mesh, element = _mesh(section)
     corners = len(SIDES[section.cells.shape[1]])
@@ -183,10 +181,7 @@ class LiquidSystem:
     interior: Interior  #: what gives the values on all nodes, see `on_nodes`
 
     def on_nodes(self, amplitudes: Array | Complex) -> Complex:
-        """Stream function on the nodes of the mesh.
-
-        Shape (k, N), of amplitudes (k, n).
-        """
+        """Stream function on the nodes of the mesh, shape (k, N), of amplitudes (k, n)."""
         return self.interior.on_nodes(amplitudes)
 
     def products(self, amplitudes: Complex) -> tuple[Complex, Complex, Complex]:
@@ -242,7 +237,7 @@ class SurfaceSystem:
     pieces: int  #: stretches of the surface that no path along it joins
 
     def on_nodes(self, amplitudes: Array | Complex) -> Complex:
-        """As `LiquidSystem.on_nodes`."""
+        """Stream function on the nodes of the mesh, shape (k, N), of amplitudes (k, n)."""
         return self.interior.on_nodes(amplitudes)
 
     def inertia_times(self, values: Any) -> Any:
@@ -259,7 +254,7 @@ class SurfaceSystem:
         return self.rise.T @ (self.bend @ (self.rise @ values))
 
     def products(self, amplitudes: Complex) -> tuple[Complex, Complex, Complex]:
-        """As `LiquidSystem.products`."""
+        """K, C and B times amplitudes, shape (k, n) each."""
         columns = amplitudes.T
         found = self.inertia_times(columns), self.gyration @ columns, self.surface_times(columns)
         return np.asarray(found[0].T), np.asarray(found[1].T), np.asarray(found[2].T)
@@ -294,7 +289,7 @@ class Interior:
 def condense(section: LiquidSection) -> LiquidSystem:
     """Matrices of the liquid's motion on the free surface [theory: sloshing, eq. 9].
 
-    Its size is that of the nodes on the free surface, its cost the cube of that.
+    Their size is that of the nodes on the free surface, the cost the cube of that.
     """
     parts = _parts(section)
     schur = parts.schur()
@@ -409,11 +404,9 @@ def _parts(section: LiquidSection) -> _Parts:
 
 
 def surface_forms(section: LiquidSection) -> tuple[csr_array, csr_array]:
-    """C = oint psi_theta v dtheta and B = oint psi_theta v_theta dtheta on the free surface, over the nodes,
-    rows for v.
+    """C = oint psi_theta v dtheta and B = oint psi_theta v_theta dtheta on the free surface, rows for v.
 
-    [theory: sloshing, eq. 6]; the angle is positive with the spin, and it varies along a side as through its
-    nodes.
+    Over the nodes [theory: sloshing, eq. 6]; theta, positive with the spin, is interpolated along a side.
     """
     sides = section.surface
     x, y = section.points[sides[:, 0]].T
@@ -504,8 +497,8 @@ def _selection(unknown: Indices, count: int) -> csr_array:
 def _closed_parts(section: LiquidSection, unknown: Indices, outside: Indices) -> tuple[Array, int]:
     """1 on each closed part of the free surface, shape (n, p), and the stretches of it that nothing joins.
 
-    A part is closed if no side of it leads to a fixed wall. Where psi is one constant on all of it, the
-    surface stays a circle and the flow is a steady vortex, which the condensation leaves out.
+    No side of a closed part leads to a fixed wall. Where psi is constant on all of it the surface stays a
+    circle and the flow is a steady vortex, which the condensation leaves out.
     """
     ends = unknown[section.surface[:, :2]]
     count = int(unknown.max()) + 1

@@ -1,9 +1,9 @@
 """Free surface of a rotating liquid in a chamber of any section, by finite elements.
 
-The surface z = beta r^2 + C, with r the distance from the rotation axis and z the height above the floor, is
-cut by floor and lid: the liquid is H = clamp(beta r^2 + C, 0, h) deep. Here it is described by squared radii,
-in which nothing cancels at any speed: H rises from 0 at the floor's waterline to h at the lid's, which lie
-the ramp w = h/beta apart. Without gravity the ramp shrinks to a step, without spin it flattens.
+Under the surface z = beta r^2 + C, r from the rotation axis and z from the floor, the liquid is H =
+clamp(beta r^2 + C, 0, h) deep. Here it is described by squared radii, in which nothing cancels at any speed:
+H rises from 0 at the floor's waterline to h at the lid's, which lie the ramp w = h/beta apart. Without
+gravity the ramp shrinks to a step, without spin it flattens.
 """
 
 from __future__ import annotations
@@ -79,8 +79,7 @@ def integrate_surface(
     dry_radius: float | None = None,
     axis: tuple[float, float] = (0.0, 0.0),
 ) -> Moments:
-    """Moments of the liquid under a given surface about the rotation axis and the floor
-    [theory: statics, eq. 1].
+    """Moments about the rotation axis and the floor of the liquid under a surface [theory: statics, eq. 1].
 
     The surface is given by its height Z where the section is farthest from the axis, or by the distance from
     the axis at which it meets the floor, which serves every speed, even beta infinite. The axis crosses the
@@ -162,11 +161,9 @@ def default_disc(radius: float, layer: float, *, inner_radius: float = 0.0) -> S
     """Quadratic mesh that serves a liquid layer of that thickness to about 1e-7 of its volume.
 
     The only error is the wall's: with 2 b the angle of an edge, its parabola runs inside the circle by d =
-    b^4 R/60 on the average, and liquid as deep as at the wall is lost there. Of the optimal volume that is 2
-    d/layer at fast spin and 8 d/(3 layer) at slow spin, of an even layer less.
-
-    A disc or an annulus of 64 to 1024 wall edges; the layer is the thickness where it is thickest, 2 e for
-    the optimal volume. Layers below 4e-5 R get fewer digits.
+    b^4 R/60 on the average. Of the optimal volume (`layer`, the largest thickness, is 2 e) that is 2 d/layer
+    at fast spin and 8 d/(3 layer) at slow spin, of an even layer less. 64 to 1024 wall edges: layers below
+    4e-5 R get fewer digits.
     """
     require_positive("radius", radius)
     require_not_negative("layer", layer)
@@ -196,8 +193,7 @@ def _plan(section: Section, height: float, beta: float, axis: tuple[float, float
 def _integral(plan: _Plan, below: float, integrand: Integrand) -> Array:
     """Integrals over the section when the floor's waterline lies `below` the farthest point, m^2.
 
-    Triangles over which the depth is smooth go through scikit-fem's quadrature; those cut by a waterline are
-    integrated between their edges and the waterlines.
+    By quadrature where the depth is smooth; triangles cut by a waterline between their edges and it.
     """
     floor = plan.farthest - below
     lid = floor + plan.ramp

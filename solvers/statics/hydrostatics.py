@@ -1,9 +1,8 @@
 """Liquid at rest in a whirling, spinning chamber: surface for a given volume, unbalance, optimal volume.
 
-The one unknown is the wetted height Z, the height of the unclamped surface above the floor at the wall's
-farthest point from the rotation axis. Unlike the surface constant C it keeps its digits when the spin is fast
-(C loses them as beta R^2/h) and when the fill is small [theory: statics, eq. 12]. Integrals over the liquid
-are what is inside the outer wall less what is inside the inner one.
+The unknown is the wetted height Z of the unclamped surface above the floor at the wall's farthest point from
+the rotation axis. It keeps its digits at fast spin (C loses them as beta R^2/h) and small fills
+[theory: statics, eq. 12]. Integrals are what is inside the outer wall less what is inside the inner one.
 """
 
 from __future__ import annotations
@@ -43,10 +42,9 @@ def _integrals(
 def moments(
     chamber: AnyChamber, eccentricity: ArrayLike, steep: ArrayLike, wetted_height: ArrayLike
 ) -> Moments:
-    """Moments of the liquid under a given surface.
+    """Moments of the liquid under a surface about the rotation axis and the floor, over the density.
 
-    About the rotation axis and the chamber's floor, over the density. `steep` is beta R^2/h, `wetted_height`
-    that of the unclamped surface at the farthest wall point over h.
+    `steep` is beta R^2/h, `wetted_height` that of the unclamped surface at the farthest wall point over h.
     """
     e, b, zeta = same_shape(eccentricity, steep, wetted_height)
     from solvers.statics import kernel
@@ -71,11 +69,10 @@ def volume_and_plan(chamber: AnyChamber, e: Array, steep: Array, zeta: Array) ->
 
 
 def plan_moments(chamber: AnyChamber, e: Array, steep: Array, zeta: Array) -> tuple[Array, ...]:
-    """First moment of the liquid about the rotation axis, m^4, and the moments of its free surface's plan; as
-    `moments`.
+    """First moment of the liquid, m^4, and the beta-fold moments of its surface's plan; as `moments`.
 
-    The plan's area, first and second moment along the deflection are beta-fold, so that they stay finite as
-    the surface becomes a cylinder [theory: statics, eq. 17].
+    Area, first and second moment along the deflection, times beta to stay finite as the surface becomes a
+    cylinder [theory: statics, eq. 17].
     """
     from solvers.statics import kernel
 
@@ -115,10 +112,9 @@ class Equilibrium:
 
     @property
     def farthest_depth(self) -> Array:
-        """Depth of the liquid on the floor at the farthest wall point, m, shape (...,).
+        """Depth on the floor at the farthest wall point, the largest there is, m [theory: optimum, eq. 12].
 
-        There it reaches farthest from the wall [theory: optimum, eq. 12]; where it covers the floor, to the
-        rotation axis.
+        Up to the rotation axis where it covers the floor.
         """
         farthest = self.chamber.radius + self.eccentricity
         fall = np.full(farthest.shape, np.inf)
@@ -158,8 +154,8 @@ def equilibrium(
 ) -> Equilibrium:
     """Surface of a given volume of liquid that turns as a whole about an axis off the chamber's centre.
 
-    Newton steps on the logarithm of wet over dry volume, kept inside a bracket that every step shrinks; a
-    step that leaves it is replaced by bisection. Arrays broadcast; one chamber, or one for each state.
+    `gravity` is along the axis, 0 if that is horizontal; one chamber, or one for each state. Bracketed Newton
+    steps on the logarithm of wet over dry volume.
     """
     v, e, spin, g = same_shape(volume, eccentricity, speed, gravity)
     _check("eccentricity", e)
@@ -185,8 +181,6 @@ def optimal_volume(
 
     Less leaves a dry patch, more does not change the liquid's unbalance.
 
-    Examples
-    --------
     >>> from meshes.chamber import Chamber
     >>> print(f"{optimal_volume(Chamber(0.2, 0.05), 0.001, 90.0) * 1e6:.6f} ml")
     54.439572 ml

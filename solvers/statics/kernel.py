@@ -183,8 +183,7 @@ def _wetted_height(
 def _of_cylinder(eps: float, area: float, steep: float) -> float:
     """Wetted height of a surface so steep that it is a cylinder, with a dry wall on the near side.
 
-    Newton steps on the area between wall and cylinder, whose derivative with respect to the square of the
-    cylinder's radius is half the angle of its part inside the wall.
+    Newton steps on the area between wall and cylinder; its slope is half the angle of the part inside.
     """
     low, high = (1.0 - eps) ** 2, (1.0 + eps) ** 2
     squared = 0.5 * (low + high)

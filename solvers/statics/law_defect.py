@@ -1,8 +1,8 @@
 """How far the liquid's law is below the straight line of its added mass: closed forms, nothing is solved for.
 
-The linear law is exact while the wall is wet to the lid all round and the inner wall is dry; beyond, what is
-missing is the first moment of the air that has moved [theory: model_error]. Lengths across the axis are in
-units of R, along it of h.
+The linear law is exact while the wall is wet to the lid all round and the inner wall is dry; beyond, the
+first moment of the air that has moved is missing [theory: model_error]. Lengths over R across the axis, over
+h along it.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ class Surfaces:
 
 
 def upright_surfaces(fills: Fills, speed: Array, gravity: Array) -> Surfaces:
-    """Surfaces about the chambers' own axis, and how far the axis may move before the law bends.
+    """Concentric surfaces, and how far the axis may move before the law bends.
 
     [theory: model_error, eq. 3 and 4]
     """
@@ -75,10 +75,9 @@ def upright_surfaces(fills: Fills, speed: Array, gravity: Array) -> Surfaces:
 
 
 def defect_bound(surfaces: Surfaces, deflection: Array) -> Array:
-    """Upper bound of full mass times deflection less the liquid's unbalance, kg m
-    [theory: model_error, eq. 7 and 8].
+    """Upper bound of full mass times deflection less the liquid's unbalance, kg m, shape (n,).
 
-    Never below what is missing, 0 as long as nothing is, and next to it where little is.
+    Never below it, 0 while nothing is missing, near where little is [theory: model_error, eq. 7 and 8].
     """
     eps = deflection / surfaces.radius
     # The slope of the unbalance is between the liquid's mass and the full one.

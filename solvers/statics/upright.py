@@ -53,8 +53,8 @@ def upright_margin(
 ) -> Margin:
     """Second variation of the energy of upright rotation [DR18, eq. 21-22; theory: statics, eq. 18-21].
 
-    Of circular chambers without baffles, their planes heights above the body's centre of mass; `share` of
-    each fill's volume is in its chamber, shape (...,).
+    Circular chambers without baffles, their planes heights above the body's centre of mass; `share` is the
+    part of each fill's volume that is there, shape (...,).
     """
     require_not_negative("gravity", gravity)
     part, omega = np.broadcast_arrays(np.asarray(share, dtype=float), np.asarray(speed, dtype=float))
@@ -81,9 +81,7 @@ def upright_margin(
 
 
 def sign_changes(function: Callable[[Array], Array], grid: Array) -> tuple[float, ...]:
-    """Where a function of points (m,) changes its sign between neighbours of a grid; two changes there are
-    not seen.
-    """
+    """Where a function of points (m,) changes sign between neighbours of a rising grid, once at most."""
     at = np.sign(function(grid))
     (changes,) = np.nonzero(at[1:] * at[:-1] < 0.0)
     root, _ = bracketed_root(lambda x, _: function(x), grid[changes], grid[changes + 1])

@@ -3,8 +3,8 @@
 Lengths in units of the wall's radius across the axis and of its height along it. A wall point at the angle
 psi from the deflection, seen from the wall's centre, lies at s = r^2 = 1 + eps^2 + 2 eps cos(psi) from the
 rotation axis; the circle through it is inside the wall for |angle| < phi. All integrands are positive, so
-that nothing cancels [theory: statics, eq. 11-15]. Of every state: eps = e/R; steep = B = beta R^2/h; zeta,
-height of the unclamped surface at the wall's farthest point over h; none of them below 0.
+that nothing cancels [theory: statics, eq. 11-15]. eps is e/R, steep B = beta R^2/h, zeta the height of the
+unclamped surface at the wall's farthest point over h; none is below 0.
 """
 
 from __future__ import annotations
@@ -289,10 +289,9 @@ def first_moment(eps: float, steep: float, zeta: float) -> float:
 
 @_jit
 def unbalance(eps: float, steep: float, zeta: float) -> tuple[float, float, float, float]:
-    """First moment of the liquid about the rotation axis over R^3 h, and moments of its free surface's plan.
+    """First moment about the rotation axis over R^3 h, and B times the moments of the surface's plan.
 
-    B times the plan's area and its first and second moment along the deflection, in chamber units; finite as
-    the surface becomes a cylinder.
+    Its area, first and second moment along the deflection, in chamber units, finite even for a cylinder.
     """
     cut = _cuts(eps, steep, zeta)
     x = plan = plan_x = plan_xx = 0.0

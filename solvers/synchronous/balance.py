@@ -1,8 +1,8 @@
 """Harmonic balance of any rotor with liquid in its chambers [theory: rotor, eq. 28 and 29].
 
-The forward part of the orbit at each chamber meets the liquid model, the backward part a mass. That mass
-follows from linear theory whatever the model; where baffles stand in the liquid or the section is no circle
-it takes finite elements, which is all that the synchronous answer takes from sloshing.
+The forward part of the orbit at each chamber meets the liquid model, the backward part a mass by linear
+theory whatever the model: by finite elements with baffles in the liquid or a section that is no circle, the
+only part of the synchronous answer that needs sloshing.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ from solvers.sloshing.reduced import section_layer
 def backward_mass(fill: Fill) -> float:
     """Mass with which a layer resists a backward whirl at the speed of its spin, kg.
 
-    m_f G(kappa, -1), G = 1 - 8/(1 + 7 kappa) [theory: rotor, eq. 28]; that of the liquid where it fills its
-    chamber; with baffles in the liquid the part of the answer that turns with the whirl.
+    m_f G(kappa, -1), G = 1 - 8/(1 + 7 kappa) [theory: rotor, eq. 28]; the liquid's where it fills its
+    chamber; with baffles the part of the answer that turns with the whirl.
     """
     full = fill.volume >= fill.chamber.capacity * (1.0 - 1e-9)
     if full or fill.surface_radius == 0.0:
@@ -75,7 +75,7 @@ class Balance:
         return np.asarray(sum((fills.mass for fills in self.fills), np.zeros(self.speed.size)))
 
     def moved(self, which: Index, speed: Array) -> Balance:
-        """The same of some of its volumes at other speeds."""
+        """The balance of some of its pairs at other speeds."""
         chambers = tuple(fills.at(which) for fills in self.fills)
         back, owner = self.backward_mass[which], self.owner[which]
         return _balance(self.system, self.plane, chambers, back, owner, speed, self.gravity, self.model)
@@ -110,10 +110,10 @@ class Balance:
         return Liquid(unbalance, slope, *flags)
 
     def told(self, which: Index, answer: Complex) -> Liquid:
-        """Law of each chamber at solutions, the flags asked of the model whatever its law is.
+        """Law of each chamber at solutions, the flags asked of the model even if its law is straight there.
 
-        A straight line says nothing of where it ends. What moves the surface most over a turn counts: the
-        forward part, and the wave of the backward one [theory: rotor, eq. 28].
+        What moves the surface most over a turn counts: the forward part, and the wave of the backward one
+        [theory: rotor, eq. 28].
         """
         forward, backward = np.abs(self.forward(answer)), 0.5 * np.abs(answer @ self.plane.T)
         law = self.liquid(which, forward)
@@ -130,7 +130,7 @@ class Balance:
 def _backward_displacement(fills: Fills) -> Array:
     """Displacement of the surface in a backward whirl over its amplitude, shape (n,).
 
-    Of a clear ring, (kappa - 1)/(1 + 7 kappa) [theory: waves, eq. 4].
+    (kappa - 1)/(1 + 7 kappa), of a clear ring [theory: waves, eq. 4].
     """
     outer = np.square(fills.chamber.radius)
     film = fills.depth * (2.0 * fills.chamber.radius - fills.depth)
@@ -197,7 +197,7 @@ def directions(system: RotorSystem, fills: Sequence[Fill]) -> Complex:
 
 
 def directions_at(system: RotorSystem, positions: Sequence[float]) -> Complex:
-    """The same of places along the axis, m, shape (k, n)."""
+    """p = B^T (1, -i) of places along the axis, m, shape (k, n)."""
     found = np.zeros((len(positions), len(system.coordinates)), dtype=complex)
     for j, position in enumerate(positions):
         found[j] = system.at(position).T @ np.array([1.0, -1j])

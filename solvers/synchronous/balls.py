@@ -52,7 +52,7 @@ def wet_states(
     """Steady states of balls and liquid in one drum [theory: races, eq. 8].
 
     At each round the liquid counts as the mass that its unbalance is over the deflection, and the balls
-    settle anew. States that do not come to an end so are left out.
+    settle anew. States that do not converge so are left out.
     """
     spin = np.array(speed, dtype=float).reshape(-1)
     wet = [fill for fill in fills if fill.volume > 0.0]
@@ -132,8 +132,8 @@ def _added(system: RotorSystem, wet: Sequence[Fill], mass: Array) -> Complex:
 def _in_step(system: RotorSystem, wet: Sequence[Fill], mass: Array) -> Array:
     """The liquid's share in the mass matrix in slow motion as seen from the rotor, shape (p, n, n).
 
-    It then answers as at rest in the rotor, in both directions; the backward whirl of synchronous motion on
-    unlike supports is none of these.
+    It then answers as at rest in the rotor, in both directions, unlike in the backward whirl on unlike
+    supports.
     """
     planes = np.array([system.at(fill.chamber.plane) for fill in wet])
     return np.asarray(np.einsum("pj,jai,jak->pik", mass, planes, planes))

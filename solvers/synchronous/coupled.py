@@ -1,6 +1,6 @@
 """Solutions of the harmonic balance of any rotor and liquid, over all speeds at once.
 
-Where all chambers sit in one plane the balance has one unknown and every branch is found. With several planes
+With all chambers in one plane the balance has one unknown and every branch is found. With several planes
 Newton's method starts from several shares of the added mass and from the neighbouring speeds, up and down.
 """
 
@@ -38,7 +38,7 @@ class Near:
     enough: bool = True  #: no other solutions are looked for where these lead to one
 
     def at(self, which: Index) -> Near:
-        """Those of some speeds."""
+        """Solutions near some of the speeds."""
         return Near(self.speed[which], self.answer[which], self.enough)
 
 
@@ -210,7 +210,8 @@ def _weight(balance: Balance) -> Array:
 def _linear_starts(balance: Balance, which: Index, shares: tuple[float, ...]) -> tuple[Complex, Index]:
     """Solutions with several shares of the added mass at each of some speeds, and their speeds.
 
-    Left out are those with every wall wet: from there Newton's first step leads to the whole mass's one.
+    Without those that wet every wall: from there Newton's first step leads to the solution with the whole
+    mass.
     """
     begin = np.concatenate([balance.linear(which, share) for share in shares])
     owner = np.tile(which, len(shares))
@@ -334,7 +335,7 @@ def _real(matrix: Complex) -> Array:
 
 
 def _at_rounding(balance: Balance, x: Complex, which: Index) -> Flags:
-    """Nothing is left of the balance but rounding of its terms, of which the largest may cancel."""
+    """Whether nothing is left of the balance but rounding of its terms, of which the largest may cancel."""
     terms = np.einsum("kij,kj->ki", np.abs(balance.stiffness[which]), np.abs(x))
     largest = np.linalg.norm(terms, axis=1) + np.linalg.norm(balance.force[which], axis=1)
     left, _, _ = _linearised(balance, x, which)

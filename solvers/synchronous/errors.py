@@ -1,9 +1,8 @@
 """Estimated errors of a steady answer: of the linear law, and by gravity across the axis.
 
-Closed forms; nothing is solved for [theory: model_error]. Every deflection of a planar machine that satisfies
-the balance with the exact law lies between two bounds, from the linear answer and from a bound of what the
-law is below its straight line; a rotor that tilts or has unlike springs has bounds of its own.
-`error_estimate` takes whichever the rotor has.
+Closed forms [theory: model_error]. Every deflection of a planar machine with the exact law lies between two
+bounds, from the linear answer and from a bound of the law's distance below its straight line; a rotor that
+tilts or has unlike springs has bounds of its own. `error_estimate` takes whichever the rotor has.
 """
 
 from __future__ import annotations
@@ -35,9 +34,8 @@ _RIPPLE = 1.0
 def law_error(fills: Fills, speed: Array, gravity: Array) -> Array:
     """Change of the liquid's unbalance by gravity across the axis, over full mass times deflection.
 
-    0.15 (R/h0)^(5/4) (g/(Omega^2 a))^2 [theory: model_error, eq. 20].
-
-    nan where the liquid does not ride with the drum.
+    0.15 (R/h0)^(5/4) (g/(Omega^2 a))^2 [theory: model_error, eq. 20]; nan where the liquid does not ride with
+    the drum.
     """
     depth, radius = fills.depth, fills.chamber.radius
     surface = np.maximum(radius - depth, fills.chamber.inner_radius)
@@ -51,9 +49,7 @@ def law_error(fills: Fills, speed: Array, gravity: Array) -> Array:
 
 @dataclass(frozen=True)
 class GravityError:
-    """Estimates of what gravity does to an answer that knows none [theory: model_error, eq. 21-22].
-
-    Each of shape (n,).
+    """Estimates of what gravity does to an answer without it, (n,) [theory: model_error, eq. 21-22].
 
     Infinite where there is no bound, nan where the liquid does not ride with the drum.
     """
@@ -65,14 +61,14 @@ class GravityError:
     liquid_ripple: Array
 
     def at(self, part: slice) -> GravityError:
-        """Some of them."""
+        """Estimates of some answers."""
         return GravityError(
             self.amplitude[part], self.liquid[part], self.ripple[part], self.liquid_ripple[part]
         )
 
     @classmethod
     def none(cls, shape: tuple[int, ...]) -> GravityError:
-        """No gravity, or no liquid."""
+        """Estimates without gravity, or without liquid."""
         return cls(*np.zeros((4, *shape)))
 
 
@@ -252,10 +248,7 @@ def _smallest(beyond: Array, damping: Array, force: Array, pull: Array, linear: 
 
 
 def planar_gravity_error(pairs: Pairs, across: Array, most: Array) -> GravityError:
-    """Estimates of what gravity across the axis does to n answers.
-
-    `most`: bound of the deflection, m.
-    """
+    """Estimates of what gravity across the axis does to n answers of at most the deflections `most`, m."""
     waves = _Waves(pairs.speed, across)
     for slot in pairs.slots:
         rows = np.flatnonzero((slot.place >= 0) & (across > 0.0))
@@ -372,7 +365,8 @@ def _largest_coupled(
 ) -> Array:
     """Bounds of the deflections at the chambers, m, shape (s, c) [theory: model_error, eq. 17 and 18].
 
-    `dead` is the liquids' mass times radius: beyond its mass at the chamber's centre the liquid has less.
+    `dead`: the liquids' mass times radius; the unbalance exceeds that of its mass at the chamber's centre by
+    less.
     """
     most = frozen + _carried(far, np.square(speed)[:, None] * dead)
     for _ in range(_COUPLED_ROUNDS):

@@ -1,7 +1,7 @@
 """Liquid models of the synchronous response: the exact equilibrium, linear theory, the equilibrium on grids.
 
-`Statics` and `Linear` also answer a prescribed whirl with its wave. The two on grids, long-wave cells round
-the wall and finite elements, converge to the exact equilibrium, the cells where it is a cylinder of liquid.
+`Statics` and `Linear` also answer a prescribed whirl with its wave. Long-wave cells and finite elements
+converge to the exact equilibrium, the cells where it is a cylinder of liquid.
 """
 
 from __future__ import annotations
@@ -124,8 +124,8 @@ class Statics(WaveModel):
     def linear_limit(self, fills: Fills, speed: Array, gravity: Array) -> Array:
         """Deflection at which the surface reaches the near wall under the lid, m, shape (n,).
 
-        Up to it the wall is wet all over, the inner wall is dry, and the liquid adds the mass of a full
-        chamber [theory: statics, eq. 9]; 0 where the upright surface does not even do that.
+        Up to it the outer wall is wet, the inner dry, and the liquid adds the mass of a full chamber
+        [theory: statics, eq. 9]; 0 where the upright surface does not even do that.
         """
         chamber = fills.chamber
         steep = steepness(speed, gravity, chamber.radius, chamber.height)
@@ -252,7 +252,7 @@ class Linear(WaveModel):
         )
 
     def _error(self, fill: Fill, whirl: Whirl) -> float:
-        """Of one wave; none where gravity throws others."""
+        """Error of one wave; none where gravity throws others."""
         if whirl.gravity != 0.0:
             return math.nan
         if whirl.slip == 0.0:
@@ -365,8 +365,8 @@ def _middles(cells: int) -> tuple[Array, Array, Array]:
 def _circle(e: Array, level: Array, cells: int) -> tuple[Array, Array]:
     """Depth of each cell over R under a circle about the rotation axis, and r + e cos(theta), (n, cells).
 
-    The surface is at r = chord - e cos(theta). `level` is how much the circle's squared radius falls short of
-    the squared distance of the wall at the middle of the deepest cell: thin films keep their digits.
+    The surface is at r = chord - e cos(theta). `level`: its squared radius is that much below the squared
+    distance of the wall in the middle of the deepest cell: thin films keep their digits.
     """
     cosine, sine, away = _middles(cells)
     e, level = e[:, None], level[:, None]

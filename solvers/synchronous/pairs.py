@@ -84,10 +84,7 @@ class Pairs:
         return LiquidState(unbalance, slope, dry, in_range, converged)
 
     def pull(self, deflection: Array, which: Index) -> Array:
-        """The liquid's pull beyond its mass at the chamber's centre, N; never falls with deflection, (m,).
-
-        Up to its limit a chamber's law is known; beyond it the model is asked.
-        """
+        """Liquid's pull beyond its mass at the chamber's centre, N, (m,); never falls with the deflection."""
         found = self.chambers(which)
         if found is None:
             return np.zeros(deflection.shape)
@@ -105,7 +102,7 @@ class Pairs:
     def chambers(self, which: Index) -> tuple[Index, Fills, Array] | None:
         """All chambers of some pairs at once: whose they are, and their limits; None if there are none.
 
-        A model that is asked once for many states takes little longer than for a few.
+        Once for many states, since a model takes little longer for these than for a few.
         """
         places = [slot.place[which] for slot in self.slots]
         rows = [np.flatnonzero(place >= 0) for place in places]

@@ -1,9 +1,8 @@
 """Largest amplitudes over a range of speeds, found between the speeds that were asked for.
 
-`refine` asks for more samples of complex amplitudes where a larger one may lie: around every maximum, and
-wherever the phase turns too far from one to the next, which is how a narrower resonance shows. Where a
-resonance is known to be, `seeds` has the speeds that show its shape. What many machines want in a round is
-asked for together.
+`refine` samples complex amplitudes around every maximum and wherever the phase turns too far between two
+samples, where a narrower resonance shows; `seeds` has the speeds that show the shape of a known one. A
+round's speeds of many machines are asked for together.
 """
 
 from __future__ import annotations
@@ -43,12 +42,12 @@ class Peak:
 
     @property
     def bounded(self) -> bool:
-        """It is finite."""
+        """Whether it is finite."""
         return math.isfinite(self.amplitude)
 
     @property
     def known(self) -> bool:
-        """There is one, with a bound or without."""
+        """Whether there is one, with a bound or without."""
         return not math.isnan(self.amplitude)
 
 
@@ -61,11 +60,11 @@ class Samples:
 
     @property
     def amplitude(self) -> Array:
-        """m, shape (n,)."""
+        """Amplitude, m, shape (n,)."""
         return np.asarray(np.abs(self.parts).sum(axis=1))
 
     def joined(self, speed: Array, parts: Complex) -> Samples:
-        """With others, those of equal speed once."""
+        """Samples with others, those of equal speed once."""
         every = np.concatenate((self.speed, speed))
         distinct, first = np.unique(every, return_index=True)
         return Samples(distinct, np.concatenate((self.parts, parts))[first])
@@ -82,11 +81,10 @@ def highest(speed: Array, amplitude: Array) -> Peak:
 def seeds(
     centre: Array, half_width: Array, start: float, stop: float, known: Array, whole: bool = True
 ) -> Array:
-    """Speeds that show the shape of resonances, rising: their centres, and beside them as many as the samples
-    lack.
+    """Speeds that show the shape of resonances, rising: their centres, and others where samples are few.
 
-    `whole`: show all of the shape, as a figure needs it; else as much as `refine` needs to find it, where
-    resonances that overlap share their speeds.
+    `whole`: all of the shape, as a figure needs it; else as much as `refine` needs, where overlapping
+    resonances share their speeds.
     """
     found = list(centre) if whole else []
     for k in np.argsort(half_width, kind="stable").tolist():  # nan, whose shape another one shows, last
@@ -104,8 +102,7 @@ def seeds(
 
 
 def refine(answer: Answer, samples: Sequence[Samples], bound: Sequence[float]) -> list[Samples]:
-    """Samples with as many more as it takes to find the largest amplitude of each machine, to about 1e-10 of
-    itself.
+    """Samples with those added that give the largest amplitude of each machine to about 1e-10 of itself.
 
     `answer` gives parts of some machines, by their index, at some speeds; a machine that has reached its
     `bound`, which no amplitude exceeds, is done.
@@ -166,7 +163,7 @@ def _inside_turns(x: Array, size: Array, parts: Complex, largest: float, turn: i
 def _around_maxima(x: Array, size: Array, largest: float) -> tuple[Array, Array]:
     """Speeds around maxima of an amplitude whose shape is not seen yet, and around the highest of the others.
 
-    One over the amplitude squared is nearly a parabola over the speed around the top of a resonance.
+    1/amplitude^2 is nearly a parabola over the speed around the top of a resonance.
     """
     edge = np.concatenate(([-np.inf], size, [-np.inf]))
     found: list[float] = []

@@ -1,11 +1,9 @@
 """All synchronous deflections of planar machines with liquid, many pairs of a machine and a speed at once.
 
-A planar rotor and its chambers move in one circle, so that the balance has one unknown, the size of the
-deflection [theory: rotor, eq. 2]: |a e - Y(e) + i c e| = u, where a, c and u belong to the rotor and Y, the
-liquid's pull towards the deflection, never decreases with e [theory: rotor, eq. 6]. So Y on an interval lies
-between its values at the ends: an interval in which the left-hand side cannot reach u holds no solution. Y is
-nowhere steeper than a full chamber makes it: an interval over which the left-hand side then only rises, or
-only falls, holds one solution at most. What is left is halved again and again, and none is missed.
+One unknown, the size e of the deflection [theory: rotor, eq. 2]: |a e - Y(e) + i c e| = u, with Y the
+liquid's pull, which never decreases with e [theory: rotor, eq. 6] and is nowhere steeper than a full chamber
+makes it. An interval in which bounds by the values of Y at its ends keep the left-hand side from u holds no
+solution, one over which that only rises or falls at most one; others are halved, so that none is missed.
 """
 
 from __future__ import annotations
@@ -38,11 +36,10 @@ def branches_beyond(
     dead: Array,
     moved: Flags,
 ) -> tuple[Array, Index, Flags, Flags]:
-    """Every solution beyond the straight part of the law (up to `limit`), as far out as damping and stiffness
-    allow.
+    """Every solution beyond `limit`, the straight part of the law, as far as damping and stiffness allow.
 
-    As `find_branches`, and whether solutions are bounded or the law is straight everywhere. `dead` is the
-    largest pull of the liquid beyond its mass at the chamber's centre; without a force nothing moves.
+    As `find_branches`, and whether solutions are bounded or the law is straight everywhere. `dead`: the
+    largest pull of the liquid beyond its mass at the chamber's centre; `moved`: there is a force.
     """
     # No solution is farther out than the damper or the spring allows.
     reach = np.minimum(over(force, damping), over(force + dead, np.abs(elastic))) * (1.0 + 1e-9)
@@ -166,8 +163,9 @@ def divide(force: Array, stiffness: Complex) -> Complex:
 
 
 def all_deflections(pairs: Pairs) -> tuple[Array, Index, Flags]:
-    """Sizes of all solutions, the pair each belongs to, and whether a pair's are all there; infinite without
-    a bound.
+    """Sizes of all solutions, m, the pair each belongs to, and whether a pair's are all there.
+
+    At least one for each pair; infinite without a bound.
     """
     squared, limit = np.square(pairs.speed), pairs.limit
     force, damping = pairs.unbalance * squared, pairs.damping * pairs.speed

@@ -1,9 +1,8 @@
 """Where a rotor with liquid resonates: the tops of planar machines, and the resonances of any other rotor.
 
-A planar rotor moves in a circle, and at the largest of all its deflections the deflection stands still over
-the speed. So does the liquid's share in the mass, as far as it depends on the deflection alone: the top is
-that of a linear rotor that has this mass [theory: rotor, eq. 33]. It is found however narrow the resonance
-is, and wherever the curve of the deflections folds.
+At the largest deflection of a planar rotor the deflection is stationary over the speed, and so is the mass
+that the liquid adds: the top is that of a linear rotor of this mass [theory: rotor, eq. 33], found however
+narrow the resonance is and wherever the curve folds.
 """
 
 from __future__ import annotations
@@ -96,13 +95,13 @@ class _Curve:
     force: Array
 
     def at(self, which: Index | Flags) -> _Curve:
-        """Some of them."""
+        """Curves of some rotors."""
         return _Curve(*(x[which] for x in (self.mass, self.stiffness, self.damping, self.force)))
 
     def top(self, which: Index, mass: Array, change: Array) -> tuple[Array, Array]:
-        """Speed and deflection at which the deflection stands still; nan where it does nowhere.
+        """Speed and deflection at which the deflection is stationary; nan where there is none.
 
-        `change` is half of what the logarithm of the speed changes the mass by, kg.
+        `change`: half the derivative of the mass over the logarithm of the speed, kg.
         """
         stiffness, damping, force = (x[which] for x in (self.stiffness, self.damping, self.force))
         # Both conditions, squared speeds eliminated [theory: rotor, eq. 34].
@@ -129,7 +128,7 @@ class _Liquid:
 
     @classmethod
     def of(cls, machines: Sequence[PlanarMachine], gravity: Array, model: LiquidModel) -> _Liquid:
-        """That of some machines."""
+        """Liquid of some machines."""
         wet = [(k, fill) for k, (_, fills) in enumerate(machines) for fill in fills if fill.volume > 0.0]
         owner, fills = np.array([k for k, _ in wet], dtype=np.intp), Fills.of([fill for _, fill in wet])
         mass, added_mass = (
@@ -171,12 +170,10 @@ class _Liquid:
 
 
 def resonances(system: RotorSystem, fills: Sequence[Fill], share: float = 1.0) -> tuple[Array, Array]:
-    """Speeds at which the unbalance meets a free vibration, where the liquid adds a share of its full mass.
+    """Speeds at which the unbalance meets a free vibration, rising, and half widths, rad/s.
 
-    Those are the zeros of the determinant of the dynamic stiffness [theory: rotor, eq. 29], a polynomial of
-    the speed: they stand off the real speeds by half the width of the resonance.
-
-    Rising, and half widths, rad/s.
+    The liquid adds a `share` of its full mass. Zeros of the determinant of the dynamic stiffness
+    [theory: rotor, eq. 29], a polynomial of the speed; their distance from the real axis is half the width.
     """
     from scipy.linalg import eigvals
 

@@ -1,9 +1,8 @@
-"""Steady answer of any rotor with liquid to its unbalance, and its critical speeds: the entry to this room.
+"""Steady answer of any rotor with liquid to its unbalance, and its critical speeds.
 
-`response` takes a rotor, its fills, speeds, gravity and a liquid model, and gives one result for every kind
-of rotor. A Jeffcott rotor is solved by its one circle, with the stability of every branch, and thousands of
-them at once by `machine_responses`; any other rotor by harmonic balance. Critical speeds hold at small
-deflections, dampers left out.
+`response` gives one result for every kind of rotor. A Jeffcott rotor is solved by its one circle, with the
+stability of every branch, and thousands at once by `machine_responses`; any other by harmonic balance.
+Critical speeds hold at small deflections, dampers left out.
 """
 
 from __future__ import annotations
@@ -86,13 +85,11 @@ def main_critical_speeds(
     dry: tuple[Array, Complex],
     wet: tuple[Array, Complex],
 ) -> tuple[float, float]:
-    """Critical speed where the unbalance moves the dry machine most, and that of the same mode with liquid.
+    """Critical speed where the unbalance moves the rotor without liquid most, and that of this mode with it.
 
-    The largest amplitude at any chamber counts, or at position 0 without chambers, by linear theory with the
-    dampers; without bound where the unbalance drives a mode that has none. Of equal ones it is the lowest
-    [theory: rotor, eq. 31].
-
-    rad/s, without and with liquid; nan where there is none. `dry` and `wet` as from `critical_speeds` and
+    rad/s; nan where there is none. By the largest amplitude at any chamber, or at position 0 without
+    chambers, in linear theory with dampers; without bound where the unbalance drives an undamped mode; the
+    lowest of equals [theory: rotor, eq. 31]. `dry` and `wet` as from `critical_speeds` and
     `wet_critical_speeds`.
     """
     speed, shape = dry
@@ -121,10 +118,10 @@ def _parted(system: RotorSystem, fills: Sequence[Fill], shape: Complex) -> Compl
 
 
 def _with_liquid(system: RotorSystem, dry: Complex, wet: tuple[Array, Complex]) -> Array:
-    """Critical speed with liquid of each dry mode, rad/s, nan where it has none, shape (k,).
+    """Critical speed with liquid of each mode without, rad/s, nan where it has none, shape (k,).
 
-    Modes are alike by the squared cosine between their shapes in the metric of the dry mass; of all ways to
-    pair them one to one it is the one with the largest sum [theory: rotor, eq. 39].
+    Modes are alike by the squared cosine between their shapes in the metric of the rotor's mass, paired one
+    to one with the largest sum [theory: rotor, eq. 39].
     """
     from scipy.optimize import linear_sum_assignment
 
@@ -221,14 +218,14 @@ class Response:
 
     @property
     def parts_dry(self) -> Complex:
-        """The same of the rotor without liquid, m, shape (n, 2)."""
+        """Forward and backward part of the rotor without liquid, m, shape (n, 2)."""
         return np.stack((self.deflection_dry, self.backward_dry), axis=1)
 
     @property
     def amplitude(self) -> Array:
         """Largest distance of the axis from the line it rests in, of the branch reported, m, shape (n,).
 
-        Of motions that were held in time it is the mean.
+        The mean where motions were integrated in time.
         """
         size = np.abs(self.parts).sum(axis=1)
         if self.over_time.size == 0:
@@ -237,7 +234,7 @@ class Response:
 
     @property
     def amplitude_dry(self) -> Array:
-        """The same of the rotor without liquid, m, shape (n,)."""
+        """Amplitude of the rotor without liquid, m, shape (n,)."""
         return np.asarray(np.abs(self.parts_dry).sum(axis=1))
 
     @property
@@ -259,14 +256,14 @@ class Response:
 
     @property
     def peak(self) -> Peak:
-        """The amplitude there."""
+        """Amplitude at `top` and its speed."""
         if self.top is None:
             return Peak(math.nan, math.nan)
         return Peak(float(self.speed[self.top]), float(self.amplitude[self.top]))
 
     @property
     def branch_amplitude(self) -> Array:
-        """The same of every branch, nan where there is none, m, shape (n, b)."""
+        """Amplitude of every branch, nan where there is none, m, shape (n, b)."""
         return np.asarray(np.abs(self.branch_deflection) + np.abs(self.branch_backward))
 
     def at(self, which: Index) -> Response:
@@ -444,9 +441,8 @@ def answered_by(
 ) -> Response:
     """The branches that one liquid model reports, as another has them: Newton's method from each.
 
-    It serves models that are too dear to look for branches by, and near to one that is not.
-
-    `residual` is that of the model's own balance; branches that are not reported stay as they were.
+    For models too dear to look for branches by. `residual` is that of the model's own balance; branches that
+    are not reported stay as they were.
     """
     system, found = rotor.system(), np.flatnonzero(np.isfinite(known.coordinates).all(axis=1))
     owner = np.zeros(found.size, dtype=np.intp)

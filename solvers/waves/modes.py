@@ -48,11 +48,10 @@ class WaveTerms:
 
 
 def wave_split(terms: WaveTerms, points: int, first_angle: float = 0.0) -> Split:
-    """Linear symbol, and steepening with forcing as the rest, for fields eta in m^2
-    [theory: steppers, eq. 1].
+    """Linear symbol, and steepening with forcing as the rest [theory: steppers, eq. 1].
 
-    Followed in the frame of the whirl or, without forcing, of long waves; free of aliases, without the mode
-    of half the points. `first_angle` is theta of the first point.
+    For fields eta, m^2, on 8 or more points, the first at theta = `first_angle`; free of aliases, without the
+    mode of half the points. Followed in the frame of the whirl or, without forcing, of long waves.
     """
     if points < 8:
         raise InputError("points", points, "8 or more")
@@ -139,7 +138,7 @@ class System:
         return split(v)
 
     def residual(self, y: Array, p: float) -> Array:
-        """What is left of the equations, shape (2 M,)."""
+        """Residual of the equations, shape (2 M,)."""
         v = joined(y)
         square = fft.rfft(np.square(values(v, self.points)), norm="forward")
         r = self.coefficient(p) * v + 0.5 * square[1 : self.modes + 1]
@@ -161,9 +160,7 @@ class System:
         return split(self.coefficient(p) * dv + product[1 : self.modes + 1])
 
     def jacobian(self, y: Array, p: float, modes: int, border: int = 0) -> Array:
-        """Exact derivative with respect to the first modes, shape (2 modes + border,) twice; the border is
-        not set.
-        """
+        """Exact derivative by the first modes, shape (2 modes + border, 2 modes + border), border not set."""
         v = joined(y)
         wave = np.zeros(3 * modes, dtype=complex)  # wave numbers -(modes - 1) ... 2 modes
         kept = min(2 * modes, self.modes)
@@ -186,7 +183,7 @@ class System:
 
 
 class DampingSystem(System):
-    """The same at a fixed speed: an extra diffusion, in the problem's scale, takes the place of p."""
+    """`System` at a fixed speed: an extra diffusion, in the problem's scale, takes the place of p."""
 
     def __init__(self, problem: WaveProblem, modes: int, speed: float) -> None:
         super().__init__(problem, modes)

@@ -265,9 +265,7 @@ class Pace:
 
 
 def march(make: Callable[[int], System], first: Array, target: float, pace: Pace) -> Path:
-    """Follow a curve from a point [Re v, Im v, p] until its parameter has passed the target, its last point
-    beyond it.
-    """
+    """Follow a curve from a point [Re v, Im v, p] to the first one beyond the target of its parameter."""
     system = make(first.size // 2)
     sense = math.copysign(1.0, target - first[-1])
     try:
@@ -322,9 +320,7 @@ def _with_modes(point: PathPoint, modes: int) -> PathPoint:
 
 
 def segment(begin: Array, end: Array, leaving: Array, arriving: Array) -> tuple[Array, float]:
-    """Cubic between two points with their tangents (u^0 ... u^3, u from 0 to 1), and the length of the curve
-    there.
-    """
+    """Cubic between two points with their tangents, u^0 ... u^3 up to u = 1, and the curve's length."""
     modes = max(begin.size, end.size) // 2
     a, b, start, stop = (widened(x, modes) for x in (begin, end, leaving, arriving))
     chord = b - a

@@ -68,10 +68,7 @@ _SHORT = 1.4
 def family_problem(
     c: KdvCoefficients, acceleration: float, whitham: bool = False, decay: float = 0.0, diffusion: float = 0.0
 ) -> WaveProblem:
-    """Waves of one family under the whirl.
-
-    The acceleration is F = omega_w^2 w0 of the axis, m/s^2.
-    """
+    """Waves of one family under the whirl, whose axis accelerates by F = omega_w^2 w0, m/s^2."""
     frequency = functools.partial(wave_frequency, c=c, whitham=whitham)
     return WaveProblem(frequency, c.steepening, float(forcing(c, acceleration)), decay, diffusion)
 
@@ -83,12 +80,14 @@ def solve(
     points: int = 128,
     most_points: int = MOST_POINTS,
 ) -> SteadyWave:
-    """One steady wave at a whirl speed seen from the drum, with as many points as it needs.
+    """One steady wave at a whirl speed seen from the drum, rad/s, with as many points as it needs.
 
-    Where several answers exist it is the one next to the guess; else next to the bore of vanishing dispersion
-    [theory: kdv, eq. 27] or to the linear wave or, if Newton's method does not arrive from there, the one
-    that grows out of a strongly damped wave as the extra damping is taken away. Points are doubled until the
-    spectrum's tail falls below `TAIL`; a wave that needs more than `most_points` is not converged.
+    Where several answers exist it is the one next to the guess (modes, m^2, shape (m,)); else next to the
+    bore of vanishing dispersion [theory: kdv, eq. 27] or to the linear wave or, if Newton's method does not
+    arrive from there, the one that grows out of a strongly damped wave as the extra damping is taken away;
+    `respond` finds the others. Points, at least 12, are doubled until the spectrum's tail falls below `TAIL`;
+    a wave that needs more than `most_points` is not converged. Without forcing it is rest; a guess is refused
+    there, since a free wave is defined up to a shift only.
     """
     if not math.isfinite(speed):
         raise InputError("speed", speed, "a finite number")
@@ -224,11 +223,10 @@ def follow(
     most_steps: int = 4000,
     longest: float = _LONGEST,
 ) -> Branch:
-    """Follow the curve of steady waves from one whirl speed to another, through its folds; it starts at that
-    of `solve`.
+    """Follow the curve of steady waves from one whirl speed, rad/s, to another, through its folds.
 
-    `longest` step in units of the scaled wave and speed. `complete` is False where it came back to the start,
-    left what the modes resolve or ran out of steps.
+    It starts at the wave of `solve`; `longest` step in units of the scaled wave and speed. `complete` is
+    False where it came back to the start, left what the modes resolve or ran out of steps.
     """
     if not (math.isfinite(start) and math.isfinite(stop)) or start == stop:
         raise InputError("stop", stop, f"a finite speed other than start ({start!r})")
@@ -306,9 +304,9 @@ class Response:
 def respond(
     problem: WaveProblem, speeds: ArrayLike, points: int = 128, margin: float = 0.0, stability: bool = False
 ) -> Response:
-    """All steady waves at a row of rising whirl speeds, connected to those below and above the row.
+    """All steady waves at a row of rising whirl speeds, rad/s, connected to those beyond the row.
 
-    The curves begin so far outside as `margin` says, rad/s; far from resonance the answer there is unique.
+    The curves begin `margin` outside, rad/s; far from resonance the answer there is unique.
     """
     row = np.asarray(speeds, dtype=float)
     if row.ndim != 1 or row.size < 2 or not bool(np.all(np.diff(row) > 0.0)):

@@ -56,10 +56,7 @@ class Weights(NamedTuple):
 
 
 def phi_functions(z: Complex) -> tuple[Complex, Complex, Complex]:
-    """phi_1, phi_2, phi_3 to rounding for every argument [theory: steppers, eq. 2].
-
-    1, 1/2 and 1/6 at z = 0.
-    """
+    """phi_1, phi_2, phi_3 to rounding for every argument; 1, 1/2, 1/6 at 0 [theory: steppers, eq. 2]."""
     z = np.asarray(z, dtype=complex)
     near = np.abs(z) < 1.0
     # The quotients cancel near 0; there the Taylor series takes over.
@@ -110,18 +107,14 @@ METHODS = {
 
 
 def find_method(name: str) -> Method:
-    """A method by its name: "etdrk4" (Cox and Matthews), "krogstad" (ETDRK4-B) or "ifrk4" (integrating
-    factor).
-    """
+    """Method "etdrk4" (Cox and Matthews), "krogstad" (ETDRK4-B) or "ifrk4" (integrating factor)."""
     if name not in METHODS:
         raise InputError("method", name, "one of " + ", ".join(METHODS))
     return METHODS[name]
 
 
 def step_weights(symbol: Complex, frame: float, method: Method, step: float) -> Weights:
-    """What one step multiplies the field and N with; N in a frame that turns with the crests
-    [theory: steppers, eq. 9].
-    """
+    """Weights of a step, N followed in a frame that turns with the crests [theory: steppers, eq. 9]."""
     half, full = np.exp(0.5 * step * symbol), np.exp(step * symbol)
     if method.lawson:
         return Weights._make((half, full, *(step * w for w in method.weights(step * symbol)), half, full))
@@ -206,10 +199,7 @@ def to_spectrum(values: Array) -> Complex:
 
 
 def squared(spectrum: Complex, points: int) -> Complex:
-    """Spectrum of the square of a real field, free of aliases [theory: steppers, eq. 8].
-
-    As if squared on infinitely many points.
-    """
+    """Spectrum of the square of a real field, free of aliases [theory: steppers, eq. 8]."""
     fine = 3 * points // 2
     square = np.fft.rfft(np.square(np.fft.irfft(spectrum, n=fine)))[: spectrum.size] * (fine / points)
     if points % 2 == 0:

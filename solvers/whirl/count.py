@@ -1,8 +1,8 @@
-"""Whether a whirl mode was missed: the argument principle on what the modes found leave of the determinant.
+"""Whether a whirl mode was missed: the argument principle on the determinant over the modes found.
 
 A characteristic function f, real on the real axis and analytic but for cuts, has as many zeros right of a
-path as its phase falls short of that at infinity [theory: whirl, eq. 19]. Divided by the modes that are known
-it has no steep places near them, so that few points serve, and what is counted is what was missed.
+path as its phase falls short of that at infinity [theory: whirl, eq. 19]. Over the known modes it is smooth
+near them: few points serve, and the count is that of the missed ones.
 """
 
 from __future__ import annotations
@@ -42,8 +42,8 @@ class Region:
 def missed_modes(function: Characteristic, degree: int, known: Complex, region: Region) -> Array:
     """How many modes of a region are not among those known [theory: whirl, eq. 19].
 
-    A conjugate pair counts as two; nan where the phase could not be followed. f goes with this power of
-    lambda far away.
+    A conjugate pair counts as two; nan where the phase could not be followed. Far away f goes as
+    lambda^`degree`.
     """
     if region.line.size == 0:
         return np.zeros(0)
@@ -57,7 +57,7 @@ def missed_modes(function: Characteristic, degree: int, known: Complex, region: 
 
 
 def _upper(known: Complex, scale: Array) -> tuple[Complex, Complex]:
-    """Of the modes those above the real axis, each once and standing for its conjugate, and the real ones."""
+    """Modes above the real axis, each once and standing for its conjugate, and the real ones."""
     near = 1e-6 * scale[:, None]
     above, below, real = known.imag > near, known.imag < -near, np.abs(known.imag) <= near
     nothing = complex(np.nan, np.nan)
@@ -130,8 +130,8 @@ class _Deflated:
 def _phase(function: _Deflated, points: Complex, own: Index, scale: Array) -> tuple[Array, Flags]:
     """Rise of the phase along each path, and whether it could be followed, shape (n,).
 
-    A step counts where log f changes little and evenly from its start to its middle to its end; others are
-    halved. Zeros between two of the points would make the changes on either side of them differ.
+    A step counts where log f changes little and evenly from its start to its middle to its end, unlike about
+    a zero; others are halved.
     """
     value = function.at(points, own)
     joined = np.flatnonzero(own[1:] == own[:-1])

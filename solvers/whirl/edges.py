@@ -1,4 +1,4 @@
-"""Edges of the bands of speed in which a rotor with liquid layers whirls by itself."""
+"""Stability boundaries: edges of the bands of speed in which a rotor with liquid layers whirls by itself."""
 
 from __future__ import annotations
 
@@ -29,12 +29,11 @@ def unstable_bands(
     friction: Friction = NO_FRICTION,
     growth: Array | None = None,
 ) -> tuple[Bands, ...]:
-    """Bands (low, high) of speed in which some whirl grows, rad/s, for each row of fills, their edges
-    refined.
+    """Bands (low, high) of speed in which some whirl grows, rad/s, of each row of fills, edges refined.
 
-    Looked at are speeds of its own choice between the first and the last of those given, so that no band is
-    lost between two of these and none depends on their number [theory: whirl, eq. 32 and 33]. Next to a speed
-    at which the growth rate is not known a band ends at the last one at which it is.
+    At speeds of its own choice between the first and the last given, so that no band is lost and none depends
+    on their number [theory: whirl, eq. 32 and 33]. Next to a speed of unknown growth rate a band ends at the
+    last known one.
     """
     grid = np.asarray(speed, dtype=float)
     row, points, rate = looks(rotor, rows, float(grid[0]), float(grid[-1]), friction)
@@ -57,7 +56,7 @@ def unstable_bands(
 
 
 def _contradicts(bands: Bands, speed: Array, growth: Array) -> Flags:
-    """Speeds inside bands at which nothing grows and outside at which something does, shape (n,)."""
+    """Speeds inside bands at which nothing grows or outside at which something does, shape (n,)."""
     inside, edge = np.zeros(speed.shape, dtype=bool), np.zeros(speed.shape, dtype=bool)
     for low, high in bands:
         inside |= (speed >= low) & (speed <= high)
@@ -91,8 +90,9 @@ def _bands(
 
 
 def bands_not_known(speed: Array, growth: Array) -> Bands:
-    """Bands of speed in which the growth rate is not known (nan): the nearest speeds at which it is, or the
-    ends.
+    """Bands of speed in which the growth rate is nan, up to the nearest speeds at which it is known.
+
+    Or to the ends of the range.
     """
     lost = np.concatenate([[False], np.isnan(growth), [False]])
     first, past = np.flatnonzero(~lost[:-1] & lost[1:]), np.flatnonzero(lost[:-1] & ~lost[1:])
@@ -110,8 +110,8 @@ def _refine(
 ) -> Array:
     """Speeds at which the whirl begins or ceases to grow, between those of `low` and `high`.
 
-    Three looks at a time: in the middle and closely round the secant's zero; in quarters where the whirl is
-    neutral on one side, as without any damping.
+    Three points at a time: in the middle and closely round the secant's zero; in quarters where the whirl is
+    neutral on one side, as without damping.
     """
     low, high = low.copy(), high.copy()
     first = low[1] > 0.0

@@ -1,4 +1,4 @@
-"""Self-excited whirl: growth and whirl speed of the mode that grows most, for any rotor and any fills."""
+"""Self-excited whirl: growth rate and whirl speed of the mode that grows most, for any rotor and fills."""
 
 from __future__ import annotations
 
@@ -29,35 +29,11 @@ _EQUAL = 1e-9  # of a mode's own speed: difference in growth of two modes that c
 def asynchronous_growth(
     rotor: Rotor, fills: Sequence[Fill], speed: ArrayLike, friction: Friction = NO_FRICTION
 ) -> tuple[Array, Array]:
-    """Growth of the fastest growing whirl of a rotor with liquid in its chambers [theory: whirl, eq. 7].
+    """Growth rate and whirl speed of the whirl that grows most [theory: whirl, eq. 7], shape (n,).
 
-    Parameters
-    ----------
-    rotor : the dry rotor, of any kind
-    fills : its chambers with their liquid, any number
-    speed : spin speeds Omega, rad/s, shape (n,), above 0
-    friction : the laminar law takes each liquid's viscosity, the
-        quadratic one does not act on an infinitesimal whirl
-
-    Returns
-    -------
-    growth : 1/s, shape (n,): the whirl is unstable where it is above 0; what rounding cannot tell from 0 is
-        0, and nan stands where the modes were not found
-    whirl_speed : of that mode in the standing frame, rad/s, positive with the spin, shape (n,)
-
-    Raises
-    ------
-    InputError : a speed that is not positive and finite, too many different layers
-
-    Examples
-    --------
-    >>> from fluid.liquid import known_liquid
-    >>> from meshes.chamber import Chamber
-    >>> fill = Fill(Chamber(0.1, 0.02), known_liquid("water"), 1.2e-4)
-    >>> rotor = Jeffcott(mass=6.0, stiffness=6.0e4, damping=0.0, unbalance=0.0)
-    >>> growth, _ = asynchronous_growth(rotor, [fill], [80.0, 130.0])
-    >>> print(f"{growth[0]:.1f} {growth[1]:.1f}")
-    0.0 6.7
+    1/s, unstable above 0, 0 where rounding cannot tell it from 0, nan where modes were not found; rad/s in
+    the standing frame, positive with the spin. The laminar law takes each liquid's viscosity, the quadratic
+    one does not act on an infinitesimal whirl. An `InputError` also for too many different layers.
     """
     growth, whirl_speed = growth_map(rotor, [fills], speed, friction)
     return growth[0], whirl_speed[0]
@@ -66,10 +42,7 @@ def asynchronous_growth(
 def growth_map(
     rotor: Rotor, rows: Sequence[Sequence[Fill]], speed: ArrayLike, friction: Friction = NO_FRICTION
 ) -> tuple[Array, Array]:
-    """Growth over speed for each of several sets of fills.
-
-    Shape (rows, n).
-    """
+    """Growth rate and whirl speed over speed for each of several sets of fills, shape (rows, n)."""
     spin = np.array(speed, dtype=float).reshape(-1)
     row = np.repeat(np.arange(len(rows)), spin.size)
     growth, whirl_speed = growth_at(rotor, rows, row, np.tile(spin, len(rows)), friction)
@@ -84,7 +57,7 @@ def growth_at(
     speed: Array,
     friction: Friction = NO_FRICTION,
 ) -> tuple[Array, Array]:
-    """Growth at points (row, speed), as `growth_map`."""
+    """Growth rate and whirl speed at points (row, speed), as `growth_map`."""
     if not np.all(np.isfinite(speed) & (speed > 0.0)):
         raise InputError("speed", speed.tolist(), "finite numbers above 0")
     if isinstance(rotor, Jeffcott):
@@ -118,7 +91,7 @@ def system_modes(
 
 
 def _fastest(modes: SystemModes, spin: Array) -> tuple[Array, Array]:
-    """Growth and whirl speed from eigenvalues; nan where a mode that grows more may be missing."""
+    """Growth rate and whirl speed from eigenvalues; nan where a mode that grows more may be missing."""
     root, known, lost = modes.root, modes.found, ~modes.complete
     omega = modes.sense * root.imag - 1j * root.real
     omega = np.where(known, omega, complex(np.nan, np.nan))
@@ -127,11 +100,11 @@ def _fastest(modes: SystemModes, spin: Array) -> tuple[Array, Array]:
 
 
 def dominant(omega: Complex, rounding: Array, spin: Array) -> tuple[Array, Array]:
-    """Growth rate (0 where rounding cannot tell it from 0) and whirl speed of the mode that grows most, shape
-    (n,).
+    """Growth rate and whirl speed of the mode that grows most, shape (n,).
 
-    Of modes that grow alike, to 1e-9 of their own speeds, it is the one nearest to the spin, as the waves are
-    that can grow. Modes of shape (m, n), rad/s in the standing frame, nan where there is none.
+    Growth is 0 where rounding cannot tell it from 0; of modes that grow alike, to 1e-9 of their own speeds,
+    the one nearest to the spin, as growing waves are. Modes of shape (m, n), rad/s in the standing frame, nan
+    where there is none.
     """
     missing = np.isnan(omega)
     rate = np.where(missing, -np.inf, -omega.imag)
@@ -146,7 +119,7 @@ def dominant(omega: Complex, rounding: Array, spin: Array) -> tuple[Array, Array
 def machines_growth(
     machines: Sequence[PlanarMachine], frictions: Sequence[Friction], owner: Index, speed: Array
 ) -> tuple[Array, Array]:
-    """Growth of many planar machines at once [theory: whirl, eq. 8]."""
+    """Growth rate and whirl speed of many planar machines at once [theory: whirl, eq. 8]."""
     growth, whirl_speed = np.full((2, speed.size), np.nan)
     for here, found in _planar_parts(machines, frictions, owner, speed):
         if isinstance(found, SystemModes):
@@ -200,11 +173,10 @@ def _planar_parts(
 def modes_at(
     rotor: Rotor, rows: Sequence[Sequence[Fill]], row: Index, speed: Array, friction: Friction
 ) -> tuple[Complex, Array, Array]:
-    """Modes of small whirls at points (row, speed), their rounding, and the growth rate of the one that grows
-    most.
+    """Modes of small whirls at points (row, speed), their rounding, and the largest growth rate.
 
-    growth + i frequency, 1/s, each mode once, in a frame in which modes that are coupled meet where they are
-    alike; 0 for a growth that is rounding, nan where a point has fewer modes, shape (n, m).
+    growth + i frequency, 1/s, each mode once, in a frame in which coupled modes meet where they are alike; 0
+    for a growth that is rounding, nan where a point has fewer modes, shape (n, m).
     """
     parts: Iterable[tuple[Index, SystemModes | Modes]]
     if isinstance(rotor, Jeffcott):
@@ -234,8 +206,8 @@ def modes_at(
 def planar_layers(mass: float, fills: Sequence[Fill], friction: Friction) -> tuple[float, list[Layer]]:
     """Mass of a rotor with all liquid that has no free surface, and its layers, equal ones as one.
 
-    In one plane the liquid of equal chambers acts together. Against one another they slosh as if the rotor
-    were not there: a layer without mass stands for that.
+    In one plane the liquid of equal chambers acts together; a layer without mass stands for their sloshing
+    against one another, which does not move the rotor.
     """
     layers: list[Layer] = []
     apart: list[Layer] = []

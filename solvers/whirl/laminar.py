@@ -1,8 +1,7 @@
 """Whirl modes of any rotor with layers of laminar friction: a nonlinear eigenproblem.
 
-The drag of an oscillating laminar layer goes with the square root of the slip, so it differs from mode to
-mode. The layers are eliminated; the modes are the zeros of a determinant, found together by Aberth's
-iteration.
+The drag of a laminar layer goes with the square root of the slip, and so differs from mode to mode. With the
+layers eliminated the modes are zeros of a determinant, found together by Aberth's iteration.
 """
 
 from __future__ import annotations
@@ -57,9 +56,9 @@ class _Problem:
 def laminar_modes(system: RotorSystem, layers: Sequence[Placed], speed: Array) -> SystemModes:
     """Modes with laminar friction, whose drag depends on the mode [theory: whirl, eq. 12-14].
 
-    Started from the rotor with its liquid at rest and from the waves of each layer on a drum at rest. Layers
-    that are equal have waves against one another that do not move the rotor: these are the free ones. Where
-    the argument principle says that a mode which grows more was missed, all are computed at once.
+    From the rotor with liquid at rest and the waves of each layer on a drum at rest; waves of equal layers
+    against one another do not move the rotor. All at once where the argument principle says that a mode which
+    grows more was missed.
     """
     groups = _groups(system, layers)
     weights = np.ones(len(layers))
@@ -94,9 +93,9 @@ def _certain(problem: _Problem, groups: Sequence[tuple[list[int], int]], speed: 
 
 
 def _starts(problem: _Problem, groups: Sequence[tuple[list[int], int]], speed: Array) -> Complex:
-    """The rotor with its liquid at rest and the waves of each layer on a drum at rest, shape (n, m).
+    """Rotor with its liquid at rest and the waves of each layer on a drum at rest, shape (n, m).
 
-    Off their places, each by its own step, so that no two start alike or on a pole.
+    Moved, each by its own step, so that no two start alike or on a pole.
     """
     heavy = problem.system
     for plane, layer in problem.layers:
@@ -141,7 +140,7 @@ def _counted(problem: _Problem, modes: SystemModes, speed: Array, fastest: Array
 
 
 def _with_waves(modes: SystemModes, waves: Sequence[Complex], speed: Array) -> SystemModes:
-    """With the waves of equal layers against one another."""
+    """Modes with the waves of equal layers against one another."""
     if not waves:
         return modes
     more = np.concatenate(waves, axis=1)
@@ -169,10 +168,10 @@ def _groups(system: RotorSystem, layers: Sequence[Placed]) -> list[tuple[list[in
 
 
 def _layer_waves(layer: Layer, speed: Array) -> Complex:
-    """Free waves of a layer with laminar friction, lambda, nan for what has no wave, shape (n, 4).
+    """Free waves lambda of a layer with laminar friction, nan for what has no wave, shape (n, 4).
 
-    Zeros of E in p = sqrt(i s/Omega) with a positive real part [theory: whirl, eq. 13], from those with floor
-    and lid as they drag on the slower one.
+    Zeros of E in p = sqrt(i s/Omega) with a positive real part [theory: whirl, eq. 13]; floor and lid drag as
+    on the slower one.
     """
     t, rate = layer.layer_tanh, steady_rate(layer, speed) / speed
     companion = np.zeros((speed.size, 4, 4), dtype=complex)
@@ -204,7 +203,7 @@ def _layer_waves(layer: Layer, speed: Array) -> Complex:
 def _aberth(problem: _Problem, start: Complex, speed: Array) -> SystemModes:
     """Zeros of the determinant from starting values; nan starts stay nan.
 
-    Those that stand still are left out of further sweeps, but the others keep away from them.
+    Converged ones are left out of further sweeps, but the others keep away from them.
     """
     absent = np.isnan(start)
     root = np.where(absent, 0.0, start)
@@ -310,11 +309,10 @@ def _eliminate(problem: _Problem, root: Complex, spin: Array) -> _Eliminated:
 
 
 def all_modes(system: RotorSystem, layers: Sequence[Placed], speed: Array) -> Complex:
-    """All modes at once: slower, and none is missed [theory: whirl, eq. 20].
+    """All modes at once, lambda, 1/s, shape (n, 8 N): slower, and none is missed [theory: whirl, eq. 20].
 
-    Exact for layers without floor and lid, whose drag is that on the slower wave.
-
-    lambda, 1/s, nan in place of those on other sheets, shape (n, 8 N) with N coordinates of rotor and layers.
+    N coordinates of rotor and layers; nan in place of those on other sheets. Exact for layers without floor
+    and lid, whose drag is that on the slower wave.
     """
     linear = coupled_matrices(system, layers, speed)
     size, count = len(linear.mass), len(system.coordinates)

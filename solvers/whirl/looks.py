@@ -1,10 +1,9 @@
 """Speeds at which growth has to be known so that no band of self-excited whirl is lost between two of them.
 
-A mode changes fast only where another meets it. So modes and their slopes over the spin are taken at a few
-speeds, whatever speeds a user asks for, and each interval is looked at until its modes are followed from end
-to end, until no growth can have risen above zero or fallen below it inside, and until every meeting of two
-modes has been gone to [theory: whirl, eq. 32 and 33]. Beside baffles with laminar friction the modes that
-grow most are followed, which are all that are known there.
+A mode changes fast only where another meets it. From modes and their slopes over the spin at a few speeds of
+its own choice each interval is refined until its modes are followed from end to end, no growth can have
+changed its sign inside, and every meeting of two modes has been gone to [theory: whirl, eq. 32 and 33]. With
+laminar friction and baffles only the modes that grow most are known and followed.
 """
 
 from __future__ import annotations
@@ -58,7 +57,7 @@ class Looks:
 def looks(
     rotor: Rotor, rows: Sequence[Sequence[Fill]], first: float, last: float, friction: Friction
 ) -> tuple[Index, Array, Array]:
-    """Points from which every change of the sign of the growth is seen, by rising row and speed.
+    """Points by rising row and speed from which every change of the sign of the growth is seen.
 
     Rows, speeds, and growth rates, nan where they are not known.
     """
@@ -94,9 +93,9 @@ def looks(
 def _first_speeds(system: RotorSystem, fills: Sequence[Fill], first: float, last: float) -> Array:
     """Ends of the range, speeds between at even ratios, and those where a wave meets a rotor's mode.
 
-    A wave of a clear ring goes round at c = 1 + T -+ sqrt(T^2 + T) times the spin, seen from outside. It
-    meets a mode, of the rotor alone or with the liquid's mass, at a critical speed of a rotor of the mass
-    c^2 M and the gyroscopic matrix c G [theory: whirl, eq. 32].
+    A wave of a clear ring goes round at c = 1 + T -+ sqrt(T^2 + T) times the spin in space: it meets a mode,
+    without or with the liquid's mass, at a critical speed of a rotor of mass c^2 M and gyroscopic matrix c G
+    [theory: whirl, eq. 32].
     """
     count = max(_FEWEST, 1 + int(np.ceil(np.log(last / first) / _APART)))
     found = [np.geomspace(first, last, count)]
@@ -132,7 +131,7 @@ def _looked(
 
 
 def _changes(root: Complex, beside: Complex) -> Complex:
-    """Change of each mode to a second speed close by, where the nearest is taken for the same, shape (n, m).
+    """Change of each mode to a second speed close by, the nearest taken for the same, shape (n, m).
 
     Two that keep side by side, closer than they change, are told apart by their common change.
     """
@@ -159,7 +158,7 @@ def _changes(root: Complex, beside: Complex) -> Complex:
 
 
 def _joined(parts: Sequence[Looks]) -> Looks:
-    """One after the other; with as many places for modes as the widest has."""
+    """Points one after the other, with as many places for modes as the widest has."""
     width = max(part.root.shape[1] for part in parts)
 
     def wide(table: Complex) -> Complex:
@@ -216,8 +215,8 @@ def _pairing(off: Array) -> Index:
 def _unsure(low: Looks, high: Looks) -> tuple[Flags, Array]:
     """Intervals to be looked into, and where: as a share of their width, shape (k,).
 
-    Modes that cannot be followed, growth that goes over to another mode, and growths and distances of two
-    modes whose tangents meet beyond zero.
+    Modes that cannot be followed, growth that passes to another mode, and growths and distances of two modes
+    whose tangents meet beyond zero.
     """
     width, modes = high.speed - low.speed, _follow(low, high)
     lost = (modes.counts & ~modes.sure).any(axis=1)
@@ -254,7 +253,7 @@ def _unsure(low: Looks, high: Looks) -> tuple[Flags, Array]:
 
 
 def _handed_over(low: Looks, high: Looks, modes: _Followed) -> tuple[Array, Flags]:
-    """Where none of the modes may grow that do so at the ends, as a share of the width; intervals of these.
+    """Where none of the modes that grow at the ends may grow, as a share of the width; which intervals.
 
     In the middle between the zeros of the chords of the last that ceases and of the first that begins.
     """
@@ -275,10 +274,10 @@ def _tangents(first: Array, last: Array, rise: Array, fall: Array, width: Array)
 
 
 def _pairs(modes: _Followed) -> tuple[tuple[Array, Array, Array, Array], Array] | None:
-    """Distances in frequency of all pairs of modes: both ends, both slopes; and the decay to be overcome.
+    """Distances in frequency of all pairs of modes at both ends, both slopes, and the decay to be overcome.
 
-    Two modes that decay at the rates a and b can make each other grow only if their coupling is stronger than
-    sqrt(a b). Coupling as wide as the interval is seen without going there.
+    Two modes that decay at rates a and b make each other grow only by a coupling above sqrt(a b); one as wide
+    as the interval is seen without going there.
     """
     count = modes.start.shape[1]
     if count < 2:
@@ -312,10 +311,9 @@ def _meetings(low: Looks, high: Looks) -> tuple[Any, ...]:
 
 
 def _gone_to(at: Callable[[Index, Array], Looks], meetings: Sequence[Any]) -> list[Looks]:
-    """What is seen on the way to meetings of two modes, by Newton's method on the distance of frequencies.
+    """Points on the way to meetings of two modes, by Newton's method on the distance of frequencies.
 
-    Inside a band both have one frequency, and from outside the step leads into it: with a distance as
-    sqrt(x^2 - w^2) to w^2/x.
+    In a band both have one frequency; from outside a distance as sqrt(x^2 - w^2) leads into it, to w^2/x.
     """
     row, speed, low, high, root = meetings
     found: list[Looks] = []

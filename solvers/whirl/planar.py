@@ -1,8 +1,8 @@
 """Whirl modes of a rotor that moves in one plane with its layers: all roots of a characteristic polynomial.
 
-Many points at once, by Aberth's simultaneous iteration. Without friction or with a linear one the polynomial
-is in the slip s; with laminar friction, whose drag goes with sqrt(i s), in that square root, and those of its
-zeros count whose real part is positive [theory: whirl, eq. 13].
+Many points at once, by Aberth's simultaneous iteration. The polynomial is in the slip s; with laminar
+friction, whose drag goes with sqrt(i s), in that root, and zeros count whose real part is positive
+[theory: whirl, eq. 13].
 """
 
 from __future__ import annotations
@@ -172,7 +172,7 @@ def _starts(scaled: _Scaled) -> Complex:
 
 
 def _own(scaled: _Scaled, x: Complex, other: Flags | None = None) -> _Scaled:
-    """With floor and lid as they drag on each root's own motion, linear and its slope of shape (g, m, p).
+    """The problem with floor and lid as they drag on each root's own motion, with slopes, shape (g, m, p).
 
     Where `other` of shape (m, p) is set, the nearer end of a cut has its other root.
     """
@@ -190,8 +190,8 @@ def _own(scaled: _Scaled, x: Complex, other: Flags | None = None) -> _Scaled:
 def _past_cuts(scaled: _Scaled, x: Complex, before: Complex) -> tuple[Complex, Flags]:
     """Roots that the cuts of floor and lid are in the way of, and the points where all are known.
 
-    From those `before`, in g = sqrt(i (s -+ 2 Omega)) of the nearer end, where there is no cut; a root that
-    comes out with Re g < 0 is no mode, as its layers would not die out.
+    From those `before`, in g = sqrt(i (s -+ 2 Omega)) of the nearer end, where there is no cut; a root with
+    Re g < 0 is no mode, as its layers would not decay away from the wall.
     """
     value, slope = _polynomial(_own(scaled, x), x)
     lost = (before.real > 0.0) & ~(np.abs(value) <= _STEP * np.abs(slope * x))
@@ -239,7 +239,7 @@ def _polynomial(scaled: _Scaled, x: Complex) -> tuple[Complex, Complex]:
 def _noise(scaled: _Scaled, x: Complex) -> Array:
     """Error of the value of `_polynomial` by rounding, to first order [theory: whirl, eq. 15].
 
-    Each factor is wrong by the rounding of the terms it is the sum of; in a product the others scale that.
+    That of each factor by the terms it is the sum of; the others scale it.
     """
     s = -1j * x * x if scaled.laminar else x
     size = np.abs(s)
@@ -277,10 +277,10 @@ def _pairs(x: Complex) -> tuple[Complex, Array]:
 
 
 def _aberth(scaled: _Scaled, x: Complex, modes: Flags | None = None) -> tuple[Complex, Flags]:
-    """All roots at all points; points whose roots stand still are left out of further sweeps.
+    """All roots at all points; points whose roots have converged are left out of further sweeps.
 
-    The iteration is of third order: a step well below the distance of the next root leaves its cube over the
-    square of that. With `modes`, shape of x, those alone move, each with the drag of its own frequency.
+    Of third order: a step well below the distance of the next root leaves its cube over the square of that.
+    With `modes`, shape of x, those alone move, each with the drag of its own frequency.
     """
     found, converged = x.copy(), np.zeros(x.shape[1], dtype=bool)
     active = np.arange(x.shape[1])

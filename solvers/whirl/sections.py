@@ -1,9 +1,9 @@
 """Whirl of rotors whose chambers have baffles in the liquid or a section of their own.
 
-Such liquid has constant coefficients in the frame of the drum, where a planar rotor is solved. A rotor that
-tilts or stands on unlike springs has them in the standing frame only, the liquid there only if it answers
-alike in all directions: with three baffles or more. Its motions then come in circles, one complex coordinate
-each. In both frames the modes that grow most are followed with laminar friction of their own frequency.
+Such liquid has constant coefficients in the drum's frame, where a planar rotor is solved. A rotor that tilts
+or has unlike springs is solved in the standing frame, with liquid that answers alike in all directions (three
+baffles or more) and so moves in circles, one complex coordinate each. With laminar friction the modes that
+grow most are followed, each with its own frequency.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ class DrumMatrices:
 def drum_matrices(rotor: Jeffcott, layers: Sequence[SectionLayer], speed: Array) -> DrumMatrices:
     """Rotor and liquid as one linear system in the frame of the drum [theory: sections, eq. 3].
 
-    The rotor's mass includes that of liquid without a free surface.
+    Liquid without a free surface is part of the rotor's mass.
     """
     heavy = rotor.mass + sum(layer.density * layer.liquid.liquid_area for layer in layers)
     pull = -np.hstack([np.zeros((2, 0)), *(layer.density * layer.liquid.moment for layer in layers)])
@@ -89,10 +89,10 @@ def drum_matrices(rotor: Jeffcott, layers: Sequence[SectionLayer], speed: Array)
 
 
 def _shears(rate: Complex, spin: Array) -> tuple[Complex, Complex]:
-    """lambda times what `SectionLayer.laminar` is multiplied by in D(lambda), and its slope, shape (3, k).
+    """lambda times the factors of `SectionLayer.laminar` in D(lambda), and slopes, shape (3, k).
 
-    Floor and lid drag with sqrt(lambda +- 2 i Omega) on the circles of the flow, of both roots the one whose
-    layer dies out away from the wall [theory: sections, eq. 5].
+    Floor and lid drag with sqrt(lambda +- 2 i Omega) on the circles of the flow, the root whose layer decays
+    away from the wall [theory: sections, eq. 5].
     """
     wall, along, against = (np.sqrt(rate + turn * spin) for turn in (0.0, 2j, -2j))
     # Half of what is left of lambda over the root, 0 at the end of a cut.
@@ -109,9 +109,9 @@ def _mixed(weights: Complex, parts: Complex) -> Complex:
 
 
 def drum_modes(rotor: Jeffcott, layers: Sequence[SectionLayer], speed: Array) -> SystemModes:
-    """Whirl modes in the drum's frame: all of them without laminar friction, with it those that grow most.
+    """Whirl modes in the drum's frame: all without laminar friction, with it those that grow most.
 
-    `sense` tells which way they go round as seen from the drum.
+    `sense`: the way they go round as seen from the drum.
     """
     system = drum_matrices(rotor, layers, speed)
     circles = _circles(layers)
@@ -214,9 +214,8 @@ def _told(
 ) -> SystemModes:
     """Modes followed from starting values at some speeds, complete where no other grows more.
 
-    Two that are almost alike part if they start from their own shapes. The starting values of the others
-    serve as well to make smooth what is followed, as no zero is lost or won by a factor whose own zero is
-    left of the line.
+    Two that are almost alike part if they start from their own shapes. The other starting values only make
+    smooth what is followed: a factor whose own zero is left of the line wins or loses no zero.
     """
     start, others = starts
     plain = np.tile(_any_shape(len(search.circles.T)), (start.size, 1))
@@ -283,9 +282,9 @@ def _sizes(circles: Array, shape: Complex) -> tuple[Array, Array]:
 def _followed(
     search: MostGrowing, start: Complex, at: Index, shape: Complex
 ) -> tuple[Complex, Complex, Flags]:
-    """Newton's method on each mode with its own laminar friction.
+    """Modes (n, f) by Newton's method, each with its own laminar friction, shapes (n, f, N), which converged.
 
-    Modes (n, f) from starts above the real axis, their shapes (n, f, N), and whether they settled.
+    From starts above the real axis.
     """
     root, owner = start.astype(complex).ravel(), np.repeat(at, start.shape[1])
     on, found = np.arange(root.size), np.zeros(root.shape, dtype=bool)
@@ -326,7 +325,7 @@ class CircleLayer:
 
 
 def circle_layer(layer: SectionLayer) -> CircleLayer:
-    """The motions of a layer that a circular whirl drives [theory: sections, eq. 9].
+    """Motions of a layer that a circular whirl drives [theory: sections, eq. 9].
 
     An `InputError` where it does not answer alike in all directions.
     """
@@ -391,7 +390,7 @@ class StandingMatrices:
 def standing_matrices(system: RotorSystem, layers: Sequence[Placed], speed: Array) -> StandingMatrices:
     """Rotor and liquid as one linear system in the standing frame [theory: sections, eq. 10].
 
-    The rotor has the mass of all liquid without a free surface.
+    Liquid without a free surface is part of the rotor's mass.
     """
     count, spin = len(system.coordinates), speed[:, None, None]
     circles = [(plane, circle_layer(layer)) for plane, layer in layers]

@@ -1,7 +1,7 @@
-"""All modes with laminar friction at once, which goes with the root of the slip: eigenvalues of polynomials.
+"""All modes with laminar friction, which goes with the root of the slip, at once: eigenvalues of polynomials.
 
-With another unknown in place of the frequency the roots become polynomials. Of its zeros those count for
-which the roots have positive real parts: the layer on a wall dies out away from it. None can be missed.
+Another unknown in place of the frequency makes polynomials of the roots. Zeros count for which the roots have
+positive real parts: the layer decays away from its wall. None can be missed.
 """
 
 from __future__ import annotations
@@ -15,12 +15,11 @@ _NONE = complex(np.nan, np.nan)
 
 
 def standing_roots(matrices: CoupledMatrices, drags: Complex, speed: Array) -> Complex:
-    """lambda of M z'' + C z' + K z with laminar drags of both senses of circle [theory: whirl, eq. 20].
+    """lambda of M z'' + C z' + K z, 1/s, with laminar drags of both senses of circle [theory: whirl, eq. 20].
 
-    The drags are (lambda -+ i Omega)^1.5 D. With lambda = i Omega (z^2 + z^-2)/2 both roots are sqrt(2 i
-    Omega) (z -+ 1/z)/2.
-
-    1/s, nan in place of those on other sheets, shape (n, 8 N), from D of circles along and against the spin.
+    Drags (lambda -+ i Omega)^1.5 D, D of circles along and against the spin; with lambda = i Omega (z^2 +
+    z^-2)/2 both roots are sqrt(2 i Omega) (z -+ 1/z)/2. nan in place of those on other sheets, shape (n, 8
+    N).
     """
     inverse, spin = np.linalg.inv(np.linalg.cholesky(matrices.mass)), speed[:, None, None]
     along, against, damping, stiffness = (
@@ -44,9 +43,9 @@ def standing_roots(matrices: CoupledMatrices, drags: Complex, speed: Array) -> C
 
 
 def drum_roots(matrices: CoupledMatrices, laminar: Array, speed: Array) -> Complex:
-    """lambda of M z'' + C z' + K z with a drag lambda^1.5 S: those of a polynomial in sqrt(lambda).
+    """lambda of M z'' + C z' + K z with a drag lambda^1.5 S, 1/s: those of a polynomial in sqrt(lambda).
 
-    1/s, nan in place of those on other sheets, shape (n, 4 N).
+    nan in place of those on other sheets, shape (n, 4 N).
     """
     inverse, spin = np.linalg.inv(np.linalg.cholesky(matrices.mass)), speed[:, None, None]
     drag, damping, stiffness = (

@@ -1,7 +1,7 @@
-"""Whirl modes of any rotor with liquid layers in any planes.
+"""Whirl modes of any rotor with liquid layers in any planes, with linear friction.
 
-Friction is linear here. Coordinates are the rotor's and two for each layer, the offset of its liquid from the
-axis, all real and in the standing frame; modes go as e^{lambda t}.
+Coordinates are the rotor's and two for each layer, the offset of its liquid from the axis, all real and in
+the standing frame; modes go as e^{lambda t}.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ class CoupledMatrices:
     stiffness: Array
 
     def at(self, which: Index) -> CoupledMatrices:
-        """Those of some speeds, shape (k,)."""
+        """Matrices at some speeds, shape (k,)."""
         return CoupledMatrices(self.mass, self.damping[which], self.stiffness[which])
 
 
@@ -36,7 +36,7 @@ def coupled_matrices(
 ) -> CoupledMatrices:
     """Rotor and layers with linear friction as one linear system [theory: whirl, eq. 7].
 
-    The rotor has the mass of all liquid without a free surface.
+    Layers with their planes, m; liquid without a free surface is part of the rotor's mass.
     """
     count, spin = len(system.coordinates), speed[:, None, None]
     size = count + 2 * len(layers)
@@ -74,7 +74,7 @@ class SystemModes:
     complete: Flags
 
     def widened(self, width: int, gone: float) -> SystemModes:
-        """With modes that were not found appended, up to `width` at each speed."""
+        """Modes with others not found appended, up to `width` at each speed, lambda there `gone`."""
         more = ((0, 0), (0, width - self.root.shape[1]))
         return SystemModes(
             np.pad(self.root, more, constant_values=gone),
@@ -85,7 +85,7 @@ class SystemModes:
         )
 
     def replaced(self, which: Index, others: SystemModes, gone: float) -> SystemModes:
-        """With those at some speeds in place of its own."""
+        """Modes with those at some speeds in place of its own, lambda `gone` where one lacks a mode."""
         width = max(self.root.shape[1], others.root.shape[1])
         found, others = self.widened(width, gone), others.widened(width, gone)
         for part in fields(found):
@@ -94,12 +94,10 @@ class SystemModes:
 
 
 def linear_modes(matrices: CoupledMatrices, circles: Array) -> SystemModes:
-    """All modes with linear friction.
+    """All modes with linear friction; `circles` (2 c, N), in pairs across the axis, tell their sense.
 
-    In coordinates of unit mass and velocities over a common frequency the matrix is as even as it can be; an
-    eigenvalue moves by the rounding of its entries times its condition number [theory: whirl, eq. 15].
-
-    `circles`: displacements that tell the sense of a whirl, in pairs across the axis, shape (2 c, N).
+    Unit masses and velocities over a common frequency make the matrix as even as it can be; an eigenvalue
+    moves by the rounding of its entries times its condition number [theory: whirl, eq. 15].
     """
     root = np.linalg.cholesky(matrices.mass)
     inverse = np.linalg.inv(root)
@@ -133,7 +131,7 @@ def joined(parts: Sequence[SystemModes]) -> SystemModes:
 def sense_of(along: Array, against: Array) -> Array:
     """1 where a mode goes round as e^{i Im(lambda) t}, -1 where it goes the other way, shape (n, m).
 
-    From squared sizes of its circles; modes that move no axis count as the first.
+    From squared sizes of its circles; 1 for modes that move no axis.
     """
     least = 1e-18 * (along + against).max(axis=1, keepdims=True, initial=0.0)
     return np.where(along + least >= against, 1.0, -1.0)

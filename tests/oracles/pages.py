@@ -10,8 +10,8 @@ from pathlib import Path
 from leblanc.core.notes import one_line
 from leblanc.report.page import About
 from leblanc.report.parts import Cell, Entry, Inputs
-from leblanc.results.response import RunResult
 from leblanc.scene.rows import Value
+from leblanc.studies.run.answer import RunResult
 
 VOID = {"meta", "img", "br"}
 ONLY_IN = {"tr": {"thead", "tbody"}, "td": {"tr"}, "th": {"tr"}, "dt": {"div"}, "dd": {"div"}, "li": {"ul"}}

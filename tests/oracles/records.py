@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from leblanc.results.base import FilledChamber
 from leblanc.results.motion.held import Held
-from leblanc.results.notes import response as run_notes
-from leblanc.results.response import RunResult
+from leblanc.studies.run import notes as run_notes
+from leblanc.studies.run.answer import RunResult
 from meshes.arrays import Array
 from solvers.synchronous.response import Response
 

@@ -38,14 +38,7 @@ class Growth:
 
 
 def best(run: Callable[[], object], repeats: int = 3, enough: float = 2.0) -> float:
-    """Shortest time of some runs after one to warm up, s.
-
-    Parameters
-    ----------
-    run : what is timed
-    repeats : how often at most
-    enough : no more runs after so many seconds
-    """
+    """Shortest time of runs after one to warm up, s; no more runs after `enough` seconds."""
     run()
     times: list[float] = []
     while len(times) < repeats and sum(times) < enough:
@@ -56,12 +49,7 @@ def best(run: Callable[[], object], repeats: int = 3, enough: float = 2.0) -> fl
 
 
 def over_cells(quick: bool = False) -> list[Growth]:
-    """One steady wave over its points; a whirl period and a right-hand side of the long waves over cells.
-
-    Parameters
-    ----------
-    quick : only small numbers
-    """
+    """One steady wave over its points; a whirl period and a right-hand side of the long waves over cells."""
     counts = [2**k for k in range(4, 8 if quick else 14)]
     problem = steady_problem()
     waves = [best(partial(solve, problem.waves, problem.speed, points=n, most_points=n)) for n in counts]
@@ -76,12 +64,7 @@ def over_cells(quick: bool = False) -> list[Growth]:
 
 
 def over_speeds(quick: bool = False) -> list[Growth]:
-    """A sweep over the number of its whirl speeds.
-
-    Parameters
-    ----------
-    quick : only short ones
-    """
+    """Cost of a sweep over the number of its whirl speeds."""
     counts = [1, 10, 30] if quick else [1, 3, 10, 30, 100, 300, 1000]
     layer, low, high = fill(), response_speeds()[0], response_speeds()[-1]
 
@@ -118,12 +101,7 @@ def _all(work: Callable[[float], object], row: NDArray[np.float64]) -> None:
 
 
 def right_hand_side(cells: int) -> float:
-    """Time of one right-hand side of the long waves, s.
-
-    Parameters
-    ----------
-    cells : of the layer, not uniform and moving
-    """
+    """Time of one right-hand side of the long waves on a moving layer that is not uniform, s."""
     from solvers.layer.finite_volume import GHOSTS, WORK, rates
     from solvers.layer.inside import NOTHING
 

@@ -51,14 +51,9 @@ class Cost:
 
 
 def cost(name: str, stride: int = 1, cells: int | None = None, liquid: str | None = None) -> Cost:
-    """Hold what `auto` would hold on a scene.
+    """Compute the time-domain states that `auto` would compute on a scene.
 
-    Parameters
-    ----------
-    name : of the scene
-    stride : only every so many of the speeds
-    cells : round each wall; the scene's if None
-    liquid : "potential" for exact waves; the scene's if None
+    Of every `stride`-th speed; `cells` and `liquid` ("potential" for exact waves) are the scene's if None.
     """
     scene = example(name)
     given = {"cells": cells, "liquid": liquid}

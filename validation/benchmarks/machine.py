@@ -35,13 +35,7 @@ _MAP = 400
 
 
 def runups(cells: tuple[int, ...] = (32, 64, 128, 256), repeats: int = 3) -> list[Sample]:
-    """Run-up of 20 s with one layer; the error is the largest of the amplitude over the largest amplitude.
-
-    Parameters
-    ----------
-    cells : of the layer; the reference has 1024
-    repeats : of each
-    """
+    """Run-ups of 20 s with one layer; error: of the amplitude over its largest, reference 1024 cells."""
     exact = _history(_FINE).amplitude
 
     def runner(n: int) -> Callable[[], Callable[[], Go]]:
@@ -61,12 +55,7 @@ def _gap(found: Answer, exact: Answer) -> float:
 
 
 def maps(repeats: int = 3) -> list[Sample]:
-    """Growth at 400 speeds by 400 volumes; the error is against numpy's eigenvalues, over the largest growth.
-
-    Parameters
-    ----------
-    repeats : of each
-    """
+    """Growth rates at 400 speeds by 400 volumes; error against numpy's eigenvalues, over the largest rate."""
     speed = np.linspace(5.0, 100.0, _MAP)
     fills = [replace(_FILL, volume=part * _CHAMBER.capacity) for part in np.linspace(0.001, 0.9, _MAP)]
 
@@ -111,12 +100,7 @@ def _by_eigenvalues(fills: list[Fill], speed: Array, rate: float) -> Array:
 
 
 def tub(repeats: int = 5) -> list[Sample]:
-    """Unbalance response of the tub at 1000 speeds; the error is against solutions speed by speed.
-
-    Parameters
-    ----------
-    repeats : of each
-    """
+    """Unbalance response of the tub at 1000 speeds; error against solutions speed by speed."""
     system = suspended_tub().system()
     speed = np.linspace(1.0, 150.0, 1000)
 

@@ -69,16 +69,7 @@ class LayerProblem:
         return size * grown * cmath.exp(1j * whirl.slip * seconds)
 
     def in_whirl_frame(self, area: Array) -> Array:
-        """Areas of the cells that stand in the drum at the end, and the angles of their middles.
-
-        Parameters
-        ----------
-        area : over R^2, shape (n,)
-
-        Returns
-        -------
-        Angles from the deflection in the first row, areas in the second, shape (2, n)
-        """
+        """Angles of the cells' middles from the deflection at the end, and areas over R^2, shape (2, n)."""
         middle = 2.0 * math.pi * (np.arange(area.size) + 0.5) / area.size
         return np.stack([middle - self.whirl.slip * self.duration / SPIN, area])
 
@@ -89,21 +80,7 @@ def ours(problem: LayerProblem, cells: tuple[int, ...]) -> list[Contestant]:
 
 
 def answer(problem: LayerProblem, cells: int) -> Array:
-    """The layer at the end of the problem by this package.
-
-    Parameters
-    ----------
-    problem : what to run
-    cells : of the grid
-
-    Returns
-    -------
-    As from `LayerProblem.in_whirl_frame`
-
-    Raises
-    ------
-    RuntimeError : the surface came to the axis
-    """
+    """Layer at the end of the problem by this package, as from `LayerProblem.in_whirl_frame`."""
     layer, whirl = fill(), problem.whirl
     history = simulate(
         layer, whirl, problem.periods * whirl.period, Friction(FrictionLaw.LINEAR, FRICTION), Numerics(cells)
@@ -119,13 +96,9 @@ def _builder(problem: LayerProblem, cells: int) -> Callable[[], Callable[[], Go]
 
 
 def profile_error(found: Answer, reference: Answer) -> float:
-    """L1 distance of two profiles over the departure of the second from the mean.
+    """L1 distance of two profiles, shapes (2, n) and (2, m), over the reference's departure from the mean.
 
     The reference is averaged over the cells of the one found.
-
-    Parameters
-    ----------
-    found, reference : angles of the cells' middles and areas, shape (2, n) and (2, m)
     """
     area = np.real(found[1])
     cells = area.size
@@ -145,12 +118,7 @@ def force_error(found: Answer, reference: Answer) -> float:
 
 
 def offset(profile: Answer) -> complex:
-    """Distance of the liquid's centre of mass from the drum's axis, R; real along the deflection.
-
-    Parameters
-    ----------
-    profile : angles of the cells' middles and areas, shape (2, n)
-    """
+    """Distance of the liquid's centre of mass from the drum's axis, R; real along the deflection."""
     theta, area = np.real(profile[0]), np.real(profile[1])
     moment = np.sum((1.0 - np.power(1.0 - 2.0 * area, 1.5)) / 3.0 * np.exp(1j * theta))
     return complex(moment / np.sum(area))
@@ -171,13 +139,7 @@ CODE = "leblanc"
 
 
 def steady(problem: SteadyProblem, quick: bool = False) -> list[Contestant]:
-    """Newton's method on several numbers of points, and the exponential stepper from rest.
-
-    Parameters
-    ----------
-    problem : what to solve
-    quick : only a few settings
-    """
+    """Newton's method on several numbers of points, and the exponential stepper from rest."""
     newton = [
         Contestant(CODE, f"Newton, {points} points", _newton(problem, points), size=points)
         for points in ((32, 128) if quick else (32, 64, 96, 128, 256))
@@ -194,13 +156,7 @@ def steady(problem: SteadyProblem, quick: bool = False) -> list[Contestant]:
 
 
 def travelling(problem: TravellingProblem, quick: bool = False) -> list[Contestant]:
-    """The exponential stepper at several tolerances, with as many points as each deserves.
-
-    Parameters
-    ----------
-    problem : what to solve
-    quick : only a few settings
-    """
+    """Exponential stepper at several tolerances, with as many points as each deserves."""
     settings = (
         ((64, 1e-5), (96, 1e-7))
         if quick

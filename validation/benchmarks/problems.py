@@ -46,16 +46,9 @@ def fill() -> Fill:
 
 
 def spectrum(values: Array, first: float = 0.0) -> Complex:
-    """Fourier coefficients of a field on equal steps round the drum, its mean left out.
+    """Coefficients of e^{i n xi}, n = 1 ... (points - 1) // 2, of a field on equal steps.
 
-    Parameters
-    ----------
-    values : shape (points,)
-    first : angle of the first point, rad
-
-    Returns
-    -------
-    Coefficients of e^{i n xi}, n = 1 ... (points - 1) // 2
+    The mean is left out; `first` is the angle of the first point, rad.
     """
     modes = np.fft.rfft(values, norm="forward")[1 : (values.size + 1) // 2]
     return np.asarray(modes * np.exp(-1j * first * np.arange(1, modes.size + 1)))
@@ -101,11 +94,9 @@ class SteadyProblem:
 
 
 def steady_problem(tall: bool = False) -> SteadyProblem:
-    """At the resonance of the retrograde family, with the laminar friction of water.
+    """Resonance of the retrograde family, with the laminar friction of water.
 
-    Parameters
-    ----------
-    tall : chamber ten times as high, in which floor and lid hardly damp: the wave takes longer to settle
+    Tall: a chamber ten times as high, whose floor and lid hardly damp, so that the wave settles later.
     """
     c = retrograde()
     speed = c.linear_speed
@@ -149,18 +140,9 @@ def seen_from_whirl(done: Advance, speed: float, points: int) -> Complex:
 def settling_time(
     problem: SteadyProblem, points: int = 96, stretch: float = 0.25, most: float = 1000.0
 ) -> float:
-    """Time after which a wave that starts from rest stays that near to the steady one, s.
+    """Time after which a wave that starts from rest stays close to the steady one, s.
 
-    Parameters
-    ----------
-    problem : what is stepped
-    points : of the run
-    stretch : between two looks, s
-    most : give up after, s
-
-    Raises
-    ------
-    RuntimeError : it does not settle
+    It is compared every `stretch` seconds; RuntimeError after `most` seconds.
     """
     split = whirl_split(problem, points)
     state, time = np.zeros(points // 2 + 1, dtype=complex), 0.0

@@ -28,17 +28,7 @@ _FILE = "results.json"
 
 
 def keep(results: Results, folder: Path | None = None) -> Path:
-    """Write a run so that any JSON reader takes it: null for what is not a number.
-
-    Parameters
-    ----------
-    results : of all codes side by side
-    folder : where to; None: beside this module
-
-    Returns
-    -------
-    The file
-    """
+    """Write a run beside this module (or to `folder`), null for what is not a number."""
     file = (folder or Path(__file__).parent) / _FILE
     text = json.dumps(_without_nan(asdict(results)), indent=1, allow_nan=False)
     file.write_text(text + "\n", encoding="utf-8")
@@ -46,12 +36,7 @@ def keep(results: Results, folder: Path | None = None) -> Path:
 
 
 def kept_results(folder: Path | None = None) -> Results:
-    """Read a run that was kept.
-
-    Parameters
-    ----------
-    folder : see `keep`
-    """
+    """Run that `keep` wrote."""
     place = resources.files("validation.benchmarks") if folder is None else folder
     found: dict[str, Any] = json.loads(place.joinpath(_FILE).read_text(encoding="utf-8"))
     sections = []
@@ -87,13 +72,7 @@ class Section:
 
 
 def markdown(section: Section, ours: str) -> str:
-    """Table of a section, and below it who is how much slower at the target.
-
-    Parameters
-    ----------
-    section : to show
-    ours : the code that the others are compared with
-    """
+    """Table of a section, and below it how much slower than `ours` the others are at the target."""
     head = f"## {section.title}\n\n| code | setting | time | {section.error} | first call |\n"
     head += "|---|---|---:|---:|---:|\n"
     rows = [_row(sample) for sample in section.samples]
@@ -147,17 +126,9 @@ def front(samples: Iterable[Sample]) -> list[Sample]:
 
 
 def at_equal_error(ours: Iterable[Sample], other: Iterable[Sample]) -> list[tuple[float, float]]:
-    """Time of the other code over ours where both have the same error.
+    """Errors, and time of the other code over ours at equal error, for its samples within our front.
 
     Ours is interpolated along its front in the logarithms of both; beyond it nothing is compared.
-
-    Parameters
-    ----------
-    ours, other : samples of one code each
-
-    Returns
-    -------
-    Errors and ratios, a pair for each sample of the other code's front that lies within ours
     """
     mine = front(ours)[::-1]
     if len(mine) < 2:
@@ -196,13 +167,7 @@ _LINES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 3)))
 
 
 def accuracy_figure(section: Section, directory: Path) -> Path:
-    """Error over time, one mark for each sample; what no other setting of its code beats is joined by a line.
-
-    Parameters
-    ----------
-    section : to draw
-    directory : where the PNG and SVG go
-    """
+    """Error over time, one mark for each sample; a line joins what no other setting of its code beats."""
     with style():
         figure = Figure()
         axes = figure.add_axes((0, 0, 1, 1))
@@ -243,14 +208,7 @@ def _power(value: float, _position: int | None = None) -> str:
 
 
 def growth_figure(growths: Sequence[Growth], name: str, directory: Path) -> Path:
-    """Cost over one number, both logarithmic.
-
-    Parameters
-    ----------
-    growths : over the same number
-    name : stem of the files
-    directory : where they go
-    """
+    """Cost over one number, both logarithmic; `name` is the stem of the files."""
     with style():
         figure = Figure()
         axes = figure.add_axes((0, 0, 1, 1))
@@ -295,14 +253,7 @@ class Results:
 
 
 def collect(peers: tuple[str, ...], quick: bool, repeats: int) -> Results:
-    """Run everything.
-
-    Parameters
-    ----------
-    peers : names of the other codes to run beside
-    quick : few settings and small sizes
-    repeats : of each sample
-    """
+    """Run everything, beside the other codes `peers`."""
     modules = {name: importlib.import_module(_MODULE + name) for name in peers}
     found = {name: version(module.PACKAGE) for name, module in modules.items()}
     versions = {"Python": platform.python_version(), ours.CODE: version(ours.CODE) or "from its folder"}
@@ -417,14 +368,7 @@ def _equal_error(samples: tuple[Sample, ...], name: str) -> list[str]:
 
 
 def write(results: Results, directory: Path, sharing: str) -> None:
-    """Tables and figures of a run.
-
-    Parameters
-    ----------
-    results : of `collect`
-    directory : where `benchmarks.md` and the figures go
-    sharing : how the processor was shared, in words
-    """
+    """Write `benchmarks.md` and the figures of a run; `sharing` says how the processor was shared."""
     text = [
         "# Results of one run",
         "",

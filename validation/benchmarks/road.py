@@ -31,11 +31,9 @@ _COURANT = 0.8
 
 
 class BareLayer:
-    """A uniform layer at rest in the drum, for the compiled time steps; lengths over R, times over 1/Omega.
+    """Uniform layer at rest in the drum, for the compiled time steps; lengths over R, times over 1/Omega.
 
-    Parameters
-    ----------
-    fill, whirl, friction, numerics : as for `solvers.pypde.settle.simulate`
+    Parameters as of `solvers.pypde.settle.simulate`.
     """
 
     def __init__(self, fill: Fill, whirl: Whirl, friction: Friction, numerics: Numerics) -> None:
@@ -89,17 +87,7 @@ class Road:
 
 
 def measure(periods: int = PERIODS, cells: int = CELLS, repeats: int = REPEATS) -> Road:
-    """Both in turn in this process, after one of each to compile.
-
-    Parameters
-    ----------
-    periods, cells : of the whirl and of the layer
-    repeats : turns
-
-    Raises
-    ------
-    InputError : no turns
-    """
+    """Both in turn in this process, after one of each to compile."""
     if repeats < 1:
         raise InputError("repeats", repeats, "1 or more")
     radius, friction, numerics = 0.15, Friction(FrictionLaw.LINEAR, 1.0), Numerics(cells)

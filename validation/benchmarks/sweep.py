@@ -43,13 +43,7 @@ class Cost:
 
 
 def one_speed_study(folder: Path, samples: int) -> Sweep:
-    """The horizontal rig at one speed with the exact equilibrium of the liquid; three values vary.
-
-    Parameters
-    ----------
-    folder : for the files
-    samples : how many
-    """
+    """Horizontal rig at one speed with the exact equilibrium of the liquid; three values vary."""
     import json
 
     table = read_toml(example_path("horizontal_rig"))
@@ -66,13 +60,7 @@ def one_speed_study(folder: Path, samples: int) -> Sweep:
 
 
 def cost(samples: int, workers: int) -> Cost:
-    """Cost of the study, start of the workers and writing included.
-
-    Parameters
-    ----------
-    samples : how many
-    workers : local processes, 0 for none but this
-    """
+    """Cost of the study with local worker processes (0: this one), their start and writing included."""
     with tempfile.TemporaryDirectory() as name:
         sweep = one_speed_study(Path(name), samples)
         most = _Watch()
@@ -130,12 +118,7 @@ def _children(process: int) -> list[int]:
 
 
 def main(samples: int) -> None:
-    """Print the table.
-
-    Parameters
-    ----------
-    samples : of the largest sweep
-    """
+    """Print the table up to this number of samples."""
     print("| samples | workers | s | processor s | us a sample | largest process, MB | first process, MB |")
     print("|---|---|---|---|---|---|---|")
     for count, workers in ((samples // 10, 0), (samples, 0), (samples, 1), (samples, 2)):

@@ -45,12 +45,7 @@ class Sample:
 
 
 def version(package: str) -> str | None:
-    """Version of an installed package that can be imported, None if there is none.
-
-    Parameters
-    ----------
-    package : name of the module, and `name/distribution` where the two differ
-    """
+    """Version of an installed package that can be imported; `module/distribution` where the names differ."""
     module, _, distribution = package.partition("/")
     if importlib.util.find_spec(module) is None:
         return None
@@ -77,16 +72,7 @@ def measure(
 ) -> list[Sample]:
     """Time contestants side by side: each once to warm up, then all in turn, again and again.
 
-    Parameters
-    ----------
-    contestants : who runs
-    error : of an answer
-    repeats : of runs that take less than 20 s; of longer ones one is timed
-    progress : is called with what runs
-
-    Returns
-    -------
-    One sample each, in their order
+    Runs of more than 20 s are timed once; `progress` is called with what runs. One sample each, in order.
     """
     builds: list[Callable[[], Go] | None] = []
     rows: list[tuple[float, float, float, str]] = []

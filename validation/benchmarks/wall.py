@@ -23,12 +23,7 @@ _RATE, _STOP, _CELLS, _WARM = 4.0, 2.0, 128, 0.01
 
 
 def step_times(repeats: int = 7) -> dict[str, float]:
-    """Least time a layer step of a run-up from 30 rad/s, s, by the name of the law.
-
-    Parameters
-    ----------
-    repeats : of each law, one after the other, as the machine's pace changes
-    """
+    """Least time of a layer step of a run-up from 30 rad/s, s, by name of the law; laws take turns."""
     least = dict.fromkeys((FrictionLaw.STOKES, FrictionLaw.WALL), math.inf)
     for _ in range(repeats):
         for law in least:

@@ -76,10 +76,5 @@ def kept() -> Kept:
 
 
 def keep(results: Kept) -> None:
-    """Write what was computed.
-
-    Parameters
-    ----------
-    results : all of it
-    """
+    """Write what was computed."""
     KEPT.write_text(json.dumps(asdict(results), indent=1) + "\n", encoding="utf-8")

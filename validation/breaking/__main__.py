@@ -33,14 +33,7 @@ LAST, SHORTEST = 0.07, 1e-5
 
 
 def ending(depth: float, whirl: float, longest: float = LONGEST, steps: Steps = STEPS) -> Ending:
-    """The exact wave until it breaks.
-
-    Parameters
-    ----------
-    depth, whirl : as for `resonant`
-    longest : whirl periods that it is followed
-    steps : how
-    """
+    """Exact wave until it breaks, followed over at most `longest` whirl periods."""
     fill, motion = resonant(depth, whirl)
     times = motion.period * np.arange(1, round(longest * LOOKS) + 1) / LOOKS
     moments = course(still(depth, steps.nodes), times, histories.whirl_push(fill, motion), steps)
@@ -60,12 +53,7 @@ def ending(depth: float, whirl: float, longest: float = LONGEST, steps: Steps = 
 
 
 def highest(depth: float) -> Highest:
-    """The highest free wave: its crest as the square of the liquid's speed there goes to nothing.
-
-    Parameters
-    ----------
-    depth : h_0/R
-    """
+    """Highest natural wave: its crest as the square of the liquid's speed there goes to nothing."""
     wave = free(depth, 1.0 + 0.1 / (1.0 + 5.0 * depth))
     found, step = [(wave.crest_speed**2, wave.crest)], 0.05 * (wave.crest - 1.0)
     while wave.crest_speed > LAST and step > SHORTEST:
@@ -84,14 +72,7 @@ def highest(depth: float) -> Highest:
 
 
 def beside(depth: float, whirl: float, dispersion: bool, end: float) -> Beside:
-    """Long waves beside the exact one.
-
-    Parameters
-    ----------
-    depth, whirl : as for `resonant`
-    dispersion : of the long waves
-    end : whirl periods until the exact wave breaks
-    """
+    """Long waves beside the exact one, which breaks after `end` whirl periods."""
     fill, motion = resonant(depth, whirl)
     numerics = Numerics(CELLS, dispersion=dispersion)
     whole = max(math.floor(end), 1) * motion.period

@@ -62,12 +62,9 @@ def angles() -> Array:
 
 
 def resonant(layer: float, share: float) -> tuple[Fill, Whirl]:
-    """A layer, and a whirl as fast as its small backward free wave; lengths over R, times in 1/Omega.
+    """Layer h_0/R, and a whirl w_0/h_0 = share as fast as its small backward natural wave.
 
-    Parameters
-    ----------
-    layer : h_0/R
-    share : w_0/h_0
+    Lengths are over R, times in 1/Omega.
     """
     p = math.sqrt(linear_detuning(layer))
     fill = Fill(Chamber(1.0, 1.0), Liquid("water", 1000.0, 1e-6), math.pi * layer * (2.0 - layer))
@@ -76,13 +73,9 @@ def resonant(layer: float, share: float) -> tuple[Fill, Whirl]:
 
 
 def followed(most: int, times: Sequence[float] = TIMES, breaking: float = BREAKING) -> list[Crest]:
-    """The wave from rest through some moments, the last one where it is broken.
+    """Wave from rest through rising moments, the last one where it is broken, with `most` nodes at most.
 
-    Parameters
-    ----------
-    most : nodes that it may have
-    times : moments, rising
-    breaking : crest number from which it may be broken; infinite to follow the crest as far as its nodes do
+    `breaking`: crest number from which it may be broken; infinite to follow it as far as its nodes do.
     """
     fill, whirl = resonant(LAYER, SHARE)
     steps = Steps(FIRST, most, DAMPING, breaking=breaking)
@@ -119,12 +112,7 @@ def kept() -> tuple[Crest, ...]:
 
 
 def keep(found: Sequence[Crest]) -> None:
-    """Write what was computed.
-
-    Parameters
-    ----------
-    found : for each number of nodes its moments
-    """
+    """Write the moments of each number of nodes."""
     rows = (json.dumps(asdict(row), separators=(",", ":")) for row in found)
     KEPT.write_text("[\n" + ",\n".join(rows) + "\n]\n", encoding="utf-8")
 

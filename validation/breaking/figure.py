@@ -113,12 +113,7 @@ def shown(results: Kept) -> list[Beside]:
 
 
 def crest_figure(found: Sequence[Crest] | None = None) -> Figure:
-    """A crest that breaks: in the drum, and unrolled with its slopes as they are.
-
-    Parameters
-    ----------
-    found : moments of one wave; None: those that are kept, the finest of them
-    """
+    """Crest that breaks: in the drum, and unrolled with its slopes as they are; None: the finest one kept."""
     rows = list(found) if found else [row for row in crests.kept() if row.most == max(crests.MOST)]
     with style():
         figure = Figure()
@@ -178,12 +173,7 @@ def _draw_crest(axes: Any, row: Crest, colour: str) -> None:
 
 
 def crest_words(rows: Sequence[Crest]) -> str:
-    """The numbers of a crest that breaks.
-
-    Parameters
-    ----------
-    rows : moments of one wave
-    """
+    """Numbers of a crest that breaks."""
     parts = [
         f"at t = {row.time:.4g} a crest of {row.crest:.3f} h0, {row.slope:.1f} deg steep, with B = "
         f"{row.crest_number:.2f}"
@@ -193,12 +183,7 @@ def crest_words(rows: Sequence[Crest]) -> str:
 
 
 def alternative(results: Kept) -> str:
-    """The numbers that a reader would take from the figure.
-
-    Parameters
-    ----------
-    results : what is drawn
-    """
+    """Numbers that a reader would take from the figure."""
     ends = [
         f"depth {row.depth:g}, whirl {row.whirl:g}: "
         + (f"{row.periods:.2f} periods" if row.state == "broken" else f"none to {row.periods:.0f} periods")
@@ -209,12 +194,7 @@ def alternative(results: Kept) -> str:
 
 
 def draw(out: Path) -> list[Path]:
-    """Write both as PNG.
-
-    Parameters
-    ----------
-    out : folder, made if it is missing
-    """
+    """Write both as PNG."""
     return [
         save_png(breaking_figure(), out, "breaking", "When the exact wave breaks"),
         save_png(crest_figure(), out, "breaking_crest", "A crest that breaks"),

@@ -19,13 +19,7 @@ _FACTOR = 2.0
 
 @dataclass(frozen=True)
 class Effect:
-    """How large an effect is by the source, and how large computed.
-
-    Examples
-    --------
-    >>> Effect("peak over that without liquid", 0.11, 0.94, without=1.0).alike
-    False
-    """
+    """Size of an effect by the source, and computed."""
 
     quantity: str  #: what its size is measured by, with its unit
     measured: float  #: sizes; of one sign where they are alike
@@ -52,22 +46,14 @@ def _alike(measured: float, computed: float) -> bool:
 def shape_verdict(same: bool, effect: Effect | None = None) -> Verdict:
     """`trend` where the shape is the same and the effect as large within a factor of two, else `differs`.
 
-    Parameters
-    ----------
-    same : the shape is that of the source
-    effect : its size; None where the source gives none
+    Effect None: the source gives no size.
     """
     return "trend" if same and (effect is None or effect.alike) else "differs"
 
 
 @dataclass(frozen=True)
 class Origin:
-    """Where the value comes from that the computed one stands beside.
-
-    Raises
-    ------
-    InputError : an unknown kind, or a code, scan or closed form without its name
-    """
+    """Origin of the value beside the computed one; InputError for a code, scan or closed form unnamed."""
 
     #: `printed` in a source, as a number or a statement; `measured` by a source's authors or others; by a
     #: `second code`; a `scan` of our own; a `closed form`, a limit or a conservation law
@@ -91,13 +77,11 @@ _KEY = re.compile(r"[A-Z][A-Za-z]*\d{2}\b")  # of a source in references.bib
 
 @dataclass(frozen=True)
 class Case:
-    """A published claim beside the computed one.
+    """Published claim beside the computed one.
 
-    Raises
-    ------
-    InputError : an unknown verdict, a number that is not finite, a `trend` whose effect is off by more than a
-        factor of two, or is not told though the source prints a number or nothing; a value called printed
-        without a source of the references
+    InputError for a number that is not finite, a `trend` whose effect is off by more than a factor of two or
+    not given though the source prints a number or nothing, and a printed value without a source of the
+    references.
     """
 
     name: str  #: group and name, `errata/dr-eq-18`
@@ -154,27 +138,10 @@ def compare(
     note: str = "",
     origin: Origin = PRINTED,
 ) -> Case:
-    """Case of two numbers; whether they agree is decided here.
+    """Case of two numbers; it `agrees` up to a relative difference, else the verdict is `otherwise`.
 
-    Parameters
-    ----------
-    name, source, quantity, note, origin : as in `Case`
-    printed, computed : the two values
-    tolerance : relative difference up to which they agree
-    otherwise : verdict if they do not; a `trend` only within a factor of two
-
-    Returns
-    -------
-    Case whose difference is printed/computed - 1, or a text where the computed value is 0
-
-    Raises
-    ------
-    InputError : a number that is not finite; a tolerance that half as much again would be within
-
-    Examples
-    --------
-    >>> compare("errata/a", "X20, eq. 1", "mass, kg", 2.0, 1.0, tolerance=0.01, otherwise="erratum").verdict
-    'erratum'
+    A `trend` only within a factor of two; the difference is printed/computed - 1, or a text where computed is
+    0. InputError for a tolerance that half as much again would be within.
     """
     # At a third the computed value may be half as large again, and no change of it would be noticed.
     if not 0.0 <= tolerance < 1.0 / 3.0:

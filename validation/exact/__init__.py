@@ -41,12 +41,7 @@ class Cases:
         return np.isfinite(self.exact)
 
     def error(self, model: str) -> Array:
-        """Distance of a model's G from the exact one over the larger of |G| and 1, shape (n,).
-
-        Parameters
-        ----------
-        model : its name here
-        """
+        """Distance of a model's G from the exact one over the larger of |G| and 1, shape (n,)."""
         return np.asarray(np.abs(self.models[model] - self.exact) / np.maximum(1.0, np.abs(self.exact)))
 
 
@@ -111,12 +106,7 @@ def _array(values: list[Any]) -> Any:
 
 
 def keep(measured: Measured) -> None:
-    """Write what was measured.
-
-    Parameters
-    ----------
-    measured : all of it
-    """
+    """Write what was measured."""
     KEPT.write_text(json.dumps(_plain(measured), separators=(",", ":")) + "\n", encoding="utf-8")
 
 

@@ -22,23 +22,13 @@ _IDEAL = Liquid("ideal", 1000.0, 0.0)
 
 
 def layer_fill(layer: float) -> Fill:
-    """A layer in a drum of unit radius.
-
-    Parameters
-    ----------
-    layer : h_0/R
-    """
+    """Layer of depth h_0/R in a drum of unit radius."""
     chamber = Chamber(radius=1.0, height=1.0)
     return Fill(chamber, _IDEAL, volume=chamber.capacity * layer * (2.0 - layer))
 
 
 def model_answers(layer: float, ratio: float, whirl: float) -> dict[str, float]:
-    """G by each model; nan where it has no smooth steady wave.
-
-    Parameters
-    ----------
-    layer, ratio, whirl : h_0/R, p/p_1, w_0/h_0
-    """
+    """G by each model at h_0/R, p/p_1 and w_0/h_0; nan where it has no smooth steady wave."""
     behind, ahead = whirl_speeds(layer, ratio)
     found = {"linear": float(waves.force_ratio(1.0 / (1.0 - layer) ** 2, behind))}
     for name, dispersion in (("long_wave", False), ("dispersion", True)):
@@ -51,13 +41,7 @@ def model_answers(layer: float, ratio: float, whirl: float) -> dict[str, float]:
 
 
 def family_answer(layer: float, speed: float, whirl: float, dispersion: bool) -> float:
-    """G by one family of waves.
-
-    Parameters
-    ----------
-    layer, speed, whirl : h_0/R, whirl speed over the spin, w_0/h_0
-    dispersion : the exact one
-    """
+    """G by one family of waves at h_0/R, whirl speed over the spin, w_0/h_0; dispersion: the exact one."""
     fill, asked = layer_fill(layer), Whirl(1.0, speed, whirl * layer)
     answer = OneFamily(dispersion=dispersion).wave(fill, asked).answer
     if not answer.converged[0]:
@@ -66,13 +50,7 @@ def family_answer(layer: float, speed: float, whirl: float, dispersion: bool) ->
 
 
 def beside(points: Sequence[tuple[float, float, float]], held: Sequence[Held | None]) -> Cases:
-    """All models beside exact waves.
-
-    Parameters
-    ----------
-    points : h_0/R, p/p_1 and w_0/h_0 of each
-    held : the exact wave there; None where there is none, and no model is asked
-    """
+    """All models beside exact waves at points (h_0/R, p/p_1, w_0/h_0); where `held` is None none is asked."""
     none = Held(*[math.nan] * 5)
     answers = [
         dict.fromkeys(MODELS, math.nan) if wave is None else model_answers(*point)

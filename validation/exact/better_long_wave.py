@@ -70,13 +70,7 @@ class Marched:
 
 
 def fold(layer: float, detuning: float) -> float:
-    """Largest w_0/h_0 that the exact wave out of phase bears.
-
-    Parameters
-    ----------
-    layer : h_0/R
-    detuning : p over that of the small free wave, above 1
-    """
+    """Largest w_0/h_0 that the exact wave out of phase bears; detuning p/p_1 above 1."""
     square = detuning**2 * exact.linear_detuning(layer)
     rest = exact.solve(exact.at_rest(layer, nodes(64)), {"detuning": square, "whirl": 0.0})
     wave = exact.follow(rest, {"detuning": square, "whirl": -_LOW * layer})
@@ -90,14 +84,7 @@ def fold(layer: float, detuning: float) -> float:
 
 
 def case(layer: float, detuning: float, share: float, largest: float, models: tuple[Model, ...]) -> Case:
-    """Errors of the models at one whirl.
-
-    Parameters
-    ----------
-    layer, detuning, share : as of `Case`
-    largest : w_0/h_0 of the fold
-    models : to compare
-    """
+    """Errors of the models at one whirl; `largest` is w_0/h_0 of the fold."""
     square, whirl = detuning**2 * exact.linear_detuning(layer), share * largest * layer
     truth = exact.forced(layer, square, whirl)
     errors: dict[str, float | None] = {}
@@ -109,19 +96,10 @@ def case(layer: float, detuning: float, share: float, largest: float, models: tu
 
 
 def marched(wave: Wave, detuning: float, dispersion: bool, cells: int, periods: int = PERIODS) -> Array:
-    """Force ratio over whirl periods of finite volumes that begin with a steady wave; no friction.
+    """Force ratio G along the deflection over whirl periods of finite volumes, shape (periods,).
 
-    Parameters
-    ----------
-    wave : of the model's own equations
-    detuning : p; the whirl is the slower of the two twins
-    dispersion : whether the waves disperse
-    cells : of the ring
-    periods : whirl periods, seen from the drum
-
-    Returns
-    -------
-    G along the deflection, shape (periods,)
+    They begin with a steady wave of the model's own equations, without friction; the whirl is the slower of
+    the two twins, periods are seen from the drum.
     """
     # Times over 1/Omega.
     whirl = 1.0 / (1.0 + detuning)
@@ -158,14 +136,7 @@ def marched(wave: Wave, detuning: float, dispersion: bool, cells: int, periods: 
 
 
 def by_cells(layer: float, detuning: float, share: float, largest: float, model: Model) -> Marched | None:
-    """What the cells add to one wave; None where the model has no steady one.
-
-    Parameters
-    ----------
-    layer, detuning, share : as of `Case`
-    largest : w_0/h_0 of the fold
-    model : HYDROSTATIC or DISPERSION
-    """
+    """What the cells add to one wave of HYDROSTATIC or DISPERSION; None where the model has no steady one."""
     square, whirl = detuning**2 * exact.linear_detuning(layer), share * largest * layer
     wave = steady(model, layer, square, whirl)
     if wave is None:

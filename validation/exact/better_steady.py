@@ -32,10 +32,9 @@ Values = Any
 class Model(StrEnum):
     """What is kept of the depth.
 
-    HYDROSTATIC : nothing, the long waves as they stand
-    DISPERSION : `dispersion` as the finite volumes have it [theory: long_wave, eq. 14]
-    SERRE : Serre's equations in the strip, the kinetic energy to its first correction
-    SECOND : the kinetic energy to its second correction [theory: long_wave, eq. 22]
+    HYDROSTATIC: nothing; DISPERSION: `dispersion` as the finite volumes have it [theory: long_wave, eq. 14];
+    SERRE: Serre's equations in the strip, the kinetic energy to its first correction; SECOND: to its second
+    correction [theory: long_wave, eq. 22].
     """
 
     HYDROSTATIC = "hydrostatic"
@@ -85,16 +84,7 @@ class Wave:
 
 @lru_cache(maxsize=4)
 def half_ring(count: int) -> HalfRing:
-    """So many steps between the nodes of a half ring.
-
-    Parameters
-    ----------
-    count : m
-
-    Raises
-    ------
-    InputError : fewer than 8
-    """
+    """Steps between the nodes of a half ring, 8 at least."""
     if count < 8:
         raise InputError("count", count, "at least 8")
     k = np.arange(count + 1)
@@ -108,26 +98,10 @@ def half_ring(count: int) -> HalfRing:
 
 
 def steady(model: Model, layer: float, detuning: float, whirl: float, count: int = 64) -> Wave | None:
-    """The wave that a whirl holds, followed from the layer at rest.
+    """Wave that a whirl w_0/R holds, followed from the layer at rest; None where the way has no smooth one.
 
-    Parameters
-    ----------
-    model : what is kept of the depth
-    layer : h_0/R
-    detuning : p^2 = (1 - Omega/omega_w)^2
-    whirl : w_0/R, above 0
-    count : steps of the half ring
+    Depth h_0/R, detuning p^2 = (1 - Omega/omega_w)^2, `count` steps of the half ring.
 
-    Returns
-    -------
-    The wave, or None where there is no smooth one on the way
-
-    Raises
-    ------
-    InputError : no layer, no whirl, a negative detuning, too few steps
-
-    Examples
-    --------
     >>> wave = steady(Model.SECOND, 0.1, (1.0 - 1.0 / 0.85) ** 2, 0.01, 32)
     >>> f"{wave.force_ratio:.6f}"  # exact: 1.409750
     '1.409750'
@@ -177,17 +151,10 @@ def _newton(
 
 
 def residuals(model: Model, layer: float, detuning: float, whirl: float, state: Values, count: int) -> Values:
-    """Equations of a steady wave, of one state or of several at once.
+    """Equations of a steady wave, of one state or of several at once, real or complex.
 
-    Parameters
-    ----------
-    model, layer, detuning, whirl, count : as for `steady`
-    state : A at the nodes, what the mass flux has beside it, Bernoulli's constant and, of the model SECOND, w
-        at the nodes between the ends, shape (..., m + 3) or (..., 2 m + 2); real or complex
-
-    Returns
-    -------
-    Of the shape of `state`
+    The state holds A at the nodes, what the mass flux has beside it, Bernoulli's constant and, of the model
+    SECOND, w at the nodes between the ends: shape (..., m + 3) or (..., 2 m + 2).
     """
     ring = half_ring(count)
     area, flux, constant = state[..., : count + 1], state[..., [count + 1]], state[..., [count + 2]]

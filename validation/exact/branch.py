@@ -47,41 +47,20 @@ class End:
 
 
 def detuning(layer: float, ratio: float) -> float:
-    """p^2 at a ratio p/p_1.
-
-    Parameters
-    ----------
-    layer : h_0/R
-    ratio : p/p_1
-    """
+    """p^2 at a ratio p/p_1."""
     return ratio * ratio * linear_detuning(layer)
 
 
 def whirl_speeds(layer: float, ratio: float) -> tuple[float, float]:
-    """The twins of whirl speeds at a ratio p/p_1, over the spin: behind the drum, and ahead or against it.
-
-    Parameters
-    ----------
-    layer : h_0/R
-    ratio : p/p_1
-    """
+    """Whirl speeds at a ratio p/p_1, over the spin: behind the drum, and ahead or against it."""
     p = math.sqrt(detuning(layer, ratio))
     return 1.0 / (1.0 + p), 1.0 / (1.0 - p)
 
 
 def held_waves(layer: float, ratio: float, whirls: Sequence[float], end: float = math.inf) -> list[Held]:
-    """Exact waves of whirls that grow from nothing, as far as they are smooth.
+    """Exact waves of rising whirls w_0/h_0 from nothing, as far as they are smooth, at p/p_1 other than 1.
 
-    Parameters
-    ----------
-    layer : h_0/R
-    ratio : p/p_1, not 1
-    whirls : w_0/h_0, rising
-    end : w_0/h_0 of the fold, if it is known
-
-    Returns
-    -------
-    Of the first so many whirls
+    `end` is w_0/h_0 of the fold, if it is known.
     """
     wave, found = _rest(layer, ratio), []
     for whirl in whirls:
@@ -96,18 +75,9 @@ def held_waves(layer: float, ratio: float, whirls: Sequence[float], end: float =
 
 
 def end(layer: float, ratio: float) -> End:
-    """Where the waves of whirls that grow from nothing end.
+    """End of whirls that grow from nothing, at p/p_1 other than 1; `WIDEST` where no fold is.
 
     Against the deflection, p > p_1, they are followed in their height, with it in the whirl.
-
-    Parameters
-    ----------
-    layer : h_0/R
-    ratio : p/p_1, not 1
-
-    Returns
-    -------
-    A whirl of `WIDEST` and no fold where they do not end before
     """
     return _end_against(layer, ratio) if ratio > 1.0 else _end_with(layer, ratio)
 

@@ -35,14 +35,9 @@ class Chosen:
 
 
 def choices(cases: Cases, tolerance: float) -> Chosen:
-    """What auto takes and answers; where long waves are left they are not asked, which takes seconds each.
+    """What auto takes and answers; long waves are not asked where they are left, which takes seconds each.
 
     Of the two whirl speeds of a detuning every other case has the one behind the drum, the others its twin.
-
-    Parameters
-    ----------
-    cases : whirls with their exact waves
-    tolerance : that auto is given
     """
     places = zip(cases.layer.tolist(), cases.ratio.tolist(), cases.whirl.tolist(), strict=True)
     found = [_choice(*place, tolerance, k % 2) for k, place in enumerate(places)]
@@ -63,14 +58,7 @@ def _choice(layer: float, ratio: float, size: float, tolerance: float, twin: int
 
 
 def words(cases: Cases, tolerance: float, found: Chosen) -> str:
-    """A row of a table: shares of the models among smooth waves, coverage, the others.
-
-    Parameters
-    ----------
-    cases : whirls with their exact waves
-    tolerance : that auto was given
-    found : what it took
-    """
+    """Row of a table: shares of the models among smooth waves, coverage, the others."""
     smooth = cases.smooth
     names = ("linear", "kdv", "potential", "long_wave")
     shares = [f"{np.mean(found.model[smooth] == name):.1%}" for name in names]

@@ -31,12 +31,7 @@ _FRAME = Frame(left=0.72, top=0.24, between=0.3, below=0.42)
 
 
 def maps_figure(cases: Cases) -> Figure:
-    """Error of each model over depth and detuning, at a small whirl and a larger one.
-
-    Parameters
-    ----------
-    cases : on a grid
-    """
+    """Error of each model over depth and detuning, at a small whirl and a larger one."""
     with style():
         figure = Figure()
         rows: list[list[Any]] = []
@@ -102,18 +97,7 @@ def _spread(figure: Figure, rows: list[list[Any]], shown: Any) -> None:
 
 
 def grid_of(cases: Cases, model: str, whirl: float) -> tuple[Array, Array, Array]:
-    """A model's error at one whirl, on the grid of the maps.
-
-    Parameters
-    ----------
-    cases : on a grid
-    model : its name
-    whirl : w_0/h_0, one of the grid's
-
-    Returns
-    -------
-    p/p_1, shape (m,), h_0/R, shape (n,), and the error, shape (n, m)
-    """
+    """p/p_1 (m,), h_0/R (n,) and a model's error (n, m) at one whirl w_0/h_0 of the maps' grid."""
     mine = np.isclose(cases.whirl, whirl)
     layers, ratios = np.unique(cases.layer[mine]), np.unique(cases.ratio[mine])
     error = np.full((layers.size, ratios.size), np.nan)
@@ -123,12 +107,7 @@ def grid_of(cases: Cases, model: str, whirl: float) -> tuple[Array, Array, Array
 
 
 def maps_words(cases: Cases) -> str:
-    """What a reader would take from the maps.
-
-    Parameters
-    ----------
-    cases : on a grid
-    """
+    """What a reader would take from the maps."""
     parts = []
     for model, name in _MODELS:
         for whirl in _WHIRLS:
@@ -142,12 +121,7 @@ def maps_words(cases: Cases) -> str:
 
 
 def ends_figure(ends: Ends) -> Figure:
-    """The largest whirl of a smooth wave over the detuning, for some depths.
-
-    Parameters
-    ----------
-    ends : of branches
-    """
+    """Largest whirl of a smooth wave over the detuning, for some depths."""
     with style():
         figure = Figure()
         axes: Any = figure.add_axes((0, 0, 1, 1))
@@ -178,12 +152,7 @@ def ends_figure(ends: Ends) -> Figure:
 
 
 def ends_words(ends: Ends) -> str:
-    """What a reader would take from the lines.
-
-    Parameters
-    ----------
-    ends : of branches
-    """
+    """What a reader would take from the lines."""
     parts = [
         f"{whirl:.2g} at p/p_1 = {ratio:g} and a depth of {layer:g}"
         for layer, ratio, whirl in zip(ends.layer, ends.ratio, ends.whirl, strict=True)
@@ -193,12 +162,7 @@ def ends_words(ends: Ends) -> str:
 
 
 def draw(out: Path) -> list[Path]:
-    """Write both as PNG.
-
-    Parameters
-    ----------
-    out : folder, made if it is missing
-    """
+    """Write both as PNG."""
     measured = kept()
     return [
         save_png(maps_figure(measured.maps), out, "wave_errors", "Error of the models beside the exact wave"),

@@ -1,9 +1,8 @@
 """Smooth steady long waves without friction, solved for in the frame of their whirl.
 
-`LongWave` goes through time until its force no longer changes. Where no bore stands and nothing rubs, what it
-ends at obeys ordinary equations, solved here by Newton's method: the error of the model alone, without that
-of its cells [theory: model_error, eq. 24-27]. Lengths over R, times in 1/Omega, velocities over s; of the
-whirl speed only p^2 counts, as for the exact wave.
+Without bore and friction what `LongWave` ends at obeys ordinary equations, solved by Newton's method: the
+error of the model alone, without its cells' [theory: model_error, eq. 24-27]. Lengths over R, times in
+1/Omega, velocities over s; of the whirl speed only p^2 counts, as for the exact wave.
 """
 
 from __future__ import annotations
@@ -52,21 +51,10 @@ class SteadyLongWave:
 
 
 def steady_long_wave(layer: float, detuning: float, whirl: float, dispersion: bool) -> SteadyLongWave:
-    """The long wave that a whirl holds, followed from the layer at rest.
+    """Long wave that a whirl w_0/R holds, from the layer at rest; not converged where the flow chokes before.
 
-    Parameters
-    ----------
-    layer : h_0/R
-    detuning : p^2 = (1 - Omega/omega_w)^2
-    whirl : w_0/R, above 0
-    dispersion : with the model's dispersion
+    Depth h_0/R, detuning p^2 = (1 - Omega/omega_w)^2.
 
-    Returns
-    -------
-    The wave; not converged where the way there ends, as it does where the flow chokes
-
-    Examples
-    --------
     >>> wave = steady_long_wave(0.1, (1.0 - 1.0 / 1.3) ** 2, 0.002, dispersion=True)
     >>> f"{wave.force_ratio:.4f}"  # the exact wave has 2.0425
     '2.0425'
@@ -98,17 +86,7 @@ def _followed(layer: float, detuning: float, whirl: float, dispersion: bool, cou
 
 
 def choking(layer: float, detuning: float, most: float) -> float:
-    """Largest w_0/h_0 of a smooth long wave without dispersion, to 10 %.
-
-    Parameters
-    ----------
-    layer, detuning : h_0/R and p^2
-    most : w_0/h_0 up to which it is followed
-
-    Returns
-    -------
-    nan where it is above `most`
-    """
+    """Largest w_0/h_0 of a smooth long wave without dispersion, to 10 %; nan above `most`."""
     state, count, whirl, reached = _rest(layer, detuning, _CHOKED), _CHOKED, 1e-6, 0.0
     coefficients = _even(count).coefficients
     while whirl < most:
@@ -144,12 +122,7 @@ class _Problem:
     count: int
 
     def residual(self, state: Array) -> Array:
-        """What the unknowns miss [theory: model_error, eq. 24-27].
-
-        Parameters
-        ----------
-        state : real or complex, shape (..., 2 n)
-        """
+        """Residual of the unknowns, real or complex, shape (..., 2 n) [theory: model_error, eq. 24-27]."""
         n, even, square = self.count, _even(self.count), self.detuning
         area, flux, constant = state[..., :n], state[..., -2:-1], state[..., -1:]
         lag = np.zeros_like(area)

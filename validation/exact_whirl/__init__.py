@@ -74,12 +74,7 @@ def _grown(found: dict[str, Any]) -> Grown:
 
 
 def keep(results: Kept) -> None:
-    """Write what was computed.
-
-    Parameters
-    ----------
-    results : all of it
-    """
+    """Write what was computed."""
     KEPT.write_text(json.dumps(_plain(asdict(results)), separators=(",", ":")) + "\n", encoding="utf-8")
 
 

@@ -35,12 +35,7 @@ HEAVY, SMALL, LONGEST, MOST = 0.1, 1e-4, 1500.0, 2048
 
 
 def onset_of(layer: float, mass_ratio: float) -> Onset:
-    """How a whirl begins.
-
-    Parameters
-    ----------
-    layer, mass_ratio : h_0/R, mu
-    """
+    """How a whirl begins."""
     found = circles(layer, mass_ratio, DAMPING, FRICTION, NEAR)
     if not found:
         return Onset(layer, mass_ratio, math.nan, math.nan)
@@ -49,33 +44,18 @@ def onset_of(layer: float, mass_ratio: float) -> Onset:
 
 
 def way_of(layer: float, mass_ratio: float) -> Way:
-    """Its circles.
-
-    Parameters
-    ----------
-    layer, mass_ratio : h_0/R, mu
-    """
+    """Circles of a machine, h_0/R and mu."""
     return Way(layer, mass_ratio, tuple(circles(layer, mass_ratio, DAMPING, FRICTION, WHIRLS)))
 
 
 def settled_at(layer: float, mass_ratio: float, speed: float, whirl: float) -> Grown:
-    """A machine begun on a smaller or a larger circle than that of its speed.
-
-    Parameters
-    ----------
-    layer, mass_ratio, speed, whirl : h_0/R, mu, Omega/omega_n, W/h_0 at first
-    """
+    """Machine begun on a circle W/h_0 smaller or larger than that of its speed Omega/omega_n."""
     begin = circles(layer, mass_ratio, DAMPING, FRICTION, (0.3 * whirl, whirl))[-1]
     return grown(Setting(layer, mass_ratio, speed, DAMPING, FRICTION), whirl, LONG, FEW, begin=begin)
 
 
 def grown_at(layer: float, speed: float, friction: float) -> Grown:
-    """A whirl until its wave ends; how it grew on the way is not kept.
-
-    Parameters
-    ----------
-    layer, speed, friction : h_0/R, Omega/omega_n, k/omega_n
-    """
+    """Whirl until its wave ends, without its history; Omega/omega_n, k/omega_n."""
     found = grown(Setting(layer, HEAVY, speed, DAMPING, friction), SMALL, LONGEST, MOST)
     return replace(found, time=(), whirl=())
 
@@ -107,12 +87,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def computed(part: str) -> Iterator[Onset | Way | Grown]:
-    """The rows of a part, one after another.
-
-    Parameters
-    ----------
-    part : one of `PARTS`
-    """
+    """Rows of one of `PARTS`, one after another."""
     if part == "onsets":
         yield from (onset_of(layer, ratio) for layer in LAYERS for ratio in MASS_RATIOS)
     elif part == "ways":

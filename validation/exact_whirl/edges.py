@@ -16,18 +16,7 @@ from solvers.wave_error import force_change, layer_tanh, small_force
 
 
 def crest_detuning(layer: ArrayLike, crests: int) -> Array:
-    """p_n^2 of small free waves [theory: potential, eq. 15].
-
-    Parameters
-    ----------
-    layer : h_0/R, shape (...,)
-    crests : n
-
-    Examples
-    --------
-    >>> print(f"{crest_detuning(0.1, 1):.6f}")
-    0.095000
-    """
+    """p_n^2 of small natural waves of n crests [theory: potential, eq. 15]."""
     ring = np.power(1.0 - np.asarray(layer, dtype=float), 2 * crests)
     share = (1.0 - ring) / (1.0 + ring)
     return np.asarray(share / (crests + share))
@@ -36,14 +25,8 @@ def crest_detuning(layer: ArrayLike, crests: int) -> Array:
 def edge_mass_ratio(layer: ArrayLike, detuning: ArrayLike) -> Array:
     """Mass ratio mu at which an edge of the band whirls with this detuning [theory: potential, eq. 35].
 
-    Parameters
-    ----------
-    layer : h_0/R, shape (...,)
-    detuning : p^2 of the whirl behind the drum, below p_1^2 for the lower edge and above for the upper one
-
-    Returns
-    -------
-    Shape (...,); negative or infinite where no edge is
+    p^2 of the whirl behind the drum: below p_1^2 for the lower edge, above for the upper one. Negative or
+    infinite where there is no edge.
     """
     x, t = np.asarray(detuning, dtype=float), layer_tanh(layer)
     slip = np.sqrt(x)
@@ -55,24 +38,13 @@ def edge_mass_ratio(layer: ArrayLike, detuning: ArrayLike) -> Array:
 
 
 def edge_speed(layer: ArrayLike, detuning: ArrayLike, mass_ratio: ArrayLike) -> Array:
-    """Omega/omega_n of a circle without losses that whirls behind the drum with this detuning.
-
-    Parameters
-    ----------
-    layer, detuning : h_0/R and p^2, shape (...,)
-    mass_ratio : mu, shape (...,)
-    """
+    """Omega/omega_n of a circle without losses that whirls behind the drum with detuning p^2."""
     slip = np.sqrt(np.asarray(detuning, dtype=float))
     return np.asarray((1.0 + slip) / np.sqrt(1.0 + np.asarray(mass_ratio) * small_force(layer, detuning)))
 
 
 def edge_shift(layer: ArrayLike, detuning: ArrayLike, mass_ratio: ArrayLike) -> Array:
-    """Change of an edge's Omega/omega_n over (W/h_0)^2 [theory: potential, eq. 36].
-
-    Parameters
-    ----------
-    layer, detuning, mass_ratio : of the edge, shape (...,)
-    """
+    """Change of an edge's Omega/omega_n over (W/h_0)^2 [theory: potential, eq. 36]."""
     depth = np.asarray(layer, dtype=float)
     size = np.square(depth / (1.0 - depth))
     below = 1.0 + np.asarray(mass_ratio) * small_force(layer, detuning)
@@ -81,12 +53,7 @@ def edge_shift(layer: ArrayLike, detuning: ArrayLike, mass_ratio: ArrayLike) -> 
 
 
 def edge_detunings(layer: float, mass_ratio: float) -> tuple[float, float]:
-    """p^2 of the whirl at the lower and at the upper edge of the band.
-
-    Parameters
-    ----------
-    layer, mass_ratio : h_0/R, mu
-    """
+    """p^2 of the whirl at the lower and at the upper edge of the band."""
     from scipy.optimize import brentq
 
     first = float(crest_detuning(layer, 1))
@@ -108,14 +75,5 @@ def soft_mass_ratio(layer: ArrayLike) -> Array:
 
     There the whirl at the edge is as fast as the free wave of two crests; a heavier liquid's edge whirls
     faster.
-
-    Parameters
-    ----------
-    layer : h_0/R, shape (...,)
-
-    Examples
-    --------
-    >>> soft_mass_ratio(np.array([0.1, 0.5])).round(4)
-    array([0.    , 0.0672])
     """
     return edge_mass_ratio(layer, crest_detuning(layer, 2))

@@ -78,13 +78,7 @@ def _draw_circles(axes: Any, results: Kept) -> None:
 
 
 def settled_on(results: Kept, way: Way) -> list[tuple[float, float]]:
-    """Omega/omega_n and W/h_0 that small pushes of a way's machine came to in time.
-
-    Parameters
-    ----------
-    results : all that is kept
-    way : of the machine
-    """
+    """Omega/omega_n and W/h_0 that small pushes of a way's machine came to in time."""
     return [
         (found.setting.speed, found.last)
         for found in results.settled
@@ -93,12 +87,7 @@ def settled_on(results: Kept, way: Way) -> list[tuple[float, float]]:
 
 
 def alternative(results: Kept) -> str:
-    """The numbers that a reader would take from the figure.
-
-    Parameters
-    ----------
-    results : what is drawn
-    """
+    """Numbers that a reader would take from the figure."""
     edges = ", ".join(f"{soft_mass_ratio(h):.2g} at depth {h:g}" for h in (0.3, 0.4, 0.5, 0.6, 0.7))
     ways = [
         f"depth {way.layer:g}, mass ratio {way.mass_ratio:g}: from {way.circles[0].speed:.4f} to "
@@ -113,12 +102,7 @@ def alternative(results: Kept) -> str:
 
 
 def draw(out: Path) -> Path:
-    """Write it as PNG.
-
-    Parameters
-    ----------
-    out : folder, made if it is missing
-    """
+    """Write it as PNG."""
     return save_png(whirl_figure(), out, "exact_whirl", "How a whirl with an exact layer begins")
 
 

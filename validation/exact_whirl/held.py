@@ -57,15 +57,7 @@ class Pair:
 
 
 def held_at(name: str, rpm: float, liquid: str, cells: int) -> Told:
-    """Hold an example at one speed from its synchronous motion.
-
-    Parameters
-    ----------
-    name : of the example
-    rpm : speed
-    liquid : "potential" or "long_wave"
-    cells : round each wall
-    """
+    """Time-domain state of an example at one speed, rpm, from its synchronous motion."""
     spin = rpm * math.pi / 30.0
     change = {"speeds.start": spin, "speeds.stop": spin, "speeds.count": 1}
     scene = example(name).replace(change | {"model.liquid": liquid, "model.cells": cells})
@@ -84,13 +76,7 @@ def held_at(name: str, rpm: float, liquid: str, cells: int) -> Told:
 
 
 def pair(name: str, rpm: float, nodes: int, cells: int) -> Pair:
-    """Both models.
-
-    Parameters
-    ----------
-    name, rpm : as for `held_at`
-    nodes, cells : of the exact wave and of long waves
-    """
+    """Both models, with nodes of the exact wave and cells of long waves."""
     return Pair(name, rpm, held_at(name, rpm, "potential", nodes), held_at(name, rpm, "long_wave", cells))
 
 

@@ -51,13 +51,7 @@ class Grown:
 
 
 def machine_of(setting: Setting, nodes: int) -> ExactMachine:
-    """The rotor with its exact layer.
-
-    Parameters
-    ----------
-    setting : the machine
-    nodes : of the surface
-    """
+    """Rotor with its exact layer of so many surface nodes."""
     volume = math.pi * RADIUS**2 * HEIGHT * setting.layer * (2.0 - setting.layer)
     fill = Fill(Chamber(RADIUS, HEIGHT), known_liquid("water"), volume)
     full = fill.liquid.density * math.pi * RADIUS**2 * HEIGHT
@@ -69,14 +63,7 @@ def machine_of(setting: Setting, nodes: int) -> ExactMachine:
 
 
 def standing(setting: Setting, circle: Circle, nodes: int) -> tuple[ExactMachine, Array]:
-    """The machine and its state on a circle, deflected along the first direction.
-
-    Parameters
-    ----------
-    setting : the machine, at the circle's speed
-    circle : of it
-    nodes : of the surface, even
-    """
+    """Machine and its state on a circle, deflected along the first direction; an even number of nodes."""
     machine, size = machine_of(setting, nodes), circle.whirl * setting.layer
     slip = 1.0 - circle.speed / circle.whirl_speed
     wave = lagging_wave(setting.layer, slip, size, setting.friction / circle.whirl_speed)
@@ -97,16 +84,9 @@ def grown(
     nodes: int = 64,
     begin: Circle | None = None,
 ) -> Grown:
-    """Let the machine go.
+    """Let the machine go, pushed by a deflection over h_0 with the liquid at rest, or from circle `begin`.
 
-    Parameters
-    ----------
-    setting : the machine
-    push : deflection at first over h_0, the liquid at rest
-    duration : over 1/omega_n, unless a wave ends it
-    most : nodes are doubled up to this many
-    nodes : to begin with
-    begin : on this circle rather than with a push
+    Over a duration in 1/omega_n unless a wave ends it; nodes are doubled up to `most`.
     """
     machine = machine_of(setting, nodes)
     depth = setting.layer * RADIUS

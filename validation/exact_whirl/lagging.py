@@ -44,18 +44,10 @@ class LaggingWave:
 def lagging_wave(
     layer: float, slip: float, whirl: float, friction: float, near: Array | None = None
 ) -> LaggingWave:
-    """The wave of a whirl in liquid with friction, from one that is near or from the layer at rest.
+    """Wave of a whirl w_0/R in liquid with friction k/omega_w, from a surface, (m,), or from rest.
 
-    Parameters
-    ----------
-    layer : h_0/R
-    slip : p = 1 - Omega/omega_w
-    whirl : w_0/R, above 0
-    friction : k/omega_w
-    near : its surface, shape (m,); the layer at rest on `NODES` nodes if None
+    Slip p = 1 - Omega/omega_w.
 
-    Examples
-    --------
     >>> found = lagging_wave(0.1, 1.0 - 1.0 / 1.3, 0.002, 0.0)
     >>> f"{found.force_ratio.real:.9f}"
     '2.042546357'
@@ -146,12 +138,9 @@ class Circle:
 def small_whirl(
     layer: float, mass_ratio: float, damping: float, friction: float, speed: float
 ) -> tuple[float, float]:
-    """Growth and speed over omega_n of the small whirl that grows most [theory: whirl, eq. 8].
+    """Growth rate and speed over omega_n of the small whirl that grows most [theory: whirl, eq. 8].
 
-    Parameters
-    ----------
-    layer, mass_ratio, damping, friction : h_0/R, mu, zeta, k/omega_n
-    speed : Omega/omega_n
+    Of h_0/R, mu, zeta, k/omega_n and Omega/omega_n.
     """
     tanh = float(layer_tanh(layer))
     poly = np.polynomial.polynomial
@@ -167,16 +156,7 @@ def small_whirl(
 
 
 def onset(layer: float, mass_ratio: float, damping: float, friction: float) -> tuple[float, float] | None:
-    """Omega/omega_n and omega_w/omega_n at which a whirl begins to grow on the way up.
-
-    Parameters
-    ----------
-    layer, mass_ratio, damping, friction : h_0/R, mu, zeta, k/omega_n
-
-    Returns
-    -------
-    None where none does up to `_FASTEST`
-    """
+    """Omega/omega_n and omega_w/omega_n at which a whirl grows on the way up; None up to `_FASTEST`."""
     from scipy.optimize import brentq
 
     def growth(speed: float) -> float:
@@ -201,14 +181,9 @@ def circles(
     whirls: Sequence[float],
     nodes: int = NODES,
 ) -> list[Circle]:
-    """Circles of growing whirls from the lower onset, each from the one before, until none is found.
+    """Circles of rising whirls W/h_0 from the lower onset, each from the one before, until none is found.
 
-    Parameters
-    ----------
-    layer, mass_ratio : h_0/R, mu
-    damping, friction : zeta, k/omega_n
-    whirls : W/h_0, above 0 and rising
-    nodes : round the drum, odd
+    An odd number of nodes round the drum.
     """
     begin = onset(layer, mass_ratio, damping, friction)
     if begin is None:

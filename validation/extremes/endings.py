@@ -67,14 +67,7 @@ class Ending:
 
 
 def start(command: str, folder: Path, most: int | None = None) -> subprocess.Popen[str]:
-    """A command in a session of its own.
-
-    Parameters
-    ----------
-    command : one of `COMMANDS`
-    folder : that it works in
-    most : bytes of a file at most, as on a full disk
-    """
+    """Command in a session of its own; `most`: bytes of a file at most, as on a full disk."""
     (folder / "out").mkdir(exist_ok=True)
     scene = re.sub("(?m)^count = .*$", "count = 3", _RIG.read_text(encoding="utf-8"))
     (folder / "scene.toml").write_text(scene, encoding="utf-8")
@@ -162,13 +155,7 @@ def store_of(folder: Path) -> dict[str, bytes]:
 
 
 def faults(command: str, folder: Path, ending: Ending, number: int, whole: dict[str, bytes]) -> list[str]:
-    """What is not as promised after a signal.
-
-    Parameters
-    ----------
-    command, folder, ending, number : as given to, and by, `ended`
-    whole : a sweep's store that nothing happened to
-    """
+    """What is not as promised after a signal; `whole` is the store of a sweep that nothing happened to."""
     found = broken(folder)
     # Ended by the signal itself as Python takes itself down, which shells call 128 and its number as well.
     if ending.code not in (_PROMISED[signal.Signals(number)], -number, 0):
@@ -192,11 +179,7 @@ def faults(command: str, folder: Path, ending: Ending, number: int, whole: dict[
 def by_signal(command: str, name: str, trials: int, seed: int) -> tuple[Counter[str], list[str]]:
     """Ends of a command by a signal at random moments, and what was not as promised.
 
-    Parameters
-    ----------
-    command, name : of `COMMANDS` and `SIGNALS`
-    trials : how many
-    seed : of the moments, evenly over the time that the command takes
+    The moments lie evenly over the time that the command takes.
     """
     rng, counts, found = np.random.default_rng(seed), Counter[str](), list[str]()
     with tempfile.TemporaryDirectory() as scratch:
@@ -222,12 +205,7 @@ def by_signal(command: str, name: str, trials: int, seed: int) -> tuple[Counter[
 
 @contextmanager
 def small_disk(folder: Path, size: int) -> Iterator[None]:
-    """A folder that is a disk in memory of so many bytes; takes the rights to mount one.
-
-    Raises
-    ------
-    OSError : it cannot be mounted
-    """
+    """Folder that is a disk in memory of so many bytes; takes the rights to mount one."""
     done = subprocess.run(
         ["mount", "-t", "tmpfs", "-o", f"size={size}", "tmpfs", str(folder)], capture_output=True, text=True
     )
@@ -244,12 +222,7 @@ def on_a_full_disk(
 ) -> tuple[Counter[str], list[str]]:
     """Ends of a command where the disk is full, and what was not as promised.
 
-    Parameters
-    ----------
-    command : of `COMMANDS`
-    trials : how many
-    seed : of how much may be written
-    mounted : onto a small disk in memory; else no file may be longer than that
+    Mounted: on a small disk in memory; else no file may be longer than that. The seed says how long.
     """
     rng, counts, found = np.random.default_rng(seed), Counter[str](), list[str]()
     for _ in range(trials):

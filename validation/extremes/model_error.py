@@ -183,18 +183,11 @@ class HeldSample:
 
 
 def held_sample(seed: int, count: int, cells: int = 48, kind: str = "jeffcott") -> HeldSample:
-    """What gravity across the axis does to random lying machines that are stable without it.
+    """Effect of gravity across the axis on random lying machines that are stable without it.
 
     One or two chambers with layers of 0.01 to 0.3 of the radius, centrifugal acceleration of 2 to 100 times
-    gravity, 0.2 to 5 times the critical speed, deflections of 0.02 to 1.5 depths. Machines whose liquid falls
-    are left out.
-
-    Parameters
-    ----------
-    seed : of the random machines
-    count : how many are drawn
-    cells : round each wall
-    kind : of the rotor: "jeffcott", "two_plane" or "tub"
+    gravity, 0.2 to 5 times the critical speed, deflections of 0.02 to 1.5 depths; without machines whose
+    liquid falls. Kind of rotor: "jeffcott", "two_plane" or "tub".
     """
     rng = np.random.default_rng(seed)
     rows, thrown = [], []
@@ -251,13 +244,7 @@ Lying = tuple[Jeffcott | TwoPlane | Tub, list[Fill], float, Friction]
 
 
 def _random_layers(rng: np.random.Generator, reach: float = 0.0) -> tuple[float, list[Fill]]:
-    """A size, and one or two layers in chambers of that radius at most.
-
-    Parameters
-    ----------
-    rng : where the numbers come from
-    reach : how far along the axis they lie, over the size; 0 where all lie in one plane
-    """
+    """A size, and one or two layers in chambers of at most that radius, `reach` sizes along the axis."""
     largest, fills = between(rng, 0.05, 0.4), []
     for _ in range(int(rng.integers(1, 3))):
         radius = largest * between(rng, 0.4, 1.0)

@@ -15,12 +15,7 @@ PICTURED = ("runup", "horizontal_rig")
 
 
 def draw(out: Path) -> list[Path]:
-    """Draw all as PNG.
-
-    Parameters
-    ----------
-    out : folder, made if it is missing
-    """
+    """Draw all as PNG."""
     from validation.benchmarks.report import accuracy_figure, growth_figure, kept_results
     from validation.trade import again
     from validation.trade.figure import save, trade_figure

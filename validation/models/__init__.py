@@ -58,12 +58,7 @@ def _read(row: dict[str, Any]) -> ModelRow:
 
 
 def keep(tables: tuple[ModelTable, ...]) -> None:
-    """Write what was measured.
-
-    Parameters
-    ----------
-    tables : one for each scene
-    """
+    """Write what was measured."""
     rows = [
         asdict(table) | {"rows": [{k: _plain(v) for k, v in asdict(row).items()} for row in table.rows]}
         for table in tables
@@ -77,13 +72,7 @@ def _plain(value: object) -> object:
 
 
 def error_words(row: ModelRow, best: float) -> str:
-    """An error as a table shows it.
-
-    Parameters
-    ----------
-    row : of the model
-    best : own error of the best answer, below which nothing can be told
-    """
+    """Error as a table shows it; below the own error of the best answer nothing can be told."""
     if math.isnan(row.error):
         return "best"
     size = "rounding" if row.error < 1e-9 else f"{100.0 * row.error:.2g} %"
@@ -93,12 +82,7 @@ def error_words(row: ModelRow, best: float) -> str:
 
 
 def time_words(seconds: float) -> str:
-    """A time as a table shows it.
-
-    Parameters
-    ----------
-    seconds : of one speed
-    """
+    """Time of one speed as a table shows it."""
     return f"{1e3 * seconds:.3g} ms" if seconds < 1.0 else f"{seconds:.2g} s"
 
 

@@ -7,11 +7,11 @@ import argparse
 import numpy as np
 
 from leblanc.results.models.comparison import ModelAnswer
-from leblanc.results.response import RunResult
 from leblanc.scene.examples import example
 from leblanc.scene.scene import Scene
 from leblanc.studies.compare import compare_models
 from leblanc.studies.held.holding import Holding, cores
+from leblanc.studies.run.answer import RunResult
 from solvers.synchronous.response import distance
 from validation.models import ModelRow, ModelTable, keep
 
@@ -34,12 +34,7 @@ SCENES: dict[str, tuple[dict[str, object], str, str]] = {
 
 
 def measure(name: str) -> ModelTable:
-    """All models on one scene.
-
-    Parameters
-    ----------
-    name : of the example
-    """
+    """All models on one example."""
     change, about, best = SCENES[name]
     scene = example(name).replace(change)
     answers: dict[tuple[str, int | None], ModelAnswer] = {
@@ -73,18 +68,7 @@ def _estimate(result: RunResult) -> np.ndarray:
 
 
 def row_of(model: str, cells: int | None, answer: ModelAnswer, reference: RunResult | None) -> ModelRow:
-    """What the table says of an answer.
-
-    Parameters
-    ----------
-    model, cells : its name and resolution
-    answer : of the model
-    reference : the best answer
-
-    Raises
-    ------
-    RuntimeError : one of them is missing
-    """
+    """What the table says of an answer beside the best one."""
     result = answer.result
     if result is None or reference is None:
         raise RuntimeError(f"{model} does not answer: {answer.reason}")

@@ -86,12 +86,7 @@ def _close(first: ModelRow, second: ModelRow) -> bool:
 
 
 def alternative(tables: tuple[ModelTable, ...]) -> str:
-    """The numbers that a reader would take from the figure.
-
-    Parameters
-    ----------
-    tables : what is drawn
-    """
+    """Numbers that a reader would take from the figure."""
     parts = [
         f"{row.name} on {table.scene} {100.0 * row.error:.2g} % in {1e3 * row.time:.2g} ms"
         for table in tables
@@ -102,12 +97,7 @@ def alternative(tables: tuple[ModelTable, ...]) -> str:
 
 
 def draw(out: Path) -> Path:
-    """Write it as PNG.
-
-    Parameters
-    ----------
-    out : folder, made if it is missing
-    """
+    """Write it as PNG."""
     return save_png(models_figure(), out, "models", "Error of each liquid model over its time")
 
 

@@ -45,8 +45,8 @@ from scipy.integrate import quad
 
 import leblanc as lb
 from fluid.pool import pool_of, sloshing_number
-from leblanc.figures.response import amplitude_figure, liquid_figure
-from leblanc.studies.run import run_scene
+from leblanc.studies.run.figure import amplitude_figure, liquid_figure
+from leblanc.studies.run.study import run_scene
 from validation.cases.rotors import rigs, vector_model
 from validation.cases.rotors.rigs import data
 from validation.figures.rotors import runup_lag

@@ -11,24 +11,14 @@ from typing import Any
 
 
 def kept(name: str) -> dict[str, Any]:
-    """Kept result of a scene.
-
-    Parameters
-    ----------
-    name : stem of the scene's file
-    """
+    """Kept result of a scene, by the stem of its file."""
     text = resources.files("validation.trade").joinpath(f"{name}.json").read_text(encoding="utf-8")
     content: dict[str, Any] = json.loads(text)
     return content
 
 
 def fingerprint(path: Path) -> str:
-    """Of what a scene's file says, whatever the package makes of it and however it is laid out (SHA-256).
-
-    Parameters
-    ----------
-    path : of the scene
-    """
+    """SHA-256 of what a scene's file says, whatever its layout and what the package makes of it."""
     content = json.dumps(tomllib.loads(path.read_text(encoding="utf-8")), sort_keys=True)
     return hashlib.sha256(content.encode()).hexdigest()
 

@@ -51,17 +51,9 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def keep(path: Path, out: Path | None = None, question: str | None = None) -> None:
-    """Measure one scene and write its result beside this module.
+    """Measure one scene, or one question of it, and write its result beside this module.
 
-    Parameters
-    ----------
-    path : of the scene
-    out : folder for its figure, if it is one of the two that are drawn
-    question : the one that is measured; None: all
-
-    Raises
-    ------
-    RuntimeError : the others are kept of another scene or with other versions
+    RuntimeError where the other questions are kept of another scene or with other versions.
     """
     from leblanc.scene.scene import load_scene
     from validation.trade.results import record_of, trade_json

@@ -71,12 +71,7 @@ def _default(name: str, comparison: Comparison) -> Case:
 
 
 def record(name: str) -> TradeRecord:
-    """A kept comparison as `trade` found it.
-
-    Parameters
-    ----------
-    name : stem of the scene's file
-    """
+    """Kept comparison of a scene as `trade` found it."""
     content = kept(name)
     comparisons = tuple(_comparison(question, content["rows"]) for question in content["questions"])
     words = content["name"], f"kept in validation/trade/{name}.json"

@@ -107,13 +107,7 @@ class Steady:
 
 
 def steady(scene: Scene, models: LiquidModel | Sequence[LiquidModel]) -> Steady:
-    """Synchronous response of a scene.
-
-    Parameters
-    ----------
-    scene : the machine, not an exciter
-    models : of the liquid, one for all speeds or one for each
-    """
+    """Synchronous response of a scene with one liquid model, or one for each speed; no exciter."""
     from solvers.synchronous.response import response
 
     gravity = axial_gravity(scene)
@@ -125,31 +119,16 @@ def steady(scene: Scene, models: LiquidModel | Sequence[LiquidModel]) -> Steady:
 
 
 def chosen_models(scene: Scene, model: str) -> tuple[list[LiquidModel], Choice]:
-    """Model at each speed, and what the main job knows of them.
+    """Model at each speed, and what the main job knows of them; no exciter.
 
     A model that is named is taken as it is; its error is estimated all the same, as users get it.
-
-    Parameters
-    ----------
-    scene : the machine, not an exciter
-    model : "auto" or a name
     """
     choice = choose(scene.altered(model=scene.model.altered(liquid=model)))
     return liquid_models(choice), choice
 
 
 def answer(scene: Scene, case: Case) -> Answer:
-    """Answer of a case to the question that a scene was cut to.
-
-    Parameters
-    ----------
-    scene : of a `Question`
-    case : one of its cases
-
-    Raises
-    ------
-    InputError : a case of no question
-    """
+    """Answer of a case to the question that a scene was cut to."""
     kind = "exciter" if isinstance(scene.rotor, Exciter) else case.question
     if kind not in _ANSWERS:
         raise InputError("question", case.question, "one of " + ", ".join(_ANSWERS))
@@ -229,14 +208,7 @@ def _runup(scene: Scene, case: Case) -> Answer:
 
 
 def taken_run(scene: Scene, model: str, cells: int, dispersion: bool) -> RunupChoice:
-    """A scene's run-up as the command for it makes it, but for the second run with half the cells.
-
-    Parameters
-    ----------
-    scene : the machine
-    model : "auto" or a name
-    cells, dispersion : in place of the scene's
-    """
+    """Run-up of a scene as its command makes it, but for the second run with half the cells."""
     plan = planned(scene)
     numerics = RunupNumerics(cells, plan.samples, dispersion, companion=False)
     variant = scene.altered(model=scene.model.altered(liquid=model))
@@ -269,12 +241,7 @@ _OFF, _SMALL, _PERIODS = 0.8, 0.01, 3  # its whirl over the spin; whirl over the
 
 
 def lone_layer(scene: Scene) -> tuple[Fill, Whirl, Friction]:
-    """First layer of a scene under a small whirl at the last of its speeds, and the friction that is taken.
-
-    Raises
-    ------
-    InputError : no chamber with liquid and a free surface
-    """
+    """First layer of a scene under a small whirl at the last of its speeds, and the friction taken."""
     spin = float(scene.speed_array()[-1])
     for fill in scene.fills:
         if 0.0 < fill.volume < fill.chamber.capacity * (1.0 - 1e-9):

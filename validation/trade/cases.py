@@ -68,13 +68,9 @@ class Question:
 
 
 def questions(scene: Scene, quick: bool = False, layer: bool | None = None) -> tuple[Question, ...]:
-    """What can be compared on a scene: its response and, if it has one, its run-up.
+    """What can be compared on a scene: its response, its run-up if it has one, and one layer.
 
-    Parameters
-    ----------
-    scene : the machine
-    quick : short ladders
-    layer : as well its first layer alone, by every solver that py-pde has for it; None where it `names_waves`
+    `layer`: its first layer alone as well, by every solver of py-pde; None where it `names_waves`.
     """
     if isinstance(scene.rotor, Exciter):
         return (exciter_question(scene, quick),)
@@ -92,12 +88,7 @@ def questions(scene: Scene, quick: bool = False, layer: bool | None = None) -> t
 
 
 def names_waves(scene: Scene) -> bool:
-    """Whether a scene has a layer in a clear ring and asks for waves that py-pde solves.
-
-    Parameters
-    ----------
-    scene : the machine
-    """
+    """Whether a scene has a layer in a clear ring and asks for waves that py-pde solves."""
     layers = any(0.0 < fill.volume < FULL * fill.chamber.capacity for fill in scene.fills)
     clear = all(fill.chamber.baffles is None for fill in scene.fills)
     return layers and clear and scene.model.liquid in ("long_wave", "kdv")
@@ -107,11 +98,6 @@ def layer_questions(scene: Scene, quick: bool = False) -> list[Question]:
     """One layer under a prescribed whirl, as long waves from rest and as one steady family.
 
     Each by its own solver and by those of py-pde, on few cells: their steps are as many as the cells.
-
-    Parameters
-    ----------
-    scene : with a layer
-    quick : short ladders
     """
     from solvers.pypde import settle_family  # with which "steady_newton" comes
     from solvers.pypde.long_wave import AnnularLongWavePDE
@@ -146,11 +132,11 @@ def layer_questions(scene: Scene, quick: bool = False) -> list[Question]:
 
 
 def response_question(scene: Scene, quick: bool = False) -> Question:
-    """The synchronous response at the speeds that distinguish models most.
+    """Synchronous response at the speeds that distinguish models most.
 
     Best is the exact equilibrium of the liquid, which every other steady model approaches; of compartments,
-    which have none, the finest elements of small waves; where gravity lies across the axis, rotor and long
-    waves held in time, which alone have it.
+    which have none, the finest elements of small waves; with transverse gravity rotor and long waves
+    integrated in time, which alone have it.
     """
     cells, meshes = (QUICK_CELLS, QUICK_MESHES) if quick else (CELLS, MESHES)
     if is_cut(scene):
@@ -196,12 +182,7 @@ def finer(question: Question) -> Question | None:
 
 
 def refined_to(question: Question, reference: str) -> Question:
-    """The question with the reference of that label.
-
-    Raises
-    ------
-    InputError : no reference of the question, however fine, has it
-    """
+    """The question with the reference of that label."""
     found: Question | None = question
     while found is not None and found.reference.label != reference:
         found = finer(found)
@@ -211,15 +192,11 @@ def refined_to(question: Question, reference: str) -> Question:
 
 
 def stands_lying(scene: Scene) -> Flags:
-    """At which speeds gravity across the axis shows in an answer that is steady on the whole, shape (n,).
+    """Speeds at which gravity across the axis shows in an answer that is steady on the whole, shape (n,).
 
-    Closer to the speed of capture gravity throws rotor and layer into limit cycles, on one mesh and not on
-    the next; where a whirl grows by itself no steady model answers what it grows to, and where it dies too
-    slowly nothing settles.
-
-    Parameters
-    ----------
-    scene : the machine
+    Closer to the centrifuging speed gravity throws rotor and layer into limit cycles, on one mesh and not on
+    the next; where a whirl is self-excited no steady model answers what it grows to, and where it decays too
+    slowly nothing converges.
     """
     speed, capture = scene.speed_array(), _capture(scene)
     if capture == 0.0:
@@ -230,17 +207,8 @@ def stands_lying(scene: Scene) -> Flags:
 def telling_speeds(scene: Scene, count: int = SPEEDS, among: Flags | None = None) -> Array:
     """Steady peak, its flanks, ends and middle of the range with a dry patch, last speed; others in between.
 
-    Of the speeds at which the liquid rides with the drum, if there are such.
-
-    Parameters
-    ----------
-    scene : the machine
-    count : how many, at most
-    among : only of these, if there are any, shape (n,)
-
-    Returns
-    -------
-    rad/s, rising, shape (k,)
+    Up to `count` of the speeds, rad/s, rising, at which the liquid rides with the drum, if there are such; of
+    `among`, shape (n,), if there are any.
     """
     models, choice = chosen_models(scene, "auto" if is_cut(scene) else "statics")
     found, speed = steady(scene, models), scene.speed_array()
@@ -306,12 +274,12 @@ def _doubled(cells: tuple[int, ...], wanted: int) -> tuple[int, ...]:
 
 
 def passage(scene: Scene) -> tuple[Runup, str]:
-    """A scene's run-up cut to the passage of its largest vibration, and its description.
+    """Run-up of a scene cut to the passage of its largest vibration, and its description.
 
     A coarse run finds it. A ramp then runs from 0.7 to 1.2 of the speed there, within its own ends, and
-    neither holds nor comes back; a motor runs from its start to 1.2 of the time there. A ramp with gravity
-    across the axis starts at twice the speed of capture at least: near that a layer falls on one mesh and
-    stays up on the next, and no mesh is fine enough to show it.
+    neither holds nor comes back; a motor runs from its start to 1.2 of the time there. A ramp with transverse
+    gravity starts at twice the centrifuging speed at least: near that a layer falls on one mesh and stays up
+    on the next, and no mesh is fine enough to show it.
     """
     plan = planned(scene)
     assert isinstance(plan, Runup)

@@ -34,14 +34,8 @@ def resident() -> tuple[int, int]:
 def run(scene: Any, case: Any) -> dict[str, Any]:
     """Answer of a case with what it takes beyond a process that has everything loaded and compiled.
 
-    Parameters
-    ----------
-    scene, case : as for `validation.trade.answers.answer`
-
-    Returns
-    -------
-    `values`, `in_range`, `reason`, `used`, `ripple`, `estimate`, `work` of the answer; `memory`, bytes;
-    `time` and `first`, CPU time of the run and of the first small piece with its imports and compilation, s
+    `values` to `work` of the answer; `memory`, bytes; `time` and `first`, CPU time of the run and of the
+    first small piece with its imports and compilation, s.
     """
     begin = time.process_time()
     from validation.trade.answers import answer, taste

@@ -99,14 +99,7 @@ class Comparison:
 
 
 def compare(question: Question, runs: Mapping[Case, Run], tolerance: float) -> Comparison:
-    """Errors, front, default and recommendation from what the cases answered and took.
-
-    Parameters
-    ----------
-    question : with its cases
-    runs : of each
-    tolerance : relative error that is allowed
-    """
+    """Errors, front, default and recommendation from what the cases answered and took."""
     best = runs[question.reference].answer
     own, order = reference_error(question, [runs[case].answer for case in question.ladder])
     spreads = {case: _spread(runs[case].times) for case in question.cases}
@@ -196,10 +189,7 @@ def _other_physics(question: Question, case: Case) -> str:
 def errors(name: str, found: Answer, best: Answer) -> tuple[float, float]:
     """Error of an answer and of its largest amplitude, relative to the best one's; nan without an answer.
 
-    Parameters
-    ----------
-    name : of the question; a response counts by its worst speed, a history by its root mean square
-    found, best : answers over the same speeds or times
+    A response counts by its worst speed, a history by its root mean square.
     """
     if found.reason or best.reason or found.values.shape != best.values.shape:
         return math.nan, math.nan
@@ -217,14 +207,10 @@ def errors(name: str, found: Answer, best: Answer) -> tuple[float, float]:
 def reference_error(question: Question, ladder: Sequence[Answer]) -> tuple[float, float]:
     """Error of the best answer itself, by Richardson's extrapolation, and the order of its convergence.
 
-    With the differences d1 and d2 between three resolutions, each twice as fine as the last, the order is
-    p = log2(d1/d2) and the finest one's error at most 1.25 d2/(2^min(p, 2) - 1). Where the order is hardly
-    above zero the answers do not converge, and the largest difference stands for the error.
-
-    Parameters
-    ----------
-    question : that they answer
-    ladder : answers, finest first; a single one is exact but for rounding
+    With the differences d1 and d2 between three resolutions, finest first, each twice as fine as the next,
+    the order is p = log2(d1/d2) and the finest one's error at most 1.25 d2/(2^min(p, 2) - 1). Where the order
+    is hardly above zero the largest difference stands for the error; a single answer is exact but for
+    rounding.
     """
     if len(ladder) < 3:
         return _ROUNDING, math.nan
@@ -246,11 +232,6 @@ def dominates(row: Row, other: Row, own: float) -> bool:
 
     Errors closer than the reference's own one count as equal, and so do times within a tenth of each other.
     The same computation under another name dominates nothing: what choosing it costs is the `overhead`.
-
-    Parameters
-    ----------
-    one, other : rows of one question
-    own : error of the reference
     """
     if not (math.isfinite(row.error) and math.isfinite(other.error)):
         return math.isfinite(row.error) and not math.isfinite(other.error)
@@ -288,20 +269,13 @@ def effort(row: Row, default: Row) -> tuple[bool, float]:
 
 
 def recommend(rows: Sequence[Row], own: float, tolerance: float, reference: str) -> int:
-    """Index of the row that is advised; -1 where it cannot be decided.
+    """Index of the row that is advised, the default first; -1 where it cannot be decided.
 
     A row is within the tolerance where its error and the reference's own one together are, and beyond it
     where its error less the reference's is. Advised is the cheapest within by `effort`, but the default if it
     is within and not twice as dear; where all are beyond, the most accurate, of equals the cheapest. Nothing
     is decided where the reference's own error is larger than the tolerance, where no row is within and one
     may be, and where the reference alone is within.
-
-    Parameters
-    ----------
-    rows : of one question, the default first
-    own : error of the reference
-    tolerance : relative error that is allowed
-    reference : label of the row that the others are held against
     """
     known = advisable(rows, reference)
     if not (known and own <= tolerance):

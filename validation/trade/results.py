@@ -25,12 +25,7 @@ REMARK = (
 
 
 def trade_json(record: TradeRecord) -> dict[str, Any]:
-    """The record as an object for scripts: SI, null for what is not there.
-
-    Parameters
-    ----------
-    record : what was found
-    """
+    """The record as an object for scripts: SI, null for what is not there."""
     rows = [_row(row, comparison) for comparison in record.comparisons for row in comparison.rows]
     return {
         "name": record.name,
@@ -45,12 +40,7 @@ def trade_json(record: TradeRecord) -> dict[str, Any]:
 
 
 def record_of(content: Mapping[str, Any]) -> TradeRecord:
-    """The record that was written as such an object; it has no path of its scene.
-
-    Parameters
-    ----------
-    content : as from `trade_json`
-    """
+    """Record that `trade_json` wrote; it has no path of its scene."""
     found = []
     for question in content["questions"]:
         rows = [row for row in content["rows"] if row["question"] == question["question"]]
@@ -97,13 +87,7 @@ def _number(value: float) -> float | None:
 
 
 def recommendation(comparison: Comparison, tolerance: float) -> str:
-    """What to take for a tolerance, the errors that this rests on, and what it costs, in words.
-
-    Parameters
-    ----------
-    comparison : of one question
-    tolerance : relative error that is allowed
-    """
+    """What to take for a tolerance, the errors that this rests on, and what it costs, in words."""
     advised, default = comparison.recommended, comparison.default
     kept = f"keep the default, {default.label} (here {', '.join(default.used)})"
     own = f"{_share(comparison.reference_error)} of the reference, {comparison.reference}"
@@ -153,13 +137,7 @@ def _undecided(comparison: Comparison, tolerance: float, kept: str) -> str:
 
 
 def error_words(row: Row, comparison: Comparison) -> str:
-    """An error as a share, or that it cannot be distinguished from the best answer's own.
-
-    Parameters
-    ----------
-    row : of the comparison
-    one : the comparison
-    """
+    """Error as a share, or that it cannot be distinguished from the best answer's own."""
     if not math.isfinite(row.error):
         return "unknown"
     return (
@@ -178,12 +156,7 @@ def _share(value: float) -> str:
 
 
 def trade_lines(record: TradeRecord) -> list[str]:
-    """The tables as text, one line each.
-
-    Parameters
-    ----------
-    record : what was found
-    """
+    """Tables as text, one line each."""
     lines = [one_line(record.name)]
     for comparison in record.comparisons:
         own = f"best: {comparison.reference}"

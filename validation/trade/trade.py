@@ -53,17 +53,10 @@ def trade_scene(
     layer: bool | None = None,
     only: str | None = None,
 ) -> TradeRecord:
-    """Measure every model and resolution on a scene.
+    """Measure every model and resolution on a scene; `only` one question, all if None.
 
-    Parameters
-    ----------
-    scene : the machine
-    quick : short ladders
-    repeats : how often what is short is timed
-    progress : is called with what runs and the share that is done
-    layer : as well one layer alone, by every solver that py-pde has for it; None where the scene asks for
-        waves that py-pde solves
-    only : the question that is measured; all if None
+    `progress` is called with what runs and the share that is done; `layer`: one layer alone by every solver
+    of py-pde as well, None where the scene asks for waves that py-pde solves.
     """
     require_chambers(scene, "the accuracy and cost of liquid models")
     require_clear(scene, "a comparison of models, most of which know circular walls alone", baffles=True)
@@ -86,16 +79,7 @@ def trade_scene(
 def refine(
     question: Question, runs: dict[Case, Run], tolerance: float, most: float, progress: Progress
 ) -> Comparison:
-    """The comparison with its reference refined until it decides what to take, or costs too much.
-
-    Parameters
-    ----------
-    question : with its cases
-    runs : of each
-    tolerance : relative error that is allowed
-    most : work of a reference, as of an `Answer`
-    progress : is called with what runs and the share that is done
-    """
+    """Comparison with its reference refined until it decides what to take, or costs more work than `most`."""
     found = compare(question, runs, tolerance)
     while not decided(found, tolerance):
         better = finer(question)
@@ -111,26 +95,13 @@ def refine(
 
 
 def error_table(question: Question, cases: Iterable[Case]) -> dict[str, tuple[float, float]]:
-    """Errors alone, found in this process: by label, of the whole and of the largest amplitude.
-
-    Parameters
-    ----------
-    question : whose reference answers as well
-    cases : some of its own
-    """
+    """Errors by label, of the whole and of the largest amplitude, found in this process."""
     best = answer(question.scene, question.reference)
     return {case.label: errors(question.name, answer(question.scene, case), best) for case in cases}
 
 
 def measure(question: Question, repeats: int, progress: Progress) -> dict[Case, Run]:
-    """Run every case: once in a process of its own for its memory, then all in turn here for their time.
-
-    Parameters
-    ----------
-    question : with its cases
-    repeats : of each case that is not long
-    progress : is called with what runs and the share that is done
-    """
+    """Run every case: once in a process of its own for its memory, then all in turn here for their time."""
     runs: dict[Case, Run] = {}
     for k, case in enumerate(question.cases):
         progress(f"{question.name}: {case.label}", 0.7 * k / len(question.cases))
@@ -153,12 +124,7 @@ def measure(question: Question, repeats: int, progress: Progress) -> dict[Case, 
 
 
 def alone(scene: Scene, case: Case) -> Run:
-    """One case in a process of its own.
-
-    Raises
-    ------
-    RuntimeError : that process failed
-    """
+    """One case in a process of its own."""
     path = os.pathsep.join(filter(None, sys.path))
     done = subprocess.run(
         [sys.executable, "-P", "-m", "validation.trade.child"],

@@ -12,16 +12,7 @@ if TYPE_CHECKING:
 
 
 def load(path: Path) -> Scene:
-    """Scene from a file; what is hardly meant in it is said on stderr, one line each.
-
-    Parameters
-    ----------
-    path : the file
-
-    Raises
-    ------
-    SceneError : with everything that is wrong
-    """
+    """Scene from a file, SceneError with all that is wrong; doubts go to stderr, one line each."""
     from leblanc.results.notes.doubts import DoubtCode
     from leblanc.scene.scene import scene_from_table
     from leblanc.scene.schema.load import escaped, given_at, read_scene, with_lines
@@ -39,12 +30,7 @@ def load(path: Path) -> Scene:
 
 
 def processes(wanted: int | None) -> int:
-    """So many as are wanted, or one on each core.
-
-    Raises
-    ------
-    InputError : fewer than one
-    """
+    """As many as are wanted, or one on each core; InputError for fewer than one."""
     from leblanc.studies.held.holding import cores
     from meshes.errors import InputError
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from leblanc.core.units import MM, RPM
 from leblanc.results.motion.held import HELD_MODELS, Held
-from leblanc.results.response import RunResult, phase
+from leblanc.studies.run.answer import RunResult, phase
 from meshes.arrays import Array, Complex, Flags, Index
 
 Span = tuple[float, float]
@@ -68,32 +68,15 @@ class Curves:
 
 
 def lag_degrees(angle: Array, size: Array) -> Array:
-    """Angle in degrees, in the turn from -270 to 90 that keeps a lag of 0 to 180 degrees in one piece.
-
-    Parameters
-    ----------
-    angle : rad, shape (n,)
-    size : length of the arrow whose angle it is, shape (n,)
-
-    Returns
-    -------
-    Degrees in (-270, 90], nan where the arrow has no length, shape (n,).
-    """
+    """Angle in degrees in (-270, 90], a lag of 0 to 180 degrees in one piece; nan where size is 0."""
     degrees = 90.0 - np.mod(90.0 - np.degrees(angle), 360.0)
     return np.where(size > 0.0, degrees, np.nan)
 
 
 def thin(curves: Array, columns: int) -> Index:
-    """Points that keep the look of all curves: ends, peaks and troughs of each column of the drawing.
+    """Indices of points that keep the look of curves, (n, k): ends, peaks and troughs of each column.
 
-    Parameters
-    ----------
-    curves : values over the points, nan allowed, shape (n, k)
-    columns : into which the points are sorted, equal in number of points
-
-    Returns
-    -------
-    Indices of the points to draw, rising; all of them if there are few.
+    All of them if there are few; nan is allowed.
     """
     count = curves.shape[0]
     if count <= 4 * columns:
@@ -114,11 +97,7 @@ def thin(curves: Array, columns: int) -> Index:
 def spans(x: Array, mask: Flags, limits: Span) -> list[Span]:
     """Intervals in which a condition holds, reaching half-way to the next point where it does not.
 
-    Parameters
-    ----------
-    x : rising, shape (n,)
-    mask : the condition, shape (n,)
-    limits : outermost ends; gaps narrower than 1/1000 of them are closed
+    Gaps narrower than 1/1000 of the limits are closed.
     """
     edges = np.concatenate(([limits[0]], 0.5 * (x[1:] + x[:-1]), [limits[1]]))
     change = np.flatnonzero(np.diff(np.concatenate(([False], mask, [False]))))
@@ -132,19 +111,11 @@ def spans(x: Array, mask: Flags, limits: Span) -> list[Span]:
 
 
 def link(branches: Complex) -> Index:
-    """Number the continuous curves that a table of branches is made of.
+    """Number of the continuous curve that each branch belongs to, -1 where there is none, shape (n, b).
 
-    Branches are listed by rising amplitude, so a branch changes its column where a fold begins or ends. The
-    branches of two neighbouring speeds are matched in order; where their numbers differ, those are left
-    over whose absence makes the matched ones move least.
-
-    Parameters
-    ----------
-    branches : complex deflections by rising amplitude, nan where there are fewer, shape (n, b)
-
-    Returns
-    -------
-    Number of the curve, -1 where there is no branch, shape (n, b).
+    Branches, by rising amplitude, change their column where a fold begins or ends. Those of two neighbouring
+    speeds are matched in order; where their numbers differ, those are left over whose absence makes the
+    matched ones move least.
     """
     chain = np.full(branches.shape, -1, dtype=np.intp)
     present = ~np.isnan(branches)
@@ -188,12 +159,7 @@ def _reported(branches: Complex, deflection: Complex, chain: Index) -> Index:
 
 
 def prepare(result: RunResult) -> Curves:
-    """Curves of a study, ready for drawing.
-
-    Parameters
-    ----------
-    result : the study, of any number of speeds in any order
-    """
+    """Curves of a study, ready for drawing."""
     r = result.curve
     order = np.argsort(r.speed, kind="stable")
     rpm = r.speed[order] * RPM
@@ -272,16 +238,10 @@ def _held_curves(result: RunResult, held: Held) -> HeldCurves:
 
 
 def half_power_bands(x: Array, y: Array) -> list[tuple[float, float, float]]:
-    """Peaks of a line by the band in which it is above the peak over the root of 2.
+    """Lower end, upper end and height of the bands in which a line is above its peak over the root of 2.
 
-    Parameters
-    ----------
-    x, y : the line by rising x, nan where it is not known, shape (p,)
-
-    Returns
-    -------
-    Lower end, upper end and height of each, by rising ends; only of peaks that reach a quarter of the highest
-    and whose band has both its ends on the line
+    By rising ends; only of peaks that reach a quarter of the highest and whose band has both its ends on the
+    line.
     """
     known = ~np.isnan(y)
     x, y = x[known], y[known]
@@ -306,20 +266,10 @@ def half_power_bands(x: Array, y: Array) -> list[tuple[float, float, float]]:
 
 
 def windows(lines: Sequence[tuple[Array, Array]], limits: Span) -> list[Span]:
-    """Spans of speed to draw once more, so that narrow resonances have their width on an axis.
+    """At most three spans of speed to draw once more, so that narrow resonances have their width on an axis.
 
-    A resonance is narrow where its half-power band takes less than `NARROW` of the axis. Narrow ones that lie
-    close to one another share a span.
-
-    Parameters
-    ----------
-    lines : x and y of each line
-    limits : of the axis
-
-    Returns
-    -------
-    At most three, those of the highest peaks, by rising speed; none where no resonance is narrow, or where
-    they are spread over more than half of the axis
+    A resonance is narrow where its half-power band takes less than `NARROW` of the axis; narrow ones close to
+    one another share a span. None where they are spread over more than half of the axis.
     """
     whole = limits[1] - limits[0]
     bands = [band for x, y in lines for band in half_power_bands(x, y) if band[1] - band[0] < NARROW * whole]
@@ -339,13 +289,7 @@ def windows(lines: Sequence[tuple[Array, Array]], limits: Span) -> list[Span]:
 
 
 def cut(curves: Curves, window: Span) -> Curves:
-    """The curves within a span of speed, and one point beyond either end of it.
-
-    Parameters
-    ----------
-    curves : of the whole axis
-    window : rpm
-    """
+    """The curves within a span of speed, and one point beyond either end of it."""
     first = max(int(np.searchsorted(curves.rpm, window[0], side="right")) - 1, 0)
     last = int(np.searchsorted(curves.rpm, window[1], side="left")) + 1
     inside = _rows(curves, slice(first, last))
@@ -370,12 +314,7 @@ def _rows(curves: Curves | HeldCurves, part: slice) -> dict[str, Any]:
 
 
 def median_over(x: Array, y: Array) -> float:
-    """Value that a line exceeds over half of its extent, however its points are spread.
-
-    Parameters
-    ----------
-    x, y : the line by rising x, without nan, shape (p,)
-    """
+    """Value that a line exceeds over half of its extent, however its points are spread."""
     if x[-1] <= x[0]:
         return float(np.median(y))
     weight = np.gradient(x) if x.size > 1 else np.ones(1)
@@ -385,13 +324,7 @@ def median_over(x: Array, y: Array) -> float:
 
 
 def gapped(x: Array, y: Array, breaks: Flags) -> tuple[Array, Array]:
-    """Line with a gap after each point where it breaks.
-
-    Parameters
-    ----------
-    x, y : the line, shape (p,)
-    breaks : whether the step to the next point is a jump, shape (p - 1,)
-    """
+    """Line with a gap after each point where it breaks."""
     after = np.flatnonzero(breaks) + 1
     return np.insert(x, after, np.nan), np.insert(y, after, np.nan)
 
@@ -430,12 +363,7 @@ def _fold_tips(curves: Curves, row: int, beyond: int) -> list[tuple[Array, Array
 
 
 def other_branches(curves: Curves) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
-    """Amplitudes of all branches.
-
-    Returns
-    -------
-    Two lines with gaps, rpm and mm: the stable branches; the unstable ones with the tips of the folds.
-    """
+    """Amplitudes of stable branches, and of unstable ones with the folds' tips: rpm and mm, with gaps."""
     stable, unstable = [], []
     for number in range(int(curves.chain.max(initial=-1)) + 1):
         point, column = np.nonzero(curves.chain == number)

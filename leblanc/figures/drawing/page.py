@@ -29,7 +29,7 @@ from numpy.typing import ArrayLike
 from leblanc.core.files import writing
 from leblanc.core.notes import one_line
 from leblanc.core.units import LENGTH, MASS, RPM, VOLUME, unit_for, units_of
-from leblanc.results.response import RunResult
+from leblanc.studies.run.answer import RunResult
 from meshes.arrays import Complex
 from meshes.errors import InputError
 
@@ -64,14 +64,7 @@ class Caption:
 
 
 class Figure(matplotlib.figure.Figure):
-    """A figure of matplotlib that carries its caption and alternative text.
-
-    Attributes
-    ----------
-    caption : below it, drawn in the figure as well
-    alt : what it shows and the numbers a reader would take from it, for who cannot see it
-    drawn : width and height of what stands above the drawn caption, inches
-    """
+    """Figure of matplotlib with its caption, alternative text and `drawn`, inches above the caption."""
 
     caption: Caption = Caption("")
     alt: str = ""
@@ -108,14 +101,7 @@ def _sheet() -> matplotlib.RcParams:
 
 
 def save(figure: Figure, directory: Path, name: str, title: str) -> FigureFiles:
-    """Write one figure as PNG and SVG, without the time of writing.
-
-    Parameters
-    ----------
-    figure : to write
-    directory : where its files go; made if it is missing
-    name, title : stem of the files, what the figure shows
-    """
+    """Write one figure as PNG and SVG, without the time of writing."""
     files = FigureFiles(
         *(name, title, directory / f"{name}.png", directory / f"{name}.svg"),
         caption=figure.caption,
@@ -129,12 +115,7 @@ def save(figure: Figure, directory: Path, name: str, title: str) -> FigureFiles:
 
 
 def save_png(figure: Figure, directory: Path, name: str, title: str) -> Path:
-    """Write one figure as PNG alone; parameters as for `save`.
-
-    Returns
-    -------
-    The file
-    """
+    """Write one figure as PNG alone; parameters as for `save`."""
     FigureCanvasAgg(figure)
     with style(), writing(directory / f"{name}.png") as path:
         metadata = {"Software": None, "Title": title}
@@ -153,12 +134,7 @@ _UNIT = re.compile(r"\((mm|ml|g)( 0-p)?\)$")
 
 
 def readable(axis: Any) -> None:
-    """Show an axis in the unit that a person would write for its limits: 5 um, not 0.005 mm.
-
-    Parameters
-    ----------
-    axis : whose label ends with the unit of what is drawn and whose limits are set
-    """
+    """Show an axis in the unit that a person would write for its limits: 5 um, not 0.005 mm."""
     found = _UNIT.search(axis.get_label_text())
     if found is None or axis.get_scale() != "linear":
         return
@@ -175,25 +151,12 @@ def fill(axes: Axes, x: ArrayLike, y: ArrayLike, **look: Any) -> None:
     """Fill a polygon on axes whose limits are set.
 
     `axes.fill` looks for the extremes of each edge as of a curve, which takes longer than to draw it.
-
-    Parameters
-    ----------
-    axes : to draw on
-    x, y : corners, in the units of the axes, shape (n,)
-    look : of matplotlib's polygon
     """
     axes.add_artist(Polygon(np.column_stack([x, y]), **look))
 
 
 def fill_loops(axes: Axes, loops: Sequence[Complex], **look: Any) -> None:
-    """Fill what lies inside closed outlines, with holes in it, on axes whose limits are set.
-
-    Parameters
-    ----------
-    axes : to draw on
-    loops : corners x + i y with the inside on their left, in the units of the axes, shape (n,) each
-    look : of matplotlib's patch
-    """
+    """Fill what lies inside closed outlines, with holes in it, on axes whose limits are set."""
     corners, codes = [], []
     for loop in loops:
         closed = np.append(loop, loop[0])
@@ -205,24 +168,12 @@ def fill_loops(axes: Axes, loops: Sequence[Complex], **look: Any) -> None:
 
 
 def part_of(colours: str, first: float, last: float) -> ListedColormap:
-    """A part of a range of colours, without its ends.
-
-    Parameters
-    ----------
-    colours : name of the range, as matplotlib has it
-    first, last : of the part, from 0 to 1
-    """
+    """Part of a range of colours, from 0 to 1, without its ends."""
     return ListedColormap(matplotlib.colormaps[colours](np.linspace(first, last, 256)))
 
 
 def add_rate_axis(axes: Axes, label: str = "Speed (rad/s)") -> None:
-    """An axis in rad/s above one in rpm.
-
-    Parameters
-    ----------
-    axes : whose x axis is in rpm
-    label : of the axis above
-    """
+    """An axis in rad/s above one in rpm."""
     above = axes.secondary_xaxis("top", functions=(_to_rate, _to_rpm))
     above.set_xlabel(label)
     above.xaxis.set_major_formatter(number)
@@ -246,12 +197,7 @@ def lay_out(
 ) -> None:
     """Size of the figure, places of its axes, and below them the legend and the caption.
 
-    Parameters
-    ----------
-    figure : all of whose axes are drawn
-    rows, heights : axes that stand beside one another, and how high each row is, inches
-    frame : room around them
-    caption, most_lines : what does not fit so many lines is cut in the drawing
+    Rows stand below one another, heights in inches; of the caption `most_lines` are drawn.
     """
     figure.caption = Caption(caption) if isinstance(caption, str) else caption
     entries: dict[str, Any] = {}
@@ -291,13 +237,8 @@ def add_windows(
 ) -> None:
     """Lay out panels over all speeds and, below, those that show parts of them, linked by lines.
 
-    Parameters
-    ----------
-    figure : of the panels, which are drawn and have their limits
-    whole : over all speeds, above one another
-    wide : for each of them those over parts of the speeds, the same parts, beside one another
-    heights : of the rows over all speeds, then of the others, inches
-    caption : below the figure
+    `wide` holds for each panel those over the same parts, beside one another; heights, inches, are of the
+    rows over all speeds, then of the others.
     """
     parts, count = len(wide[0]), len(whole)
     for row in wide:
@@ -368,12 +309,7 @@ def _wrapped(text: str, width: float, most: int) -> list[str]:
 
 
 def require_film(path: Path) -> str:
-    """Ending of a film's path.
-
-    Raises
-    ------
-    InputError : it is neither .gif nor .mp4; an .mp4 without an ffmpeg
-    """
+    """Ending of a film's path, .gif or .mp4; InputError for another or an .mp4 without an ffmpeg."""
     kind = path.suffix.lower()
     if kind not in (".gif", ".mp4"):
         raise InputError("--animate", str(path), "a file that ends in .gif or .mp4")
@@ -389,23 +325,10 @@ def write_film(
     path: Path,
     drawn: Callable[[int, int], None] | None = None,
 ) -> int:
-    """Write a film, whole or not at all.
+    """Write a film, whole or not at all, to a .gif or (with an ffmpeg) an .mp4; its number of frames.
 
-    Parameters
-    ----------
-    make : the figure, and what sets it to a frame
-    frames : numbers of the frames in their order
-    rate : of frames, 1/s
-    path : a .gif, or an .mp4 if there is an ffmpeg
-    drawn : called after each frame with the number of frames drawn and of all
-
-    Returns
-    -------
-    Number of frames.
-
-    Raises
-    ------
-    InputError : another kind of file, an .mp4 without an ffmpeg
+    `make` gives the figure and what sets it to a frame; `rate` is in frames per second; `drawn` is called
+    after each with the number drawn and of all.
     """
     from matplotlib.animation import FFMpegWriter, PillowWriter
 

@@ -22,9 +22,9 @@ from leblanc.figures.drawing.page import (
     style,
 )
 from leblanc.figures.machine import machine_figure
-from leblanc.figures.response import DRY, WET
 from leblanc.results.races.balls import in_race
 from leblanc.results.races.states import BallsResult
+from leblanc.studies.run.figure import DRY, WET
 from leblanc.text.races.balls import alt, answer
 
 FRAME = Frame(left=0.72, top=0.46, between=0.14, below=0.42)
@@ -34,12 +34,7 @@ _FAR = 1.6  # times the largest of stable states and of the bare rotor: unstable
 
 
 def balls_figure(result: BallsResult) -> Figure:
-    """Amplitudes above, angles of the balls in the drum below.
-
-    Parameters
-    ----------
-    result : the answer
-    """
+    """Amplitudes above, angles of the balls in the drum below."""
     with style():
         figure = Figure()
         figure.alt = alt(result)
@@ -63,13 +58,7 @@ def balls_figure(result: BallsResult) -> Figure:
 
 
 def write_balls_figures(result: BallsResult, directory: Path) -> tuple[FigureFiles, ...]:
-    """Draw the figures and write each as PNG and SVG.
-
-    Parameters
-    ----------
-    result : the answer
-    directory : where the files go; made if it is missing
-    """
+    """Draw the figures and write each as PNG and SVG."""
     found = [save(balls_figure(result), directory, "balls", TITLE)]
     if result.loads is not None:
         title = "Clearances and forces on the floor"
@@ -78,12 +67,7 @@ def write_balls_figures(result: BallsResult, directory: Path) -> tuple[FigureFil
 
 
 def loads_figure(result: BallsResult) -> Figure:
-    """Clearances, forces under the feet, margin against walking and torque of the stable states over speed.
-
-    Parameters
-    ----------
-    result : the answer, of a scene with a cabinet, points or bearings
-    """
+    """Clearances, forces under the feet, margin against walking and torque of stable states over speed."""
     assert result.loads is not None
     return machine_figure(result.loads, lambda text: _caption(result, f"{text} Stable states only."))
 

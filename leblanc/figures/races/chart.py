@@ -45,12 +45,7 @@ OWN = {"color": "black", "linewidth": 1.1, "linestyle": (0, (1, 1.5)), "zorder":
 
 
 def chart_figure(result: BallChart) -> Figure:
-    """Regions over speed and the number that is varied.
-
-    Parameters
-    ----------
-    result : the chart
-    """
+    """Regions over speed and the number that is varied."""
     unit = unit_for(result.dimension, *result.value[[0, -1]].tolist())
     with style():
         figure = Figure()
@@ -81,13 +76,7 @@ def chart_figure(result: BallChart) -> Figure:
 
 
 def write_chart_figure(result: BallChart, directory: Path) -> FigureFiles:
-    """Draw the figure and write it as PNG and SVG.
-
-    Parameters
-    ----------
-    result : the chart
-    directory : where the files go; made if it is missing
-    """
+    """Draw the figure and write it as PNG and SVG."""
     return save(chart_figure(result), directory, "map", TITLE)
 
 
@@ -120,17 +109,10 @@ def _label(roots: int) -> str:
 
 
 def regions(result: BallChart) -> tuple[Array, Array, Indices]:
-    """Number of growing roots between the points of the grid, up to the curves that pass between them.
+    """Speed, rad/s, value, SI, and number of growing roots, shape (q, p), between the points.
 
-    Each place has the number of the nearest point of the grid that no curve parts from it.
-
-    Parameters
-    ----------
-    result : the chart
-
-    Returns
-    -------
-    speed, rad/s, shape (p,), value, SI, shape (q,), and the number there, -1 for no such state, shape (q, p)
+    Each place has the number of the nearest point of the grid that no curve parts from it; -1 for no such
+    state.
     """
     from scipy.ndimage import distance_transform_edt, label
 

@@ -12,8 +12,8 @@ from leblanc.core.notes import one_line
 from leblanc.core.units import MM, MM_PEAK, RPM
 from leblanc.figures.drawing.curves import gapped
 from leblanc.figures.drawing.page import Caption, Figure, FigureFiles, Frame, lay_out, number, save, style
-from leblanc.figures.response import DRY, WET
 from leblanc.results.races.design import BallDesignResult
+from leblanc.studies.run.figure import DRY, WET
 from leblanc.text.races.design import alt, answer
 from meshes.arrays import Flags
 
@@ -32,12 +32,7 @@ _GRAM = 1e3
 
 
 def design_figure(result: BallDesignResult) -> Figure:
-    """Amplitude and decay over mass of the designs, amplitude over speed of the best.
-
-    Parameters
-    ----------
-    result : of the search
-    """
+    """Amplitude and decay over mass of the designs, amplitude over speed of the best."""
     with style():
         figure = Figure()
         figure.alt = alt(result)
@@ -58,13 +53,7 @@ def design_figure(result: BallDesignResult) -> Figure:
 
 
 def write_design_figure(result: BallDesignResult, directory: Path) -> FigureFiles:
-    """Draw the figure and write it as PNG and SVG.
-
-    Parameters
-    ----------
-    result : of the search
-    directory : where the files go; made if it is missing
-    """
+    """Draw the figure and write it as PNG and SVG."""
     return save(design_figure(result), directory, "design", TITLE)
 
 

@@ -10,20 +10,15 @@ import numpy as np
 from leblanc.core.notes import one_line
 from leblanc.core.units import RPM
 from leblanc.figures.drawing.page import Caption, Figure, Frame, add_rate_axis, lay_out, number, style
-from leblanc.figures.response import DRY, WET
 from leblanc.results.races.numbers import BallExplanation
+from leblanc.studies.run.figure import DRY, WET
 from leblanc.text.races.numbers import alt
 
 FRAME = Frame(left=0.72, top=0.46, between=0.14, below=0.42)
 
 
 def numbers_figure(answer: BallExplanation) -> Figure:
-    """Growth over speed, with the speed from which on the rotor is balanced.
-
-    Parameters
-    ----------
-    answer : the explanation
-    """
+    """Growth over speed, with the speed from which on the rotor is balanced."""
     with style():
         figure = Figure()
         figure.alt = alt(answer)

@@ -1,1 +1,1 @@
-"""Machines as pictures draw them: with liquid, balls in races, a spindle unit, magnetic bearings."""
+"""Machines as pictures draw them: with liquid, balls in races."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,8 +18,8 @@ from meshes.clip import Remainder, outside_circle, radius_for
 from meshes.liquid_section import LiquidSection
 
 if TYPE_CHECKING:
-    from leblanc.results.response import RunResult
     from leblanc.results.runup import RunupFrames, RunupResult
+    from leblanc.studies.run.answer import RunResult
 
 LARGEST_FACTOR = 1e6  # of a depth as drawn
 FILLED = 0.55  # deepest place as drawn over the room between the walls
@@ -62,37 +62,21 @@ class Scale:
 
 
 def rounded_down(factor: float) -> float:
-    """The factor with two digits, for printing.
-
-    Parameters
-    ----------
-    factor : above 0
-    """
+    """The factor with two digits, for printing."""
     step = 10.0 ** (math.floor(math.log10(factor)) - 1)
     # A factor that is a round number already must not lose a digit to rounding.
     return math.floor(factor / step * (1.0 + 1e-9)) * step
 
 
 def chord(radius: float, centre: complex, angle: Array) -> Array:
-    """Distance from the origin, inside a circle, to that circle.
-
-    Parameters
-    ----------
-    radius, centre : of the circle, m
-    angle : direction of the ray, rad, shape (...,)
-    """
+    """Distance from the origin, inside a circle, to that circle in a direction, rad, m, shape (...,)."""
     away = centre * np.exp(-1j * angle)
     distance: Array = away.real + np.sqrt(radius**2 - away.imag**2)
     return distance
 
 
 def half_angle(share: float) -> float:
-    """Half the angle of a circular segment of area R^2 (a - sin a cos a), rad; 0 to pi.
-
-    Parameters
-    ----------
-    share : of the segment's area, over R^2
-    """
+    """Half the angle a, 0 to pi, of a circular segment, from its area over R^2, a - sin a cos a."""
     low, high = 0.0, math.pi
     for _ in range(60):
         half = 0.5 * (low + high)
@@ -101,17 +85,9 @@ def half_angle(share: float) -> float:
 
 
 def pool(radius: float, inner_radius: float, area: float, down: float) -> tuple[Remainder, float]:
-    """Liquid that lies at the bottom of a ring whose axis is horizontal, seen along the axis.
+    """Liquid at the bottom of a ring whose axis lies, and how far below the centre its surface is, m.
 
-    Parameters
-    ----------
-    radius, inner_radius : of the walls, m; 0 without an inner one
-    area : of the liquid, m^2
-    down : direction of gravity, rad
-
-    Returns
-    -------
-    The liquid about the centre of the walls, m; how far below the centre its surface is, m
+    `area` is in m^2, `down` the direction of gravity, rad.
     """
     # The same on both sides of the direction of gravity.
     turn = np.exp(1j * (down + np.linspace(0.0, 2.0 * math.pi, 721)[:-1]))
@@ -127,11 +103,8 @@ def pool(radius: float, inner_radius: float, area: float, down: float) -> tuple[
 def film_factor(chambers: Sequence[FilledChamber], depth: Array, deflection: Complex) -> float:
     """One factor for deflections and depths, so that a surface round the axis at rest stays so as drawn.
 
-    Parameters
-    ----------
-    chambers : whose walls are drawn to scale
-    depth : of the layers in each frame, m, nan where the liquid is none, shape (f, l, c)
-    deflection : of each chamber's axis, complex, m, shape (f, l)
+    Depths of frames, levels and chambers, m, shape (f, l, c), nan where there is no liquid; deflections, m,
+    shape (f, l).
     """
     fits = [LARGEST_FACTOR]
     for j, chamber in enumerate(chambers):
@@ -193,17 +166,10 @@ class LiquidShape:
 
 
 def strips(rows: int, columns: int, first: int = 0, last: int | None = None) -> Indices:
-    """Quadrilaterals between neighbouring rows of points, the last row next to the first.
+    """Quadrilaterals between neighbouring rows of points, the last row next to the first; shape (m, 4).
 
-    Parameters
-    ----------
-    rows, columns : of the points, numbered row by row
-    first, last : the columns that are joined, all of them if not given
-
-    Returns
-    -------
-    Numbers of points, shape (m, 4), counter-clockwise seen from outside where rows follow one another
-    counter-clockwise and columns go outwards over the top
+    Counter-clockwise seen from outside where rows follow one another counter-clockwise and columns go
+    outwards over the top.
     """
     end = columns - 1 if last is None else last
     row, column = np.meshgrid(np.arange(rows), np.arange(first, end), indexing="ij")
@@ -376,6 +342,9 @@ class RunupView:
 @dataclass(frozen=True)
 class ModeView:
     """One oscillation of the liquid in a spinning chamber, m(t) = Re(mode e^{-i sigma t})."""
+
+    picture: ClassVar = "leblanc.view.film:mode_picture"
+    film: ClassVar = "leblanc.view.film:mode_film"
 
     name: str  #: of the scene
     lying: bool  #: the axis is horizontal

@@ -8,12 +8,7 @@ from leblanc.results.machine.loads import MachineLoads
 
 
 def told(name: str) -> Any:
-    """A key of the JSON of the loads as an attribute of the result.
-
-    Parameters
-    ----------
-    name : of the key; a result without loads does not have it
-    """
+    """A key of the JSON of the loads as an attribute of the result."""
 
     def value(result: Any) -> Any:
         found = None if result.loads is None else result.loads.to_json()

@@ -63,17 +63,7 @@ class MachineLoads:
         return self.time.size > 0
 
     def over_turn(self, values: Array, least: bool = False) -> Array:
-        """The largest, or the least, of some values over the turn that ends at each time, as figures draw it.
-
-        Parameters
-        ----------
-        values : shape (k,)
-        least : the least of them
-
-        Returns
-        -------
-        shape (k,); over speed the values themselves
-        """
+        """Largest, or least, value over the turn that ends at each time, (k,); over speed values stay."""
         if not self.in_time:
             return values
         begins = np.searchsorted(self.angle, self.angle - 2.0 * math.pi)

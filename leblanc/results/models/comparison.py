@@ -13,7 +13,7 @@ from leblanc.core.answer import Result, attributes
 from leblanc.core.netcdf import NamedArrays, Variable, flags
 from leblanc.core.netcdf import variable as var
 from leblanc.results.motion.held import MOTIONS
-from leblanc.results.response import RunResult
+from leblanc.studies.run.answer import RunResult
 from meshes.arrays import Array
 from meshes.errors import InputError
 
@@ -149,16 +149,9 @@ class Comparison(Result):
         return self.results[self.reference].amplitude_dry
 
     def difference(self, model: str) -> Array:
-        """Amplitude of a model less that of the reference, over the reference's largest amplitude.
+        """Amplitude of a model less that of the reference, over the reference's largest, shape (n,).
 
-        Parameters
-        ----------
-        model : one that answers
-
-        Returns
-        -------
-        nan where one of the two has no finite amplitude or has not converged, shape (n,); zeros where no
-        machine moves
+        nan where one of the two has no finite amplitude or has not converged; zeros where no machine moves.
         """
         pair = [self.results[name] for name in (model, self.reference)]
         own, other = (result.amplitude for result in pair)
@@ -171,12 +164,7 @@ class Comparison(Result):
         return found / size if size > 0.0 else np.where(found == 0.0, 0.0, np.nan)
 
     def largest_difference(self, model: str) -> float | None:
-        """Largest size of `difference`; None where nothing can be compared.
-
-        Parameters
-        ----------
-        model : one that answers
-        """
+        """Largest size of `difference`; None where nothing can be compared."""
         size = np.abs(self.difference(model))
         return None if np.isnan(size).all() else float(np.nanmax(size))
 

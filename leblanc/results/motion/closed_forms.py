@@ -157,12 +157,7 @@ class ClosedForms:
         }
 
     def variables(self, over: str = "speed") -> dict[str, Variable]:
-        """Arrays over the speeds.
-
-        Parameters
-        ----------
-        over : name of their dimension
-        """
+        """Arrays over the speeds."""
         found: dict[str, Variable] = {} if self.vector is None else self.vector.variables()
         dims = (over,)
         if self.upright is not None:

@@ -23,14 +23,10 @@ DEEP = 0.9  # of the layer's depth: whirls beyond that lay walls dry, or come ne
 def cycle_rows(branches: Sequence[Branch]) -> list[dict[str, Any]]:
     """Limit cycles one after the other along their branches, SI.
 
-    `amplitude` is that of the first chamber's axis, `lag` by how much the liquid turns more slowly than
-    the drum (of several layers the one that lags most), `growth` that of a small disturbance, `torque`
-    and `power` what the drive has to supply on top, `thinnest` the least depth over the mean depth. In
-    `in_range` are whirls whose lag is below a third of the spin.
-
-    Parameters
-    ----------
-    branches : of limit cycles
+    `amplitude` is that of the first chamber's axis, `lag` by how much the liquid turns more slowly than the
+    drum (of several layers the one that lags most), `growth` that of a small disturbance, `torque` and
+    `power` what the drive has to supply on top, `thinnest` the least depth over the mean depth. In `in_range`
+    are whirls whose lag is below a third of the spin.
     """
     found = []
     for number, branch in enumerate(branches):
@@ -56,12 +52,7 @@ def cycle_rows(branches: Sequence[Branch]) -> list[dict[str, Any]]:
 
 
 def fold_rows(branches: Sequence[Branch]) -> list[dict[str, Any]]:
-    """Where branches turn back in speed: `branch`, `speed` and `amplitude`, SI.
-
-    Parameters
-    ----------
-    branches : of limit cycles
-    """
+    """Where branches turn back in speed: `branch`, `speed` and `amplitude`, SI."""
     return [
         {"branch": number, "speed": speed, "amplitude": amplitude}
         for number, branch in enumerate(branches)
@@ -70,12 +61,7 @@ def fold_rows(branches: Sequence[Branch]) -> list[dict[str, Any]]:
 
 
 def cycle_arrays(branches: Sequence[Branch]) -> dict[str, Variable]:
-    """Limit cycles over the dimension `cycle` and folds over `fold`, by name.
-
-    Parameters
-    ----------
-    branches : of limit cycles
-    """
+    """Limit cycles over the dimension `cycle` and folds over `fold`, by name."""
     rate, whirls, folds = "rad s-1", cycle_rows(branches), fold_rows(branches)
     units = {
         "speed": (rate, "spin speed", "of the rotor about its axis"),

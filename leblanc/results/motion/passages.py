@@ -34,13 +34,7 @@ class Passage:
 
 
 def passages_of(history: RunupHistory, dry: RunupHistory | None, texts: Sequence[str]) -> tuple[Passage, ...]:
-    """The steps of a programme that were reached, in their order.
-
-    Parameters
-    ----------
-    history, dry : of the programme, with liquid and without; None where that was not run
-    texts : of its steps
-    """
+    """The steps of a programme that were reached, in their order."""
     found = []
     for number, text in enumerate(texts):
         samples, bare = _samples(history, number), None if dry is None else _samples(dry, number)
@@ -78,14 +72,7 @@ def _samples(history: RunupHistory, number: int) -> np.ndarray[tuple[int], np.dt
 
 
 def falling(history: RunupHistory, passages: Sequence[Passage], turning: int) -> Flags:
-    """The speed falls on the way to a sample, shape (k,).
-
-    Parameters
-    ----------
-    history : of the run
-    passages : steps of its programme; none of a run-up
-    turning : index of the last sample of a run-up before it falls
-    """
+    """The speed falls on the way to a sample, shape (k,); `turning` is the last before a run-up falls."""
     size = history.time.size
     if not passages or history.stage is None:
         return np.arange(size) > turning
@@ -94,12 +81,7 @@ def falling(history: RunupHistory, passages: Sequence[Passage], turning: int) ->
 
 
 def pieces(there: Flags) -> list[slice]:
-    """Parts of a run in which a condition holds, each with the sample before it, from which it is drawn.
-
-    Parameters
-    ----------
-    there : the condition, shape (k,)
-    """
+    """Parts of a run in which a condition holds, each with the sample before it, from which it is drawn."""
     edge = np.flatnonzero(np.diff(np.concatenate(([False], there, [False])).astype(np.int8)))
     pairs = zip(edge[::2].tolist(), edge[1::2].tolist(), strict=True)
     return [slice(max(first - 1, 0), last) for first, last in pairs]

@@ -27,12 +27,7 @@ class SelfExcited:
     large: LargeWhirl | None = None  #: how large the whirl becomes; None where that was not asked for
 
     def leaves_stable(self, stable: Flags) -> Flags:
-        """Stable against slow disturbances, and no whirl grows; what is not known is not stable, shape (n,).
-
-        Parameters
-        ----------
-        stable : against slow disturbances, shape (n,)
-        """
+        """Stable against slow disturbances, no whirl grows; what is not known is not stable; shape (n,)."""
         return np.asarray(stable & (self.growth <= 0.0))
 
     def inside(self, speed: Array) -> Flags:

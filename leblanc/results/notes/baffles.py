@@ -50,13 +50,7 @@ def compartment_notes(fills: Sequence[Fill]) -> list[Note]:
 
 
 def smeared_baffles(fills: Sequence[Fill], cells: int | None) -> list[Note]:
-    """Which chambers have baffles that are a sink all over the layer, and why.
-
-    Parameters
-    ----------
-    fills : chambers and their liquid
-    cells : round each wall; None where the layers are linear
-    """
+    """Which chambers have baffles that are a sink all over the layer, and why."""
     found = []
     for k, fill in enumerate(fills):
         baffles = fill.chamber.baffles

@@ -30,23 +30,13 @@ def no_limit(limit: float) -> Note:
 
 
 def at_edge(paths: tuple[str, ...]) -> Note:
-    """A range ends where the search would go on.
-
-    Parameters
-    ----------
-    paths : of the values at an end of their range
-    """
+    """A range ends where the search would go on."""
     text = f"At an end of the range given: {', '.join(paths)}. A wider range may do better."
     return Note(DesignCode.AT_EDGE, {"paths": list(paths)}, text)
 
 
 def slow(decay: float) -> Note:
-    """Balls that have nothing in reserve come to rest slowly.
-
-    Parameters
-    ----------
-    decay : of small motions, 1/s
-    """
+    """Balls that have nothing in reserve come to rest slowly."""
     text = (
         f"Small motions fade with {decay:.3g} 1/s only: balls with hardly more than the unbalance come to "
         "rest slowly. A stability_margin asks for more."
@@ -55,12 +45,7 @@ def slow(decay: float) -> Note:
 
 
 def unstable_speeds(first: float, last: float) -> Note:
-    """Speeds at which balls find no rest.
-
-    Parameters
-    ----------
-    first, last : of them, rad/s
-    """
+    """Speeds at which balls find no rest."""
     text = (
         f"With these balls no state is stable at some speeds from {in_rpm(first)} to {in_rpm(last)}: the "
         "balls run, and the amplitude taken there is that with all balls on the heavy side. "
@@ -70,11 +55,6 @@ def unstable_speeds(first: float, last: float) -> Note:
 
 
 def interrupted(evaluations: int) -> Note:
-    """The search was interrupted.
-
-    Parameters
-    ----------
-    evaluations : designs judged by then
-    """
+    """The search was interrupted."""
     text = f"INTERRUPTED after {evaluations} designs: this is the best of them, not of all to be tried."
     return Note(DesignCode.INTERRUPTED, {"evaluations": evaluations}, text)

@@ -31,13 +31,7 @@ class BallCode(NoteCode):
 
 
 def capacity(enough: bool, most: float) -> Note:
-    """Whether the balls can take the unbalance away.
-
-    Parameters
-    ----------
-    enough : they can
-    most : that they hold all together, kg m
-    """
+    """Whether the balls can take the unbalance away; together they hold at most so much, kg m."""
     held = f"All balls on one side make an unbalance of {with_unit(most, UNBALANCE)}"
     text = (
         f"{held}: {'enough' if enough else 'not enough, or not in the right planes,'} to balance the rotor."
@@ -55,12 +49,7 @@ def points() -> Note:
 
 
 def sticks(deflection: float) -> Note:
-    """What resists to rolling leaves a band.
-
-    Parameters
-    ----------
-    deflection : below which balls stay, m
-    """
+    """What resists to rolling leaves a band of deflections, m, below which balls stay."""
     text = (
         f"Balls that resist to rolling stay where they are while the axis moves by less than "
         f"{with_unit(deflection, LENGTH)}: any deflection up to that may remain. The states are those "
@@ -72,11 +61,8 @@ def sticks(deflection: float) -> Note:
 def lies(rows: Sequence[tuple[float, float, float, float]]) -> Note:
     """Gravity across the axis turns in the drum.
 
-    Parameters
-    ----------
-    rows : at some speeds the speed, rad/s, gravity over the balls' centrifugal acceleration, the largest
-        swing of a ball, rad, nan where it is not known, and what that shakes the axis by, m; none where
-        sizes are not told
+    Each row: speed, rad/s, gravity over the balls' centrifugal acceleration, largest swing of a ball, rad,
+    and what it shakes the axis by, m, nan where not known.
     """
     told = []
     for speed, share, swing, moved in dict.fromkeys(rows):
@@ -102,12 +88,7 @@ def uneven_supports() -> Note:
 
 
 def liquid_in_step(model: str) -> Note:
-    """How the liquid enters the growth.
-
-    Parameters
-    ----------
-    model : of the liquid in the states
-    """
+    """How the liquid enters the growth."""
     how = "linear theory, a full chamber's mass" if model == "linear" else "its exact equilibrium"
     text = (
         f"In the states the liquid is in {how}. In the growth of small motions it is a mass "
@@ -117,13 +98,7 @@ def liquid_in_step(model: str) -> Note:
 
 
 def runs_on(first: float, last: float, found: bool) -> Note:
-    """Speeds at which balls find no rest.
-
-    Parameters
-    ----------
-    first, last : of them, rad/s
-    found : there are states, none of which is stable
-    """
+    """Speeds at which balls find no rest."""
     told = "What is reported there is the state that small motions leave most slowly; a" if found else "A"
     text = (
         f"{over_rpm(first, last).capitalize()} no state in which all balls rest is stable: they "
@@ -133,13 +108,9 @@ def runs_on(first: float, last: float, found: bool) -> Note:
 
 
 def family(first: float, last: float, dimension: int, least: float, largest: float) -> Note:
-    """More balls than the state needs.
+    """More balls than the state needs, between two speeds, rad/s.
 
-    Parameters
-    ----------
-    first, last : of the speeds with families, rad/s
-    dimension : the largest
-    least, largest : growth over all members at all these speeds, 1/s
+    With the largest dimension of the families and the growth over all members, 1/s.
     """
     text = (
         f"{over_rpm(first, last).capitalize()} the balls can stand in infinitely many ways with the same "
@@ -152,12 +123,7 @@ def family(first: float, last: float, dimension: int, least: float, largest: flo
 
 
 def elsewhere(first: float, last: float) -> Note:
-    """The reported member is not stable, others are.
-
-    Parameters
-    ----------
-    first, last : of such speeds, rad/s
-    """
+    """The reported member is not stable, others are."""
     text = (
         f"{over_rpm(first, last).capitalize()} the reported member is not stable, but others with the same "
         "deflection are: balls that leave it can come to rest there. A run-up shows whether they do."
@@ -184,13 +150,7 @@ def free_balls() -> Note:
 
 
 def not_there(share: float, state: str) -> Note:
-    """Where a chart has nothing to judge.
-
-    Parameters
-    ----------
-    share : of the points
-    state : balanced, heavy or light
-    """
+    """Where a chart has no state (balanced, heavy or light) to judge: share of its points."""
     where = f"At {number(100.0 * share)} % of the points there is no such state: "
     why = (
         "the balls are too light for the unbalance." if state == "balanced" else "the balls stand elsewhere."
@@ -209,12 +169,7 @@ def between_lines() -> Note:
 
 
 def in_ratio(paths: Sequence[str]) -> Note:
-    """Several numbers vary together.
-
-    Parameters
-    ----------
-    paths : of them
-    """
+    """Several numbers vary together."""
     verb = "keeps its" if len(paths) == 2 else "keep their"
     text = f"{', '.join(paths[1:])} {verb} ratio to {paths[0]}."
     return Note(BallCode.IN_RATIO, {"paths": tuple(paths)}, text)
@@ -232,13 +187,9 @@ def loads_of_states() -> Note:
 def liquid_waves(speed: float, amplitude: float, ripple: float, liquid: float, worst: float) -> Note:
     """What gravity across the axis does by waves in the liquid, the balls held where they rest.
 
-    Parameters
-    ----------
-    speed : the last, rad/s
-    amplitude, ripple : change of the amplitude's mean there, and by how much it goes up and down, relative;
-        nan where it is not known
-    liquid : by which the liquid's centre of mass goes round its mean in the drum there, m
-    worst : largest change of the mean at any speed of a stable state, relative
+    At the last speed: change of the amplitude's mean and its ripple, relative, and by how much the liquid's
+    centre of mass goes round its mean, m; `worst` is the largest change of the mean at any speed of a stable
+    state.
     """
     data = {"amplitude": amplitude, "ripple": ripple, "liquid": liquid, "worst": worst}
     if not math.isfinite(amplitude):

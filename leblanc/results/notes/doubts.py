@@ -26,15 +26,7 @@ class DoubtCode(NoteCode):
 
 
 def doubt(code: DoubtCode, field: str, looks: str, likely: str) -> Note:
-    """A value that is hardly meant.
-
-    Parameters
-    ----------
-    code : what it is
-    field : its path in the scene
-    looks : what makes it doubtful
-    likely : what may have been meant, as it would be written; empty where nothing suggests itself
-    """
+    """A value at a path of the scene that is hardly meant, why, and what may have been meant (or empty)."""
     meant = f"; did you mean {likely}?" if likely else ""
     return Note(
         code, {"field": field, "likely": likely}, f"Check {field}: {looks}{meant}{'' if meant else '.'}"

@@ -20,8 +20,8 @@ from leblanc.core.units import (
     small_whirl_friction,
     with_unit,
 )
-from leblanc.results.notes.response import CLOSURE, STANDS
-from leblanc.results.response import peak
+from leblanc.studies.run.answer import peak
+from leblanc.studies.run.notes import CLOSURE, STANDS
 from meshes.arrays import Flags
 
 if TYPE_CHECKING:
@@ -114,14 +114,7 @@ def without_drag() -> Note:
 
 
 def coast_not_ended(step: int, wanted: float, reached: float, limit: float) -> Note:
-    """A coast that its limit of time ended.
-
-    Parameters
-    ----------
-    step : its number, from 1
-    wanted, reached : speeds, rad/s
-    limit : s
-    """
+    """A coast that its limit of time ended."""
     text = (
         f"Step {step}: the drum coasts for {with_unit(limit, TIME)}, programme.coast_limit, down to "
         f"{in_rpm(reached)} instead of {in_rpm(wanted)}."
@@ -130,27 +123,15 @@ def coast_not_ended(step: int, wanted: float, reached: float, limit: float) -> N
 
 
 def stood(step: int, time: float, reached: float) -> Note:
-    """A coast that ended with the drum at a stand before its speed was followed down.
-
-    Parameters
-    ----------
-    step : its number, from 1
-    time : s
-    reached : the last speed, rad/s
-    """
+    """A coast that ended with the drum at a stand before its speed was followed down."""
     text = f"Step {step}: the drum stands at {with_unit(time, TIME)}, at once from {in_rpm(reached)}."
     return Note(RunupCode.STOOD, {"step": step, "time": time, "reached": reached}, text)
 
 
 def motor_limited(step: int, time: float, low: float, high: float, wanted: float | None) -> Note:
-    """A step of a programme that asked for more than the motor gives.
+    """A step of a programme that asked for more than the motor gives; s, between two speeds, rad/s.
 
-    Parameters
-    ----------
-    step : its number, from 1
-    time : for which the motor alone set the speed, s
-    low, high : speeds between which that was, rad/s
-    wanted : speed that was not reached, rad/s; None where it was
+    `wanted` is the speed that was not reached, None where it was.
     """
     text = (
         f"Step {step} asks for more than the motor gives for {with_unit(time, TIME)}, "
@@ -177,12 +158,9 @@ def stopped(reason: str) -> Note:
 
 
 def numerical_error(error: float, cells: int | None = None) -> Note | None:
-    """Error of the amplitude over its largest; None where it is small.
+    """Error of the amplitude over its largest, nan where it was not estimated; None where it is small.
 
-    Parameters
-    ----------
-    error : estimated; nan where it was not
-    cells : of a layer that comes from a pool across the axis; None of any other
+    `cells` of a layer that comes from a pool across the axis.
     """
     if math.isnan(error):
         if cells is not None and cells < ENOUGH_CELLS:
@@ -214,13 +192,7 @@ def handover_error(error: float) -> Note | None:
 
 
 def rounding(spread: Spread, history: RunupHistory) -> Note:
-    """What rounding alone does to a run-up, beside its error estimate.
-
-    Parameters
-    ----------
-    spread : over the ensemble
-    history : of the unchanged run
-    """
+    """What rounding alone does to a run-up, beside its error estimate."""
     width = spread.amplitude_max - spread.amplitude_min
     when = int(np.nanargmax(width))
     data = {
@@ -303,13 +275,7 @@ def not_physical(faults: Sequence[str]) -> Note | None:
 
 
 def balls_run(behind: float, speed: float) -> Note:
-    """Balls that have not come to rest in the drum.
-
-    Parameters
-    ----------
-    behind : how fast the drum and the ball pass one another, rad/s
-    speed : of the spin, rad/s
-    """
+    """Balls that have not come to rest in the drum but pass it at a rate, rad/s."""
     text = f"At the end a ball still runs in its race, by {in_rpm(behind)} at {in_rpm(speed)} of the drum."
     return Note(RunupCode.BALLS_RUN, {"behind": behind, "speed": speed}, text)
 
@@ -318,13 +284,7 @@ FEW = 4  # times that liquid is caught or falls and is told of one by one
 
 
 def captures(transfers: Sequence[Transfer], handover: str) -> list[Note]:
-    """When liquid became rings, or fell: each time, or where it happens again and again all of them at once.
-
-    Parameters
-    ----------
-    transfers : of the run-up, in the order of time
-    handover : the rule by which liquid becomes a ring
-    """
+    """When liquid became rings, or fell: each time, or all at once where it happens again and again."""
     found: list[Note] = []
     for chamber in sorted({transfer.chamber for transfer in transfers}):
         own = [transfer for transfer in transfers if transfer.chamber == chamber]
@@ -347,13 +307,7 @@ def _again_and_again(own: Sequence[Transfer]) -> Note:
 
 
 def capture(transfer: Transfer, handover: str) -> Note:
-    """When the liquid of a chamber became a ring, or fell, and what was handed over.
-
-    Parameters
-    ----------
-    transfer : of the run-up
-    handover : the rule by which it became a ring
-    """
+    """When the liquid of a chamber became a ring, or fell, and what was handed over."""
     chamber, speed = transfer.chamber + 1, transfer.speed
     data = {
         "chamber": chamber,
@@ -374,13 +328,10 @@ def capture(transfer: Transfer, handover: str) -> Note:
 
 
 def not_carried(chamber: int, speed: float, balance: float) -> Note:
-    """Liquid that its walls never carry round.
+    """Liquid of a chamber that its walls never carry round.
 
-    Parameters
-    ----------
-    chamber : its index from 0
-    speed : the largest of the run, rad/s
-    balance : at which the walls' drag lifts the liquid to the height of the axis, rad/s; inf where none does
+    `balance` is the speed at which the walls' drag lifts it to the height of the axis, rad/s; inf where none
+    does.
     """
     text = f"Chamber {chamber + 1}: up to {in_rpm(speed)} its walls do not carry the liquid round: "
     if math.isinf(balance):
@@ -397,11 +348,7 @@ def self_excited_on_the_way(
 ) -> Note | None:
     """Speeds at which whirl grows by itself, rad/s; None where there are none.
 
-    Parameters
-    ----------
-    bands : of those speeds, rad/s
-    friction : of the liquid
-    whirl : estimated amplitude of the largest of them, m, and its spin speed, rad/s
+    `whirl` is the estimated amplitude of the largest, m, and its spin speed, rad/s.
     """
     if not bands:
         return None
@@ -422,12 +369,8 @@ def self_excited_on_the_way(
 def out_of_range(code: RunupCode, chamber: int, holds: Flags, limit: float = math.nan) -> Note | None:
     """At what share of the samples the layer of a chamber does not describe its liquid; None if nowhere.
 
-    Parameters
-    ----------
-    code : TOO_SLOW, TUMBLES, INNER_WALL, TOO_DEEP or TOO_HIGH
-    chamber : index from 0
-    holds : where the layer describes the liquid, shape (k,)
-    limit : depth over radius, or rise over depth, that is too much
+    The code is TOO_SLOW, TUMBLES, INNER_WALL, TOO_DEEP or TOO_HIGH; `limit` the depth over radius, or rise
+    over depth, that is too much.
     """
     if holds.all():
         return None
@@ -450,13 +393,7 @@ def _part(share: float) -> str:
 
 
 def full_gap(chamber: int, full: Flags) -> Note | None:
-    """At what share of the samples the layer of a chamber fills its gap; None if nowhere.
-
-    Parameters
-    ----------
-    chamber : index from 0
-    full : where it does, shape (k,)
-    """
+    """At what share of the samples the layer of a chamber fills its gap; None if nowhere."""
     if not full.any():
         return None
     share = float(np.mean(full))
@@ -468,14 +405,10 @@ def full_gap(chamber: int, full: Flags) -> Note | None:
 
 
 def linear_layers(wave: float, lag: float, touches: bool, error: float, limits: tuple[float, float]) -> str:
-    """What a run with linear layers says of its own error.
+    """What a run with linear layers says of its own error, infinite where there is no estimate.
 
-    Parameters
-    ----------
-    wave, lag : rise of the surface over the depth; lag of the liquid over the spin; largest each
-    touches : a surface comes to an inner wall
-    error : estimated from them; infinite where there is none
-    limits : of wave and lag up to which an error is estimated
+    `wave` is the largest rise over depth, `lag` the largest lag over the spin; `limits` up to which an error
+    is estimated.
     """
     size = f"waves reach {percent(wave)} of the depth and the liquid lags by up to {percent(lag)} of the spin"
     if touches:

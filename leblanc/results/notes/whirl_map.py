@@ -33,22 +33,12 @@ class MapCode(NoteCode):
 
 
 def no_cycles(reason: str) -> Note:
-    """Why no limit cycle is told.
-
-    Parameters
-    ----------
-    reason : in words
-    """
+    """Why no limit cycle is told."""
     return Note(MapCode.NO_CYCLES, {"reason": reason}, f"No limit cycles: {reason}.")
 
 
 def cycles_missing(reason: str) -> Note:
-    """Which limit cycles may be missing among those told.
-
-    Parameters
-    ----------
-    reason : in words
-    """
+    """Which limit cycles may be missing among those told."""
     return Note(MapCode.CYCLES_MISSING, {"reason": reason}, f"Limit cycles may be missing: {reason}.")
 
 
@@ -62,13 +52,7 @@ def no_circle() -> Note:
 
 
 def lagging(largest: float, limit: float) -> Note:
-    """Limit cycles whose liquid lags more than the layer's flow describes.
-
-    Parameters
-    ----------
-    largest : lag over the spin
-    limit : of it
-    """
+    """Limit cycles whose liquid lags more than the layer's flow describes."""
     text = (
         f"Limit cycles in which the liquid lags by more than {percent(limit)} of the spin (up to "
         f"{percent(largest)}) are the model's own: its flow has no vorticity."
@@ -77,35 +61,19 @@ def lagging(largest: float, limit: float) -> Note:
 
 
 def deep_whirl(largest: float) -> Note:
-    """Limit cycles about as large as the layer is deep.
-
-    Parameters
-    ----------
-    largest : amplitude over depth
-    """
+    """Limit cycles about as large as the layer is deep."""
     text = f"The largest limit cycle is {largest:.2g} times the depth of the layer: walls fall nearly dry."
     return Note(MapCode.DEEP_WHIRL, {"largest": largest}, text)
 
 
 def growth_not_known(lost: int, points: int) -> Note:
-    """Points at which the modes were not found.
-
-    Parameters
-    ----------
-    lost, points : how many, of how many
-    """
+    """Points at which the modes were not found."""
     text = f"At {lost} of {points} points the growth is not known: crosses; do not take them for stable."
     return Note(MapCode.NOT_KNOWN, {"lost": lost, "points": points}, text)
 
 
 def own_volume(volume: float, bands: Bands) -> Note:
-    """Where a whirl grows with the volume of the scene.
-
-    Parameters
-    ----------
-    volume : of liquid in all chambers, m^3
-    bands : of speed, rad/s
-    """
+    """Where a whirl grows with the volume of the scene, m^3."""
     with_it = f"With the scene's {with_unit(volume, VOLUME)}"
     text = f"{with_it} no whirl grows by itself at these speeds."
     if bands:
@@ -136,13 +104,7 @@ def common_factor() -> Note:
 
 
 def not_held(share: float, horizontal: bool) -> Note:
-    """Points at which the liquid does not lie all round its wall.
-
-    Parameters
-    ----------
-    share : of the points
-    horizontal : the axis lies
-    """
+    """Points at which the liquid does not lie all round its wall."""
     why = "a paraboloid leaves part of a wall dry or reaches an inner wall"
     if horizontal:
         why = "gravity across the axis outweighs the spin"
@@ -151,13 +113,7 @@ def not_held(share: float, horizontal: bool) -> Note:
 
 
 def thick_wall_layer(share: float, limit: float) -> Note:
-    """Points at which the laminar layer is thicker than its law allows.
-
-    Parameters
-    ----------
-    share : of the points
-    limit : thickness over the liquid's depth
-    """
+    """Points at which the laminar layer is thicker than its law allows."""
     text = (
         f"At {100.0 * share:.2g} % of the points the laminar layer at the wall is thicker than {limit:g} of "
         "the liquid's depth: out of range."

@@ -52,13 +52,7 @@ class GravityOnBalls:
 
 
 def ball_moment(races: Sequence[RaceOfBalls], angle: Array) -> Complex:
-    """Unbalance of all balls together, kg m, shape (...,).
-
-    Parameters
-    ----------
-    races : N balls in all
-    angle : of each in the drum, race by race, rad, shape (..., N)
-    """
+    """Unbalance of all balls together, kg m, shape (...,)."""
     each = np.repeat([race.moment for race in races], [race.count for race in races])
     return np.asarray(np.exp(1j * angle) @ each)
 

@@ -29,11 +29,6 @@ def reported_state(states: BallStates, sizes: Array) -> Index:
     """Which state is reported at each speed, shape (s,): of the stable ones that with the largest amplitude.
 
     Where none is stable it is the one whose small motions grow least; -1 where none was found.
-
-    Parameters
-    ----------
-    states : all that were found
-    sizes : amplitude of each, m, shape (s, b)
     """
     if states.kind.shape[1] == 0:
         return np.full(states.speed.shape, -1)

@@ -38,14 +38,14 @@ class Step:
     time: float | None = None
 
     def written(self) -> str:
-        """As a file says it, in SI units; read again it is the same step."""
+        """The step as a file says it, in SI units; read again it is the same step."""
         if self.kind == "to":
             how = f"in {self.time!r} s" if self.rate is None else f"at {self.rate!r} rad/s^2"
             return f"to {self.speed!r} rad/s {how}"
         return f"coast to {self.speed!r} rad/s" if self.time is None else f"{self.kind} {self.time!r} s"
 
     def words(self) -> str:
-        """For readers, in their units."""
+        """The step for readers, in their units."""
         if self.kind == "to":
             assert self.speed is not None
             if self.rate is not None:
@@ -62,19 +62,8 @@ def _s(time: float) -> str:
 
 
 def parse_step(text: object, field: str = "step") -> Step:
-    """A step from its line.
+    """A step from its line; `field` names the value in the `InputError`.
 
-    Parameters
-    ----------
-    text : the line
-    field : name of the value, for the message
-
-    Raises
-    ------
-    InputError : it is no step, or a value in it is not allowed
-
-    Examples
-    --------
     >>> parse_step("hold 10 s"), parse_step("coast to 0").speed
     (Step(kind='hold', speed=None, rate=None, time=10.0), 0.0)
     """
@@ -128,10 +117,5 @@ class StepList(Entries):
 
     @staticmethod
     def written(steps: tuple[Step, ...]) -> list[str]:
-        """As a file says it.
-
-        Parameters
-        ----------
-        steps : of a programme
-        """
+        """The steps of a programme as a file says them."""
         return [step.written() for step in steps]

@@ -83,11 +83,11 @@ class Programme(Part):
         return any(step.kind == "coast" for step in self.steps)
 
     def content(self) -> dict[str, Any]:
-        """What it says, for the fingerprint of a scene."""
+        """The steps for the fingerprint of a scene."""
         return self.model_dump(exclude={"steps"}) | {"steps": [astuple(step) for step in self.steps]}
 
     def rows(self) -> list[Row]:
-        """What it says, for readers."""
+        """Rows of the programme, for readers."""
         found = [row("Programme from", rpm(self.start), "programme.start")]
         found += [
             row(f"Programme step {k + 1}", step.words(), f"programme.steps.{k}")

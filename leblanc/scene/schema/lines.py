@@ -33,36 +33,21 @@ class Place:
     entries: bool = False  #: a list of tables, of which the last one is being read
 
     def at(self, key: str, line: int) -> Place:
-        """The place of a key below, made where it is new.
-
-        Parameters
-        ----------
-        key, line : of it
-        """
+        """The place of a key below, made where it is new."""
         return self.below.setdefault(key, Place(line))
 
 
 def places(text: str) -> Place:
-    """Places of all keys.
-
-    Parameters
-    ----------
-    text : of a file that is valid TOML
-    """
+    """Places of all keys of a text that is valid TOML."""
     return _Scanner(text).scan()
 
 
 def line_of(root: Place, path: str) -> int | None:
-    """Line of a field, or of what is next above it and stands in the file; None for the file as a whole.
+    r"""Line of a field such as "chambers.0.volume", or of what is next above it and stands in the file.
 
-    Parameters
-    ----------
-    root : places in the file
-    path : of the field, as in "chambers.0.volume"
+    None for the file as a whole.
 
-    Examples
-    --------
-    >>> line_of(places("name = 'x'\\n[[chambers]]\\nvolume = 1"), "chambers.0.volume")
+    >>> line_of(places("name = 'x'\n[[chambers]]\nvolume = 1"), "chambers.0.volume")
     3
     """
     place = root

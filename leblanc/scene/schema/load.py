@@ -86,13 +86,7 @@ def shown(value: object) -> str:
 
 
 def meant(given: object, names: Iterable[str]) -> str:
-    """What a misspelled word may have meant, to follow what is allowed; empty where nothing is near.
-
-    Parameters
-    ----------
-    given : what was written
-    names : what may be written
-    """
+    """What a misspelled word may have meant, to follow what is allowed; empty where no name is near."""
     if not isinstance(given, str):
         return ""
     found = difflib.get_close_matches(given.lower()[:_LONGEST], list(names), n=1)
@@ -125,20 +119,7 @@ _SLIPS = (
 
 
 def read_toml(path: str | PathLike[str]) -> dict[str, Any]:
-    """Content of a TOML file.
-
-    Parameters
-    ----------
-    path : the file; at most `MAX_BYTES` long
-
-    Returns
-    -------
-    its tables
-
-    Raises
-    ------
-    SceneError : no such file, not readable, not UTF-8, not TOML
-    """
+    """Tables of a TOML file of at most `MAX_BYTES`; else a `SceneError`."""
 
     def fault(allowed: str) -> SceneError:
         return SceneError([SceneFault(str(path), "", None, allowed)])
@@ -173,16 +154,7 @@ def read_toml(path: str | PathLike[str]) -> dict[str, Any]:
 
 @contextmanager
 def with_lines(path: str | PathLike[str]) -> Iterator[None]:
-    """Add to faults of a file, raised inside, the lines at which they stand.
-
-    Parameters
-    ----------
-    path : the file; it has been read
-
-    Raises
-    ------
-    SceneError : the same with lines
-    """
+    """Add to faults of a file that are raised inside the lines at which they stand."""
     try:
         yield
     except SceneError as error:
@@ -198,16 +170,9 @@ def with_lines(path: str | PathLike[str]) -> Iterator[None]:
 
 
 def given_at(path: str | PathLike[str], field: str) -> tuple[bool, Any, int | None]:
-    """What a file says of a field.
+    """Whether a file gives a field such as "chambers.0.volume", its value, and its line.
 
-    Parameters
-    ----------
-    path : the file; it has been read
-    field : path of the field, as in "chambers.0.volume"
-
-    Returns
-    -------
-    Whether it stands there; its value, None if not; its line, or that of what it is missing from
+    The line of what it is missing from where it is not given.
     """
     stands = True
     value: Any = read_toml(path)
@@ -241,16 +206,7 @@ def _toml_fault(text: str, said: str) -> str:
 
 
 def read_scene(path: str | PathLike[str]) -> dict[str, Any]:
-    """Content of a scene file; the files that it names are looked for beside it.
-
-    Parameters
-    ----------
-    path : the file
-
-    Raises
-    ------
-    SceneError : as `read_toml`
-    """
+    """Content of a scene file; the files that it names are looked for beside it."""
     table = read_toml(path)
     chambers = table.get("chambers")
     for chamber in chambers if isinstance(chambers, list) else ():

@@ -29,10 +29,7 @@ _TOGETHER, _ABSENT = "together", "absent"  # names of faults that no single valu
 class Conflict(NamedTuple):
     """Values that do not go together.
 
-    Parameters
-    ----------
-    keys : of the value to name, from the table on
-    allowed : what it must be, in words that follow "must be"
+    `keys` of the value to name, from the table on; `allowed` in words that follow "must be".
     """
 
     keys: tuple[str | int, ...]
@@ -75,12 +72,7 @@ class Part(BaseModel):
         return copied
 
     def altered(self, **values: Any) -> Self:
-        """The same with other values, which are taken as they are: checked, in SI units.
-
-        Parameters
-        ----------
-        values : by the names of the fields
-        """
+        """The same with other values, which are taken as they are: checked, in SI units."""
         return self.model_copy(update=values)
 
     def table(self) -> dict[str, Any]:
@@ -104,10 +96,7 @@ class Part(BaseModel):
     def conflicts(cls, values: Mapping[str, Any], given: Mapping[str, Any]) -> Iterator[Conflict]:
         """Values that break a rule together.
 
-        Parameters
-        ----------
-        values : checked, in SI units; those without a fault of their own
-        given : what the file says
+        `values` are checked, in SI units, those without a fault of their own; `given` is what the file says.
         """
         for first, other in cls.ALTERNATIVES:
             if (first in given) != (other in given):
@@ -190,24 +179,13 @@ def _adapter(cls: type[Part], name: str) -> TypeAdapter[Any]:
 
 
 def rule_of(field: FieldInfo) -> Any:
-    """Rule of a field: a callable with `allowed`, see leblanc.scene.schema.rules; None if it is a table.
-
-    Parameters
-    ----------
-    field : of a part
-    """
+    """Rule of a field: a callable with `allowed`, see leblanc.scene.schema.rules; None if it is a table."""
     return next((rule.func for rule in field.metadata if hasattr(rule, "func")), None)
 
 
 def parts_of(field: FieldInfo) -> dict[str, type[Part]]:
     """Tables that may stand at a field, or as entries of its list, by their kind.
 
-    Parameters
-    ----------
-    field : of a part
-
-    Returns
-    -------
     Several by their kinds, a single one under "", none for plain values.
     """
     table = getattr(rule_of(field), "table", None)
@@ -228,22 +206,12 @@ def _parts_in(annotation: Any) -> Iterator[type[Part]]:
 
 
 def is_list_of_parts(field: FieldInfo) -> bool:
-    """Whether a field holds tables one after the other.
-
-    Parameters
-    ----------
-    field : of a part
-    """
+    """Whether a field holds tables one after the other."""
     return get_origin(field.annotation) is tuple and bool(parts_of(field))
 
 
 def allowed_at(field: FieldInfo) -> str:
-    """What may stand at a field, in words.
-
-    Parameters
-    ----------
-    field : of a part
-    """
+    """What may stand at a field, in words."""
     rule = rule_of(field)
     if rule is not None:
         return str(rule.allowed)
@@ -254,11 +222,7 @@ def allowed_at(field: FieldInfo) -> str:
 def faults_of(error: ValidationError, file: str, root: type[Part]) -> list[SceneFault]:
     """What pydantic found, in words for a user, at most `MAX_FAULTS` of it.
 
-    Parameters
-    ----------
-    error : what it raised
-    file : name of the file, for the messages
-    root : of the table that it checked
+    `root`: the table that it checked.
     """
     found = error.errors(include_url=False)
     faults = [_fault(item, file, root) for item in found[:MAX_FAULTS]]

@@ -23,12 +23,8 @@ _FIXED = (("rotor", "kind"), ("speeds", "count"))
 def tables_of(root: type[Part], kind: str) -> dict[tuple[str, ...], type[Part]]:
     """Each table of a file by its place; "*" stands for the number of an entry.
 
-    Of entries of several kinds "*" is the usual one, and "*balls" that of the kind `balls`.
-
-    Parameters
-    ----------
-    root : the whole file
-    kind : of the rotor in it
+    Of entries of several kinds "*" is the usual one, and "*balls" that of the kind `balls`; `kind` is the
+    rotor's.
     """
     found: dict[tuple[str, ...], type[Part]] = {(): root}
     for name, field in root.model_fields.items():
@@ -45,14 +41,7 @@ def tables_of(root: type[Part], kind: str) -> dict[tuple[str, ...], type[Part]]:
 
 
 def place_of(table: Mapping[str, Any], keys: Keys, tables: Mapping[tuple[str, ...], Any]) -> tuple[str, ...]:
-    """Keys of a path as `tables_of` has them.
-
-    Parameters
-    ----------
-    table : content of a scene file
-    keys : along the path
-    tables : of the file
-    """
+    """Keys of a path in a scene file's content as `tables_of` has them."""
     place: tuple[str, ...] = ()
     found: Any = table
     for key in keys:
@@ -70,21 +59,9 @@ def keys_of(path: str) -> Keys:
 
 
 def rule_at(root: type[Part], table: Mapping[str, Any], path: str) -> Any:
-    """Rule of one value of a scene.
+    """Rule of one value at a path such as "chambers.0.volume", in a table free of faults.
 
-    Parameters
-    ----------
-    root : the whole file
-    table : content of a scene file, free of faults
-    path : of the value, as in "chambers.0.volume"
-
-    Returns
-    -------
-    the rule: a callable with `allowed`, see leblanc.scene.schema.rules
-
-    Raises
-    ------
-    Refused : there is no single value there that a study may vary; says what there is
+    `Refused`, with what there is, where there is no single value that a study may vary.
     """
     keys = keys_of(path)
     pattern = tuple("*" if isinstance(key, int) else key for key in keys)
@@ -99,21 +76,9 @@ def rule_at(root: type[Part], table: Mapping[str, Any], path: str) -> Any:
 
 
 def require_field(root: type[Part], table: Mapping[str, Any], path: str) -> tuple[FieldInfo, int]:
-    """Field of a scene that a path leads to or into.
+    """Field that a path such as "chambers.0.volume" leads to or into, and how many keys lead to its table.
 
-    Parameters
-    ----------
-    root : the whole file
-    table : content of a scene file, free of faults
-    path : of the value, as in "chambers.0.volume"
-
-    Returns
-    -------
-    The field, and how many keys lead to its table.
-
-    Raises
-    ------
-    Refused : there is no such field, no table that it would stand in, or another one in its place
+    `Refused` where there is no such field, no table that it would stand in, or another one in its place.
     """
     keys = keys_of(path)
     tables = tables_of(root, table["rotor"]["kind"])
@@ -167,12 +132,7 @@ def _rule_of(field: Any, rest: Keys, place: str) -> Any:
 
 
 def entry_rule(annotation: Any) -> Any:
-    """Rule of the entries of a list, from its type; None if they are tables or there is no list.
-
-    Parameters
-    ----------
-    annotation : of the field
-    """
+    """Rule of the entries of a list, from its type; None if they are tables or there is no list."""
     if get_origin(annotation) is not tuple:
         inside = [found for option in get_args(annotation) if (found := entry_rule(option)) is not None]
         return inside[0] if inside else None
@@ -197,14 +157,9 @@ def _must_be_alone(table: Mapping[str, Any], keys: Keys, part: type[Part]) -> No
 
 
 def with_values(table: Mapping[str, Any], changes: Iterable[tuple[Keys, Any]]) -> dict[str, Any]:
-    """The content of a scene with other values; only what leads to them is copied.
+    """The content of a scene with other values at their keys; only what leads to them is copied.
 
     A single speed has one value: its start and stop move together.
-
-    Parameters
-    ----------
-    table : content of a scene file
-    changes : keys along the path of each value, and the value
     """
     changed, pairs = dict(table), list(changes)
     ends = [(keys, value) for keys, value in pairs if keys in (("speeds", "start"), ("speeds", "stop"))]

@@ -13,12 +13,7 @@ from leblanc.scene.schema.load import meant
 
 
 class Refused(ValueError):  # noqa: N818 - it says what became of the value
-    """A value that breaks a rule.
-
-    Parameters
-    ----------
-    allowed : what the value must be, in words that follow "must be"
-    """
+    """A value that breaks a rule; `allowed` is what it must be, in words that follow "must be"."""
 
     def __init__(self, allowed: str) -> None:
         super().__init__(allowed)
@@ -212,42 +207,22 @@ class Spans:
 
 
 def quantity(dimension: Dimension, low: float, high: float, *, or_zero: bool = False) -> PlainValidator:
-    """Rule of a number with a unit, for an annotation.
-
-    Parameters
-    ----------
-    dimension, low, high, or_zero : as in `Quantity`
-    """
+    """Rule of a number with a unit, for an annotation; arguments as of `Quantity`."""
     return PlainValidator(Quantity(dimension, low, high, or_zero))
 
 
 def entries(low: int, high: int, what: str) -> BeforeValidator:
-    """Rule of a list whose entries have rules of their own, for an annotation.
-
-    Parameters
-    ----------
-    low, high, what : as in `Entries`
-    """
+    """Rule of a list whose entries have rules of their own, for an annotation."""
     return BeforeValidator(Entries(low, high, what))
 
 
 def whole(low: int, high: int) -> PlainValidator:
-    """Rule of a whole number, for an annotation.
-
-    Parameters
-    ----------
-    low, high : bounds, both allowed
-    """
+    """Rule of a whole number between bounds, both allowed, for an annotation."""
     return PlainValidator(Whole(low, high))
 
 
 def one_of(*names: str) -> PlainValidator:
-    """Rule of one of a few names, for an annotation.
-
-    Parameters
-    ----------
-    names : that may be written
-    """
+    """Rule of one of a few names, for an annotation."""
     return PlainValidator(OneOf(names))
 
 

@@ -11,12 +11,7 @@ FRAME = Frame(left=1.3, top=0.15, between=0.1, below=0.42)
 
 
 def bearing_figure(result: BearingAnswer) -> Figure:
-    """Each frequency as a bar, those that were given as marks.
-
-    Parameters
-    ----------
-    result : the answer
-    """
+    """Each frequency as a bar, those that were given as marks."""
     hertz = result.speed * HERTZ
     with style():
         figure = Figure()

@@ -23,13 +23,7 @@ from solvers.synchronous.response import Response
 
 
 def closed_forms(machine: Prepared, answer: Response | None = None) -> ClosedForms:
-    """Closed forms that a scene has the data for.
-
-    Parameters
-    ----------
-    machine : the scene, made ready
-    answer : its response, at the scene's speeds; None where it was not solved
-    """
+    """Closed forms that a scene has the data for."""
     scene, speed = machine.scene, machine.speed
     balancing, why_not = _balancing(scene, speed)
     missing = [lacking(scene), why_not, _no_balls(scene)]
@@ -50,12 +44,6 @@ def vector_model(rotor: Jeffcott, answer: Response, liquid_mass: float) -> Vecto
 
     The ratio takes the liquid's unbalance from its law alone, the angle is that of the balance with the
     rotor: they fit each other only where the response solves it.
-
-    Parameters
-    ----------
-    rotor : without liquid
-    answer : of the rotor with its liquid, shape (n,)
-    liquid_mass : of all chambers, kg
     """
     lag = deflection_lag(answer.speed, rotor.mass, rotor.damping, rotor.stiffness)
     liquid = answer.liquid_offset * liquid_mass
@@ -133,13 +121,7 @@ def _cages(scene: Scene, speed: Array) -> tuple[Cage, ...]:
 
 
 def cages_of(bearings: Sequence[CagedBearing], speed: Array) -> tuple[Cage, ...]:
-    """Speeds of cages without slip [DR18, eq. 9-10; theory: rotor, eq. 32].
-
-    Parameters
-    ----------
-    bearings : whose balls are given
-    speed : of the shaft, rad/s, shape (n,)
-    """
+    """Speeds of cages without slip [DR18, eq. 9-10; theory: rotor, eq. 32]."""
     found = []
     for part in bearings:
         printed = 0.5 * speed if part.contact_angle == 0.0 else np.full(speed.shape, math.nan)

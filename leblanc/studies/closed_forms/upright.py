@@ -15,12 +15,7 @@ _LEAST = 1e-6  # of a chamber, that is liquid or air
 
 
 def lacking(scene: Scene) -> str | None:
-    """What the scene lacks for it; None where it lacks nothing, or its axis is not vertical.
-
-    Parameters
-    ----------
-    scene : the machine
-    """
+    """What the scene lacks for it; None where it lacks nothing, or its axis is not vertical."""
     if scene.rotor.axis != "vertical":
         return None
     stability = "Stability of the upright rotation"
@@ -44,14 +39,7 @@ def lacking(scene: Scene) -> str | None:
 def upright(scene: Scene, speed: Array) -> Upright | None:
     """Margin over the scene's speeds, and where it is used up [theory: statics, eq. 20-21].
 
-    Parameters
-    ----------
-    scene : the machine
-    speed : its speeds, rad/s, shape (n,)
-
-    Returns
-    -------
-    None for a scene that lacks something for it, see `lacking`, or whose axis is horizontal
+    None where it lacks something, see `lacking`, or its axis is horizontal.
     """
     rotor = scene.rotor
     if lacking(scene) is not None or not isinstance(rotor, TwoPlaneRotor) or rotor.pivot is None:

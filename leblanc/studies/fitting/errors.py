@@ -81,14 +81,7 @@ def profiles(
 ) -> Profiles:
     """Both ends of each unknown where the others do their best [theory: fit, eq. 10].
 
-    Parameters
-    ----------
-    problem : of the fit
-    x : the best values, shape (p,)
-    sigma : standard deviations of the measured values
-    bent : curvature there
-    quantile : standard errors of the interval
-    fixed : unknowns at their bound, which have none, shape (p,)
+    nan for unknowns that are `fixed` at their bound; `quantile` in standard errors.
     """
     residual = problem.weighted(sigma)
     least = float(np.sum(np.square(residual(x))))

@@ -85,22 +85,11 @@ def read_measured(
     free: bool = False,
     column: Mapping[str, str] | None = None,
 ) -> Measurement:
-    """Table of measured values: a header of names with units, then numbers.
+    """Table of measured values: a header of names with units, then numbers; faults name the line.
 
     Between columns stand commas, semicolons or tabs; decimal commas are read where no comma stands between
-    columns. Amplitudes become displacements, zero to peak.
-
-    Parameters
-    ----------
-    path : of the file, as in "speed [rpm], amplitude [mm]"
-    coordinates : of the rotor, which may be measured over time
-    free : the scale of the quantities is not known, their units are any
-    column : headers of the file by the quantities that they stand for, as in
-        {"amplitude": "Schwingweg [um pp]"}; what is neither named here nor known is then left out
-
-    Raises
-    ------
-    InputError : no such file, a column that is none of these, a value that is no number; with its line
+    columns. Amplitudes become displacements, zero to peak. With `free` units are any; `column` has headers by
+    the quantities that they stand for, what is neither named there nor known is then left out.
     """
     rows, delimiter = _rows(path, _text(path))
     if not rows:
@@ -145,17 +134,7 @@ def read_measured(
 
 
 def named_columns(given: Sequence[str], field: str = "column") -> dict[str, str]:
-    """Headers by quantities, from texts such as "amplitude=Schwingweg [um pp]".
-
-    Parameters
-    ----------
-    given : one text for each column
-    field : what they are called where they were typed
-
-    Raises
-    ------
-    InputError : a text without both, a quantity named twice
-    """
+    """Headers by quantities, from texts such as "amplitude=Schwingweg [um pp]"."""
     found: dict[str, str] = {}
     for text in given:
         name, sign, header = (part.strip() for part in text.partition("="))

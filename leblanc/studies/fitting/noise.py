@@ -29,21 +29,7 @@ _PASSES = 4  # of weights by the fitted values
 
 
 def parse_noise(text: str, field: str = "noise") -> tuple[str, float]:
-    """Kind of the noise and its size.
-
-    Parameters
-    ----------
-    text : "estimate", "3 %" of each reading, or an error such as "0.1 mm" or "2 deg"
-    field : what it is called where it was typed
-
-    Returns
-    -------
-    "estimate" and 0; "relative" and a share; "length" or "angle" and SI
-
-    Raises
-    ------
-    InputError : none of them
-    """
+    """Kind of the noise and its size: "estimate", 0; "relative", a share; "length" or "angle", SI."""
     if text.strip() == ESTIMATE:
         return ESTIMATE, 0.0
     kind, size = "", 0.0
@@ -280,10 +266,7 @@ def _beside(vectors: Array, size: int) -> Array:
 def alike_by_chance(basis: Array, size: int) -> tuple[float, float]:
     """Mean and variance of e'Ae/e'e of normal noise [theory: fit, eq. 8].
 
-    Parameters
-    ----------
-    basis : orthonormal directions that a fit takes out of the noise, shape (n columns, p)
-    size : values of each column
+    Orthonormal directions that a fit takes out of the noise, shape (n columns, p).
     """
     moved = _beside(basis, size)
     inner = basis.T @ moved

@@ -72,17 +72,7 @@ def span_of(path: str) -> float | None:
 
 
 def require_scale(scale: str, name: str = "scale") -> str:
-    """What is known of the scale of the measured lengths.
-
-    Parameters
-    ----------
-    scale : "given", "free" for one factor of all lengths, "each" for one of every quantity
-    name : what it is called where it was typed
-
-    Raises
-    ------
-    InputError : none of them
-    """
+    """What is known of the scale of the measured lengths."""
     if scale not in SCALES:
         raise InputError(name, scale, "one of " + ", ".join(SCALES))
     return scale

@@ -85,13 +85,7 @@ def search(
 ) -> Searched:
     """Ends of searches until the best has been found again and hardly any are unseen [theory: fit, eq. 6].
 
-    Parameters
-    ----------
-    problem : with its guess at 0
-    starts : searches at least
-    seed : of the starts
-    explained : whether what is left with some values may be noise; if not the search goes on
-    progress : called with the share that is done
+    The search goes on where what is left may not be noise (`explained`).
     """
     plain = problem.weighted(problem.plain())
     alone = problem.first.size == 1

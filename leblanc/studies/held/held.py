@@ -38,18 +38,8 @@ def hold_answer(
 ) -> tuple[Choice, Response, Response, Held, dict[float, HeldState]]:
     """The answer of a machine with the wave held in time where that is wanted.
 
-    Parameters
-    ----------
-    machine : the scene's
-    choice : the steady models
-    began : what they answer
-    holding : workers, and what is kept
-    progress : called with what is done
-
-    Returns
-    -------
-    The choice with the wave as model where it was held; the answers at the speeds asked for and between them;
-    the held states; and the motions themselves by their speeds, rad/s
+    The choice with the wave as model where it was held; answers at the speeds asked for and between them; the
+    held states; the motions by their speeds, rad/s.
     """
     rows = np.flatnonzero(began.at)
     between = _between(began)
@@ -130,12 +120,7 @@ def _placed(whole: Response, part: Response, rows: Index) -> Response:
 
 
 def held_machine(machine: Prepared) -> HeldMachine:
-    """The machine as held states take it.
-
-    Parameters
-    ----------
-    machine : the scene's
-    """
+    """The machine as held states take it."""
     fills = tuple(machine.scene.fills)
     exact = machine.scene.model.liquid == "potential"
     return HeldMachine(machine.system, fills, machine.friction, machine.across_gravity, exact)
@@ -150,13 +135,7 @@ def hold_speeds(
 ) -> HeldBranches:
     """Held states at the speeds of a steady response.
 
-    Parameters
-    ----------
-    machine : the scene's
-    steady : where the motions begin, by rising speed
-    growth : of the whirl that grows most at each speed, 1/s, nan where it is not known, shape (n,)
-    holding : workers, and what is kept
-    progress : called with how many states were found since the last call
+    `growth` is that of the whirl that grows most, 1/s, nan where it is not known.
     """
     held = held_machine(machine)
     numerics = HoldNumerics(cells=machine.scene.model.cells, solver=holding.solver)
@@ -181,12 +160,7 @@ def held_response(
 ) -> Response:
     """The steady response with held states in the place of its own answers, all speeds.
 
-    Parameters
-    ----------
-    machine : the scene's
-    steady : at the speeds of the states; angles, the dry rotor and the plane reported are its own
-    found : held states at all of them
-    position : along the axis of the plane reported, m; the steady response's if None
+    Angles, the rotor without liquid and the plane reported are those of the steady response.
     """
     system, fills = machine.system, machine.scene.fills
     place = steady.position if position is None else position
@@ -261,15 +235,7 @@ def _liquid(machine: Prepared, states: tuple[HeldState, ...], coordinates: Compl
 
 
 def held_result(found: HeldBranches, machine: Prepared, at: Index, solver: str) -> Held:
-    """What a result tells of held states.
-
-    Parameters
-    ----------
-    found : the states
-    machine : the scene's
-    at : indices of its speeds that were held, shape (k,)
-    solver : that held them, by its name in py-pde
-    """
+    """What a result tells of held states."""
     up, down, speeds = found.up, found.down, machine.speed.size
     model = held_model(machine.scene)
     apart = found.hysteresis

@@ -33,15 +33,7 @@ _ROOMS = (
 def kept(
     run: Runner, folder: Path, machine: HeldMachine, numerics: HoldNumerics, fresh: bool = False
 ) -> Runner:
-    """A runner that looks for each state in a folder first, and leaves there what it finds.
-
-    Parameters
-    ----------
-    run : finds what is not there
-    folder : made where it is missing
-    machine, numerics : what is held; states of another machine, resolution or version are not taken
-    fresh : take none
-    """
+    """A runner that looks for each state in a folder first, and leaves there what it finds."""
     folder.mkdir(parents=True, exist_ok=True)
     whole = _code()
     _feed(whole, (machine, numerics, versions()))

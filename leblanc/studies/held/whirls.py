@@ -22,15 +22,8 @@ def wave_errors(machine: Prepared, states: Sequence[HeldState]) -> Array:
     That of smooth waves under a whirl of the cycle's speed and size [theory: model_error, eq. 35], of the
     layer where it is largest.
 
-    Parameters
-    ----------
-    machine : the scene's
-    states : held with its model
-
-    Returns
-    -------
-    nan where there is no whirl beside the spin, for exact waves, past baffles, and where no smooth wave
-    follows a whirl as large
+    nan without a whirl beside the spin, for exact waves, past baffles, and where no smooth wave follows a
+    whirl as large.
     """
     if held_model(machine.scene) == "potential":
         return np.full(len(states), np.nan)
@@ -56,12 +49,6 @@ def own_whirl(system: RotorSystem, state: HeldState, position: float) -> float:
     """Size of the part of a motion that goes round at its own speed, m.
 
     By least squares over the last turns, beside what stands and what goes with multiples of the spin.
-
-    Parameters
-    ----------
-    system : the rotor
-    state : a limit cycle, with its path
-    position : along the axis, m
     """
     time = state.path[:, 0] - state.path[0, 0]
     first, second = system.at(position) @ state.path[:, 1:].T

@@ -14,13 +14,7 @@ from solvers.held.state import HeldMachine, HeldState, HoldNumerics
 
 @contextmanager
 def runner(machine: HeldMachine, numerics: HoldNumerics, workers: int) -> Iterator[Runner]:
-    """A runner of tasks in so many processes; in this one where that is one or none.
-
-    Parameters
-    ----------
-    machine, numerics : as for `solvers.held.hold.hold`
-    workers : processes
-    """
+    """A runner of tasks in so many processes; in this one where that is one or none."""
     if workers <= 1:
         yield lambda tasks: _here(machine, numerics, tasks)
         return

@@ -52,29 +52,14 @@ class Prepared:
 
     @property
     def planar(self) -> Jeffcott:
-        """The rotor, where it is planar.
-
-        Raises
-        ------
-        InputError : it is of another kind
-        """
+        """The rotor, where it is planar."""
         if not isinstance(self.rotor, Jeffcott):
             raise InputError("rotor.kind", self.scene.rotor.kind, "jeffcott for this")
         return self.rotor
 
 
 def prepare(scene: Scene, free: bool = False) -> Prepared:
-    """The scene's machine as solvers take it.
-
-    Parameters
-    ----------
-    scene : the machine
-    free : its axis may be free to move
-
-    Raises
-    ------
-    InputError : the scene is that of an exciter, or has balls; its axis is free to move and may not be
-    """
+    """The scene's machine as solvers take it."""
     require_no_balls(scene, "this; `leblanc run` and `leblanc runup` answer with balls")
     if not free:
         require_supported(scene)
@@ -106,22 +91,12 @@ _BALANCED = 1e-3  # of the surface's radius, that the liquid at rest may lie off
 
 
 def choose(scene: Scene) -> Choice:
-    """Liquid model for the synchronous response of a scene at each of its speeds.
-
-    Raises
-    ------
-    InputError : the scene names a model that does not know its chambers, or is an exciter
-    """
+    """Liquid model for the synchronous response of a scene at each of its speeds."""
     return choose_all([prepare(scene)])[0]
 
 
 def choose_all(machines: Sequence[Prepared]) -> list[Choice]:
-    """`choose` for several machines, planar ones all at once.
-
-    Raises
-    ------
-    InputError : as `choose`
-    """
+    """`choose` for several machines, planar ones all at once."""
     for machine in machines:
         _check_walls(machine.scene)
         _check_exact(machine.scene)
@@ -158,10 +133,7 @@ def by_elements(scene: Scene) -> bool:
 def models_at(machines: Sequence[Prepared]) -> list[tuple[NDArray[np.str_], Flags]]:
     """Liquid models of machines that have been chosen for, without an estimate of their errors.
 
-    Returns
-    -------
-    names of the models at the speeds of each machine, and whether the liquid rides with the drum there,
-    shape (n,) each
+    Names at the speeds of each machine, and whether the liquid rides with the drum there.
     """
     free = [machine.scene.model.liquid == "auto" and not is_cut(machine.scene) for machine in machines]
     judged = [machine for machine, chooses in zip(machines, free, strict=True) if chooses]
@@ -246,12 +218,6 @@ def held_at(scene: Scene, choice: Choice, growth: Array) -> Flags:
 
     Auto needs it where no steady model is known to be within the tolerance, though the liquid rides with the
     drum, and where a whirl grows by itself; exact waves are held there, and with gravity across the axis.
-
-    Parameters
-    ----------
-    scene : names the model, and whether auto may hold
-    choice : the steady models
-    growth : of the whirl that grows most, 1/s, shape (n,)
     """
     across = scene.rotor.axis == "horizontal" and scene.gravity > 0.0
     if scene.model.liquid == "long_wave" or (scene.model.liquid == "potential" and across):
@@ -266,14 +232,7 @@ def held_at(scene: Scene, choice: Choice, growth: Array) -> Flags:
 
 
 def costed(machine: Prepared, choice: Choice, growth: Array) -> Choice:
-    """The choice with what it takes to hold rotor and waves in time at each speed.
-
-    Parameters
-    ----------
-    machine : the scene's
-    choice : the steady models
-    growth : of the whirl that grows most, 1/s, shape (n,)
-    """
+    """The choice with what it takes to hold rotor and waves in time at each speed."""
     scene = machine.scene
     drawn = any(fill.chamber.section is not None for fill in scene.fills)
     if drawn or not any(map(_has_surface, scene.fills)):
@@ -286,15 +245,7 @@ def costed(machine: Prepared, choice: Choice, growth: Array) -> Choice:
 def held_cost(machine: Prepared, choice: Choice, growth: Array) -> HeldCost | None:
     """What it takes to hold what the scene has held, or what auto would hold if it were allowed to.
 
-    Parameters
-    ----------
-    machine : whose scene names the model, and whether auto may hold
-    choice : the steady models, costed
-    growth : of the whirl that grows most, 1/s, shape (n,)
-
-    Returns
-    -------
-    None where nothing is to be held
+    None where nothing is to be held.
     """
     scene = machine.scene
     asked = scene.model.held != "never" or scene.model.liquid in HELD_MODELS
@@ -404,17 +355,10 @@ def captured_speed(scene: Scene) -> float | None:
 
 
 def balance_from(scene: Scene, fill: Fill) -> float | None:
-    """Speed above which gravity cannot hold liquid at the bottom against the walls [theory: pool, eq. 8].
+    """Speed above which gravity cannot hold liquid at the bottom, rad/s [theory: pool, eq. 8].
 
-    Parameters
-    ----------
-    scene : the machine
-    fill : one of its chambers
-
-    Returns
-    -------
-    rad/s, inf where nothing drags on the liquid; None where gravity does not act across the axis, no pool
-    lies on a circular wall, or closed compartments take it along
+    inf where nothing drags on it; None where gravity does not act across the axis, no pool lies on a circular
+    wall, or closed compartments take it along.
     """
     gravity = across_gravity(scene)
     if gravity == 0.0 or fill.chamber.section is not None or fill.compartments > 1:
@@ -424,16 +368,10 @@ def balance_from(scene: Scene, fill: Fill) -> float | None:
 
 
 def carried_from(scene: Scene) -> float | None:
-    """Speed above which the walls carry every layer round from rest [theory: pool, eq. 10].
+    """Speed above which the walls carry every layer round from rest, rad/s [theory: pool, eq. 10].
 
-    Parameters
-    ----------
-    scene : the machine
-
-    Returns
-    -------
-    rad/s, inf where nothing drags on one of them; None where no layer lies at the bottom first, or that of a
-    chamber whose section is no circle
+    inf where nothing drags on one of them; None where no layer lies at the bottom first, or that of a chamber
+    whose section is no circle.
     """
     stands = captured_speed(scene)
     if stands is None or any(fill.chamber.section is not None for fill in scene.fills):
@@ -448,12 +386,7 @@ def _has_surface(fill: Fill) -> bool:
 
 
 def runup_outlook(scene: Scene) -> str:
-    """Which liquid model the run-up of a scene will take, as far as that is known before, in words.
-
-    Parameters
-    ----------
-    scene : the machine; nothing is said of one without a run-up or a programme
-    """
+    """Which liquid model the run-up of a scene will take, as far as that is known before, in words."""
     liquid, tolerance = scene.model.liquid, scene.model.tolerance
     if scene.speed_plan is None or not scene.chambers:
         return ""
@@ -473,12 +406,7 @@ def runup_outlook(scene: Scene) -> str:
 
 
 def ruled_out_linear(scene: Scene) -> str:
-    """Why linear layers are not tried for the run-up of a scene, or nothing.
-
-    Parameters
-    ----------
-    scene : with a run-up or a programme
-    """
+    """Why linear layers are not tried for the run-up of a scene, or nothing."""
     from solvers.runup.runup import largest_wave
 
     if any(fill.uneven for fill in scene.fills):

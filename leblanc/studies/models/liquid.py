@@ -86,21 +86,9 @@ def wave_model(
     dispersion: bool = False,
     solver: str | None = None,
 ) -> WaveModel:
-    """The liquid model that `layer` names, for a prescribed whirl.
+    """The liquid model that `layer` names, for a prescribed whirl; statics feel no friction.
 
-    Parameters
-    ----------
-    name : one of `WAVE_MODELS`
-    friction : on the wall; statics feel none, as the liquid is at rest in the drum
-    cells : round the wall, points of one family, or most steps from crest to trough of the exact wave; as
-        many as serves most cases if None
-    dispersion : of the finite depth, for long waves; the exact one for one family; the others have it anyway
-    solver : its name in py-pde, for long waves and one family; the model's own if None
-
-    Raises
-    ------
-    InputError : no such name, a solver for another model, friction that the model does not know, a resolution
-        that it does not take
+    `cells` round the wall, points of one family, or most steps from crest to trough of the exact wave.
     """
     if name not in _MAKE:
         raise InputError("model", name, "one of " + ", ".join(_MAKE))
@@ -110,12 +98,7 @@ def wave_model(
 
 
 def synchronous_model(name: str) -> LiquidModel:
-    """The liquid model that a scene names; `auto` is the cheapest that is exact for synchronous whirl.
-
-    Raises
-    ------
-    InputError : no model of that name answers a synchronous whirl
-    """
+    """The liquid model that a scene names; `auto` is the cheapest that is exact for synchronous whirl."""
     if name not in ("auto", *SYNCHRONOUS_MODELS):
         raise InputError("model.liquid", name, "one of auto, " + ", ".join(SYNCHRONOUS_MODELS))
     return wave_model("statics" if name == "auto" else name)
@@ -129,12 +112,7 @@ def element_model() -> LiquidModel:
 
 
 def runup_model(name: str) -> RunupModel:
-    """The liquid model of a run-up.
-
-    Raises
-    ------
-    InputError : no model of that name goes through time
-    """
+    """The liquid model of a run-up."""
     from solvers.runup.linear import couple_linear
     from solvers.runup.long_wave import couple
 

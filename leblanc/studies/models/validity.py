@@ -58,23 +58,7 @@ _WAYS = {
 
 
 def doubts(scene: Scene, given: Mapping[str, Any] | None = None) -> tuple[Note, ...]:
-    """What is hardly meant in a scene, a note for each value, its field in the data of the note.
-
-    Parameters
-    ----------
-    scene : the machine
-    given : content of its file, which tells speeds without a unit from others; None if there is none
-
-    Examples
-    --------
-    >>> import leblanc as lb
-    >>> rig = lb.example("vertical_rig")
-    >>> doubts(rig)
-    ()
-    >>> (note,) = doubts(rig.replace({"rotor.damping_ratio": 6.0}))
-    >>> note.data["field"], note.data["likely"]
-    ('rotor.damping_ratio', '0.06')
-    """
+    """What is hardly meant in a scene, a note for each value, its field in the data of the note."""
     return (
         *_rotor(scene),
         *_chambers(scene),
@@ -180,12 +164,7 @@ def moves_freely(scene: Scene) -> bool:
 
 
 def require_supported(scene: Scene) -> None:
-    """Refuse a machine whose axis can move freely: it never comes to a steady motion of some size.
-
-    Raises
-    ------
-    InputError : with the free motions and what holds them
-    """
+    """Refuse a machine whose axis can move freely: it never comes to a steady motion of some size."""
     if not moves_freely(scene):
         return
     assert isinstance(scene.rotor, TwoPlaneRotor | TubRotor)
@@ -287,12 +266,7 @@ MEANING = {
 
 
 def judge(found: Mapping[str, float], ranges: Mapping[str, Range]) -> tuple[Number, ...]:
-    """Numbers that a model's answer rests on, against the model's ranges, in the order of `MEANING`.
-
-    Parameters
-    ----------
-    found, ranges : by name, as of `solvers.liquid_model.LiquidWave`
-    """
+    """Numbers that a model's answer rests on, against the model's ranges, in the order of `MEANING`."""
     numbers = []
     for name, meaning in MEANING.items():
         if name not in found:

@@ -38,12 +38,7 @@ _WORDS = {
 
 @dataclass(frozen=True)
 class AutoWave:
-    """Stands for the model of a layer until its whirl is known.
-
-    Raises
-    ------
-    InputError : a tolerance out of its range
-    """
+    """Stands for the model of a layer until its whirl is known."""
 
     friction: Friction = NO_FRICTION  #: on the wall
     cells: int | None = None  #: of the model that is taken, as `wave_model` has them
@@ -69,13 +64,7 @@ Model = TypeVar("Model", bound=WaveModel)
 
 
 def watched(model: Model, progress: Progress) -> Model:
-    """The model, with someone to tell how far it has come, if it goes through time.
-
-    Parameters
-    ----------
-    model : of the liquid
-    progress : called with the share of the time that is done
-    """
+    """The model, with someone to tell how far it has come, if it goes through time."""
     if progress is not None and isinstance(model, LongWave | OneFamily | Potential):
         return replace(model, progress=progress)
     return model
@@ -86,15 +75,6 @@ def choose_wave(asked: AutoWave, fill: Fill, whirl: Whirl) -> WaveChoice:
 
     Long waves are not asked: they are what is left where friction or gravity acts, whose errors no estimate
     has, and where the exact wave has no smooth answer.
-
-    Parameters
-    ----------
-    asked : friction, resolution and tolerance
-    fill, whirl : chamber and liquid, and its whirl
-
-    Raises
-    ------
-    InputError : no free surface, a resolution that the model taken does not have
     """
     if whirl.gravity != 0.0:
         return _long(asked, fill, whirl, "gravity across the axis acts, whose waves they alone have")
@@ -154,13 +134,7 @@ def _with_baffles(asked: AutoWave, fill: Fill, whirl: Whirl) -> WaveChoice:
 
 
 def choose_in_time(asked: AutoWave, fill: Fill, whirl: Whirl) -> WaveChoice:
-    """The model that takes a layer from rest through time, by what it has to know: no estimate is of that.
-
-    Parameters
-    ----------
-    asked : friction, resolution and dispersion
-    fill, whirl : chamber and liquid, and its whirl
-    """
+    """The model that takes a layer from rest through time, by what it has to know: no estimate is of that."""
     plain = asked.friction.law is FrictionLaw.NONE and whirl.gravity == 0.0 and fill.chamber.baffles is None
     if plain and fill.depth > LONG[1] * fill.chamber.radius:
         model = wave_model("potential", cells=asked.cells)
@@ -172,16 +146,7 @@ def choose_in_time(asked: AutoWave, fill: Fill, whirl: Whirl) -> WaveChoice:
 
 
 def choose_free(asked: AutoWave) -> WaveChoice:
-    """The model of free waves: the exact one, of which alone the speed goes with the height.
-
-    Parameters
-    ----------
-    asked : resolution; without friction
-
-    Raises
-    ------
-    InputError : friction, a resolution that the exact wave does not have
-    """
+    """The model of free waves: the exact one, of which alone the speed goes with the height."""
     why = "the speed of a free wave goes with its height, which linear theory does not have"
     return WaveChoice(wave_model("potential", asked.friction, asked.cells), why)
 

@@ -44,12 +44,7 @@ class FillAnswers:
 
 
 class FilledMachine:
-    """A scene's machine with any volumes in its chambers.
-
-    Parameters
-    ----------
-    scene : the machine; its volumes and speeds are replaced
-    """
+    """A scene's machine with any volumes in its chambers."""
 
     def __init__(self, scene: Scene) -> None:
         require_supported(scene)
@@ -67,13 +62,7 @@ class FilledMachine:
         return isinstance(self.scene.rotor, JeffcottRotor)
 
     def at(self, volumes: Array, speed: Array) -> FillAnswers:
-        """Answers at m pairs.
-
-        Parameters
-        ----------
-        volumes : of the chambers, m^3, shape (m, c)
-        speed : rad/s, shape (m,)
-        """
+        """Answers at m pairs."""
         rows = np.ascontiguousarray(volumes)
         keys = [(row.tobytes(), spin) for row, spin in zip(rows, speed.tolist(), strict=True)]
         fresh: dict[tuple[bytes, float], int] = {}
@@ -97,14 +86,7 @@ class FilledMachine:
     def peaks(self, volumes: Array, speeds: Speeds) -> Array:
         """Largest amplitudes over the speeds of a range at which annular layers exist, at any of them.
 
-        Parameters
-        ----------
-        volumes : of the chambers, m^3, shape (m, c)
-        speeds : the range; how many there are does not matter
-
-        Returns
-        -------
-        m, shape (m,)
+        m, shape (m,), of volumes (m, c), m^3.
         """
         rows = np.ascontiguousarray(volumes)
         keys = [(row.tobytes(), speeds.start, speeds.stop) for row in rows]
@@ -171,13 +153,7 @@ class FilledMachine:
         return np.array([highest(own.speed, own.amplitude).amplitude for own in found])
 
     def answer_over(self, volumes: Array, speeds: Speeds) -> Response:
-        """Response with one set of volumes over a range of speeds, its peaks among them.
-
-        Parameters
-        ----------
-        volumes : of the chambers, m^3, shape (c,)
-        speeds : the range; how many there are does not matter
-        """
+        """Response with one set of volumes over a range of speeds, its peaks among them."""
         start, stop = speeds.start, speeds.stop
         few = np.linspace(start, stop, FEW) if stop > start else np.array([start])
         machine = replace(prepare(with_volumes(self.scene, volumes)), speed=few)
@@ -240,26 +216,11 @@ class FilledMachine:
 
 
 def with_volumes(scene: Scene, volumes: Array) -> Scene:
-    """A scene with other volumes in its chambers.
-
-    Parameters
-    ----------
-    scene : the machine
-    volumes : m^3, shape (c,)
-
-    Raises
-    ------
-    InputError : a volume that its chamber does not hold
-    """
+    """A scene with other volumes in its chambers."""
     pairs = zip(scene.liquids, volumes.tolist(), strict=True)
     return scene.altered(chambers=tuple(chamber.holding(volume) for chamber, volume in pairs))
 
 
 def model_name(scene: Scene) -> str:
-    """Liquid model that answers for a scene's volumes: finite elements where baffles cut the liquid.
-
-    Parameters
-    ----------
-    scene : whose model is not "auto"
-    """
+    """Liquid model that answers for a scene's volumes: finite elements where baffles cut the liquid."""
     return "fem" if is_cut(scene) else scene.model.liquid

@@ -14,25 +14,14 @@ from solvers.synchronous.response import response
 
 
 class QualityAtSpeed:
-    """Total unbalance over the rotor's mass, times the speed.
-
-    Parameters
-    ----------
-    machine : with any volumes
-    speed : rad/s
-    """
+    """Total unbalance over the rotor's mass, times the speed."""
 
     def __init__(self, machine: FilledMachine, speed: float) -> None:
         self.machine, self.speed = machine, speed
         self._known: dict[bytes, float] = {}
 
     def of(self, volumes: Array) -> Array:
-        """Balance quality with m sets of volumes, m/s; infinite where the motion is, shape (m,).
-
-        Parameters
-        ----------
-        volumes : m^3, shape (m, c)
-        """
+        """Balance quality with m sets of volumes, m/s; infinite where the motion is, shape (m,)."""
         if self.machine.planar:
             rotor, omega = jeffcott(self.machine.scene), np.array([self.speed])
             held = float(np.abs(rotor.dynamic_stiffness(omega))[0])

@@ -24,15 +24,7 @@ from solvers.whirl.growth import growth_map
 
 
 class Constraint:
-    """A value that must not be above its limit.
-
-    Parameters
-    ----------
-    name, meaning, unit : for reports
-    limit : in the unit
-    scale : what an excess is measured by, above 0
-    value : of volumes, shape (m, c); shape (m,)
-    """
+    """Value of volumes (m, c) that must not exceed a limit; `scale`, above 0, measures the excess."""
 
     def __init__(
         self,
@@ -99,15 +91,7 @@ def balanced(quality: QualityAtSpeed, grade: float) -> Constraint:
 def growth(scene: Scene, volumes: Array, speed: Array) -> Array:
     """Growth of the small whirl that grows most at any of some speeds [theory: optimum, eq. 5].
 
-    Parameters
-    ----------
-    scene : the machine
-    volumes : m^3, shape (m, c)
-    speed : rad/s, shape (n,)
-
-    Returns
-    -------
-    1/s, below 0 where every whirl dies out, nan where the whirls were not found, shape (m,)
+    1/s, below 0 where every whirl decays, nan where the whirls were not found, shape (m,).
     """
     rows: list[Sequence[Fill]] = [with_volumes(scene, row).fills for row in volumes]
     rotor, friction = dry_rotor(scene), whirl_friction(scene)
@@ -115,15 +99,7 @@ def growth(scene: Scene, volumes: Array, speed: Array) -> Array:
 
 
 def stability(scene: Scene, speed: Array, margin: float, where: str) -> Constraint:
-    """Every small whirl dies out at some speeds, rad/s, at least at the rate of a margin, 1/s.
-
-    Parameters
-    ----------
-    scene : the machine
-    speed : shape (n,)
-    margin : 0 or above
-    where : the speeds in words
-    """
+    """Every small whirl dies out at some speeds, rad/s, at least at the rate of a margin, 1/s."""
 
     def value(volumes: Array) -> Array:
         return growth(scene, volumes, speed)
@@ -135,18 +111,7 @@ def stability(scene: Scene, speed: Array, margin: float, where: str) -> Constrai
 
 
 def whirl_size(scene: Scene, speed: Array, limit: float) -> Constraint:
-    """Whirls that excite themselves grow to a limit at most, m [theory: whirl, eq. 24].
-
-    Parameters
-    ----------
-    scene : the machine
-    speed : operating speeds, rad/s, rising, shape (n,)
-    limit : m
-
-    Raises
-    ------
-    InputError : a machine whose whirls are no circles
-    """
+    """Whirls that excite themselves grow to a limit at most, m [theory: whirl, eq. 24]."""
     rotor, friction = dry_rotor(scene), whirl_friction(scene)
     why_not = not_circular(rotor, scene.fills, friction)
     if why_not:

@@ -17,13 +17,7 @@ _VOLUME = re.compile(r"chambers\.(\d+)\.volume")
 
 
 class EmulatedVibration:
-    """Vibration of a machine by an emulator over the volumes of some of its chambers.
-
-    Parameters
-    ----------
-    emulator : of the vibration
-    chambers : whose volumes it takes, in its order
-    """
+    """Vibration of a machine by an emulator over the volumes of some of its chambers."""
 
     def __init__(self, emulator: Emulator, chambers: tuple[int, ...]) -> None:
         self.emulator, self.chambers = emulator, chambers
@@ -38,16 +32,7 @@ class EmulatedVibration:
         return EmulatedAnswer(float(value[0]), float(deviation[0]), self.emulator.error)
 
     def inside(self, low: Array, high: Array, own: Array) -> tuple[Array, Array]:
-        """Bounds of the volumes cut to what the emulator knows; other chambers keep their own volume.
-
-        Parameters
-        ----------
-        low, high, own : bounds and volumes of the scene, m^3, shape (c,)
-
-        Raises
-        ------
-        InputError : a chamber is left without any volume
-        """
+        """Bounds of the volumes cut to what the emulator knows; other chambers keep their own volume."""
         least, most = own.copy(), own.copy()
         for k, chamber in enumerate(self.chambers):
             least[chamber] = max(low[chamber], self.emulator.low[k])
@@ -60,18 +45,7 @@ class EmulatedVibration:
 
 
 def emulated_vibration(store: Path, scene: Scene, task: Optimisation, seed: int = 0) -> EmulatedVibration:
-    """Emulator of the vibration that an optimisation is after, from a sweep over the volumes.
-
-    Parameters
-    ----------
-    store : of a sweep of this very scene, in which volumes vary and nothing else
-    scene, task : the machine and what its liquid is chosen for
-    seed : see `leblanc.studies.sweep.emulator.emulate`
-
-    Raises
-    ------
-    InputError : the store does not fit the scene or the objective
-    """
+    """Emulator of the vibration that an optimisation is after, from a sweep over the volumes."""
     found = read_store(store)
     if found.attributes()["scene_digest"] != scene.digest:
         raise InputError("--emulator", str(store), "the store of a sweep of this very scene")

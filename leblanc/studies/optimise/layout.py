@@ -37,14 +37,9 @@ _REFUSED = 10.0  # objective of a layout whose springs give way, above those of 
 
 
 class Variable(NamedTuple):
-    """One number that is searched.
+    """One searched number: how far mounts move along `ways`, m, or lean to them, rad, shape (n, 3).
 
-    Parameters
-    ----------
-    mounts : springs and dampers that it moves, counted together, springs first
-    ways : of each of them, the way that its place moves, or that its direction leans to, shape (n, 3)
-    leans : it is an angle, by which directions lean; else a length
-    most : largest change either way, m or rad
+    Mounts are counted together, springs first; `most` is the largest change either way.
     """
 
     mounts: tuple[int, ...]
@@ -71,12 +66,7 @@ class Suspension:
         return mass_matrix(self.rotor, self.origin)
 
     def moved(self, change: Array) -> tuple[Mounts, Mounts]:
-        """Springs and dampers with changes.
-
-        Parameters
-        ----------
-        change : of each variable, m or rad, shape (m, v)
-        """
+        """Springs and dampers with changes."""
         position = np.repeat(self.every.position, change.shape[0], axis=0)
         way = np.repeat(self.every.direction, change.shape[0], axis=0)
         for value, variable in zip(change.T, self.variables, strict=True):
@@ -94,15 +84,6 @@ def suspension_of(scene: Scene, task: Layout) -> Suspension:
     """The mounts of a scene's tub, what of them may move, and how far.
 
     Mounts at one place stay at one place: they are parts of one spring or damper.
-
-    Parameters
-    ----------
-    scene : the machine
-    task : how far
-
-    Raises
-    ------
-    InputError : the rotor is no tub
     """
     if not isinstance(scene.rotor, TubRotor):
         raise InputError("rotor.kind", scene.rotor.kind, "tub for the objective layout")
@@ -217,17 +198,7 @@ def _judge(held: Suspension, task: Layout, limit: float) -> Callable[[Array], _J
 
 
 def separation(frequency: Array, band: tuple[float, float]) -> Array:
-    """Least distance of frequencies from a band of speeds, over its nearer end [theory: rotor, eq. 38].
-
-    Parameters
-    ----------
-    frequency : rad/s, shape (..., f)
-    band : least and largest speed, rad/s
-
-    Returns
-    -------
-    Shape (...,); below 0 where a frequency lies inside
-    """
+    """Least distance of frequencies from a band of speeds, over its nearer end [theory: rotor, eq. 38]."""
     low, high = band
     return np.asarray(np.maximum((low - frequency) / low, (frequency - high) / high).min(axis=-1))
 
@@ -238,16 +209,6 @@ def optimise_layout(
     """Best places and directions of a tub's mounts within bounds, by differential evolution [SP97].
 
     The same seed gives the same layout.
-
-    Parameters
-    ----------
-    scene : with a rotor of kind "tub"
-    task : its table [optimise.layout] says how far mounts may move, and what is made least
-    progress : called with the number of layouts judged and the share of the search done
-
-    Raises
-    ------
-    InputError : the rotor is no tub, nothing may move, springs that do not hold the tub
     """
     from scipy.optimize import differential_evolution
 

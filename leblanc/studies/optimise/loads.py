@@ -28,35 +28,21 @@ UNITS = {"floor_force": "N", "motor_torque": "N m"}  # of the others 1
 
 
 def limits_loads(task: Optimisation) -> bool:
-    """Whether the task limits a load: each takes a response over speeds, or a run-up.
-
-    Parameters
-    ----------
-    task : what the liquid is chosen for
-    """
+    """Whether the task limits a load: each takes a response over speeds, or a run-up."""
     return any(getattr(task, name) is not None for name in _LIMITS)
 
 
 def loads_in_time(task: Optimisation) -> bool:
-    """Whether loads are looked at over the run-up.
-
-    Parameters
-    ----------
-    task : what the liquid is chosen for
-    """
+    """Whether loads are looked at over the run-up."""
     return task.loads_over != "operating" and (limits_loads(task) or task.objective in LOADS)
 
 
 class LoadsOver:
     """The worst loads of a machine with any volumes [theory: loads, eq. 9-11].
 
-    Parameters
-    ----------
-    machine : with any volumes
-    speeds : a range in which it turns steadily; the largest amplitudes between them are looked at as well;
-        None where only its run-up counts
-    least : clearance that every point with a gap is to keep, m
-    runs : its run-ups, with their loads; None where only steady turns count
+    Over a range of speeds, the largest amplitudes between them included (None: its run-ups alone), and over
+    its run-ups (None: steady turns alone); `least` is the clearance that every point with a gap is to keep,
+    m.
     """
 
     def __init__(
@@ -70,23 +56,14 @@ class LoadsOver:
         self._known: dict[bytes, dict[str, float]] = {}
 
     def on(self, runs: Passages) -> LoadsOver:
-        """The same with other run-ups.
-
-        Parameters
-        ----------
-        runs : of the same machine
-        """
+        """The same with other run-ups."""
         return LoadsOver(self.machine, self.speeds, self.least, runs)
 
     def of(self, name: str, volumes: Array) -> Array:
         """A load with m sets of volumes; infinite for a run-up that did not come to its end, shape (m,).
 
-        Parameters
-        ----------
-        name : `floor_force`, the largest under a foot, N; `walking_margin`, `slip_margin`, the share of its
-            hold on the floor that the machine uses, 1 less the margin; `point_clearance`, the largest share
-            that a point takes of its room; `motor_torque`, the largest, N m
-        volumes : m^3, shape (m, c)
+        Margins as the share of its hold on the floor that the machine uses, clearances as the share of its
+        room that a point takes.
         """
         found = []
         for row in np.ascontiguousarray(volumes):
@@ -150,72 +127,33 @@ class Load:
         return self.over.of(self.name, volumes)
 
     def on(self, runs: Passages) -> Load:
-        """The same with other run-ups; itself where none count.
-
-        Parameters
-        ----------
-        runs : of the same machine
-        """
+        """The same with other run-ups; itself where none count."""
         return self if self.over.runs is None else replace(self, over=self.over.on(runs))
 
 
 class LoadLimit(Constraint):
-    """A limit of a load.
-
-    Parameters
-    ----------
-    load : that is limited
-    meaning : for reports
-    limit : in the unit of the load
-    scale : what an excess is measured by, above 0
-    """
+    """A limit of a load."""
 
     def __init__(self, load: Load, meaning: str, limit: float, scale: float) -> None:
         super().__init__(load.name, meaning, UNITS.get(load.name, "1"), limit, scale, load.exact)
         self.load = load
 
     def on(self, runs: Passages) -> LoadLimit:
-        """The same with other run-ups.
-
-        Parameters
-        ----------
-        runs : of the same machine
-        """
+        """The same with other run-ups."""
         return LoadLimit(self.load.on(runs), self.meaning, self.limit, self.scale)
 
 
 def loads_of(
     task: Optimisation, machine: FilledMachine, speeds: Speeds, runs: Passages | None, least: float = 0.0
 ) -> LoadsOver:
-    """The loads that a task looks at.
-
-    Parameters
-    ----------
-    task : what the liquid is chosen for
-    machine : with any volumes
-    speeds : at which it is used
-    runs : its run-ups; None where the task looks at none
-    least : clearance that every point with a gap is to keep, m
-    """
+    """The loads that a task looks at."""
     return LoadsOver(machine, None if task.loads_over == "runup" else speeds, least, runs)
 
 
 def load_constraints(
     scene: Scene, task: Optimisation, machine: FilledMachine, speeds: Speeds, runs: Passages | None = None
 ) -> list[Constraint]:
-    """What the task limits of forces, walking, clearances and the motor.
-
-    Parameters
-    ----------
-    scene, task : the machine and what its liquid is chosen for
-    machine : the same with any volumes
-    speeds : at which it is used
-    runs : its run-ups; None where the task looks at none
-
-    Raises
-    ------
-    InputError : a limit of what the scene does not have
-    """
+    """What the task limits of forces, walking, clearances and the motor."""
     require_loads(scene, task)
     over, where = loads_of(task, machine, speeds, runs, task.point_clearance or 0.0), load_place(task)
     found: list[Constraint] = []
@@ -240,13 +178,7 @@ def load_constraints(
 
 
 def load_place(task: Optimisation, speeds: Speeds | None = None) -> str:
-    """Where the loads of a task are looked at, in words.
-
-    Parameters
-    ----------
-    task : what the liquid is chosen for
-    speeds : of operation, to be named; None to leave them out
-    """
+    """Where the loads of a task are looked at, in words."""
     steady = "at the operating speeds"
     if speeds is not None:
         steady = over_rpm(speeds.start, speeds.stop)
@@ -263,27 +195,12 @@ _MEANING = {
 
 
 def load_meaning(task: Optimisation, speeds: Speeds) -> str:
-    """What an objective that is a load means, in words.
-
-    Parameters
-    ----------
-    task : with such an objective
-    speeds : of operation
-    """
+    """What an objective that is a load means, in words."""
     return f"{_MEANING[task.objective]} {load_place(task, speeds)}"
 
 
 def require_loads(scene: Scene, task: Optimisation) -> None:
-    """Refuse what needs a cabinet, points or a run-up that the scene does not have, or goes another way.
-
-    Parameters
-    ----------
-    scene, task : the machine and what its liquid is chosen for
-
-    Raises
-    ------
-    InputError : such a limit or objective
-    """
+    """Refuse what needs a cabinet, points or a run-up that the scene does not have, or goes another way."""
     limits = [name for name in _LIMITS if getattr(task, name) is not None]
     if task.deflection is not None and limits:
         name = f"optimise.{limits[0]}"

@@ -25,13 +25,7 @@ class Vibration(Protocol):
 
 
 class AtSpeed:
-    """Amplitude at one speed, or the weighted mean over several [theory: optimum, eq. 2].
-
-    Parameters
-    ----------
-    machine : with any volumes
-    speeds, weights : rad/s and their shares, shape (k,)
-    """
+    """Amplitude at one speed, or the weighted mean over several [theory: optimum, eq. 2]."""
 
     def __init__(self, machine: FilledMachine, speeds: Array, weights: Array) -> None:
         self.machine, self.speeds, self.weights = machine, speeds, weights / weights.sum()
@@ -44,13 +38,7 @@ class AtSpeed:
 
 
 class RunupPeak:
-    """Largest amplitude of a run-up in time.
-
-    Parameters
-    ----------
-    scene : with a table `runup`
-    runs : its run-ups with any volumes; on the scene's cells if None
-    """
+    """Largest amplitude of a run-up in time."""
 
     def __init__(self, scene: Scene, runs: Passages | None = None) -> None:
         self.runs = Passages(scene) if runs is None else runs
@@ -61,13 +49,7 @@ class RunupPeak:
 
 
 class PeakOver:
-    """Largest amplitude over a range of speeds, found between them as well [theory: optimum, eq. 3].
-
-    Parameters
-    ----------
-    machine : with any volumes
-    speeds : the range
-    """
+    """Largest amplitude over a range of speeds, found between them as well [theory: optimum, eq. 3]."""
 
     def __init__(self, machine: FilledMachine, speeds: Speeds) -> None:
         self.machine, self.speeds = machine, speeds

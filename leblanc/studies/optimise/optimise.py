@@ -57,7 +57,7 @@ from leblanc.studies.optimise.search import (
 )
 from leblanc.studies.optimise.walls import freeing_volumes, require_known_walls
 from leblanc.studies.optimise.wetting import WettedWalls, wet_walls, wetting_volumes
-from leblanc.studies.run import run_scene
+from leblanc.studies.run.study import run_scene
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
 from solvers.liquid_model import LONG
@@ -75,33 +75,11 @@ def optimise_scene(
     emulator: EmulatedVibration | None = None,
     response: bool = True,
 ) -> OptimumResult:
-    """Best volume for each chamber of a scene.
+    """Best volume for each chamber of a scene; its own volumes do not matter.
 
-    Parameters
-    ----------
-    scene : the machine; its own volumes do not matter
-    objective : in place of the task's
-    task : in place of the scene's
-    front : find out as well what must be given up for what
-    progress : called with the number of sets of volumes evaluated so far and the share of the search done
-    emulator : asked by the search in place of the solvers, which then evaluate the best that it found
-    response : answer the machine with the best volumes over the scene's speeds as well
-
-    Returns
-    -------
-    OptimumResult; not feasible where no volumes meet the constraints, and those are given then that exceed
-    them least; the best of those tried so far where the search is interrupted from the keyboard
-
-    Raises
-    ------
-    InputError : no chamber, a value that does not fit the scene, an objective that lacks something
-
-    Examples
-    --------
-    >>> from leblanc.scene.scene import load_scene
-    >>> best = optimise_scene(load_scene("examples/horizontal_rig.toml"), front=False)
-    >>> bool(best.value < best.baseline)
-    True
+    Not feasible where no volumes meet the constraints: those that exceed them least are given then; the best
+    so far where the search is interrupted. The emulator is asked by the search in place of the solvers, which
+    then evaluate the best that it found.
     """
     task = task or scene.optimise or Optimisation()
     task = task if objective is None else task.altered(objective=objective)
@@ -386,13 +364,7 @@ def _quality(machine: FilledMachine, volume: Array, speed: float) -> dict[str, f
 def not_dominated(values: Array) -> Flags:
     """Points that no other beats: none is as good in every value and better in one.
 
-    Parameters
-    ----------
-    values : to be small, shape (m, k)
-
-    Returns
-    -------
-    shape (m,); of points that are equal in everything the first alone
+    Of points that are equal in everything the first alone.
     """
     kept: Flags = np.asarray(np.isfinite(values).all(axis=1))
     order = np.lexsort(values.T[::-1])
@@ -405,12 +377,7 @@ def not_dominated(values: Array) -> Flags:
 
 
 def front_of(volume: Array, vibration: Array, mass: Array, margin: Array) -> ParetoFront:
-    """The points that are not dominated, by rising mass.
-
-    Parameters
-    ----------
-    volume, vibration, mass, margin : as in `ParetoFront`
-    """
+    """The points that are not dominated, by rising mass."""
     kept = np.flatnonzero(not_dominated(np.stack((vibration, mass, -margin), axis=1)))
     kept = kept[np.lexsort((vibration[kept], mass[kept]))]
     return ParetoFront(volume[kept], vibration[kept], mass[kept], margin[kept])
@@ -437,20 +404,7 @@ def front_around(
     speeds: Array,
     progress: Progress | None = None,
 ) -> tuple[ParetoFront, ParetoFront]:
-    """What must be given up for what.
-
-    Parameters
-    ----------
-    scene, problem : the machine and what its volumes are evaluated by
-    found : by the search
-    vibration : of the best volumes, m
-    speeds : at which small whirls are looked at, rad/s
-    progress : as of the search, of which this is the rest
-
-    Returns
-    -------
-    the front, and all of the sweep from no liquid to the fullest chamber, shares as in the best volumes
-    """
+    """What must be given up for what: the front, and the sweep from no liquid to the fullest chamber."""
     evaluate, known = problem.evaluate, found.judged.details
     count = _SPARING if problem.costly else _SWEEP
     high = np.array([fill.chamber.capacity for fill in scene.fills])

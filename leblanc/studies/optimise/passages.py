@@ -33,18 +33,7 @@ class Passage:
 
 
 class Passages:
-    """The run-ups of a scene; no volumes are run twice.
-
-    Parameters
-    ----------
-    scene : with a table `runup` or `programme`
-    cells : round each wall; the scene's if None
-    loaded : look for the loads as well
-
-    Raises
-    ------
-    InputError : no such table, or a liquid model that does not go through time
-    """
+    """The run-ups of a scene; no volumes are run twice."""
 
     def __init__(self, scene: Scene, cells: int | None = None, loaded: bool = False) -> None:
         from leblanc.studies.runup import across_gravity, drive_of, liquid_model, numerics_of, planned
@@ -56,12 +45,7 @@ class Passages:
         self._known: dict[bytes, Passage] = {}
 
     def of(self, volumes: Array) -> list[Passage]:
-        """The run-ups with m sets of volumes.
-
-        Parameters
-        ----------
-        volumes : m^3, shape (m, c)
-        """
+        """The run-ups with m sets of volumes."""
         rows = np.ascontiguousarray(volumes)
         for row in rows:
             if row.tobytes() not in self._known:

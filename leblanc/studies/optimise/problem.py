@@ -86,13 +86,7 @@ class Evaluator:
         return "m" if self.sized is None else UNITS.get(self.sized.name, "1")
 
     def on(self, scene: Scene, runs: Passages) -> Evaluator:
-        """The same with other run-ups.
-
-        Parameters
-        ----------
-        scene : the machine
-        runs : of it
-        """
+        """The same with other run-ups."""
         in_time = isinstance(self.vibration, RunupPeak)
         return replace(
             self,
@@ -155,18 +149,7 @@ def growth_speeds(scene: Scene, task: Optimisation) -> Array:
 def problem_of(
     scene: Scene, task: Optimisation, machine: FilledMachine, solve: Callable[[Problem], Found]
 ) -> Problem:
-    """The problem that a scene poses.
-
-    Parameters
-    ----------
-    scene, task : the machine and what its liquid is chosen for
-    machine : the same with any volumes
-    solve : gives the best volumes for another problem, on the way to this one
-
-    Raises
-    ------
-    InputError : no such objective, or one that lacks something
-    """
+    """The problem that a scene poses."""
     if task.objective not in OBJECTIVES:
         raise InputError("--objective", task.objective, "one of " + ", ".join(OBJECTIVES))
     speed = working_speed(scene, task)

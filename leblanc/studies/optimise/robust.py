@@ -58,18 +58,10 @@ class UnbalanceRange:
 def unbalance_range(
     own: Sequence[float], wanted: Pair | tuple[Pair, ...] | None, default: Pair = (1.0, 1.0)
 ) -> UnbalanceRange:
-    """The unbalances of a rotor over a range that a task gives.
+    """The unbalances of a rotor over a range that a task gives, kg m.
 
-    Parameters
-    ----------
-    own : size of each of the rotor's unbalances, kg m
-    wanted : one range, of the largest of them, with which all others grow by one factor; or a range for each,
-        from which they are taken independently, kg m; None for the default
-    default : factors of the rotor's own unbalances
-
-    Raises
-    ------
-    InputError : no unbalance, ranges of another number, all unbalances 0 where they are to grow together
+    One range is that of the largest, with which all others grow by one factor; several are taken
+    independently; None: factors of the rotor's own.
     """
     sizes = tuple(own)
     if not sizes:
@@ -97,15 +89,7 @@ def operating_conditions(
 ) -> tuple[OperatingCondition, ...]:
     """Unbalances and temperatures that a machine must cope with.
 
-    Parameters
-    ----------
-    unbalance : of the rotor
-    temperature : range, K; None for the scene's own
-    samples, seed : so many at random, the same for the same seed; 0 for a grid of the ends and the middle
-
-    Raises
-    ------
-    InputError : a grid of more than `MOST_CONDITIONS`
+    So many samples at random, the same for the same seed; 0: a grid of the ends and the middle.
     """
     ways = unbalance.ways + 1
     if samples > 0:
@@ -134,15 +118,7 @@ def operating_conditions(
 class Conditions:
     """A scene's machine with any volumes in each of several conditions.
 
-    Parameters
-    ----------
-    scene : the machine
-    speed : rad/s
-    conditions : unbalances and temperatures
-
-    Raises
-    ------
-    InputError : an exciter, a liquid whose properties over temperature are not known, or not at these
+    An `InputError` for a liquid whose properties are not known at these temperatures.
     """
 
     def __init__(self, scene: Scene, speed: float, conditions: Sequence[OperatingCondition]) -> None:
@@ -177,12 +153,7 @@ class Conditions:
 
 
 def in_condition(scene: Scene, condition: OperatingCondition) -> tuple[Scene, list[float]]:
-    """The scene in a condition, and by what factor the volume of each chamber's liquid grows.
-
-    Parameters
-    ----------
-    scene, condition : the machine, and its unbalances and temperature
-    """
+    """The scene in a condition, and by what factor the volume of each chamber's liquid grows."""
     if isinstance(scene.rotor, WITHOUT_CHAMBERS):
         raise InputError("rotor.kind", scene.rotor.kind, "jeffcott, two_plane or tub for this")
     rotor = with_unbalances(scene.rotor, condition.unbalance)
@@ -197,19 +168,7 @@ def in_condition(scene: Scene, condition: OperatingCondition) -> tuple[Scene, li
 
 
 class Robust:
-    """A quantile of the amplitudes at one speed over conditions [theory: optimum, eq. 4].
-
-    Parameters
-    ----------
-    scene : the machine, of any kind but an exciter
-    speed : rad/s
-    conditions : equally likely
-    quantile : 1 for the worst case
-
-    Raises
-    ------
-    InputError : as `Conditions`
-    """
+    """A quantile of the amplitudes at one speed over conditions [theory: optimum, eq. 4]."""
 
     def __init__(
         self, scene: Scene, speed: float, conditions: Sequence[OperatingCondition], quantile: float
@@ -233,16 +192,7 @@ def condition_table(
     unbalance: UnbalanceRange,
     growth: Callable[[Scene, Array], float],
 ) -> ConditionTable:
-    """What the machine does with the best volumes over the ranges of temperature and unbalance.
-
-    Parameters
-    ----------
-    scene, task : the machine and what its liquid is chosen for
-    robust : its objective
-    volume : the best, m^3, shape (c,)
-    unbalance : over which it was chosen
-    growth : of the small whirl that grows most in a scene with other volumes, m^3, shape (c,); 1/s
-    """
+    """What the machine does with the best volumes over the ranges of temperature and unbalance."""
     around = robust.around
     count = _FINE if around.machines[0].planar else _COARSE
     heated = task.temperature is not None and task.temperature[0] < task.temperature[1]
@@ -289,12 +239,6 @@ def _dry(scene: Scene, speed: float, size: tuple[float, ...], nothing: Array) ->
 
 
 def filled_scenes(around: Conditions, volumes: Array) -> list[tuple[Scene, Array]]:
-    """The machine at each temperature that occurs, with the volumes that it has there.
-
-    Parameters
-    ----------
-    around : conditions
-    volumes : at the temperature of the scene's values, m^3, shape (m, c)
-    """
+    """The machine at each temperature that occurs, with the volumes that it has there."""
     first = {condition.temperature: k for k, condition in reversed(list(enumerate(around.conditions)))}
     return [(around.scenes[k], around.held(volumes, k)) for k in first.values()]

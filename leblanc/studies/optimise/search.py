@@ -41,12 +41,7 @@ _CLOSER = 6  # of the best that a cheaper vibration found are evaluated again
 
 
 def bounds_of(scene: Scene, task: Optimisation) -> tuple[Array, Array]:
-    """Least and most volume of each chamber, m^3, shape (c,) each.
-
-    Raises
-    ------
-    InputError : not one pair for each chamber, more than a chamber holds
-    """
+    """Least and most volume of each chamber, m^3, shape (c,) each."""
     capacity = np.array([fill.chamber.capacity for fill in scene.fills])
     if not task.volumes:
         return np.zeros_like(capacity), capacity
@@ -163,13 +158,7 @@ def on_all_cells(scene: Scene, problem: Problem) -> Problem:
 
 
 def evaluated_again(fine: Problem, found: Found) -> Found:
-    """The best of what a search with a cheaper vibration found, by the problem's own evaluation.
-
-    Parameters
-    ----------
-    fine : the problem
-    found : by the search
-    """
+    """The best of what a search with a cheaper vibration found, by the problem's own evaluation."""
     allowed = np.maximum(found.judged.excess, 0.0) <= max(found.excess, 0.0)
     order = np.flatnonzero(allowed)[np.argsort(found.judged.objective[allowed], kind="stable")]
     tried = np.unique(np.concatenate((found.point[None], found.points[order[:_CLOSER]])), axis=0)

@@ -19,10 +19,6 @@ def freeing_volumes(scene: Scene) -> Array:
     """Volume of each chamber from which on its liquid passes the baffles, m^3, shape (c,).
 
     Below it the liquid is in compartments; 0 where it never is, as behind a gap at the wall.
-
-    Parameters
-    ----------
-    scene : the machine; its volumes do not matter
     """
     return np.array([_freeing(fill) for fill in scene.fills])
 
@@ -38,30 +34,14 @@ def _freeing(fill: Fill) -> float:
 
 
 def most_cells(scene: Scene) -> int:
-    """Cells round each wall that long waves need where the liquid is in the most compartments; 0 without.
-
-    Parameters
-    ----------
-    scene : the machine; its volumes do not matter
-    """
+    """Cells round each wall that long waves need where the liquid is in the most compartments; 0 without."""
     cut = zip(scene.fills, freeing_volumes(scene).tolist(), strict=True)
     counts = (fill.chamber.baffles.count for fill, freed in cut if freed > 0.0 and fill.chamber.baffles)
     return max((FEWEST_CELLS * count for count in counts), default=0)
 
 
 def require_known_walls(scene: Scene, task: Optimisation, low: Array, high: Array) -> None:
-    """Refuse baffles that no model answers for at some of the volumes searched.
-
-    Parameters
-    ----------
-    scene, task : the machine and what its liquid is chosen for
-    low, high : least and most volume of each chamber, m^3, shape (c,)
-
-    Raises
-    ------
-    InputError : two compartments; compartments and a model that does not know them, or with too few cells in
-        them; a limit of whirls that excite themselves
-    """
+    """Refuse baffles that no model answers for at some of the volumes searched."""
     for k, (fill, freed) in enumerate(zip(scene.fills, freeing_volumes(scene).tolist(), strict=True)):
         baffles = fill.chamber.baffles
         if baffles is None:

@@ -21,19 +21,7 @@ from solvers.statics.hydrostatics import equilibrium, optimal_volume
 
 
 def wetting_volumes(chamber: Chamber, deflection: float, speed: float, gravity: float) -> WettingVolumes:
-    """The volumes that wet a wall, in closed form.
-
-    Parameters
-    ----------
-    chamber : where the liquid is
-    deflection : e, m
-    speed : rad/s
-    gravity : along the axis, m/s^2
-
-    Raises
-    ------
-    InputError : a value out of its range
-    """
+    """The volumes that wet a wall, in closed form."""
     touching = float(optimal_volume(chamber, deflection, speed, gravity))
     full = full_volume(chamber, deflection, speed, gravity)
     filled = min(touching, chamber.capacity)
@@ -49,13 +37,7 @@ def wetting_volumes(chamber: Chamber, deflection: float, speed: float, gravity: 
 def full_volume(chamber: Chamber, deflection: float, speed: float, gravity: float) -> float:
     """Least volume that wets the whole wall up to the lid [theory: optimum, eq. 1].
 
-    Parameters
-    ----------
-    chamber, deflection, speed, gravity : as for `wetting_volumes`
-
-    Returns
-    -------
-    m^3; infinite where the surface would cut the floor's edge or an inner wall, or leave the chamber
+    m^3; infinite where the surface would cut the floor's edge or an inner wall, or leave the chamber.
     """
     near = chamber.radius - deflection
     # The surface falls by the chamber's height over h/beta in the square of its radius.
@@ -73,15 +55,7 @@ def optimal_volume_by_search(
 ) -> Found:
     """The least volume that leaves no part of the wall dry over its whole height, found by the search.
 
-    Parameters
-    ----------
-    fill : chamber and liquid; its volume does not matter
-    deflection, speed, gravity : as for `wetting_volumes`
-    plan : of the search
-
-    Returns
-    -------
-    Found; its only coordinate is the volume, m^3, the one that comes nearest where none will do
+    The one that comes nearest where none will do.
     """
     chamber = fill.chamber
 
@@ -113,14 +87,7 @@ class WettedWalls:
 
 
 def wet_walls(scene: Scene, deflection: float, speed: float) -> WettedWalls:
-    """For each chamber the least volume that leaves no part of its wall dry over its whole height.
-
-    Parameters
-    ----------
-    scene : the machine
-    deflection : e, m
-    speed : rad/s
-    """
+    """For each chamber the least volume that leaves no part of its wall dry over its whole height."""
     gravity = axial_gravity(scene)
     found = [optimal_volume_by_search(fill, deflection, speed, gravity) for fill in scene.fills]
     volumes = tuple(float(best.point[0]) for best in found)

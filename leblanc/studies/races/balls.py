@@ -10,7 +10,6 @@ import numpy as np
 from leblanc.core.notes import Note
 from leblanc.results.machine.loads import MachineLoads
 from leblanc.results.notes import balls as notes
-from leblanc.results.notes import response as response_notes
 from leblanc.results.races.balls import RaceOfBalls
 from leblanc.results.races.states import BallsResult
 from leblanc.scene.inputs import input_rows
@@ -23,6 +22,7 @@ from leblanc.studies.models.validity import doubts
 from leblanc.studies.races.chart import own_family
 from leblanc.studies.races.estimates import carried_balls, gravity_on_balls, liquid_errors
 from leblanc.studies.races.states import liquid_beside
+from leblanc.studies.run import notes as response_notes
 from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.liquid_model import LiquidModel
@@ -42,12 +42,7 @@ APART = 0.1  # rad between balls at the bottom of a race whose diameter the scen
 
 
 def races_shown(scene: Scene) -> tuple[RaceOfBalls, ...]:
-    """The races of a scene as results keep them.
-
-    Parameters
-    ----------
-    scene : the machine
-    """
+    """The races of a scene as results keep them."""
     return tuple(
         RaceOfBalls(race.count, race.capacity / race.count, race.plane, race.radius, race.diameter)
         for race in scene.balls
@@ -55,12 +50,7 @@ def races_shown(scene: Scene) -> tuple[RaceOfBalls, ...]:
 
 
 def started_balls(scene: Scene) -> Balls:
-    """The balls of a scene where a run-up begins.
-
-    Parameters
-    ----------
-    scene : the machine
-    """
+    """The balls of a scene where a run-up begins."""
     places: list[float] = []
     shares: list[float] = []
     for race in scene.balls:
@@ -80,16 +70,8 @@ def _places(race: BallRace) -> list[float]:
 def run_balls(scene: Scene, families: bool = True, edges: bool = True) -> BallsResult:
     """States in which the balls of a scene rest in the drum, at each of its speeds [theory: races, eq. 5-8].
 
-    Parameters
-    ----------
-    scene : with races, and chambers with liquid or none
-    families : look for the least and the largest growth over families of states, which takes some time
-    edges : solve the speeds between which the balanced state is stable
-
-    Raises
-    ------
-    InputError : no race, a section or baffles that the equilibrium of the liquid does not know, a model of
-        liquid that is not at rest in the drum
+    `families`: look for the least and the largest growth rate over families of states; `edges`: solve the
+    speeds between which the balanced state is stable.
     """
     if not scene.balls:
         raise InputError("chambers", len(scene.chambers), "with one of kind balls for this")

@@ -71,24 +71,11 @@ def chart_scene(
     state: str = STATES[0],
     progress: Callable[[int, int], None] | None = None,
 ) -> BallChart:
-    """Stability of a state of the balls over the scene's speeds and another of its numbers.
+    """Stability of a state of the balls over speed and another number of the scene, or the drag.
 
-    Parameters
-    ----------
-    scene : with races, and chambers with liquid or none
-    over : paths of numbers of the scene, which keep their ratios; the drag in all races if empty
-    start, stop : first and last value of the first of them, SI or with a unit; a tenth and ten times what the
-        scene has if None, of the drag a hundredth and a hundred times
-    values, speeds : how many of each, at least 2
-    log : space the values by their logarithm; where they span a decade if None
-    state : balanced; heavy or light, with the balls of each race together on that side of its plane
-    progress : called now and then with the number of points of the grid done and of all
-
-    Raises
-    ------
-    InputError : no race, a path that leads to no such number, a value out of its range, a rotor that the
-        solver does not know
-    SceneError : a value at which the scene is none
+    Paths in `over` keep their ratios; values go from a tenth to ten times what the scene has (of the drag a
+    hundredth to a hundred times) unless given, by their logarithm where they span a decade. State heavy or
+    light: the balls of each race together on that side of its plane.
     """
     _check(scene, values, speeds, state)
     varied = _varied(scene, tuple(over))

@@ -26,18 +26,8 @@ def liquid_errors(
 ) -> tuple[Array, GravityError]:
     """Estimated error of the motion by the liquid's model, the balls held where they rest.
 
-    Parameters
-    ----------
-    machine : with liquid
-    races : that hold the balls
-    places : of the balls in the states reported, rad, nan where there is none, shape (s, N)
-    position : along the axis of the plane whose amplitude is reported, m
-    linear : the liquid is in linear theory, not in its exact equilibrium
-
-    Returns
-    -------
-    As the response without balls has it [theory: model_error]: relative, of amplitude and liquid the larger
-    one, shape (s,); what gravity across the axis does, nan where there is no state
+    Relative, of amplitude and liquid the larger one, shape (s,); what gravity across the axis does, nan where
+    there is no state [theory: model_error].
     """
     known = np.flatnonzero(np.isfinite(places).all(axis=1))
     systems = [with_balls_at(machine.system, races, places[k]) for k in known]
@@ -82,16 +72,7 @@ def gravity_on_balls(
 ) -> GravityOnBalls | None:
     """How balls that rest in a lying drum swing, and what that does [theory: races, eq. 11].
 
-    Parameters
-    ----------
-    machine : the rotor
-    races : that hold the balls
-    places, coordinates : of the states reported, nan where there is none, shapes (s, N) and (s, n)
-    position : along the axis of the plane whose amplitude is reported, m
-
-    Returns
-    -------
-    None where gravity does not act across the axis
+    None where gravity does not act across the axis.
     """
     gravity, speed = machine.across_gravity, machine.speed
     if gravity == 0.0:

@@ -29,13 +29,7 @@ _LEFT = 1e-9  # of the unbalance: what may be left of it where races balance it
 
 
 def ball_numbers(scene: Scene, machine: Explanation) -> BallExplanation:
-    """Numbers of a scene with balls, beside those of the same scene without.
-
-    Parameters
-    ----------
-    scene : with races
-    machine : the scene without them
-    """
+    """Numbers of a scene with balls, beside those of the same scene without."""
     require_clear(scene, "balls beside liquid")
     system = dry_rotor(scene).system()
     turned = RotorWithBalls(system, tuple(race.race() for race in scene.balls))

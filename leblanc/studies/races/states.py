@@ -40,27 +40,12 @@ class WorstStates:
 
 
 def planes_of(scene: Scene) -> tuple[float, ...]:
-    """Planes of all chambers, the one that `run` reports first, m.
-
-    Parameters
-    ----------
-    scene : with chambers
-    """
+    """Planes of all chambers, the one that `run` reports first, m."""
     return tuple(dict.fromkeys(chamber.plane for chamber in scene.chambers))
 
 
 def liquid_beside(scene: Scene) -> tuple[str, LiquidModel]:
-    """Model of the liquid that rests in the drum beside balls, and its name; auto is the exact equilibrium.
-
-    Parameters
-    ----------
-    scene : with races, and chambers with liquid or none
-
-    Raises
-    ------
-    InputError : a section or baffles that the equilibrium of the liquid does not know, a model of liquid that
-        is not at rest in the drum
-    """
+    """Model of the liquid that rests beside balls, and its name; auto is the exact equilibrium."""
     require_clear(scene, "balls beside liquid")
     name = "statics" if scene.model.liquid == "auto" else scene.model.liquid
     if not scene.fills:
@@ -72,17 +57,7 @@ def liquid_beside(scene: Scene) -> tuple[str, LiquidModel]:
 
 
 def worst_states(scene: Scene, speed: ArrayLike) -> WorstStates:
-    """The stable state of rotor, balls and liquid with the largest amplitude [theory: races, eq. 5-8].
-
-    Parameters
-    ----------
-    scene : with races, and chambers with liquid or none
-    speed : rad/s, above 0, shape (s,)
-
-    Raises
-    ------
-    InputError : as `liquid_beside`
-    """
+    """The stable state of rotor, balls and liquid with the largest amplitude [theory: races, eq. 5-8]."""
     system, spin = dry_rotor(scene).system(), np.asarray(speed, dtype=float)
     races = [race.race() for race in scene.balls]
     model = liquid_beside(scene)[1]
@@ -116,11 +91,6 @@ def gathered_amplitude(scene: Scene, speed: Array) -> Array:
 
     In the plane where it is largest, of those of all chambers. It bounds every motion in which the balls rest
     in the drum; liquid is left out.
-
-    Parameters
-    ----------
-    scene : with races
-    speed : rad/s, shape (s,)
     """
     system = dry_rotor(scene).system()
     machine = RotorWithBalls(system, tuple(race.race() for race in scene.balls))

@@ -27,12 +27,7 @@ _ROOM = 0.95  # of the largest radius at which such balls fit in their race
 
 
 def ball_radius(race: BallRace) -> float:
-    """Radius of a ball as drawn, m: what the scene says, or that of a steel ball that fits.
-
-    Parameters
-    ----------
-    race : with its balls
-    """
+    """Radius of a ball as drawn, m: what the scene says, or that of a steel ball that fits."""
     if race.diameter is not None:
         return 0.5 * race.diameter
     fits = race.radius * (math.sin(math.pi / race.count) if race.count > 1 else 0.5)
@@ -41,12 +36,7 @@ def ball_radius(race: BallRace) -> float:
 
 
 def ringed(scene: Scene) -> Scene:
-    """The scene with a ring-shaped chamber without liquid, as wide as the balls, in place of each race.
-
-    Parameters
-    ----------
-    scene : with races
-    """
+    """The scene with a ring-shaped chamber without liquid, as wide as the balls, in place of each race."""
     rings = [
         Chamber(
             radius=race.radius + ball,
@@ -63,12 +53,7 @@ def ringed(scene: Scene) -> Scene:
 
 
 def drawn_races(scene: Scene) -> tuple[DrawnRace, ...]:
-    """The races of a scene as they are drawn, behind its chambers with liquid.
-
-    Parameters
-    ----------
-    scene : with races
-    """
+    """The races of a scene as they are drawn, behind its chambers with liquid."""
     first, found = 0, []
     for k, race in enumerate(scene.balls):
         own = (first, first + race.count)
@@ -82,17 +67,6 @@ def side_by_side(races: Sequence[DrawnRace], angle: Array) -> Array:
     """Angles at which balls of one race that would cover one another touch; the others stay.
 
     Those that overlap move apart about their middle, again and again until none does.
-
-    Parameters
-    ----------
-    races : as drawn
-    angle : of each ball, rad, shape (N,)
-
-    Examples
-    --------
-    >>> race = DrawnRace(ring=0, radius=0.1, ball=0.1 * math.sin(0.1), assumed=False, balls=(0, 2))
-    >>> side_by_side([race], np.array([1.0, 1.0])).round(6).tolist()
-    [0.9, 1.1]
     """
     found = angle.copy()
     for race in races:
@@ -125,19 +99,7 @@ def side_by_side(races: Sequence[DrawnRace], angle: Array) -> Array:
 def ball_view(
     scene: Scene, speed: float | None = None, factor: float | None = None, every: bool = False
 ) -> BallView:
-    """A machine with balls at one speed, or at all its own, and what is drawn of it.
-
-    Parameters
-    ----------
-    scene : with races
-    speed : rad/s; the last of its speeds if None
-    factor : of the deflection as drawn; chosen if None
-    every : all speeds of the scene
-
-    Raises
-    ------
-    InputError : a value out of its range
-    """
+    """A machine with balls at one speed, or at all its own, and what is drawn of it."""
     if not every:
         spin = scene.speeds.stop if speed is None else speed
         if not (math.isfinite(spin) and spin > 0.0):

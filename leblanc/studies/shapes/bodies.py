@@ -30,23 +30,13 @@ _RIGHT_ANGLE = 24  # sides on a quarter of a compartment's wall
 
 
 def is_cut(fill: Fill) -> bool:
-    """The liquid is no single body between circular walls.
-
-    Parameters
-    ----------
-    fill : the chamber with its liquid
-    """
+    """The liquid is no single body between circular walls."""
     return fill.chamber.section is not None or fill.compartments > 1
 
 
 @lru_cache(maxsize=32)
 def sections_of(fill: Fill) -> tuple[Section, ...]:
-    """Section of each body of liquid, from wall to wall.
-
-    Parameters
-    ----------
-    fill : a chamber for which `is_cut` holds
-    """
+    """Section of each body of liquid, from wall to wall."""
     chamber = fill.chamber
     if chamber.section is not None:
         return (chamber.section.mesh,)
@@ -59,13 +49,7 @@ def sections_of(fill: Fill) -> tuple[Section, ...]:
 
 
 def steepness(speed: float, gravity: float) -> float:
-    """beta = Omega^2/(2 g), 1/m; infinite without gravity along the axis [theory: statics, eq. 1].
-
-    Parameters
-    ----------
-    speed : spin, rad/s
-    gravity : along the axis, m/s^2
-    """
+    """beta = Omega^2/(2 g), 1/m; infinite without gravity along the axis [theory: statics, eq. 1]."""
     return math.inf if gravity == 0.0 else speed**2 / (2.0 * gravity)
 
 
@@ -73,16 +57,7 @@ def steepness(speed: float, gravity: float) -> float:
 def surfaces(
     fill: Fill, volume: float, deflection: complex, speed: float, gravity: float
 ) -> tuple[SurfaceSolution, ...]:
-    """Free surface of each body of liquid, equal shares of the volume.
-
-    Parameters
-    ----------
-    fill : a chamber for which `is_cut` holds
-    volume : of all liquid as drawn, m^3
-    deflection : of the chamber's centre from the axis at rest, m
-    speed : spin, rad/s
-    gravity : along the axis, m/s^2
-    """
+    """Free surface of each body of liquid, equal shares of the volume."""
     return _surfaces(fill, volume, deflection, speed, gravity)
 
 
@@ -103,12 +78,7 @@ def _surfaces(
 def bodies_at_rest(
     fill: Fill, volume: float, deflection: complex, speed: float, gravity: float
 ) -> LiquidBodies:
-    """Liquid that turns with its chamber about the axis at rest [theory: statics, eq. 1].
-
-    Parameters
-    ----------
-    fill, volume, deflection, speed, gravity : as for `surfaces`
-    """
+    """Liquid that turns with its chamber about the axis at rest [theory: statics, eq. 1]."""
     beta, bodies = steepness(speed, gravity), []
     found = surfaces(fill, volume, deflection, speed, gravity)
     for mesh, surface in zip(sections_of(fill), found, strict=True):
@@ -129,12 +99,7 @@ def bodies_at_rest(
 
 
 def wall_is_dry(fill: Fill, volume: float, deflection: complex, speed: float, gravity: float) -> bool:
-    """Somewhere a wall that the liquid at rest covers has none over its whole height.
-
-    Parameters
-    ----------
-    fill, volume, deflection, speed, gravity : as for `surfaces`
-    """
+    """Somewhere a wall that the liquid at rest covers has none over its whole height."""
     found = surfaces(fill, volume, deflection, speed, gravity)
     for wall, surface in zip(_walls(fill), found, strict=True):
         if float(np.abs(wall + deflection).min()) < surface.dry_radius:
@@ -145,14 +110,7 @@ def wall_is_dry(fill: Fill, volume: float, deflection: complex, speed: float, gr
 def meets_inner_wall(
     fill: Fill, volume: float, deflection: complex, speed: float, gravity: float, depth: float, gap: float
 ) -> bool:
-    """Liquid at rest comes as near as a gap to a core or an inner wall, or past the edges of closed baffles.
-
-    Parameters
-    ----------
-    fill, volume, deflection, speed, gravity : as for `surfaces`
-    depth : by which the layer is drawn deeper, and with it the baffles
-    gap : over the chamber's radius
-    """
+    """Liquid at rest comes within a gap of a core or inner wall, or past edges of closed baffles."""
     wall = _dry_walls(fill, depth)
     if wall.size == 0:
         return False

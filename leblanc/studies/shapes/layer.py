@@ -32,18 +32,7 @@ def body_at_rest(
 ) -> LiquidShape:
     """Liquid that turns with a chamber as a whole about the axis at rest [theory: statics, eq. 1].
 
-    Parameters
-    ----------
-    chamber : where the liquid is
-    volume : of the liquid, m^3
-    deflection : of the chamber's centre from the axis at rest; that axis lies inside the inner wall, or
-        inside the chamber if there is none, m
-    speed : spin speed, rad/s
-    gravity : along the axis, m/s^2
-
-    Raises
-    ------
-    InputError : the axis at rest lies where the half-planes would cut a wall twice
+    The axis at rest lies inside the inner wall, or inside the chamber if there is none.
     """
     size = abs(deflection)
     inside = chamber.inner_radius or chamber.radius
@@ -103,15 +92,7 @@ def _angles(chamber: Chamber, deflection: complex, *waterlines: float) -> Array:
 
 
 def body_of_layer(chamber: Chamber, deflection: complex, angle: Array, depth: Array) -> LiquidShape:
-    """Liquid of a layer as deep at the lid as at the floor.
-
-    Parameters
-    ----------
-    chamber : where the liquid is
-    deflection : of the chamber's centre from the axis at rest, m
-    angle : around the chamber's centre, in any order, rad, shape (n,)
-    depth : of the layer there, m, shape (n,)
-    """
+    """Liquid of a layer as deep at the lid as at the floor."""
     turned = np.remainder(angle + math.pi, 2.0 * math.pi) - math.pi
     order = np.argsort(turned)
     free = np.clip(chamber.radius - depth[order], chamber.inner_radius, chamber.radius)
@@ -132,14 +113,7 @@ def _upright(
 def body_of_pool(
     chamber: Chamber, volume: float, deflection: complex, down: float
 ) -> LiquidShape | LiquidBodies:
-    """Liquid that lies at the bottom of a chamber whose axis is horizontal.
-
-    Parameters
-    ----------
-    chamber, deflection : as in `body_of_layer`
-    volume : of the liquid, m^3
-    down : direction of gravity, rad
-    """
+    """Liquid that lies at the bottom of a chamber whose axis is horizontal."""
     level = chamber.radius * math.cos(half_angle(volume / (chamber.height * chamber.radius**2)))
     if 0.0 < chamber.inner_radius > level:
         return _pool_round_wall(chamber, volume, deflection, down)

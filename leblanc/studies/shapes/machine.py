@@ -21,11 +21,11 @@ from leblanc.results.drawn.machine import (
     film_factor,
     rounded_down,
 )
-from leblanc.results.response import RunResult
 from leblanc.results.runup import RunupFrames, RunupResult
 from leblanc.scene.scene import Exciter, JeffcottRotor, Scene, Speeds, dry_rotor
 from leblanc.studies.models.choose import across_gravity, axial_gravity, choose, liquid_models
-from leblanc.studies.run import run_scene
+from leblanc.studies.run.answer import RunResult
+from leblanc.studies.run.study import run_scene
 from leblanc.studies.runup import runup_scene
 from leblanc.studies.shapes.balls import drawn_races, ringed, side_by_side
 from leblanc.studies.shapes.bodies import is_cut, wall_is_dry
@@ -59,17 +59,7 @@ AROUND_MODE, ACROSS = 120, 4  # elements around and across the layer
 
 
 def machine_motion(scene: Scene, speed: float | None = None) -> MachineMotion:
-    """Answer of a scene at one speed, or at all its own.
-
-    Parameters
-    ----------
-    scene : the machine, no exciter
-    speed : spin speed, rad/s; the scene's speeds if None
-
-    Raises
-    ------
-    InputError : a speed that is not above 0, an exciter, a liquid model that does not answer this
-    """
+    """Answer of a scene at one speed, or at all its own."""
     require_rotor(scene)
     if speed is not None:
         if not (math.isfinite(speed) and speed > 0.0):
@@ -90,12 +80,7 @@ def machine_motion(scene: Scene, speed: float | None = None) -> MachineMotion:
 
 
 def require_rotor(scene: Scene) -> None:
-    """The scene has a rotor that whirls, and not a table with balls.
-
-    Raises
-    ------
-    InputError : it is an exciter
-    """
+    """The scene has a rotor that whirls, and not a table with balls."""
     if scene.rotor.kind == "spindle":
         raise InputError("rotor.kind", "spindle", "jeffcott, two_plane or tub for this")
     if scene.rotor.kind == "exciter":
@@ -123,37 +108,13 @@ def _lean(scene: Scene, result: RunResult) -> Complex:
 
 
 def machine_view(scene: Scene, speed: float | None = None, factor: float | None = None) -> MachineView:
-    """A scene's machine at one speed and its liquid as drawn.
-
-    Parameters
-    ----------
-    scene : the machine, no exciter
-    speed : rad/s; the last of its speeds if None
-    factor : of the deflection as drawn; chosen if None
-
-    Raises
-    ------
-    InputError : a value out of its range, an exciter
-
-    Examples
-    --------
-    >>> from leblanc.scene.scene import load_scene
-    >>> view = machine_view(load_scene("examples/runup.toml"), speed=24.0)
-    >>> view.liquid.scale.in_words()
-    'Everything to scale.'
-    """
+    """A scene's machine at one speed and its liquid as drawn."""
     motion = machine_motion(scene, scene.speeds.stop if speed is None else speed)
     return MachineView(motion, drawn_liquid(motion, -1, scale_of(motion, factor)))
 
 
 def drawn_liquid(motion: MachineMotion, index: int, scale: Scale) -> DrawnLiquid:
-    """Liquid of a machine at one of its speeds, in equilibrium with the deflection as it is drawn.
-
-    Parameters
-    ----------
-    motion, index : the machine, which of its speeds
-    scale : of deflection and depth
-    """
+    """Liquid of a machine at one of its speeds, in equilibrium with the deflection as it is drawn."""
     speed, found = float(motion.speed[index]), motion.deflection[index]
     return DrawnLiquid(
         scale,
@@ -168,13 +129,7 @@ def drawn_liquid(motion: MachineMotion, index: int, scale: Scale) -> DrawnLiquid
 
 
 def dry_walls(motion: MachineMotion, index: int, scale: Scale | None = None) -> tuple[bool, ...]:
-    """Whether the wall of each chamber is dry in part, in truth or as drawn [theory: statics, eq. 8].
-
-    Parameters
-    ----------
-    motion, index : the machine, which of its speeds
-    scale : of the drawing; None for the truth
-    """
+    """Whether the wall of each chamber is dry in part, in truth or as drawn [theory: statics, eq. 8]."""
     factors = scale or Scale()
     moved = factors.deflection * motion.deflection[index]
     speed = float(motion.speed[index])
@@ -193,17 +148,7 @@ def _is_dry(fill: Fill, moved: complex, volume: float, speed: float, gravity: fl
 
 
 def table_view(scene: Scene, speed: float | None = None) -> TableView:
-    """A table with balls at the moment when balls and unbalance both point along the vibration.
-
-    Parameters
-    ----------
-    scene : of kind "exciter"
-    speed : of the shaft, rad/s; the last of its speeds if None
-
-    Raises
-    ------
-    InputError : another rotor, a speed that is not above 0
-    """
+    """A table with balls at the moment when balls and unbalance both point along the vibration."""
     rotor = scene.rotor
     if not isinstance(rotor, Exciter):
         raise InputError("rotor.kind", rotor.kind, "exciter for this")
@@ -232,19 +177,7 @@ def table_view(scene: Scene, speed: float | None = None) -> TableView:
 def runup_view(
     scene: Scene, frames: int, factor: float | None = None, progress: Callable[[float], None] | None = None
 ) -> RunupView:
-    """Run a scene up and draw its layers.
-
-    Parameters
-    ----------
-    scene : with a table `runup`
-    frames : how many
-    factor : of the deflection as drawn; chosen if None
-    progress : called with the share of the run-up that is done
-
-    Raises
-    ------
-    InputError : a value out of its range, a run-up whose liquid has no layer to show
-    """
+    """Run a scene up and draw its layers."""
     result = runup_scene(scene, check=False, progress=progress, frames=frames)
     kept = result.frames
     assert kept is not None
@@ -272,22 +205,7 @@ def runup_view(
 
 
 def strobe(time: Array, speed: Array) -> tuple[Array, float]:
-    """Turn of the drum in each frame of a film, slow enough for the eye to follow from frame to frame.
-
-    Parameters
-    ----------
-    time, speed : of the frames, s and rad/s, shape (f,)
-
-    Returns
-    -------
-    Turn, rad, shape (f,), and how many times slower than in truth that is, at least 1
-
-    Examples
-    --------
-    >>> turn, slower = strobe(np.array([0.0, 1.0, 2.0]), np.array([50.0, 100.0, 100.0]))
-    >>> np.round(np.degrees(np.diff(turn))), slower
-    (array([13., 17.]), 330.0)
-    """
+    """Turn of the drum in each frame of a film, rad, and how many times slower than in truth it is."""
     steps = 0.5 * (speed[1:] + speed[:-1]) * np.diff(time)
     slower = max(1.0, float(steps.max(initial=0.0)) / TURN)
     # Rounded to two digits for print, upwards.
@@ -299,11 +217,6 @@ def runup_scale(radius: float, result: RunupResult, frames: RunupFrames) -> Scal
     """One factor for deflections and depths, so that a surface round the axis at rest stays so as drawn.
 
     Where there is no room for it the deflection alone grows, so that the whirl can be seen.
-
-    Parameters
-    ----------
-    radius : of the widest chamber, m
-    result, frames : the run-up and its layers at regular times
     """
     largest = float(np.abs(frames.deflection).max())
     wanted = min(MOST, SHOWN * radius / largest) if largest > 0.0 else 1.0
@@ -331,19 +244,7 @@ def _liquid(fill: Fill, scale: Scale, frames: RunupFrames, k: int, j: int, turn:
 
 
 def mode_view(scene: Scene, number: int, speed: float | None = None, chamber: int = 1) -> ModeView:
-    """A mode of the liquid in one chamber of a scene, by finite elements [theory: sloshing, eq. 10-12].
-
-    Parameters
-    ----------
-    scene : the machine
-    number : which mode, from 1 by rising size of the frequency
-    speed : spin, rad/s; the scene's last if None
-    chamber : which one, from 1
-
-    Raises
-    ------
-    InputError : no such chamber or mode, no free surface, a speed that is not above 0
-    """
+    """A mode of the liquid in one chamber of a scene, by finite elements [theory: sloshing, eq. 10-12]."""
     spin, fill = _checked(scene, number, speed, chamber)
     section = _liquid_in_mode(fill)
     modes = sloshing_modes(condense(section), spin, number)

@@ -36,15 +36,7 @@ _HALVINGS = 60
 def drawn_volume(fill: Fill, depth: float) -> float:
     """Volume of a liquid layer drawn deeper than it is.
 
-    Parameters
-    ----------
-    fill : the chamber with its liquid
-    depth : factor of the mean depth
-
-    Returns
-    -------
-    m^3; that of the scene for a factor of 1. In a section of its own the layer grows by as much everywhere
-    as where it is thinnest
+    In a section of its own the layer grows by as much everywhere as where it is thinnest.
     """
     if depth == 1.0 or (fill.chamber.section is not None and not fill.uneven):
         return fill.volume
@@ -61,16 +53,7 @@ def wet_deflection(fill: Fill, depth: float, speed: Array, gravity: float) -> Ar
     In a section of its own, and between closed baffles, the depth where the layer is thinnest: a bowl under
     gravity along the axis and the compartments leave more.
 
-    Parameters
-    ----------
-    fill : the chamber with its liquid
-    depth : factor of its depth as drawn
-    speed : spin speeds, rad/s, shape (s,)
-    gravity : along the axis, m/s^2
-
-    Returns
-    -------
-    m, shape (s,)
+    m, shape (s,).
     """
     if is_cut(fill):
         return np.full(speed.shape, depth * fill.depth if fill.uneven else math.inf)
@@ -78,19 +61,7 @@ def wet_deflection(fill: Fill, depth: float, speed: Array, gravity: float) -> Ar
 
 
 def drying_deflection(chamber: Chamber, volume: float, speed: Array, gravity: float) -> Array:
-    """Deflection at which the wall just falls dry [theory: statics, eq. 8].
-
-    Parameters
-    ----------
-    chamber : where the liquid is
-    volume : of the liquid, m^3
-    speed : spin speeds, rad/s, shape (s,)
-    gravity : along the axis, m/s^2
-
-    Returns
-    -------
-    m, at most the chamber's radius, shape (s,)
-    """
+    """Deflection at which the wall just falls dry [theory: statics, eq. 8]."""
     low, high = np.zeros(speed.shape), np.full(speed.shape, chamber.radius)
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
@@ -106,16 +77,8 @@ def choose_scale(
 
     As much liquid as there is, unless its layer is too thin to be seen: then it is drawn deeper. The
     deflection grows until the wall is about to fall dry. If it is dry at one of the instants, the deflection
-    is drawn as it is, or both grow by the same factor, which leaves wet what is wet and dry what is dry.
-    A surface that meets no inner wall meets none as drawn: both factors fall until there is room.
-
-    Parameters
-    ----------
-    fills : the chambers drawn, with their liquid
-    deflection : of each chamber at each instant drawn, m, nan where unknown, shape (s, c)
-    speed : of each instant, rad/s, shape (s,)
-    gravity : along the axis, m/s^2
-    length : of the machine along its axis, m
+    is drawn as it is, or both grow by the same factor, which leaves wet what is wet and dry what is dry. A
+    surface that meets no inner wall meets none as drawn: both factors fall until there is room.
     """
     wanted = _visible(fills, deflection, speed, gravity, length)
     return _with_room(wanted, fills, deflection, speed, gravity)
@@ -213,14 +176,8 @@ def _deeper(fills: tuple[Fill, ...], span: float) -> float:
 def wave_scale(fill: Fill) -> tuple[float, float]:
     """How a mode of the liquid is drawn, whose true height is any small one.
 
-    Parameters
-    ----------
-    fill : the chamber with its liquid
-
-    Returns
-    -------
-    Factor of the layer's depth; largest displacement, m. The area of the liquid swings, m a per angle, and
-    neither comes up with the area from the surface to the nearest wall on either side
+    Factor of the layer's depth; largest displacement, m. Neither comes up with the area to the nearest wall
+    on either side.
     """
     room = fill.depth + inner_room(fill)
     depth = fill.depth
@@ -233,12 +190,7 @@ def wave_scale(fill: Fill) -> tuple[float, float]:
 
 
 def inner_room(fill: Fill) -> float:
-    """From the free surface inwards to the nearest wall, or to the axis, m.
-
-    Parameters
-    ----------
-    fill : the chamber with its liquid
-    """
+    """From the free surface inwards to the nearest wall, or to the axis, m."""
     chamber = fill.chamber
     if chamber.section is None:
         return fill.surface_radius - chamber.inner_radius
@@ -282,18 +234,7 @@ def given_scale(
     speed: Array | None = None,
     gravity: float = 0.0,
 ) -> Scale:
-    """The factor that the user gives, of the deflection alone; less where walls leave no room for it.
-
-    Parameters
-    ----------
-    factor : above 0
-    fills, deflection, speed, gravity : as for `choose_scale`; no speed where the layers do not depend on the
-        deflection as drawn
-
-    Raises
-    ------
-    InputError : a factor out of its range
-    """
+    """The factor that the user gives, of the deflection alone; less where walls leave no room for it."""
     most = _room(fills, np.nan_to_num(np.abs(deflection)))
     if not (math.isfinite(factor) and 0.0 < factor <= most):
         allowed = "a finite number above 0" + ("" if math.isinf(most) else f", at most {most:.3g} here")
@@ -305,29 +246,14 @@ def given_scale(
 
 
 def scale_of(motion: MachineMotion, factor: float | None = None) -> Scale:
-    """The given factor, or one that makes the deflection visible at all speeds of a machine.
-
-    Parameters
-    ----------
-    motion : the machine at these speeds
-    factor : of the deflection; None to choose it
-
-    Raises
-    ------
-    InputError : a factor out of its range
-    """
+    """The given factor, or one that makes the deflection visible at all speeds of a machine."""
     if factor is not None:
         return given_scale(factor, motion.fills, motion.deflection, motion.speed, motion.gravity)
     return choose_scale(motion.fills, motion.deflection, motion.speed, motion.gravity, motion.length)
 
 
 def scale_at(motion: MachineMotion, index: int) -> Scale:
-    """The factors that fit one of the speeds.
-
-    Parameters
-    ----------
-    motion, index : the machine, which of its speeds
-    """
+    """The factors that fit one of the speeds."""
     rows = slice(index, index + 1)
     return choose_scale(
         motion.fills, motion.deflection[rows], motion.speed[rows], motion.gravity, motion.length

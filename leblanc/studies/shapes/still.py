@@ -19,10 +19,6 @@ def places_of(scene: Scene) -> tuple[tuple[float, ...], bool]:
     """Middle of each chamber along the axis as drawn, and whether some were moved out of each other.
 
     A planar rotor's chambers that do not lie inside one another stand one behind the other.
-
-    Parameters
-    ----------
-    scene : the machine
     """
     chambers = [fill.chamber for fill in scene.fills]
     if not isinstance(scene.rotor, JeffcottRotor):
@@ -47,15 +43,7 @@ def places_of(scene: Scene) -> tuple[tuple[float, ...], bool]:
 
 
 def liquid_at(fill: Fill, deflection: complex, speed: float, gravity: float, scale: Scale) -> Liquid:
-    """Liquid of a chamber at a speed; None if there is none.
-
-    Parameters
-    ----------
-    fill : the chamber with its liquid
-    deflection : of its axis, m; nan where it is not known
-    speed, gravity : rad/s; along the axis, m/s^2
-    scale : of deflection and depth
-    """
+    """Liquid of a chamber at a speed; None if there is none."""
     if fill.volume == 0.0:
         return None
     volume = drawn_volume(fill, scale.depth)

@@ -35,13 +35,7 @@ _SAME = 1e-6  # of a length: two mounts at one place
 
 
 def machine_parts(scene: Scene, places: tuple[float, ...]) -> MachineParts:
-    """Drum, housing, shaft, bearings, springs and dampers of a scene's rotor.
-
-    Parameters
-    ----------
-    scene : the machine, no exciter
-    places : middle of each chamber along the axis as drawn, m
-    """
+    """Drum, housing, shaft, bearings, springs and dampers of a scene's rotor."""
     if isinstance(scene.rotor, TubRotor):
         return _around(scene, _tub(scene, scene.rotor, places))
     if isinstance(scene.rotor, TwoPlaneRotor):

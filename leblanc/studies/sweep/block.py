@@ -110,12 +110,7 @@ BALLS_SINGLE: tuple[Output, ...] = (
 
 
 def outputs_of(balls: bool) -> tuple[Output, ...]:
-    """What a store keeps of each sample.
-
-    Parameters
-    ----------
-    balls : the scenes have races with balls
-    """
+    """What a store keeps of each sample."""
     return OUTPUTS + BALLS_OVER_SPEED + BALLS_SINGLE if balls else OUTPUTS
 
 
@@ -130,13 +125,7 @@ def with_balls(table: Mapping[str, Any]) -> bool:
 
 
 def blank(output: Output, samples: int, speeds: int) -> NDArray[Any]:
-    """Values of samples without an answer: nan, -1 or an empty text.
-
-    Parameters
-    ----------
-    output : of which there is none
-    samples, speeds : how many
-    """
+    """Values of samples without an answer: nan, -1 or an empty text."""
     shape = (samples, speeds) if output.over_speed else (samples,)
     if output.kind == TEXT:
         return np.full(shape, "", dtype=object)
@@ -144,12 +133,7 @@ def blank(output: Output, samples: int, speeds: int) -> NDArray[Any]:
 
 
 def values_of(answers: Answers) -> dict[str, NDArray[Any]]:
-    """Outputs by name, from the answers of some scenes.
-
-    Parameters
-    ----------
-    answers : arrays of shape (scenes, speeds)
-    """
+    """Outputs by name, from the answers of some scenes."""
     balls = answers.balanced_from is not None
     values = {
         output.name: np.asarray(getattr(answers, output.name)).astype(
@@ -179,18 +163,10 @@ Maker = Callable[[Sequence[Any]], Scene]
 
 
 def scene_maker(table: Mapping[str, Any], paths: Sequence[Keys]) -> Maker:
-    """What makes one scene after the other from the same table with other values.
+    """What makes one scene after the other from the same table with other values at some paths.
 
-    Each is the scene that the whole table with those values gives, at a fraction of the cost.
-
-    Parameters
-    ----------
-    table : content of a scene file, free of faults
-    paths : keys along the path of each value
-
-    Returns
-    -------
-    Function of the values at those paths. It raises SceneError where the whole table would.
+    Each is the scene that the whole table with those values gives, at a fraction of the cost, and raises as
+    that would.
     """
     base = {key: value for key, value in table.items() if key not in _WORDS_ONLY}
     scene = scene_from_table(base)
@@ -240,13 +216,7 @@ def _place_in(below: tuple[str, ...], entry: Mapping[str, Any], tables: _Tables)
 
 
 def make_scenes(make: Maker, rows: Iterable[Sequence[Any]]) -> tuple[list[Scene | None], list[str]]:
-    """Scenes of some samples, None for one that breaks a rule, and the reason why.
-
-    Parameters
-    ----------
-    make : from `scene_maker`
-    rows : values of each sample
-    """
+    """Scenes of some samples, None for one that breaks a rule, and the reason why."""
     scenes: list[Scene | None] = []
     reasons: list[str] = []
     for row in rows:
@@ -294,10 +264,6 @@ def answer_block(block: Block) -> BlockAnswer:
     """Answer a block on one thread.
 
     A sample whose scene breaks a rule, or that fails in any other way, has its reason in its place.
-
-    Parameters
-    ----------
-    block : the samples
     """
     from threadpoolctl import threadpool_limits
 

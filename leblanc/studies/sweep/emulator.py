@@ -49,17 +49,8 @@ class Emulator:
     def predict(self, values: ArrayLike) -> tuple[Array, Array]:
         """Output and its standard deviation.
 
-        Parameters
-        ----------
-        values : shape (n, d), inside the ranges
-
-        Returns
-        -------
-        output, deviation : shape (n,); of a positive output the relative deviation times the output
-
-        Raises
-        ------
-        InputError : a value outside the ranges
+        Shape (n,); of a positive output the relative deviation times the output. An `InputError` outside the
+        ranges.
         """
         mean, deviation = self.process.predict(self._points(values), return_std=True)
         mean, deviation = self.centre + self.scale * mean, self.scale * deviation
@@ -83,26 +74,7 @@ class Emulator:
 
 
 def emulate(fields: Sequence[str], values: Array, output: Array, seed: int = 0) -> Emulator:
-    """Emulator of an output from samples, with its error on unseen samples.
-
-    Parameters
-    ----------
-    fields : names of the varied values, d of them
-    values : of each sample, shape (n, d)
-    output : of each sample, nan where there is none, shape (n,)
-    seed : of the choice of samples and of the folds
-
-    Raises
-    ------
-    InputError : too few samples, a value or an output that does not vary
-
-    Examples
-    --------
-    >>> x = np.linspace(1.0, 2.0, 40)[:, None]
-    >>> emulator = emulate(["x"], x, np.sin(3.0 * x[:, 0]) + 2.0)
-    >>> emulator.error.root_mean_square < 1e-3
-    True
-    """
+    """Emulator of an output from samples, with its error on unseen samples."""
     known = np.isfinite(output) & np.isfinite(values).all(axis=1)
     values, output = values[known], output[known]
     if output.size < LEAST * len(fields):
@@ -182,25 +154,7 @@ EMULATED = tuple(output.name for output in SINGLE)
 
 
 def emulate_store(store: Store | Path, output: str, seed: int = 0) -> Emulator:
-    """Emulator of an output that is one number a sample, over the varied fields [theory: emulator].
-
-    Parameters
-    ----------
-    store : of a sweep, or its folder; samples that are not done are left out
-    output : one of `EMULATED`
-    seed : of the choice of samples and of the folds
-
-    Raises
-    ------
-    InputError : no such store or output, a field of texts, too few samples
-
-    Examples
-    --------
-    >>> emulate_store(Path("nowhere"), "peak_amplitude")
-    Traceback (most recent call last):
-    ...
-    meshes.errors.InputError: store = 'nowhere': must be the store of a sweep
-    """
+    """Emulator of an output that is one number a sample, over the varied fields [theory: emulator]."""
     if output not in EMULATED:
         raise InputError("output", output, "one of " + ", ".join(EMULATED))
     found = read_store(store) if isinstance(store, Path) else store
@@ -214,12 +168,7 @@ def emulate_store(store: Store | Path, output: str, seed: int = 0) -> Emulator:
 
 
 def emulated_outputs(store: Store, seed: int = 0) -> dict[str, Emulator | str]:
-    """An emulator of every output that is one number a sample, or the reason why there is none.
-
-    Parameters
-    ----------
-    store, seed : as for `emulate_store`
-    """
+    """An emulator of every output that is one number a sample, or the reason why there is none."""
     found: dict[str, Emulator | str] = {}
     for output in EMULATED:
         try:

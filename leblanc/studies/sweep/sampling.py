@@ -15,17 +15,7 @@ _SOBOL_CELL = 2.0**-30  # points of the sequence are multiples of it
 
 
 def sample_rows(sweep: Sweep) -> Rows:
-    """What gives samples by their numbers.
-
-    Parameters
-    ----------
-    sweep : the scene, its varied fields and the method
-
-    Returns
-    -------
-    Function of the first number and the one behind the last; its answer has a row for each sample and a
-    column for each varied field: SI values, or the number of a choice
-    """
+    """What makes samples from one number up to another: SI values, or the number of a choice."""
     if sweep.method == "grid":
         return lambda start, stop: grid_rows(sweep, start, stop)
     unit = _DESIGNS[sweep.method](sweep)
@@ -81,15 +71,7 @@ def _sobol(sweep: Sweep) -> Rows:
 def sobol_points(width: int, seed: int, start: int, stop: int) -> Array:
     """Points of the scrambled Sobol sequence, each in the middle of its cell of the unit cube.
 
-    Parameters
-    ----------
-    width : dimension
-    seed : of the scrambling
-    start, stop : number of the first point and of the one behind the last
-
-    Returns
-    -------
-    Shares strictly between 0 and 1, shape (stop - start, width)
+    Shares strictly between 0 and 1, shape (stop - start, width).
     """
     from scipy.stats import qmc
 

@@ -75,28 +75,14 @@ class Store:
 
 
 def block_size(samples: int, speeds: int) -> int:
-    """Samples of a block: of the sweep alone, so that the same sweep has the same chunks everywhere.
-
-    Parameters
-    ----------
-    samples, speeds : of the sweep
-    """
+    """Samples of a block: of the sweep alone, so that the same sweep has the same chunks everywhere."""
     wanted = min(max(samples // _BLOCKS, _FEW), _MANY)
     return max(1, min(wanted, _ANSWERS // speeds, samples))
 
 
 @contextmanager
 def locked(folder: Path) -> Iterator[None]:
-    """Keep other processes from writing a store; the lock ends with this process, however it ends.
-
-    Parameters
-    ----------
-    folder : that holds the store
-
-    Raises
-    ------
-    InputError : another process has it
-    """
+    """Keep other processes from writing a store; the lock ends with this process, however it ends."""
     import fcntl
 
     folder.mkdir(parents=True, exist_ok=True)
@@ -109,18 +95,7 @@ def locked(folder: Path) -> Iterator[None]:
 
 
 def open_store(folder: Path, sweep: Sweep, fresh: bool = False) -> Store:
-    """The store of a sweep, made if there is none; what a killed run left half written is removed.
-
-    Parameters
-    ----------
-    folder : that holds the store; the caller has locked it
-    sweep : what is to be stored
-    fresh : throw away a store that is there
-
-    Raises
-    ------
-    InputError : there is a store of another sweep or of other versions of the packages, or a damaged one
-    """
+    """The store of a sweep, made if there is none; what a killed run left half written is removed."""
     path, part = folder / STORE, folder / f".{STORE}.part"
     shutil.rmtree(part, ignore_errors=True)
     if fresh and path.exists():
@@ -138,16 +113,7 @@ def open_store(folder: Path, sweep: Sweep, fresh: bool = False) -> Store:
 
 
 def read_store(path: Path) -> Store:
-    """A store for reading; blocks of which a file is missing count as pending.
-
-    Parameters
-    ----------
-    path : its folder
-
-    Raises
-    ------
-    InputError : there is none, or a damaged one
-    """
+    """A store for reading; blocks of which a file is missing count as pending."""
     return _verified(_store(path, _open(path, "r")))
 
 
@@ -198,12 +164,7 @@ def _seal(said: Mapping[str, Any]) -> str:
 
 
 def _verified(store: Store) -> Store:
-    """The store with its pending blocks, after every chunk of the others was read.
-
-    Raises
-    ------
-    InputError : a chunk is not what was written
-    """
+    """The store with its pending blocks, after every chunk of the others was read."""
     blocks = range(-(-store.samples // store.block))
     status = {number: _chunk(store, "status", number) for number in blocks}
     pending = [number for number, states in status.items() if states is None or PENDING in states]
@@ -324,15 +285,7 @@ def _same(path: Path, found: Mapping[str, Any], own: Mapping[str, Any]) -> None:
 def write_block(
     store: Store, number: int, variables: Mapping[str, NDArray[Any]], status: NDArray[np.int8]
 ) -> None:
-    """Write a finished block, its status last.
-
-    Parameters
-    ----------
-    store : to write to
-    number : of the block
-    variables : all others by name, one row for each sample
-    status : of each sample
-    """
+    """Write a finished block, its status last."""
     start, stop = store.bounds(number)
     for name, values in variables.items():
         store.arrays[name][start:stop] = values
@@ -353,13 +306,7 @@ def _to_disk(path: Path) -> None:
 
 
 def field_values(field: VariedField, drawn: NDArray[np.float64]) -> NDArray[Any]:
-    """Sampled values of a field as the store holds them: SI numbers, or texts.
-
-    Parameters
-    ----------
-    field : the varied field
-    drawn : sampled numbers, shape (n,)
-    """
+    """Sampled values of a field as the store holds them: SI numbers, or texts."""
     values = [field.value(level) for level in drawn]
     if not field.categorical:
         return np.array(values, dtype=np.float64)
@@ -374,16 +321,7 @@ _SINGLE = ("units", "long_name")
 
 
 def read_arrays(path: Path) -> NamedArrays:
-    """The whole store with units, in memory.
-
-    Parameters
-    ----------
-    path : its folder
-
-    Raises
-    ------
-    InputError : there is no store
-    """
+    """The whole store with units, in memory."""
     store, found = read_store(path), {}
     if store.pending:
         allowed = f"one with all blocks; {len(store.pending)} are pending: run the same sweep again"

@@ -119,18 +119,7 @@ def _standard_normal(u: Array) -> Array:
 
 
 def read_distribution(kind: str, given: Any, rule: Any) -> Distribution:
-    """Distribution as a study file writes it.
-
-    Parameters
-    ----------
-    kind : a key of `KINDS`
-    given : what stands behind it in the file
-    rule : of the varied field
-
-    Raises
-    ------
-    Refused, InputError : the values do not make a distribution of this field
-    """
+    """Distribution as a study file writes it."""
     return KINDS[kind](given, rule)
 
 
@@ -260,17 +249,7 @@ class Study(Part):
 
 
 def check_study(table: Mapping[str, Any], file: str) -> Study:
-    """Every value of a study but the varied fields, which need the scene, checked.
-
-    Parameters
-    ----------
-    table : content of a study file
-    file : its name, for the messages
-
-    Raises
-    ------
-    SceneError : with all that is wrong
-    """
+    """Every value of a study but the varied fields, which need the scene, checked."""
     if "rotor" in table and "vary" not in table:
         text = "a study with the keys scene, method and [vary]; this is a scene, which `leblanc run` answers"
         raise SceneError([SceneFault(file, "", None, text)])
@@ -348,16 +327,7 @@ def samples_for_each_point(method: str, fields: int) -> int:
 
 
 def load_sweep(path: str | PathLike[str]) -> Sweep:
-    """Sweep from a study file.
-
-    Parameters
-    ----------
-    path : the file; the path of its scene counts from there
-
-    Raises
-    ------
-    SceneError : with all that is wrong
-    """
+    """Sweep from a study file."""
     given = read_toml(path)
     with with_lines(path):
         return _sweep_of(given, path)

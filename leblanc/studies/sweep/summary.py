@@ -10,8 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
-from leblanc.results.notes.response import plane_words
 from leblanc.results.sweep import QUANTILES, Sensitivity, Statistics, SweepResult
+from leblanc.studies.run.notes import plane_words
 from leblanc.studies.sweep.block import DONE, FAILED, NOT_CONVERGED, single_outputs
 from leblanc.studies.sweep.sampling import sample_rows
 from leblanc.studies.sweep.store import Store, read_arrays
@@ -31,16 +31,6 @@ def sensitivity(
 ) -> Sensitivity | None:
     """Sensitivity of an output to each field, by what the samples of a method allow.
 
-    Parameters
-    ----------
-    method : of sampling
-    fields : sampled values, shape (samples, fields)
-    categorical : whether a field takes a few values only, shape (fields,)
-    output : of each sample, nan where there is none, shape (samples,)
-    seed : of the resampling
-
-    Returns
-    -------
     None where the output does not vary, or where there are too few samples.
     """
     if method == "saltelli":
@@ -65,11 +55,6 @@ def variance_shares(fields: Array, output: Array) -> Sensitivity:
     """Variance of the means over each field's levels over the whole variance [theory: sampling, eq. 7].
 
     Exact where every combination of levels is there once.
-
-    Parameters
-    ----------
-    fields : levels of a grid, shape (samples, fields)
-    output : of each sample, shape (samples,)
     """
     centred = output - output.mean()
     shares = []
@@ -81,15 +66,7 @@ def variance_shares(fields: Array, output: Array) -> Sensitivity:
 
 
 def given_data(fields: Array, categorical: Sequence[bool], output: Array, seed: int) -> Sensitivity | None:
-    """First-order indices of any sample by random balance designs [theory: sampling, eq. 8].
-
-    Parameters
-    ----------
-    fields : sampled values, shape (samples, fields)
-    categorical : whether a field takes a few values only, shape (fields,)
-    output : of each sample, shape (samples,)
-    seed : of the resampling, and of the order among equal values
-    """
+    """First-order indices of any sample by random balance designs [theory: sampling, eq. 8]."""
     from SALib.analyze import rbd_fast
 
     if output.size < _LEAST:
@@ -116,11 +93,8 @@ def given_data(fields: Array, categorical: Sequence[bool], output: Array, seed: 
 def saltelli_indices(members: Array, seed: int) -> Sensitivity | None:
     """First-order and total indices of a "saltelli" design [theory: sampling, eq. 9].
 
-    Parameters
-    ----------
-    members : output at each point with A, with A and one field after the other from B, and with B; a point
-        that lacks one of them is left out; shape (points, fields + 2)
-    seed : of the resampling
+    Output at each point with A, with A and one field after the other from B, and with B, shape (points,
+    fields + 2).
     """
     from SALib.analyze.sobol import first_order, total_order
 
@@ -180,13 +154,7 @@ def sweep_result(
 
 
 def summarise(store: Store, sweep: Sweep) -> SweepResult:
-    """Statistics over all samples; reads a few of the store's columns at a time.
-
-    Parameters
-    ----------
-    store : complete
-    sweep : that it belongs to
-    """
+    """Statistics over all samples; reads a few of the store's columns at a time."""
     counts = np.bincount(store.read("status"), minlength=4)
     fields = sample_rows(sweep)(0, store.samples)
     categorical = [field.categorical for field in sweep.fields]
@@ -235,12 +203,7 @@ def _plane(sweep: Sweep) -> str:
 
 
 def statistics(values: Array) -> Statistics:
-    """Statistics of each column, over the rows that are finite.
-
-    Parameters
-    ----------
-    values : shape (samples, n)
-    """
+    """Statistics of each column, over the rows that are finite."""
     found = []
     for column in values.T:
         known = np.sort(column[np.isfinite(column)])

@@ -48,17 +48,6 @@ def answer_blocks(
 
     The blocks are taken one by one, and only a few are ever waiting; the answers do not depend on where they
     come from.
-
-    Parameters
-    ----------
-    blocks : to be answered
-    workers : local processes; 0 to work in this one
-    scheduler : address of a Dask scheduler, in place of local processes
-
-    Raises
-    ------
-    InputError : no such scheduler, no workers, a worker without this version of the package
-    NotConverged : the cluster was lost, or a block that took several workers with it
     """
     if scheduler is None and workers == 0:
         for block in blocks:
@@ -115,16 +104,7 @@ def _client(workers: int, scheduler: str | None) -> Iterator[Any]:
 
 
 def require_scheduler(address: str) -> None:
-    """Raise unless a cluster with a worker answers.
-
-    Parameters
-    ----------
-    address : of a Dask scheduler
-
-    Raises
-    ------
-    InputError : no such scheduler, no workers
-    """
+    """Raise unless a cluster with a worker answers."""
     with _client(0, address):
         pass
 
@@ -236,27 +216,8 @@ def run_sweep(
 ) -> Store:
     """Answer every sample that the store does not hold yet.
 
-    It may be ended at any moment, in any way; the same call continues from the finished blocks, and the
-    store comes out the same, byte for byte, whatever the workers.
-
-    Parameters
-    ----------
-    sweep : the scenes
-    folder : that holds the store
-    workers : local processes, 0 to work in this one; None for one on each core
-    scheduler : address of a Dask scheduler, in place of local processes
-    fresh : throw away a store that is there
-    progress : called with the number of samples finished and of all
-
-    Returns
-    -------
-    The store, complete.
-
-    Raises
-    ------
-    InputError : another process works on the store, it belongs to another sweep, the cluster does not fit
-    SceneError : the scene needs what no sample can answer
-    NotConverged : the cluster was lost
+    It may be ended at any moment, in any way; the same call continues from the finished blocks, and the store
+    comes out the same, byte for byte, whatever the workers.
     """
     if fresh and scheduler is not None:
         require_scheduler(scheduler)  # before the old store is gone

@@ -22,12 +22,8 @@ POINTS = 400  # of the surface
 def surface_figure(answer: VolumeAnswer) -> Figure:
     """Section through the rotation axis and the geometric one: walls, and the surface of the liquid.
 
-    The surface is that of the given volume, or of the optimal one, which just touches the wall where
-    it is nearest to the rotation axis.
-
-    Parameters
-    ----------
-    answer : the answer
+    The surface is that of the given volume, or of the optimal one, which just touches the wall where it is
+    nearest to the rotation axis.
     """
     chamber, away = answer.chamber, answer.eccentricity
     height, radius = chamber.height * MM, chamber.radius * MM

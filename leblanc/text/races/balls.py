@@ -18,20 +18,15 @@ from leblanc.core.units import (
     rpm_bands,
     with_unit,
 )
-from leblanc.results.notes.response import plane_words
 from leblanc.results.races.states import BallsResult
-from leblanc.text.run import Limit
+from leblanc.studies.run.notes import plane_words
+from leblanc.studies.run.words import Limit
 
 FAR = math.radians(15.0)  # swing of a ball up to which small swings tell it
 
 
 def answer(result: BallsResult) -> str:
-    """From where on the balls balance the rotor, and what they do at the largest amplitude.
-
-    Parameters
-    ----------
-    result : the answer
-    """
+    """From where on the balls balance the rotor, and what they do at the largest amplitude."""
     bare = int(np.argmax(np.where(np.isfinite(result.amplitude_without), result.amplitude_without, -1.0)))
     without = (
         f"{with_unit(float(result.amplitude_without[bare]), LENGTH)} at {in_rpm(float(result.speed[bare]))}"
@@ -62,12 +57,7 @@ def _balanced_at(result: BallsResult) -> str:
 
 
 def facts(result: BallsResult) -> list[tuple[str, str]]:
-    """What the balls can hold, where they balance, and the state at the last speed: label and value.
-
-    Parameters
-    ----------
-    result : the answer
-    """
+    """What the balls can hold, where they balance, and the state at the last speed: label and value."""
     last = in_rpm(float(result.speed[-1]))
     held = ", ".join(with_unit(size, UNBALANCE) for size in result.capacity)
     known = bool(result.converged[-1])
@@ -94,12 +84,7 @@ def facts(result: BallsResult) -> list[tuple[str, str]]:
 
 
 def limits(result: BallsResult) -> list[Limit]:
-    """Where the answer is not what it seems: each check with what fails it.
-
-    Parameters
-    ----------
-    result : the answer
-    """
+    """Where the answer is not what it seems: each check with what fails it."""
     several = result.states.stable.sum(axis=1) > 1
     missed = np.zeros(result.speed.shape, dtype=bool)
     if result.error_estimate is not None and result.tolerance is not None:

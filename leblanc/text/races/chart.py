@@ -8,7 +8,7 @@ import numpy as np
 
 from leblanc.core.units import RPM, UNBALANCE, in_rpm, number, rpm_bands, unit_for, with_unit
 from leblanc.results.races.chart import BallChart, Curve
-from leblanc.text.run import Limit
+from leblanc.studies.run.words import Limit
 
 STATES = {
     "balanced": "the balanced state",
@@ -36,12 +36,7 @@ def what(result: BallChart) -> str:
 
 
 def answer(result: BallChart) -> str:
-    """From which speed on the scene's own value gives a stable state, and what the chart adds.
-
-    Parameters
-    ----------
-    result : the chart
-    """
+    """From which speed on the scene's own value gives a stable state, and what the chart adds."""
     state = STATES[result.state]
     own = ""
     if math.isfinite(result.scene_value):
@@ -60,12 +55,7 @@ def answer(result: BallChart) -> str:
 
 
 def facts(result: BallChart) -> list[tuple[str, str]]:
-    """What the chart says in numbers: label and value.
-
-    Parameters
-    ----------
-    result : the chart
-    """
+    """What the chart says in numbers: label and value."""
     unit = unit_for(result.dimension, *result.value[[0, -1]].tolist())
     span = f"{unit.number(float(result.value[0]))} to {unit.text(float(result.value[-1]))}"
     last, growth = in_rpm(float(result.speed[-1])), float(result.scene_growth[-1])
@@ -94,12 +84,7 @@ def facts(result: BallChart) -> list[tuple[str, str]]:
 
 
 def curves(result: BallChart) -> list[tuple[str, ...]]:
-    """Each curve: what crosses, over which speeds and values, how fast it swings, where it ends.
-
-    Parameters
-    ----------
-    result : the chart
-    """
+    """Each curve: what crosses, over which speeds and values, how fast it swings, where it ends."""
     unit = unit_for(result.dimension, *result.value[[0, -1]].tolist())
     rows: list[tuple[str, ...]] = []
     for edge in result.edges:
@@ -119,12 +104,7 @@ def curves(result: BallChart) -> list[tuple[str, ...]]:
 
 
 def limits(result: BallChart) -> list[Limit]:
-    """Where the chart is not what it seems: each check with what fails it.
-
-    Parameters
-    ----------
-    result : the chart
-    """
+    """Where the chart is not what it seems: each check with what fails it."""
     cut = sum("long" in edge.ends for edge in result.edges)
     stands = math.isfinite(result.stable_from)
     lost = bool(result.missing.any())

@@ -6,8 +6,8 @@ import math
 
 from leblanc.core.units import LENGTH, MASS, MM, NOT_FOUND, UNBALANCE, in_rpm, number, with_unit
 from leblanc.results.races.design import BallDesignResult, DesignedRace
+from leblanc.studies.run.words import Limit
 from leblanc.text.optimum import shown
-from leblanc.text.run import Limit
 
 Rows = list[tuple[str, str]]
 
@@ -23,12 +23,7 @@ RACE_HEAD = (
 
 
 def answer(result: BallDesignResult) -> str:
-    """The best balls and what they give, in one sentence.
-
-    Parameters
-    ----------
-    result : of the search
-    """
+    """The best balls and what they give, in one sentence."""
     races = " and ".join(_race_words(race) for race in result.races)
     text = f"With {races}, {with_unit(result.mass, MASS)} in all"
     text = f"{text}, the {result.meaning} is {_size(result.vibration)}"
@@ -50,13 +45,7 @@ def _size(amplitude: float) -> str:
 
 
 def race_rows(result: BallDesignResult, before: bool = False) -> list[tuple[str, ...]]:
-    """A row for each race, as `RACE_HEAD` says.
-
-    Parameters
-    ----------
-    result : of the search
-    before : of the scene's own balls
-    """
+    """A row for each race, as `RACE_HEAD` says."""
     races = result.races_before if before else result.races
     return [
         (
@@ -73,12 +62,7 @@ def race_rows(result: BallDesignResult, before: bool = False) -> list[tuple[str,
 
 
 def facts(result: BallDesignResult) -> Rows:
-    """Main numbers: label and value.
-
-    Parameters
-    ----------
-    result : of the search
-    """
+    """Main numbers: label and value."""
     decay = f"{number(result.stability_margin)} 1/s, with the scene's balls {_decay(result.growth_before)}"
     rows = [
         ("Objective", f"{result.objective}, the {result.meaning}"),
@@ -107,12 +91,7 @@ def _decay(growth: float) -> str:
 
 
 def constraint_rows(result: BallDesignResult) -> list[tuple[str, str, str, str]]:
-    """Each constraint: what it is, value, limit, verdict.
-
-    Parameters
-    ----------
-    result : of the search
-    """
+    """Each constraint: what it is, value, limit, verdict."""
     return [
         (
             f"{name.replace('_', ' ')}: {own.meaning}",
@@ -125,12 +104,7 @@ def constraint_rows(result: BallDesignResult) -> list[tuple[str, str, str, str]]
 
 
 def nearest(result: BallDesignResult) -> str:
-    """What is exceeded where no balls meet every constraint.
-
-    Parameters
-    ----------
-    result : of the search
-    """
+    """What is exceeded where no balls meet every constraint."""
     parts = [
         f"{name.replace('_', ' ')}: {own.meaning} "
         f"{shown(own.value, own.unit) if math.isfinite(own.value) else NOT_FOUND}, at most "
@@ -143,12 +117,7 @@ def nearest(result: BallDesignResult) -> str:
 
 
 def paste(result: BallDesignResult) -> list[str]:
-    """Keys of each race for the scene file.
-
-    Parameters
-    ----------
-    result : of the search
-    """
+    """Keys of each race for the scene file."""
     found = []
     for race in result.races:
         size = f'mass = "{race.mass * 1e3:.6g} g"'
@@ -160,12 +129,7 @@ def paste(result: BallDesignResult) -> list[str]:
 
 
 def limits(result: BallDesignResult) -> list[Limit]:
-    """Where the answer is not what it seems: each check with what fails it.
-
-    Parameters
-    ----------
-    result : of the search
-    """
+    """Where the answer is not what it seems: each check with what fails it."""
     exceeded = [name.replace("_", " ") for name in result.exceeded]
     lost = not math.isfinite(result.vibration)
     return [

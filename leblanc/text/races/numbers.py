@@ -17,13 +17,7 @@ _TURN = 2.0 * math.pi
 
 
 def race_rows(race: RaceNumbers, last: float) -> Rows:
-    """One race with its balls; label and text.
-
-    Parameters
-    ----------
-    race : in numbers
-    last : speed of the scene, rad/s
-    """
+    """One race with its balls; label and text."""
     held = f"{with_unit(race.capacity, UNBALANCE)} at most"
     if math.isfinite(race.share) and race.share > 0.0:
         held += f", {race.capacity / race.share:.4g} times its share, {with_unit(race.share, UNBALANCE)}"
@@ -50,12 +44,7 @@ def _fades(race: RaceNumbers, last: float) -> str:
 
 
 def ball_rows(answer: BallExplanation) -> Rows:
-    """Whether and from where on the balls balance; label and text.
-
-    Parameters
-    ----------
-    answer : the explanation
-    """
+    """Whether and from where on the balls balance; label and text."""
     can = "yes" if answer.can_balance else "no"
     rows = [
         (
@@ -103,12 +92,7 @@ def _two_planes(answer: BallExplanation) -> Rows:
 
 
 def facts(answer: BallExplanation) -> Rows:
-    """Main numbers of a scene: label and value.
-
-    Parameters
-    ----------
-    answer : the explanation
-    """
+    """Main numbers of a scene: label and value."""
     last = float(answer.speed[-1])
     return [
         ("Scene", one_line(answer.name)),

@@ -25,6 +25,7 @@ from leblanc.core.blocks import (
     Words,
 )
 from leblanc.core.units import LENGTH, RPM, in_rpm, number, over_rpm, ranges, unit_for, with_unit
+from leblanc.wings.dry import DryAnswer
 from meshes.arrays import Array, Flags
 from meshes.quantity import Q
 
@@ -139,7 +140,7 @@ class ExciterExplanation(_Known):
 
 
 @dataclass(frozen=True)
-class ExciterAnswer(_Known):
+class ExciterAnswer(_Known, DryAnswer):
     """Answer over speed; n speeds.
 
     Examples
@@ -193,18 +194,6 @@ class ExciterAnswer(_Known):
     ) -> Annotated[Array, Q("rad", "phase", "from the unbalance; lags are negative", over=_OVER, data=False)]:
         ratio = self.speed / self.natural_frequency
         return -np.arctan2(2.0 * self.dimensionless.damping * ratio, 1.0 - np.square(ratio))
-
-    @property
-    def liquid_offset(self) -> Annotated[Array, Q("m", "none: no liquid", over=_OVER, data=False)]:
-        return np.full(self.speed.shape, np.nan)
-
-    @property
-    def liquid_angle(self) -> Annotated[Array, Q("rad", "none: no liquid", over=_OVER, data=False)]:
-        return self.liquid_offset
-
-    @property
-    def dry_patch(self) -> Annotated[Flags, Q(name="no wall can run dry", over=_OVER, data=False)]:
-        return np.zeros(self.speed.shape, dtype=np.bool_)
 
     @property
     def stable(self) -> Annotated[Flags, Q(name="the balls stick together", over=_OVER, data=False)]:

@@ -63,7 +63,7 @@ class BalancedRun:
     speed: float  #: Omega, rad/s
 
     def deflection(self, system: RotorSystem, position: float) -> Complex:
-        """Complex deflection of the axis at a position in the frame that turns with the rotor, m."""
+        """Complex deflection of the axis at a position in the turning frame, m, shape (s,)."""
         first, second = system.at(position) @ self.coordinates.T
         return np.asarray((first + 1j * second) * np.exp(-1j * self.speed * self.time))
 
@@ -130,7 +130,7 @@ def _fastest(system: RotorSystem, balls: Array, speed: float) -> float:
 
 
 def _audit(record: Array, system: RotorSystem, axes: Array, balls: Array, gravity: float) -> float:
-    """Largest gap between the work done and the change of energy, over what was turned over till the end."""
+    """Largest gap between the work done and the change of energy, over the sum of the sizes of all work."""
     if not np.isfinite(record).all():
         return math.inf
     held = np.array([energy(state, system.mass, system.stiffness, axes, balls, gravity) for state in record])
@@ -146,7 +146,7 @@ def race_arrays(system: RotorSystem, races: Sequence[BallRace]) -> tuple[Array, 
 
 
 def with_balls_at(system: RotorSystem, races: Sequence[BallRace], places: Array) -> RotorSystem:
-    """The rotor with its balls held where they are: a part of its mass and of its unbalance.
+    """Rotor with its balls fixed where they are: a part of its mass and of its unbalance.
 
     Places in rad, race by race, shape (N,).
     """

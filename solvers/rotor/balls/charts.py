@@ -1,6 +1,6 @@
-"""Charts of stability over two parameters: where balls keep a rotor balanced, and the curves where that ends.
+"""Stability charts over two parameters: where balls keep a rotor balanced, and the boundaries of that region.
 
-On such a curve a root stands on the imaginary axis: a pair where balls swing or the rotor whirls (Hopf), or
+On such a boundary a root is on the imaginary axis: a pair where balls swing or the rotor whirls (Hopf), or
 one at 0 (a fold or a branching); on supports that differ a multiplier of half a turn on the unit circle.
 """
 
@@ -46,7 +46,7 @@ Family = Callable[[float, float], Machine]  # the machine that belongs to a poin
 
 
 class Crossing(Enum):
-    """What stands on the imaginary axis."""
+    """Kind of root on the imaginary axis."""
 
     HOPF = "a pair of roots"
     ZERO = "one root at 0"
@@ -54,7 +54,7 @@ class Crossing(Enum):
 
 @dataclass(frozen=True)
 class Edge:
-    """A curve on which a root stands on the imaginary axis; k points."""
+    """Stability boundary, a curve on which a root is on the imaginary axis; k points."""
 
     kind: Crossing  #: a pair of roots, or one at 0
     first: Array  #: the two parameters, shape (k,)
@@ -89,15 +89,18 @@ class Rest:
     coordinates: Complex | None  #: complex amplitudes of the rotor, shape (n,); None where it is balanced
 
     def motions(self, steps: int | None = None) -> Linearised | HalfTurn:
-        """Small motions about it, without neutral directions."""
+        """Small motions about it, without neutral directions.
+
+        Over half a turn where the supports differ, by so many steps; None: as many as needed.
+        """
         return small_motions(self.machine, self.speed, self.places, self.coordinates, steps=steps)
 
 
 class State:
-    """The state whose stability is charted: the balanced one (places None), or one next to places (rad, shape
-    (N,)).
+    """State whose stability is charted: the balanced one (None), or one next to given places.
 
-    Where the supports differ the balls follow the forward part of the rotor's motion [theory: races, eq. 5].
+    Places in rad, shape (N,). Where the supports differ the balls follow the forward part of the rotor's
+    motion [theory: races, eq. 5].
     """
 
     def __init__(self, places: ArrayLike | None = None) -> None:
@@ -138,11 +141,10 @@ def gathered(system: RotorSystem, races: Sequence[BallRace], light: bool = False
 
 
 def stability_chart(family: Family, first: ArrayLike, second: ArrayLike, state: State | None = None) -> Chart:
-    """Count growing roots on a rising grid of two parameters, and follow every curve on which the count
-    changes.
+    """Count unstable roots on a grid of two parameters, and follow every boundary between the counts.
 
-    A curve between the lines of the grid is not seen. Where a state with a deflection ends in a fold, that is
-    a curve as well.
+    Both parameters rise. A boundary between the lines of the grid is not seen. Where a state with a
+    deflection ends in a fold, that is a boundary as well.
     """
     x, y = (np.asarray(values, dtype=float) for values in (first, second))
     for name, values in (("first", x), ("second", y)):
@@ -172,11 +174,11 @@ def stability_chart(family: Family, first: ArrayLike, second: ArrayLike, state: 
 def stable_bands(
     family: Family, first: ArrayLike, second: float, state: State | None = None
 ) -> tuple[Array, list[tuple[float, float]]]:
-    """Growth rate over speed at one value of the second parameter (1/s, nan where there is no state), and
-    bands without.
+    """Growth rate over speed at one value of the second parameter, and the bands of speed that are stable.
 
-    Bands are looked for at speeds of their own, so that none is lost between two of those given and none
-    depends on their number [theory: balls, eq. 32-34].
+    Growth rate in 1/s, nan where there is no state. The ends of the bands are sought at speeds of their own,
+    so that none is lost between two of those given and none depends on their number
+    [theory: balls, eq. 32-34].
     """
     asked, chosen = np.asarray(first, dtype=float), state or State()
 
@@ -209,8 +211,9 @@ def stable_bands(
 def _looks(at: Callable[[float], Rest | None], first: float, last: float) -> Array:
     """Speeds, the ends among them, between which no more than one edge of a band lies.
 
-    About balls that stay where they are they are eigenvalues of a parabola over the spin; elsewhere parabolas
-    follow it over shorter ranges, or speeds a fiftieth apart are looked at.
+    The matrix of small motions about balls that stay where they are is a parabola over the spin, so that all
+    speeds with a root on the axis are its eigenvalues; elsewhere parabolas follow it over shorter ranges, or
+    speeds are a fiftieth apart.
     """
     start = at(first)
     if start is not None and turning(start.machine.system) is None:
@@ -402,14 +405,14 @@ class _Bordered:
 
 
 def _roots(state: State, machine: Machine) -> Complex | None:
-    """Of the state; None where it does not exist, or where half a turn did not settle."""
+    """Roots of the state; None where it does not exist, or where half a turn did not converge."""
     rest = state.at(machine)
     motions = None if rest is None else rest.motions()
     return None if motions is None or not motions.settled else motions.roots()
 
 
 def _counted(state: State, machine: Machine) -> tuple[int, float]:
-    """Growing roots, and the largest real part."""
+    """Number of roots that grow, and the largest real part."""
     roots = _roots(state, machine)
     if roots is None:
         return NONE, np.nan

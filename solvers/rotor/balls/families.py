@@ -1,7 +1,7 @@
 """Families of states: balls that stand where the axis rests can move together and leave it at rest.
 
-Every member has the same deflection. How small motions across the family grow differs along it.
-[theory: races, section 9]
+Every member has the same deflection; the growth rate of small motions across the family differs along it
+[theory: races, section 9].
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ _FIRST, _MOST = 0.3, 0.6  # rad: steps of a search along the family
 
 
 class _Budget(NamedTuple):
-    """Of a search for the least and the largest growth."""
+    """Effort of a search for the least and the largest growth rate."""
 
     members: int  # drawn first
     rounds: int
@@ -73,7 +73,7 @@ class Polygons:
         return np.asarray(np.cos(angles) @ first.T + np.sin(angles) @ second.T)
 
     def _back(self, angles: Array) -> tuple[Array, Array]:
-        """Its derivative A, shape (..., r, f), and A^T (A A^T)^-1, shape (..., f, r)."""
+        """Derivative A of `held`, shape (..., r, f), and A^T (A A^T)^-1, shape (..., f, r)."""
         first, second = self._parts
         rate = -np.sin(angles)[..., None, :] * first + np.cos(angles)[..., None, :] * second
         whole = rate @ np.swapaxes(rate, -1, -2)
@@ -101,7 +101,7 @@ class Polygons:
 
 
 def growth_ranges(members: Sequence[Member]) -> Array:
-    """Least and largest growth of small motions across the families of some states, 1/s, shape (s, 2).
+    """Least and largest growth rate of small motions across the families of some states, 1/s, shape (s, 2).
 
     A search along each family from members all over it, with the same draws at all speeds.
     """
@@ -122,7 +122,7 @@ def growth_ranges(members: Sequence[Member]) -> Array:
 
 
 def _each(member: Member) -> Callable[[Array], Array]:
-    """Growth of each of some members, by the motions of all balls."""
+    """Growth rate of each of some members, from the motions of all balls."""
 
     def growth(angles: Array) -> Array:
         rates = []
@@ -145,7 +145,7 @@ def _each(member: Member) -> Callable[[Array], Array]:
 
 
 def _extremes(members: Sequence[Member], growth: Callable[[Array], Array], budget: _Budget) -> Array:
-    """Least and largest growth, shape (s, 2), of members with the same planes at rest."""
+    """Least and largest growth rate, shape (s, 2), of members with the same planes at rest."""
     polygons = Polygons(members[0].machine, members[0].still)
     own = np.array([member.places[member.still] for member in members])
     least = _BETTER * np.array([member.speed for member in members])[:, None]
@@ -280,7 +280,7 @@ class _Reduced:
 def _as_two(angles: Array) -> Complex:
     """Two balls for alike ones: e of each as a complex number, the root of sum e e^T [theory: races, eq. 19].
 
-    One and two are themselves.
+    One ball or two stay as they are.
     """
     turn = np.exp(1j * angles)
     if turn.shape[-1] <= 2:

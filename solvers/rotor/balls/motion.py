@@ -19,13 +19,12 @@ def rates(
     numbers: Array,
     out: Array,
 ) -> None:
-    """Rates of change, the coupled accelerations solved for exactly [theory: balls, eq. 16-18]; for the
-    compiler.
+    """Rates of change, the coupled accelerations solved for exactly [theory: balls, eq. 16-18].
 
-    State: n coordinates, their rates, angles of the N balls, theirs, work done without what is stored, sum of
-    the sizes of all work. `damping` is C + Omega G, `turning` real and imaginary part of the unbalance (2,
-    n), `axes` the axis in each ball's plane for unit coordinates (N, 2, n), `balls` mass, radius, drag,
-    rolling inertia (N, 4), `numbers` spin and gravity.
+    For the compiler. State: n coordinates, their rates, angles of the N balls, theirs, work done without what
+    is stored, sum of the sizes of all work. `damping` is C + Omega G, `turning` real and imaginary part of
+    the unbalance (2, n), `axes` the axis in each ball's plane for unit coordinates (N, 2, n), `balls` mass,
+    radius, drag, rolling inertia (N, 4), `numbers` spin and gravity.
     """
     spin, gravity = numbers
     n, count = mass.shape[0], balls.shape[0]

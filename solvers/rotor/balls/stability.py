@@ -1,4 +1,4 @@
-"""How small motions about steady ones grow: roots in the turning frame, multipliers of half a turn elsewhere.
+"""Growth of small motions about steady ones: roots in the turning frame, or multipliers of half a turn.
 
 Where more balls stand than the balance needs, they can move along a family of balanced states: these
 directions are no instability.
@@ -64,13 +64,14 @@ class Linearised:
         return whole
 
     def roots(self) -> Complex:
-        """Characteristic roots but those of the neutral directions, 1/s, the one that grows most first."""
+        """Characteristic roots but those of the neutral directions, 1/s, the largest real part first."""
         found = np.linalg.eigvals(self.matrix())
         return np.asarray(found[np.argsort(-found.real)])
 
     def lasting(self, frequency: float, speed: float) -> Complex:
-        """Matrix that is singular where a motion of this frequency, seen from the rotor, neither grows nor
-        decays.
+        """Matrix that is singular where a motion of this frequency neither grows nor decays, without units.
+
+        The frequency is that seen from the rotor, rad/s.
         """
         matrix = _over_spin(self.matrix(), self.mass.shape[0], speed) / speed
         return np.asarray(matrix - 1j * frequency / speed * np.eye(len(matrix)))
@@ -95,8 +96,9 @@ class HalfTurn:
         return np.asarray(found * self.speed / np.pi)
 
     def lasting(self, frequency: float, speed: float) -> Complex:
-        """Matrix that is singular where a motion neither grows nor decays; its frequency is known up to twice
-        the spin.
+        """Matrix that is singular where a motion of this frequency neither grows nor decays, without units.
+
+        The frequency is that seen from the rotor, rad/s, known up to twice the spin.
         """
         matrix = _over_spin(self.map, (len(self.map) + self.neutral.shape[1]) // 2, speed)
         return np.asarray(matrix - np.exp(1j * np.pi * frequency / speed) * np.eye(len(matrix)))
@@ -125,7 +127,7 @@ class Stability:
 
     @property
     def stable(self) -> bool:
-        """All disturbances but those along the neutral directions die out."""
+        """All disturbances but those along the neutral directions decay."""
         return self.settled and self.growth < 0.0
 
 
@@ -170,9 +172,10 @@ def small_motions(
 ) -> Linearised | HalfTurn:
     """Small motions about a state in which the balls rest at `places` (rad, shape (N,)), on any supports.
 
-    In the turning frame where the rotor is the same in every direction, else over half a turn. Coordinates
-    are complex amplitudes, q = Re(coordinates e^{i Omega t}), None: balanced; `free` are balls in whose plane
-    the axis does not move, None: all of a balanced rotor, else none.
+    In the turning frame where the rotor is the same in every direction, else over half a turn, its `steps`
+    None: as many as needed. Coordinates are complex amplitudes, q = Re(coordinates e^{i Omega t}), None:
+    balanced; `free` are balls in whose plane the axis does not move, None: all of a balanced rotor, else
+    none.
     """
     require_positive("speed", speed)
     angles = machine.checked(places)
@@ -263,11 +266,10 @@ def _directions(machine: RotorWithBalls, angles: Array) -> tuple[Array, Array]:
 
 
 def balanced_roots(system: RotorSystem, races: Sequence[BallRace], speed: float) -> Complex:
-    """Characteristic roots (1/s, fastest growth first) of a balanced rotor, its balls evenly round their
-    races.
+    """Characteristic roots of a balanced rotor with its balls evenly round their races, 1/s.
 
-    In the frame that turns with the rotor, on supports that are alike. The root 0 of each race, whose balls
-    may turn together, and what further balls leave free are left out.
+    The largest real part first, in the frame that turns with the rotor, on supports that are alike. The root
+    0 of each race, whose balls may turn together, and what further balls leave free are left out.
     """
     for race in races:
         if len(race.masses) < 2 or len(set(race.masses)) > 1:
@@ -301,8 +303,8 @@ def light_ball_roots(system: RotorSystem, races: Sequence[BallRace], speed: floa
     """Forward whirls of a rotor with light balls evenly round their races [theory: balls, eq. 37-38].
 
     lambda in the standing frame, 1/s, by rising frequency, to first order in the balls and in the damping of
-    the supports. Above the speed of a whirl the drag of the races feeds it; the supports must damp more than
-    that.
+    the supports. Above the whirl frequency the drag of the races, which turns with the rotor, feeds a whirl;
+    the supports must damp more than that.
     """
     require_positive("speed", speed)
     quarter_turn(system)
@@ -335,7 +337,7 @@ def light_ball_roots(system: RotorSystem, races: Sequence[BallRace], speed: floa
 def _settled_half_turn(
     machine: RotorWithBalls, speed: float, angles: Array, coordinates: Complex, neutral: Array
 ) -> HalfTurn:
-    """The number of steps is doubled until the largest growth stays."""
+    """Half a turn with its steps doubled until the largest growth rate stays."""
     steps, last = STEPS, np.nan
     while True:
         found = _half_turn(machine, speed, angles, coordinates, neutral, steps)

@@ -34,7 +34,8 @@ _RANK = 1e-7  # of the largest: smaller singular values are none
 def quarter_turn(system: RotorSystem) -> Array:
     """J: rate of change of coordinates that turn with the spin, at unit speed [theory: balls, eq. 28].
 
-    J^2 = -1, shape (n, n); an `InputError` where the rotor is not the same in every direction.
+    J^2 = -1, shape (n, n); an `InputError` for coordinates without a partner and matrices that a turn
+    changes.
     """
     n = len(system.coordinates)
     turn = np.zeros((n, n))
@@ -101,8 +102,9 @@ class RotorWithBalls:
         return replace(self, system=replace(self.system, mass=self.system.mass + added))
 
     def checked(self, places: ArrayLike) -> Array:
-        """Places of the balls (psi in the rotor, rad, race by race) as an array; an `InputError` if not one
-        for each.
+        """Places of the balls, psi in the rotor, rad, race by race, as an array of shape (N,).
+
+        An `InputError` if they are not one finite angle for each ball.
         """
         angles, count = np.asarray(places, dtype=float), len(self.balls)
         if angles.shape != (count,) or not np.isfinite(angles).all():
@@ -153,7 +155,7 @@ class RotorWithBalls:
         return bare, np.moveaxis(each, 1, 2)
 
     def _scaled_answers(self, compliance: Complex) -> tuple[Complex, Complex]:
-        """The same over the largest deflection that all together could give."""
+        """Answers of `_answers` over the largest deflection that all together could give."""
         bare, each = self._answers(compliance)
         scale = np.abs(bare).max(axis=1) + np.abs(each).sum(axis=2).max(axis=1)
         scale = np.where(scale > 0.0, scale, 1.0)
@@ -170,11 +172,10 @@ class RotorWithBalls:
     def settle(
         self, compliance: Complex, places: Array, rounds: int = _SETTLING, joined: Flags | None = None
     ) -> tuple[Array, Flags]:
-        """Places where the balls rest that go where they are pulled, as in a stiff oil, and whether
-        [theory: races, eq. 5].
+        """Places to which the balls are pulled, as in a stiff oil, and whether they rest there.
 
-        Implicit steps that grow as the pull fades; in the end they are Newton's. Balls of starts that are
-        `joined`, shape (p,), move race by race as one.
+        Implicit steps that grow as the pull decays [theory: races, eq. 5]; in the end they are Newton's.
+        Balls of starts that are `joined`, shape (p,), move race by race as one. Shapes (p, N) and (p,).
         """
         as_one = np.full(places.shape[0], False) if joined is None else joined
         answers = self._scaled_answers(compliance)
@@ -198,17 +199,17 @@ class RotorWithBalls:
 
     @cached_property
     def _mean_of_race(self) -> Array:
-        """What gives each ball the mean of its race, shape (N, N)."""
+        """Matrix that gives each ball the mean of its race, shape (N, N)."""
         counts = [len(race.masses) for race in self.races]
         own = np.repeat(np.eye(len(counts)), counts, axis=0)
         return np.asarray(own / counts @ own.T)
 
     def creep(self, compliance: Complex, places: Array) -> tuple[Array, Flags]:
-        """Where balls come to that creep along their pull in time, and whether they rest there
-        [theory: races, eq. 17].
+        """Places to which balls creep along their pull in time, and whether they rest there.
 
-        The way itself, to a part of `_LOCAL` a step: of a family of states it tells one. Steps of a linearly
-        implicit method of second order; at the end Newton's across the family.
+        The way itself, to a part of `_LOCAL` a step: of a family of states it leads to one
+        [theory: races, eq. 17]. Steps of a linearly implicit method of second order; at the end Newton's
+        across the family.
         """
         bare, each = self._scaled_answers(compliance)
         found, length, unit = places.astype(float), np.full(places.shape[0], 0.1), np.eye(places.shape[1])
@@ -240,8 +241,7 @@ class RotorWithBalls:
         return found, np.asarray(rests)
 
     def nearest(self, compliance: Complex, places: ArrayLike) -> Array | None:
-        """Places next to given ones at which the balls rest, whether they would go there or not; None if none
-        is found.
+        """Places next to given ones at which the balls rest, stable or not; None where none is found.
 
         Newton's method on the pulls [theory: races, eq. 5]. Balls may sit in one another: nothing keeps them
         apart.
@@ -278,10 +278,10 @@ def _pulls(bare: Complex, each: Complex, places: Array) -> tuple[Array, Array]:
 
 
 def balancing_shares(machine: RotorWithBalls) -> tuple[Complex, float]:
-    """Share of each race, kg m, where the rotor is balanced, and what is left over the unbalance
-    [theory: races, eq. 14].
+    """Share of each race, kg m, in balancing the rotor, and what is left over the unbalance.
 
-    Of all shares that do it those whose squares, each over what its race can hold, have the least sum.
+    Of all shares that balance it those whose squares, each over what its race can hold, have the least sum
+    [theory: races, eq. 14].
     """
     counts = [len(race.masses) for race in machine.races]
     first = np.cumsum([0, *counts[:-1]])
@@ -396,5 +396,5 @@ def require_balance(system: RotorSystem, races: Sequence[BallRace], places: Arra
 
 
 def without_unbalance(system: RotorSystem) -> RotorSystem:
-    """The rotor balanced by itself."""
+    """Rotor balanced by itself."""
     return replace(system, unbalance=np.zeros_like(system.unbalance))

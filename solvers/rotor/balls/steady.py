@@ -1,4 +1,4 @@
-"""Steady states of a rotor with balls over speed: all that are found, and how small motions grow."""
+"""Steady states of a rotor with balls over speed: all that are found, with growth rates of small motions."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ class BallStates:
 
     @property
     def stable(self) -> Flags:
-        """Small motions fade or stay, shape (s, b)."""
+        """Small motions decay or stay, shape (s, b)."""
         return np.asarray((self.kind != BallKind.NONE) & (self.growth <= GROWS * self.speed[:, None]))
 
 
@@ -76,11 +76,11 @@ def starts_of(counts: Sequence[int]) -> Array:
 
 
 def steady_states(system: RotorSystem, races: Sequence[BallRace], speed: ArrayLike) -> BallStates:
-    """States in which all balls rest in the drum, with the growth rate of small motions
-    [theory: races, eq. 5].
+    """States in which all balls rest in the drum, with growth rates of small motions.
 
     All that balls which creep come to from starts of many kinds, apart or kept together, and the balanced one
-    where they can hold the unbalance. Gravity across the axis has no part in it: it turns in the drum.
+    where they can hold the unbalance [theory: races, eq. 5]. Gravity across the axis has no part in it: it
+    turns in the drum.
     """
     spin = np.array(speed, dtype=float).reshape(-1)
     if not races:
@@ -98,7 +98,7 @@ def steady_states(system: RotorSystem, races: Sequence[BallRace], speed: ArrayLi
 
 
 def begin_joined(count: int) -> Flags:
-    """Of the starts of `starts_of`, so many times, those whose balls begin and stay together."""
+    """Starts of `starts_of`, so many times over, whose balls begin and stay together."""
     return np.tile(np.isin(np.arange(_LED + _STARTS), _TOGETHER), count)
 
 
@@ -290,7 +290,7 @@ def _ordered(size: Array) -> list[int]:
 def growth(
     machine: RotorWithBalls, speed: float, places: Array, coordinates: Complex, still: Flags | None = None
 ) -> float:
-    """Largest real part of the roots of small motions about a state, 1/s; nan where it did not settle.
+    """Largest real part of the roots of small motions about a state, 1/s; nan where it did not converge.
 
     With the liquid's share in step with the axis; `still` are balls in whose plane the axis does not move.
     """

@@ -66,6 +66,9 @@ def gravity_swing(
 
 
 def swing_power(races: Sequence[BallRace], speed: float, swing: Complex) -> float:
-    """Mean power that the drag of the races turns into heat as balls swing, W; the motor replaces it."""
+    """Mean power that the drag of the races turns into heat as balls swing, W; the motor replaces it.
+
+    Amplitudes as `Swing.balls`.
+    """
     drag = np.array([race.drag * race.radius**2 for race in races for _ in race.masses])
     return float(0.5 * speed**2 * drag @ np.square(np.abs(swing)))

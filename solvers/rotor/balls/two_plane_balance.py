@@ -54,7 +54,7 @@ class RigidRotor:
 
 @dataclass(frozen=True)
 class Condition:
-    """One of the conditions, over speed."""
+    """One condition for balancing, over speed."""
 
     name: str  #: the condition, as written
     value: Array  #: what must be above 0, shape (n,)
@@ -64,7 +64,7 @@ class Condition:
 
 @dataclass(frozen=True)
 class Balancing:
-    """Answer of `dynamic_balancing`."""
+    """Result of `dynamic_balancing`."""
 
     speed: Array  #: rad/s, shape (n,)
     possible: Flags  #: whether balancing occurs, shape (n,)
@@ -82,7 +82,7 @@ class Balancing:
         return self.possible if self.growth is None else np.asarray(self.growth < 0.0)
 
     def why(self, index: int = 0) -> str:
-        """The answer at one speed in words."""
+        """Result at one speed in words."""
         said = self._conditions(index)
         if self.growth is None:
             return said
@@ -149,10 +149,7 @@ def dynamic_balancing(
 
 
 def of_two_planes(rotor: TwoPlane, added_mass: float = 0.0) -> RigidRotor:
-    """The rotor of `solvers.rotor.two_plane` as its balancing sees it.
-
-    `added_mass` of the balancers, kg.
-    """
+    """Rotor of `solvers.rotor.two_plane` as its balancing sees it, with the mass of the balancers, kg."""
     across, along = rotor.transverse_inertia, rotor.polar_inertia
     return RigidRotor(
         mass=rotor.mass + added_mass,

@@ -141,8 +141,8 @@ class Exciter:
 def rates(time: float, state: Array, numbers: Array, out: Array) -> None:
     """Rates of change of the state, with the coupled accelerations solved for [theory: balls, eq. 4 and 6].
 
-    Time in units of 1/(natural frequency); state: platform's position and velocity, angles of the N balls,
-    their rates. Written for the compiler.
+    For the compiler. Time in units of 1/(natural frequency); state: platform's position and velocity, angles
+    of the N balls, their rates; numbers of `Dimensionless.numbers`.
     """
     eps, b, delta, h, sigma, alpha, n = numbers
     balls = (state.size - 2) // 2
@@ -191,7 +191,7 @@ class CharacteristicSpeeds:
 
 
 def lag_number(machine: Dimensionless, together: float = 1.0) -> float:
-    """chi = A^2 h/b [theory: balls, eq. 9].
+    """Lag number chi = A^2 h/b [theory: balls, eq. 9].
 
     A is the length of the mean of the balls' unit vectors, 0 to 1.
     """
@@ -203,10 +203,7 @@ def lag_number(machine: Dimensionless, together: float = 1.0) -> float:
 
 
 def shaft_speed(stuck: ArrayLike, machine: Dimensionless, together: float = 1.0) -> Array:
-    """Shaft speed that keeps balls at a given speed, without iteration [theory: balls, eq. 10].
-
-    n for Q, shape (...,).
-    """
+    """Shaft speed n at which balls stick at a given speed Q, without iteration [theory: balls, eq. 10]."""
     q = np.asarray(stuck, dtype=float)
     chi, h = lag_number(machine, together), machine.damping
     return np.asarray(q + chi * q**5 / (np.square(1.0 - q**2) + np.square(2.0 * h * q)))

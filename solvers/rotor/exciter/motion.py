@@ -173,7 +173,7 @@ def placed_state(machine: Dimensionless, speed: float, ball_speed: ArrayLike, ba
 
 @dataclass(frozen=True)
 class Trace:
-    """Motion after transients have died out, in the machine's own units; s samples, N balls."""
+    """Motion after transients have decayed, in the machine's own units; s samples, N balls."""
 
     time: Array  #: from the start of the motion, shape (s,)
     position: Array  #: v, v' and v'' of the platform, shape (s,)
@@ -236,8 +236,8 @@ def critical_speed(
 ) -> CriticalSpeed:
     """Largest shaft speed at which the dual-frequency motion holds [YF17, section 4.4].
 
-    Searched upward in steps of a constant ratio for the first speed at which it does not, then halved to the
-    width of the bracket.
+    Searched upward in steps of a constant `ratio` for the first speed at which it does not, then halved to
+    `width`.
     """
     require_positive("width", width)
     if not ratio > 1.0:

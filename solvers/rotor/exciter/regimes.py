@@ -78,9 +78,9 @@ def regime(
     steps: int = 24,
     samples: int = 0,
 ) -> Regime:
-    """What the balls do in the end, from a given start [theory: exciter, eq. 1].
+    """Final motion of the balls from a given start [theory: exciter, eq. 1].
 
-    The run lasts so many times of `decay_time`; `samples` of the platform's position over its last quarter.
+    The run lasts `decays` times `decay_time`; `samples` of the platform's position over its last quarter.
     """
     require_positive("decays", decays)
     time = decays * decay_time(machine)
@@ -119,7 +119,7 @@ def _place(mean: float, speed: float) -> Place:
 def _kind(
     machine: Dimensionless, speed: float, motion: Followed, places: tuple[Place, ...], vibration: float
 ) -> Kind:
-    """What the last half of a motion is."""
+    """Kind of motion of the last half."""
     quarter = motion.growth.size // 4
     quarters = motion.growth[-2 * quarter :].reshape(2, -1).mean(axis=1)
     if np.all(quarters > CHAOTIC_GROWTH):

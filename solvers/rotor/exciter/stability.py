@@ -1,4 +1,4 @@
-"""How stuck balls lose what they do: small motions of the stuck state, and capture by the unbalance."""
+"""How stuck balls lose their motion: small motions of the stuck state, and capture by the unbalance."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ def stuck_roots(machine: Dimensionless, stuck: float, share: float = 1.0) -> Com
     """Small motions of balls that stick together, all of them moving alike [theory: exciter, eq. 4].
 
     Growth rate and frequency of each in the axes that turn with the balls, in units of the natural frequency,
-    fastest growth first, shape (5,); the shift of their common phase is left out. `share` is k/N of the balls
-    that stick together.
+    the largest growth rate first, shape (5,); the shift of their common phase is left out. `share` is k/N of
+    the balls that stick together, the others not near this speed.
     """
     _require_share(share)
     q, h = stuck, machine.damping
@@ -41,8 +41,8 @@ def stuck_roots(machine: Dimensionless, stuck: float, share: float = 1.0) -> Com
 def parting_roots(machine: Dimensionless, stuck: float, share: float = 1.0) -> Complex:
     """Small motions of stuck balls against one another [theory: exciter, eq. 5].
 
-    Shape (2,), fastest growth first: it passes zero where the balls turn at the natural frequency, for any
-    unbalance to this order.
+    Shape (2,), the largest growth rate first: it passes zero where the balls turn at the natural frequency,
+    for any unbalance to this order.
     """
     _require_share(share)
     half = 0.5 * machine.smallness * machine.drag
@@ -56,7 +56,8 @@ def capture_unbalance(machine: Dimensionless, speed: float, share: float) -> flo
     """Unbalance up to which balls can turn at the third stuck speed past the shaft [theory: exciter, eq. 7].
 
     delta; a larger one pulls the balls into step with the shaft. nan where there is no third stuck speed. For
-    a weak drag of the race; `share` is k/N of the balls at that speed.
+    a weak drag of the race, eps b small beside the frequency at which a captured ball swings; `share` is k/N
+    of the balls at that speed.
     """
     _require_share(share)
     third = third_speed(machine, speed, share)

@@ -74,8 +74,9 @@ def _stretch(
     """Some of the steps of `advance`.
 
     `means`: mean speed of each ball and the largest spread, a block a row; `sums`: from the block `first` on,
-    projections of the platform's position on sine and cosine of the balls' mean angle and of the shaft's.
-    Blocks done if a ball was faster than `most`, else 0.
+    projections of the platform's position on sine and cosine of the balls' mean angle and of the shaft's;
+    `before`: angles at the beginning of the block. Returns the blocks done if a ball was faster than `most`,
+    else 0.
     """
     blocks, balls = means.shape[0], means.shape[1] - 1
     slopes, trial = np.empty((4, state.size)), np.empty(state.size)
@@ -125,7 +126,7 @@ def advance(
 ) -> int:
     """Integrate block by block until the end, or until a ball is faster than `most` in the mean of a block.
 
-    Arguments as of `stretch`, after each slice of which Python sees a Ctrl-C; blocks done.
+    Arguments as of `stretch`, after each slice of which Python sees a Ctrl-C; returns the blocks done.
     """
     blocks, begin, before = means.shape[0], 0, np.empty(means.shape[1] - 1)
     for taken in slices(blocks * steps, 4 * state.size):

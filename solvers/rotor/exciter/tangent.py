@@ -1,4 +1,4 @@
-"""The motion of the exciter together with a small disturbance: growth, speeds and vibration by blocks."""
+"""Motion of the exciter together with a small disturbance: growth rate, speeds and vibration by blocks."""
 
 from __future__ import annotations
 
@@ -36,8 +36,7 @@ class Followed:
 def tangent_rates(time: float, pair: Array, numbers: Array, out: Array) -> None:
     """Rates of the state and of a small disturbance of it [theory: balls, eq. 4 and 6].
 
-    `pair`: the state of `machine.rates` and behind it the disturbance, shape (4 + 4 N,). Written for the
-    compiler.
+    For the compiler. `pair`: the state of `machine.rates` and behind it the disturbance, shape (4 + 4 N,).
     """
     eps, b, delta, h, sigma, alpha, n = numbers
     size = pair.size // 2
@@ -154,8 +153,8 @@ def follow(
 ) -> Followed:
     """Integrate the full equations of motion and a small disturbance [theory: balls, eq. 6].
 
-    Times in units of 1/(natural frequency). After many `blocks` the mean growth is the largest exponent of
-    Lyapunov. The disturbance is by default one that is like no symmetry of the machine; `samples` of the
+    Times in units of 1/(natural frequency). After many `blocks` the mean growth rate is the largest exponent
+    of Lyapunov. The disturbance is by default one that is like no symmetry of the machine; `samples` of the
     platform's position over the last share `sampled` of the time.
     """
     require_positive("speed", speed)

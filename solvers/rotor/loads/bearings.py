@@ -12,11 +12,11 @@ from solvers.rotor.tub import Tub
 
 
 def hub_load(rotor: Tub, place: Array, rate: Array, acceleration: Array) -> Array:
-    """What the drum does to the tub, N and N m about the tub's centre, shape (..., 6)
-    [theory: loads, eq. 12].
+    """Force and moment of the drum on the tub, about the tub's centre, N and N m, shape (..., 6).
 
-    From the balance of the tub alone, so that neither the inertia of the drum nor the liquid is needed.
-    Coordinates count from the equilibrium at rest: what carries the weight there is not in it.
+    From the balance of the tub alone, so that neither the inertia of the drum nor the liquid is needed
+    [theory: loads, eq. 12]. Coordinates count from the equilibrium at rest: what carries the weight there is
+    not in it.
     """
     system = rotor.system()
     tub = np.array([rotor.tub_mass] * 3 + list(rotor.tub_inertia))
@@ -24,9 +24,9 @@ def hub_load(rotor: Tub, place: Array, rate: Array, acceleration: Array) -> Arra
 
 
 def weight_load(weights: Sequence[Weight], gravity: Array) -> Array:
-    """What the weight of the drum and its liquid does to the tub at rest.
+    """Force and moment on the tub at rest by the weight of the drum and its liquid, N and N m, shape (6,).
 
-    N and N m, shape (6,); weights of the tub itself are left out.
+    Weights of the tub itself are left out.
     """
     total = np.zeros(6)
     for weight in weights:

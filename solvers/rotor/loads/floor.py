@@ -54,7 +54,7 @@ class Margins:
 
     @property
     def walking(self) -> Array:
-        """The least of all, shape (...)."""
+        """Least of all margins, shape (...)."""
         return np.asarray(np.minimum(np.minimum(self.lift_off, self.slip), self.foot.min(axis=-1)))
 
 
@@ -80,8 +80,8 @@ def require_standing(cabinet: Cabinet, frame: Frame) -> None:
 def floor_forces(cabinet: Cabinet, frame: Frame, force: Array, moment: Array) -> FloorForce:
     """Force of the floor under each foot [theory: loads, eq. 5-8].
 
-    From all that acts on the cabinet, weights included, its moment about the origin of the rotor's
-    coordinates; shares of more than three feet are those of least squares.
+    From the force (N) and moment (N m, about the origin of the rotor's coordinates) of all that acts on the
+    cabinet, weights included, shape (..., 3); shares of more than three feet are those of least squares.
     """
     first, second = plan(frame)
     up = frame.up
@@ -110,7 +110,8 @@ def floor_forces(cabinet: Cabinet, frame: Frame, force: Array, moment: Array) ->
 def margins(cabinet: Cabinet, floor: FloorForce, rest: FloorForce) -> Margins:
     """How far a machine is from walking [theory: loads, eq. 9-11].
 
-    With the rotor in motion and at rest; an `InputError` for a foot that carries nothing at rest.
+    From the floor's forces with the rotor in motion and at rest; an `InputError` for a foot that carries
+    nothing at rest, or without gravity.
     """
     if not rest.vertical.any():
         raise InputError("gravity", 0.0, "above 0 with a cabinet: without weight no foot holds to the floor")

@@ -153,7 +153,7 @@ class LoadedMachine:
     def displacement(self, point: Point, place: Array, angle: Array) -> Array:
         """Displacement of a point along x, y, z, m, shape (..., 3) [theory: loads, eq. 1].
 
-        The drum has turned by the angle, rad.
+        The drum has turned by the angle, rad, shape (...).
         """
         frame = self.frame
         if point.on == "tub":

@@ -34,12 +34,12 @@ class Extremes:
     walking: Array
 
     def at(self, rows: Index) -> Extremes:
-        """Those of some turns."""
+        """Extremes of some turns."""
         return Extremes(**{name: getattr(self, name)[rows] for name in Extremes.__dataclass_fields__})
 
 
 def extremes(loads: Loads) -> Extremes:
-    """The worst over moments, the last axis, shape (k, m) to (k,)."""
+    """Extremes of k turns over moments, the last axis of loads of shape (k, m)."""
     count = loads.holder.shape[0]
     floor, margin, none = loads.floor, loads.margins, np.full(count, np.nan)
     nobody = np.zeros((count, 0))
@@ -57,15 +57,15 @@ def extremes(loads: Loads) -> Extremes:
 
 
 def joined(parts: list[Extremes]) -> Extremes:
-    """Several of them one after the other."""
+    """Extremes of several parts, one after the other."""
     names = Extremes.__dataclass_fields__
     return Extremes(**{name: np.concatenate([getattr(part, name) for part in parts]) for name in names})
 
 
 def turn_extremes(machine: LoadedMachine, coordinates: Complex, speed: Array) -> Extremes:
-    """The worst over a turn of steady motions q = Re(coordinates e^{i Omega t}) [theory: loads, eq. 14].
+    """Extremes over a turn of steady motions q = Re(coordinates e^{i Omega t}) [theory: loads, eq. 14].
 
-    Of amplitudes (s, n): nan where the motion is not known, infinite where it has no bound.
+    From amplitudes (s, n): nan where the motion is not known, infinite where it has no bound.
     """
     angle = np.linspace(0.0, 2.0 * np.pi, ANGLES, endpoint=False)
     known = np.asarray(np.isfinite(coordinates).all(axis=1))
@@ -84,7 +84,7 @@ def turn_extremes(machine: LoadedMachine, coordinates: Complex, speed: Array) ->
 
 
 def _without(found: Extremes, known: Flags, endless: Flags) -> Extremes:
-    """Nothing in place of what is not known; no bound where the motion has none."""
+    """Extremes with nan where the motion is not known, and no bound where it has none."""
     values = {}
     for name in Extremes.__dataclass_fields__:
         value = getattr(found, name)
@@ -127,9 +127,9 @@ def damping_power(machine: LoadedMachine, coordinates: Complex, speed: Array) ->
 def liquid_power(machine: LoadedMachine, friction: Friction, coordinates: Complex, speed: Array) -> Array:
     """Mean power that friction in the liquid turns into heat, W, shape (s,) [theory: loads, eq. 18-19].
 
-    The motor replaces it. In a circle with the spin the liquid rests in its drum; what goes round the other
-    way and gravity move it as small waves, below the speed from which an annular layer exists as a pool past
-    which the walls move. Chambers with baffles or sections of their own are left out.
+    The motor replaces it. In a circular forward whirl without transverse gravity the liquid rests in its
+    drum; backward whirl and gravity move it as small waves, below the speed from which an annular layer
+    exists as a pool past which the walls move. Chambers with baffles or sections of their own are left out.
     """
     system, total = machine.rotor.system(), np.zeros(speed.shape)
     gravity = 0.0 if machine.vertical else machine.gravity

@@ -30,12 +30,12 @@ class Controller(Protocol):
 
     @property
     def name(self) -> str:
-        """As scenes and results name it."""
+        """Name in scenes and results."""
         ...
 
     @property
     def states(self) -> int:
-        """k."""
+        """Number k of values of its state."""
         ...
 
     @property
@@ -48,7 +48,7 @@ class Controller(Protocol):
         ...
 
     def gains(self, speed: float) -> Gains:
-        """Its linear part about the centre."""
+        """Linear part of the control about the centre."""
         ...
 
 
@@ -224,7 +224,7 @@ def source_times(
 ) -> Synergetic:
     """Synergetic control from numbers over powers of sqrt(m/c_m), as the source has them [BG18, section 4].
 
-    T, h, mu_1 and mu_3.
+    T, h, mu_1 and mu_3, dimensionless, of a machine with a motor.
     """
     require_positive("motor_stiffness", machine.motor_stiffness)
     unit = float(np.sqrt(machine.mass / machine.motor_stiffness))

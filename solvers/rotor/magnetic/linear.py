@@ -48,11 +48,14 @@ class Loop:
 
     @property
     def stable(self) -> bool:
-        """All poles decay."""
+        """All poles have negative real parts."""
         return bool(self.poles.real.max() < 0.0)
 
     def transfer(self, frequency: ArrayLike) -> Complex:
-        """L, from wanted currents round to wanted currents with the sign of feedback, shape (..., 4, 4)."""
+        """Loop transfer L, from wanted currents round to wanted currents, shape (..., 4, 4).
+
+        With the sign of feedback, at frequencies in rad/s.
+        """
         w = np.asarray(frequency, dtype=float)[..., None, None]
         unit = np.eye(self.free.shape[0])
         answer = np.linalg.solve(
@@ -61,10 +64,10 @@ class Loop:
         return np.asarray(self.feedback @ answer)
 
     def answer(self, load: ArrayLike, frequency: float) -> tuple[Complex, Complex]:
-        """Motion under a turning or swinging load Re(load e^{i w t}), settled [theory: magnetic, eq. 22].
+        """Steady motion under a turning or swinging load Re(load e^{i w t}) [theory: magnetic, eq. 22].
 
         Complex amplitudes of the bearings' displacements, m, and of the wanted currents, A, shape (4,) each;
-        frequency 0 for a constant load.
+        load in N and N m, frequency w in rad/s, 0 for a constant load.
         """
         size = self.free.shape[0]
         right = np.zeros(size, dtype=np.complex128)
@@ -209,7 +212,7 @@ def orbit_size(amplitude: ArrayLike) -> Array:
 def least_bandwidth(judge: Callable[[float], bool], low: float = 1e2, high: float = 1e9) -> float | None:
     """Smallest bandwidth of the coils at which a loop is good enough, to 0.1 %, rad/s.
 
-    None where the judge says no at the highest; the lowest where it says yes there already.
+    None where `judge` refuses the highest; the lowest where it accepts that already.
     """
     require_positive("low", low)
     if not judge(high):

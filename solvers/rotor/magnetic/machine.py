@@ -54,7 +54,8 @@ class Magnets:
     def force(self, displacement: ArrayLike, current: ArrayLike) -> Array:
         """Force of a pair of magnets [theory: magnetic, eq. 4] [BG18, eq. 28].
 
-        Towards the first magnet, N, as the displacement, m.
+        Towards the first magnet, N, as the displacement, m, which is below the gap in size; control current
+        in A.
         """
         x, i = np.asarray(displacement, dtype=float), np.asarray(current, dtype=float)
         near = np.square((self.bias_current + i) / (self.gap - x))

@@ -7,12 +7,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from itertools import pairwise
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from meshes.arrays import Array
 from meshes.errors import InputError, require_not_negative, require_positive
+from meshes.quantity import Q
 from solvers.rotor.magnetic.control import Controller
 from solvers.rotor.magnetic.machine import MagneticRotor
 
@@ -48,7 +50,7 @@ class SpeedLaw:
         return np.asarray(self.mean + self.amplitude * np.sin(self.frequency * np.asarray(time, dtype=float)))
 
     def rate(self, time: ArrayLike) -> Array:
-        """Its rate of change, rad/s^2, shape of `time`."""
+        """Rate of change of Omega, rad/s^2, shape of `time`."""
         cosine = np.cos(self.frequency * np.asarray(time, dtype=float))
         return np.asarray(self.amplitude * self.frequency * cosine)
 
@@ -90,21 +92,23 @@ class Load:
 
 @dataclass(frozen=True)
 class Motion:
-    """A motion through time; n times."""
+    """Motion in time; n times."""
 
-    time: Array  #: s, shape (n,)
-    speed: Array  #: of the rotor, rad/s, shape (n,)
+    time: Annotated[Array, Q("s", "time", over=("time",))]
+    speed: Annotated[Array, Q("rad s-1", "spin speed", over=("time",))]
     place: Array  #: coordinates and their rates, m, rad and per second, shape (n, 4)
     rate: Array
     memory: Array  #: state of the controller, shape (n, k)
-    displacement: Array  #: along first x, first y, second x, second y of the bearings, m, shape (n, 4)
-    current: Array  #: control currents that flow, A, shape (n, 4)
-    ending: Ending  #: how it ended
+    #: along first x, first y, second x, second y of the bearings, shape (n, 4)
+    displacement: Annotated[Array, Q("m", "displacement in the bearings", over=("time", "axis"))]
+    #: that flow, shape (n, 4)
+    current: Annotated[Array, Q("A", "control currents", over=("time", "axis"))]
+    ending: Annotated[Ending, Q(text="how it ended")]
     evaluations: int  #: of the equations of motion
 
     @property
     def distance(self) -> Array:
-        """From the centre, in the bearing where it is larger, m, shape (n,)."""
+        """Distance from the centre in the bearing where it is larger, m, shape (n,)."""
         d = self.displacement
         return np.asarray(np.maximum(np.hypot(d[:, 0], d[:, 1]), np.hypot(d[:, 2], d[:, 3])))
 
@@ -191,7 +195,7 @@ class _Equations:
         return np.concatenate(parts)
 
     def room(self, time: float, state: Array) -> float:
-        """Left in the bearing where there is less, m."""
+        """Clearance left in the bearing where there is less, m."""
         return _room(self.machine, state[:4])
 
     def errors(self, size: int) -> Array:

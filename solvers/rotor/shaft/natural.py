@@ -32,9 +32,9 @@ class Mode:
 
 
 def count_below(structure: Structure, frequency: Array, spin: float = 0.0) -> Index:
-    """How many natural frequencies, 0 included, lie below others [theory: spindle, eq. 11].
+    """Number of natural frequencies, 0 included, below given ones [theory: spindle, eq. 11].
 
-    At frequencies above 0, rad/s, without dampers; of forward whirl, of backward whirl where `spin` is
+    Given ones above 0, rad/s; dampers do not count. Of forward whirl, of backward whirl where `spin` is
     negative.
     """
     omega = np.asarray(frequency, dtype=float).reshape(-1)
@@ -57,7 +57,7 @@ def modes(
 ) -> tuple[Mode, ...]:
     """Natural frequencies of a band with their shapes.
 
-    `least` pieces of each section, at whose ends the shape is told.
+    The shape is known at the ends of at least `least` pieces of each section.
     """
     frequencies, order = _found(structure, low, high, spin)
     nodes = nodes_up_to(structure, high, spin, least)
@@ -105,7 +105,7 @@ def _require_band(low: float, high: float) -> None:
 
 
 def _eigenvalues(structure: Structure, nodes: Nodes, frequency: Array, spin: float) -> Array:
-    """Of the scaled dynamic stiffness, rising, shape (n, 2 nodes)."""
+    """Eigenvalues of the scaled dynamic stiffness, rising, shape (n, 2 nodes)."""
     return np.asarray(np.linalg.eigvalsh(_scaled(structure, nodes, frequency, spin)[0]))
 
 

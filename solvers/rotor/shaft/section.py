@@ -118,8 +118,7 @@ def shear_coefficient(ratio: float, poisson_ratio: float) -> float:
 def transfer_matrices(section: Section, length: float, frequency: Array, spin: float = 0.0) -> Array:
     """From the state at the left end of a piece to that at its right end [theory: spindle, eq. 3-4].
 
-    Shape (n, 4, 4), for the states (w, theta, M, Q) in SI units; frequencies below 0 for whirl against the
-    spin.
+    Shape (n, 4, 4), for the states (w, theta, M, Q) in SI units; frequencies below 0 for backward whirl.
     """
     bending, shear = section.bending_stiffness, section.shear_flexibility
     omega = np.asarray(frequency, dtype=float)

@@ -111,7 +111,7 @@ class Nodes:
 
     @property
     def count(self) -> int:
-        """How many there are."""
+        """Number of nodes."""
         return self.starts[-1]
 
     def of(self, station: Station) -> int:
@@ -127,7 +127,7 @@ class Nodes:
 def nodes_up_to(structure: Structure, frequency: float, spin: float = 0.0, least: int = 1) -> Nodes:
     """Nodes so close that no piece resonates between clamped ends up to a frequency [theory: spindle, eq. 9].
 
-    `least` pieces of each section; an `InputError` at the cutoff of shear waves.
+    At least `least` pieces of each section; an `InputError` from the cutoff of shear waves on.
     """
     largest = max(frequency, 1e-9)
     return Nodes(
@@ -175,7 +175,7 @@ def dynamic_stiffness(
 
 
 def scales(matrices: Complex) -> Array:
-    """Factors of rows and columns with which forces and moments are of one size."""
+    """Factors of rows and columns with which forces and moments are of one size, shape (m,)."""
     sizes = np.abs(np.diagonal(matrices, axis1=-2, axis2=-1)).max(axis=0)
     return np.asarray(1.0 / np.sqrt(np.where(sizes > 0.0, sizes, 1.0)))
 

@@ -1,7 +1,7 @@
 """The way of the source: compliances of free beams by transfer matrices, reactions in the joints.
 
 Products of transfer matrices lose digits as waves grow along a beam, and free beams have rigid motions that
-grow without bounds towards rest. This way checks `structure`, which has neither fault, and tells what each
+grow without bounds towards rest. This way checks `structure`, which has neither fault, and gives what each
 joint carries.
 """
 

@@ -15,8 +15,8 @@ from leblanc.cli import main
 from leblanc.core.units import LENGTH, RPM, with_unit
 from leblanc.figures.chambers import describe_state as chamber_state
 from leblanc.scene.examples import example_path
+from leblanc.studies.run import words as text
 from leblanc.studies.shapes.machine import machine_motion
-from leblanc.text import run as text
 from leblanc.text.sweep import lines as sweep_lines
 from leblanc.view.scene import describe_state as view_state
 

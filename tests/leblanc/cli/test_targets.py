@@ -19,7 +19,7 @@ Capture = pytest.CaptureFixture[str]
 
 # What each command does first once it has read what it is given.
 WORK = (
-    "leblanc.studies.run.run_scene",
+    "leblanc.studies.run.study.run_scene",
     "leblanc.wings.exciter.study.run_exciter",
     "leblanc.studies.compare.compare_models",
     "leblanc.studies.layer.answer_layer",

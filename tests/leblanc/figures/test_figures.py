@@ -298,7 +298,7 @@ def test_same_record_same_bytes_whatever_the_user_sets(tmp_path: Path):
 
 
 def test_pyplot_is_not_imported():
-    code = "import sys, leblanc.figures.response; sys.exit('matplotlib.pyplot' in sys.modules)"
+    code = "import sys, leblanc.studies.run.figure; sys.exit('matplotlib.pyplot' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
 
 

@@ -23,9 +23,9 @@ from leblanc.figures.chambers import SURFACE, bodies
 from leblanc.figures.films import film_figure
 from leblanc.figures.liquid import modes_figure
 from leblanc.results.base import FilledChamber
-from leblanc.results.response import RunResult
 from leblanc.results.runup import RunupFrames
 from leblanc.studies.modes import Resolution, SectionSource, answer_modes
+from leblanc.studies.run.answer import RunResult
 from meshes.baffles import Baffles
 from meshes.chamber import Chamber
 from meshes.chamber_section import ChamberSection, chamber_section, level

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from leblanc.figures.response import write_figures
 from leblanc.report.page import about
 from leblanc.report.run import write_run_report
 from leblanc.scene.scene import load_scene
-from leblanc.studies.run import run_scene
+from leblanc.studies.run.figure import write_figures
+from leblanc.studies.run.study import run_scene
 from tests.oracles.browser import Browser, browser, found
 from tests.oracles.pages import about_record
 from tests.oracles.records import awkward_texts, many_chambers, nothing_found

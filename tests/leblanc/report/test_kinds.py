@@ -28,11 +28,11 @@ from leblanc.results.runup import RunupResult
 from leblanc.results.whirl_map import WhirlMap
 from leblanc.scene.scene import scene_from_table
 from leblanc.studies.optimise.optimise import optimise_scene
-from leblanc.studies.run import run_scene
+from leblanc.studies.run.study import run_scene
+from leblanc.studies.run.words import MODELS
 from leblanc.studies.runup import runup_scene
 from leblanc.studies.whirl_map import map_scene
 from leblanc.text import whirl_map as text_map
-from leblanc.text.run import MODELS
 from leblanc.wings.exciter.answer import NUMBERS, ExciterAnswer, facts, limits
 from leblanc.wings.exciter.study import run_exciter
 from solvers.layer.records import Outcome

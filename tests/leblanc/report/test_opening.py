@@ -14,7 +14,7 @@ from leblanc.cli import main
 from leblanc.report.page import made_on
 from leblanc.report.parts import Cell, doubt, table
 from leblanc.report.run import response_checks
-from leblanc.text.run import answer
+from leblanc.studies.run.words import answer
 
 COMMANDS = {
     "run": (["run", "{scene}"], "summary.html"),

@@ -22,12 +22,12 @@ from leblanc.report import run as report_run
 from leblanc.report.parts import LIGHT, picture
 from leblanc.results.base import FilledChamber
 from leblanc.results.motion.self_excited import SelfExcited
-from leblanc.results.notes.response import OF_MODELS, RunCode
-from leblanc.results.response import RunResult
 from leblanc.scene.scene import load_scene
-from leblanc.studies.run import run_scene
-from leblanc.text import run as words
-from leblanc.text.run import MODELS
+from leblanc.studies.run import words as words
+from leblanc.studies.run.answer import RunResult
+from leblanc.studies.run.notes import OF_MODELS, RunCode
+from leblanc.studies.run.study import run_scene
+from leblanc.studies.run.words import MODELS
 from tests.oracles.pages import WARNING, Page, about_record, printed, read_page
 from tests.oracles.records import RPM, folded, record_of, response_of, rig
 

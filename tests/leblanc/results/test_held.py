@@ -14,10 +14,10 @@ from leblanc.cli import main
 from leblanc.report.run import held_motions
 from leblanc.results.motion.held import MOTIONS
 from leblanc.results.motion.self_excited import SelfExcited
-from leblanc.results.notes import response as notes
-from leblanc.results.notes.response import RunCode
-from leblanc.results.response import RunResult
-from leblanc.text import run as words
+from leblanc.studies.run import notes as notes
+from leblanc.studies.run import words as words
+from leblanc.studies.run.answer import RunResult
+from leblanc.studies.run.notes import RunCode
 from meshes.errors import InputError
 from tests.mutants import kills
 from tests.oracles.data_files import assert_read_back
@@ -165,7 +165,7 @@ def test_what_has_not_settled_on_the_way_down_is_no_hysteresis() -> None:
     assert len(held_motions(result)) == 1
 
 
-@kills("leblanc.results.notes.response:plane", 'turns = ", of', 'turns = "" and ", of')
+@kills("leblanc.studies.run.notes:plane", 'turns = ", of', 'turns = "" and ", of')
 def test_the_plane_says_that_an_amplitude_is_a_mean() -> None:
     """Where motions are held in time every turn has a largest radius of its own."""
     for held in (False, True):
@@ -200,7 +200,7 @@ def test_report_tells_cycles_by_ranges_of_speed() -> None:
 def test_exit_code_3_says_what_has_not_settled_and_what_is_kept(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr("leblanc.studies.run.run_scene", lambda *_, **__: held_rig())
+    monkeypatch.setattr("leblanc.studies.run.study.run_scene", lambda *_, **__: held_rig())
     scene = Path(__file__).parents[3] / "examples/horizontal_rig.toml"
     assert main(["run", str(scene), "--out", str(tmp_path)]) == 3
     said = " ".join(capsys.readouterr().err.split())

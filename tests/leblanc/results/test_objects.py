@@ -19,20 +19,19 @@ from leblanc.cli import main
 from leblanc.core.answer import Result
 from leblanc.core.terminal import print_json
 from leblanc.figures.drawing.page import Figure
-from leblanc.results.response import RunResult
 from leblanc.scene.scene import Scene, load_scene
 from leblanc.scene.tasks import Optimisation
 from leblanc.studies.compare import compare_models
 from leblanc.studies.explain import explain_scene
-from leblanc.studies.magnetic.explain import explain_magnetic
-from leblanc.studies.magnetic.run import run_magnetic
 from leblanc.studies.models.choose import choose_all, prepare
-from leblanc.studies.run import run_scene
+from leblanc.studies.run.answer import RunResult
+from leblanc.studies.run.study import run_scene
 from leblanc.studies.volume import volume
 from leblanc.studies.volume.answer import Coverage
 from leblanc.studies.volume.figure import surface_figure
 from leblanc.studies.whirl_map import map_scene
 from leblanc.wings.exciter.study import explain_exciter, run_exciter
+from leblanc.wings.magnetic.study import explain_magnetic, run_magnetic
 from tests.oracles.data_files import assert_read_back
 
 CHAMBER = {"radius": 0.065, "height": 0.02}

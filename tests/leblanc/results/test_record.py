@@ -7,13 +7,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from leblanc.results.response import peak, phase
+from leblanc.studies.run.answer import peak, phase
 from tests.mutants import kills
 from tests.oracles.records import DAMPING, MASS, RPM, STIFFNESS, dry_deflection, folded
 
 
 @kills(
-    "leblanc.results.response:phase", "angle = np.angle(deflection)", "angle = np.angle(np.conj(deflection))"
+    "leblanc.studies.run.answer:phase",
+    "angle = np.angle(deflection)",
+    "angle = np.angle(np.conj(deflection))",
 )
 def test_lag_of_a_damped_rotor() -> None:
     """tan(lag) = C Omega/(K - M Omega^2), between 0 and half a turn [theory: rotor]."""
@@ -23,14 +25,14 @@ def test_lag_of_a_damped_rotor() -> None:
     np.testing.assert_allclose(phase(dry_deflection(speed, MASS)), -lag, rtol=0, atol=1e-14)
 
 
-@kills("leblanc.results.response:phase", "angle <= -math.pi, math.pi", "angle <= -math.pi, -math.pi")
+@kills("leblanc.studies.run.answer:phase", "angle <= -math.pi, math.pi", "angle <= -math.pi, -math.pi")
 def test_phase_lies_in_one_turn() -> None:
     """The interval is open below and closed above; without a deflection the angle is 0."""
     w = np.array([complex(-1.0, -0.0), complex(-1.0, 0.0), complex(-0.0, -0.0), 1j, -1j])
     assert phase(w).tolist() == [math.pi, math.pi, 0.0, 0.5 * math.pi, -0.5 * math.pi]
 
 
-@kills("leblanc.results.response:peak", "np.where(known, size, -1.0)", "np.where(known, -size, -1.0)")
+@kills("leblanc.studies.run.answer:peak", "np.where(known, size, -1.0)", "np.where(known, -size, -1.0)")
 def test_peak_is_the_largest() -> None:
     assert peak(np.array([0.1, 0.3j, np.nan, -0.2])) == 1
     assert peak(np.array([np.nan + 0j])) is None
@@ -38,7 +40,7 @@ def test_peak_is_the_largest() -> None:
 
 @kills("leblanc.core.netcdf:finite", "[values.real, values.imag]", "[values.imag, values.real]")
 @kills(
-    "leblanc.results.response:RunResult.to_json",
+    "leblanc.studies.run.answer:RunResult.to_json",
     '"liquid_angle": finite(r.liquid_angle)',
     '"liquid_angle": finite(-r.liquid_angle)',
 )
@@ -59,7 +61,9 @@ def test_json_is_the_record() -> None:
         assert found["branch_stable"][found["branches"].index(row)] == stable[:number].tolist()
 
 
-@kills("leblanc.results.response:_variables", 'phase(r.deflection_dry), "rad"', 'phase(r.deflection), "rad"')
+@kills(
+    "leblanc.studies.run.answer:_variables", 'phase(r.deflection_dry), "rad"', 'phase(r.deflection), "rad"'
+)
 @kills("leblanc.core.netcdf:pair", 'values.imag, "m", imag', 'values.real, "m", imag')
 @kills(
     "leblanc.core.netcdf:flags",

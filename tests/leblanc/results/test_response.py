@@ -14,8 +14,8 @@ import leblanc as lb
 from leblanc.core.files import writing
 from leblanc.core.netcdf import write_netcdf
 from leblanc.core.units import amplitude_sentence
-from leblanc.results.response import RunResult
-from leblanc.text.run import summary
+from leblanc.studies.run.answer import RunResult
+from leblanc.studies.run.words import summary
 from meshes.errors import InputError
 from tests.oracles.records import folded, record_of, response_of, rig
 

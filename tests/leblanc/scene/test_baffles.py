@@ -18,7 +18,7 @@ from leblanc.scene.schema.load import SceneError, read_toml
 from leblanc.studies.batch import answer_scenes
 from leblanc.studies.explain import explain_scene
 from leblanc.studies.models.choose import choose
-from leblanc.studies.run import run_scene
+from leblanc.studies.run.study import run_scene
 from leblanc.studies.runup import runup_scene
 from leblanc.studies.whirl_map import map_scene
 from meshes.baffles import Baffles

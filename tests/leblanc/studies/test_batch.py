@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from fluid.friction.laws import Friction
-from leblanc.results.response import RunResult, phase
 from leblanc.scene.scene import Scene, load_scene
 from leblanc.studies.batch import Answers, answer_scenes
-from leblanc.studies.run import run_scene
+from leblanc.studies.run.answer import RunResult, phase
+from leblanc.studies.run.study import run_scene
 from meshes.errors import InputError
 from tests.mutants import kills
 

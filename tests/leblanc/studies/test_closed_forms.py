@@ -14,13 +14,13 @@ from hypothesis import strategies as st
 import leblanc as lb
 from fluid.fill import Fill
 from fluid.liquid import Liquid
+from leblanc.core.blocks import Table
 from leblanc.results.motion.closed_forms import ClosedForms
 from leblanc.scene.schema.load import SceneError
 from leblanc.studies.closed_forms import told
 from leblanc.studies.closed_forms.told import vector_model
 from leblanc.studies.models.choose import prepare
 from leblanc.text.closed_forms import HEAD, closed_form_rows, vector_rows
-from leblanc.text.spindles.unit import cage_rows
 from meshes.chamber import Chamber
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.vector_model import balance_residual
@@ -167,7 +167,8 @@ def test_cages_of_supports_and_of_a_spindle() -> None:
     assert found.cage_speed[name] == pytest.approx(share * 2.0 * np.pi * 33.0)
     assert found.to_json()["cage_speed"] == found.cage_speed
     assert "cage_speed" not in lb.run(bare).to_json()
-    assert any(label.startswith("Cage of spindle.2") for label, _ in cage_rows(found))
+    tables = [block for block in found.blocks() if isinstance(block, Table)]
+    assert any(row[0].startswith("Cage of spindle.2") for table in tables for row in table.rows)
 
 
 def test_what_cannot_stand_upright_is_said() -> None:

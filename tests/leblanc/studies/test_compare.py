@@ -16,7 +16,7 @@ from leblanc.scene.examples import example
 from leblanc.scene.scene import Scene
 from leblanc.studies.compare import compare_models
 from leblanc.studies.held.holding import Holding
-from leblanc.studies.run import run_scene
+from leblanc.studies.run.study import run_scene
 from leblanc.text.explanation import comparison_rows
 from meshes.errors import InputError
 from tests.mutants import kills

@@ -11,7 +11,7 @@ from leblanc.scene.examples import example
 from leblanc.scene.scene import load_scene
 from leblanc.studies.held.held import held_machine
 from leblanc.studies.models.choose import prepare
-from leblanc.studies.run import run_scene
+from leblanc.studies.run.study import run_scene
 from leblanc.studies.runup import runup_scene
 from meshes.errors import InputError
 from solvers.held.exact import march

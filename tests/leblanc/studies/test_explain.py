@@ -18,7 +18,7 @@ from leblanc.core.units import in_rpm
 from leblanc.scene.scene import Scene, load_scene, scene_from_table
 from leblanc.studies.explain import explain_scene
 from leblanc.studies.models.choose import carried_from, choose
-from leblanc.studies.run import run_scene
+from leblanc.studies.run.study import run_scene
 from leblanc.text.explanation import layer_rows
 from meshes.chamber import Chamber
 from meshes.errors import InputError

@@ -8,13 +8,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from leblanc.figures.response import amplitude_figure
-from leblanc.results.notes.response import RunCode
 from leblanc.results.notes.whirl_map import MapCode
-from leblanc.results.response import RunResult
 from leblanc.scene.scene import Scene, load_scene
 from leblanc.studies.models.choose import prepare
-from leblanc.studies.run import run_scene
+from leblanc.studies.run.answer import RunResult
+from leblanc.studies.run.figure import amplitude_figure
+from leblanc.studies.run.notes import RunCode
+from leblanc.studies.run.study import run_scene
 from validation.whirl_in_time import large_whirl_in_time
 
 ROOT = Path(__file__).parents[3]

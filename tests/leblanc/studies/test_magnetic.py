@@ -11,12 +11,10 @@ import pytest
 
 import leblanc as lb
 from leblanc.cli import main
-from leblanc.figures.magnetic.control import magnetic_figure
-from leblanc.results.magnetic.control import MagneticResult
 from leblanc.scene.scene import load_scene
-from leblanc.studies.magnetic.explain import explain_magnetic
-from leblanc.studies.magnetic.run import run_magnetic
-from leblanc.text import magnetic as text_magnetic
+from leblanc.wings.magnetic.answer import MagneticAnswer, limits, rows, sentence
+from leblanc.wings.magnetic.figure import magnetic_figure
+from leblanc.wings.magnetic.study import explain_magnetic, run_magnetic
 from meshes.errors import InputError
 from tests.mutants import kills
 from tests.oracles.blood_pump import ROTOR, SPEED, synergetic
@@ -31,11 +29,11 @@ SHORT = {
     "rotor.loads.0.start": 0.04,
     "rotor.loads.1.start": 0.05,
 }
-AT = "leblanc.studies.magnetic.run:"
+AT = "leblanc.wings.magnetic.study:"
 
 
 @pytest.fixture(scope="module")
-def record() -> MagneticResult:
+def record() -> MagneticAnswer:
     return run_magnetic(load_scene(PUMP).replace(SHORT))
 
 
@@ -90,7 +88,7 @@ def test_gravity_across_the_axis() -> None:
     assert motion.current[-1, 1] == pytest.approx(weight.current, rel=0.2)
 
 
-def test_the_trial_begins_where_the_scene_says(record: MagneticResult) -> None:
+def test_the_trial_begins_where_the_scene_says(record: MagneticAnswer) -> None:
     for control in record.controllers:
         assert control.trial is not None
         motion = control.trial.motion
@@ -102,7 +100,7 @@ def test_the_trial_begins_where_the_scene_says(record: MagneticResult) -> None:
     assert record.controls["pid"].trial.settled < 0.03  # type: ignore[union-attr]
 
 
-def test_json_holds_numbers_and_nulls_only(record: MagneticResult) -> None:
+def test_json_holds_numbers_and_nulls_only(record: MagneticAnswer) -> None:
     found = json.loads(json.dumps(record.to_json(), allow_nan=False))
     control = found["controls"]["synergetic"]
     assert np.shape(control["poles"]) == (2, 12, 2) and control["gain_up"] == [None, None]
@@ -111,22 +109,22 @@ def test_json_holds_numbers_and_nulls_only(record: MagneticResult) -> None:
     assert found["amplitude"] == control["amplitude"] and found["stable"] == [True, True]
 
 
-def test_arrays_have_a_place_for_every_pole(record: MagneticResult) -> None:
+def test_arrays_have_a_place_for_every_pole(record: MagneticAnswer) -> None:
     data = record.to_dataset()
     assert data["pole_real"].shape == (2, 2, 16) and bool(data["pole_real"][0, :, 12:].isnull().all())
     assert data["displacement"].dims == ("control", "time", "axis")
     np.testing.assert_array_equal(data["amplitude"][1], record.controllers[1].amplitude)
 
 
-def test_words(record: MagneticResult) -> None:
-    rows = {label: texts for label, *texts in text_magnetic.rows(record)}
-    assert rows["Slowest pole (1/s)"][0] == "\N{MINUS SIGN}19.86 \N{PLUS-MINUS SIGN} 10.99 i"
+def test_words(record: MagneticAnswer) -> None:
+    told = {label: texts for label, *texts in rows(record)}
+    assert told["Slowest pole (1/s)"][0] == "\N{MINUS SIGN}19.86 \N{PLUS-MINUS SIGN} 10.99 i"
     assert (
-        rows["Load 1: deflection"][0] == "3.071 um" and rows["In time: within 4 um after"][0] == "not found"
+        told["Load 1: deflection"][0] == "3.071 um" and told["In time: within 4 um after"][0] == "not found"
     )
-    failed = {limit.label for limit in text_magnetic.limits(record) if limit.failed}
+    failed = {check.label for check in limits(record) if check.grade}
     assert failed == {"Faster than coils are, synergetic control"}
-    assert "largest sensitivity" in text_magnetic.answer(record)
+    assert "largest sensitivity" in sentence(record)
 
 
 def test_what_does_not_hold_is_said() -> None:
@@ -136,9 +134,9 @@ def test_what_does_not_hold_is_said() -> None:
     control = found.controls["pid"]
     assert not control.stable.any() and np.isnan(control.sensitivity).all() and control.loads == ()
     assert control.trial is not None and control.trial.motion.ending.value == "touched"
-    rows = {label: texts for label, *texts in text_magnetic.rows(found)}
-    assert rows["Phase margin, least"][1] == "not found" and rows["Load 1: deflection"][1] == "not found"
-    failed = {limit.label for limit in text_magnetic.limits(found) if limit.failed}
+    told = {label: texts for label, *texts in rows(found)}
+    assert told["Phase margin, least"][1] == "not found" and told["Load 1: deflection"][1] == "not found"
+    failed = {check.label for check in limits(found) if check.grade}
     assert {"Not stable, PID control", "Trial in time, PID control"} <= failed and found.converged
     assert json.dumps(found.to_json(), allow_nan=False)
     assert bool(found.to_dataset()["displacement"][1].isnull().any())
@@ -152,10 +150,10 @@ def test_a_scene_without_a_trial() -> None:
     found = run_magnetic(lb.Scene(**table))
     assert found.controllers[0].trial is None and found.load_speed == found.speed[-1]
     assert len(magnetic_figure(found).axes) == 1 and "time" not in found.to_dataset().coords
-    assert not any("In time" in label for label, *_ in text_magnetic.rows(found))
+    assert not any("In time" in label for label, *_ in rows(found))
 
 
-def test_the_figure(record: MagneticResult) -> None:
+def test_the_figure(record: MagneticAnswer) -> None:
     above, middle, below = magnetic_figure(record).axes
     lines = {line.get_label(): line for line in above.get_lines()}
     trial = record.controls["pid"].trial

@@ -16,11 +16,11 @@ from fluid.fill import Fill
 from fluid.liquid import known_liquid
 from leblanc.cli import main
 from leblanc.figures.chambers import chamber_figure, side_by_side
-from leblanc.figures.response import amplitude_figure, campbell_figure
 from leblanc.scene.scene import Scene, dry_rotor, load_scene, scene_from_table
 from leblanc.studies.explain import explain_scene
-from leblanc.studies.run import run_scene
-from leblanc.text.run import comparisons, facts
+from leblanc.studies.run.figure import amplitude_figure, campbell_figure
+from leblanc.studies.run.study import run_scene
+from leblanc.studies.run.words import comparisons, facts
 from meshes.chamber import Chamber
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
 from solvers.rotor.vibration import critical_speeds, orbit, unbalance_response

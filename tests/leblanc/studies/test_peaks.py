@@ -13,8 +13,6 @@ import pytest
 
 import leblanc as lb
 from leblanc.core.units import RPM
-from leblanc.results.notes.response import RunCode
-from leblanc.results.response import RunResult
 from leblanc.scene.scene import Scene, load_scene
 from leblanc.scene.tasks import Optimisation
 from leblanc.studies.batch import answer_scenes
@@ -24,8 +22,10 @@ from leblanc.studies.optimise.answers import FilledMachine, with_volumes
 from leblanc.studies.optimise.objectives import PeakOver
 from leblanc.studies.optimise.optimise import optimise_scene
 from leblanc.studies.peaks import _distinct, responses_between
-from leblanc.studies.run import run_scene
-from leblanc.text.run import alts, answer, remarks, summary
+from leblanc.studies.run.answer import RunResult
+from leblanc.studies.run.notes import RunCode
+from leblanc.studies.run.study import run_scene
+from leblanc.studies.run.words import alts, answer, remarks, summary
 from meshes.arrays import Array
 from solvers.synchronous.response import Response, by_speed, response
 from tests.mutants import kills
@@ -296,7 +296,7 @@ def test_what_the_largest_amplitude_leaves_out_is_told() -> None:
     assert "holds" not in answer(upright)
 
 
-@kills("leblanc.results.response:_curve_json", "result.curve", "result.response")
+@kills("leblanc.studies.run.answer:_curve_json", "result.curve", "result.response")
 def test_one_curve_contains_its_peaks() -> None:
     """The largest amplitude of the curve, among the speeds in range, is the peak of the table."""
     for found in (run("centrifuge", 241), lying("two_plane_rig")):

@@ -13,7 +13,7 @@ import xarray as xr
 import leblanc as lb
 from leblanc.cli import main
 from leblanc.scene.scene import load_scene, scene_from_table
-from leblanc.studies.run import run_scene
+from leblanc.studies.run.study import run_scene
 from meshes.errors import InputError
 from tests.leblanc.studies.test_explain import table
 from tests.mutants import kills

@@ -10,12 +10,12 @@ import pytest
 from fluid.friction.laws import NO_FRICTION, layer_thickness
 from fluid.whirl import damped_waves
 from leblanc.results.motion.self_excited import SelfExcited
-from leblanc.results.notes.response import RunCode
-from leblanc.results.notes.response import self_excited as note_of
 from leblanc.scene.scene import dry_rotor, load_scene
 from leblanc.studies.models.choose import prepare
-from leblanc.studies.run import _thick_layers, run_scene, self_excited
-from leblanc.text.run import limits
+from leblanc.studies.run.notes import RunCode
+from leblanc.studies.run.notes import self_excited as note_of
+from leblanc.studies.run.study import _thick_layers, run_scene, self_excited
+from leblanc.studies.run.words import limits
 from meshes.arrays import Array
 from solvers.whirl import laminar
 from solvers.whirl.growth import asynchronous_growth
@@ -49,8 +49,8 @@ def test_stability() -> None:
     "(self.growth <= 0.0)",
     "~(self.growth > 0.0)",
 )
-@kills("leblanc.results.response:RunResult.stability", "(kept & np.isnan(growth))", "False")
-@kills("leblanc.studies.run:self_excited", "bands_not_known(speed, growth)", "()")
+@kills("leblanc.studies.run.answer:RunResult.stability", "(kept & np.isnan(growth))", "False")
+@kills("leblanc.studies.run.study:self_excited", "bands_not_known(speed, growth)", "()")
 def test_what_is_not_known_is_not_stable(monkeypatch: pytest.MonkeyPatch) -> None:
     """A search that fails is told apart from a stable machine in every way out, and its bands are listed."""
     scene = load_scene("examples/two_plane_rig.toml").replace({"speeds.count": 31})
@@ -85,7 +85,7 @@ def test_what_is_not_known_is_not_stable(monkeypatch: pytest.MonkeyPatch) -> Non
     assert [meaning[value] for value in flag.values.tolist()] == result.stability.tolist()
 
 
-@kills("leblanc.results.notes.response:self_excited", "np.nanargmax(whirl", "np.nanargmin(whirl")
+@kills("leblanc.studies.run.notes:self_excited", "np.nanargmax(whirl", "np.nanargmin(whirl")
 def test_words() -> None:
     """Edges and the fastest whirl in rpm."""
     text = note_of(found([-1.0, 0.25, 0.5], ((20.0 * np.pi, 30.0 * np.pi),))).text
@@ -96,7 +96,7 @@ def test_words() -> None:
 
 
 @kills(
-    "leblanc.studies.run:self_excited",
+    "leblanc.studies.run.study:self_excited",
     "filled, known = [scene.fills], growth[None]",
     "filled, known = [scene.fills[:1]], None",
 )
@@ -115,8 +115,8 @@ def test_rig() -> None:
     assert np.all(np.abs(at_edges) < 1e-6)
 
 
-@kills("leblanc.studies.run:_thick_layers", "2.0 * fill.liquid.viscosity", "fill.liquid.viscosity")
-@kills("leblanc.studies.run:_thick_layers", "slip / slower_slip(layer.layer_tanh)", "slip")
+@kills("leblanc.studies.run.study:_thick_layers", "2.0 * fill.liquid.viscosity", "fill.liquid.viscosity")
+@kills("leblanc.studies.run.study:_thick_layers", "slip / slower_slip(layer.layer_tanh)", "slip")
 def test_thick_wall_layers_are_said() -> None:
     """Below the speed at which the slower wave's layer is a fifth of the depth growth is out of range."""
     machine = prepare(load_scene("examples/horizontal_rig.toml"))

@@ -15,7 +15,7 @@ from leblanc.scene.examples import example
 from leblanc.scene.scene import Scene
 from leblanc.studies.layer import answer_layer
 from leblanc.studies.models.liquid import wave_model
-from leblanc.studies.run import run_scene
+from leblanc.studies.run.study import run_scene
 from solvers.pypde import family_law
 from tests.leblanc.studies.test_compare import by
 

@@ -24,7 +24,7 @@ from leblanc.results.notes.whirl_map import MapCode
 from leblanc.results.whirl_map import WhirlMap
 from leblanc.scene.scene import Scene, dry_rotor, load_scene
 from leblanc.studies import whirl_map as whirl_map_study
-from leblanc.studies.run import run_scene
+from leblanc.studies.run.study import run_scene
 from leblanc.studies.whirl_map import SPEEDS, VOLUMES, fills_over_volume, map_scene
 from meshes.errors import InputError
 from solvers.whirl.growth import asynchronous_growth, growth_map

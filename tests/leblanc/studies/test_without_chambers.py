@@ -14,11 +14,11 @@ from leblanc.cli import main
 from leblanc.report.page import About, about
 from leblanc.report.run import write_run_report
 from leblanc.report.runup import write_runup_report
-from leblanc.results.response import OF_LIQUID
 from leblanc.results.runup import OF_LIQUID as OF_LIQUID_IN_TIME
 from leblanc.scene.scene import Scene, scene_from_table
 from leblanc.studies.batch import answer_scenes
-from leblanc.studies.run import run_scene
+from leblanc.studies.run.answer import OF_LIQUID
+from leblanc.studies.run.study import run_scene
 from leblanc.studies.runup import runup_scene
 
 ROUNDING = 1e-12

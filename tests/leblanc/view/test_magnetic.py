@@ -12,10 +12,10 @@ import pytest
 
 import leblanc as lb
 from leblanc.cli import main
-from leblanc.results.magnetic.control import MagneticResult
-from leblanc.studies.magnetic.drawn import magnetic_view
 from leblanc.view.magnetic import magnetic_film, magnetic_picture
 from leblanc.view.parts import Picture
+from leblanc.wings.magnetic.answer import MagneticAnswer
+from leblanc.wings.magnetic.geometry import magnetic_view
 from meshes.errors import InputError
 from tests.mutants import kills
 
@@ -62,7 +62,7 @@ def test_the_rotor_stands_in_its_gap() -> None:
 
 def test_the_path_of_a_trial_is_that_of_run() -> None:
     view, found = magnetic_view(pump()), lb.run(pump().replace({"speeds.count": 2}))
-    assert isinstance(found, MagneticResult)
+    assert isinstance(found, MagneticAnswer)
     trial = found.controllers[0].trial
     assert trial is not None and view.controller == found.controllers[0].name
     np.testing.assert_allclose(view.displacement, trial.motion.displacement, atol=1e-15)
@@ -72,13 +72,15 @@ def test_the_path_of_a_trial_is_that_of_run() -> None:
 
 
 @kills(
-    "leblanc.studies.magnetic.drawn:magnetic_view", "np.exp(1j * turn[:, None])", "np.exp(2j * turn[:, None])"
+    "leblanc.wings.magnetic.geometry:magnetic_view",
+    "np.exp(1j * turn[:, None])",
+    "np.exp(2j * turn[:, None])",
 )
 def test_an_orbit_by_the_unbalances_has_the_size_of_run() -> None:
     machine = pump().replace({"speeds.start": 900.0, "speeds.stop": 940.0, "speeds.count": 2})
     found = lb.run(machine)
-    assert isinstance(found, MagneticResult)
-    view = magnetic_view(machine, 940.0)
+    assert isinstance(found, MagneticAnswer)
+    view = magnetic_view(machine, speed=940.0)
     distance = np.hypot(view.displacement[:, 0::2], view.displacement[:, 1::2]).max()
     assert distance == pytest.approx(found.controllers[0].amplitude[-1], rel=1e-3)
     # Drawn at most half the gap, and nearly that.

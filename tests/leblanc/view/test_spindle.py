@@ -11,10 +11,9 @@ import pytest
 
 import leblanc as lb
 from leblanc.cli import main
-from leblanc.results.drawn.spindle import DrawnSection
-from leblanc.studies.spindles.drawn import levels_of, spindle_view
 from leblanc.view.parts import Picture
 from leblanc.view.spindle import SIDES, revolved, spindle_film, spindle_picture
+from leblanc.wings.spindle.geometry import DrawnSection, levels_of, spindle_view
 from meshes.arrays import Array, Indices
 from meshes.errors import InputError
 from tests.mutants import kills
@@ -57,7 +56,7 @@ def beam(picture: Picture, name: str) -> Array:
 
 
 @kills("leblanc.view.spindle:_beam", "0.5 * section.diameter", "section.diameter")
-@kills("leblanc.studies.spindles.drawn:_sections", "initial=place", "initial=0.0")
+@kills("leblanc.wings.spindle.geometry:_sections", "initial=place", "initial=0.0")
 def test_beams_stand_where_the_scene_says() -> None:
     """Stations that a joint joins stand at one place; widths are the diameters, along the whole beam."""
     view = spindle_view(lb.load_scene(SPINDLE))
@@ -84,8 +83,9 @@ def test_the_motion_is_the_natural_one_as_large_as_the_factor() -> None:
         assert view.frequency == pytest.approx(mode.frequency, rel=1e-9) and view.count == len(found.modes)
         moved, rest = (spindle_picture(view, phase) for phase in (0.0, 0.5 * math.pi))
         rise = (moved.piece("wanted").points - rest.piece("wanted").points)[0]
-        place = found.stations.index("tool_holder.0")
-        np.testing.assert_allclose(rise, [0.0, 0.0, 1e3 * view.factor * mode.stations[place]], atol=1e-9)
+        np.testing.assert_allclose(
+            rise, [0.0, 0.0, 1e3 * view.factor * mode.stations["tool_holder.0"]], atol=1e-9
+        )
         assert max(np.abs(part.deflection).max() for part in view.beams) == pytest.approx(1.0)
 
 
@@ -96,7 +96,7 @@ def test_masses_are_discs_of_steel() -> None:
         assert own == pytest.approx(size) and 0.25 * own * mass.radius**2 == pytest.approx(inertia)
 
 
-@kills("leblanc.studies.spindles.drawn:_have_room", "a.diameter <= b.bore or", "a.diameter <= b.diameter or")
+@kills("leblanc.wings.spindle.geometry:_have_room", "a.diameter <= b.bore or", "a.diameter <= b.diameter or")
 def test_beams_without_room_for_one_another_stand_side_by_side() -> None:
     view = spindle_view(lb.load_scene(SPINDLE))
     assert {part.name: part.level for part in view.beams} == {

@@ -11,7 +11,7 @@ import pytest
 
 from leblanc.scene.examples import example
 from leblanc.scene.scene import dry_rotor
-from leblanc.studies.run import run_scene
+from leblanc.studies.run.study import run_scene
 from meshes.errors import InputError
 from solvers.rotor.balance_quality import (
     GRADES,

@@ -56,8 +56,9 @@ def round_chamber(radius: float, e: float, floor: float, ramp: float) -> dict[st
     waterlines = [math.sqrt(s) for s in (floor, floor + ramp) if s > 0.0]
     near, far = max(e - radius, 0.0), radius + e
     r, weight = panels([near, far, *(m for m in (abs(radius - e), *waterlines) if near < m < far)])
-    ratio = (r * r + e * e - radius**2) / (2.0 * e * r) if e > 0.0 else np.full_like(r, -1.0)
-    phi = np.arccos(np.clip(ratio, -1.0, 1.0))
+    most = 2.0 * e * r
+    ratio = np.clip(r * r + e * e - radius**2, -most, most) / most if most.all() else np.full_like(r, -1.0)
+    phi = np.arccos(ratio)
     h, w = depth_at(r * r, floor, ramp), weight * r
     integrals = {
         "volume": 2 * phi * h,

@@ -35,12 +35,7 @@ START, STANDARD = "command line", "standard library"
 
 
 def library(file: str) -> str | None:
-    """Top-level package that a source file belongs to; None for the standard library and what has no file.
-
-    Parameters
-    ----------
-    file : as code objects name it
-    """
+    """Top-level package of a source file; None for the standard library and what has no file."""
     for place in (*_PLACES, str(_ROOT)):
         if file.startswith(place + "/"):
             name = file[len(place) + 1 :].partition("/")[0].partition(".")[0]
@@ -49,16 +44,9 @@ def library(file: str) -> str | None:
 
 
 def place(frame: FrameType | None, command: str) -> tuple[str, str, str]:
-    """Where a program is.
+    """Call under way, "import", "physics" or "work", and library of the innermost frame.
 
-    Parameters
-    ----------
-    frame : the innermost
-    command : name of the command, which is that of its module and of its function
-
-    Returns
-    -------
-    Call of the command function that is under way, "import", "physics" or "work", library
+    The command's name is that of its module and of its function.
     """
     at_work, imported, importing, call, inner = None, None, False, START, None
     physics, getting_ready = False, False
@@ -91,16 +79,7 @@ def _name(inner: FrameType | None, command: str) -> str:
 
 
 def watch(arguments: list[str]) -> dict[str, object]:
-    """Run a command.
-
-    Parameters
-    ----------
-    arguments : behind `leblanc`
-
-    Returns
-    -------
-    `code` of its exit; `notes`: call, kind, library, count; `modules` that are loaded at the end
-    """
+    """Run a command: `code` of its exit; `notes` (call, kind, library, count); `modules` at the end."""
     notes: Counter[tuple[str, str, str]] = Counter()
     command = arguments[0]
 

@@ -81,12 +81,9 @@ class ColdStart:
         return found
 
     def shares(self, *fields: int, where: Sequence[tuple[int, str]] = ()) -> list[tuple[str, float]]:
-        """Times summed over all other fields of the notes, s, the longest first.
+        """Times by the kept fields (0 call, 1 import, physics or work, 2 library), s, the longest first.
 
-        Parameters
-        ----------
-        fields : of the notes that stay apart: 0 call, 1 import, physics or work, 2 library
-        where : fields and the values that they must have
+        Only notes whose fields have the values of `where` count.
         """
         found: dict[str, float] = {}
         for key, share in self.notes.items():
@@ -97,17 +94,7 @@ class ColdStart:
 
 
 def processor_time(command: Sequence[str], given: str = "") -> float:
-    """Processor time of one process and of what it waits for, s.
-
-    Parameters
-    ----------
-    command : program and arguments
-    given : on its standard input
-
-    Raises
-    ------
-    RuntimeError : it fails
-    """
+    """Processor time of one process and of what it waits for, s; `given` is its standard input."""
     with tempfile.TemporaryFile() as source, tempfile.TemporaryFile() as said:
         source.write(given.encode())
         source.seek(0)
@@ -124,13 +111,7 @@ def processor_time(command: Sequence[str], given: str = "") -> float:
 
 
 def medians(programs: Mapping[str, tuple[Sequence[str], str]], repeats: int) -> dict[str, float]:
-    """Median processor time of each of some programs, s; they run in turn.
-
-    Parameters
-    ----------
-    programs : by name, as `processor_time` takes them
-    repeats : of each
-    """
+    """Median processor time of programs by name, s; they run in turn."""
     found: dict[str, list[float]] = {name: [] for name in programs}
     for _ in range(repeats):
         for name, (command, given) in programs.items():
@@ -147,24 +128,13 @@ def _settings() -> dict[str, str]:
 
 
 def third_party(modules: Iterable[str]) -> list[str]:
-    """Modules that belong to libraries, in the order given: neither Python's own nor ours.
-
-    Parameters
-    ----------
-    modules : full names
-    """
+    """Modules of libraries, in the order given: neither Python's own nor ours."""
     own = sys.stdlib_module_names | OURS | {"__main__", "__mp_main__"}
     return [name for name in modules if name.partition(".")[0] not in own]
 
 
 def cold_start(arguments: Sequence[str], repeats: int = 5) -> ColdStart:
-    """Measure one command.
-
-    Parameters
-    ----------
-    arguments : behind `leblanc`; its files go to a folder that is removed
-    repeats : of each measurement
-    """
+    """Measure one command, the arguments behind `leblanc`; its files go to a folder that is removed."""
     with tempfile.TemporaryDirectory() as scratch:
         writes = arguments[0] in {"run", "map", "runup", "optimise"} and "--out" not in arguments
         whole = [*arguments, *(("--out", scratch) if writes else ())]
@@ -188,12 +158,7 @@ def cold_start(arguments: Sequence[str], repeats: int = 5) -> ColdStart:
 
 
 def text(found: ColdStart) -> str:
-    """A measurement as text.
-
-    Parameters
-    ----------
-    found : of one command
-    """
+    """Measurement as text."""
     lines = [
         f"leblanc {' '.join(found.arguments)}",
         f"  {found.total:.2f} s in all; importing its libraries alone {found.libraries:.2f} s; "
@@ -214,12 +179,7 @@ def _listed(rows: Iterable[tuple[str, float]]) -> str:
 
 
 def front_doors(repeats: int) -> dict[str, float]:
-    """Processor time of small programs: Python alone, and imports, s.
-
-    Parameters
-    ----------
-    repeats : of each
-    """
+    """Processor time of small programs: Python alone, and imports, s."""
     programs = {"python": "pass", "import numpy": "import numpy", f"import {FRONT}": f"import {FRONT}"}
     programs[f"import {FRONT}.cli"] = f"import {FRONT}.cli"
     return medians({name: ([sys.executable, "-c", code], "") for name, code in programs.items()}, repeats)

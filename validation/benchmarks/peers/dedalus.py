@@ -17,13 +17,7 @@ CODE, PACKAGE = "Dedalus", "dedalus"
 
 
 def steady(problem: SteadyProblem, quick: bool = False) -> list[Contestant]:
-    """Implicit-explicit steps from rest in the frame of the whirl, the linear terms implicit.
-
-    Parameters
-    ----------
-    problem : what to solve
-    quick : only a few settings
-    """
+    """Implicit-explicit steps from rest in the frame of the whirl, the linear terms implicit."""
     names = {"c": problem.drift, "a": problem.c.steepening, "d": problem.c.dispersion}
     names |= {"nu": problem.waves.diffusion, "g": problem.waves.decay, "q": problem.waves.forcing}
     settings = (
@@ -44,13 +38,7 @@ def steady(problem: SteadyProblem, quick: bool = False) -> list[Contestant]:
 
 
 def travelling(problem: TravellingProblem, quick: bool = False) -> list[Contestant]:
-    """Implicit-explicit steps of several lengths.
-
-    Parameters
-    ----------
-    problem : what to solve
-    quick : only a few settings
-    """
+    """Implicit-explicit steps of several lengths."""
     names = {"c": 0.0, "a": problem.c.steepening, "d": problem.c.dispersion, "nu": 0.0, "g": 0.0, "q": 0.0}
     settings = (
         (("RK443", 64, 400),)

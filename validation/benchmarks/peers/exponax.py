@@ -22,13 +22,7 @@ CODE, PACKAGE = "exponax", "exponax"
 
 
 def steady(problem: SteadyProblem, quick: bool = False) -> list[Contestant]:
-    """ETDRK4 from rest in the frame of the whirl.
-
-    Parameters
-    ----------
-    problem : what to solve
-    quick : only a few settings
-    """
+    """ETDRK4 from rest in the frame of the whirl."""
     linear = (problem.drift, problem.waves.diffusion, problem.waves.decay, problem.c.dispersion)
     size = 0.5 * problem.waves.forcing
 
@@ -46,13 +40,7 @@ def steady(problem: SteadyProblem, quick: bool = False) -> list[Contestant]:
 
 
 def travelling(problem: TravellingProblem, quick: bool = False) -> list[Contestant]:
-    """ETDRK4 with steps of several lengths, with as many points as each deserves.
-
-    Parameters
-    ----------
-    problem : what to solve
-    quick : only a few settings
-    """
+    """ETDRK4 with steps of several lengths, with as many points as each deserves."""
     linear = (0.0, 0.0, 0.0, problem.c.dispersion)
 
     def contestant(points: int, steps: int, right: bool) -> Contestant:

@@ -31,11 +31,7 @@ _SOURCE = Path(__file__).with_name("long_wave_riemann.f90")
 def layers(problem: LayerProblem, cells: tuple[int, ...], slow: tuple[int, ...] = ()) -> list[Contestant]:
     """Classic solver, monotonised central limiter, on several grids.
 
-    Parameters
-    ----------
-    problem : what to run
-    cells : of the Fortran kernel, where there is a compiler
-    slow : of the Python kernel
+    `cells` are of the Fortran kernel (where there is a compiler), `slow` of the Python kernel.
     """
     runs = []
     if shutil.which("gfortran"):

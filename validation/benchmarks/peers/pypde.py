@@ -30,13 +30,7 @@ def constants(problem: SteadyProblem) -> dict[str, Any]:
 
 
 def steady(problem: SteadyProblem, quick: bool = False) -> list[Contestant]:
-    """BDF, Radau and explicit Runge-Kutta from rest in the frame of the whirl.
-
-    Parameters
-    ----------
-    problem : what to solve
-    quick : only a few settings
-    """
+    """BDF, Radau and explicit Runge-Kutta from rest in the frame of the whirl."""
     consts = constants(problem)
 
     def implicit(method: str, points: int) -> Contestant:
@@ -58,13 +52,7 @@ def steady(problem: SteadyProblem, quick: bool = False) -> list[Contestant]:
 
 
 def travelling(problem: TravellingProblem, quick: bool = False) -> list[Contestant]:
-    """Explicit Runge-Kutta, with steps of one length and adaptive, and implicit BDF.
-
-    Parameters
-    ----------
-    problem : what to solve
-    quick : only a few settings
-    """
+    """Explicit Runge-Kutta, with steps of one length and adaptive, and implicit BDF."""
     consts: dict[str, Any] = {"a": problem.c.steepening, "d": problem.c.dispersion}
     size = abs(problem.wave.height)
 

@@ -77,12 +77,7 @@ class RotorProblem:
 
 
 def unbalance(problem: RotorProblem) -> list[Contestant]:
-    """ROSS's own run and this package's two.
-
-    Parameters
-    ----------
-    problem : what to solve
-    """
+    """ROSS's own run and this package's two."""
     rigid = problem.rigid()
     first = rigid.supports[0].position
 
@@ -114,13 +109,7 @@ def unbalance(problem: RotorProblem) -> list[Contestant]:
 
 
 def compare(problem: RotorProblem | None = None, repeats: int = 5) -> list[Sample]:
-    """Times side by side; the error is the largest of the deflection over the largest deflection.
-
-    Parameters
-    ----------
-    problem : None for the usual one, 1000 speeds
-    repeats : of each
-    """
+    """Times side by side, by default of 1000 speeds; error: largest of the deflection over the largest."""
     given = problem or RotorProblem()
     exact = given.exact()
     size = float(np.abs(exact).max())

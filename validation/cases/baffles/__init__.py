@@ -1,8 +1,4 @@
-"""Layers with baffles against computed two-phase flow: ten runs of a ring in the plane [theory: baffles].
-
-`flow` runs the compiled long waves as the reference ran: a lag that decays, one that a steady
-spin-up holds.
-"""
+"""Layers with baffles against computed two-phase flow: ten runs of a ring in the plane [theory: baffles]."""
 
 from __future__ import annotations
 

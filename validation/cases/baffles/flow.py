@@ -43,23 +43,13 @@ class Lagging:
 
 
 def reference(name: str) -> dict[str, Any]:
-    """A computed run.
-
-    Parameters
-    ----------
-    name : its key in the data file
-    """
+    """Computed run by its key in the data file."""
     run: dict[str, Any] = data("baffles.json")["cases"][name]
     return run
 
 
 def plane_ring(run: dict[str, Any]) -> Fill:
-    """Chamber of a metre's height and liquid of a computed run.
-
-    Parameters
-    ----------
-    run : as from `reference`
-    """
+    """Chamber of a metre's height and liquid of a computed run."""
     radius, depth = run["R"], run["h0"]
     plates = None if run["r_tip"] is None else Baffles(run["N"], run["r_tip"])
     volume = math.pi * depth * (2.0 * radius - depth)
@@ -69,17 +59,11 @@ def plane_ring(run: dict[str, Any]) -> Fill:
 
 @cache
 def lagging(name: str, cells: int = 128, smeared: bool = False) -> Lagging:
-    """The long waves through a computed run, without friction on the wall.
+    """Long waves through a computed run, without wall friction; smeared: a sink everywhere.
 
-    Heun's steps of the compiled rates of change; the drive of the driven runs acts as the force of a spin-up
-    does, over the whole radius. The impulse by which the reference's projection starts the flow between the
-    baffles is taken over: the long waves have no inertia of blocked flow.
-
-    Parameters
-    ----------
-    name : of the run
-    cells : round the wall
-    smeared : the baffles are a sink all over the layer
+    Heun's steps of the compiled rates; the drive of the driven runs acts as the force of a spin-up does, over
+    the whole radius. The impulse by which the reference's projection starts the flow between the baffles is
+    taken over: the long waves have no inertia of blocked flow.
     """
     run = reference(name)
     fill, spin = plane_ring(run), run["Omega"]
@@ -126,13 +110,7 @@ class _Ring:
 
 
 def loss(name: str, smeared: bool = False) -> float:
-    """Loss coefficient of a driven run over the window of the reference.
-
-    Parameters
-    ----------
-    name : of the run
-    smeared : as for `lagging`
-    """
+    """Loss coefficient of a driven run over the window of the reference."""
     run, found = reference(name), lagging(name, smeared=smeared)
     begin, end = run["fits"][0]["window"]
     inside = (found.time >= begin) & (found.time <= end)

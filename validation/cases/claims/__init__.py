@@ -1,8 +1,4 @@
-"""Claims of the sources that print no equation: several chambers, a swing of 35 mm, rules for a layout.
-
-`chambers` shares equal liquid between one to four rings, `swing` asks what 35 g do, `layout` keeps and breaks
-the rules for a washing machine, `figure` draws the rings.
-"""
+"""Claims of the sources that print no equation: several chambers, a swing of 35 mm, rules for a layout."""
 
 from __future__ import annotations
 

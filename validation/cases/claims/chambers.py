@@ -16,7 +16,7 @@ import numpy as np
 from leblanc.scene.chambers import Chamber
 from leblanc.scene.examples import example
 from leblanc.scene.scene import Scene
-from leblanc.studies.run import run_scene
+from leblanc.studies.run.study import run_scene
 from leblanc.studies.runup import runup_scene
 from validation.cases.case import Case, Verdict, shape_verdict
 
@@ -43,17 +43,9 @@ class Gain:
 
 
 def rings(count: int, kind: Kind) -> tuple[Chamber, ...]:
-    """Rings that share a litre of water within one envelope.
+    """Chambers that share a litre of water within one envelope.
 
-    Parameters
-    ----------
-    count : how many
-    kind : concentric ones 50 mm wide, from the outside in, each with a share that makes all layers equally
-        deep; or of equal height one above the other
-
-    Returns
-    -------
-    Chambers of a scene
+    Concentric: 50 mm wide, from the outside in, all layers equally deep; else of equal height, stacked.
     """
     if kind == "stacked":
         one = Chamber(radius=_RADII[0], height=_HEIGHT / count, volume=_LIQUID / count, liquid="water")
@@ -73,24 +65,14 @@ def rings(count: int, kind: Kind) -> tuple[Chamber, ...]:
 
 
 def machine(count: int, kind: Kind) -> Scene:
-    """The vertical rig with these rings.
-
-    Parameters
-    ----------
-    count, kind : see `rings`
-    """
+    """Vertical rig with these `rings`."""
     rig = example("vertical_rig").altered(chambers=rings(count, kind), assumed=())
     # The swing of the passage is over long before the nominal speed.
     return rig.replace({"runup.stop": 50.0, "runup.duration": 12.0})
 
 
 def steady_gain(count: int, kind: Kind) -> tuple[float, float]:
-    """Deflection at the nominal speed and largest at any, over those without liquid.
-
-    Parameters
-    ----------
-    count, kind : see `rings`
-    """
+    """Deflection at the nominal speed and largest at any, over those without liquid."""
     found = run_scene(machine(count, kind))
     return (
         float(found.amplitude[-1] / found.amplitude_dry[-1]),
@@ -100,12 +82,7 @@ def steady_gain(count: int, kind: Kind) -> tuple[float, float]:
 
 @cache
 def gain(count: int, kind: Kind) -> Gain:
-    """All of it, run-up included.
-
-    Parameters
-    ----------
-    count, kind : see `rings`
-    """
+    """Steady gains and that of the run-up."""
     if count == 1 and kind == "stacked":
         return gain(1, "concentric")
     scene = machine(count, kind)

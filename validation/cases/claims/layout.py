@@ -28,12 +28,9 @@ _ASSUMED = "inertias and places of the mounts are assumed; broken by 30 mm"
 
 
 def centred_tub(drum: Vector = (0.0, 0.0, 0.0), springs: float = 0.0, dampers: float = 0.0) -> Tub:
-    """A tub whose mounts couple nothing.
+    """Tub whose mounts couple nothing.
 
-    Parameters
-    ----------
-    drum : centre of the drum, m
-    springs, dampers : by which they sit above the centre and in front of it, m
+    `drum` is the drum's centre, m; mounts sit `springs`, `dampers` above the centre and in front of it, m.
     """
 
     def mounts(size: Vector, shift: float) -> tuple[Mount, ...]:

@@ -22,12 +22,7 @@ MASSES, PLACES, DAMPING_RATIOS = (10.0, 60.0), (0.15, 0.2), (0.003, 0.02)
 
 
 def peak(rotor: Jeffcott) -> float:
-    """Largest deflection at any constant speed, m.
-
-    Parameters
-    ----------
-    rotor : with its unbalance
-    """
+    """Largest deflection at any constant speed, m."""
     unit, system = rotor.natural_frequency, rotor.system()
     found = minimize_scalar(
         lambda speed: -abs(unbalance_response(system, [speed])[0, 0]),
@@ -39,15 +34,7 @@ def peak(rotor: Jeffcott) -> float:
 
 
 def rig(mass: float, place: float, damping_ratio: float, load: float = LOAD) -> Jeffcott:
-    """The rig with a load, its suspension at 2.25 Hz.
-
-    Parameters
-    ----------
-    mass : that moves, kg
-    place : of the load from the axis, m
-    damping_ratio : of the brackets
-    load : kg
-    """
+    """Rig of moving mass, kg, with a load, kg, at `place` from the axis, m; its suspension at 2.25 Hz."""
     unit = vertical_rotor().natural_frequency
     return Jeffcott(mass, mass * unit**2, 2.0 * damping_ratio * mass * unit, load * place)
 
@@ -56,10 +43,6 @@ def damping_that_swings(mass: float, place: float = PLACE) -> float:
     """Damping ratio with which the load swings the rig by 35 mm.
 
     U/(2 M zeta sqrt(1 - zeta^2)) is the largest deflection [theory: rotor, eq. 34].
-
-    Parameters
-    ----------
-    mass, place : see `rig`
     """
     double = LOAD * place / (mass * SWING)  # 2 zeta sqrt(1 - zeta^2) = sin(2 asin(zeta))
     return math.sin(0.5 * math.asin(double))

@@ -1,8 +1,4 @@
-"""Errata of the sources: what is printed beside what is derived, each computed [theory: errata].
-
-`tub` has the equations of the suspended tub, `formulas` those of liquids and balancers, `machines` what the
-sources say of rotors, bearings and pumps, `statements` what they say against their own equations.
-"""
+"""Errata of the sources: what is printed beside what is derived, each computed [theory: errata]."""
 
 from __future__ import annotations
 

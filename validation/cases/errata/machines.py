@@ -190,12 +190,9 @@ def _weak_supports() -> Case:
 
 
 def first_stable_speed(rotor: TwoPlane, low: float = 40.0, high: float = 150.0) -> float:
-    """Least speed above which the balanced state of rotor and balls is stable up to `high`, rad/s.
+    """Least speed above which rotor and balls of `RACES` are stable up to `high`, rad/s.
 
-    Parameters
-    ----------
-    rotor : with the balls of `RACES`
-    low, high : where it is looked for, rad/s; to the hundredth part of their distance, then halved
+    Found to the hundredth part of the range, then halved.
     """
     system = rotor.system()
 

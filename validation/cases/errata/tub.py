@@ -43,14 +43,10 @@ class TubMatrices:
 
 
 def tub_matrices() -> TubMatrices:
-    """Matrices of tub and drum from their energies [theory: errata, eq. 3-5].
+    """Matrices of tub and drum, 6 x 6, from their energies [theory: errata, eq. 3-5].
 
     T = m_2 |v_D|^2/2 + (J_a (w_x^2 + w_z^2) + J_b (w_y + omega)^2)/2 and the energy of a spring, both for the
     rotation Q = R_z(gamma) R_x(alpha) R_y(beta), on whose sequence nothing depends at rest.
-
-    Returns
-    -------
-    Matrices, 6 x 6
     """
     import sympy as sp
 

@@ -1,8 +1,4 @@
-"""The dual-frequency exciter against its source [YF17].
-
-`speeds` holds its numbers and critical speed, `traces` the figures over time and parameters, `beyond` what
-lies beyond the critical speed.
-"""
+"""Dual-frequency exciter against its source [YF17]."""
 
 from __future__ import annotations
 

@@ -56,14 +56,11 @@ _ORDER = 5  # of the combinations of frequencies looked for
 
 
 def start_state(machine: Dimensionless, speed: float, start: str) -> Array:
-    """State at the start of a run of the map.
+    """State at the start of a run of the map at shaft speed n, one of `STARTS`.
 
-    Parameters
-    ----------
-    machine, speed : its numbers; n of the shaft
-    start : one of `STARTS`: released 0.3 rad apart as the critical speed is searched; or placed in steady
-        motion: one ball at the resonance and one at the third stuck speed; one opposite to the unbalance and
-        one at the third speed; both at the third speed of one, 2 rad apart
+    Released 0.3 rad apart as the critical speed is searched; or placed in steady motion: one ball at the
+    resonance and one at the third stuck speed; one opposite to the unbalance and one at the third speed; both
+    at the third speed of one, 2 rad apart.
     """
     if start == "released":
         return initial_state(machine, speed, 1.0, 2, Start())
@@ -251,17 +248,8 @@ def sweep(
 ) -> dict[str, float]:
     """Raise the shaft's speed slowly from the stuck motion until a ball passes 1.3 natural frequencies.
 
-    Parameters
-    ----------
-    machine : its numbers
-    start, stop : shaft speeds
-    step, hold : of the speed, and for how long each is held
-
-    Returns
-    -------
-    lost : the speed at which a ball passed; nan if none did; apart : angle between the balls before that
-
-    Balls closer than a thousandth are set that far apart at each step, so that they can part.
+    `lost`: speed at which a ball passed, nan if none did; `apart`: angle between the balls before that. Balls
+    closer than a thousandth are set that far apart at each step, so that they can part.
     """
     speed, phase, apart = start, 0.0, 1e-3
     state = initial_state(machine, start, float(stuck_speeds(start, machine)[0]), 2, Start("regime", apart))
@@ -278,12 +266,7 @@ def sweep(
 
 
 def run(machine: Dimensionless, speed: float, start: str) -> dict[str, Any]:
-    """One run of a map as it is kept; chaos in decay times.
-
-    Parameters
-    ----------
-    machine, speed, start : see `start_state`
-    """
+    """One run of a map as it is kept; chaos in decay times."""
     found = regime(machine, speed, start_state(machine, speed, start), DECAYS)
     return {
         "smallness": machine.smallness,
@@ -306,14 +289,7 @@ def _cell(machine: Dimensionless) -> list[dict[str, Any]]:
 
 
 def long_chaos(seed: int, decays: float = 60.0, steps: int = 24) -> dict[str, float]:
-    """A long run of the machine that stays chaotic, from scattered balls.
-
-    Parameters
-    ----------
-    seed : of the balls' angles and speeds
-    decays : length in decay times
-    steps : in a turn of the shaft
-    """
+    """Run of the machine that stays chaotic over `decays` decay times, from scattered balls."""
     random = np.random.default_rng(seed)
     angles, speeds = random.uniform(0.0, 2.0 * math.pi, 2), random.uniform(0.5, 1.0, 2) * CHAOTIC_SPEED
     state = np.concatenate(([0.0, 0.0], angles, speeds))
@@ -330,12 +306,7 @@ def long_chaos(seed: int, decays: float = 60.0, steps: int = 24) -> dict[str, fl
 
 
 def measure(workers: int = 1) -> dict[str, Any]:
-    """Make the kept runs anew.
-
-    Parameters
-    ----------
-    workers : threads
-    """
+    """Make the kept runs anew, in threads."""
     machines = [
         Dimensionless(smallness, drag, unbalance, damping)
         for smallness, damping in MAPS

@@ -34,12 +34,7 @@ def cases() -> list[Case]:
 
 
 def sample(count: int = COUNT) -> Array:
-    """Machines spread evenly over the source's ranges, shape (count, 4): Hammersley's points.
-
-    Parameters
-    ----------
-    count : how many
-    """
+    """Machines spread evenly over the source's ranges, shape (count, 4): Hammersley's points."""
     turns = np.arange(count)
     shares = np.stack([(turns + 0.5) / count, *(_mirrored(turns, base) for base in (2, 3, 5))], axis=-1)
     low, high = np.array(list(RANGES.values())).T

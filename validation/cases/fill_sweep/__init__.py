@@ -1,8 +1,4 @@
-"""The fill sweep of a real top loader: its logs, one assumed machine for all seven fills, and the verdict.
-
-`machine` is the machine, `fitted` finds its values from two of the fills and keeps what was found, `contact`
-adds a clearance to it, `judged` holds the other five against them.
-"""
+"""Fill sweep of a real top loader: its logs, one assumed machine for all seven fills, and the verdict."""
 
 from __future__ import annotations
 

@@ -27,23 +27,12 @@ class Contact:
     clearance: Array  #: over the deflection with the first fill, shape (n,)
 
     def within(self, seen: Array, factor: float) -> float:
-        """Share of the pairs that meet all fills between the fitted ones within a factor.
-
-        Parameters
-        ----------
-        seen : measured, shape (f,)
-        factor : above 1
-        """
+        """Share of pairs that meet all fills between the fitted ones, (f,), within a factor above 1."""
         off = np.abs(np.log(self.shaking / seen))[:, 1:-1]
         return float(np.mean((off <= np.log(factor)).all(axis=1)))
 
     def steps(self, seen: Array) -> Array:
-        """Share of the pairs that fall below the geometric mean of both ends with each fill, shape (f,).
-
-        Parameters
-        ----------
-        seen : measured, shape (f,)
-        """
+        """Share of the pairs below the geometric mean of both ends with each measured fill, shape (f,)."""
         first = np.argmax(self.shaking < np.sqrt(seen[0] * seen[-1]), axis=1)
         return np.asarray(np.bincount(first, minlength=seen.size) / first.size)
 
@@ -52,23 +41,15 @@ class Contact:
         return np.asarray(np.quantile(self.shaking, (0.05, 0.5, 0.95), axis=0))
 
     def closest(self, seen: Array) -> int:
-        """Number of the pair that comes closest to all fills.
-
-        Parameters
-        ----------
-        seen : measured, shape (f,)
-        """
+        """Number of the pair that comes closest to all measured fills, shape (f,)."""
         return int(np.argmin(np.square(np.log(self.shaking / seen)).sum(axis=1)))
 
 
 def touching(passage: Array, clearance: Array, last: float) -> Array:
     """Shaking over that of the first fill, its contact so stiff that the last fill is met, shape (n, f).
 
-    Parameters
-    ----------
-    passage : deflection over that of the first fill, shape (n, f)
-    clearance : between the last and the first of them, shape (n,)
-    last : measured shaking of the last fill over that of the first
+    `passage` is the deflection over that of the first fill, (n, f); the clearance lies between the last and
+    the first of them, (n,); `last` is measured.
     """
     stiff = (passage[:, -1] / last - 1.0) / (1.0 - clearance)
     shaking = passage + stiff[:, None] * np.maximum(passage - clearance[:, None], 0.0)
@@ -76,13 +57,7 @@ def touching(passage: Array, clearance: Array, last: float) -> Array:
 
 
 def allowed(answers: Answers, last: float) -> Contact:
-    """All draws whose deflection falls from the first to the last fill, with clearances between the two.
-
-    Parameters
-    ----------
-    answers : of all draws
-    last : measured shaking of the last fill over that of the first
-    """
+    """Draws whose deflection falls from the first to the last fill, with clearances between the two."""
     passage = ratios(answers)[0]
     falls = np.flatnonzero((passage[:, -1] < FALLS) & (passage[:, -1] > last))
     part = (np.arange(CLEARANCES) + 0.5) / CLEARANCES

@@ -42,12 +42,7 @@ class Answers:
     cruise: Array
 
     def of(self, k: int) -> Values:
-        """The values of one draw.
-
-        Parameters
-        ----------
-        k : its number
-        """
+        """Values of draw k."""
         return Values(*self.values[k].tolist())
 
 
@@ -60,13 +55,7 @@ def measured() -> tuple[Array, Array, Array]:
 
 
 def drawn(count: int = DRAWS, seed: int = SEED) -> Array:
-    """Values from their ranges, one of each in each of as many parts of every range, shape (count, v).
-
-    Parameters
-    ----------
-    count : how many
-    seed : of their order
-    """
+    """Latin hypercube of values from their ranges, shape (count, v)."""
     from scipy.stats import qmc
 
     unit = qmc.LatinHypercube(len(RANGES), rng=np.random.default_rng(seed)).random(count)
@@ -75,12 +64,7 @@ def drawn(count: int = DRAWS, seed: int = SEED) -> Array:
 
 
 def run(values: Array) -> Answers:
-    """Every fill with every draw.
-
-    Parameters
-    ----------
-    values : shape (d, v)
-    """
+    """Every fill with every draw, shape (d, v)."""
     added = measured()[0]
     rows = []
     for k, one in enumerate(values.tolist()):
@@ -92,22 +76,12 @@ def run(values: Array) -> Answers:
 
 
 def ratios(answers: Answers) -> tuple[Array, Array]:
-    """Passage and cruise over those of the first fill, shapes (d, f).
-
-    Parameters
-    ----------
-    answers : of all draws
-    """
+    """Passage and cruise over those of the first fill, shapes (d, f)."""
     return answers.passage / answers.passage[:, :1], answers.cruise / answers.cruise[:, :1]
 
 
 def misfit(answers: Answers) -> Array:
-    """Sum of the squares of what the fitted fills leave, over the scatter, shape (d,).
-
-    Parameters
-    ----------
-    answers : of all draws
-    """
+    """Sum of the squares of the fitted fills' residuals over the scatter, shape (d,)."""
     total = np.zeros(len(answers.values))
     for own, seen in zip(ratios(answers), measured()[1:], strict=True):
         total += np.square(np.log(own[:, -1] / seen[-1]) / SCATTER)
@@ -115,25 +89,13 @@ def misfit(answers: Answers) -> Array:
 
 
 def nearest(answers: Answers, count: int = NEAREST) -> list[int]:
-    """Numbers of the draws that come closest to the fitted fills, the closest first.
-
-    Parameters
-    ----------
-    answers : of all draws
-    count : how many
-    """
+    """Numbers of the draws that come closest to the fitted fills, the closest first."""
     order: list[int] = np.argsort(misfit(answers), kind="stable").tolist()
     return order[:count]
 
 
 def bands(answers: Answers, found: Answers) -> tuple[Array, Array]:
-    """Least and most of passage and cruise over the first fill, of what comes closest, shapes (2, f).
-
-    Parameters
-    ----------
-    answers : of all draws
-    found : of the machine that the search ended with
-    """
+    """Least and most of passage and cruise over the first fill, of what comes closest, shapes (2, f)."""
     some = nearest(answers)
     pairs = zip(ratios(answers), ratios(found), strict=True)
     passage, cruise = (np.concatenate([own[some], one]) for own, one in pairs)
@@ -141,12 +103,7 @@ def bands(answers: Answers, found: Answers) -> tuple[Array, Array]:
 
 
 def search(answers: Answers) -> Array:
-    """Values closer still to the fitted fills, from the nearest draw, shape (1, v).
-
-    Parameters
-    ----------
-    answers : of all draws
-    """
+    """Values closer still to the fitted fills, from the nearest draw, shape (1, v)."""
     from scipy.optimize import minimize
 
     low, high = np.log(np.array(list(RANGES.values()))).T
@@ -177,12 +134,7 @@ class Fitted:
 
 
 def fit(answers: Answers) -> Fitted:
-    """Search, run all fills with what was found, and check the cells.
-
-    Parameters
-    ----------
-    answers : of all draws
-    """
+    """Search, run all fills with the values found, and check the cells."""
     found = run(search(answers))
     values = found.of(0)
     down = machine.coasting(values, 0.0)
@@ -193,12 +145,7 @@ def fit(answers: Answers) -> Fitted:
 
 
 def weaker(answers: Answers) -> Array:
-    """How far another motor in the first run alone takes the machine, shape (`_WEAK_DRAWS`,).
-
-    Parameters
-    ----------
-    answers : of all draws
-    """
+    """Effect of another motor in the first run alone, shape (`_WEAK_DRAWS`,)."""
     through = np.flatnonzero(answers.speed[:, -1] > machine.PASSED)[:_WEAK_DRAWS]
     found = []
     for k in through.tolist():
@@ -209,25 +156,14 @@ def weaker(answers: Answers) -> Array:
 
 
 def plain(answers: Answers) -> dict[str, object]:
-    """Answers as JSON holds them.
-
-    Parameters
-    ----------
-    answers : of some draws
-    """
+    """Answers as JSON holds them."""
     return {
         name: [[float(f"{x:.6g}") for x in row] for row in value] for name, value in vars(answers).items()
     }
 
 
 def keep(answers: Answers, fitted: Fitted) -> None:
-    """Write answers to the file that stands with this module.
-
-    Parameters
-    ----------
-    answers : of all draws
-    fitted : the machine that the two fills ask for
-    """
+    """Write answers and the fitted machine to the file beside this module."""
     one = {
         "answers": plain(fitted.answers),
         "down": fitted.down,

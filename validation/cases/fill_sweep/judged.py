@@ -35,12 +35,7 @@ def cases() -> list[Case]:
 
 
 def off(measured: Array, computed: Array) -> Array:
-    """By what factor the five fills between are off, at least 1, shape (f - 2,).
-
-    Parameters
-    ----------
-    measured, computed : over the first fill, shape (f,)
-    """
+    """Factor by which five fills between are off, at least 1, shape (f - 2,); both over the first fill."""
     return np.asarray(np.exp(np.abs(np.log(computed[1:-1] / measured[1:-1]))))
 
 

@@ -37,13 +37,7 @@ PASSED = 1.4 * 2.0 * math.pi * 4.3
 
 @dataclass(frozen=True)
 class Values:
-    """What no one has measured on the machine.
-
-    Examples
-    --------
-    >>> round(Values(0.2, 0.1, 7.0, 7e-4, 5.0).before * 1e6)
-    275
-    """
+    """What no one has measured on the machine."""
 
     unbalance: float  #: of the load, kg m
     damping_ratio: float  #: of the suspension
@@ -74,13 +68,7 @@ def base() -> Scene:
 
 
 def machine(values: Values, added: float) -> Scene:
-    """The machine with drawn values.
-
-    Parameters
-    ----------
-    values : that were drawn
-    added : water that was added to the ring, ml
-    """
+    """Machine with drawn values and this much water added to the ring, ml."""
     ring = base().liquids[0]
     outer = float(ring.radius or 0.0)
     inner = math.sqrt(outer**2 - values.ring / (math.pi * ring.height))
@@ -97,26 +85,17 @@ def machine(values: Values, added: float) -> Scene:
 
 
 def in_time(scene: Scene) -> RunupHistory:
-    """A scene's run-up or programme, without the second run that tells its error.
-
-    Parameters
-    ----------
-    scene : the machine
-    """
+    """Run-up or programme of a scene, without the second run for its error."""
     plan = planned(scene)
     numerics = numerics_of(plan, check=False)
     return chosen_run(scene, drive_of(plan, scene.rotor), across_gravity(scene), numerics).history
 
 
 def shaking(history: RunupHistory) -> Array:
-    """What the sensor on the cabinet feels, up to a factor, shape (k,).
+    """Signal of the sensor on the cabinet, up to a factor, shape (k,).
 
     The suspension presses on the cabinet, which gives way elastically: its acceleration goes as the
     deflection of the tub times the square of the speed.
-
-    Parameters
-    ----------
-    history : of a run-up
     """
     return np.asarray(history.amplitude * np.square(history.speed))
 
@@ -131,14 +110,7 @@ class Answer:
 
 
 def answer(values: Values, added: float, cells: int | None = None) -> Answer:
-    """Sprint and cruise of the machine with one fill.
-
-    Parameters
-    ----------
-    values : that were drawn
-    added : water that was added, ml
-    cells : round the wall; the scene's if None
-    """
+    """Sprint and cruise of the machine with one fill, ml added."""
     scene = machine(values, added)
     history = in_time(scene if cells is None else scene.replace({"runup.cells": cells}))
     if history.outcome != Outcome.DONE:
@@ -148,25 +120,14 @@ def answer(values: Values, added: float, cells: int | None = None) -> Answer:
 
 
 def cruise(scene: Scene) -> float:
-    """Amplitude at the highest speed, where the liquid rests in the drum and baffles do nothing, m.
-
-    Parameters
-    ----------
-    scene : the machine
-    """
+    """Amplitude at the highest speed, where the liquid rests in the drum and baffles do nothing, m."""
     clear = scene.altered(chambers=tuple(c.altered(baffles=None) for c in scene.liquids))
     fills = np.array([[scene.liquids[0].volume]])
     return float(FilledMachine(clear).at(fills, np.array([CRUISE])).amplitude[0])
 
 
 def coasting(values: Values, added: float) -> RunupHistory:
-    """The machine with its motor off, from its highest speed down to half the resonance.
-
-    Parameters
-    ----------
-    values : that were drawn
-    added : water that was added, ml
-    """
+    """Machine with its motor off, from its highest speed down to half the resonance."""
     scene = machine(values, added)
     assert scene.runup is not None and scene.runup.motor is not None
     inertia = scene.runup.motor.inertia

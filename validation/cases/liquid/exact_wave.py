@@ -67,34 +67,17 @@ def cases() -> list[Case]:
 
 
 def last_place(text: str) -> float:
-    """Of the last digit of a number in print.
-
-    Examples
-    --------
-    >>> last_place("-0.236566315090"), last_place("2.05")
-    (1e-12, 0.01)
-    """
+    """Unit of the last digit of a number in print."""
     return float(f"1e-{len(text.partition('.')[2])}")
 
 
 def held(row: dict[str, Any]) -> SteadyWave:
-    """The wave of a row's whirl.
-
-    Parameters
-    ----------
-    row : depth, whirl speed and whirl, as in the data file
-    """
+    """Wave of a row's whirl, with the row's depth and whirl speed."""
     return forced(row["depth"], (1.0 - 1.0 / row["whirl_speed"]) ** 2, row["whirl"] * row["depth"])
 
 
 def fold_whirl(layer: float, apart: float) -> float:
-    """Largest w_0/h_0 of the branch of waves that are out of phase with the whirl, by their height.
-
-    Parameters
-    ----------
-    layer : h_0/R
-    apart : p/p_1, above 1
-    """
+    """Largest w_0/h_0 of the branch out of phase with the whirl, by wave height; apart = p/p_1 above 1."""
     from scipy.optimize import minimize_scalar
 
     square = apart**2 * linear_detuning(layer)

@@ -56,11 +56,9 @@ def cases() -> list[Case]:
 
 
 def closed_forms(scene: Scene) -> tuple[float, float]:
-    """Amplitude of a planar rotor with the mass of a full chamber added, m, and volume that it takes, m^3.
+    """Amplitude of a planar rotor with a full chamber's mass added, m, and volume that it takes, m^3.
 
-    Parameters
-    ----------
-    scene : with one chamber; the last of its speeds counts
+    Of one chamber, at the last of the scene's speeds.
     """
     rotor, (fill,), speed = jeffcott(scene), scene.fills, scene.speeds.stop
     total = rotor.mass + fill.full_mass

@@ -45,12 +45,7 @@ def cases() -> list[Case]:
 
 
 def plane_layer(run: dict[str, Any]) -> Fill:
-    """Chamber and liquid of a case of the computed flow.
-
-    Parameters
-    ----------
-    run : the case
-    """
+    """Chamber and liquid of a case of the computed flow."""
     surface = run["radius"] - run["depth"]
     volume = math.pi * (run["radius"] ** 2 - surface**2) * _HEIGHT
     return Fill(Chamber(run["radius"], _HEIGHT), Liquid("water", run["density"], run["viscosity"]), volume)
@@ -185,14 +180,6 @@ def deflections(cells: int) -> tuple[complex, complex]:
 
     py-pde takes the rates of `RotorLayersPDE` with its own Runge-Kutta; the compiled steps are those of a
     run-up, the spin held.
-
-    Parameters
-    ----------
-    cells : of the layer
-
-    Raises
-    ------
-    RuntimeError : the compiled steps did not come to the end
     """
     from solvers.pypde.coupled import RotorLayersPDE
 

@@ -45,13 +45,7 @@ REQUIRED = 4e-6  # accuracy asked for, m
 
 
 def control(machine: MagneticRotor = MACHINE, weight: float = WEIGHT) -> Synergetic:
-    """The controller of the source.
-
-    Parameters
-    ----------
-    machine : that it knows
-    weight : h, dimensionless
-    """
+    """Controller of the source; weight h."""
     return source_times(machine, TIME, weight, RATE, TILT_RATE)
 
 
@@ -119,18 +113,9 @@ def _beyond() -> float:
 def printed_accelerations(
     machine: MagneticRotor, time: float, place: Array, rate: Array, current: Array
 ) -> Array:
-    """Right-hand sides of the source's eq. 39, in its units, turned into SI [BG18, eq. 39-41].
+    """Accelerations of the source's eq. 39, computed in its units, in SI, shape (4,) [BG18, eq. 39-41].
 
-    Parameters
-    ----------
-    machine : the rotor, with a motor; loads are none
-    time : s
-    place, rate : coordinates and their rates, shape (4,)
-    current : A, along first x, first y, second x, second y, shape (4,)
-
-    Returns
-    -------
-    Accelerations, shape (4,)
+    Currents, A, along first x, first y, second x, second y; there are no loads.
     """
     magnets, unit = machine.magnets, dimensionless(machine, LENGTH)
     tilt = GAP / LENGTH  # the unit of angles
@@ -160,12 +145,7 @@ def printed_accelerations(
 
 
 def accelerations(machine: MagneticRotor, time: float, place: Array, rate: Array, current: Array) -> Array:
-    """The same from the package's equations [theory: magnetic, eq. 1].
-
-    Parameters
-    ----------
-    machine, time, place, rate, current : as for `printed_accelerations`
-    """
+    """Accelerations from the package's equations [theory: magnetic, eq. 1]."""
     motion = machine.bearing_motion
     load = motion.T @ machine.magnets.force(motion @ place, current)
     load = load + machine.unbalance_load(SPEED * time, SPEED)

@@ -41,12 +41,9 @@ def horizontal_rig() -> tuple[Fill, ...]:
 
 
 def horizontal_rotor(damping_ratio: float, wet_critical_speed: float) -> Jeffcott:
-    """Rotor of DR18, section 7.2, whose critical speed with liquid is known; 4 kg and 60 mm are assumed.
+    """Rotor of DR18, section 7.2, of known critical speed with liquid; 4 kg and 60 mm are assumed.
 
-    Parameters
-    ----------
-    damping_ratio : of the rotor with the liquid's added mass
-    wet_critical_speed : with liquid, rad/s
+    The damping ratio counts the liquid's added mass.
     """
     mass, unbalance = 4.0, 10e-3 * 60e-3
     total = mass + sum(fill.full_mass for fill in horizontal_rig())

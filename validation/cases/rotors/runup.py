@@ -55,14 +55,7 @@ class Point:
 
 
 def run(volume: float, friction: float, cells: int = 128, check: bool = False) -> Point:
-    """One run-up.
-
-    Parameters
-    ----------
-    volume, friction : as in `Point`
-    cells : of the layer
-    check : estimate the error
-    """
+    """One run-up, volume and friction as in `Point`; check: estimate the error."""
     fills = [Fill(CHAMBER, known_liquid("water"), volume)] if volume > 0.0 else []
     numerics = RunupNumerics(cells=cells, companion=check)
     h = run_up(ROTOR.system(), fills, RAMP, Friction(FrictionLaw.LINEAR, friction), 0.0, numerics)
@@ -84,14 +77,7 @@ def run(volume: float, friction: float, cells: int = 128, check: bool = False) -
 def sweep(
     volumes: Sequence[float] = VOLUMES, rates: Sequence[float] = RATES, cells: int = 128, workers: int = 2
 ) -> list[Point]:
-    """All run-ups, friction by friction.
-
-    Parameters
-    ----------
-    volumes, rates : m^3 and 1/s
-    cells : of the layer
-    workers : processes
-    """
+    """All run-ups, friction by friction; volumes, m^3, rates, 1/s."""
     runs = [(volume, rate, cells) for rate in rates for volume in volumes]
     with ProcessPoolExecutor(max_workers=workers) as pool:
         return list(pool.map(run, *zip(*runs, strict=True)))

@@ -131,13 +131,7 @@ def _bearing() -> list[Case]:
 
 
 def printed_housing(machine: Structure, frequency: float) -> complex:
-    """q2 of the housing as printed, alpha_25 in the place of alpha_21 at X5 [DP18, eq. 14 and 16].
-
-    Parameters
-    ----------
-    machine : the four parts of the rig
-    frequency : rad/s
-    """
+    """q2 of the housing as published, alpha_25 in the place of alpha_21 at X5 [DP18, eq. 14 and 16]."""
     omega = np.array([frequency])
     reactions = substructures(machine, omega, Coordinate((1, 1))).reactions[0]
     own = free_compliances(machine, 2, omega)[0]

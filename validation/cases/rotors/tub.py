@@ -44,18 +44,11 @@ class Assumed:
 def suspended_tub(
     drum_y: float = 0.0, shift: float = 0.0, spring_turn: float = 0.0, damper_turn: float = 0.0
 ) -> Tub:
-    """The machine of DG21.
+    """Machine of DG21 without liquid.
 
-    Parameters
-    ----------
-    drum_y : y_D, place of the drum's centre of mass and of the unbalance along the axis, m
-    shift : l_c, by which the springs sit farther along the axis, m
-    spring_turn, damper_turn : phi out of the plane across the axis, rad; one of the pair towards +y, the
-        other towards -y, so that they stay in balance under the weight
-
-    Returns
-    -------
-    Tub without liquid
+    `drum_y` is the place y_D of the drum's centre of mass and of the unbalance along the axis, `shift` l_c by
+    which the springs sit farther along it, m. Turns phi out of the plane across the axis, rad: one of a pair
+    towards +y, the other towards -y, so that they stay in balance under the weight.
     """
     known = Assumed()
     springs, dampers = [], []
@@ -87,29 +80,18 @@ def suspended_tub(
 
 
 def direction(angle: float, turn: float, side: float) -> Vector:
-    """Unit vector at an angle above the horizontal, turned by phi out of the plane across the axis.
+    """Unit vector at an angle above the horizontal, turned by phi out of the plane across the axis, rad.
 
-    Parameters
-    ----------
-    angle, turn : rad
-    side : 1 or -1, of the tub; on the other side everything is turned by half a turn about the vertical
+    On side -1 of the tub everything is turned by half a turn about the vertical.
     """
     flat = math.cos(turn)
     return side * math.cos(angle) * flat, side * math.sin(turn), math.sin(angle) * flat
 
 
 def amplitude(machine: Tub, speed: Array, coordinate: str) -> Array:
-    """Amplitude of one coordinate of the tub's centre of mass over speed.
+    """Amplitude of a coordinate of the tub's centre of mass over speed, rad/s, shape (s,).
 
-    Parameters
-    ----------
-    machine : the tub
-    speed : rad/s, shape (s,)
-    coordinate : "x", "y", "z" (m) or "alpha", "beta", "gamma" (rad)
-
-    Returns
-    -------
-    shape (s,)
+    "x", "y", "z", m, or "alpha", "beta", "gamma", rad.
     """
     system = machine.system()
     return np.asarray(np.abs(unbalance_response(system, speed)[:, system.coordinates.index(coordinate)]))

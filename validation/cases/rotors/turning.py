@@ -8,13 +8,7 @@ from validation.cases.case import MEASURED, Case, compare
 
 
 def speed(cutting_speed: float, diameter: float) -> float:
-    """Speed of a workpiece, turns per second [theory: spindle, eq. 20].
-
-    Parameters
-    ----------
-    cutting_speed : m/s
-    diameter : of the workpiece where it is cut, m
-    """
+    """Speed of a workpiece cut at this diameter, m, turns per second [theory: spindle, eq. 20]."""
     return cutting_speed / (math.pi * diameter)
 
 
@@ -66,14 +60,10 @@ _BETWEEN = {143.0: 0.009, 160.0: 0.012}
 
 
 def single_mode_damping(resonance: float, off: float, share: float) -> float:
-    """Damping ratio of the one mode whose answer to an unbalance off resonance is a share of that at it.
+    """Damping ratio of the one mode whose unbalance response off resonance (Hz) is a share of that at it.
 
-    The answer over that of a free mass is r^2/|1 - r^2 + 2 i zeta r|, with r the speed over the resonance.
-
-    Parameters
-    ----------
-    resonance, off : speeds, the first that of the mode without damping, Hz
-    share : of the amplitudes, below 1 and below off/resonance
+    The answer over that of a free mass is r^2/|1 - r^2 + 2 i zeta r|, r the speed over the resonance without
+    damping; the share lies below 1 and off/resonance.
     """
     ratio = off / resonance
     return share * abs(1.0 - ratio**2) / (2.0 * ratio * math.sqrt(ratio**2 - share**2))

@@ -17,27 +17,14 @@ from solvers.runup.runup import RunupHistory
 
 
 def with_and_without(scene: Scene, check: bool = False) -> tuple[RunupHistory, RunupHistory]:
-    """The machine as it stands, and with its chambers empty.
-
-    Parameters
-    ----------
-    scene : the machine
-    check : estimate the error, with half the cells
-    """
+    """Run-up of the machine as it stands, and with its chambers empty; check: estimate the error."""
     empty = scene.altered(chambers=tuple(chamber.holding(0.0) for chamber in scene.liquids))
     wet, dry = (runup_scene(machine, check=check).history for machine in (scene, empty))
     return wet, dry
 
 
 def draw(wet: RunupHistory, dry: RunupHistory, scene: Scene, directory: Path) -> Path:
-    """Speed and amplitude over time as PNG and SVG.
-
-    Parameters
-    ----------
-    wet, dry : the run-ups
-    scene : whose machine it is
-    directory : where the figure goes
-    """
+    """Speed and amplitude over time as PNG and SVG."""
     from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save, style
 
     looks: list[tuple[RunupHistory, dict[str, Any]]] = [

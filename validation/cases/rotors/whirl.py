@@ -140,12 +140,7 @@ def banded_rotor() -> tuple[Jeffcott, Fill]:
 
 
 def slow_passage(rate: float) -> Passage:
-    """That machine up through its band and back; the layer as the branch has it, without dispersion.
-
-    Parameters
-    ----------
-    rate : of the ramp, rad/s^2
-    """
+    """That machine up through its band and back at a rate, rad/s^2, without dispersion as the branch."""
     speeds = NATURAL, 1.7 * NATURAL
     return passage(*banded_rotor(), BANDED, speeds, rate, RunupNumerics(cells=64))
 
@@ -219,12 +214,7 @@ def _thinner(fill: Fill, plane: float, share: float, filled: float) -> Fill:
 
 
 def layered_rotor(mu: float, depth: float, zeta: float) -> tuple[Jeffcott, Fill]:
-    """Rotor of 100 rad/s with one chamber of water.
-
-    Parameters
-    ----------
-    mu, depth, zeta : m_f/M, h0/R, damping ratio of the support
-    """
+    """Rotor of 100 rad/s with one chamber of water: m_f/M, h0/R, damping ratio of the support."""
     chamber, water = Chamber(0.1, 0.02), known_liquid("water")
     fill = Fill(chamber, water, (1.0 - (1.0 - depth) ** 2) * chamber.capacity)
     mass = fill.full_mass / mu
@@ -232,12 +222,7 @@ def layered_rotor(mu: float, depth: float, zeta: float) -> tuple[Jeffcott, Fill]
 
 
 def growth_over_speed(zeta: float, friction: Friction = NO_FRICTION) -> Array:
-    """Growth over the natural frequency at the speeds of `RANGE`, m_f/M = 0.1, h0/R = 0.1.
-
-    Parameters
-    ----------
-    zeta, friction : damping ratio of the support; of the liquid, none by default
-    """
+    """Growth rate over the natural frequency at the speeds of `RANGE`, m_f/M = 0.1, h0/R = 0.1."""
     rotor, fill = layered_rotor(0.1, 0.1, zeta)
     return asynchronous_growth(rotor, [fill], RANGE * NATURAL, friction)[0] / NATURAL
 

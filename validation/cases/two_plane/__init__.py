@@ -1,8 +1,4 @@
-"""Balancing in two planes [FF20].
-
-`machine` is a long and a short rotor with balls, `damping` its edge of stability over the supports' damping,
-`layers` liquid in place of the balls, `conditions` the comparison with the source.
-"""
+"""Balancing in two planes [FF20]."""
 
 from __future__ import annotations
 

@@ -36,13 +36,7 @@ def cases() -> list[Case]:
 
 
 def balls_in_time(rotor: TwoPlane, speed: float, duration: float = 60.0) -> Balanced:
-    """Two ball balancers with two balls each, from scattered places.
-
-    Parameters
-    ----------
-    rotor, speed : with its unbalances; rad/s
-    duration : s
-    """
+    """Two ball balancers with two balls each, from scattered places."""
     system = rotor.system()
     run = simulate(system, RACES, speed, duration, places=SCATTERED)
     last, ratios = -run.time.size // 10, []

@@ -52,23 +52,15 @@ class Side:
 
 
 def damped(rotor: TwoPlane, damping: float) -> TwoPlane:
-    """The rotor with another damping in each support.
-
-    Parameters
-    ----------
-    rotor, damping : N s/m
-    """
+    """Rotor with another damping in each support, N s/m."""
     return replace(rotor, supports=tuple(replace(support, damping=damping) for support in rotor.supports))
 
 
 @cache
 def edge(damping: float, low: float = 42.0, high: float = 150.0) -> float:
-    """Least speed above which the long rotor stays balanced, up to `high`, rad/s.
+    """Least speed above which the long rotor stays balanced, up to `high`, rad/s; damping in N s/m.
 
-    Parameters
-    ----------
-    damping : of each support, N s/m
-    low, high : where it is looked for, rad/s; in 108 parts, the last of which is halved
+    The range is searched in 108 parts, the last of which is halved.
     """
     system, races = damped(LONG, damping).system(), RACES
 
@@ -85,12 +77,7 @@ def edge(damping: float, low: float = 42.0, high: float = 150.0) -> float:
 
 
 def side(damping: float, speed: float) -> Side:
-    """Growth of the motion that grows most, by its root and in time by the full equations of motion.
-
-    Parameters
-    ----------
-    damping, speed : of each support, N s/m; rad/s
-    """
+    """Largest growth rate, by its root and in time by the full equations of motion."""
     system, races = damped(LONG, damping).system(), RACES
     known = balanced_stability(system, races, speed)
     matrix = linearised(system, races, speed, known.places).matrix()
@@ -145,14 +132,8 @@ def _turning(
 def long_run(damping: float, speed: float, duration: float, near: bool = False) -> dict[str, float]:
     """Two ball balancers for a long time, deflection at the supports over that without balancers.
 
-    Parameters
-    ----------
-    damping, speed, duration : of each support, N s/m; rad/s; s
-    near : the balls set out `OFF` their balanced places; else from scattered ones
-
-    Returns
-    -------
-    The numbers asked for, `left` in the last tenth, `rate` of the fall over the last third, 1/s, and `root`
+    Near: the balls begin `OFF` their balanced places, else at scattered ones. `left` is of the last tenth,
+    `rate` of the fall over the last third, 1/s, `root` the largest.
     """
     rotor = damped(LONG, damping)
     system = rotor.system()

@@ -39,13 +39,7 @@ class Layered:
 
 
 def layers_in_time(rotor: TwoPlane, speed: float, cells: int = 64) -> Layered:
-    """Hold a rotor with two layers at a speed until it is steady.
-
-    Parameters
-    ----------
-    rotor, speed : with its unbalances; rad/s
-    cells : of each layer
-    """
+    """Hold a rotor with two layers at a speed until it is steady."""
     system = rotor.system()
     whirl = unbalance_response(system, [speed])[0]
     planes = [system.at(fill.chamber.plane) for fill in FILLS]

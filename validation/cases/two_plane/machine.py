@@ -17,12 +17,7 @@ SCATTERED = (0.5, 1.5, 0.2, 3.0)  # rad, where the balls set out
 
 
 def bare_deflection(rotor: TwoPlane, position: float, speed: float) -> float:
-    """Size of the deflection without balancers, which is circular, m.
-
-    Parameters
-    ----------
-    rotor, position, speed : with its unbalances; along the axis, m; rad/s
-    """
+    """Size of the deflection without balancers, which is circular, m; position along the axis, m."""
     system = rotor.system()
     matrix = system.stiffness - speed**2 * system.mass + 1j * speed * system.damping
     whirl = np.linalg.solve(matrix + 1j * speed**2 * system.gyroscopic, speed**2 * system.unbalance)

@@ -52,12 +52,7 @@ _MARKS: tuple[tuple[str, Callable[[dict[str, Any]], bool], float, dict[str, Any]
 
 
 def beyond_figure(directory: Path) -> Path:
-    """Spectra of three frequencies and of chaos, and two maps of what is reached over drag and unbalance.
-
-    Parameters
-    ----------
-    directory : where the PNG and SVG go
-    """
+    """Spectra of three frequencies and of chaos, and two maps of what is reached over drag and unbalance."""
     rows: list[dict[str, Any]] = json.loads(DATA.read_text(encoding="utf-8"))["runs"]
     with style():
         figure = Figure()

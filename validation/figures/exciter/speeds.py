@@ -45,24 +45,14 @@ class Comparison:
 
 
 def compare(count: int = COUNT, workers: int = 2) -> Comparison:
-    """Integrate the machines of `sample` and evaluate the regression.
-
-    Parameters
-    ----------
-    count, workers : how many machines, threads
-    """
+    """Integrate the machines of `sample` in threads and evaluate the regression."""
     values = sample(count)
     computed = critical_speeds([Dimensionless(*row) for row in values.tolist()], workers=workers)
     return Comparison(values, computed, printed_critical_speed(*values.T))
 
 
 def table(found: Comparison) -> str:
-    """Error of the regression by the smallness, as a table in Markdown.
-
-    Parameters
-    ----------
-    found : by `compare`
-    """
+    """Error of the regression by the smallness, in Markdown."""
     lines = [
         "| eps | machines | within 6 % | within 20 % | median error | 5 % to 95 % of the errors |",
         "|---|---|---|---|---|---|",
@@ -84,13 +74,7 @@ def table(found: Comparison) -> str:
 
 
 def regression_figure(found: Comparison, directory: Path) -> Path:
-    """Printed over computed critical speed, by the smallness.
-
-    Parameters
-    ----------
-    found : by `compare`
-    directory : where the PNG and SVG go
-    """
+    """Printed over computed critical speed, by the smallness."""
     with style():
         figure = Figure()
         axes: Any = figure.add_axes((0, 0, 1, 1))
@@ -123,12 +107,7 @@ def regression_figure(found: Comparison, directory: Path) -> Path:
 
 
 def start_figure(directory: Path) -> Path:
-    """Critical speed over the unbalance and over the smallness from several starts.
-
-    Parameters
-    ----------
-    directory : where the PNG and SVG go
-    """
+    """Critical speed over the unbalance and over the smallness from several starts."""
     unbalances, small = np.linspace(0.0, 1.0, 6), np.geomspace(0.0005, 0.05, 7)
     left_machines = [Dimensionless(0.01, 0.4, float(d), 0.03) for d in unbalances]
     right_machines = [Dimensionless(float(e), 0.4, 0.25, 0.03) for e in small]
@@ -173,22 +152,12 @@ def start_figure(directory: Path) -> Path:
 
 
 def vibratory_table(ball_damping: float = 0.03) -> Exciter:
-    """The loaded table of [YF17, section 5.2].
-
-    Parameters
-    ----------
-    ball_damping : drag of the race on a ball, N s/m
-    """
+    """Loaded table of [YF17, section 5.2]; drag of the race on a ball, N s/m."""
     return Exciter(90.1, 145083.0, 150.0, 0.1 * 0.105, 2, 0.325, 7.0 / 5.0, 0.0735, ball_damping)
 
 
 def machine_figure(directory: Path) -> Path:
-    """Stuck speeds and vibration of the worked vibratory table.
-
-    Parameters
-    ----------
-    directory : where the PNG and SVG go
-    """
+    """Stuck speeds and vibration of the worked vibratory table."""
     speed = np.linspace(100.0, 6000.0, 296) * math.pi / 30.0
     of = {"name": "vibratory table", "assumed": ("speeds.start", "speeds.stop")}
     record = answer_exciter(vibratory_table(), speed, checks=8, of=of)

@@ -22,12 +22,7 @@ _LOOKS = (("C0", "o", "-"), ("C1", "s", "--"), ("C2", "^", "-."))
 
 
 def trace_figure(directory: Path) -> Path:
-    """Speed of the balls, motion of the platform, and how far the lowest order is off [YF17, fig. 3].
-
-    Parameters
-    ----------
-    directory : where the PNG and SVG go
-    """
+    """Speed of the balls, motion of the platform, and how far the lowest order is off [YF17, fig. 3]."""
     found = traces()
     seen = (found.motion.position, found.motion.velocity, found.motion.acceleration)
     names = ("displacement", "velocity", "acceleration")
@@ -60,12 +55,7 @@ def trace_figure(directory: Path) -> Path:
 
 
 def trend_figure(directory: Path) -> Path:
-    """Critical speed over damping, drag and unbalance, from the kept runs [YF17, fig. 5 and 6].
-
-    Parameters
-    ----------
-    directory : where the PNG and SVG go
-    """
+    """Critical speed over damping, drag and unbalance, from the kept runs [YF17, fig. 5 and 6]."""
     kept = json.loads(DATA.read_text(encoding="utf-8"))["panels"]
     with style():
         figure = Figure()

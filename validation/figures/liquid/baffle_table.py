@@ -37,14 +37,9 @@ class BaffleRow:
 def baffle_row(
     count: int, share: float, wall_gap: float = 0.0, fineness: Resolution | None = None
 ) -> BaffleRow:
-    """One line of the table.
+    """Line of the table for a number of baffles, 0 for none.
 
-    Parameters
-    ----------
-    count : baffles, 0 for none
-    share : of the layer's depth, from the wall or from the gap inwards
-    wall_gap : between them and the wall, over the layer's depth
-    fineness : of the mesh
+    `share` of the layer's depth, from the wall or from a gap inwards; the gap is over the layer's depth.
     """
     depth = RADIUS - SURFACE
     tip = 0.0 if share + wall_gap >= 1.0 else RADIUS - (share + wall_gap) * depth
@@ -83,12 +78,7 @@ def baffle_rows(counts: Sequence[int], shares: Sequence[float], wall_gap: float 
 
 
 def markdown(rows: Sequence[BaffleRow]) -> list[str]:
-    """The table in Markdown.
-
-    Parameters
-    ----------
-    rows : its lines; the first is that without baffles
-    """
+    """Table in Markdown; the first row is that without baffles."""
     clear = rows[0]
     lines = [
         "| baffles | of the depth | against, rad/s | change | with, rad/s | change | decay, 1/s | G(0) |",

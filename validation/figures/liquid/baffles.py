@@ -44,14 +44,7 @@ class Line:
 
 
 def with_baffles(fill: Fill, count: int, depth: float) -> Fill:
-    """The same liquid with baffles in it.
-
-    Parameters
-    ----------
-    fill : in a clear chamber
-    count : of the baffles; 0 leaves it clear
-    depth : part of the layer that they stand in, from the wall; 1 through the surface
-    """
+    """The same liquid with baffles over a part of the layer from the wall, 1 through the surface."""
     if count == 0:
         return fill
     tip = 0.0 if depth >= 1.0 else fill.chamber.radius - depth * fill.depth
@@ -65,13 +58,7 @@ def rotors() -> tuple[Jeffcott, Jeffcott, Fill]:
 
 
 def table(counts: Sequence[int] = COUNTS, depths: Sequence[float] = DEPTHS) -> list[Line]:
-    """Growth and bands for some sets of baffles, the clear ring first.
-
-    Parameters
-    ----------
-    counts : of baffles
-    depths : parts of the layer
-    """
+    """Growth rate and bands for some sets of baffles, the clear ring first."""
     free, damped, clear = rotors()
     lines = []
     for count, depth in [(0, 0.0), *((n, d) for n in counts for d in depths)]:
@@ -128,12 +115,7 @@ def growth_figure() -> Figure:
 
 
 def rows(lines: Sequence[Line]) -> list[str]:
-    """The lines as rows of a Markdown table.
-
-    Parameters
-    ----------
-    lines : from `table`
-    """
+    """Rows of a Markdown table."""
     out = [
         "| baffles | of the depth | largest growth, undamped | bands, undamped | bands, damped |",
         "|---|---|---|---|---|",

@@ -119,13 +119,7 @@ def last_crests() -> dict[float, float]:
 
 
 def climbed(layer: float, crest: float) -> list[SteadyWave]:
-    """Free waves of one crest up to one, as far as nodes carry them.
-
-    Parameters
-    ----------
-    layer : h_0/R
-    crest : of the last one over h_0
-    """
+    """Natural waves of one crest up to one over h_0, as far as nodes resolve them."""
     found = [free(layer, 1.0 + _WAY[0] * (crest - 1.0))]
     for share in _WAY[1:]:
         ahead = follow(found[-1], {"whirl": 0.0, "crest": 1.0 + share * (crest - 1.0)}, 1)
@@ -136,12 +130,7 @@ def climbed(layer: float, crest: float) -> list[SteadyWave]:
 
 
 def free_figure(climbs: dict[float, list[SteadyWave]]) -> Figure:
-    """Speed of free waves over their crest.
-
-    Parameters
-    ----------
-    climbs : by h_0/R, waves of rising crests
-    """
+    """Speed of natural waves of rising crests over their crest, by h_0/R."""
     highest = {round(row.depth, 6): row for row in kept().highest}
     with style():
         figure = Figure()
@@ -181,13 +170,7 @@ def free_figure(climbs: dict[float, list[SteadyWave]]) -> Figure:
 
 
 def sharp_figure(wave: SteadyWave, lower: SteadyWave) -> Figure:
-    """A wave near the highest with its nodes, and what its spectrum and that of a lower one want.
-
-    Parameters
-    ----------
-    wave : free and nearly as high as can be
-    lower : a free wave of the same layer with a round crest
-    """
+    """Wave near the highest with its nodes, and the spectra of it and of a lower one with a round crest."""
     with style():
         figure = Figure()
         whole: Any = figure.add_axes((0, 0, 0.6, 1), label="shape")

@@ -28,12 +28,7 @@ _SURE, _UNSURE, _UNTIL = 0.03, 0.15, 1.33
 
 
 def force_figure(cells: int = 64) -> Figure:
-    """Force ratio over whirl ratio where the layer is smooth.
-
-    Parameters
-    ----------
-    cells : of the long waves
-    """
+    """Force ratio over whirl ratio where the layer is smooth."""
     runs = [run for run in data("openfoam_layer.json")["cases"] if "time" not in run]
     fill = plane_layer(runs[0])
     kappa = (fill.chamber.radius / fill.surface_radius) ** 2

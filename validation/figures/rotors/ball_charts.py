@@ -1,9 +1,8 @@
-"""Charts of stability of ball balancers: `python -m validation.figures.rotors.ball_charts`.
+"""Charts of stability of ball balancers.
 
 The long rotor of `leblanc validate two_plane` over speed and damping of its supports, the dimensionless
 machine of the literature [RCFW08] over speed, unbalance and damping, and both kinds of states of the rotor of
-`examples/balls.toml`. Charts and tables are computed here
-alone: the source prints curves, of which no numbers are at hand.
+`examples/balls.toml`. The source prints curves, of which no numbers are at hand.
 """
 
 from __future__ import annotations
@@ -40,20 +39,12 @@ _MOST = 1.9e-4  # of the unbalances on the chart; from 1.912e-4 on the balls do 
 def reference(
     small: float = SMALL, damping: float = DAMPING, drag: float = DRAG, alike: bool = True
 ) -> tuple[RotorSystem, tuple[BallRace, ...]]:
-    """The dimensionless rotor of [RCFW08] with two races of two balls, lengths over the races' radius.
+    """Dimensionless rotor of [RCFW08] with two races of two balls, lengths over the races' radius.
 
-    k_11 = 1 and k_22 = 9 are springs of 1/2 at +-3. The couple is (J_t - J_p) times the misalignment.
-
-    Parameters
-    ----------
-    small : eps of the mass's eccentricity and chi of the misalignment, alike
-    damping : c of the supports over their stiffness
-    drag : of the race on a ball over its mass; in the reading taken here
-    alike : supports alike in both directions; else 5 and 45 in the second one
-
-    Returns
-    -------
-    Rotor and races
+    k_11 = 1 and k_22 = 9 are springs of 1/2 at +-3, unlike: 5 and 45 in the second direction; the couple is
+    (J_t - J_p) times the misalignment. `small` is eps of the mass's eccentricity and chi of the misalignment,
+    `damping` c of the supports over their stiffness, `drag` that of the race over a ball's mass, as read
+    here.
     """
     half = ACROSS - ALONG
     unbalances = (
@@ -71,12 +62,7 @@ def reference(
 
 
 def damping_chart(values: int = 25) -> Chart:
-    """Long rotor over speed, rad/s, and the decimal logarithm of the damping of each support, N s/m.
-
-    Parameters
-    ----------
-    values : of each axis
-    """
+    """Long rotor over speed, rad/s, and the decimal logarithm of the damping of each support, N s/m."""
 
     def family(speed: float, power: float) -> Machine:
         return Machine(damped(LONG, 10.0**power).system(), RACES, speed)
@@ -85,12 +71,7 @@ def damping_chart(values: int = 25) -> Chart:
 
 
 def reference_charts(values: int = 21) -> tuple[Chart, Chart]:
-    """The reference machine over speed and unbalance, and over speed and damping of the supports.
-
-    Parameters
-    ----------
-    values : of each axis
-    """
+    """Reference machine over speed and unbalance, and over speed and damping of the supports."""
 
     def unbalanced(speed: float, share: float) -> Machine:
         return Machine(*reference(1e-5 * max(share, 0.0)), speed)
@@ -106,12 +87,7 @@ def reference_charts(values: int = 21) -> tuple[Chart, Chart]:
 
 
 def unlike_chart(values: int = 21) -> Chart:
-    """The reference machine with supports of 5 and 45 in one direction, over speed and damping.
-
-    Parameters
-    ----------
-    values : of the damping; nearly twice as many of the speed
-    """
+    """Reference machine with supports of 5 and 45 in one direction, over speed and damping."""
 
     def held(speed: float, damping: float) -> Machine:
         return Machine(*reference(damping=damping, alike=False), speed)
@@ -120,13 +96,9 @@ def unlike_chart(values: int = 21) -> Chart:
 
 
 def state_charts(values: int = 25) -> tuple[Chart, Chart, Chart]:
-    """The rotor of `examples/balls.toml` over speed, rad/s, and what two balls hold over the unbalance.
+    """Rotor of `examples/balls.toml` over speed, rad/s, and what two balls hold over the unbalance.
 
     The balanced state, both balls together behind the unbalance, and both together near its other side.
-
-    Parameters
-    ----------
-    values : of the speed; two in three of the second
     """
 
     def family(speed: float, ratio: float) -> Machine:
@@ -144,25 +116,14 @@ def state_charts(values: int = 25) -> tuple[Chart, Chart, Chart]:
 
 
 def reference_growth(speeds: ArrayLike, alike: bool = True, drag: float = DRAG) -> Array:
-    """Largest growth of disturbances of the balanced reference machine, of its supports alike or not.
-
-    Parameters
-    ----------
-    speeds : rad/s in units of the natural frequency, shape (s,)
-    alike, drag : see `reference`
-    """
+    """Largest growth rate of the balanced reference machine; speeds over the natural frequency."""
     system, races = reference(alike=alike, drag=drag)
     found = [balanced_stability(system, races, speed).growth for speed in np.asarray(speeds).tolist()]
     return np.array(found)
 
 
 def bands(speeds: Array, growth: Array) -> list[tuple[float, float]]:
-    """Speeds between which a disturbance dies out, to the step of the speeds.
-
-    Parameters
-    ----------
-    speeds, growth : rising; of the same shape
-    """
+    """Speeds between which a disturbance decays, to the step of the rising speeds."""
     found: list[tuple[float, float]] = []
     for speed, rate in zip(speeds.tolist(), growth.tolist(), strict=True):
         if rate >= 0.0:
@@ -194,12 +155,7 @@ def _draw(axes: Any, chart: Chart, scale: float = 1.0) -> None:
 
 
 def damping_figure(directory: Path) -> Path:
-    """Where balls balance the long rotor over speed and damping, with motions in time on both sides.
-
-    Parameters
-    ----------
-    directory : where the PNG and SVG go
-    """
+    """Where balls balance the long rotor over speed and damping, with motions in time on both sides."""
     chart = damping_chart()
     with style():
         figure = Figure()
@@ -227,12 +183,7 @@ def damping_figure(directory: Path) -> Path:
 
 
 def reference_figure(directory: Path) -> Path:
-    """The reference machine over speed and unbalance, and over speed and damping.
-
-    Parameters
-    ----------
-    directory : where the PNG and SVG go
-    """
+    """Reference machine over speed and unbalance, and over speed and damping."""
     charts = reference_charts()
     with style():
         figure = Figure()
@@ -256,12 +207,7 @@ def reference_figure(directory: Path) -> Path:
 
 
 def unlike_figure(directory: Path) -> Path:
-    """The reference machine on unlike supports over speed and damping.
-
-    Parameters
-    ----------
-    directory : where the PNG and SVG go
-    """
+    """Reference machine on unlike supports over speed and damping."""
     chart = unlike_chart()
     with style():
         figure = Figure()
@@ -279,12 +225,7 @@ def unlike_figure(directory: Path) -> Path:
 
 
 def states_figure(directory: Path) -> Path:
-    """Balanced state and balls together, over speed and what the balls hold.
-
-    Parameters
-    ----------
-    directory : where the PNG and SVG go
-    """
+    """Balanced state and balls together, over speed and what the balls hold."""
     balanced, slow, fast = state_charts()
     with style():
         figure = Figure()

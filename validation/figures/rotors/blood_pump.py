@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 
 from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save, style
-from leblanc.figures.magnetic.control import magnetic_figure
 from leblanc.scene.examples import example
-from leblanc.studies.magnetic.run import run_magnetic
+from leblanc.wings.magnetic.figure import magnetic_figure
+from leblanc.wings.magnetic.study import run_magnetic
 from meshes.arrays import Array
 from solvers.rotor.magnetic.control import Controller, Pid
 from solvers.rotor.magnetic.linear import closed_loop, margins
@@ -45,13 +45,7 @@ def controllers() -> tuple[Controller, ...]:
 
 
 def slow_coils(controller: Controller, bandwidth: Array) -> Coils:
-    """The pump at 9000 rpm with coils of some bandwidths, the controller unchanged.
-
-    Parameters
-    ----------
-    controller : of the pump
-    bandwidth : Hz, shape (n,)
-    """
+    """Pump at 9000 rpm with coils of some bandwidths, Hz, the controller unchanged."""
     found = []
     for hertz in bandwidth.tolist():
         machine = replace(MACHINE, magnets=replace(MACHINE.magnets, bandwidth=HERTZ * hertz))
@@ -79,12 +73,7 @@ def table() -> str:
 
 
 def coils_figure(directory: Path) -> Path:
-    """Sensitivity and damping over the bandwidth of the coils.
-
-    Parameters
-    ----------
-    directory : where the PNG and SVG go
-    """
+    """Sensitivity and damping over the bandwidth of the coils."""
     with style():
         figure = Figure()
         above: Any = figure.add_axes((0, 0, 1, 1), label="sensitivity")
@@ -119,12 +108,7 @@ def coils_figure(directory: Path) -> Path:
 
 
 def trial_figure(directory: Path) -> Path:
-    """The scene's trial in time and its unbalance response.
-
-    Parameters
-    ----------
-    directory : where the PNG and SVG go
-    """
+    """Trial of the scene in time and its unbalance response."""
     result = run_magnetic(example("blood_pump"))
     return save(magnetic_figure(result), directory, "blood_pump", "Blood pump in magnetic bearings").png
 

@@ -16,12 +16,7 @@ _READING = 15.0  # deg
 
 
 def angle_figure(damping_ratio: float) -> Figure:
-    """Angle of the liquid behind the unbalance over speed.
-
-    Parameters
-    ----------
-    damping_ratio : fitted to the six angles
-    """
+    """Angle of the liquid behind the unbalance over speed; damping ratio fitted to the six angles."""
     measured = data("dr18_fig24.json")
     speed = np.linspace(500.0, 1500.0, 501)
     curves: tuple[tuple[float, str, Any], ...] = (

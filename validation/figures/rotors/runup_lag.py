@@ -64,14 +64,9 @@ def steady(speed: Array, damping_ratio: float) -> tuple[Complex, Array]:
 
 
 def lag(rate: float, damping_ratio: float, cells: int = 64, gravity: float = _GRAVITY) -> Lag:
-    """Run up the rig, its liquid a layer from the start.
+    """Run up the rig at a rate, rad/s^2, its liquid a layer from the start.
 
-    Parameters
-    ----------
-    rate : of the ramp, rad/s^2
-    damping_ratio : of the rotor with the liquid's added mass
-    cells : of each layer
-    gravity : across the axis, m/s^2
+    The damping ratio counts the liquid's added mass; gravity across the axis, m/s^2.
     """
     ramp = Ramp(FROM, TO, rate, (TO - FROM) / rate)
     turns = 0.5 * (TO**2 - FROM**2) / rate / (2.0 * math.pi)
@@ -138,14 +133,7 @@ def table(lags: Sequence[Lag], damping_ratio: float) -> str:
 
 
 def draw(lags: Sequence[Lag], damping_ratio: float, directory: Path) -> Path:
-    """Angle over speed and error over rate as PNG and SVG.
-
-    Parameters
-    ----------
-    lags : by falling rate
-    damping_ratio : of the steady response drawn with them
-    directory : where the figure goes
-    """
+    """Angle over speed and error over rate as PNG and SVG; lags by falling rate."""
     from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save, style
 
     with style():

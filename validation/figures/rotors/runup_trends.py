@@ -59,14 +59,7 @@ def table(points: Sequence[Point]) -> str:
 
 
 def draw(points: Sequence[Point], dry: Point, directory: Path) -> Path:
-    """The trends as PNG and SVG.
-
-    Parameters
-    ----------
-    points : from `sweep`
-    dry : the run-up without liquid
-    directory : where the figure goes
-    """
+    """Trends as PNG and SVG, with the run-up without liquid."""
     from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save, style
 
     volumes = list(dict.fromkeys(point.volume for point in points))

@@ -21,13 +21,7 @@ _GAP = 0.25  # inches between the columns
 
 
 def balls_figure(directory: Path, duration: float = 12.0) -> Path:
-    """Deflection at both supports of a long and a short rotor, below and above the resonances.
-
-    Parameters
-    ----------
-    directory : where the PNG and SVG go
-    duration : s
-    """
+    """Deflection at both supports of a long and a short rotor, below and above the resonances."""
     with style():
         figure = Figure()
         rows = []

@@ -13,12 +13,7 @@ _FRAME = Frame(left=0.72, top=0.15, between=0.0, below=0.42)
 
 
 def growth_figure(in_time: list[Case]) -> Figure:
-    """Growth over speed with four sets of damping, and what the coupled model shows in time.
-
-    Parameters
-    ----------
-    in_time : the cases of `validation.cases.rotors.whirl` that were run in time
-    """
+    """Growth rate over speed with four sets of damping, and the coupled model in time."""
     curves: tuple[tuple[str, float, Friction, str, Any], ...] = (
         ("no damping", 0.0, NO_FRICTION, "#0072B2", "-"),
         ("support 0.05", 0.05, NO_FRICTION, "#D55E00", (0, (5, 1.5))),
@@ -60,10 +55,5 @@ def growth_figure(in_time: list[Case]) -> Figure:
 
 
 def in_time(cases: list[Case]) -> list[Case]:
-    """Those that were run in time.
-
-    Parameters
-    ----------
-    cases : of `validation.cases.rotors.whirl`
-    """
+    """Cases that were run in time."""
     return [case for case in cases if case.name.startswith("whirl/in-time-")]

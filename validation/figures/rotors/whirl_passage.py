@@ -43,13 +43,7 @@ def cycles() -> LimitCycles:
 
 
 def table(found: LimitCycles, runs: Sequence[Passage]) -> str:
-    """Distance of run-ups and run-downs from the branch, in Markdown.
-
-    Parameters
-    ----------
-    found : the limit cycles
-    runs : by falling rate
-    """
+    """Distance of run-ups and run-downs from the branch, in Markdown."""
     heads = [f"{ratio:g}, {'down' if back else 'up'}" for ratio, back in _PLACES]
     lines = ["| rate, rad/s^2 | " + " | ".join(heads) + " |", "|---|" + "---|" * len(_PLACES)]
     for run in runs:
@@ -62,13 +56,7 @@ def table(found: LimitCycles, runs: Sequence[Passage]) -> str:
 
 
 def passage_figure(run: Passage, found: LimitCycles) -> Figure:
-    """Amplitude and frequency over speed, up and down, with the stable and unstable limit cycles behind.
-
-    Parameters
-    ----------
-    run : up and down
-    found : the limit cycles
-    """
+    """Amplitude and frequency over speed, up and down, with the stable and unstable limit cycles behind."""
     rotor, fill = banded_rotor()
     ((band,),) = unstable_bands(rotor, [[fill]], np.linspace(*_RANGE, 401), BANDED)
     with style():

@@ -22,14 +22,7 @@ _LOGARITHMIC = ("mass", "diameter", "drag")
 
 
 class Variable(NamedTuple):
-    """One number of a race that is searched.
-
-    Parameters
-    ----------
-    race : number of the race among the scene's, from 0
-    name : count, mass, diameter, drag or radius
-    low, high : least and most, SI
-    """
+    """One number of a race that is searched."""
 
     race: int
     name: str
@@ -47,12 +40,7 @@ class Variable(NamedTuple):
         return (math.log(self.low), math.log(self.high)) if self.logarithmic else (self.low, self.high)
 
     def value(self, searched: float) -> float:
-        """The number itself, SI.
-
-        Parameters
-        ----------
-        searched : within the bounds
-        """
+        """The number itself, SI."""
         found = math.exp(searched) if self.logarithmic else searched
         return float(min(max(found, self.low), self.high))
 
@@ -68,17 +56,7 @@ def size_of(race: BallRace) -> str:
 
 
 def variables_of(scene: Scene, task: Optimisation) -> tuple[Variable, ...]:
-    """What is searched of the balls of every race.
-
-    Parameters
-    ----------
-    scene : with races
-    task : its ranges, or the usual ones where there are none
-
-    Raises
-    ------
-    InputError : the other of mass and diameter than the scene gives
-    """
+    """What is searched of the balls of every race."""
     found: list[Variable] = []
     for k, race in enumerate(scene.balls):
         at = f"chambers.{len(scene.liquids) + k}"
@@ -130,13 +108,7 @@ def values_of(variables: Sequence[Variable], point: Array) -> Array:
 
 
 def with_balls(scene: Scene, variables: Sequence[Variable], point: Array) -> Scene:
-    """The scene with other balls, which are not checked: they may not fit.
-
-    Parameters
-    ----------
-    scene : with races
-    variables, point : what is searched, and where
-    """
+    """The scene with other balls, which are not checked: they may not fit."""
     changes: list[dict[str, float | int]] = [{} for _ in scene.balls]
     for variable, value in zip(variables, values_of(variables, point).tolist(), strict=True):
         changes[variable.race][variable.name] = round(value) if variable.name == "count" else value
@@ -145,12 +117,7 @@ def with_balls(scene: Scene, variables: Sequence[Variable], point: Array) -> Sce
 
 
 def crowding(race: BallRace) -> float:
-    """Share of the way round a race that its balls take side by side; 0 where their diameter is not known.
-
-    Parameters
-    ----------
-    race : with its balls
-    """
+    """Share of the way round a race that its balls take side by side; 0 where their diameter is not known."""
     if race.diameter is None:
         return 0.0
     share = race.diameter / (2.0 * race.radius)

@@ -55,16 +55,10 @@ WHOLE = 10.0  # objective of a design that breaks a constraint, above those of a
 class Verdict(NamedTuple):
     """What a design is worth.
 
-    Parameters
-    ----------
-    score : to be made least: of the objective and, among equals, of the decay; above `WHOLE` where a
-        constraint is broken
-    value : of the objective, in its unit
-    vibration : amplitude, m, infinite where there is no stable state
-    mass : of all balls, kg
-    growth : of small motions at the working speed, the largest over the conditions, 1/s
-    excess : by how much a constraint is exceeded, relative; 0 or below if none is
-    values : of the constraints by name
+    `score` is to be made least: of the objective and, among equals, of the decay, above `WHOLE` where a
+    constraint is broken; `vibration` the amplitude, m, infinite without a stable state; `mass` of all balls;
+    `growth` of small motions at the working speed, the largest over the conditions, 1/s; `excess` relative, 0
+    or below if no constraint is exceeded.
     """
 
     score: float
@@ -77,13 +71,7 @@ class Verdict(NamedTuple):
 
 
 class Limit(NamedTuple):
-    """A value that must not be above its limit.
-
-    Parameters
-    ----------
-    limit, unit, meaning : as in `leblanc.results.base.ConstraintValue`
-    scale : what an excess is measured by
-    """
+    """A value that must not be above its limit; `scale` is what an excess is measured by."""
 
     limit: float
     unit: str
@@ -133,12 +121,7 @@ class BallProblem:
         return self.in_time or bool(self.scene.fills) or self.asked.size * len(self.unbalances) > 12
 
     def judged(self, point: Array) -> Verdict:
-        """What a design is worth.
-
-        Parameters
-        ----------
-        point : of the search, shape (v,)
-        """
+        """What a design is worth."""
         scene = with_balls(self.scene, self.variables, point)
         mass = total_mass(scene)
         values = {"fits": max(crowding(race) for race in scene.balls)}
@@ -212,12 +195,7 @@ def _over(value: float, own: Limit) -> float:
 
 
 def run_up_peak(scene: Scene) -> float:
-    """Largest amplitude of a scene's run-up in time, m; infinite where it did not come to its end.
-
-    Parameters
-    ----------
-    scene : with a run-up or a programme
-    """
+    """Largest amplitude of a scene's run-up in time, m; infinite where it did not come to its end."""
     plan = planned(scene)
     drive, numerics = drive_of(plan, scene.rotor), numerics_of(plan, check=False)
     history = chosen_run(scene, drive, across_gravity(scene), numerics).history
@@ -232,17 +210,7 @@ def _spread(speeds: Array) -> Array:
 
 
 def ball_problem(scene: Scene, task: Optimisation) -> BallProblem:
-    """The search that a scene with balls poses.
-
-    Parameters
-    ----------
-    scene, task : the machine and what its balls are chosen for
-
-    Raises
-    ------
-    InputError : no balls, an objective or a limit that says nothing of balls, nothing to balance, a liquid
-        model other than the exact equilibrium
-    """
+    """The search that a scene with balls poses."""
     _require(scene, task)
     variables = variables_of(scene, task)
     speed, used = working_speed(scene, task), operating_speeds(scene, task)
@@ -327,12 +295,7 @@ def _over_speeds(
 
 
 def bare_amplitude(problem: BallProblem) -> float:
-    """The amplitude of the objective without balls, with the liquid of the scene, m.
-
-    Parameters
-    ----------
-    problem : the search
-    """
+    """The amplitude of the objective without balls, with the liquid of the scene, m."""
     scene = problem.scene
     if problem.in_time:
         return _run_without(scene)

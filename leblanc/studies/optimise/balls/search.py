@@ -96,17 +96,6 @@ def optimise_balls(
     """Best balls of a scene's races within ranges [theory: races, eq. 13-15] [SP97].
 
     The same seed gives the same balls with any number of workers.
-
-    Parameters
-    ----------
-    scene : with races; its liquid stays as it is filled
-    task : its objective, constraints and ranges
-    progress : called with the number of designs judged and the share of the search done
-    workers : processes that judge designs where one takes its time; this one alone if 1
-
-    Raises
-    ------
-    InputError : no balls, an objective or a limit that says nothing of balls, a range that does not fit
     """
     if workers < 1:
         raise InputError("workers", workers, "1 or more")
@@ -339,14 +328,7 @@ def _smallest(tried: _Tried, row: Array, k: int, drag: int | None) -> Array:
 
 
 def _quickest(tried: _Tried, row: Array, k: int, beside: float | None = None) -> Array:
-    """The drag at which small motions fade quickest, whatever else it does.
-
-    Parameters
-    ----------
-    tried, row : the designs, and the one to begin at
-    k : variable that is the drag
-    beside : how far from there it is looked for; all over its range if None, first at some places
-    """
+    """The drag at which small motions fade quickest, whatever else it does."""
     from scipy.optimize import minimize_scalar
 
     low, high = tried.problem.variables[k].bounds

@@ -12,7 +12,7 @@ from leblanc.core.terminal import print_json
 from leblanc.figures.comparison import LOOKS
 from leblanc.results.models.comparison import Comparison, ModelAnswer
 from leblanc.results.motion.held import Held
-from leblanc.results.response import RunResult
+from leblanc.studies.run.answer import RunResult
 from leblanc.text.explanation import comparison_head, comparison_rows, refusals
 from meshes.errors import InputError
 from tests.mutants import kills

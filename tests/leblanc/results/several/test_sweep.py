@@ -15,7 +15,7 @@ from leblanc.cli import main
 from leblanc.core.terminal import print_json
 from leblanc.figures.sweep import sweep_figure
 from leblanc.results.sweep import QUANTILES, SweepResult
-from leblanc.studies.run import run_scene
+from leblanc.studies.run.study import run_scene
 from leblanc.studies.sweep.store import STORE
 from leblanc.studies.sweep.summary import sweep_result
 from tests.oracles.data_files import assert_read_back

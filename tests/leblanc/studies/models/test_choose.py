@@ -13,12 +13,12 @@ from fluid.friction.laws import Friction, FrictionLaw
 from leblanc.cli import main
 from leblanc.core.notes import percent
 from leblanc.results.choice import model_spans, seconds_words
-from leblanc.results.notes.response import RunCode
 from leblanc.scene.scene import Scene, dry_rotor, jeffcott, load_scene
 from leblanc.studies.explain import explain_scene
 from leblanc.studies.models.choose import axial_gravity, choose, choose_all, prepare, runup_outlook
 from leblanc.studies.models.liquid import synchronous_model
-from leblanc.studies.run import run_scene
+from leblanc.studies.run.notes import RunCode
+from leblanc.studies.run.study import run_scene
 from leblanc.studies.runup import runup_scene
 from leblanc.text.explanation import machine_rows
 from meshes.errors import InputError

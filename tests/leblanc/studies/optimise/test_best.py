@@ -18,7 +18,7 @@ from leblanc.studies.optimise.answers import FilledMachine, with_volumes
 from leblanc.studies.optimise.constraints import Constraint, spill, wetting
 from leblanc.studies.optimise.objectives import AtSpeed
 from leblanc.studies.optimise.optimise import optimise_scene
-from leblanc.studies.run import run_scene
+from leblanc.studies.run.study import run_scene
 from leblanc.text.optimum import describe_optimum, nearest
 from meshes.arrays import Array
 from meshes.chamber import Chamber

@@ -26,7 +26,7 @@ from leblanc.studies.optimise.wetting import (
     optimal_volume_by_search,
     wetting_volumes,
 )
-from leblanc.studies.run import run_scene
+from leblanc.studies.run.study import run_scene
 from meshes.arrays import Array
 from meshes.chamber import Chamber
 from meshes.errors import InputError
@@ -213,7 +213,7 @@ def test_peak() -> None:
 )
 def test_growth() -> None:
     """The largest growth at the operating speeds, as the map of self-excited whirl has it."""
-    from leblanc.studies.run import self_excited
+    from leblanc.studies.run.study import self_excited
 
     volumes = (20e-6, 15e-6)
     scene = rig(volumes).altered(speeds=Speeds(start=100.0, stop=200.0, count=21))

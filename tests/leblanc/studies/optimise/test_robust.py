@@ -28,7 +28,7 @@ from leblanc.studies.optimise.robust import (
     operating_conditions,
     unbalance_range,
 )
-from leblanc.studies.run import run_scene
+from leblanc.studies.run.study import run_scene
 from meshes.errors import InputError
 from tests.mutants import kills
 

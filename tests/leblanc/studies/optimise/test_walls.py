@@ -18,7 +18,7 @@ from leblanc.studies.optimise.balance import QualityAtSpeed
 from leblanc.studies.optimise.objectives import RunupPeak
 from leblanc.studies.optimise.optimise import optimise_scene
 from leblanc.studies.optimise.walls import freeing_volumes, most_cells
-from leblanc.studies.run import run_scene
+from leblanc.studies.run.study import run_scene
 from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.rotor.jeffcott import Jeffcott

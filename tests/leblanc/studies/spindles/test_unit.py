@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,12 +13,12 @@ import pytest
 
 import leblanc as lb
 from leblanc.cli import main
+from leblanc.core.blocks import Check, Checks, Headline, Table
 from leblanc.core.netcdf import read_values
-from leblanc.figures.spindles.unit import compliance_figure, shapes_figure
-from leblanc.results.spindles.unit import SpindleResult
 from leblanc.scene.examples import example, example_path
 from leblanc.scene.schema.load import SceneError
-from leblanc.text.spindles.unit import answer, compliance_rows, limits
+from leblanc.wings.spindle.answer import SpindleAnswer
+from leblanc.wings.spindle.figure import compliance_figure, shapes_figure
 from meshes.errors import InputError
 from solvers.rotor.shaft.natural import count_below
 from solvers.rotor.shaft.structure import Coordinate, compliances
@@ -27,13 +28,17 @@ FEW = SCENE.replace({"speeds.count": 200})
 
 
 @pytest.fixture(scope="module")
-def result() -> SpindleResult:
+def result() -> SpindleAnswer:
     found = lb.run(FEW)
-    assert isinstance(found, SpindleResult)
+    assert isinstance(found, SpindleAnswer)
     return found
 
 
-def test_the_example_has_what_its_source_gives(result: SpindleResult) -> None:
+def checks(answer: SpindleAnswer) -> Sequence[Check]:
+    return next(block.rows for block in answer.blocks() if isinstance(block, Checks))
+
+
+def test_the_example_has_what_its_source_gives(result: SpindleAnswer) -> None:
     """[DP18]: resonances of the frame at 33 and 335 Hz, a quill of 65 by 250 mm, 2, 6, 7 and 4 sections."""
     hertz = result.natural_frequency / (2.0 * math.pi)
     assert hertz[:2] == pytest.approx([33.0, 335.0], abs=0.05)  # digits printed
@@ -48,13 +53,13 @@ def test_the_example_has_what_its_source_gives(result: SpindleResult) -> None:
     assert marked == []  # the quill's diameter is given
 
 
-def test_all_natural_frequencies_are_there(result: SpindleResult) -> None:
+def test_all_natural_frequencies_are_there(result: SpindleAnswer) -> None:
     machine = SCENE.rotor.machine()
     ends = count_below(machine, result.frequency[[0, -1]])
     assert len(result.modes) == ends[1] - ends[0] == 5
 
 
-def test_peaks_lie_at_natural_frequencies(result: SpindleResult) -> None:
+def test_peaks_lie_at_natural_frequencies(result: SpindleAnswer) -> None:
     """Weak damping: at a natural frequency the motion is a quarter of a turn behind or ahead of the force."""
     driving = compliances(
         SCENE.rotor.machine(), result.natural_frequency, [Coordinate((1, 1))], [Coordinate((1, 1))]
@@ -64,20 +69,20 @@ def test_peaks_lie_at_natural_frequencies(result: SpindleResult) -> None:
         assert abs(mode.wanted) > 10.0 * float(np.median(np.abs(result.wanted)))
 
 
-def test_checks_pass_and_can_fail(result: SpindleResult) -> None:
+def test_checks_pass_and_can_fail(result: SpindleAnswer) -> None:
     assert result.reciprocity < 1e-10 and result.ways_apart < 1e-9
     assert result.least_dissipation >= 0.0
-    assert not any(limit.failed for limit in limits(result))
+    assert not any(check.grade for check in checks(result))
     for wrong in ({"reciprocity": 1e-6}, {"ways_apart": 1e-3}, {"least_dissipation": -1e-3}):
-        assert sum(limit.failed for limit in limits(replace(result, **wrong))) == 1
+        assert sum(check.grade > 0 for check in checks(replace(result, **wrong))) == 1
 
 
-def test_ratio_and_table(result: SpindleResult) -> None:
+def test_ratio_and_table(result: SpindleAnswer) -> None:
     assert result.transmissibility == pytest.approx(result.wanted / result.measured)
-    rows = compliance_rows(result)
+    rows = next(block.rows for block in result.blocks() if isinstance(block, Table))
     assert len(rows) == len(result.modes) + 2
     assert [row[0] for row in rows[1:3]] == ["33", "335"]
-    assert "33, 335" in answer(result)
+    assert "33, 335" in next(block.text for block in result.blocks() if isinstance(block, Headline))
 
 
 def test_units_and_scale_do_not_matter() -> None:
@@ -134,7 +139,7 @@ def test_files_and_json(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> N
     assert "Limits of the answer" in capsys.readouterr().out
 
 
-def test_figures_say_what_they_show(result: SpindleResult) -> None:
+def test_figures_say_what_they_show(result: SpindleAnswer) -> None:
     first, second = compliance_figure(result), shapes_figure(result)
     assert "tool_holder.0" in first.alt and "33 Hz" in second.alt
     assert len(second.axes) == 5

@@ -24,7 +24,7 @@ from leblanc.scene.scene import Scene, scene_from_table
 from leblanc.scene.schema.load import read_toml
 from leblanc.scene.schema.paths import keys_of, with_values
 from leblanc.studies.batch import Answers, answer_scenes
-from leblanc.studies.run import run_scene
+from leblanc.studies.run.study import run_scene
 from leblanc.studies.sweep.block import (
     DONE,
     FAILED,

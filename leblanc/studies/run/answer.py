@@ -30,17 +30,7 @@ from solvers.synchronous.response import Response, by_speed
 
 
 def grade_words(quality: float) -> str:
-    """The finest grade of ISO 21940-11 that a balance quality keeps, in words.
-
-    Parameters
-    ----------
-    quality : m/s
-
-    Examples
-    --------
-    >>> grade_words(0.005), grade_words(5.0)
-    ('G 6.3', 'above G 4000')
-    """
+    """The finest grade of ISO 21940-11 that a balance quality, m/s, keeps, in words."""
     grade = grade_of(quality)
     return f"above {grade_name(GRADES[-1])}" if grade is None else grade_name(grade)
 
@@ -58,28 +48,14 @@ STATES = ("dry_patch", "stable", "model", "in_range", "converged")  # over speed
 
 
 def phase(deflection: NDArray[np.complex128]) -> Array:
-    """Angle from the unbalance to the deflection.
-
-    Parameters
-    ----------
-    deflection : complex, the unbalance pointing along the real axis, m, shape (...,)
-
-    Returns
-    -------
-    rad in (-pi, pi], negative where the deflection lags, 0 where there is none, shape (...,).
-    """
+    """Angle from the unbalance to the deflection, rad in (-pi, pi], negative for a lag; 0 for none."""
     angle = np.angle(deflection)
     angle = np.where(angle <= -math.pi, math.pi, angle)
     return np.where(deflection == 0.0, 0.0, angle)
 
 
 def peak(deflection: NDArray[np.complex128] | Array) -> int | None:
-    """Index of the largest deflection, the first of equals; None if there is no finite one.
-
-    Parameters
-    ----------
-    deflection : complex or its size, nan where nothing was found, m, shape (n,)
-    """
+    """Index of the largest deflection, the first of equals; None if there is no finite one."""
     size = np.abs(deflection)
     known = np.asarray(np.isfinite(size))
     return int(np.argmax(np.where(known, size, -1.0))) if known.any() else None
@@ -101,8 +77,8 @@ class RunResult(Loaded, Result):
     (('linear',), 'm')
     """
 
-    figure: ClassVar[str] = "leblanc.figures.response:amplitude_figure"
-    summary: ClassVar[str] = "leblanc.text.run:summary"
+    figure: ClassVar[str] = "leblanc.studies.run.figure:amplitude_figure"
+    summary: ClassVar[str] = "leblanc.studies.run.words:summary"
 
     name: str  #: of the scene, free text
     source: str

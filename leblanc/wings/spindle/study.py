@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from leblanc.results.spindles.unit import NaturalMode, SpindleResult
+from leblanc.core.progress import update
 from leblanc.scene.spindle import Spindle
 from leblanc.studies.closed_forms.told import cages_of
+from leblanc.wings.spindle.answer import NaturalMode, SpindleAnswer, Turning
 from meshes.arrays import Array, Complex
 from meshes.errors import InputError
 from solvers.rotor.shaft.natural import modes
@@ -21,17 +22,12 @@ if TYPE_CHECKING:
 _CHECKED = 50  # frequencies at which the way by reactions is gone as well
 
 
-def run_spindle(scene: Scene) -> SpindleResult:
+def run_spindle(scene: Scene) -> SpindleAnswer:
     """Answer of a spindle unit to a unit harmonic force over its frequency [theory: spindle, eq. 10-14].
 
-    Parameters
-    ----------
-    scene : the scene; its speeds are the frequencies of the force
-
-    Raises
-    ------
-    InputError : its rotor is of another kind, a frequency beyond the range of the beam theory
+    The scene's speeds are the frequencies of the force; one beyond the range of the beam theory is refused.
     """
+    update(what="compliances")
     rotor = scene.rotor
     if not isinstance(rotor, Spindle):
         raise InputError("rotor.kind", rotor.kind, "spindle for this")
@@ -44,26 +40,29 @@ def run_spindle(scene: Scene) -> SpindleResult:
         raise InputError("speeds.stop", float(frequency[-1]), error.allowed) from error
     driven, measured, wanted = np.moveaxis(answers[:, :, 0], -1, 0)
     at_modes = compliances(machine, np.array([shape.frequency for shape in shapes]), points, points[:1])
+    names = tuple(f"{beam.name}.{k}" for beam in rotor.beams for k in range(len(beam.sections) + 1))
     found = tuple(
         NaturalMode(
             shape.frequency,
             shape.along,
-            np.concatenate(shape.stations),
+            dict(zip(names, np.concatenate(shape.stations).tolist(), strict=True)),
             complex(answer[1, 0]),
             complex(answer[2, 0]),
         )
         for shape, answer in zip(shapes, at_modes, strict=True)
     )
     exchanged = np.abs(answers - np.swapaxes(answers, -1, -2)).max(axis=(-1, -2))
-    return SpindleResult(
+    return SpindleAnswer(
         name=scene.name,
+        source=scene.source,
         assumed=scene.assumed,
+        digest=scene.digest,
         theory=rotor.theory,
         driven_at=rotor.driven,
         measured_at=rotor.measured,
         wanted_at=rotor.wanted,
         beams=tuple(beam.name for beam in rotor.beams),
-        stations=tuple(f"{beam.name}.{k}" for beam in rotor.beams for k in range(len(beam.sections) + 1)),
+        stations=names,
         places=places_of(machine),
         frequency=frequency,
         driven=driven,
@@ -73,11 +72,14 @@ def run_spindle(scene: Scene) -> SpindleResult:
         reciprocity=float((exchanged / np.abs(answers).max(axis=(-1, -2))).max()),
         ways_apart=_ways_apart(machine, frequency, points, answers),
         least_dissipation=float((-driven.imag / np.abs(driven)).min()),
-        source=scene.source,
-        digest=scene.digest,
-        rotation=rotor.rotation,
-        cages=() if rotor.rotation is None else cages_of(rotor.caged(), np.array([rotor.rotation])),
+        turning=None if rotor.rotation is None else _turning(rotor, rotor.rotation),
     )
+
+
+def _turning(rotor: Spindle, rotation: float) -> Turning:
+    """Speeds of the cages of all joints whose balls are given."""
+    cages = cages_of(rotor.caged(), np.array([rotation]))
+    return Turning(rotation, {cage.name: float(cage.speed[0]) for cage in cages})
 
 
 def _ways_apart(machine: Structure, frequency: Array, points: list[Coordinate], answers: Complex) -> float:
@@ -94,9 +96,7 @@ def _ways_apart(machine: Structure, frequency: Array, points: list[Coordinate], 
 def places_of(machine: Structure) -> tuple[float, ...]:
     """First station of each beam along the machine, m: the ends of a joint stand at one place.
 
-    Parameters
-    ----------
-    machine : beams and joints; a beam that no joint leads to begins at 0
+    A beam that no joint leads to begins at 0.
     """
     within = [np.cumsum([0.0, *(section.length for section in beam)]) for beam in machine.beams]
     known = {0: 0.0}

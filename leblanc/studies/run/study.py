@@ -18,9 +18,7 @@ from leblanc.results.machine.loads import MachineLoads
 from leblanc.results.motion.held import HELD_MODELS, Held
 from leblanc.results.motion.self_excited import SelfExcited
 from leblanc.results.motion.tilting import Motion, RestMode
-from leblanc.results.notes import response as notes
 from leblanc.results.notes.baffles import compartment_notes, smeared_baffles
-from leblanc.results.response import RunResult
 from leblanc.scene.inputs import input_rows
 from leblanc.scene.scene import Scene, TubRotor
 from leblanc.scene.unbalances import left_in_the_end, sheds_of
@@ -42,6 +40,8 @@ from leblanc.studies.models.choose import (
 from leblanc.studies.models.liquid import element_model, synchronous_model
 from leblanc.studies.models.validity import doubts
 from leblanc.studies.peaks import responses_between
+from leblanc.studies.run import notes as notes
+from leblanc.studies.run.answer import RunResult
 from leblanc.studies.whirl_map import large_whirl
 from meshes.arrays import Array, Complex
 from meshes.chamber_section import liquid_of
@@ -86,12 +86,7 @@ _COORDINATES = {
 
 
 def self_excited(machine: Prepared) -> SelfExcited:
-    """Growth of small whirls of a machine at its speeds [theory: whirl, eq. 7].
-
-    Parameters
-    ----------
-    machine : its friction acts in the liquid
-    """
+    """Growth of small whirls of a machine at its speeds [theory: whirl, eq. 7]."""
     scene, speed = machine.scene, machine.speed
     growth, whirl_speed = asynchronous_growth(machine.rotor, scene.fills, speed, machine.friction)
     bands: tuple[tuple[float, float], ...] = ()
@@ -115,17 +110,9 @@ def _grown_whirl(
 
 
 def motion_response(machine: Prepared, choice: Choice) -> tuple[Response, Motion, tuple[float, float]]:
-    """Response of a rotor with all its chambers, and what its vibration is without them.
+    """Response of a rotor that is not planar, its motion, and the excited critical speeds, rad/s.
 
-    Parameters
-    ----------
-    machine : whose rotor is not planar
-    choice : liquid model of the forward part at each speed
-
-    Returns
-    -------
-    The response; the motion; the critical speeds without and with liquid at which the unbalance moves the
-    axis most, rad/s
+    The last two are those without and with liquid.
     """
     scene, system, gravity = machine.scene, machine.system, machine.axial_gravity
     found = response(machine.rotor, scene.fills, machine.speed, gravity, liquid_models(choice))
@@ -153,12 +140,6 @@ def element_answers(
     """The same answers with the free surface integrated over finite elements.
 
     Their error is the distance from the exact equilibrium that they began with.
-
-    Parameters
-    ----------
-    machine : its chambers are plain
-    choice : the exact equilibrium at every speed
-    answer, refined : at the speeds asked for and between them
     """
     found = [
         answered_by(machine.rotor, machine.scene.fills, known, element_model(), machine.axial_gravity)
@@ -198,31 +179,7 @@ def run_scene(
     holding: Holding = HERE,
     cycles: bool = False,
 ) -> RunResult:
-    """Response to the unbalance and the liquid's centre of mass at each speed of a scene.
-
-    Parameters
-    ----------
-    scene : the machine
-    progress : called with what is done next
-    holding : on how many cores waves are held in time, and where what was found is kept
-    cycles : find how large whirls that grow by themselves become
-
-    Returns
-    -------
-    The response, what was assumed and where the models hold
-
-    Raises
-    ------
-    InputError : the scene names a liquid model that does not know its chambers, or its rotor is an exciter;
-        a solver for motions that the scene does not let it hold, or that cannot hold them
-
-    Examples
-    --------
-    >>> from leblanc.scene.scene import load_scene
-    >>> result = run_scene(load_scene("examples/horizontal_rig.toml"))
-    >>> result.speed.size
-    201
-    """
+    """Response to the unbalance and the liquid's centre of mass at each speed of a scene."""
     scene = scene.as_read()
     if holding.solver != COUPLED and not may_hold(scene):
         raise InputError(

@@ -82,12 +82,7 @@ def liquid_models(choice: Choice) -> Note | None:
 
 
 def unbalance_leaves(left: float) -> Note:
-    """A steady answer has all of the unbalance, though a part of it leaves with time.
-
-    Parameters
-    ----------
-    left : share of the unbalances that is left in the end
-    """
+    """A steady answer has all of the unbalance, though some leaves with time; `left` is the last share."""
     text = (
         "A part of the unbalance leaves with time; the steady answer has all of it, and the drum its whole "
         f"mass, as at the start. In the end {percent(left)} of the unbalance is left."
@@ -96,14 +91,7 @@ def unbalance_leaves(left: float) -> Note:
 
 
 def tolerance_missed(choice: Choice, speed: Array, cost: HeldCost | None = None) -> Note | None:
-    """Where the estimated error is larger than the tolerance; None where it is nowhere.
-
-    Parameters
-    ----------
-    choice : the models
-    speed : rad/s, shape (n,)
-    cost : of holding motions in time
-    """
+    """Where the estimated error is larger than the tolerance; None where it is nowhere."""
     missed = choice.missed & choice.in_range
     if choice.cut or not missed.any():
         return None
@@ -121,13 +109,10 @@ def tolerance_missed(choice: Choice, speed: Array, cost: HeldCost | None = None)
 
 
 def not_carried(stands: float, carried: float | None = None) -> Note:
-    """Gravity across the axis holds the liquid back.
+    """Gravity across the axis holds the liquid back; speeds in rad/s.
 
-    Parameters
-    ----------
-    stands : speed above which a ring of liquid stands against gravity, rad/s
-    carried : speed from which the walls carry it round from rest, rad/s, inf where nothing drags on it; None
-        where that is not known
+    A ring stands above `stands`; from `carried` on the walls carry it round from rest, inf where nothing
+    drags on it, None where that is not known.
     """
     data: dict[str, Any] = {"below": stands}
     text = (
@@ -141,13 +126,7 @@ def not_carried(stands: float, carried: float | None = None) -> Note:
 
 
 def carried_words(stands: float, carried: float) -> str:
-    """From where on the walls carry the liquid round from rest, in a sentence.
-
-    Parameters
-    ----------
-    stands : speed above which a ring of liquid stands against gravity, rad/s
-    carried : speed from which the walls carry it round from rest, rad/s; inf where nothing drags on it
-    """
+    """From where on the walls carry the liquid round from rest, in a sentence; as for `not_carried`."""
     if math.isinf(carried):
         return "From rest nothing carries it round: no friction acts on it."
     if carried <= stands:
@@ -162,11 +141,6 @@ def left_out(curve: Response, stands: float | None) -> Note | None:
     """Speeds that do not count for the largest amplitude; None where all or none of them do.
 
     Smaller amplitudes without an annular layer are not worth it: `not_carried` has them.
-
-    Parameters
-    ----------
-    curve : the answer at the speeds asked for and between them, by rising speed
-    stands : speed above which an annular layer exists, rad/s; None where it does at every one
     """
     out = ~curve.holds & ~np.isnan(curve.amplitude)
     if not out.any() or not curve.holds.any() or curve.top is None:
@@ -198,12 +172,7 @@ def left_out(curve: Response, stands: float | None) -> Note | None:
 
 
 def slow_disturbances(held: Held | None = None) -> Note | None:
-    """What the stability of branches of a planar rotor means; None where all motions have shown their own.
-
-    Parameters
-    ----------
-    held : motions held in time, which have shown whether they are stable
-    """
+    """What the stability of branches of a planar rotor means; None where all motions have shown their own."""
     if held is not None and held.at.all():
         return None
     where = "Branches" if held is None else "Where no motion was held in time branches"
@@ -215,24 +184,13 @@ STANDS = "Forces on the floor take the cabinet as rigid and standing still on fe
 
 
 def loads(obstructed: bool = False) -> Note:
-    """What forces and clearances leave out.
-
-    Parameters
-    ----------
-    obstructed : liquid moves past baffles, or in a section that is no circle
-    """
+    """What forces and clearances leave out."""
     without = "; what liquid loses past baffles or in sections of their own is not in the motor's torque"
     return Note(RunCode.LOADS, {"obstructed": obstructed}, f"{STANDS}{without if obstructed else ''}.")
 
 
 def held_motions(held: Held, speed: Array) -> list[Note]:
-    """How many motions were held in time, how well, and what they came to.
-
-    Parameters
-    ----------
-    held : the motions
-    speed : rad/s, shape (n,)
-    """
+    """How many motions were held in time, how well, and what they came to."""
     count, cycles, apart = (int(np.count_nonzero(x)) for x in (held.at, held.limit_cycle, held.hysteresis))
     error, (waves, parts) = held.error[held.at], HELD_MODELS[held.model]
     worst = float(error[~np.isnan(error)].max(initial=0.0))
@@ -291,12 +249,7 @@ def _between(speed: Array) -> str:
 
 
 def one_family(answer: Response) -> Note | None:
-    """What it means that one family of waves answers alone; None where other models do.
-
-    Parameters
-    ----------
-    answer : of the machine
-    """
+    """What it means that one family of waves answers alone; None where other models do."""
     alone = answer.model == "kdv"
     if not alone.any():
         return None
@@ -315,37 +268,18 @@ def one_family(answer: Response) -> Note | None:
 
 
 def plane_words(position: float, chambers: bool) -> str:
-    """Plane of an amplitude, as it stands wherever one is shown.
-
-    Parameters
-    ----------
-    position : of the plane along the axis, m
-    chambers : the plane is that of the first chamber; else the one to which positions count
-    """
+    """Plane of an amplitude, as it stands wherever one is shown."""
     place = "of chamber 1" if chambers else "of the origin"
     return f"in the plane {place} at {with_unit(position, LENGTH)}"
 
 
 def plane_label(chambers: bool) -> str:
-    """The same for the label of an axis, where there is little room.
-
-    Parameters
-    ----------
-    chambers : as for `plane_words`
-    """
+    """The same for the label of an axis, where there is little room."""
     return " at chamber 1" if chambers else " at the origin"
 
 
 def plane(position: float, zero: str, chambers: bool, held: bool = False) -> Note:
-    """Where the motion of a rotor that tilts is measured.
-
-    Parameters
-    ----------
-    position : of the plane, m
-    zero : what angles count from
-    chambers : the plane is that of the first chamber
-    held : some motions are held in time
-    """
+    """Where the motion of a rotor that tilts is measured."""
     start = "the unbalance" if zero == "unbalance" else zero
     turns = ", of motions held in time as a mean over the turns" if held else ""
     text = (
@@ -356,14 +290,7 @@ def plane(position: float, zero: str, chambers: bool, held: bool = False) -> Not
 
 
 def against_spin(share: float, speed: float, held: Held | None = None) -> Note:
-    """How far the orbit is from a circle.
-
-    Parameters
-    ----------
-    share : of the orbit that goes against the spin, at most
-    speed : where it does, rad/s
-    held : motions held in time, in which the waves answer that part as well
-    """
+    """How far the orbit is from a circle."""
     by = "the liquid answers that part by linear theory"
     if held is not None:
         rest = f"; elsewhere {by}" if not held.at.all() else ""
@@ -400,27 +327,14 @@ def self_excited(whirl: SelfExcited) -> Note:
 
 
 def thick_wall_layer(speed: float, limit: float, whole: bool) -> Note:
-    """Speeds at which the growth of whirls is out of the range of laminar friction.
-
-    Parameters
-    ----------
-    speed : up to which the layer on the wall is thicker, rad/s
-    limit : thickness over the liquid's depth
-    whole : that is all of the range
-    """
+    """Speeds up to which growth of whirls is out of the range of laminar friction, and its limit."""
     where = "here" if whole else f"below {in_rpm(speed)}"
     text = f"Growth and bands {where} are out of range: a laminar wall layer over {limit:g} of the depth."
     return Note(RunCode.THICK_WALL_LAYER, {"speed": speed, "limit": limit}, text)
 
 
 def large_whirl(large: LargeWhirl, speed: Array) -> Note | None:
-    """How large the self-excited whirl on top of the response becomes; None where there is none.
-
-    Parameters
-    ----------
-    large : the whirls
-    speed : of the scene, rad/s, shape (n,)
-    """
+    """How large the self-excited whirl on top of the response becomes; None where there is none."""
     if not np.nanmax(large.amplitude, initial=0.0) > 0.0:
         return None
     most = int(np.nanargmax(large.amplitude))
@@ -442,13 +356,7 @@ def large_whirl(large: LargeWhirl, speed: Array) -> Note | None:
 
 
 def several_answers(first: float, last: float, stable: bool) -> Note:
-    """More than one deflection satisfies the balance.
-
-    Parameters
-    ----------
-    first, last : speeds between which they do, rad/s
-    stable : the largest stable one is reported; else the largest
-    """
+    """More than one deflection satisfies the balance."""
     which = "largest stable one" if stable else "largest"
     text = (
         f"Several deflections satisfy the balance {over_rpm(first, last, 'between', 'and')}; "
@@ -458,12 +366,7 @@ def several_answers(first: float, last: float, stable: bool) -> Note:
 
 
 def unbounded(wet: float | None, dry: float | None) -> Note:
-    """The amplitude has no bound at a speed within the range.
-
-    Parameters
-    ----------
-    wet, dry : speeds with and without liquid, rad/s; None where it has one everywhere
-    """
+    """The amplitude has no bound at a speed with or without liquid, rad/s, within the range."""
     found = [(name, speed) for name, speed in (("with", wet), ("without", dry)) if speed is not None]
     where = " and ".join(f"{name} liquid at {speed * RPM:.4g} rpm" for name, speed in found)
     text = f"Nothing damps the resonance {where}: the amplitude has no bound there."
@@ -471,15 +374,7 @@ def unbounded(wet: float | None, dry: float | None) -> Note:
 
 
 def wall(chamber: int, speed: float, volume: float, enough: float, deflection: float) -> Note:
-    """How much liquid just covers the wall of a chamber.
-
-    Parameters
-    ----------
-    chamber : its number, from 0
-    speed : rad/s
-    volume, enough : of the liquid, and what just covers the wall, m^3
-    deflection : of the axis there, m
-    """
+    """How much liquid just covers a chamber's wall at a speed, rad/s, and the axis' deflection, m."""
     has = "wet all round" if volume > enough else "dry in part"
     text = (
         f"Chamber {chamber + 1} at {in_rpm(speed)}: wall {has} with {with_unit(volume, VOLUME)}; "
@@ -490,11 +385,5 @@ def wall(chamber: int, speed: float, volume: float, enough: float, deflection: f
 
 
 def mesh(chamber: int, finding: str) -> Note:
-    """Faults of the mesh of a chamber's section.
-
-    Parameters
-    ----------
-    chamber : its number, from 0
-    finding : in words
-    """
+    """Faults of the mesh of a chamber's section."""
     return Note(RunCode.MESH, {"chamber": chamber}, f"Mesh of chamber {chamber + 1}: {finding}.")

@@ -1,28 +1,23 @@
-"""The figure of a rotor in magnetic bearings: a trial in time, and what unbalances leave over speed."""
+"""Figures of a rotor in magnetic bearings: of `run` its trial and its orbits, of `explain` the forces."""
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from leblanc.core.notes import one_line
-from leblanc.core.units import RPM, in_rpm
+from leblanc.core.units import LENGTH, RPM, in_rpm, with_unit
 from leblanc.figures.drawing.page import (
     Caption,
     Figure,
-    FigureFiles,
     Frame,
     lay_out,
     number,
-    save,
     style,
 )
-from leblanc.results.magnetic.control import MagneticResult
-from leblanc.text.magnetic import NAMES, alt
+from leblanc.wings.magnetic.answer import NAMES, MagneticAnswer, MagneticExplanation, sentence
 
-TITLE = "Rotor in magnetic bearings"
 UM, MA = 1e6, 1e3
 _LOOKS: dict[str, dict[str, Any]] = {
     "synergetic": {"color": "C0", "linestyle": "-"},
@@ -31,18 +26,14 @@ _LOOKS: dict[str, dict[str, Any]] = {
 _LEAST = 1e-5  # of the gap: what a logarithmic axis shows
 
 
-def magnetic_figure(result: MagneticResult) -> Figure:
-    """Deflection and currents of the trial in time, deflection by unbalances over speed.
-
-    Parameters
-    ----------
-    result : the answer
-    """
+def magnetic_figure(result: MagneticAnswer) -> Figure:
+    """Deflection and currents of the trial in time, deflection by unbalances over speed."""
     with style():
         figure = Figure()
-        figure.alt = alt(result)
+        time = "deflection in a bearing and currents over time, and " if result.trials else ""
+        figure.alt = f"Curves of {time}the deflection by unbalances over speed. {sentence(result)}"
         rows: list[list[Any]] = []
-        if any(control.trial is not None for control in result.controllers):
+        if result.trials:
             above: Any = figure.add_axes((0, 0, 1, 1), label="deflection")
             middle: Any = figure.add_axes((0, 0, 1, 1), label="current")
             _draw_deflection(above, result)
@@ -59,18 +50,7 @@ def magnetic_figure(result: MagneticResult) -> Figure:
     return figure
 
 
-def write_magnetic_figure(result: MagneticResult, directory: Path) -> FigureFiles:
-    """Draw the figure and write it as PNG and SVG.
-
-    Parameters
-    ----------
-    result : the answer
-    directory : where the files go; made if it is missing
-    """
-    return save(magnetic_figure(result), directory, "magnetic", TITLE)
-
-
-def _draw_deflection(axes: Any, result: MagneticResult) -> None:
+def _draw_deflection(axes: Any, result: MagneticAnswer) -> None:
     """Distance from the centre in the bearing where it is larger, on a logarithmic axis."""
     gap = result.machine.magnets.gap
     for control in result.controllers:
@@ -90,7 +70,7 @@ def _draw_deflection(axes: Any, result: MagneticResult) -> None:
     axes.set_ylabel("Deflection (um)")
 
 
-def _draw_current(axes: Any, result: MagneticResult) -> None:
+def _draw_current(axes: Any, result: MagneticAnswer) -> None:
     """Largest of the four control currents."""
     for control in result.controllers:
         if control.trial is None:
@@ -107,9 +87,9 @@ def _draw_current(axes: Any, result: MagneticResult) -> None:
     axes.set_ylabel("Control current (mA)")
 
 
-def _mark_loads(axes: Any, result: MagneticResult) -> None:
+def _mark_loads(axes: Any, result: MagneticAnswer) -> None:
     """Lines where loads come on later."""
-    end = max(control.trial.motion.time[-1] for control in result.controllers if control.trial is not None)
+    end = max(motion.time[-1] for motion in result.trials)
     for load in result.loads:
         if 0.0 < load.start < end:
             axes.axvline(
@@ -118,7 +98,7 @@ def _mark_loads(axes: Any, result: MagneticResult) -> None:
     axes.set_xlim(0.0, float(end))
 
 
-def _draw_unbalance(axes: Any, result: MagneticResult) -> None:
+def _draw_unbalance(axes: Any, result: MagneticAnswer) -> None:
     """Deflection by the unbalances over speed."""
     look = {"marker": "o"} if result.speed.size == 1 else {}
     for control in result.controllers:
@@ -137,13 +117,39 @@ def _draw_unbalance(axes: Any, result: MagneticResult) -> None:
     axes.set_ylabel("By unbalances (um)")
 
 
-def _caption(result: MagneticResult) -> Caption:
+def _caption(result: MagneticAnswer) -> Caption:
     assumed = ", ".join(map(one_line, result.assumed)) or "nothing"
     shown = "Deflection in a bearing by the unbalances alone, from the linear loop."
-    if any(control.trial is not None for control in result.controllers):
+    if result.trials:
         shown = (
             "Above: deflection in the bearing where it is larger and largest of four control currents in the "
             f"trial in time, at {in_rpm(result.load_speed)} in the mean. Below: deflection by the unbalances "
             "alone, from the linear loop."
         )
     return Caption(shown, f"Scene: {one_line(result.name)}. Assumed: {assumed}.")
+
+
+def force_figure(answer: MagneticExplanation) -> Figure:
+    """Force outwards over the deflection, with the largest current home, without and with the largest out."""
+    looks = (("C0", "-", "largest current home"), ("0.3", "--", "bias current alone"), ("C1", "-.", "out"))
+    with style():
+        figure = Figure()
+        axes: Any = figure.add_axes((0, 0, 1, 1))
+        for force, (color, line, label) in zip(answer.force, looks, strict=True):
+            axes.plot(answer.place * UM, force, color=color, linestyle=line, label=label)
+        axes.axhline(0.0, color="0.45", linewidth=0.7)
+        most = float(np.abs(answer.force[0]).max())
+        axes.set_ylim(-1.5 * most, 4.0 * most)
+        axes.set_xlim(0.0, float(answer.place[-1]) * UM)
+        axes.set_xlabel("Deflection along an axis (um)")
+        axes.set_ylabel("Force outwards (N)")
+        figure.alt = (
+            f"Force outwards over the deflection for three currents; the rotor comes home from "
+            f"{with_unit(answer.reach, LENGTH)}."
+        )
+        text = "Force of both bearings and the motor on a rotor that does not lean."
+        assumed = ", ".join(map(one_line, answer.assumed)) or "nothing"
+        origin = f"Scene: {one_line(answer.name)}. Assumed: {assumed}."
+        frame = Frame(left=0.72, top=0.12, between=0.0, below=0.42)
+        lay_out(figure, [[axes]], [2.4], frame, Caption(text, origin))
+    return figure

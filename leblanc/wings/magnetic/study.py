@@ -3,15 +3,22 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from leblanc.results.magnetic.control import Controlled, Followed, LoadAnswer, MagneticResult
+from leblanc.core.progress import update
+from leblanc.wings.magnetic.answer import (
+    Controlled,
+    Followed,
+    LoadAnswer,
+    MagneticAnswer,
+    MagneticExplanation,
+)
 from meshes.arrays import Array
 from meshes.errors import InputError
-from solvers.rotor.magnetic.control import Controller
+from solvers.rotor.magnetic.control import Controller, Uncontrolled
 from solvers.rotor.magnetic.linear import Loop, closed_loop, margins, orbit_size
 from solvers.rotor.magnetic.machine import MagneticRotor, dimensionless
 from solvers.rotor.magnetic.motion import Load, integrate, settling_time
@@ -23,20 +30,11 @@ if TYPE_CHECKING:
 
 BAND = 0.02  # of the gap, within which the rotor has settled; 4 um of the source's gap, its requirement
 _STEPS = 400  # times at which a step is looked at
+_PLACES = 91  # up to 0.9 of the gap
 
 
-def run_magnetic(scene: Scene, progress: Callable[[str], object] = lambda what: None) -> MagneticResult:
-    """Answer of a scene of kind "magnetic" over its speeds [theory: magnetic, eq. 19-24].
-
-    Parameters
-    ----------
-    scene : the scene
-    progress : called with what is worked on
-
-    Raises
-    ------
-    InputError : its rotor is of another kind
-    """
+def run_magnetic(scene: Scene) -> MagneticAnswer:
+    """Answer of a scene of kind "magnetic" over its speeds [theory: magnetic, eq. 19-24]."""
     rotor = rotor_of(scene)
     machine, speed, trial = rotor.machine(), scene.speed_array(), rotor.trial
     loads = loads_of(scene)
@@ -44,30 +42,55 @@ def run_magnetic(scene: Scene, progress: Callable[[str], object] = lambda what: 
     band = BAND * machine.magnets.gap
     found = []
     for controller in rotor.controllers():
-        progress(controller.name)
+        update(what=controller.name)
         found.append(_controlled(machine, controller, speed, loads, load_speed, trial, band))
-    return MagneticResult(
-        name=scene.name,
-        assumed=scene.assumed,
+    return MagneticAnswer(
+        **_of(scene),
         machine=machine,
-        numbers=dimensionless(machine),
+        dimensionless=dimensionless(machine),
         speed=speed,
         controllers=tuple(found),
         loads=tuple(loads.values()),
         load_speed=load_speed,
         band=band,
-        source=scene.source,
-        digest=scene.digest,
     )
 
 
-def loads_of(scene: Scene) -> dict[str, Load]:
-    """Loads on the rotor of a scene by their names, gravity among them where it lies across the axis.
+def explain_magnetic(scene: Scene) -> MagneticExplanation:
+    """Numbers that determine how a rotor in magnetic bearings behaves [theory: magnetic, eq. 4-10]."""
+    rotor = rotor_of(scene)
+    machine, last = rotor.machine(), scene.speeds.stop
+    magnets, place = machine.magnets, np.linspace(0.0, 0.9 * machine.magnets.gap, _PLACES)
+    currents = np.array([-magnets.limit, 0.0, magnets.limit])[:, None]
+    return MagneticExplanation(
+        **_of(scene),
+        dimensionless=dimensionless(machine),
+        current_stiffness=magnets.current_stiffness,
+        position_stiffness=magnets.position_stiffness,
+        growth=float(closed_loop(machine, Uncontrolled(), last).poles.real.max()),
+        holds=float(machine.outward_force(0.0, magnets.limit)),
+        reach=machine.reach,
+        fastest={
+            control.name: float(-closed_loop(machine, control, last).poles.real.min())
+            for control in rotor.controllers()
+        },
+        place=place,
+        force=machine.outward_force(place, currents),
+    )
 
-    Parameters
-    ----------
-    scene : of kind "magnetic"
-    """
+
+def _of(scene: Scene) -> dict[str, Any]:
+    """What an answer keeps of its scene."""
+    return {
+        "name": scene.name,
+        "source": scene.source,
+        "assumed": scene.assumed,
+        "digest": scene.digest,
+    }
+
+
+def loads_of(scene: Scene) -> dict[str, Load]:
+    """Loads on the rotor of a scene by their names, gravity among them where it lies across the axis."""
     rotor = rotor_of(scene)
     loads = {f"load {k + 1}": part.load() for k, part in enumerate(rotor.loads)}
     if rotor.axis == "horizontal":
@@ -76,12 +99,7 @@ def loads_of(scene: Scene) -> dict[str, Load]:
 
 
 def rotor_of(scene: Scene) -> MagneticOfScene:
-    """The scene's rotor, which is in magnetic bearings.
-
-    Raises
-    ------
-    InputError : it is of another kind
-    """
+    """The scene's rotor, which is in magnetic bearings."""
     from leblanc.scene.magnetic import MagneticRotor as OfScene
 
     if not isinstance(scene.rotor, OfScene):

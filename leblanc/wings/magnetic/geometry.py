@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
 from leblanc.results.drawn.machine import rounded_down
-from leblanc.results.drawn.magnetic import MagneticView
 from leblanc.scene.scene import Scene
-from leblanc.studies.magnetic.run import loads_of, rotor_of
+from leblanc.wings.magnetic.study import loads_of, rotor_of
 from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.rotor.magnetic.linear import closed_loop, orbit_size
@@ -20,20 +21,52 @@ _LONG = 1.3  # of a rotor whose length the scene does not say, over the distance
 _ROUND = 121  # instants of an orbit
 
 
-def magnetic_view(scene: Scene, speed: float | None = None, factor: float | None = None) -> MagneticView:
-    """A rotor in magnetic bearings with its first controller.
+@dataclass(frozen=True)
+class MagneticView:
+    """A rotor in its two bearings; k instants."""
 
-    Parameters
-    ----------
-    scene : of kind "magnetic"
-    speed : of an orbit by the unbalances alone, rad/s; the trial in time if None and the scene has one
-    factor : of the path as drawn; that of the gap in a trial, chosen for an orbit, if None
+    picture: ClassVar = "leblanc.view.magnetic:magnetic_picture"
+    film: ClassVar = "leblanc.view.magnetic:magnetic_film"
 
-    Raises
-    ------
-    InputError : another rotor, a value out of its range, a speed at which the controller does not hold it
+    name: str  #: of the scene
+    assumed: bool  #: some of its values are
+    lying: bool  #: the axis is horizontal
+    controller: str  #: that holds the rotor
+    trial: bool  #: the path is that of the trial in time; else an orbit by the unbalances alone
+    time: Array  #: of the instants, s and rad/s, shape (k,)
+    speed: Array
+    displacement: Array  #: along first x, first y, second x, second y of the bearings, m, shape (k, 4)
+    gap: float  #: m
+    planes: tuple[float, float]  #: of the bearings along the axis, m
+    radius: float  #: of the rotor, m
+    length: float
+    sketched: bool  #: the scene does not say how wide and long it is
+    gap_factor: float  #: by which the gap and the path are drawn larger
+    path_factor: float
+
+    def to_json(self) -> dict[str, object]:
+        """What `leblanc view --json` prints of a rotor in magnetic bearings, SI."""
+        return {
+            "controller": self.controller,
+            "speed": float(self.speed[0]),
+            "displacement": self.displacement[0],
+            "gap_factor": self.gap_factor,
+            "deflection_factor": self.path_factor,
+        }
+
+
+def magnetic_view(
+    scene: Scene, mode: int | None = None, speed: float | None = None, factor: float | None = None
+) -> MagneticView:
+    """A rotor in magnetic bearings with its first controller, in its trial or in an orbit at a speed, rad/s.
+
+    The trial is shown where the scene has one and no speed is asked for. The factor is that of the path as
+    drawn: the gap's in a trial, chosen for an orbit, if None. An `InputError` says at which speed the
+    controller does not hold the rotor.
     """
     rotor = rotor_of(scene)
+    if mode is not None:
+        raise InputError("--mode", mode, "left out for a rotor in magnetic bearings")
     if factor is not None and not (math.isfinite(factor) and factor > 0.0):
         raise InputError("--factor", factor, "a finite number above 0")
     machine, controller = rotor.machine(), rotor.controllers()[0]

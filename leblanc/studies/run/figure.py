@@ -39,9 +39,9 @@ from leblanc.figures.drawing.page import (
     zero_of,
 )
 from leblanc.figures.machine import machine_figure
-from leblanc.results.notes.response import plane_label
-from leblanc.results.response import RunResult
-from leblanc.text.run import alts, amplitude_place
+from leblanc.studies.run.answer import RunResult
+from leblanc.studies.run.notes import plane_label
+from leblanc.studies.run.words import alts, amplitude_place
 from meshes.arrays import Array, Flags
 
 Draw = Callable[[Any, Curves, RunResult], None]
@@ -84,11 +84,6 @@ def write_figures(result: RunResult, directory: Path) -> tuple[FigureFiles, ...]
     """Draw all figures of a study and write each as PNG and SVG.
 
     One result gives the same files byte for byte, as long as the version of matplotlib stays the same.
-
-    Parameters
-    ----------
-    result : the study
-    directory : where the files go; made if it is missing
     """
     figures = [
         ("amplitude", "Amplitude over speed", amplitude_figure),
@@ -479,14 +474,8 @@ def value_axis(
     """Limits that hold all lines, from zero up; logarithmic where a linear axis would show a peak alone.
 
     That is so where the highest peak is more than `FLAT` times the value which the lowest line exceeds over
-    half of the speeds. Points that crowd about a peak do not count for more than those of a coarse grid.
-
-    Parameters
-    ----------
-    axes : whose values it sets
-    room : left free below the lines, a share of the height
-    lines : speed, rising, and values of each, nan allowed
-    others : values that must have a place as well
+    half of the speeds, so that points that crowd about a peak do not count for more. `room` below the lines
+    is a share of the height.
     """
     every = np.concatenate([y for _, y in lines] + ([] if others is None else [others]))
     known = [(x[y > 0.0], y[y > 0.0]) for x, y in lines if np.any(y > 0.0)]
@@ -537,13 +526,7 @@ def campbell_figure(result: RunResult) -> Figure:
 
 
 def draw_campbell(axes: Axes, result: RunResult) -> None:
-    """Natural frequencies over speed, forward and backward distinguished, and where the spin meets them.
-
-    Parameters
-    ----------
-    axes : an empty drawing
-    result : of a rotor that is not planar
-    """
+    """Natural frequencies over speed, forward and backward distinguished, and where the spin meets them."""
     assert result.motion is not None
     diagram = result.motion.campbell
     rpm, hertz = diagram.spin * RPM, diagram.frequency * RPM / HZ

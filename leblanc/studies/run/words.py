@@ -27,20 +27,15 @@ from leblanc.core.units import (
 )
 from leblanc.results.choice import ModelSpan
 from leblanc.results.motion.held import HELD_MODELS, Held
-from leblanc.results.notes.response import plane_words
-from leblanc.results.response import RunResult, grade_words
+from leblanc.studies.run.answer import RunResult, grade_words
+from leblanc.studies.run.notes import plane_words
 from meshes.arrays import Array, Flags
 
 AGAINST = 0.5  # from here on a whirl counts as one with or against the spin
 
 
 def answer(result: RunResult) -> str:
-    """What the liquid does, in one sentence.
-
-    Parameters
-    ----------
-    result : the response
-    """
+    """What the liquid does, in one sentence."""
     most, at, last, *_ = comparisons(result)
     if most.wet == NOT_FOUND:
         return "No answer was found at any speed."
@@ -87,12 +82,7 @@ def _sized(text: str) -> str:
 
 
 def largest(amplitude: Array) -> int | None:
-    """Index of the largest amplitude, one without a bound above all; None if none was found.
-
-    Parameters
-    ----------
-    amplitude : nan where nothing was found, m, shape (n,)
-    """
+    """Index of the largest amplitude, one without a bound above all; None if none was found."""
     return None if np.isnan(amplitude).all() else int(np.nanargmax(amplitude))
 
 
@@ -158,24 +148,14 @@ def _unknown(result: RunResult, index: int) -> bool:
 
 
 def amplitude_place(result: RunResult) -> str:
-    """Where along the axis amplitudes are those of; empty for a rotor that moves in one plane.
-
-    Parameters
-    ----------
-    result : the response
-    """
+    """Where along the axis amplitudes are those of; empty for a rotor that moves in one plane."""
     if result.motion is None:
         return ""
     return plane_words(result.motion.position, bool(result.chambers))
 
 
 def largest_error(result: RunResult) -> str:
-    """The largest error that the models estimate; empty where none is estimated.
-
-    Parameters
-    ----------
-    result : the response
-    """
+    """The largest error that the models estimate; empty where none is estimated."""
     if result.chamberless or result.error_estimate is None or np.isnan(result.error_estimate).all():
         return ""
     known = result.error_estimate[np.isfinite(result.error_estimate)]
@@ -186,12 +166,7 @@ def largest_error(result: RunResult) -> str:
 
 
 def comparison_table(result: RunResult) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
-    """Heads and rows of `comparisons`, as printed; of a machine without chambers one column.
-
-    Parameters
-    ----------
-    result : the response
-    """
+    """Heads and rows of `comparisons`, as printed; of a machine without chambers one column."""
     rows = comparisons(result)
     if result.chamberless:
         return ("", "without liquid"), [(row.label, row.wet) for row in rows]
@@ -223,12 +198,7 @@ class Comparison:
 
 
 def comparisons(result: RunResult) -> list[Comparison]:
-    """Largest and last amplitude, critical speed of a planar rotor, balance quality: with and without liquid.
-
-    Parameters
-    ----------
-    result : the response
-    """
+    """Largest and last amplitude, critical speed (planar), balance quality, with and without liquid."""
     r = result.curve
     wet, dry = r.top, largest(r.amplitude_dry)
     at_wet, at_dry = (NOT_FOUND if i is None else number(r.speed[i] * RPM) for i in (wet, dry))
@@ -251,12 +221,7 @@ def comparisons(result: RunResult) -> list[Comparison]:
 
 
 def quality_words(quality: float) -> str:
-    """A balance quality with the grade of ISO 21940-11 that it keeps.
-
-    Parameters
-    ----------
-    quality : m/s
-    """
+    """A balance quality with the grade of ISO 21940-11 that it keeps."""
     return f"{number(quality * 1e3)} mm/s ({grade_words(quality)})"
 
 
@@ -273,12 +238,7 @@ def _compared(label: str, result: RunResult, wet: int | None, dry: int | None) -
 
 
 def facts(result: RunResult) -> list[tuple[str, str]]:
-    """What else a reader wants to know: label and value.
-
-    Parameters
-    ----------
-    result : the response
-    """
+    """What else a reader wants to know: label and value."""
     r = result.response
     where = NOT_FOUND if math.isnan(r.liquid_offset[-1]) else "none"
     if r.liquid_offset[-1] > 0.0:
@@ -353,12 +313,7 @@ class Limit:
 
 
 def limits(result: RunResult) -> list[Limit]:
-    """Where the answer is not what it seems: each check with the speeds that fail it.
-
-    Parameters
-    ----------
-    result : the response
-    """
+    """Where the answer is not what it seems: each check with the speeds that fail it."""
     r, tolerance, held = result.response, result.tolerance, result.held
     lost = ~r.converged if held is None else ~r.converged & ~held.at
     found = [_limit("Not converged", r.speed, lost)] if held is None or lost.any() else []
@@ -413,12 +368,7 @@ def _held_limits(result: RunResult, held: Held) -> list[Limit]:
 
 
 def limit_rows(result: RunResult) -> list[tuple[str, str]]:
-    """The checks of the answer for a terminal: label and speeds, the largest error among them.
-
-    Parameters
-    ----------
-    result : the response
-    """
+    """The checks of the answer for a terminal: label and speeds, the largest error among them."""
     rows = [(limit.label, limit.where) for limit in limits(result)]
     error = largest_error(result)
     return [*rows, ("Estimated error of the liquid model", error)] if error else rows
@@ -429,12 +379,7 @@ def _limit(label: str, speed: Array, fails: Flags) -> Limit:
 
 
 def unanswered(result: RunResult) -> list[str]:
-    """What has no answer, a line a kind, each with its first speeds.
-
-    Parameters
-    ----------
-    result : the response
-    """
+    """What has no answer, a line a kind, each with its first speeds."""
     held, found = result.held, []
     lost = ~result.converged if held is None else ~result.converged & ~held.at
     if lost.any():
@@ -464,12 +409,7 @@ def _first(parts: list[str]) -> str:
 
 
 def machine(result: RunResult) -> str:
-    """The machine and its speeds, in one sentence.
-
-    Parameters
-    ----------
-    result : the response
-    """
+    """The machine and its speeds, in one sentence."""
     r = result.response
     count = len(result.chambers)
     volume = with_unit(sum(chamber.volume for chamber in result.chambers), VOLUME)
@@ -483,12 +423,7 @@ def machine(result: RunResult) -> str:
 
 
 def remarks(result: RunResult) -> list[str]:
-    """Remarks that follow from the numbers themselves, besides the notes.
-
-    Parameters
-    ----------
-    result : the response
-    """
+    """Remarks that follow from the numbers themselves, besides the notes."""
     r, found = result.curve, []
     highest = r.top
     if highest is None:
@@ -507,12 +442,7 @@ def remarks(result: RunResult) -> list[str]:
 
 
 def alts(result: RunResult) -> dict[str, str]:
-    """What each figure shows, with the numbers a reader would take from it.
-
-    Parameters
-    ----------
-    result : the response
-    """
+    """What each figure shows, with the numbers a reader would take from it."""
     most, at, last, *_ = comparisons(result)
     where = f" {place}" if (place := amplitude_place(result)) else ""
     if result.chamberless:
@@ -578,12 +508,7 @@ def _swing_alt(result: RunResult) -> str:
 
 
 def summary(result: RunResult) -> list[tuple[str, str]]:
-    """Main numbers: label and value.
-
-    Parameters
-    ----------
-    result : the response
-    """
+    """Main numbers: label and value."""
     both = ((row.label, f"{row.wet} with liquid, {row.dry} without") for row in comparisons(result))
     rows = [(row.label, row.wet) for row in comparisons(result)] if result.chamberless else list(both)
     plane = amplitudes_are(amplitude_place(result))
@@ -639,13 +564,7 @@ BALLS = (
 
 
 def described(names: Iterable[str], held: bool = False) -> list[tuple[str, str]]:
-    """Name of each model once, with what it does and takes for granted; nothing of one that is not known.
-
-    Parameters
-    ----------
-    names : of models, in any order
-    held : waves were held in time
-    """
+    """Name of each model once, with what it does and takes for granted; nothing of one that is not known."""
     found: dict[str, tuple[str, ...]] = {name: MODELS.get(name, ()) for name in names}
     for name in set(HELD_MODELS) & set(found) if held else ():
         does, granted = MODELS[name]

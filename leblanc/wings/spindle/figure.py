@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from leblanc.core.notes import one_line
 from leblanc.core.units import MM
-from leblanc.figures.drawing.page import Caption, Figure, FigureFiles, Frame, lay_out, number, save, style
-from leblanc.results.spindles.unit import SpindleResult
-from leblanc.text.spindles.unit import PER_NEWTON, THEORIES, alt, hertz, shapes_alt
+from leblanc.figures.drawing.page import Caption, Figure, Frame, lay_out, number, style
+from leblanc.wings.spindle.answer import PER_NEWTON, THEORIES, SpindleAnswer, hertz, sentence
 from meshes.arrays import Complex
 
 FRAME = Frame(left=0.72, top=0.2, between=0.12, below=0.42)
@@ -25,20 +23,18 @@ _LOOKS: tuple[dict[str, Any], ...] = (
 )
 
 
-def compliance_figure(result: SpindleResult) -> Figure:
-    """Size and phase of both compliances above, of their ratio W below.
-
-    Parameters
-    ----------
-    result : the answer
-    """
+def compliance_figure(result: SpindleAnswer) -> Figure:
+    """Size and phase of both compliances above, of their ratio W below."""
     lines = (
         (f"{result.measured_at}, measured (q1)", result.measured * PER_NEWTON),
         (f"{result.wanted_at}, wanted (q2)", result.wanted * PER_NEWTON),
     )
     with style():
         figure = Figure()
-        figure.alt = alt(result)
+        figure.alt = (
+            f"Size and phase of the compliances of {result.measured_at} and {result.wanted_at} under a force "
+            f"at {result.driven_at}, and of their ratio W, over frequency. {sentence(result)}"
+        )
         names = ("size", "phase", "ratio", "ratio_phase")
         panels: list[Any] = [figure.add_axes((0, 0, 1, 1), label=name) for name in names]
         for (label, values), look in zip(lines, _LOOKS, strict=False):
@@ -65,7 +61,7 @@ def compliance_figure(result: SpindleResult) -> Figure:
     return figure
 
 
-def _draw(size: Any, phase: Any, result: SpindleResult, values: Complex, label: str, look: Any) -> None:
+def _draw(size: Any, phase: Any, result: SpindleAnswer, values: Complex, label: str, look: Any) -> None:
     """One complex number over frequency."""
     frequency = result.frequency / (2.0 * math.pi)
     size.plot(frequency, np.abs(values), label=label, **look)
@@ -80,17 +76,13 @@ def _draw(size: Any, phase: Any, result: SpindleResult, values: Complex, label: 
     phase.set_yticks([-180, -90, 0, 90, 180])
 
 
-def shapes_figure(result: SpindleResult) -> Figure:
-    """Deflection along each beam in the first natural motions.
-
-    Parameters
-    ----------
-    result : the answer; with a natural frequency in its band
-    """
+def shapes_figure(result: SpindleAnswer) -> Figure:
+    """Deflection along each beam in the first natural motions, of which there is one at least."""
     shown = result.modes[:MOST_SHAPES]
     with style():
         figure = Figure()
-        figure.alt = shapes_alt(result)
+        every = ", ".join(hertz(mode.frequency) for mode in result.modes)
+        figure.alt = f"Deflection along each beam in the natural motions at {every}."
         panels: list[Any] = []
         for k, mode in enumerate(shown):
             axes: Any = figure.add_axes((0, 0, 1, 1), label=f"mode {k + 1}")
@@ -113,21 +105,7 @@ def shapes_figure(result: SpindleResult) -> Figure:
     return figure
 
 
-def write_figures(result: SpindleResult, directory: Path) -> list[FigureFiles]:
-    """Draw the figures and write them as PNG and SVG.
-
-    Parameters
-    ----------
-    result : the answer
-    directory : where the files go; made if it is missing
-    """
-    found = [save(compliance_figure(result), directory, "compliance", "Dynamic compliances and their ratio")]
-    if result.modes:
-        found.append(save(shapes_figure(result), directory, "shapes", "Shapes of the natural motions"))
-    return found
-
-
-def _caption(result: SpindleResult) -> Caption:
+def _caption(result: SpindleAnswer) -> Caption:
     return Caption(
         f"A force of 1 N at {result.driven_at}; {result.measured_at} is measured, {result.wanted_at} wanted. "
         f"Exact beams with {THEORIES[result.theory]}; no gyroscopic moments.",
@@ -135,6 +113,6 @@ def _caption(result: SpindleResult) -> Caption:
     )
 
 
-def _origin(result: SpindleResult) -> str:
+def _origin(result: SpindleAnswer) -> str:
     assumed = f"{len(result.assumed)} values or tables" if result.assumed else "nothing"
     return f"Scene: {one_line(result.name)}. Assumed: {assumed}, all marked in the scene."

@@ -1,1 +1,0 @@
-"""Figures of rotors in magnetic bearings: `control` of `run`, `force` of `explain`."""

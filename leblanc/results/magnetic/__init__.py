@@ -1,1 +1,0 @@
-"""What is answered of a rotor in magnetic bearings: `control` by `run`, `explanation` by `explain`."""

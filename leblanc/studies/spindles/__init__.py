@@ -1,1 +1,0 @@
-"""What a spindle unit and its rolling bearings answer."""

@@ -1,1 +1,0 @@
-"""Answers about a spindle unit and its rolling bearings as text."""

@@ -1,0 +1,1 @@
+"""A rotor in magnetic bearings: its control, how it holds the rotor over speed and in time."""

@@ -1,0 +1,1 @@
+"""A spindle unit: compliances between two of its stations, over frequency and at its natural frequencies."""
