@@ -80,19 +80,14 @@ def follow(
         return Curve(begin[None], found)
     points, length, travelled = [found[0]], step, 0.0
     renew(points[0])
-    first = _onward(equations, points[0], size, tangent)
-    if first is None:
-        return Curve(np.array(points), End.NOWHERE)
-    tangent = first
+    tangent = first = _onward(found[2], tangent)
     while len(points) < most:
         guess = points[-1] + length * size * tangent
         answer = _corrected(equations, guess, tangent, size, tolerance, _BESIDE * length)
-        ahead = None if isinstance(answer, End) else _onward(equations, answer[0], size, tangent)
-        if isinstance(answer, End) or ahead is None or ahead @ tangent < _STRAIGHT:
+        if isinstance(answer, End) or (ahead := _onward(answer[2], tangent)) @ tangent < _STRAIGHT:
             length *= 0.5
             if length < _SHORTEST * step:
-                ends = answer is End.NOWHERE or (answer is not End.LOST and ahead is None)
-                return Curve(np.array(points), End.NOWHERE if ends else End.LOST)
+                return Curve(np.array(points), answer if isinstance(answer, End) else End.LOST)
             continue
         point = answer[0]
         points.append(point)
@@ -126,11 +121,8 @@ def _tangent(slope: Array) -> Array:
     return np.asarray(tangent * np.sign(tangent[heavy]))
 
 
-def _onward(equations: Equations, point: Array, size: Array, tangent: Array) -> Array | None:
-    """Direction of the curve at a point, on the side of the last one; None next to where it ends."""
-    slope = _slope(equations, point, size)
-    if not np.isfinite(slope).all():
-        return None
+def _onward(slope: Array, tangent: Array) -> Array:
+    """Direction of the curve at a point with these derivatives, on the side of the last one."""
     ahead = np.linalg.svd(slope)[2][-1]
     return np.asarray(ahead if ahead @ tangent >= 0.0 else -ahead)
 
@@ -142,8 +134,8 @@ def _corrected(
     size: Array,
     tolerance: float,
     reach: float = np.inf,
-) -> tuple[Array, int] | End:
-    """Point of the curve on the plane across the tangent, and the rounds taken; why where none is found.
+) -> tuple[Array, int, Array] | End:
+    """Point of the curve on the plane across the tangent, rounds, derivatives there; why where none is found.
 
     Within `reach` of the guess, in the units: beyond there it is a point of another curve.
     """
@@ -152,12 +144,14 @@ def _corrected(
         left = equations(point)
         if not np.isfinite(left).all():
             return End.NOWHERE
-        matrix = np.vstack((_slope(equations, point, size), tangent))
+        slope = _slope(equations, point, size)
+        matrix = np.vstack((slope, tangent))
         away = np.append(left, tangent @ ((point - guess) / size))
         if not np.isfinite(matrix).all():
             return End.NOWHERE
         change = np.linalg.lstsq(matrix, -away, rcond=None)[0]
         point = point + size * change
         if np.abs(change).max() <= tolerance:
-            return (point, count) if np.linalg.norm((point - guess) / size) <= reach else End.LOST
+            # Taken within the tolerance of the point.
+            return (point, count, slope) if np.linalg.norm((point - guess) / size) <= reach else End.LOST
     return End.LOST

@@ -66,7 +66,14 @@ def _upper(known: Complex, scale: Array) -> tuple[Complex, Complex]:
     gap = np.abs(mirrored[:, :, None] - upper[:, None, :])
     twin = (gap <= 1e-6 * (np.abs(mirrored)[:, :, None] + scale[:, None, None])).any(axis=2)
     lower = np.where(twin, nothing, mirrored)
-    return np.concatenate([upper, lower], axis=1), np.where(real, known.real + 0j, nothing)
+    return _packed(np.hstack([upper, lower])), _packed(np.where(real, known.real + 0j, nothing))
+
+
+def _packed(values: Complex) -> Complex:
+    """Rows with their finite entries first, without the columns that no row needs."""
+    finite = np.isfinite(values)
+    order = np.argsort(~finite, axis=1, kind="stable")
+    return np.take_along_axis(values, order, axis=1)[:, : finite.sum(axis=1).max()]
 
 
 def _path(pairs: Complex, region: Region) -> tuple[Complex, Index]:
@@ -113,8 +120,9 @@ class _Deflated:
     def at(self, points: Complex, owner: Index) -> Complex:
         """log f at points of problems, shape (k,)."""
         found = self.function(points, owner)
-        for known in (self.pairs, self.pairs.conj(), self.alone):
-            gap = points[:, None] - known[owner]
+        at, pairs = points[:, None], self.pairs[owner]
+        # One logarithm of both factors of a pair: by how many turns it is off, nobody asks.
+        for gap in ((at - pairs) * (at - pairs.conj()), at - self.alone[owner]):
             found = found - np.log(np.where(np.isfinite(gap), gap, 1.0)).sum(axis=1)
         return found
 

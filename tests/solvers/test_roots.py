@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
-import numpy as np
+import math
 
-from solvers.roots import bracketed_root
+import numpy as np
+import pytest
+
+from solvers.roots import bracketed_root, single_root
+from tests.mutants import kills
 
 
 def test_roots_of_many_functions() -> None:
@@ -46,3 +50,20 @@ def test_smooth_functions_take_few_steps() -> None:
     root, found = bracketed_root(function, np.zeros(5), np.full(5, 4.0))
     assert found.all() and calls < 15
     np.testing.assert_allclose(root, np.log(2.0 + np.arange(5)), rtol=1e-15)
+
+
+@kills("solvers.roots:single_root", "if phi * phi < xi and", "if False and")
+@kills("solvers.roots:single_root", "fx < 0.0", "fx > 0.0")
+def test_one_root_is_found_as_many_are() -> None:
+    calls: list[float] = []
+
+    def function(x: float, target: float = 2.0) -> float:
+        calls.append(x)
+        return math.exp(x) - target
+
+    assert single_root(function, 0.0, 4.0) == pytest.approx(math.log(2.0), rel=1e-15)
+    assert len(calls) < 12
+    foot = single_root(lambda x: -1e-12 if x < 0.9 else (x - 0.9) * 1e6 - 1e-12, 0.0, 1.0)
+    assert foot == pytest.approx(0.9, rel=1e-14)
+    assert single_root(lambda x: x, 0.0, 1.0) == 0.0
+    assert single_root(lambda x: x**2 + 1.0, -1.0, 0.5) == 0.5

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -34,6 +35,19 @@ def scene(name: str, **changes: Any) -> lb.Scene:
     )
 
 
+@pytest.fixture
+def no_curves(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Follow no curve, most of a small chart's work, where the growth or the band is judged alone."""
+    monkeypatch.setattr(f"{CHARTS}.follow_edge", lambda *_, **__: None)
+
+
+@cache
+def coarse_and_fine() -> tuple[BallChart, BallChart]:
+    """Charts of one machine."""
+    coarse, fine = (lb.map_balls(scene("balls"), values=v, speeds=s) for v, s in ((5, 6), (17, 21)))
+    return coarse, fine
+
+
 def beside_liquid(**changes: Any) -> lb.Scene:
     """Two balls beside liquid, which balance in one way: a chart and `run` judge the same state."""
     machine = scene("balls_and_liquid", rotor__unbalance=3e-3, **changes)
@@ -56,17 +70,20 @@ def as_in_run(machine: lb.Scene) -> None:
     np.testing.assert_allclose(chart.scene_growth, expected, rtol=1e-6, atol=1e-9 * chart.speed[-1])
 
 
+@pytest.mark.usefixtures("no_curves")
 @pytest.mark.parametrize("name", ["balls", "long_rotor"])
 def test_growth_with_the_scene_as_it_stands_is_that_of_run(name: str) -> None:
     as_in_run(scene(name, speeds__count=3))
 
 
+@pytest.mark.usefixtures("no_curves")
 @kills("solvers.synchronous.balls:in_step", "system.mass + _in_step", "system.mass + 0.0 * _in_step")
 def test_growth_beside_liquid_is_that_of_run() -> None:
     """The liquid as a mass in step."""
     as_in_run(beside_liquid(speeds__count=3))
 
 
+@pytest.mark.usefixtures("no_curves")
 def test_an_even_share_is_one_of_the_family() -> None:
     """Two races of one plane share the unbalance by what they hold: growth in the range of all members."""
     machine = scene("balls_and_liquid", speeds__count=3)
@@ -78,6 +95,7 @@ def test_an_even_share_is_one_of_the_family() -> None:
     assert (least <= chart.scene_growth[balanced]).all() and (chart.scene_growth[balanced] <= largest).all()
 
 
+@pytest.mark.usefixtures("no_curves")
 @kills(f"{CHARTS}:stable_bands", "bracketed_root(largest, x[known], x[known + 1])[0]", "x[known]")
 @pytest.mark.parametrize("machine", [scene("balls"), beside_liquid()], ids=["balls", "balls_and_liquid"])
 def test_the_edge_is_where_the_growth_of_run_changes_its_sign(machine: lb.Scene) -> None:
@@ -87,6 +105,7 @@ def test_the_edge_is_where_the_growth_of_run_changes_its_sign(machine: lb.Scene)
     assert below > 0.0 > above
 
 
+@pytest.mark.usefixtures("no_curves")
 @kills(f"{CHARTS}:existence_bounds", "(middle, high) if exists(middle) == there[k]", "(middle, high) if True")
 def test_the_balanced_state_ends_where_the_balls_hold_the_unbalance() -> None:
     """N m R = U_0."""
@@ -125,6 +144,7 @@ def test_the_long_rotor_comes_out_of_the_command(tmp_path: Path, capsys: pytest.
     }
 
 
+@pytest.mark.usefixtures("no_curves")
 def test_the_command_says_what_the_function_returns(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -140,6 +160,7 @@ def test_the_command_says_what_the_function_returns(
     assert "leblanc map" in (tmp_path / "map.html").read_text(encoding="utf-8")
 
 
+@pytest.mark.usefixtures("no_curves")
 @kills(f"{CHARTS}:gathered", "(np.pi if light else 0.0)", "(0.0 if light else np.pi)")
 def test_gathered_states_are_those_of_run() -> None:
     """On the heavy side below the critical speed; opposite, above it, where balls are too light."""
@@ -152,6 +173,7 @@ def test_gathered_states_are_those_of_run() -> None:
         np.testing.assert_allclose(chart.scene_growth, expected, rtol=1e-6)
 
 
+@pytest.mark.usefixtures("no_curves")
 @kills(f"{STUDY}:_family", "value * share", "value")
 @kills(f"{STUDY}:_own", "float(found)", "2.0 * float(found)")
 def test_several_numbers_keep_their_ratio() -> None:
@@ -169,8 +191,7 @@ def test_several_numbers_keep_their_ratio() -> None:
 @kills("leblanc.figures.races.chart:regions", "label(~wall)", "label(~wall | wall)")
 def test_regions_reach_up_to_the_curves() -> None:
     """Between the points of a coarse grid they say what a fine one finds."""
-    machine = scene("balls")
-    coarse, fine = (lb.map_balls(machine, values=v, speeds=s) for v, s in ((5, 6), (17, 21)))
+    coarse, fine = coarse_and_fine()  # the mutants are in what is drawn of them
     speed, value, growing = regions(coarse)
     rows = [int(np.abs(np.log(value / v)).argmin()) for v in fine.value]
     columns = [int(np.abs(speed - s).argmin()) for s in fine.speed]
