@@ -58,18 +58,6 @@ class TravellingWave:
         return np.asarray(self.level + self.height * (scale**2 * humps + flat) / (1.0 - m1))
 
 
-def solitary_wave(c: KdvCoefficients, height: float, mean_zero: bool = False) -> TravellingWave:
-    """Solitary wave on the drum; height, m^2, of the sign of alpha delta [theory: steppers, eq. 12].
-
-    A solution up to its tails, 4 H e^{-2 pi kappa} at the far side, unlike the cnoidal wave. With `mean_zero`
-    its level is lowered so that it holds no liquid beyond the mean.
-    """
-    sharpness = math.sqrt(_sharpness_squared(c, height))
-    level = -height * math.tanh(math.pi * sharpness) / (math.pi * sharpness) if mean_zero else 0.0
-    speed = c.linear_speed + c.steepening * (level + height / 3.0)
-    return TravellingWave(height, sharpness, speed, level, 1, 0.0)
-
-
 def cnoidal_wave(c: KdvCoefficients, height: float, crests: int = 1, mean: float = 0.0) -> TravellingWave:
     """Periodic wave of a height from trough to crest, m^2, on the drum [theory: steppers, eq. 13-14].
 

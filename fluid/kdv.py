@@ -5,7 +5,7 @@
 
 eta = A - A0 is the liquid area per radian above its mean, m^2 (positive: a thicker layer). theta and the
 whirl speed s are seen from the drum, positive with the spin; the deflection lies at theta = s t. These signs
-live here alone: a free wave is eta ~ exp(i n theta - i omega t), and `rescaling` leads to other conventions.
+live here alone: a free wave is eta ~ exp(i n theta - i omega t).
 """
 
 from __future__ import annotations
@@ -107,18 +107,6 @@ def wave_frequency(mode: ArrayLike, c: KdvCoefficients, whitham: bool) -> Array:
     crests = np.where(n == 0.0, 1.0, np.abs(n))
     prograde, retrograde = free_wave_frequencies(crests, c.layer_log, c.spin)
     return np.asarray(np.sign(n) * (prograde if c.family == 1 else retrograde))
-
-
-def rescaling(c: KdvCoefficients, steepening: float, dispersion: float) -> tuple[float, float]:
-    """Scales of field (1/m^2) and angle that lead to u_t + p u u_x + d u_xxx = 0 [theory: kdv, eq. 14].
-
-    u = field_scale * eta, x = angle_scale * (theta - lambda0 t); a negative angle scale mirrors the drum.
-    """
-    for name, value in (("steepening", steepening), ("dispersion", dispersion)):
-        if not math.isfinite(value) or value == 0.0:
-            raise InputError(name, value, "a finite number other than 0")
-    angle = float(np.cbrt(dispersion / c.dispersion))
-    return c.steepening * angle / steepening, angle
 
 
 def offset(c: KdvCoefficients, profile: ArrayLike) -> Complex:

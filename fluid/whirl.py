@@ -141,15 +141,6 @@ def offset_with_friction(
     return np.asarray(-share * np.square(omega) / resonance)
 
 
-def force_with_friction(
-    layer_tanh: ArrayLike, spin: ArrayLike, whirl_speed: ArrayLike, rate: ArrayLike
-) -> Complex:
-    """Force of the layer on its drum over m_f omega^2 w, G = 2 T/(1 + T) (1 + d/w) [theory: whirl, eq. 5]."""
-    t = np.asarray(layer_tanh)
-    filled = 2.0 * t / (1.0 + t)
-    return np.asarray(filled * (1.0 + offset_with_friction(t, spin, whirl_speed, rate)))
-
-
 def drag_power(layer: Layer, spin: ArrayLike, whirl_speed: float | Array, force: ArrayLike) -> Array:
     """Heat by friction in a layer under a force on its mass that goes round, W [theory: loads, eq. 18].
 

@@ -45,11 +45,6 @@ def loss_coefficient(share: Real) -> Real:
     return lost * lost
 
 
-def lid_length(share: Real) -> Real:
-    """Channel length over its depth with a baffle's inertia, under a rigid lid [theory: baffles, eq. 15]."""
-    return -4.0 / math.pi * np.log(np.sin(0.5 * math.pi * share))
-
-
 def pile_up(depth: Array, tip: float, gap: float, head: Array) -> tuple[Array, Array]:
     """Loss coefficient of the mean flow, and the depth that piles up before the baffles, m.
 

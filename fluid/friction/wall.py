@@ -36,10 +36,6 @@ class WallDrag(NamedTuple):
     #: root of u/top, shape (m, 2)
     table: Array
 
-    def per(self, unit: float) -> WallDrag:
-        """The same with times in units of 1/`unit`, s."""
-        return self._replace(coefficient=self.coefficient / unit, top=self.top / unit)
-
 
 def wall_drag(
     friction: Friction,

@@ -17,7 +17,7 @@ from meshes.arrays import Array, Indices
 from meshes.bodies.body import Body
 from meshes.errors import InputError, require_positive
 from meshes.files.foreign import limited_memory, require_file, require_harmless_xml
-from meshes.liquid_section import LiquidSection, free_sides, liquid_section
+from meshes.liquid_section import LiquidSection, free_sides
 from meshes.quality import cell_areas
 from meshes.rings.triangles import open_slits
 from meshes.section import Section
@@ -32,13 +32,8 @@ SPACE = {4: "tetra", 10: "tetra10"}
 # Cells without an area: nodes and edges that Gmsh writes along with the others.
 _DROPPED = frozenset({"vertex", *LINES.values()})
 
-# Reverses a cell and keeps its first vertex and the numbering of the nodes between.
-_REVERSED = {
-    3: np.array([0, 2, 1]),
-    6: np.array([0, 2, 1, 5, 4, 3]),
-    4: np.array([0, 3, 2, 1]),
-    9: np.array([0, 3, 2, 1, 7, 6, 5, 4, 8]),
-}
+# Reverses a triangle and keeps its first vertex and the numbering of the nodes between.
+_REVERSED = {3: np.array([0, 2, 1]), 6: np.array([0, 2, 1, 5, 4, 3])}
 
 
 @dataclass(frozen=True)
@@ -51,26 +46,22 @@ class FileContents:
     names: dict[tuple[int, int], str]  #: of physical groups by dimension and number
 
 
-def plane_cells(
-    path: str | Path, contents: FileContents, scale: float, kinds: tuple[str, ...]
-) -> tuple[Array, Indices, Indices]:
-    """Points, m, and counter-clockwise cells of a file, all of one kind; new number of each point or -1."""
+def plane_cells(path: str | Path, contents: FileContents, scale: float) -> tuple[Array, Indices, Indices]:
+    """Points, m, and counter-clockwise triangles of one kind of a file; new number of each point or -1."""
     found = sorted({kind for kind, data in contents.blocks if kind not in _DROPPED and len(data)})
-    shapes = "triangles or quadrilaterals" if "quad" in kinds else "triangles"
-    if len(found) != 1 or found[0] not in kinds:
+    if len(found) != 1 or found[0] not in ("triangle", "triangle6"):
         names = ", ".join(found) if found else "no cells with an area"
         raise InputError(
-            "path", str(path), f"a mesh of {shapes}, all straight or all quadratic; it holds {names}"
+            "path", str(path), f"a mesh of triangles, all straight or all quadratic; it holds {names}"
         )
     cells = np.concatenate([data for kind, data in contents.blocks if kind == found[0]]).astype(np.int64)
     used = np.unique(cells)
     if used[0] < 0 or used[-1] >= len(contents.points):
-        raise InputError("path", str(path), f"a mesh whose {shapes} use nodes that are there")
+        raise InputError("path", str(path), "a mesh whose triangles use nodes that are there")
     number = np.full(len(contents.points), -1, dtype=np.int64)
     number[used] = np.arange(len(used))
     points, cells = scale * _in_plane(path, contents.points[used]), number[cells]
-    corners = 4 if found[0].startswith("quad") else 3
-    clockwise = cell_areas(points, cells[:, :corners]) < 0.0
+    clockwise = cell_areas(points, cells[:, :3]) < 0.0
     turned = np.take(cells, _REVERSED[cells.shape[1]], axis=1)
     return points, np.where(clockwise[:, None], turned, cells), number
 
@@ -179,22 +170,12 @@ def read_walls(path: str | Path, scale: float = 1.0, slits: Sequence[str] = ()) 
     Slits are groups of lines inside the section along which it is opened: baffles without thickness.
     """
     contents = _contents(path, scale)
-    points, cells, number = plane_cells(path, contents, scale, ("triangle", "triangle6"))
+    points, cells, number = plane_cells(path, contents, scale)
     try:
         section = Section(points, cells)
     except InputError as fault:
         raise InputError("path", str(path), f"a valid section; {fault}") from fault
     return name_walls(section, named_lines(contents, number), slits, dropped_in_words(contents))
-
-
-def read_liquid_section(path: str | Path, scale: float = 1.0) -> LiquidSection:
-    """Section of liquid at rest from a mesh file; the nodes nearest to the origin are the free surface."""
-    contents = _contents(path, scale)
-    points, cells, _ = plane_cells(path, contents, scale, tuple(PLANE.values()))
-    try:
-        return liquid_section(points, cells, float(np.hypot(*points.T).min()))
-    except InputError as fault:
-        raise InputError("path", str(path), f"a valid section of liquid; {fault}") from fault
 
 
 def write_section(

@@ -93,20 +93,6 @@ def _wall_torque(place: Place, friction: Friction, lag: float, spin: float, slip
     return place.mass * rate * velocity * radius**2
 
 
-def whirl_estimate(
-    rotor: Rotor, fills: Sequence[Fill], speeds: Array, friction: Friction
-) -> tuple[Estimate | None, ...]:
-    """Size of the whirl at each speed inside a band, without solving for it [theory: whirl, eq. 29, 31].
-
-    None outside the bands, and where the whirl is no circle or nothing bounds it.
-    """
-    machine = _settling(rotor, fills, friction)
-    if machine is None:
-        return (None,) * len(speeds)
-    bands = list(undamped_bands(rotor, fills, (_BELOW * float(speeds[0]), _ABOVE * float(speeds[-1]))))
-    return _by_rule(rotor, fills, machine, bands, speeds, friction)
-
-
 def _settling(rotor: Rotor, fills: Sequence[Fill], friction: Friction) -> Circular | None:
     """A rotor's circles, if its whirls are circles and something bounds them."""
     try:
@@ -124,7 +110,10 @@ def _by_rule(
     speeds: Array,
     friction: Friction,
 ) -> tuple[Estimate | None, ...]:
-    """`whirl_estimate` with its circles and the bands without friction and damping, see `undamped_bands`."""
+    """Size of the whirl at each speed inside a band, without solving for it [theory: whirl, eq. 29, 31].
+
+    None outside the bands, which are those without friction and damping, see `undamped_bands`.
+    """
     whirls: dict[int, Estimate] = {}
     for k, speed in enumerate(speeds.tolist()):
         here = [(lower, near) for lower, upper, near in bands if lower < speed < upper]

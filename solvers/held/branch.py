@@ -12,8 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshes.arrays import Flags
-from solvers.held.hold import hold_with_error
-from solvers.held.state import HeldKind, HeldMachine, HeldState, HoldNumerics, Moment
+from solvers.held.state import HeldKind, HeldState, Moment
 
 # Amplitudes of two motions are the same within this share of the larger.
 _SAME = 0.01
@@ -51,16 +50,6 @@ def alike(first: HeldState, second: HeldState) -> bool:
     if not np.isfinite(sizes).all():
         return first is second or bool(np.isnan(sizes).all())
     return bool(np.all(np.abs(sizes[0] - sizes[1]) <= _SAME * sizes.max(axis=0)))
-
-
-def one_by_one(machine: HeldMachine, numerics: HoldNumerics) -> Runner:
-    """A runner that takes task after task in this process."""
-
-    def run(tasks: Sequence[HeldTask]) -> Iterator[tuple[int, HeldState]]:
-        for k, task in enumerate(tasks):
-            yield k, hold_with_error(machine, task.begin, numerics, task.slowest)
-
-    return run
 
 
 def held_branches(

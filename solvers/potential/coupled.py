@@ -81,11 +81,6 @@ class Powers:
     support: float  #: heat
     friction: float
 
-    @property
-    def gain(self) -> float:
-        """Rate of change of the energy: what is brought less what is taken."""
-        return self.unbalance + self.gravity + self.drive - self.support - self.friction
-
 
 @dataclass(frozen=True)
 class ExactMachine:

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from meshes.arrays import Array, Complex
-from meshes.errors import InputError, require_positive
+from meshes.errors import InputError
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import Rotor, RotorSystem
 from solvers.rotor.tub import Tub
@@ -43,19 +43,6 @@ def grade_of(quality: float) -> float | None:
 def grade_name(grade: float) -> str:
     """A grade as the standard writes it."""
     return f"G {grade * 1e3:.6g}"
-
-
-def permissible_unbalance(grade: float, mass: float, speed: ArrayLike) -> Array:
-    """Residual unbalance that a grade permits, U_per = G m/Omega [ISO16; theory: balance_quality, eq. 1].
-
-    Grade in m/s, mass in kg, speed in rad/s, shape (...,); result in kg m.
-    """
-    require_positive("grade", grade)
-    require_positive("mass", mass)
-    spin = np.asarray(speed, dtype=float)
-    if not np.all(np.isfinite(spin) & (spin > 0.0)):
-        raise InputError("speed", speed, "finite numbers above 0")
-    return np.asarray(grade * mass / spin)
 
 
 @dataclass(frozen=True)

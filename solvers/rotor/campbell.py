@@ -23,7 +23,6 @@ class Campbell:
     damping_ratio: Array  #: shape (s, n)
     direction: Array  #: of the axis' whirl, -1 against the spin to 1 with it, shape (s, n)
     crossing: Array  #: speeds at which a natural frequency equals the spin, rising, rad/s, shape (c,)
-    crossing_mode: Index  #: the column of each, shape (c,)
     crossing_direction: Array  #: direction of the whirl there, shape (c,)
     converged: NDArray[np.bool_]  #: each crossing was found to rounding, shape (c,)
 
@@ -53,7 +52,6 @@ def campbell(system: RotorSystem, spin: ArrayLike) -> Campbell:
         damping_ratio=ratio,
         direction=whirl_direction(system, np.moveaxis(shape, 1, 2)),
         crossing=crossing[rank],
-        crossing_mode=column[rank],
         crossing_direction=direction[rank],
         converged=converged[rank],
     )

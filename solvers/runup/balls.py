@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -33,12 +32,6 @@ class Balls:
 
 
 NO_BALLS = Balls()
-
-
-def spread_balls(races: Sequence[BallRace]) -> Balls:
-    """Balls evenly round each race, at rest in the drum."""
-    places = [2.0 * np.pi * k / len(race.masses) for race in races for k in range(len(race.masses))]
-    return Balls(tuple(races), tuple(places), (1.0,) * len(places))
 
 
 def ball_records(balls: Balls) -> Record:

@@ -30,7 +30,6 @@ class ModeDamping:
 
     rate: Array  #: of the amplitude, with the Coriolis force in the layers on floor and lid, 1/s, shape (k,)
     plain_rate: Array  #: without it, as in the friction of the long waves, 1/s, shape (k,)
-    wall_rate: Array  #: share of walls and baffles in either, 1/s, shape (k,)
     #: how much `rate` changes if the flow round edges of baffles is cut off at half or at twice the layer's
     #: thickness, the larger of both, over the rate, shape (k,); 0 without edges
     edge_spread: Array
@@ -58,13 +57,12 @@ def mode_damping(system: Condensed, modes: SloshingModes, viscosity: float, heig
     def rate(wall: Array, floor: Array, lid: Array) -> Array:
         return decay_rate(wall, kinetic, sense, potential, height, (g, floor, lid))
 
-    own, nothing = rate(once, *plates), np.zeros_like(g)
+    own = rate(once, *plates)
     spread = np.maximum(rate(half, *plates) - own, own - rate(twice, *plates))
     return ModeDamping(
         rate=own,
         plain_rate=rate(once, g, g),
-        wall_rate=rate(once, nothing, nothing),
-        edge_spread=np.divide(spread, own, out=nothing.copy(), where=own > 0.0),
+        edge_spread=np.divide(spread, own, out=np.zeros_like(own), where=own > 0.0),
         thickness=thickness,
     )
 

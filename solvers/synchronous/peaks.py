@@ -41,11 +41,6 @@ class Peak:
     amplitude: float  #: m; infinite where it has no bound, nan where none is known
 
     @property
-    def bounded(self) -> bool:
-        """Whether it is finite."""
-        return math.isfinite(self.amplitude)
-
-    @property
     def known(self) -> bool:
         """Whether there is one, with a bound or without."""
         return not math.isnan(self.amplitude)

@@ -209,11 +209,6 @@ class Branch:
         onward = np.sign(np.diff(self.speeds))
         return tuple(int(k) for k in np.flatnonzero(onward[1:] * onward[:-1] < 0.0) + 1)
 
-    @property
-    def heights(self) -> Array:
-        """Root mean squares of the waves, m^2, shape (k,)."""
-        return np.array([wave.rms for wave in self.waves])
-
 
 def follow(
     problem: WaveProblem,

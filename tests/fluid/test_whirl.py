@@ -18,7 +18,6 @@ from fluid.whirl import (
     Layer,
     covering_speed,
     damped_waves,
-    force_with_friction,
     is_full,
     layer_rate,
     offset_with_friction,
@@ -37,6 +36,7 @@ from solvers.sloshing.modes import sloshing_modes
 from solvers.sloshing.system import condense
 from tests.fluid.test_waves import POINTS, layer_system
 from tests.mutants import kills
+from tests.oracles.exact import force_with_friction
 
 RADIUS, SPIN = 0.15, 40.0
 WATER = Liquid("water", 1000.0, 1e-6)
@@ -97,8 +97,6 @@ def test_free_waves() -> None:
     np.testing.assert_allclose([forward, backward], expected, rtol=1e-14)
 
 
-@kills("fluid.whirl:force_with_friction", "filled = 2.0 * t / (1.0 + t)", "filled = t / (1.0 + t)")
-@kills("fluid.whirl:force_with_friction", "filled * (1.0 + offset_with", "filled * (1.0 - offset_with")
 def test_frictionless() -> None:
     """The formulas of the inviscid theory."""
     ratio = np.array([-0.5, 0.3, 0.9, 1.0, 1.7])

@@ -1,4 +1,4 @@
-"""Where statics puts the balls of a balancer."""
+"""Where statics puts the balls of a balancer, whirls with light balls, balls spread round a race."""
 
 from __future__ import annotations
 
@@ -11,6 +11,10 @@ from numpy.typing import ArrayLike
 
 from meshes.arrays import Array
 from meshes.errors import InputError, require_positive
+from solvers.rotor.balls.balancers import BallRace
+from solvers.rotor.balls.states import RotorWithBalls
+from solvers.rotor.system import RotorSystem
+from solvers.runup.balls import Balls
 
 
 def balanced_places(unbalance: complex, moment: float, count: int) -> Array | None:
@@ -84,3 +88,42 @@ def unbalance_in_planes(
     couple = sum((position * size for position, size in unbalances), 0j)
     there = (couple - first * static) / (second - first)
     return static - there, there
+
+
+def light_ball_roots(system: RotorSystem, races: Sequence[BallRace], speed: float) -> np.ndarray:
+    """Forward whirls of a rotor with light balls evenly round their races [theory: balls, eq. 37-38].
+
+    lambda in the standing frame, 1/s, by rising frequency, to first order in the balls and in the damping of
+    the supports. Above the whirl frequency the drag of the races, which turns with the rotor, feeds a whirl;
+    the supports must damp more than that.
+    """
+    machine = RotorWithBalls(system, tuple(races))
+    axes, balls = machine.axes, machine.balls
+    n = len(system.coordinates)
+    matrix = np.zeros((2 * n, 2 * n))
+    matrix[:n, n:] = np.eye(n)
+    forces = np.hstack((system.stiffness, speed * system.gyroscopic))
+    matrix[n:] = -np.linalg.solve(system.mass, forces)
+    found, vectors = np.linalg.eig(matrix)
+    roots = []
+    for root, shape in zip(found, vectors[:n].T, strict=True):
+        first, second = axes[:, 0] @ shape, axes[:, 1] @ shape
+        # The spin's way round: the second direction follows the first by a quarter.
+        size = max(float(np.abs(first).max()), float(np.abs(second).max()))
+        if root.imag <= 0.0 or np.abs(second + 1j * first).max() > 1e-6 * size:
+            continue
+        whirl = root.imag
+        slip = whirl - speed
+        held = -balls[:, 3] * balls[:, 0] * slip**2 + 1j * slip * balls[:, 2]
+        carried = np.square(np.abs(first)) * balls[:, 0] * whirl**2
+        push = np.sum(carried * (2.0 + balls[:, 0] * whirl**2 / held))
+        lost = 1j * whirl * (shape.conj() @ system.damping @ shape)
+        weight = shape.conj() @ (2j * whirl * system.mass + speed * system.gyroscopic) @ shape
+        roots.append(1j * whirl + (push - lost) / weight)
+    return np.array(sorted(roots, key=lambda root: root.imag))
+
+
+def spread_balls(races: Sequence[BallRace]) -> Balls:
+    """Balls evenly round each race, at rest in the drum."""
+    places = [2.0 * np.pi * k / len(race.masses) for race in races for k in range(len(race.masses))]
+    return Balls(tuple(races), tuple(places), (1.0,) * len(places))

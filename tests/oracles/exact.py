@@ -1,6 +1,6 @@
-"""Exact waves of the Burgers limit of the KdV-Burgers equation: a shock, and one that runs round the drum.
+"""Exact waves: solitary ones, the shock and sawtooth of the Burgers limit, small ones with linear friction.
 
-Both for eta_t + lambda0 eta_theta + alpha eta eta_theta = nu_b eta_theta_theta, nu_b above 0.
+Those of Burgers for eta_t + lambda0 eta_theta + alpha eta eta_theta = nu_b eta_theta_theta, nu_b above 0.
 """
 
 from __future__ import annotations
@@ -10,8 +10,10 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
+from fluid.exact import TravellingWave
 from fluid.kdv import KdvCoefficients
-from meshes.arrays import Array
+from fluid.whirl import offset_with_friction
+from meshes.arrays import Array, Complex
 
 
 def burgers_shock(
@@ -51,3 +53,24 @@ def burgers_sawtooth(c: KdvCoefficients, viscosity: float, age: ArrayLike, theta
     weight = np.exp(exponent - np.max(exponent, axis=-1, keepdims=True))
     mean_distance = np.sum(away * weight, axis=-1) / np.sum(weight, axis=-1)
     return np.asarray(mean_distance / (c.steepening * old))
+
+
+def solitary_wave(c: KdvCoefficients, height: float, mean_zero: bool = False) -> TravellingWave:
+    """Solitary wave on the drum; height, m^2, of the sign of alpha delta [theory: steppers, eq. 12].
+
+    A solution up to its tails, 4 H e^{-2 pi kappa} at the far side, unlike the cnoidal wave. With `mean_zero`
+    its level is lowered so that it holds no liquid beyond the mean.
+    """
+    sharpness = math.sqrt(c.steepening * height / (12.0 * c.dispersion))
+    level = -height * math.tanh(math.pi * sharpness) / (math.pi * sharpness) if mean_zero else 0.0
+    speed = c.linear_speed + c.steepening * (level + height / 3.0)
+    return TravellingWave(height, sharpness, speed, level, 1, 0.0)
+
+
+def force_with_friction(
+    layer_tanh: ArrayLike, spin: ArrayLike, whirl_speed: ArrayLike, rate: ArrayLike
+) -> Complex:
+    """Force of the layer on its drum over m_f omega^2 w, G = 2 T/(1 + T) (1 + d/w) [theory: whirl, eq. 5]."""
+    t = np.asarray(layer_tanh)
+    filled = 2.0 * t / (1.0 + t)
+    return np.asarray(filled * (1.0 + offset_with_friction(t, spin, whirl_speed, rate)))

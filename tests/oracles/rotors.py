@@ -7,6 +7,8 @@ from typing import Any
 import numpy as np
 from scipy.integrate import solve_ivp
 
+from solvers.rotor.shaft.natural import _eigenvalues
+from solvers.rotor.shaft.structure import Structure, nodes_up_to
 from solvers.rotor.system import RotorSystem
 from solvers.rotor.tub import Mount, Tub
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
@@ -95,3 +97,9 @@ def free_energy_drift(system: RotorSystem, spin: float, duration: float) -> floa
         return float(0.5 * y[n:] @ system.mass @ y[n:] + 0.5 * y[:n] @ system.stiffness @ y[:n])
 
     return abs(energy(end) / energy(start) - 1.0)
+
+
+def count_below(structure: Structure, frequency: Array) -> Array:
+    """Number of natural frequencies of a structure below given ones, rad/s [theory: spindle, eq. 11]."""
+    nodes = nodes_up_to(structure, float(frequency.max()))
+    return np.sum(_eigenvalues(structure, nodes, frequency, 0.0) < 0.0, axis=-1)

@@ -8,11 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from fluid.whirl import force_with_friction
 from solvers.potential.coupled import advance
 from solvers.potential.steady import forced
 from solvers.wave_error import force_change, layer_tanh
 from tests.mutants import kills
+from tests.oracles.exact import force_with_friction
 from validation.exact_whirl import kept
 from validation.exact_whirl.__main__ import GROWING, LAYERS, MASS_RATIOS, SETTLING, WAYS, onset_of
 from validation.exact_whirl.edges import (

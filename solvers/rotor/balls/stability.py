@@ -299,41 +299,6 @@ def balanced_stability(
     return Stability(float(roots[0].real), frequency, found.neutral, angles, roots, found.settled)
 
 
-def light_ball_roots(system: RotorSystem, races: Sequence[BallRace], speed: float) -> Complex:
-    """Forward whirls of a rotor with light balls evenly round their races [theory: balls, eq. 37-38].
-
-    lambda in the standing frame, 1/s, by rising frequency, to first order in the balls and in the damping of
-    the supports. Above the whirl frequency the drag of the races, which turns with the rotor, feeds a whirl;
-    the supports must damp more than that.
-    """
-    require_positive("speed", speed)
-    quarter_turn(system)
-    machine = RotorWithBalls(system, tuple(races))
-    axes, balls = machine.axes, machine.balls
-    n = len(system.coordinates)
-    matrix = np.zeros((2 * n, 2 * n))
-    matrix[:n, n:] = np.eye(n)
-    forces = np.hstack((system.stiffness, speed * system.gyroscopic))
-    matrix[n:] = -np.linalg.solve(system.mass, forces)
-    found, vectors = np.linalg.eig(matrix)
-    roots = []
-    for root, shape in zip(found, vectors[:n].T, strict=True):
-        first, second = axes[:, 0] @ shape, axes[:, 1] @ shape
-        # The spin's way round: the second direction follows the first by a quarter.
-        size = max(float(np.abs(first).max()), float(np.abs(second).max()))
-        if root.imag <= 0.0 or np.abs(second + 1j * first).max() > 1e-6 * size:
-            continue
-        whirl = root.imag
-        slip = whirl - speed
-        held = -balls[:, 3] * balls[:, 0] * slip**2 + 1j * slip * balls[:, 2]
-        carried = np.square(np.abs(first)) * balls[:, 0] * whirl**2
-        push = np.sum(carried * (2.0 + balls[:, 0] * whirl**2 / held))
-        lost = 1j * whirl * (shape.conj() @ system.damping @ shape)
-        weight = shape.conj() @ (2j * whirl * system.mass + speed * system.gyroscopic) @ shape
-        roots.append(1j * whirl + (push - lost) / weight)
-    return np.array(sorted(roots, key=lambda root: root.imag))
-
-
 def _settled_half_turn(
     machine: RotorWithBalls, speed: float, angles: Array, coordinates: Complex, neutral: Array
 ) -> HalfTurn:

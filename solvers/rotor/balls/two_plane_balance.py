@@ -178,34 +178,6 @@ def potential_hessian(rotor: RigidRotor, speed: float) -> Array:
     )
 
 
-def circulatory(damping: Sequence[float], position: Sequence[float]) -> Array:
-    """B_1: what damping supports do to a deflection at rest in the rotor, over the speed [FF20, eq. 25].
-
-    Damping of each support, N s/m, at its position from the centre of mass, m; a skew matrix for (alpha,
-    beta, x, y) [theory: balls, eq. 41].
-    """
-    pairs = list(zip(damping, position, strict=True))
-    b11, b14, b33 = (sum(b * z**k for b, z in pairs) for k in range(3))
-    return np.array(
-        [
-            [0.0, -b33, -b14, 0.0],
-            [b33, 0.0, 0.0, -b14],
-            [b14, 0.0, 0.0, -b11],
-            [0.0, b14, b11, 0.0],
-        ]
-    )
-
-
-def turning_state(rotor: RigidRotor, damping: Sequence[float], speed: float, unbalance: ArrayLike) -> Array:
-    """Steady deflection (alpha, beta, x, y) in the turning frame, by the source's matrices [FF20, eq. 27-29].
-
-    For the unbalance (-I_eta_zeta, I_xi_zeta, M xi_G, M eta_G). The source has its V with the other sign
-    here, see theory: balls, eq. 42.
-    """
-    matrix = speed * circulatory(damping, rotor.position) - potential_hessian(rotor, speed)
-    return np.asarray(np.linalg.solve(matrix, speed**2 * np.asarray(unbalance, dtype=float)), dtype=float)
-
-
 def plane_compliance(
     rotor: RigidRotor, position: float, speed: ArrayLike, damping: Sequence[float] | None = None
 ) -> Complex:

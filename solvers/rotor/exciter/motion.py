@@ -77,7 +77,6 @@ class Motion:
     """What a time integration shows, in the machine's own units; b blocks of time, N balls."""
 
     speed: float  #: n of the shaft
-    block_time: Array  #: middle of each block, shape (b,)
     ball_speed: Array  #: mean speed of each ball in each block, shape (b, N)
     spread: Array  #: largest angle between the first and another ball in each block, rad, shape (b,)
     stuck_speed: float  #: mean speed of the balls over the last quarter; of the last block if they broke away
@@ -308,7 +307,6 @@ def _motion(
         slow, fast = float(np.hypot(sums[0], sums[1])), float(np.hypot(sums[2], sums[3]))
     return Motion(
         speed=speed,
-        block_time=np.asarray(block * (0.5 + np.arange(means.shape[0])), dtype=np.float64),
         ball_speed=speeds,
         spread=spread,
         stuck_speed=float(speeds[last].mean()),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol
@@ -10,7 +9,7 @@ from typing import Protocol
 import numpy as np
 
 from meshes.arrays import Array
-from meshes.errors import InputError, require_not_negative, require_positive
+from meshes.errors import require_not_negative, require_positive
 from solvers.rotor.magnetic.machine import MagneticRotor
 
 
@@ -231,10 +230,3 @@ def source_times(
     return Synergetic(
         machine, time * unit, time * unit, weight * unit**2, rate / unit**3, tilt_rate / unit**3
     )
-
-
-def require_distinct(controllers: Sequence[Controller]) -> None:
-    """Refuse an empty list of controllers, and two of one name."""
-    names = [controller.name for controller in controllers]
-    if not names or len(set(names)) != len(names):
-        raise InputError("controllers", names, "one or more, of different names")

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from meshes.arrays import Array, Complex
-from meshes.errors import InputError, require_positive
+from meshes.errors import InputError
 from solvers.rotor.magnetic.control import Controller
 from solvers.rotor.magnetic.machine import MagneticRotor
 
@@ -207,19 +206,3 @@ def orbit_size(amplitude: ArrayLike) -> Array:
     """
     x, y = np.asarray(amplitude)[..., 0::2], np.asarray(amplitude)[..., 1::2]
     return np.asarray(0.5 * (np.abs(x + 1j * y) + np.abs(x - 1j * y)))
-
-
-def least_bandwidth(judge: Callable[[float], bool], low: float = 1e2, high: float = 1e9) -> float | None:
-    """Smallest bandwidth of the coils at which a loop is good enough, to 0.1 %, rad/s.
-
-    None where `judge` refuses the highest; the lowest where it accepts that already.
-    """
-    require_positive("low", low)
-    if not judge(high):
-        return None
-    if judge(low):
-        return low
-    while high / low > 1.001:
-        middle = math.sqrt(low * high)
-        low, high = (low, middle) if judge(middle) else (middle, high)
-    return high

@@ -12,7 +12,6 @@ from meshes.arrays import Array
 from meshes.errors import InputError, require_not_negative, require_positive
 
 COORDINATES = ("x", "y", "alpha", "beta")
-AXES = ("first x", "first y", "second x", "second y")  # of the bearings, in the order of forces and currents
 
 
 @dataclass(frozen=True)

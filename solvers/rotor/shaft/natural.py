@@ -31,18 +31,6 @@ class Mode:
     stations: tuple[Array, ...]  #: deflection at the stations of each beam
 
 
-def count_below(structure: Structure, frequency: Array, spin: float = 0.0) -> Index:
-    """Number of natural frequencies, 0 included, below given ones [theory: spindle, eq. 11].
-
-    Given ones above 0, rad/s; dampers do not count. Of forward whirl, of backward whirl where `spin` is
-    negative.
-    """
-    omega = np.asarray(frequency, dtype=float).reshape(-1)
-    _require_band(float(omega.min()), float(omega.max()))
-    nodes = nodes_up_to(structure, float(omega.max()), spin)
-    return np.asarray(np.sum(_eigenvalues(structure, nodes, omega, spin) < 0.0, axis=-1))
-
-
 def natural_frequencies(structure: Structure, low: float, high: float, spin: float = 0.0) -> Array:
     """All natural frequencies between two others, rad/s, rising, without dampers [theory: spindle, eq. 11].
 

@@ -71,14 +71,6 @@ def station_matrices(structure: Structure, beam: int, frequency: Array, spin: fl
     return found
 
 
-def transfer_of_beam(structure: Structure, beam: int, frequency: Array, spin: float = 0.0) -> Complex:
-    """Product of all matrices of a beam, first end to last [theory: spindle, eq. 6] [DP18, eq. 8-11]."""
-    total, *others = station_matrices(structure, beam, frequency, spin)
-    for matrix in others:
-        total = matrix @ total
-    return total
-
-
 def free_compliances(structure: Structure, beam: int, frequency: Array, spin: float = 0.0) -> Complex:
     """Compliances of a beam without its joints to other beams [theory: spindle, eq. 7].
 

@@ -11,13 +11,13 @@ import pytest
 from fluid.fill import Fill
 from fluid.friction.laws import Friction
 from fluid.liquid import Liquid
-from fluid.whirl import force_with_friction, layer_rate, plane_layer
+from fluid.whirl import layer_rate, plane_layer
 from meshes.chamber import Chamber
 from meshes.errors import InputError
 from solvers.cycles.balance import circular
 from solvers.cycles.cycles import Branch, LimitCycles, limit_cycles
 from solvers.cycles.edges import small_whirl_edges
-from solvers.cycles.estimate import whirl_estimate
+from solvers.cycles.estimate import Estimate, _by_rule, _settling, undamped_bands
 from solvers.cycles.wave import StandingWave, Whirling
 from solvers.layer.state import Numerics
 from solvers.liquid_model import Whirl
@@ -26,6 +26,7 @@ from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.two_plane import Support, TwoPlane
 from solvers.whirl.edges import unstable_bands
 from tests.mutants import kills
+from tests.oracles.exact import force_with_friction
 from tests.solvers.whirl.test_growth import HEIGHT, NATURAL, RADIUS, WATER, machine
 
 FRICTION = Friction("linear", 0.03 * NATURAL)
@@ -266,6 +267,16 @@ def test_the_estimate_in_one_line(branches: tuple[LimitCycles, Fill]) -> None:
         assert estimate.lag == pytest.approx(lag, rel=0.1)
     v = inside[1].whirl_speed / NATURAL if inside[1] else math.nan
     assert v == pytest.approx(1.0 / math.sqrt(1.0 + MU))
+
+
+def whirl_estimate(
+    rotor: Jeffcott, fills: list[Fill], speeds: np.ndarray, friction: Friction
+) -> tuple[Estimate | None, ...]:
+    """Size of the whirl at each speed inside a band, by rule; None outside the bands."""
+    settling = _settling(rotor, fills, friction)
+    assert settling is not None
+    bands = list(undamped_bands(rotor, fills, (0.6 * float(speeds[0]), 1.5 * float(speeds[-1]))))
+    return _by_rule(rotor, fills, settling, bands, speeds, friction)
 
 
 def weakly_rubbed() -> tuple[Jeffcott, list[Fill]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -14,7 +15,7 @@ from fluid.liquid import Liquid
 from meshes.baffles import Baffles
 from meshes.chamber import Chamber
 from meshes.errors import InputError
-from solvers.held.branch import HeldTask, held_branches, one_by_one
+from solvers.held.branch import HeldTask, held_branches
 from solvers.held.hold import _resampled, hold, hold_with_error, start
 from solvers.held.state import HeldKind, HeldMachine, HeldState, HoldNumerics
 from solvers.layer.inside import full_area
@@ -195,7 +196,12 @@ def test_the_way_down_is_another_one() -> None:
         HeldTask(start(machine, spin, numerics, kick=0.1 if grows > 0.0 else 0.0), float(grows))
         for spin, grows in zip(spins.tolist(), growth.tolist(), strict=True)
     ]
-    found = held_branches(tasks, one_by_one(machine, numerics))
+
+    def one_by_one(tasks: Sequence[HeldTask]) -> Iterator[tuple[int, HeldState]]:
+        for k, task in enumerate(tasks):
+            yield k, hold_with_error(machine, task.begin, numerics, task.slowest)
+
+    found = held_branches(tasks, one_by_one)
     assert found.hysteresis.tolist() == [False, False, False, True]
     # W/h0 carried up is 0.8126 at 128 cells.
     assert found.up[-1].amplitude / fill.depth == pytest.approx(0.8126, rel=0.02)

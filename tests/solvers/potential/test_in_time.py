@@ -28,6 +28,7 @@ from solvers.potential.in_time import (
 from solvers.potential.steady import free
 from solvers.potential.unsteady import Surface, force, invariants, node_angles, rates, started, still
 from tests.mutants import kills
+from tests.oracles.exact import force_with_friction
 from tests.solvers.potential.test_unsteady import waved
 
 # --- steps ---
@@ -129,7 +130,7 @@ def test_a_small_whirl_with_friction_pulls_as_the_linear_theory_says() -> None:
 
         end = advance(still(layer, 32), stop, push, Steps(32, 32, friction=rate)).surface
         found = force(end.state, push(stop), rate) / (math.pi * push(stop))
-        wanted = complex(whirl.force_with_friction(tanh, 1.0, ratio, rate))
+        wanted = complex(force_with_friction(tanh, 1.0, ratio, rate))
         assert found == pytest.approx(wanted, abs=math.exp(-slowest * (stop - 20.0)))
         assert abs(found - wanted) < 1e-3
 

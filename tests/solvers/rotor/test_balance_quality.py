@@ -18,7 +18,6 @@ from solvers.rotor.balance_quality import (
     balance_quality,
     grade_name,
     grade_of,
-    permissible_unbalance,
     residual_unbalance,
     tolerance_planes,
 )
@@ -39,18 +38,6 @@ def test_grades_of_the_standard() -> None:
     assert grade_of(0.0) == GRADES[0]
     assert grade_of(4.1) is None and grade_of(math.inf) is None and grade_of(math.nan) is None
     assert [grade_name(grade) for grade in (GRADES[0], GRADES[3], GRADES[-1])] == ["G 0.4", "G 6.3", "G 4000"]
-
-
-@kills("solvers.rotor.balance_quality:permissible_unbalance", "grade * mass / spin", "grade * mass * spin")
-def test_permissible_unbalance() -> None:
-    """In the units of the shop: U_per = 9549 G m/n, in g mm for G in mm/s, kg and rpm [ISO16]."""
-    for grade, mass, rpm in ((0.0063, 40.0, 3000.0), (0.0025, 1.2, 12000.0)):
-        speed = rpm * math.pi / 30.0
-        expected = 9549.3 * grade * 1e3 * mass / rpm * 1e-6
-        assert permissible_unbalance(grade, mass, speed) == pytest.approx(expected, rel=1e-5)
-    for wrong in ((0.0, 1.0, 1.0), (1.0, -1.0, 1.0), (1.0, 1.0, 0.0), (1.0, 1.0, math.nan)):
-        with pytest.raises(InputError):
-            permissible_unbalance(*wrong)
 
 
 def _rotor(*unbalances: PlaneUnbalance, first: float = -0.3, last: float = 0.2) -> TwoPlane:

@@ -19,7 +19,6 @@ from solvers.rotor.balls.stability import (
     HalfTurn,
     balanced_roots,
     balanced_stability,
-    light_ball_roots,
     linearised,
     neutral_directions,
     small_motions,
@@ -29,6 +28,7 @@ from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import RotorSystem
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
 from tests.mutants import kills
+from tests.oracles.balls import light_ball_roots
 
 SUPPORTS = (Support(0.2, 1e4, 40.0), Support(-0.22, 1.1e4, 40.0))
 UNBALANCES = (PlaneUnbalance(0.15, 1e-3, 0.0), PlaneUnbalance(-0.1, 8e-4, 2.0))
@@ -380,8 +380,6 @@ def test_balls_that_do_not_balance_are_refused() -> None:
         linearised(replace(PLANAR, stiffness=np.diag([1e4, 2e4])), RACES[:1], 60.0, [2.0, 4.0])
 
 
-@kills("solvers.rotor.balls.stability:light_ball_roots", "-balls[:, 3] *", "balls[:, 3] *")
-@kills("solvers.rotor.balls.stability:light_ball_roots", "1j * slip * balls", "-1j * slip * balls")
 def test_light_balls_move_a_whirl_as_the_closed_form_says() -> None:
     """Forward whirls; what the form leaves out is of the square of the balls' share."""
     weak, weaker = (

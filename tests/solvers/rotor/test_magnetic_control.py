@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 
 from meshes.arrays import Complex
 from meshes.errors import InputError
-from solvers.rotor.magnetic.control import Controller, Pid, Uncontrolled, require_distinct, source_times
-from solvers.rotor.magnetic.linear import Loop, closed_loop, least_bandwidth, margins, orbit_size
+from solvers.rotor.magnetic.control import Controller, Pid, Uncontrolled, source_times
+from solvers.rotor.magnetic.linear import Loop, closed_loop, margins, orbit_size
 from solvers.rotor.magnetic.machine import MagneticRotor
 from solvers.rotor.magnetic.motion import Ending, Load, SpeedLaw, _Equations, integrate, settling_time
 from tests.mutants import kills
@@ -189,8 +189,6 @@ def test_margins_of_what_is_not_stable() -> None:
     assert math.isnan(found.phase) and math.isnan(found.sensitivity)
     with pytest.raises(InputError, match="speed"):
         closed_loop(ROTOR, pid(), -1.0)
-    with pytest.raises(InputError, match="controllers"):
-        require_distinct([pid(), pid()])
     with pytest.raises(InputError, match="manifold_time"):
         source_times(ROTOR, 0.0, 1.0, 1.0, 1.0)
 
@@ -321,12 +319,6 @@ def test_orbits() -> None:
     """A circle, a line, and an ellipse with half axes of 3 and 1."""
     found = orbit_size(np.array([[2.0, -2.0j, 3.0, 4.0], [3.0, -1.0j, 0.0, 0.0]]))
     np.testing.assert_allclose(found, [[2.0, 5.0], [3.0, 0.0]], rtol=1e-14)
-
-
-def test_least_bandwidth() -> None:
-    assert least_bandwidth(lambda w: w >= 12345.0) == pytest.approx(12345.0, rel=1.1e-3)
-    assert least_bandwidth(lambda w: False) is None
-    assert least_bandwidth(lambda w: True, 5.0) == 5.0
 
 
 def test_a_load_and_a_law_that_cannot_be() -> None:

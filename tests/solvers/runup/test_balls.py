@@ -20,13 +20,14 @@ from solvers.rotor.balls.steady import BallKind
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import RotorSystem
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
-from solvers.runup.balls import Balls, spread_balls
+from solvers.runup.balls import Balls
 from solvers.runup.linear import couple_linear
 from solvers.runup.long_wave import Coupled, couple
 from solvers.runup.machine import Handover, Motor, Ramp
 from solvers.runup.runup import RunupHistory, RunupNumerics, run_up
 from solvers.synchronous.balls import wet_states
 from tests.mutants import kills
+from tests.oracles.balls import spread_balls
 
 FRICTION = Friction()
 ROTOR = Jeffcott(4.0, 4.4e4, 84.0, 6e-4)

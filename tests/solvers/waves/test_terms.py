@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from pde import PDE, CartesianGrid, ScalarField
 
-from fluid.exact import TravellingWave, cnoidal_wave, solitary_wave
+from fluid.exact import TravellingWave, cnoidal_wave
 from fluid.kdv import KdvCoefficients, coefficients
 from fluid.waves import free_wave_frequencies
 from solvers.pypde.grid import circle
@@ -18,7 +18,7 @@ from solvers.pypde.one_family import KdvBurgersPDE
 from solvers.waves.modes import WaveTerms, wave_split
 from solvers.waves.stepper import Control, advance_adaptive, advance_fixed, to_spectrum
 from tests.mutants import kills
-from tests.oracles.exact import burgers_sawtooth
+from tests.oracles.exact import burgers_sawtooth, solitary_wave
 
 PROGRADE = coefficients(0.15, 0.135, 40.0, 1)
 RETROGRADE = coefficients(0.15, 0.135, 40.0, -1)

@@ -20,8 +20,8 @@ from leblanc.scene.schema.load import SceneError
 from leblanc.wings.spindle.answer import SpindleAnswer
 from leblanc.wings.spindle.figure import compliance_figure, shapes_figure
 from meshes.errors import InputError
-from solvers.rotor.shaft.natural import count_below
 from solvers.rotor.shaft.structure import Coordinate, compliances
+from tests.oracles.rotors import count_below
 
 SCENE = example("spindle")
 FEW = SCENE.replace({"speeds.count": 200})

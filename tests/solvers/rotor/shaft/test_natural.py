@@ -12,10 +12,11 @@ from scipy.optimize import brentq
 
 from meshes.arrays import Array
 from meshes.errors import InputError
-from solvers.rotor.shaft.natural import count_below, modes, natural_frequencies
+from solvers.rotor.shaft.natural import modes, natural_frequencies
 from solvers.rotor.shaft.section import Section, round_section
 from solvers.rotor.shaft.structure import Joint, PointMass, Structure
 from tests.mutants import kills
+from tests.oracles.rotors import count_below
 
 _AT = "solvers.rotor.shaft"
 RIGID = 1e16  # of a support, N/m and N m/rad: 1e9 times a beam's own stiffness
