@@ -82,16 +82,12 @@ def test_a_kept_run_comes_out_again() -> None:
 def test_the_figure_of_two_planes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Four panels that say what the conditions say; the balanced one falls, the others stay."""
     kept = []
-    monkeypatch.setattr(two_plane_figures, "save", lambda figure, *rest: kept.append(figure) or _Files())
+    monkeypatch.setattr(two_plane_figures, "save_png", lambda figure, *rest: kept.append(figure) or tmp_path)
     two_plane_figures.balls_figure(tmp_path)
     panels = kept[0].axes
     assert [axes.get_title().rpartition(" ")[2] for axes in panels] == ["no", "yes", "no", "no"]
     falls = [max(line.get_ydata()[-1] for line in axes.get_lines()[:2]) < 0.01 for axes in panels]
     assert falls == [False, True, False, False]
-
-
-class _Files:
-    png = Path("none")
 
 
 def test_the_sample_covers_the_ranges() -> None:

@@ -94,6 +94,7 @@ def answer(
     solver: str | None,
 ) -> AnyLayerAnswer:
     """Answer to a whirl, settled or from rest over a duration, or the free wave of a crest height."""
+    update(what="waves under the whirl")
     chamber = round_chamber(radius, height, baffles, baffle_tip_radius, baffle_wall_gap)
     fill = Fill(chamber, liquid, volume)
     if free is not None:

@@ -14,7 +14,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from leblanc.api import layer, modes, optimise, run_up
+import leblanc as lb
+from leblanc.api import optimise, run_up
 from leblanc.cli import main
 from leblanc.core.answer import Result
 from leblanc.core.terminal import print_json
@@ -68,11 +69,11 @@ RESULTS = {
     "compare": lambda: compare_models(scene("horizontal_rig"), ["kdv", "linear", "statics"]),
     "explain": lambda: explain_scene(scene("runup")),
     "explain an exciter": lambda: explain_exciter(scene("vibratory_table")),
-    "layer": lambda: layer(**LAYER, whirl_speed=32.0, whirl_amplitude="0.15 mm"),
-    "layer from rest": lambda: layer(
+    "layer": lambda: lb.layer(**LAYER, whirl_speed=32.0, whirl_amplitude="0.15 mm"),
+    "layer from rest": lambda: lb.layer(
         **LAYER, whirl_speed=32.0, whirl_amplitude="0.15 mm", model="long_wave", cells=32, duration=2.0
     ),
-    "modes": lambda: modes(**LAYER, count=3, segments=32),
+    "modes": lambda: lb.modes(**LAYER, count=3, segments=32),
     "volume": lambda: volume(**CHAMBER, eccentricity=1e-3, speed=20.0, volume=3e-5),
     "exciter": lambda: run_exciter(scene("vibratory_table")),
     "magnetic": lambda: run_magnetic(
