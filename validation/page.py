@@ -13,7 +13,7 @@ from typing import Any, get_args
 from leblanc.figures.drawing.page import WIDTH, Frame, lay_out, style
 from leblanc.figures.drawing.page import Figure as Figure
 from leblanc.figures.drawing.page import number as number
-from validation.cases.case import Case, Value, Verdict
+from validation.case import Case, Value, Verdict
 
 _DPI, _WIDE = 160, 110  # dots of a file and of the screen to an inch
 _PLAIN = 10.0  # relative differences below are told in per cent, larger ones as factors

@@ -11,7 +11,7 @@ import pytest
 from solvers.potential.steady import on_nodes
 from solvers.potential.strip import nodes
 from validation.breaking import kept
-from validation.cases.case import Case
+from validation.case import Case
 from validation.cases.liquid.exact_wave import (
     NEAR,
     cases,

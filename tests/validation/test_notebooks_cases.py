@@ -15,8 +15,8 @@ from leblanc.studies.models.choose import axial_gravity
 from solvers.statics.hydrostatics import equilibrium
 from solvers.synchronous.response import response
 from tests.mutants import kills
+from validation.case import Case, Origin, compare
 from validation.cases import errata
-from validation.cases.case import Case, Origin, compare
 from validation.cases.liquid import fill_optimum, layer, optimal_volume
 from validation.cases.liquid.layer import bore_summary
 from validation.cases.rotors import rig_lag, tub, whirl

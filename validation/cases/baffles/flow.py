@@ -18,7 +18,7 @@ from meshes.chamber import Chamber
 from solvers.layer.baffles import TORQUE
 from solvers.layer.inside import Inside, inside_of
 from solvers.sloshing.blocked import blocked_share
-from validation.cases.case import COMPUTED_FLOW, Case, Effect, compare, shape_verdict
+from validation.case import COMPUTED_FLOW, Case, Effect, compare, shape_verdict
 from validation.page import Figure, page
 from validation.study import data, launch, shown
 

@@ -31,7 +31,7 @@ from solvers.rotor.exciter.stability import (
     third_speed,
 )
 from solvers.rotor.exciter.tangent import follow
-from validation.cases.case import Case, compare
+from validation.case import Case, compare
 from validation.cases.exciter.speeds import sample
 from validation.page import Figure, logarithmic, page
 from validation.study import launch, shown

@@ -29,7 +29,7 @@ from solvers.rotor.exciter.motion import (
     integrate,
     printed_critical_speed,
 )
-from validation.cases.case import Case, Effect, compare, shape_verdict
+from validation.case import Case, Effect, compare, shape_verdict
 from validation.page import Figure, Table, logarithmic, page
 from validation.study import launch, shown
 

@@ -23,7 +23,7 @@ from solvers.rotor.exciter.machine import (
     stuck_speeds,
 )
 from solvers.rotor.exciter.motion import Trace, critical_speeds, trace
-from validation.cases.case import Case, compare
+from validation.case import Case, compare
 from validation.cases.exciter.speeds import vibratory_table
 from validation.page import Figure, logarithmic, page
 from validation.study import launch, shown, write

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from meshes.arrays import Array
-from validation.cases.case import MEASURED, Case, Effect, shape_verdict
+from validation.case import MEASURED, Case, Effect, shape_verdict
 from validation.cases.fill_sweep.contact import of_kept
 from validation.cases.fill_sweep.fitted import NEAREST, SCATTER, bands, kept, measured, ratios
 from validation.page import Figure, page

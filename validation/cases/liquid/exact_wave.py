@@ -29,7 +29,7 @@ from solvers.potential.steady import (
 from solvers.potential.strip import nodes
 from solvers.potential.unsteady import Surface, force, invariants, started
 from validation.breaking import kept
-from validation.cases.case import COMPUTED_FLOW, Case, Origin, Value, Verdict
+from validation.case import COMPUTED_FLOW, Case, Origin, Value, Verdict
 from validation.cases.liquid.layer import bore_reference, plane_layer
 from validation.exact.branch import SMOOTH, detuning, whirl_speeds
 from validation.exact.long_wave import steady_long_wave

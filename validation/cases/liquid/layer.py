@@ -26,7 +26,7 @@ from solvers.liquid_model import Whirl
 from solvers.pypde.settle import settle, simulate
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.runup.long_wave import couple
-from validation.cases.case import COMPUTED_FLOW, Case, Effect, Origin, compare, shape_verdict
+from validation.case import COMPUTED_FLOW, Case, Effect, Origin, compare, shape_verdict
 from validation.page import Figure, page
 from validation.study import data
 

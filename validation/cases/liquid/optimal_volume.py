@@ -13,7 +13,7 @@ from leblanc.studies.volume.study import answer_volume
 from meshes.chamber import Chamber
 from solvers.statics.hydrostatics import equilibrium, optimal_volume
 from solvers.synchronous.models import Statics
-from validation.cases.case import Case, Origin, compare
+from validation.case import Case, Origin, compare
 from validation.page import Figure, logarithmic, page
 
 _GRAVITY = 9.81

@@ -22,7 +22,7 @@ from solvers.rotor.magnetic.machine import (
     screw_drag,
 )
 from solvers.rotor.magnetic.motion import SpeedLaw, integrate, settling_time
-from validation.cases.case import Case, compare
+from validation.case import Case, compare
 from validation.page import Figure, Table, logarithmic, page
 from validation.study import launch, shown
 

@@ -24,7 +24,7 @@ from solvers.runup.runup import RunupNumerics, run_up
 from solvers.statics.hydrostatics import optimal_volume
 from solvers.synchronous.response import response
 from solvers.whirl.edges import unstable_bands
-from validation.cases.case import Case, Origin, compare
+from validation.case import Case, Origin, compare
 from validation.page import Figure, Table, logarithmic, page
 from validation.study import launch, shown
 

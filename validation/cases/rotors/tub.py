@@ -17,7 +17,7 @@ from meshes.arrays import Array
 from solvers.rotor.system import cage_speed
 from solvers.rotor.tub import Mount, Tub, Vector
 from solvers.rotor.vibration import orbit, unbalance_response
-from validation.cases.case import MEASURED, Case, Origin, compare, shape_verdict
+from validation.case import MEASURED, Case, Origin, compare, shape_verdict
 from validation.page import Figure, page
 from validation.study import launch, shown
 

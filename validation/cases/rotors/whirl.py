@@ -23,7 +23,7 @@ from solvers.rotor.two_plane import Support, TwoPlane
 from solvers.runup.runup import RunupNumerics
 from solvers.whirl.edges import unstable_bands
 from solvers.whirl.growth import asynchronous_growth
-from validation.cases.case import Case, Origin, compare
+from validation.case import Case, Origin, compare
 from validation.page import Figure, page
 from validation.whirl_in_time import Passage, large_whirl_in_time, passage, whirl_in_time
 

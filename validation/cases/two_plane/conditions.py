@@ -18,7 +18,7 @@ from solvers.rotor.balls.two_plane_balance import (
     potential_hessian,
 )
 from solvers.rotor.two_plane import TwoPlane
-from validation.cases.case import Case
+from validation.case import Case
 from validation.cases.two_plane import damping as two_plane_damping
 from validation.cases.two_plane import layers as two_plane_layers
 from validation.cases.two_plane.machine import BALLS, LONG, RACES, SCATTERED, SHORT, bare_deflection
