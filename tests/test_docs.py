@@ -438,10 +438,11 @@ def _notebook() -> Any:
     """A notebook with what ours show: cases with their sources, numbers, a picture."""
     from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook, new_output
 
-    from validation.notebook_page import Table, picture
+    from validation.page import Picture, Table
 
     long, numbers = "as many words as a sentence has " * 3, ("123456.789",) * 12
-    image, about = picture(DOCS / "images" / "exciter_table.png")._repr_png_()
+    file = DOCS / "images" / "exciter_table.png"
+    image, about = Picture(file.read_bytes(), 693, "Vibratory table")._repr_png_()
     shown = [
         new_output("display_data", {"text/html": table._repr_html_()})
         for table in (

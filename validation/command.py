@@ -9,7 +9,7 @@ import typer
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from validation.cases.case import Case
+    from validation.case import Case
 
 GROUPS = (
     *("errata", "optimal_volume", "vector_model", "horizontal_rig", "vertical_rig", "layer", "whirl", "tub"),

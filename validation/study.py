@@ -11,11 +11,14 @@ import inspect
 import json
 import math
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import fields, is_dataclass
 from importlib import resources
 from pathlib import Path
-from typing import Any, Literal, TypeVar, get_args, get_origin, get_type_hints
+from typing import TYPE_CHECKING, Any, Literal, TypeVar, get_args, get_origin, get_type_hints
+
+if TYPE_CHECKING:
+    from leblanc.figures.drawing.page import Figure
 
 _Kept = TypeVar("_Kept")
 
@@ -25,7 +28,7 @@ def launch(study: Callable[..., object]) -> None:
 
     A parameter without default is a required option, `*names` takes all words behind the options.
     """
-    module = sys.modules[study.__module__]
+    module = sys.modules["__main__"]
     name = "" if module.__spec__ is None else module.__spec__.name.removesuffix(".__main__")
     parser = argparse.ArgumentParser(
         prog=f"python -m {name}",
@@ -45,8 +48,35 @@ def launch(study: Callable[..., object]) -> None:
         parser.add_argument(option, required=required, default=default, help=told, **_taken(hints[name]))
     chosen = vars(parser.parse_args())
     found: Any = study(*chosen.pop(words, ()), **chosen)
-    for line in (found,) if isinstance(found, str | Path) else found or ():
-        print(line, flush=True)
+    if found is not None:
+        for part in found if isinstance(found, Iterator | list | tuple) else (found,):
+            print(part, flush=True)
+
+
+def shown(
+    *tables: Callable[[], object], anew: Callable[[], object] | None = None, **figures: Callable[[], Figure]
+) -> Callable[..., Iterator[object]]:
+    """Study for `launch`: draw figures by the stems of their PNG files, then make tables.
+
+    `anew` measures what is kept, which `--anew` asks for. A figure's title is the first line of the
+    docstring of its function, which may be partial.
+    """
+
+    def show(out: Path = Path("docs/images")) -> Iterator[object]:
+        from leblanc.figures.drawing.page import save_png
+
+        for stem, figure in figures.items():
+            about = getattr(figure, "func", figure).__doc__ or stem
+            yield save_png(figure(), out, stem, about.partition("\n")[0].rstrip("."))
+        for table in tables:
+            found = table()
+            yield from found if isinstance(found, tuple) else (found,)
+
+    def measure(out: Path = Path("docs/images"), anew: bool = False) -> Iterator[object]:
+        return show(out) if measured is None or not anew else iter([measured()])
+
+    measured = anew
+    return measure if measured else show
 
 
 def _taken(kind: Any) -> dict[str, Any]:

@@ -11,8 +11,7 @@ from solvers.rotor.magnetic.linear import closed_loop
 from solvers.rotor.magnetic.motion import Ending, Load, SpeedLaw, integrate
 from tests.mutants import kills
 from validation.cases.rotors import blood_pump
-from validation.cases.rotors.blood_pump import LOAD, MACHINE, SPEED, control
-from validation.figures.rotors.blood_pump import controllers, slow_coils
+from validation.cases.rotors.blood_pump import LOAD, MACHINE, SPEED, control, controllers, slow_coils
 
 
 @kills("solvers.rotor.magnetic.machine:Magnets.force", "(near - far)", "(np.sqrt(near) - np.sqrt(far))")

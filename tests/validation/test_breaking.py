@@ -10,7 +10,7 @@ import pytest
 
 from validation.breaking import crests, kept
 from validation.breaking.__main__ import CREST_DEPTHS, DEPTHS, WHIRLS, ending, highest
-from validation.breaking.figure import alternative, breaking_figure, crest_figure, crest_words, shown
+from validation.breaking.figure import alternative, breaking_figure, crest_figure, crest_words, pair_shown
 
 ROOT = Path(__file__).parents[2]
 
@@ -109,7 +109,7 @@ def test_long_waves_go_with_the_exact_one_until_its_end() -> None:
 
 def test_the_figure_and_its_page() -> None:
     figure = breaking_figure()
-    assert figure.alt == alternative(kept()) and len(shown(kept())) == 2
+    assert figure.alt == alternative(kept()) and len(pair_shown(kept())) == 2
     finest = [row for row in crests.kept() if row.most == max(crests.MOST)]
     assert crest_figure().alt == crest_words(finest) and f"{finest[-1].slope:.1f} deg" in crest_words(finest)
     page = (ROOT / "docs" / "breaking.md").read_text(encoding="utf-8")

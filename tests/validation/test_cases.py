@@ -18,7 +18,7 @@ from solvers.rotor.jeffcott import Jeffcott
 from solvers.synchronous.response import response
 from tests.mutants import kills
 from tests.oracles.cases import kept_cases
-from validation.cases.case import PRINTED, Case, Origin, compare
+from validation.case import PRINTED, Case, Origin, compare
 from validation.cases.liquid.layer import rotor_cases
 from validation.cases.rotors import turning
 from validation.cases.rotors.rigs import horizontal_rig, horizontal_rotor, vertical_rig, vertical_rotor

@@ -8,8 +8,8 @@ import pytest
 
 from meshes.errors import InputError
 from tests.mutants import kills
+from validation.case import Case, Effect, compare, shape_verdict
 from validation.cases import errata
-from validation.cases.case import Case, Effect, compare, shape_verdict
 from validation.cases.errata import formulas
 from validation.cases.errata.tub import tub_matrices
 from validation.cases.rotors.rigs import horizontal_rig

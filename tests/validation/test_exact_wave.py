@@ -11,9 +11,16 @@ import pytest
 from solvers.potential.steady import on_nodes
 from solvers.potential.strip import nodes
 from validation.breaking import kept
-from validation.cases.case import Case
-from validation.cases.liquid.exact_wave import cases, last_place
-from validation.figures.liquid.exact_wave import NEAR, climbed, free_figure, last_crests, sharp_figure
+from validation.case import Case
+from validation.cases.liquid.exact_wave import (
+    NEAR,
+    cases,
+    climbed,
+    free_figure,
+    last_crests,
+    last_place,
+    sharp_figure,
+)
 from validation.study import data
 
 

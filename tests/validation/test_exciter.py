@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,10 +16,9 @@ from solvers.rotor.exciter.stability import capture_unbalance, third_speed
 from validation.cases import exciter, two_plane
 from validation.cases.exciter import beyond as exciter_beyond
 from validation.cases.exciter import traces as exciter_more
-from validation.cases.exciter.speeds import sample
+from validation.cases.exciter.speeds import Comparison, regression, regression_table, sample
+from validation.cases.two_plane import conditions
 from validation.cases.two_plane import damping as two_plane_damping
-from validation.figures.exciter.speeds import Comparison, compare, table
-from validation.figures.rotors import two_plane as two_plane_figures
 
 
 def test_cases_of_the_exciter() -> None:
@@ -79,12 +77,9 @@ def test_a_kept_run_comes_out_again() -> None:
     assert again["left"] == pytest.approx(kept["left"], rel=0.05)
 
 
-def test_the_figure_of_two_planes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_figure_of_two_planes() -> None:
     """Four panels that say what the conditions say; the balanced one falls, the others stay."""
-    kept = []
-    monkeypatch.setattr(two_plane_figures, "save_png", lambda figure, *rest: kept.append(figure) or tmp_path)
-    two_plane_figures.balls_figure(tmp_path)
-    panels = kept[0].axes
+    panels = conditions.balls_figure().axes
     assert [axes.get_title().rpartition(" ")[2] for axes in panels] == ["no", "yes", "no", "no"]
     falls = [max(line.get_ydata()[-1] for line in axes.get_lines()[:2]) < 0.01 for axes in panels]
     assert falls == [False, True, False, False]
@@ -107,14 +102,13 @@ def test_the_table_counts_what_it_says() -> None:
     )
     found = Comparison(values, np.array([10.0, 10.0, 10.0, 10.0]), np.array([10.5, 11.0, 13.0, 9.0]))
     assert found.error == pytest.approx([0.05, 0.1, 0.3, -0.1])
-    last = table(found).splitlines()[-1]
-    assert last.startswith("| all | 4 | 25 % | 75 % |")
+    assert regression_table(found).rows[-1][:4] == ("all", "4", "25 %", "75 %")
 
 
 @pytest.mark.slow
 def test_the_regression_misses_its_six_per_cent() -> None:
     """What the page on the exciter says of it, on a quarter of the sample."""
-    error = np.abs(compare(48).error)
+    error = np.abs(regression(48).error)
     assert np.mean(error <= 0.06) < 0.6 < np.mean(error <= 0.3)
     assert math.isfinite(error.max())
 

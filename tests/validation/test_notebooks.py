@@ -17,7 +17,7 @@ import pytest
 from leblanc.cli import exit_code
 from tests.mutants import kills
 from validation import run_notebooks
-from validation.notebook_page import Table, picture
+from validation.page import Picture, Table
 from validation.run_notebooks import texts
 
 ROOT = Path(__file__).parents[2]
@@ -158,7 +158,8 @@ def test_pages_show_no_markup_need_no_network_and_fit_a_telephone(tmp_path: Path
         Table(("what", *names), (("words " * 20, *(["123456.789"] * 9)),), "a foot"),
         Table(names, ((["123456.789"] * 9),)),
     )
-    image, about = picture(ROOT / "docs" / "images" / "exciter_table.png")._repr_png_()
+    file = ROOT / "docs" / "images" / "exciter_table.png"
+    image, about = Picture(file.read_bytes(), 693, "Vibratory table")._repr_png_()
     png = {"image/png": base64.b64encode(image).decode()}
     for path in NOTEBOOKS:
         book = jupytext.read(path, fmt="py:percent")

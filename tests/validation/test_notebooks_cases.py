@@ -15,17 +15,14 @@ from leblanc.studies.models.choose import axial_gravity
 from solvers.statics.hydrostatics import equilibrium
 from solvers.synchronous.response import response
 from tests.mutants import kills
+from validation.case import Case, Origin, compare
 from validation.cases import errata
-from validation.cases.case import Case, Origin, compare
-from validation.cases.liquid import fill_optimum, layer
+from validation.cases.liquid import fill_optimum, layer, optimal_volume
+from validation.cases.liquid.layer import bore_summary
+from validation.cases.rotors import rig_lag, tub, whirl
 from validation.cases.rotors import runup as runup_given
-from validation.cases.rotors import tub
 from validation.cases.rotors.runup import GIVEN, Point
-from validation.figures.liquid import volume as volume_figures
-from validation.figures.liquid.layer import bore_summary
-from validation.figures.rotors import rigs as rig_figures
-from validation.figures.rotors import whirl as whirl_figures
-from validation.notebook_page import Table, case_table, from_markdown, picture, verdicts
+from validation.page import Table, case_table, picture, verdicts
 from validation.study import data
 from validation.trade import again, kept, names
 from validation.trade.answers import Case as TradeCase
@@ -65,14 +62,13 @@ def test_verdicts_leave_out_what_none_has() -> None:
     assert verdicts(CASES) == {"agrees": {"one"}, "erratum": {"two"}, "differs": {"three"}}
 
 
-def test_table_from_markdown() -> None:
-    table = from_markdown(["| a | b |", "|---|---|", "| 1 | 2, 3 |"])
-    assert table.header == ("a", "b") and table.rows == (("1", "2, 3"),)
+def test_a_table_as_text_is_markdown() -> None:
+    assert str(Table(("a", "b"), (("1", "2, 3"),))) == "| a | b |\n| --- | --- |\n| 1 | 2, 3 |"
 
 
 def test_the_marks_lie_where_the_law_bends() -> None:
     """On the full chamber's line, at the deflection from which the volume's own curve leaves it."""
-    axes = volume_figures.law_figure().axes[0]
+    axes = optimal_volume.law_figure().axes[0]
     *lines, full = axes.lines
     for k in range(3):
         curve, mark = lines[2 * k], lines[2 * k + 1]
@@ -86,7 +82,7 @@ def test_the_marks_lie_where_the_law_bends() -> None:
 
 
 def test_volume_figure_shows_the_printed_formula_above_the_chamber() -> None:
-    axes = volume_figures.volume_figure().axes[0]
+    axes = optimal_volume.volume_figure().axes[0]
     shown = {line.get_label(): np.asarray(line.get_ydata(), dtype=float) for line in axes.lines}
     capacity = shown["chamber full"][0]
     for speed in ("20", "90"):
@@ -98,7 +94,7 @@ def test_volume_figure_shows_the_printed_formula_above_the_chamber() -> None:
 
 
 def test_measured_angles_are_drawn_as_measured() -> None:
-    axes = rig_figures.angle_figure(0.085).axes[0]
+    axes = rig_lag.angle_figure(0.085).axes[0]
     seen = next(line for line in axes.lines if line.get_label().startswith("measured"))
     measured = data("dr18_fig24.json")
     assert list(seen.get_xdata()) == measured["speed_rpm"] and list(seen.get_ydata()) == measured["angle_deg"]
@@ -114,7 +110,7 @@ def test_growth_in_time_lies_on_its_lines() -> None:
     root = Origin("closed form", "root of the characteristic equation")
     case = Case("whirl/in-time-1.3", *words, 6.56, "none", "agrees", origin=root)
     damped = Case("whirl/in-time-1.7", *words, -1.675, "none", "agrees", origin=root)
-    axes = whirl_figures.growth_figure([case, damped]).axes[0]
+    axes = whirl.growth_figure([case, damped]).axes[0]
     first, last = axes.lines[1], axes.lines[4]
     for line, point in ((first, axes.lines[5]), (last, axes.lines[6])):
         (x,), (y,) = point.get_data()
@@ -123,12 +119,12 @@ def test_growth_in_time_lies_on_its_lines() -> None:
 
 
 @kills(
-    "validation.figures.liquid.layer:bore_summary",
+    "validation.cases.liquid.layer:bore_summary",
     "1e3 * (depth - np.array(run[key]))",
     "depth - np.array(run[key])",
 )
 @kills(
-    "validation.figures.liquid.layer:bore_summary",
+    "validation.cases.liquid.layer:bore_summary",
     "np.argmax(np.abs(values))",
     "np.argmin(np.abs(values))",
 )

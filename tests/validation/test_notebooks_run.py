@@ -39,7 +39,7 @@ def test_a_case_that_is_broken_fails_the_notebook(tmp_path: Path) -> None:
     text = (FOLDER / "5_washing_machine.py").read_text(encoding="utf-8")
     (claim,) = re.findall(r"^assert verdicts\(cases\) == \{.*?^\}$", text, re.MULTILINE | re.DOTALL)
     cells = (
-        "from validation.cases.rotors import tub\nfrom validation.notebook_page import case_table, verdicts",
+        "from validation.cases.rotors import tub\nfrom validation.page import case_table, verdicts",
         "cases = tub.cases()\ncase_table(cases)",
         claim,
     )

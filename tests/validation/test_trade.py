@@ -14,7 +14,7 @@ from leblanc.scene.scene import load_scene
 from solvers.wave_error import family_error, long_wave_error
 from validation.trade import __main__ as trade_main
 from validation.trade import fingerprint, kept, names
-from validation.trade.__main__ import rows
+from validation.trade.__main__ import overview
 from validation.trade.answers import FAMILY, WAVES, answer, lone_layer
 from validation.trade.cases import layer_questions, refined_to, response_question, runup_question
 from validation.trade.cases import questions as all_questions
@@ -101,7 +101,7 @@ def test_one_question_is_measured_anew(tmp_path: Path, monkeypatch: pytest.Monke
             "validation.trade.__main__.metadata.version", lambda name: kept("centrifuge")["versions"][name]
         )
         patch.setattr("validation.trade.trade.trade_scene", lambda scene, only: found)
-        assert trade_main.main(**asked) == trade_main.rows()
+        assert trade_main.main(**asked) == trade_main.overview()
         written = record_of(json.loads((tmp_path / "centrifuge.json").read_text(encoding="utf-8")))
         assert written.comparisons == (response, *found.comparisons)
         found = replace(found, digest="another")
@@ -129,7 +129,7 @@ def test_made_again() -> None:
 
 def test_table() -> None:
     """One line for each scene and question."""
-    assert len(rows()) == 2 + len(questions())
+    assert len(overview().rows) == len(questions())
 
 
 def test_the_solvers_of_py_pde_are_listed_where_a_scene_asks_for_its_waves() -> None:

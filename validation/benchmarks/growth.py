@@ -131,7 +131,6 @@ _FIRST = """
 import time
 begin = time.perf_counter()
 import numba
-from validation.benchmarks.growth import simulate, fill, Whirl, Numerics, SPIN, SPEED, AMPLITUDE
 whirl = Whirl(SPIN, SPEED, AMPLITUDE)
 loaded = time.perf_counter()
 simulate(fill(), whirl, whirl.period, numerics=Numerics(16))

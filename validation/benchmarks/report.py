@@ -9,19 +9,21 @@ import platform
 import sys
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
 import numpy as np
 
-from leblanc.figures.drawing.page import Figure, Frame, lay_out, save, style
+from leblanc.figures.drawing.page import save_png
 from validation.benchmarks import growth, ours
 from validation.benchmarks import ours as layers
 from validation.benchmarks.growth import Growth
 from validation.benchmarks.problems import WANTED, distance, steady_problem, travelling_problem
 from validation.benchmarks.timing import Answer, Contestant, Sample, measure, version
-from validation.study import read
+from validation.page import Figure, page
+from validation.study import launch, read, shown
 from validation.study import write as write_json
 
 _FILE = "results.json"
@@ -141,16 +143,17 @@ def growth_markdown(growths: Sequence[Growth]) -> str:
 
 
 _RAISED = str.maketrans("-0123456789", "\u207b\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079")
-_FRAME = Frame(left=0.72, top=0.15, between=0.0, below=0.45)
 _MARKS = "osD^vP"
 _LINES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 3)))
 
 
-def accuracy_figure(section: Section, directory: Path) -> Path:
+def accuracy_figure(section: Section) -> Figure:
     """Error over time, one mark for each sample; a line joins what no other setting of its code beats."""
-    with style():
-        figure = Figure()
-        axes = figure.add_axes((0, 0, 1, 1))
+    text = (
+        f"{section.title}. One core, best of several repeats taken in turn, without compilation. "
+        "Filled: no other setting of that code is both faster and better."
+    )
+    with page([3.0], text, below=0.45) as (figure, [[axes]]):
         for k, code in enumerate(dict.fromkeys(sample.code for sample in section.samples)):
             mine = [sample for sample in section.samples if sample.code == code and sample.error > 0.0]
             best = front(mine)
@@ -163,12 +166,7 @@ def accuracy_figure(section: Section, directory: Path) -> Path:
         _logarithmic(axes)
         axes.set_xlabel("Time of one answer (s)")
         axes.set_ylabel(f"{section.error[0].upper()}{section.error[1:]} (\N{EN DASH})")
-        text = (
-            f"{section.title}. One core, best of several repeats taken in turn, without compilation. "
-            "Filled: no other setting of that code is both faster and better."
-        )
-        lay_out(figure, [[axes]], [3.0], _FRAME, text)
-    return save(figure, directory, section.name, section.title).png
+    return figure
 
 
 def _logarithmic(axes: Any) -> None:
@@ -187,11 +185,11 @@ def _power(value: float, _position: int | None = None) -> str:
     return "10" + str(round(math.log10(value))).translate(_RAISED)
 
 
-def growth_figure(growths: Sequence[Growth], name: str, directory: Path) -> Path:
-    """Cost over one number, both logarithmic; `name` is the stem of the files."""
-    with style():
-        figure = Figure()
-        axes = figure.add_axes((0, 0, 1, 1))
+def growth_figure(growths: Sequence[Growth]) -> Figure:
+    """Cost over one number, both logarithmic."""
+    over = " or ".join(dict.fromkeys(curve.over for curve in growths))
+    text = f"Growth of the cost with the number of {over}. One core, best of several repeats."
+    with page([2.8], text, below=0.45) as (figure, [[axes]]):
         for k, curve in enumerate(growths):
             look: dict[str, Any] = {
                 "color": f"C{k}",
@@ -202,12 +200,9 @@ def growth_figure(growths: Sequence[Growth], name: str, directory: Path) -> Path
         _logarithmic(axes)
         counts = sorted({n for curve in growths for n in curve.counts})
         axes.set_xticks(counts, [str(n) for n in counts])
-        over = " or ".join(dict.fromkeys(curve.over for curve in growths))
         axes.set_xlabel(f"Number of {over} (\N{EN DASH})")
         axes.set_ylabel("Time (s)")
-        text = f"Growth of the cost with the number of {over}. One core, best of several repeats."
-        lay_out(figure, [[axes]], [2.8], _FRAME, text)
-    return save(figure, directory, name, text).png
+    return figure
 
 
 _MODULE = "validation.benchmarks.peers."
@@ -356,12 +351,12 @@ def write(results: Results, directory: Path, sharing: str) -> None:
         "",
     ]
     for section in results.sections:
-        picture = accuracy_figure(section, directory)
+        picture = save_png(accuracy_figure(section), directory, section.name, section.title)
         text += [markdown(section, ours.CODE), f"![{section.title}]({picture.name})", ""]
     text += ["## Single figures", "", *(f"* {line}" for line in [*_figures(results), *results.remarks]), ""]
     for name, rows in (("benchmark_cells", results.over_cells), ("benchmark_speeds", results.over_speeds)):
-        picture = growth_figure(rows, name, directory)
         title = "Growth with the number of " + " and ".join(dict.fromkeys(row.over for row in rows))
+        picture = save_png(growth_figure(rows), directory, name, title)
         text += [f"## {title}", "", growth_markdown(rows), f"![{title}]({picture.name})", ""]
     (directory / "benchmarks.md").write_text("\n".join(text), encoding="utf-8")
 
@@ -381,3 +376,10 @@ def _figures(results: Results) -> list[str]:
     first = ", ".join(f"{name} {duration(t)}" for name, t in results.first.items())
     found.append(f"First long-wave run of a process: {first}.")
     return found
+
+
+if __name__ == "__main__":
+    results = kept_results()
+    accuracy = {section.name: partial(accuracy_figure, section) for section in results.sections}
+    cells, speeds = partial(growth_figure, results.over_cells), partial(growth_figure, results.over_speeds)
+    launch(shown(**accuracy, benchmark_cells=cells, benchmark_speeds=speeds))

@@ -7,17 +7,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from leblanc.figures.drawing.page import Figure, Frame, fill, lay_out, number, save_png, style
+from leblanc.figures.drawing.page import fill
 from validation.breaking import Beside, Kept, crests, kept
 from validation.breaking.crests import Crest
-from validation.study import launch
+from validation.page import Figure, number, page
+from validation.study import launch, shown
 
-_FRAME = Frame(left=0.62, top=0.15, between=0.62, below=0.42)
 _LOOKS = {
     0.1: {"color": "#0072B2", "marker": "o"},
     0.3: {"color": "#D55E00", "marker": "s"},
@@ -25,8 +24,7 @@ _LOOKS = {
     0.7: {"color": "#CC79A7", "marker": "D"},
 }
 SHOWN = (crests.LAYER, crests.SHARE)  # h_0/R and w_0/h_0 of the crests over time
-# Of the crest that breaks: room, colours from the first moment to the last, what of the wall is drawn, rad.
-_CREST_FRAME = Frame(left=0.62, top=0.3, between=0.25, below=0.42)
+# Of the crest that breaks: colours from the first moment to the last, what of the wall is drawn, rad.
 _COLOURS = ("0.65", "#56B4E9", "#009E73", "#0072B2", "#D55E00", "#CC79A7")
 _AHEAD, _BEHIND = 0.22, 0.42
 _DRUM_LINES = 721
@@ -35,20 +33,15 @@ _DRUM_LINES = 721
 def breaking_figure() -> Figure:
     """Time to breaking over the whirl, highest crests over depth, and crests over time beside long waves."""
     results = kept()
-    with style():
-        figure = Figure()
-        ends: Any = figure.add_axes((0, 0, 1, 1))
-        crests: Any = figure.add_axes((0, 0, 0.5, 1))
-        times: Any = figure.add_axes((0.5, 0, 0.5, 1))
+    text = (
+        "Above: whirl periods until the exact wave breaks, under a whirl with the backward free wave, "
+        "grown over 0.9 periods; open symbols: not broken until then. Below: crests of the highest free "
+        "waves, and the crest of a wave that breaks beside long waves, h0/R = 0.1, w0 = 0.05 h0."
+    )
+    with page([2.2, 1.5, 1.7], text, left=0.62, between=0.62) as (figure, [[ends], [crests], [times]]):
         _draw_ends(ends, results)
         _draw_crests(crests, results)
         _draw_times(times, results)
-        text = (
-            "Above: whirl periods until the exact wave breaks, under a whirl with the backward free wave, "
-            "grown over 0.9 periods; open symbols: not broken until then. Below: crests of the highest free "
-            "waves, and the crest of a wave that breaks beside long waves, h0/R = 0.1, w0 = 0.05 h0."
-        )
-        lay_out(figure, [[ends], [crests], [times]], [2.2, 1.5, 1.7], _FRAME, text)
         figure.alt = alternative(results)
     return figure
 
@@ -97,7 +90,7 @@ def _draw_crests(axes: Any, results: Kept) -> None:
 
 
 def _draw_times(axes: Any, results: Kept) -> None:
-    pair = shown(results)
+    pair = pair_shown(results)
     axes.plot(pair[0].time, pair[0].exact, color="black", label="exact wave")
     for row, colour, line in zip(pair, ("#0072B2", "#D55E00"), ("--", ":"), strict=True):
         name = "long wave + dispersion" if row.dispersion else "long wave"
@@ -107,7 +100,7 @@ def _draw_times(axes: Any, results: Kept) -> None:
     axes.set_ylabel("Crest over h0")
 
 
-def shown(results: Kept) -> list[Beside]:
+def pair_shown(results: Kept) -> list[Beside]:
     """The long waves without and with dispersion whose crests are drawn."""
     return [row for row in results.beside if (row.depth, row.whirl) == SHOWN]
 
@@ -115,10 +108,19 @@ def shown(results: Kept) -> list[Beside]:
 def crest_figure(found: Sequence[Crest] | None = None) -> Figure:
     """Crest that breaks: in the drum, and unrolled with its slopes as they are; None: the finest one kept."""
     rows = list(found) if found else [row for row in crests.kept() if row.most == max(crests.MOST)]
-    with style():
-        figure = Figure()
-        drums: list[Any] = [figure.add_axes((0, 0, 1, 1), label=f"drum {row.time}") for row in rows]
-        near: Any = figure.add_axes((0, 0, 1, 1), label="crest")
+    turn, left = 2.0 * math.pi / abs(crests.resonant(*SHOWN)[1].slip), 0.62
+    # What a strip as wide as that is high.
+    wide = 6.3 - left - 0.25
+    high = wide * float(_unrolled(1.7 * crests.LAYER)) / (_AHEAD + _BEHIND)
+    text = (
+        f"h0/R = {SHOWN[0]:g}, w0 = {SHOWN[1]:g} h0, whirl with the small backward free wave; t in "
+        f"1/Omega, a whirl period being {turn:.1f}; {rows[-1].most} nodes. Above: seen from the drum, "
+        "which spins counter-clockwise, true to scale. Below: unrolled onto the strip, where "
+        "slopes are as steep as they are in the drum; the last crest's ripples are those of its nodes. "
+        "B: speed of the liquid at the crest over that of the crest."
+    )
+    heights, columns = [wide / len(rows), high], (len(rows), 1)
+    with page(heights, text, columns, left=left, top=0.3, between=0.25) as (figure, [drums, [near]]):
         for axes, row in zip(drums, rows, strict=True):
             _draw_drum(axes, row)
         for row, colour in zip(rows, _COLOURS, strict=False):
@@ -130,18 +132,6 @@ def crest_figure(found: Sequence[Crest] | None = None) -> Figure:
         near.axhline(float(_unrolled(crests.LAYER)), color="0.5", linewidth=0.7, linestyle=":")
         near.set_xlabel("Angle from the crest (rad); the wave runs to the left")
         near.set_ylabel("Depth over h0")
-        turn = 2.0 * math.pi / abs(crests.resonant(*SHOWN)[1].slip)
-        text = (
-            f"h0/R = {SHOWN[0]:g}, w0 = {SHOWN[1]:g} h0, whirl with the small backward free wave; t in "
-            f"1/Omega, a whirl period being {turn:.1f}; {rows[-1].most} nodes. Above: seen from the drum, "
-            "which spins counter-clockwise, true to scale. Below: unrolled onto the strip, where "
-            "slopes are as steep as they are in the drum; the last crest's ripples are those of its nodes. "
-            "B: speed of the liquid at the crest over that of the crest."
-        )
-        # What a strip as wide as that is high.
-        wide = 6.3 - _CREST_FRAME.left - 0.25
-        high = wide * float(_unrolled(1.7 * crests.LAYER)) / (_AHEAD + _BEHIND)
-        lay_out(figure, [drums, [near]], [wide / len(drums), high], _CREST_FRAME, text)
         figure.alt = crest_words(rows)
     return figure
 
@@ -193,13 +183,5 @@ def alternative(results: Kept) -> str:
     return f"Time to breaking, {'; '.join(ends)}. Highest crests over the depth: {', '.join(crests)}."
 
 
-def draw(out: Path) -> list[Path]:
-    """Write both as PNG."""
-    return [
-        save_png(breaking_figure(), out, "breaking", "When the exact wave breaks"),
-        save_png(crest_figure(), out, "breaking_crest", "A crest that breaks"),
-    ]
-
-
 if __name__ == "__main__":
-    launch(draw)
+    launch(shown(breaking=breaking_figure, breaking_crest=crest_figure))

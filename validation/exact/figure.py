@@ -5,15 +5,15 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from functools import partial
 from typing import Any
 
 import numpy as np
 
-from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save_png, style
 from meshes.arrays import Array
 from validation.exact import Cases, Ends, kept
-from validation.study import launch
+from validation.page import Figure, number, page
+from validation.study import launch, shown
 
 # Panels: a model and its name; the whirls of the two figures' halves, over h_0.
 _MODELS = (
@@ -26,22 +26,23 @@ _LEAST, _MOST, _LINES = 1e-5, 1.0, (0.01, 0.05)
 _TICKS = (0.02, 0.05, 0.1, 0.2, 0.5)
 _LAYERS = (0.02, 0.1, 0.3, 0.7)
 _LOOKS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7")
-_FRAME = Frame(left=0.72, top=0.24, between=0.3, below=0.42)
 
 
 def maps_figure(cases: Cases) -> Figure:
     """Error of each model over depth and detuning, at a small whirl and a larger one."""
-    with style():
-        figure = Figure()
-        rows: list[list[Any]] = []
-        shown: Any = None
-        for model, name in _MODELS:
-            row: list[Any] = []
-            for whirl in _WHIRLS:
-                axes: Any = figure.add_axes((0, 0, 1, 1), label=f"{model} {whirl}")
+    text = (
+        "Error of the force ratio G over the larger of |G| and 1, against the exact wave without "
+        "friction. Dashed line 1 %, solid line 5 %. Hatched: no smooth steady wave was found, of the "
+        "exact equations or of the model; alone, where short waves in the lee resonate. Of the two whirl "
+        "speeds with this p the one below the spin."
+    )
+    size = (2,) * len(_MODELS)
+    with page([1.25] * len(size), text, size, top=0.24, between=0.3) as (figure, rows):
+        for row, (model, name) in zip(rows, _MODELS, strict=True):
+            for axes, whirl in zip(row, _WHIRLS, strict=True):
                 ratio, layer, error = grid_of(cases, model, whirl)
                 lost, known = np.isnan(error), np.clip(error, _LEAST, _MOST)
-                shown = axes.pcolormesh(
+                colours = axes.pcolormesh(
                     ratio, layer, known, norm="log", vmin=_LEAST, vmax=_MOST, cmap="viridis",
                     shading="nearest", rasterized=True,
                 )  # fmt: skip
@@ -52,19 +53,19 @@ def maps_figure(cases: Cases) -> Figure:
                     ratio, layer, np.log10(known), levels=np.log10(_LINES), colors=["white", "black"],
                     linewidths=0.9, linestyles=["--", "-"],
                 )  # fmt: skip
-                _dress(axes, first=not row, last=model == _MODELS[-1][0])
+                _dress(axes, first=axes is row[0], last=row is rows[-1])
                 axes.set_title(f"{name}, whirl {whirl:g} h0", fontsize=7.5, pad=2.5)
-                row.append(axes)
-            rows.append(row)
-        text = (
-            "Error of the force ratio G over the larger of |G| and 1, against the exact wave without "
-            "friction. Dashed line 1 %, solid line 5 %. Hatched: no smooth steady wave was found, of the "
-            "exact equations or of the model; alone, where short waves in the lee resonate. Of the two whirl "
-            "speeds with this p the one below the spin."
-        )
-        lay_out(figure, rows, [1.25] * len(rows), _FRAME, text)
-        _spread(figure, rows, shown)
+        bar: Any = figure.add_axes((0, 0, 1, 1), label="bar")
+        figure.colorbar(colours, cax=bar, format=lambda value, _position: f"{number(100.0 * value)} %")
+        bar.minorticks_off()
+        bar.set_title("error", fontsize=7, pad=3)
         figure.alt = maps_words(cases)
+    for row in rows:
+        for k, axes in enumerate(row):
+            box = axes.get_position()
+            axes.set_position((box.x0 - 0.1 * k * box.width, box.y0, 0.88 * box.width, box.height))
+    first, last = rows[0][-1].get_position(), rows[-1][-1].get_position()
+    bar.set_position((first.x1 + 0.02, last.y0, 0.018, first.y1 - last.y0))
     return figure
 
 
@@ -79,20 +80,6 @@ def _dress(axes: Any, first: bool, last: bool) -> None:
     axes.set_ylabel("Depth h0/R" if first else "")
     axes.set_xlabel("Detuning p/p1" if last else "")
     axes.tick_params(labelleft=first, labelbottom=last)
-
-
-def _spread(figure: Figure, rows: list[list[Any]], shown: Any) -> None:
-    """Room between two columns, and the scale of colours beside them."""
-    for row in rows:
-        for k, axes in enumerate(row):
-            box = axes.get_position()
-            width = 0.88 * box.width
-            axes.set_position((box.x0 - 0.1 * k * box.width, box.y0, width, box.height))
-    top, bottom = rows[0][-1].get_position(), rows[-1][-1].get_position()
-    bar: Any = figure.add_axes((top.x1 + 0.02, bottom.y0, 0.018, top.y1 - bottom.y0))
-    figure.colorbar(shown, cax=bar, format=lambda value, _position: f"{number(100.0 * value)} %")
-    bar.minorticks_off()
-    bar.set_title("error", fontsize=7, pad=3)
 
 
 def grid_of(cases: Cases, model: str, whirl: float) -> tuple[Array, Array, Array]:
@@ -121,9 +108,12 @@ def maps_words(cases: Cases) -> str:
 
 def ends_figure(ends: Ends) -> Figure:
     """Largest whirl of a smooth wave over the detuning, for some depths."""
-    with style():
-        figure = Figure()
-        axes: Any = figure.add_axes((0, 0, 1, 1))
+    text = (
+        "Largest whirl whose steady wave, grown from rest, is smooth. Points: folds, beyond which there "
+        "is none near. Lines without points: as far as the wave was followed, to its choking, to lee "
+        "waves (dents) or to a sharp crest. Dotted: long waves without dispersion choke."
+    )
+    with page([2.8], text) as (figure, [[axes]]):
         axes.set_yscale("log")
         for layer, look in zip(_LAYERS, _LOOKS, strict=True):
             mine = np.isclose(ends.layer, layer)
@@ -140,12 +130,6 @@ def ends_figure(ends: Ends) -> Figure:
         axes.yaxis.set_major_formatter(number)
         axes.set_xlabel("Detuning p/p1")
         axes.set_ylabel("Largest whirl w0/h0")
-        text = (
-            "Largest whirl whose steady wave, grown from rest, is smooth. Points: folds, beyond which there "
-            "is none near. Lines without points: as far as the wave was followed, to its choking, to lee "
-            "waves (dents) or to a sharp crest. Dotted: long waves without dispersion choke."
-        )
-        lay_out(figure, [[axes]], [2.8], Frame(left=0.72, top=0.15, between=0.12, below=0.42), text)
         figure.alt = ends_words(ends)
     return figure
 
@@ -160,14 +144,7 @@ def ends_words(ends: Ends) -> str:
     return f"Largest whirl over depth of a smooth wave, over the detuning: {'; '.join(parts)}."
 
 
-def draw(out: Path) -> list[Path]:
-    """Write both as PNG."""
-    measured = kept()
-    return [
-        save_png(maps_figure(measured.maps), out, "wave_errors", "Error of the models beside the exact wave"),
-        save_png(ends_figure(measured.ends), out, "wave_ends", "Where smooth waves end"),
-    ]
-
-
 if __name__ == "__main__":
-    launch(draw)
+    measured = kept()
+    maps, ends = partial(maps_figure, measured.maps), partial(ends_figure, measured.ends)
+    launch(shown(wave_errors=maps, wave_ends=ends))

@@ -5,17 +5,15 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from leblanc.figures.drawing.page import Figure, Frame, lay_out, save_png, style
 from validation.exact_whirl import Kept, Way, kept
 from validation.exact_whirl.edges import soft_mass_ratio
-from validation.study import launch
+from validation.page import Figure, page
+from validation.study import launch, shown
 
-_FRAME = Frame(left=0.62, top=0.15, between=0.62, below=0.42)
 _LOOKS = (("#0072B2", ":"), ("#D55E00", "-."), ("#009E73", "-"), ("#CC79A7", "--"))
 _LEAST = 5e-3  # mass ratio at the lower end
 
@@ -23,19 +21,15 @@ _LEAST = 5e-3  # mass ratio at the lower end
 def whirl_figure() -> Figure:
     """How a whirl begins over depth and mass ratio, and circles beyond the onset."""
     results = kept()
-    with style():
-        figure = Figure()
-        first: Any = figure.add_axes((0, 0, 1, 1), label="onsets")
-        second: Any = figure.add_axes((0, 0, 1, 1), label="circles")
+    text = (
+        "Above: below the line the lower edge of the band without losses moves into it as the whirl "
+        f"grows. Marks: support damped by {results.damping:g}, friction {results.friction:g} of the "
+        "natural frequency; light and deep liquids have no whirl then. Below: circles with these losses; "
+        "points: where a motion in time came to."
+    )
+    with page([2.0, 2.0], text, left=0.62, between=0.62) as (figure, [[first], [second]]):
         _draw_onsets(first, results)
         _draw_circles(second, results)
-        text = (
-            "Above: below the line the lower edge of the band without losses moves into it as the whirl "
-            f"grows. Marks: support damped by {results.damping:g}, friction {results.friction:g} of the "
-            "natural frequency; light and deep liquids have no whirl then. Below: circles with these losses; "
-            "points: where a motion in time came to."
-        )
-        lay_out(figure, [[first], [second]], [2.0, 2.0], _FRAME, text)
         figure.alt = alternative(results)
     return figure
 
@@ -100,10 +94,5 @@ def alternative(results: Kept) -> str:
     )
 
 
-def draw(out: Path) -> Path:
-    """Write it as PNG."""
-    return save_png(whirl_figure(), out, "exact_whirl", "How a whirl with an exact layer begins")
-
-
 if __name__ == "__main__":
-    launch(draw)
+    launch(shown(exact_whirl=whirl_figure))

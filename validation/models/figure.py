@@ -6,14 +6,12 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from typing import Any
 
-from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save_png, style
 from validation.models import ModelRow, ModelTable, kept
-from validation.study import launch
+from validation.page import Figure, number, page
+from validation.study import launch, shown
 
-_FRAME = Frame(left=0.72, top=0.15, between=0.12, below=0.42)
 _LOOKS = {
     "runup": {"color": "#0072B2", "marker": "o", "markerfacecolor": "#0072B2"},
     "horizontal_rig": {"color": "#D55E00", "marker": "s", "markerfacecolor": "white"},
@@ -23,11 +21,13 @@ _NEAR = 1.1  # times a value: nearer points share a name
 
 
 def models_figure() -> Figure:
-    """Error over time of each model on each scene, on logarithmic axes."""
+    """Error of each liquid model over its time, on each scene."""
     tables = kept()
-    with style():
-        figure = Figure()
-        axes: Any = figure.add_axes((0, 0, 1, 1))
+    text = (
+        "Error of the amplitude or of the liquid's centre of mass over seven speeds, the larger. The "
+        "best answer has none: upright the exact equilibrium, lying waves held in time on 128 cells."
+    )
+    with page([2.6], text) as (figure, [[axes]]):
         axes.set_xscale("log")
         axes.set_yscale("log")
         for table in tables:
@@ -39,11 +39,6 @@ def models_figure() -> Figure:
             axis.set_major_formatter(number)
         axes.set_xlabel("Processor time of a speed (ms)")
         axes.set_ylabel("Largest error (%)")
-        text = (
-            "Error of the amplitude or of the liquid's centre of mass over seven speeds, the larger. The "
-            "best answer has none: upright the exact equilibrium, lying waves held in time on 128 cells."
-        )
-        lay_out(figure, [[axes]], [2.6], _FRAME, text)
         figure.alt = alternative(tables)
     return figure
 
@@ -95,10 +90,5 @@ def alternative(tables: tuple[ModelTable, ...]) -> str:
     return f"Points of error over time on logarithmic axes: {'; '.join(parts)}."
 
 
-def draw(out: Path) -> Path:
-    """Write it as PNG."""
-    return save_png(models_figure(), out, "models", "Error of each liquid model over its time")
-
-
 if __name__ == "__main__":
-    launch(draw)
+    launch(shown(models=models_figure))

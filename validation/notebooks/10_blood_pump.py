@@ -35,8 +35,8 @@
 
 # %%
 from validation.cases.rotors import blood_pump
-from validation.figures.rotors.blood_pump import coils_figure, trial_figure
-from validation.notebook_page import case_table, drawn, verdicts
+from validation.cases.rotors.blood_pump import coils_figure, trial_figure
+from validation.page import case_table, picture, verdicts
 
 # %% [markdown]
 # ## The rotor in time
@@ -45,7 +45,7 @@ from validation.notebook_page import case_table, drawn, verdicts
 # comes on at 0.5 s, a harmonic one at 0.8 s.
 
 # %%
-drawn(trial_figure)
+picture(trial_figure())
 
 # %%
 pump = blood_pump.cases()
@@ -58,7 +58,7 @@ case_table(pump)
 # loop hardly damps; the PID control, made for slower coils, does.
 
 # %%
-drawn(coils_figure)
+picture(coils_figure())
 
 # %% [markdown]
 # ## What does not agree

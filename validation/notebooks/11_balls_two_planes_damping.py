@@ -32,9 +32,9 @@
 from solvers.rotor.balls.stability import balanced_stability
 from solvers.rotor.two_plane import Support, TwoPlane
 from validation.cases.two_plane import damping as two_plane_damping
+from validation.cases.two_plane.charts import damping_figure
 from validation.cases.two_plane.machine import LONG, RACES
-from validation.figures.rotors.ball_charts import damping_figure
-from validation.notebook_page import Table, case_table, drawn, verdicts
+from validation.page import Table, case_table, picture, verdicts
 
 # %% [markdown]
 # ## The region over speed and damping
@@ -44,7 +44,7 @@ from validation.notebook_page import Table, case_table, drawn, verdicts
 # fast that the balls hardly feel it.
 
 # %%
-drawn(damping_figure)
+picture(damping_figure())
 
 # %% [markdown]
 # ## Number by number

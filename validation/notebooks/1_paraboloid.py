@@ -41,8 +41,8 @@
 # %%
 from validation.cases import errata
 from validation.cases.liquid import optimal_volume
-from validation.figures.liquid.volume import law_figure, volume_figure
-from validation.notebook_page import case_table, picture, verdicts
+from validation.cases.liquid.optimal_volume import law_figure, volume_figure
+from validation.page import case_table, picture, verdicts
 
 # %% [markdown]
 # ## The optimal volume

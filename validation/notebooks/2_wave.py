@@ -41,8 +41,8 @@ from scipy.integrate import quad
 
 from fluid import kdv, long_wave
 from validation.cases.liquid import layer
-from validation.figures.liquid.layer import bore_figure, bore_summary, force_figure
-from validation.notebook_page import Table, case_table, picture, verdicts
+from validation.cases.liquid.layer import bore_figure, bore_summary, force_figure
+from validation.page import Table, case_table, picture, verdicts
 from validation.study import data
 
 Table(("How sure the computed flow is, by its file",), ((data("openfoam_layer.json")["accuracy"],),))

@@ -47,10 +47,9 @@ import leblanc as lb
 from fluid.pool import pool_of, sloshing_number
 from leblanc.studies.run.figure import amplitude_figure, liquid_figure
 from leblanc.studies.run.study import run_scene
-from validation.cases.rotors import rigs, vector_model
-from validation.figures.rotors import runup_lag
-from validation.figures.rotors.rigs import angle_figure
-from validation.notebook_page import Table, case_table, picture, verdicts
+from validation.cases.rotors import rig_lag, rigs, vector_model
+from validation.cases.rotors.rig_lag import angle_figure
+from validation.page import Table, case_table, picture, verdicts
 from validation.study import data
 
 # %% [markdown]
@@ -60,7 +59,7 @@ from validation.study import data
 # degrees at the critical speed with liquid.
 
 # %%
-damping_ratio = runup_lag.fitted_damping()
+damping_ratio = rig_lag.fitted_damping()
 picture(angle_figure(damping_ratio))
 
 # %%
@@ -74,7 +73,7 @@ case_table(horizontal)
 
 # %%
 measured = data("dr18_fig24.json")
-ramps = [runup_lag.lag(rate, damping_ratio, cells=48) for rate in (20.0, 5.0)]
+ramps = [rig_lag.lag(rate, damping_ratio, cells=48) for rate in (20.0, 5.0)]
 rows = [("measured", *(f"{angle:g}" for angle in measured["angle_deg"]))]
 rows += [
     (f"run-up at {ramp.rate:g} rad/s^2", *(f"{math.degrees(angle):.0f}" for angle in ramp.angles))

@@ -41,8 +41,8 @@ import leblanc as lb
 from leblanc.figures.whirl_map import map_figure
 from leblanc.studies.whirl_map import map_scene
 from validation.cases.rotors import whirl
-from validation.figures.rotors.whirl import growth_figure, in_time
-from validation.notebook_page import case_table, picture, verdicts
+from validation.cases.rotors.whirl import growth_figure, in_time
+from validation.page import case_table, picture, verdicts
 
 # %%
 cases = whirl.cases()

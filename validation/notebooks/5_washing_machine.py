@@ -40,9 +40,8 @@ from dataclasses import fields
 from solvers.rotor.system import cage_speed
 from validation.cases.errata import tub as tub_errata
 from validation.cases.rotors import tub
-from validation.cases.rotors.tub import Assumed
-from validation.figures.rotors.tub import draw, plots
-from validation.notebook_page import Table, case_table, picture, verdicts
+from validation.cases.rotors.tub import Assumed, draw, plots
+from validation.page import Table, case_table, picture, verdicts
 
 known = Assumed()
 Table(

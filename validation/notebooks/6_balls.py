@@ -37,9 +37,9 @@
 
 # %%
 from validation.cases import exciter, two_plane
-from validation.figures.exciter.speeds import machine_figure
-from validation.figures.rotors.two_plane import balls_figure
-from validation.notebook_page import case_table, drawn, verdicts
+from validation.cases.exciter.speeds import table_figure
+from validation.cases.two_plane.conditions import balls_figure
+from validation.page import case_table, picture, verdicts
 
 # %% [markdown]
 # ## Two planes
@@ -48,7 +48,7 @@ from validation.notebook_page import case_table, drawn, verdicts
 # make it worse.
 
 # %%
-drawn(balls_figure)
+picture(balls_figure())
 
 # %%
 planes = two_plane.cases()
@@ -61,7 +61,7 @@ case_table(planes)
 # of the table and shake it slowly and strongly, while the unbalance of the shaft shakes it fast.
 
 # %%
-drawn(machine_figure)
+picture(table_figure())
 
 # %%
 excited = exciter.cases()

@@ -41,10 +41,10 @@ import leblanc as lb
 from leblanc.figures.optimise import objective_figure
 from leblanc.studies.optimise.optimise import optimise_scene
 from validation.cases import fill_sweep
+from validation.cases.fill_sweep.judged import sweep_figure
 from validation.cases.liquid import fill_optimum
 from validation.cases.rotors import runup as runup_given
-from validation.figures.rotors.fill_sweep import sweep_figure
-from validation.notebook_page import case_table, picture, verdicts
+from validation.page import case_table, picture, verdicts
 
 # %% [markdown]
 # ## The search

@@ -34,9 +34,9 @@
 #   differ; ratios less so.
 
 # %%
-from validation.notebook_page import case_table, from_markdown, picture, verdicts
+from validation.page import case_table, picture, verdicts
 from validation.trade import again, names
-from validation.trade.__main__ import rows
+from validation.trade.__main__ import overview
 from validation.trade.figure import trade_figure
 
 # %% [markdown]
@@ -45,7 +45,7 @@ from validation.trade.figure import trade_figure
 # In milliseconds of CPU time; *0* is an error that cannot be told from the best answer's own.
 
 # %%
-from_markdown(rows())
+overview()
 
 # %% [markdown]
 # ## An upright machine and a horizontal rig

@@ -58,9 +58,7 @@ from solvers.potential.unsteady import invariants, rates, started
 from validation.breaking import crests
 from validation.breaking.figure import breaking_figure, crest_figure
 from validation.cases.liquid import exact_wave
-from validation.exact import kept
-from validation.exact.figure import ends_figure, maps_figure
-from validation.figures.liquid.exact_wave import (
+from validation.cases.liquid.exact_wave import (
     LAYER,
     SHARE,
     SHARP,
@@ -70,7 +68,9 @@ from validation.figures.liquid.exact_wave import (
     last_crests,
     sharp_figure,
 )
-from validation.notebook_page import Table, case_table, picture, verdicts
+from validation.exact import kept
+from validation.exact.figure import ends_figure, maps_figure
+from validation.page import Table, case_table, picture, verdicts
 
 # %% [markdown]
 # ## The force of a whirl

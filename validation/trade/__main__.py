@@ -12,11 +12,11 @@ from importlib import metadata
 from pathlib import Path
 from typing import Any
 
+from validation.page import Table
 from validation.study import launch
 from validation.trade import fingerprint, kept, names
 
 _HERE = Path(__file__).parent
-_PICTURED = ("runup", "horizontal_rig")
 _PACKAGES = ("numba", "scikit-fem")
 _MILLI = 1e3
 
@@ -27,7 +27,7 @@ def main(
     question: str | None = None,
     table: bool = False,
     out: Path | None = None,
-) -> list[str]:
+) -> Table:
     """Measure scenes (those that are kept by default) or one question of them, keep, and print the table.
 
     Table: of what is kept, nothing is measured; out: folder for two figures.
@@ -37,7 +37,7 @@ def main(
             os.environ[variable] = "1"
         for name in only or names():
             keep(examples / f"{name}.toml", out, question)
-    return rows()
+    return overview()
 
 
 def keep(path: Path, out: Path | None = None, question: str | None = None) -> None:
@@ -69,43 +69,39 @@ def keep(path: Path, out: Path | None = None, question: str | None = None) -> No
         raise RuntimeError(f"{path.stem}: the others are kept with other versions; measure all questions")
     (_HERE / f"{path.stem}.json").write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
     print(f"{path.stem}: {time.perf_counter() - begin:.0f} s", file=sys.stderr, flush=True)
-    if out is not None and path.stem in _PICTURED:
-        from leblanc.figures.drawing.page import save_png
-        from validation.trade.figure import trade_figure
+    from leblanc.figures.drawing.page import save_png
+    from validation.trade.figure import PICTURED, trade_figure
 
+    if out is not None and path.stem in PICTURED:
         save_png(trade_figure(record), out, f"trade_{path.stem}", "Accuracy against cost")
 
 
-def rows() -> list[str]:
-    """What is kept, as a table in Markdown: default, recommended and best of each scene and question."""
-    lines = [
-        "| scene | question | best answer (its own error) | default took: error, time "
-        "| recommended: error, time | cheapest: error, time |",
-        "|---|---|---|---|---|---|",
-    ]
+def overview() -> Table:
+    """Default, recommended and best answers kept of each scene and question."""
+    lines = []
     for name in names():
         result = kept(name)
         for question in result["questions"]:
             rows = [row for row in result["rows"] if row["question"] == question["question"]]
             lines.append(_line(name, question, rows))
-    return lines
+    head = ("default took: error, time", "recommended: error, time", "cheapest: error, time")
+    return Table(("scene", "question", "best answer (its own error)", *head), tuple(lines))
 
 
-def _line(name: str, question: dict[str, Any], rows: list[dict[str, Any]]) -> str:
+def _line(name: str, question: dict[str, Any], rows: list[dict[str, Any]]) -> tuple[str, ...]:
     default = next(row for row in rows if row["default"])
     advised = next((row for row in rows if row["recommended"]), None)
     answered = [row for row in rows if row["error"] is not None]
     cheapest = min(answered, key=lambda row: float(row["time"]))
     own = "exact" if question["reference_error"] <= 1e-11 else f"{question['reference_error']:.1e}"
-    cells = [
+    return (
         name,
         question["question"],
         f"{question['reference']} ({own})",
         f"{' + '.join(default['used'])}: {_pair(default)}",
         "undecided" if advised is None else f"{_label(advised)}: {_pair(advised)}",
         f"{_label(cheapest)}: {_pair(cheapest)}",
-    ]
-    return "| " + " | ".join(cells) + " |"
+    )
 
 
 def _label(row: dict[str, Any]) -> str:

@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from leblanc.scene.examples import example
-from validation.cases.case import Case, Origin, compare
+from validation.case import Case, Origin, compare
 from validation.trade import kept, names
 from validation.trade.cases import Question, questions, refined_to
 from validation.trade.judge import Comparison, Row

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from validation.trade.judge import Comparison, Row
     from validation.trade.trade import TradeRecord
 
+PICTURED = ("runup", "horizontal_rig")  # scenes whose kept comparison is drawn
 Axes = Any  # matplotlib's, which no module that only draws imports
 
 FRAME = Frame(left=0.72, top=0.25, between=0.62, below=0.42)
@@ -222,3 +223,12 @@ def _caption(record: TradeRecord) -> str:
         "Error and least CPU time of every model, bars: spread of the times; numbers: cells or edges round a "
         f"wall, or steps in a turn. Scene: {one_line(record.name)}. {text} Assumed: {assumed}."
     )
+
+
+if __name__ == "__main__":
+    from functools import partial
+
+    from validation.study import launch, shown
+    from validation.trade.again import record
+
+    launch(shown(**{f"trade_{name}": partial(trade_figure, record(name)) for name in PICTURED}))

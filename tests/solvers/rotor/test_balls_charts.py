@@ -30,7 +30,7 @@ from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
 from tests.mutants import kills
 from tests.oracles.random_balls import machine_with_balls
-from validation.figures.rotors.ball_charts import reference
+from validation.cases.two_plane.charts import reference
 
 RACE = BallRace(0.0, 0.08, (0.015, 0.015), 0.3)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from validation.cases.case import Case
+from validation.case import Case
 
 
 def cases() -> list[Case]:

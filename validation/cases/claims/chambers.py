@@ -18,7 +18,9 @@ from leblanc.scene.examples import example
 from leblanc.scene.scene import Scene
 from leblanc.studies.run.study import run_scene
 from leblanc.studies.runup import runup_scene
-from validation.cases.case import Case, Verdict, shape_verdict
+from validation.case import Case, Verdict, shape_verdict
+from validation.page import Figure, page
+from validation.study import launch, shown
 
 Kind = Literal["concentric", "stacked"]
 
@@ -145,3 +147,40 @@ def _case(kind: Kind, measure: str, meaning: str) -> Case:
         note="vertical rig; 30 kg, 40 mm, damping ratio 0.01, smooth walls and the ramp are assumed; full "
         f"mass of the rings over the rotor's {added}",
     )
+
+
+# Of each measure: what it is, colour and mark.
+_LOOKS = {
+    "at_speed": ("at 90 rad/s", "#0072B2", "o"),
+    "peak": ("largest at constant speed", "#D55E00", "s"),
+    "run_up": ("largest of a run-up at 4 rad/s\N{SUPERSCRIPT TWO}", "#009E73", "^"),
+}
+
+
+def rings_figure() -> Figure:
+    """Deflection over that without liquid, over the number of rings."""
+    text = (
+        "The vertical rig with one litre of water in one to four rings within 400 mm by 40 mm: "
+        "concentric ones 50 mm wide with layers of equal depth, or rings of equal height one above the "
+        "other. Steady: exact equilibrium and linear layers; run-up: annular long waves, 32 cells. "
+        "Assumed: 30 kg, 40 mm, damping ratio 0.01, smooth walls, the ramp."
+    )
+    with page([2.9], text) as (figure, [[axes]]):
+        for kind in KINDS:
+            for measure, (label, color, mark) in _LOOKS.items():
+                sizes = [getattr(gain(count, kind), measure) for count in COUNTS]
+                look = {"color": color, "marker": mark, "markersize": 4.5, "linewidth": 1.3}
+                if kind == "stacked":
+                    look |= {"linestyle": (0, (5, 1.5)), "markerfacecolor": "white"}
+                axes.plot(COUNTS, sizes, label=f"{kind}, {label}", **look)
+        axes.axhline(1.0, color="0.45", linewidth=0.8)
+        axes.set_xticks(COUNTS)
+        axes.set_xlim(0.8, 4.2)
+        axes.set_ylim(0.6, 1.2)
+        axes.set_xlabel("Number of rings that share one litre")
+        axes.set_ylabel("Deflection over that without liquid (\N{EN DASH})")
+    return figure
+
+
+if __name__ == "__main__":
+    launch(shown(claims_rings=rings_figure))

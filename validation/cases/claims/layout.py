@@ -16,7 +16,7 @@ from solvers.rotor.layout import PAIRS, couplings
 from solvers.rotor.tub import Mount, Tub, Vector
 from solvers.rotor.two_plane import PlaneUnbalance
 from solvers.rotor.vibration import unbalance_response
-from validation.cases.case import Case, shape_verdict
+from validation.case import Case, shape_verdict
 from validation.cases.rotors.tub import DAMPER, SPRING, suspended_tub
 
 NAMES = ("x", "y", "z", "alpha", "beta", "gamma")

@@ -12,7 +12,7 @@ from scipy.optimize import minimize_scalar
 
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.vibration import unbalance_response
-from validation.cases.case import MEASURED, Case, compare, shape_verdict
+from validation.case import MEASURED, Case, compare, shape_verdict
 from validation.cases.rotors.rigs import vertical_rotor
 
 LOAD, SWING, POWER = 35e-3, 35e-3, 180.0  # kg, m, W: as printed

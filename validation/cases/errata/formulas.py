@@ -18,7 +18,7 @@ from fluid.printed import (
 from fluid.upright import free_surface_term
 from meshes.chamber import Chamber
 from solvers.rotor.vector_model import balance_angles, balance_residual
-from validation.cases.case import Case, compare
+from validation.case import Case, compare
 
 GRAVITY = 9.81
 

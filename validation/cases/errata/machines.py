@@ -13,7 +13,7 @@ from solvers.rotor.balls.two_plane_balance import dynamic_balancing, of_two_plan
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.two_plane import TwoPlane
 from solvers.rotor.vibration import unbalance_response
-from validation.cases.case import Case, compare
+from validation.case import Case, compare
 from validation.cases.two_plane.machine import BALLS, LONG, RACES
 
 

@@ -10,7 +10,7 @@ from fluid.liquid import known_liquid
 from solvers.rotor.balls.two_plane_balance import RigidRotor, dynamic_balancing
 from solvers.rotor.vector_model import balance_angles
 from solvers.synchronous.response import response
-from validation.cases.case import Case, compare
+from validation.case import Case, compare
 from validation.cases.rotors.rigs import horizontal_rig, horizontal_rotor
 from validation.cases.rotors.tub import suspended_tub
 

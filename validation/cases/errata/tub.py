@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from validation.cases.case import Case, compare
+from validation.case import Case, compare
 
 # Coefficients of the stiffness matrix as DR18 prints them below eq. 8, one spring, places counted from 1;
 # the other places of the upper triangle it gives as 0 or leaves out.

@@ -1,7 +1,7 @@
 """The exciter's traces and trends [YF17, fig. 3 to 6, eq. 21].
 
 Trends take minutes; they are kept in `validation/data/exciter_more.json`, which `python -m
-validation.cases.exciter.traces` makes anew.
+validation.cases.exciter.traces --anew` makes anew.
 """
 
 from __future__ import annotations
@@ -18,14 +18,15 @@ import numpy as np
 from meshes.arrays import Array
 from solvers.rotor.exciter.machine import (
     Dimensionless,
-    Exciter,
     characteristic_speeds,
     platform_motion,
     stuck_speeds,
 )
 from solvers.rotor.exciter.motion import Trace, critical_speeds, trace
-from validation.cases.case import Case, compare
-from validation.study import launch, write
+from validation.case import Case, compare
+from validation.cases.exciter.speeds import vibratory_table
+from validation.page import Figure, logarithmic, page
+from validation.study import launch, shown, write
 
 DATA = Path(__file__).parents[2] / "data" / "exciter_more.json"
 TYPICAL = Dimensionless(smallness=0.01, drag=0.4, unbalance=0.25, damping=0.03)
@@ -145,7 +146,7 @@ def _traces() -> list[Case]:
 
 def _dimensional() -> list[Case]:
     """Eq. 21 with the data of the worked table against n2 from the exact roots."""
-    table = Exciter(90.1, 145083.0, 150.0, 0.1 * 0.105, 2, 0.325, 7.0 / 5.0, 0.0735, 0.03)
+    table = vibratory_table()
     own = table.natural_frequency
     printed = own + table.ball_count * table.ball_mass**2 * own**3 / (
         2.0 * table.damping * table.ball_damping
@@ -191,8 +192,8 @@ def _trends(panels: list[dict[str, Any]]) -> list[Case]:
     return found
 
 
-def measure() -> dict[str, Any]:
-    """Make the kept runs anew."""
+def keep() -> None:
+    """Measure the trends, in minutes, and keep them."""
     panels = []
     for along, values, apart, others, rest in PANELS:
         curves = []
@@ -200,17 +201,84 @@ def measure() -> dict[str, Any]:
             machines = [Dimensionless(**{along: value, apart: other, **rest}) for value in values]
             curves.append([round(float(n), 3) for n in critical_speeds(machines, workers=2)])
         panels.append({"along": along, "values": values, "apart": apart, "others": others, "curves": curves})
-    return {
-        "about": "Critical speeds of figures 5 and 6 of YF17, released, 0.3 rad apart; "
-        "by validation.cases.exciter.traces.",
-        "panels": panels,
-    }
+    about = "Critical speeds of figures 5 and 6 of YF17, released, 0.3 rad apart; "
+    write(DATA, {"about": f"{about}by validation.cases.exciter.traces.", "panels": panels})
 
 
-def main() -> None:
-    """Measure and keep."""
-    write(DATA, measure())
+_LETTERS = {
+    "smallness": "\N{GREEK SMALL LETTER EPSILON}",
+    "drag": "b",
+    "unbalance": "\N{GREEK SMALL LETTER DELTA}",
+    "damping": "h",
+}
+_LOOKS = (("C0", "o", "-"), ("C1", "s", "--"), ("C2", "^", "-."))
+
+
+def trace_figure() -> Figure:
+    """Speed of the balls, motion of the platform, and how far the lowest order is off [YF17, fig. 3]."""
+    found = traces()
+    seen = (found.motion.position, found.motion.velocity, found.motion.acceleration)
+    names = ("displacement", "velocity", "acceleration")
+    text = (
+        "Dual-frequency motion at n = 5, eps = 0.01, b = 0.4, delta = 0.25, h "
+        "= 0.03, in the machine\u2019s own "
+        "units: speed of both balls, motion of the platform, and what it "
+        "differs by from the lowest order "
+        "(theory: balls, eq. 7), whose phase is fitted."
+    )
+    with page([1.2, 1.5, 1.2], text, top=0.2, between=0.3, below=0.45) as (figure, rows):
+        balls, motion, gap = panels = [axes for [axes] in rows]
+        for k, dashes in enumerate(("-", "--")):
+            speed = found.motion.ball_speed[:, k]
+            balls.plot(found.turns, speed, color="black", linestyle=dashes, label=f"ball {k + 1}")
+        for name, values, lowest, (color, _, dashes) in zip(names, seen, found.lowest, _LOOKS, strict=True):
+            motion.plot(found.turns, values, color=color, linestyle=dashes, label=name)
+            gap.plot(found.turns, values - lowest, color=color, linestyle=dashes)
+        balls.set_ylabel("Ball speed (\N{EN DASH})")
+        motion.set_ylabel("Platform (\N{EN DASH})")
+        gap.set_ylabel("Gap (\N{EN DASH})")
+        gap.set_xlabel("Turns of the balls (\N{EN DASH})")
+        for axes in panels:
+            axes.set_xlim(0.0, 3.0)
+            axes.tick_params(labelbottom=axes is gap)
+    return figure
+
+
+def trend_figure() -> Figure:
+    """Critical speed over damping, drag and unbalance, from the kept runs [YF17, fig. 5 and 6]."""
+    kept = json.loads(DATA.read_text(encoding="utf-8"))["panels"]
+    text = (
+        "Critical speed of the exciter with two balls, released 0.3 rad apart, "
+        "no gravity; numbers that are not "
+        "on a panel: b = 0.4, h = 0.03, delta = 0.25, and eps = 0.01 (0.005 in 5b)."
+    )
+    room = {"left": 0.6, "top": 0.25, "between": 0.75, "below": 0.45, "apart": 0.65}
+    with page([2.0, 2.0], text, (2, 2), **room) as (figure, rows):
+        panels = [axes for row in rows for axes in row]
+        for name, panel, axes in zip(FIGURES, kept, panels, strict=True):
+            apart = _LETTERS[panel["apart"]]
+            for other, curve, (color, mark, dashes) in zip(
+                panel["others"], panel["curves"], _LOOKS, strict=True
+            ):
+                axes.plot(panel["values"], curve, color=color, marker=mark, linestyle=dashes)
+                axes.annotate(
+                    f"{apart} = {other:g}",
+                    (panel["values"][-1], curve[-1]),
+                    # On panel 5b two curves end close together.
+                    xytext=(3, {"C0": 3, "C1": -2}.get(color, 0) if name == "5b" else 0),
+                    textcoords="offset points",
+                    va="center",
+                    fontsize=7,
+                )
+            low, high = panel["values"][0], panel["values"][-1]
+            axes.set_xlim(low - 0.03 * (high - low), high + 0.3 * (high - low))
+            logarithmic(axes, y=[5, 10, 20, 50, 100] if name == "5b" else [5, 7, 10, 15, 20])
+            axes.set_xlabel(f"{panel['along'].capitalize()} {_LETTERS[panel['along']]} (\N{EN DASH})")
+            axes.set_title(f"Figure {name}")
+        for first, _ in rows:
+            first.set_ylabel("Critical speed n (\N{EN DASH})")
+    return figure
 
 
 if __name__ == "__main__":
-    launch(main)
+    launch(shown(anew=keep, exciter_traces=trace_figure, exciter_trends=trend_figure))

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from meshes.arrays import Array
-from validation.cases.case import MEASURED, Case, Effect, shape_verdict
+from validation.case import MEASURED, Case, Effect, shape_verdict
 from validation.cases.fill_sweep.contact import of_kept
-from validation.cases.fill_sweep.fitted import SCATTER, bands, kept, measured, ratios
-from validation.study import data
+from validation.cases.fill_sweep.fitted import NEAREST, SCATTER, bands, kept, measured, ratios
+from validation.page import Figure, page
+from validation.study import data, launch, shown
 
 _GROUP = "fill_sweep"
 _SOURCE = "washing machine with a balance ring, see fill_sweep.json"
@@ -162,3 +165,60 @@ def _columns() -> Case:
         verdict="agrees" if column[:3] == logs["passage_peak"][:3] else "erratum",
         note="frequencies read from the logs; with 100 ml and more the resonance was passed a sprint before",
     )
+
+
+_LINE, _TOUCHES = "#0072B2", "#009E73"
+
+
+def sweep_figure() -> Figure:
+    """The measured fill sweep, and what one machine makes of it."""
+    added, *seen = measured()
+    draws, fitted = kept()
+    own = [ratio[0] for ratio in ratios(fitted.answers)]
+    titles = ("At the resonance", "Near the highest speed, 750 rpm")
+    text = (
+        "Measured: one run for each fill; those with 0 and 50 ml strike the cabinet at the resonance. "
+        "Computed: one machine for all fills, its values fitted to the first and the last fill (large "
+        f"marks); band: the {NEAREST} of {len(draws.values)} sets of assumed values that come closest to "
+        "these two. Green: the tub touches the cabinet beyond a clearance; nine tenths of what the two "
+        "fills allow, and their middle. Scene: validation/data/fill_sweep.toml, most of it assumed."
+    )
+    with page([2.0, 1.6], text, left=0.78, top=0.28, between=0.34) as (figure, rows):
+        panels = [axes for [axes] in rows]
+        for k, (title, band) in enumerate(zip(titles, bands(draws, fitted.answers), strict=True)):
+            _draw(panels[k], added, seen[k], own[k], band)
+            panels[k].set_title(title, loc="left")
+            panels[k].set_ylabel("Shaking over that\nwith 0 ml added (\N{EN DASH})")
+            panels[k].tick_params(labelbottom=k == 1)
+        _draw_contact(panels[0], added)
+        panels[0].set_yscale("log")
+        panels[0].set_ylim(0.07, 3.0)
+        panels[0].set_yticks([0.1, 0.2, 0.5, 1.0, 2.0], ["0.1", "0.2", "0.5", "1", "2"])
+        panels[0].yaxis.set_minor_locator(panels[0].yaxis.get_minor_locator().__class__(subs=()))
+        panels[1].set_ylim(0.0, 1.4)
+        panels[1].set_xlabel("Water added to the ring (ml)")
+        pairs = zip(added[1:], seen[0][1:], own[0][1:], strict=True)
+        told = "; ".join(f"{ml:g} ml {a:.2f} measured, {b:.2f} computed" for ml, a, b in pairs)
+        figure.alt = f"Shaking at the resonance over that with 0 ml added: {told}."
+    return figure
+
+
+def _draw(axes: Any, added: Array, seen: Array, own: Array, band: Array) -> None:
+    """One quantity: band, computed line, measured points, those that were fitted large."""
+    axes.fill_between(added, *band, color=_LINE, alpha=0.2, linewidth=0.0, label="closest assumed values")
+    axes.plot(added, own, color=_LINE, linestyle=(0, (5, 1.5)), linewidth=1.3, label="computed, fitted")
+    look: dict[str, Any] = {"color": "black", "linestyle": "none", "markerfacecolor": "white", "zorder": 4}
+    axes.plot(added, seen, marker="s", markersize=4.5, label="measured", **look)
+    ends = [0, -1]
+    axes.plot(added[ends], seen[ends], marker="s", markersize=8.0, label="measured, fitted to", **look)
+
+
+def _draw_contact(axes: Any, added: Array) -> None:
+    """What a clearance makes of the same values: nine tenths of what two fills allow, and the middle."""
+    low, middle, high = of_kept().bands()
+    axes.fill_between(added, low, high, color=_TOUCHES, alpha=0.15, linewidth=0.0, label="with a clearance")
+    axes.plot(added, middle, color=_TOUCHES, linewidth=1.3, label="with a clearance, middle")
+
+
+if __name__ == "__main__":
+    launch(shown(fill_sweep=sweep_figure))

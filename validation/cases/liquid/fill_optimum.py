@@ -12,7 +12,7 @@ from leblanc.scene.scene import Scene, jeffcott
 from leblanc.studies.models.choose import axial_gravity
 from leblanc.studies.optimise.optimise import optimise_scene
 from leblanc.studies.optimise.wetting import wetting_volumes
-from validation.cases.case import Case, Origin, compare
+from validation.case import Case, Origin, compare
 
 _ML = 1e6
 # Values within 1e-6 count as equal, and the least volume of these is the answer. What is missing costs its

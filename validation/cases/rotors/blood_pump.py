@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
+from leblanc.scene.examples import example
+from leblanc.wings.magnetic.figure import magnetic_figure
+from leblanc.wings.magnetic.study import run_magnetic
 from meshes.arrays import Array
-from solvers.rotor.magnetic.control import Synergetic, source_times
-from solvers.rotor.magnetic.linear import Loop, closed_loop, orbit_size
+from solvers.rotor.magnetic.control import Controller, Pid, Synergetic, source_times
+from solvers.rotor.magnetic.linear import Loop, closed_loop, margins, orbit_size
 from solvers.rotor.magnetic.machine import (
     MagneticRotor,
     Magnets,
@@ -18,7 +22,9 @@ from solvers.rotor.magnetic.machine import (
     screw_drag,
 )
 from solvers.rotor.magnetic.motion import SpeedLaw, integrate, settling_time
-from validation.cases.case import Case, compare
+from validation.case import Case, compare
+from validation.page import Figure, Table, logarithmic, page
+from validation.study import launch, shown
 
 LENGTH, RADIUS, GAP = 22e-3, 7.8e-3, 2e-4  # l, d/2 and delta of table 1
 SHAPE, COEFFICIENT, VISCOSITY = 0.202, 0.91, 0.056  # k_m, c_w and eta
@@ -329,3 +335,87 @@ def _robustness() -> list[Case]:
             verdict="agrees" if stable and shaken[most] < REQUIRED else "differs",
         )
     ]
+
+
+HERTZ = 2.0 * math.pi
+BANDWIDTHS = np.geomspace(300.0, 5e6, 43)  # of the coils, Hz
+TOLD = (500.0, 1e3, 2e3, 5e3, 1e4, 1e5, 1e6)  # in the table, Hz
+_LOOKS: dict[str, dict[str, Any]] = {
+    "synergetic": {"color": "C0", "linestyle": "-", "label": "synergetic control"},
+    "pid": {"color": "C1", "linestyle": "--", "label": "PID control"},
+}
+
+
+@dataclass(frozen=True)
+class Coils:
+    """A loop with coils that take time; n bandwidths."""
+
+    bandwidth: Array  #: Hz, shape (n,)
+    sensitivity: Array  #: largest, nan where the loop is not stable, shape (n,)
+    damping: Array  #: least damping ratio of all poles, below 0 where the loop is not stable, shape (n,)
+    delay: Array  #: delay margin, s, nan where the loop is not stable, shape (n,)
+
+
+def controllers() -> tuple[Controller, ...]:
+    """That of the source and the PID control of the example."""
+    pid = Pid(MACHINE, proportional=150e3, integral=7.5e6, derivative=41.0, cutoff=5e4)
+    return control(), pid
+
+
+def slow_coils(controller: Controller, bandwidth: Array) -> Coils:
+    """Pump at 9000 rpm with coils of some bandwidths, Hz, the controller unchanged."""
+    found = []
+    for hertz in bandwidth.tolist():
+        machine = replace(MACHINE, magnets=replace(MACHINE.magnets, bandwidth=HERTZ * hertz))
+        loop = closed_loop(machine, controller, SPEED)
+        edge, poles = margins(loop), loop.poles
+        found.append((edge.sensitivity, float((-poles.real / np.abs(poles)).min()), edge.delay))
+    return Coils(bandwidth, *np.array(found).T)
+
+
+def table() -> Table:
+    """Margins over the bandwidth of the coils."""
+    both, rows = [slow_coils(controller, np.array(TOLD)) for controller in controllers()], []
+    for k, hertz in enumerate(TOLD):
+        cells = [f"{hertz:g} Hz"]
+        for coils in both:
+            lost = math.isnan(coils.sensitivity[k])
+            cells += ["not stable" if lost else f"{coils.sensitivity[k]:.2f}", f"{coils.damping[k]:.3f}"]
+        rows.append(tuple(cells))
+    head = ("synergetic: sensitivity", "least damping", "PID: sensitivity", "least damping")
+    return Table(("bandwidth", *head), tuple(rows))
+
+
+def coils_figure() -> Figure:
+    """Sensitivity and damping over the bandwidth of the coils."""
+    text = (
+        "Blood pump at 9000 rpm: largest sensitivity and least damping ratio over the bandwidth "
+        "of coils and amplifiers, controllers unchanged. The source's controller is made for coils that "
+        "follow at once. Magnets, bias current and PID control are assumed."
+    )
+    with page([1.7, 1.4], text, top=0.12) as (figure, [[above], [below]]):
+        for controller in controllers():
+            coils = slow_coils(controller, BANDWIDTHS)
+            above.plot(1e-3 * BANDWIDTHS, coils.sensitivity, **_LOOKS[controller.name])
+            below.plot(1e-3 * BANDWIDTHS, coils.damping, **_LOOKS[controller.name])
+        above.axhline(3.0, color="0.25", linewidth=0.8, linestyle=":", label="3, a new machine (ISO 14839-3)")
+        below.axhline(0.0, color="0.45", linewidth=0.8)
+        logarithmic(above, x=[1.0, 10.0, 100.0, 1000.0], y=[1.0, 10.0, 100.0])
+        logarithmic(below, x=[1.0, 10.0, 100.0, 1000.0])
+        for axes in (above, below):
+            axes.set_xlim(1e-3 * float(BANDWIDTHS[0]), 1e-3 * float(BANDWIDTHS[-1]))
+        above.set_ylim(0.9, 100.0)
+        above.tick_params(labelbottom=False)
+        above.set_ylabel("Largest sensitivity (\N{EN DASH})")
+        below.set_ylabel("Least damping ratio (\N{EN DASH})")
+        below.set_xlabel("Bandwidth of the coils (kHz)")
+    return figure
+
+
+def trial_figure() -> Figure:
+    """Trial of the scene in time and its unbalance response."""
+    return magnetic_figure(run_magnetic(example("blood_pump")))
+
+
+if __name__ == "__main__":
+    launch(shown(table, blood_pump=trial_figure, blood_pump_coils=coils_figure))

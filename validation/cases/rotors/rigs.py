@@ -21,7 +21,7 @@ from meshes.chamber import Chamber
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.vector_model import deflection_lag
 from solvers.synchronous.response import critical_speed, response
-from validation.cases.case import MEASURED, Case, Effect, shape_verdict
+from validation.case import MEASURED, Case, Effect, shape_verdict
 from validation.study import data
 
 

@@ -14,7 +14,7 @@ from solvers.rotor.rolling_bearing import Bearing, fit_bearing
 from solvers.rotor.shaft.natural import natural_frequencies
 from solvers.rotor.shaft.structure import Coordinate, Structure, compliances
 from solvers.rotor.shaft.substructures import connections, free_compliances, substructures
-from validation.cases.case import MEASURED, Case, compare
+from validation.case import MEASURED, Case, compare
 
 FRAME = 33.0  # Hz, first natural frequency of the frame [DP18, figure 5c]
 # Speeds of the spindle at which each frequency of the bearing meets that of the frame, Hz [DP18, table 1].

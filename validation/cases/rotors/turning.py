@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from validation.cases.case import MEASURED, Case, compare
+from validation.case import MEASURED, Case, compare
 
 
 def speed(cutting_speed: float, diameter: float) -> float:

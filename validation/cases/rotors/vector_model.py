@@ -11,7 +11,7 @@ from meshes.errors import InputError
 from solvers.rotor.vector_model import balance_residual, deflection_lag, unbalance_left
 from solvers.statics.hydrostatics import equilibrium
 from solvers.synchronous.response import response
-from validation.cases.case import Case
+from validation.case import Case
 from validation.cases.rotors.rigs import horizontal_rig, horizontal_rotor
 
 _RPM = 2.0 * math.pi / 60.0

@@ -5,8 +5,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 from leblanc.core.units import MM, RPM
@@ -14,7 +12,8 @@ from leblanc.scene.examples import example
 from leblanc.scene.scene import Scene
 from leblanc.studies.runup import runup_scene
 from solvers.runup.runup import RunupHistory
-from validation.study import launch
+from validation.page import Figure, page
+from validation.study import launch, shown
 
 
 def with_and_without(scene: Scene, check: bool = False) -> tuple[RunupHistory, RunupHistory]:
@@ -24,18 +23,22 @@ def with_and_without(scene: Scene, check: bool = False) -> tuple[RunupHistory, R
     return wet, dry
 
 
-def draw(wet: RunupHistory, dry: RunupHistory, scene: Scene, directory: Path) -> Path:
-    """Speed and amplitude over time as PNG."""
-    from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save_png, style
-
+def motor_figure() -> Figure:
+    """A weak motor at the resonance: speed and amplitude over time."""
+    scene = example("weak_motor")
+    wet, dry = with_and_without(scene)
+    motor = scene.runup.motor if scene.runup is not None else None
+    torque = f"Torque {motor.torques[0]:g} N m at rest, falling on a straight line; " if motor else ""
+    fill = scene.fills[0]
     looks: list[tuple[RunupHistory, dict[str, Any]]] = [
         (wet, {"color": "#0072B2", "linewidth": 1.8, "label": "with liquid"}),
         (dry, {"color": "#D55E00", "linestyle": (0, (5, 1.5)), "label": "without liquid"}),
     ]
-    with style():
-        figure = Figure()
-        upper: Any = figure.add_axes((0, 0, 1, 1), label="speed")
-        lower: Any = figure.add_axes((0, 0, 1, 1), label="amplitude")
+    text = (
+        f"Scene: {scene.name}. {torque}{fill.volume * 1e3:g} l of {fill.liquid.name}. Annular long waves "
+        "in time, linear wall friction. Every value is assumed."
+    )
+    with page([1.6, 1.6], text, top=0.12) as (figure, [[upper], [lower]]):
         for history, look in looks:
             upper.plot(history.time, history.speed * RPM, **look)
             lower.plot(history.time, history.amplitude * MM, **(look | {"linewidth": 1.0, "label": "_"}))
@@ -46,26 +49,12 @@ def draw(wet: RunupHistory, dry: RunupHistory, scene: Scene, directory: Path) ->
         for axes in (upper, lower):
             axes.set_xlim(0.0, float(wet.time[-1]))
             axes.set_ylim(bottom=0.0)
-            axes.xaxis.set_major_formatter(number)
-        motor = scene.runup.motor if scene.runup is not None else None
-        torque = f"Torque {motor.torques[0]:g} N m at rest, falling on a straight line; " if motor else ""
-        fill = scene.fills[0]
-        text = (
-            f"Scene: {scene.name}. {torque}{fill.volume * 1e3:g} l of {fill.liquid.name}. Annular long waves "
-            "in time, linear wall friction. Every value is assumed."
-        )
-        lay_out(figure, [[upper], [lower]], [1.6, 1.6], Frame(0.72, 0.12, 0.12, 0.42), text)
-    return save_png(figure, directory, "runup_weak_motor", "A weak motor at the resonance")
-
-
-def main(out: Path) -> Iterator[str]:
-    """Run both and draw."""
-    scene = example("weak_motor")
-    wet, dry = with_and_without(scene)
-    draw(wet, dry, scene, out)
-    for name, history in (("with liquid", wet), ("without", dry)):
-        yield f"{name}: {history.speed[-1]:.2f} rad/s, {history.amplitude[-1] * MM:.2f} mm at the end"
+    figure.alt = " ".join(
+        f"At the end {look['label']} {history.speed[-1]:.2f} rad/s, {history.amplitude[-1] * MM:.2f} mm."
+        for history, look in looks
+    )
+    return figure
 
 
 if __name__ == "__main__":
-    launch(main)
+    launch(shown(runup_weak_motor=motor_figure))

@@ -7,6 +7,7 @@ of 5e-4 of the natural frequency: an edge is known to one step, a growth rate to
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
@@ -22,7 +23,8 @@ from solvers.rotor.two_plane import Support, TwoPlane
 from solvers.runup.runup import RunupNumerics
 from solvers.whirl.edges import unstable_bands
 from solvers.whirl.growth import asynchronous_growth
-from validation.cases.case import Case, Origin, compare
+from validation.case import Case, Origin, compare
+from validation.page import Figure, page
 from validation.whirl_in_time import Passage, large_whirl_in_time, passage, whirl_in_time
 
 _SOURCE = "Wolf's problem, scan in steps of 5e-4"
@@ -288,3 +290,45 @@ def _limits() -> list[Case]:
             )
         )
     return found
+
+
+def growth_figure(in_time: list[Case]) -> Figure:
+    """Growth rate over speed with four sets of damping, and the coupled model in time."""
+    curves: tuple[tuple[str, float, Friction, str, Any], ...] = (
+        ("no damping", 0.0, NO_FRICTION, "#0072B2", "-"),
+        ("support 0.05", 0.05, NO_FRICTION, "#D55E00", (0, (5, 1.5))),
+        (
+            "support 0.05, laminar friction",
+            0.05,
+            Friction(FrictionLaw.STOKES),
+            "#009E73",
+            (0, (6, 1.5, 1, 1.5)),
+        ),
+        ("support 0.02, friction 30 1/s", 0.02, Friction(FrictionLaw.LINEAR, 30.0), "#CC79A7", (0, (1, 1.2))),
+    )
+    text = (
+        "Growth rate of the small whirl that grows most; above zero it grows by itself. Planar rotor "
+        "with one layer, m_f/M = 0.1, h0/R = 0.1; support: damping ratio. Exact linear theory of the "
+        "plane layer; marks: coupled nonlinear long waves with dispersion, 256 cells, on the first and "
+        "on the last of the lines."
+    )
+    with page([2.75], text) as (figure, [[axes]]):
+        axes.axhline(0.0, color="0.15", linewidth=0.8)
+        for label, zeta, friction, color, dashes in curves:
+            look = {"color": color, "linestyle": dashes, "linewidth": 1.4, "label": label}
+            axes.plot(RANGE, growth_over_speed(zeta, friction), **look)
+        marks = {"marker": "s", "linestyle": "none", "color": "black", "markerfacecolor": "white"}
+        for case in in_time:
+            ratio = float(case.name.rpartition("-")[2])
+            assert isinstance(case.computed, float)
+            axes.plot(ratio, case.computed / NATURAL, **marks, zorder=4, label="coupled long waves in time")
+        axes.set_xlim(0.6, 2.4)
+        axes.set_ylim(-0.03, 0.08)
+        axes.set_xlabel("Spin speed over the natural frequency without liquid (\N{EN DASH})")
+        axes.set_ylabel("Growth over the natural frequency (\N{EN DASH})")
+    return figure
+
+
+def in_time(cases: list[Case]) -> list[Case]:
+    """Cases that were run in time."""
+    return [case for case in cases if case.name.startswith("whirl/in-time-")]

@@ -5,9 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
+from leblanc.core.units import MM
 from solvers.rotor.balls.balancers import simulate
 from solvers.rotor.balls.two_plane_balance import (
     RigidRotor,
@@ -16,10 +18,12 @@ from solvers.rotor.balls.two_plane_balance import (
     potential_hessian,
 )
 from solvers.rotor.two_plane import TwoPlane
-from validation.cases.case import Case
+from validation.case import Case
 from validation.cases.two_plane import damping as two_plane_damping
 from validation.cases.two_plane import layers as two_plane_layers
 from validation.cases.two_plane.machine import BALLS, LONG, RACES, SCATTERED, SHORT, bare_deflection
+from validation.page import Figure, logarithmic, page
+from validation.study import launch, shown
 
 
 @dataclass(frozen=True)
@@ -122,3 +126,48 @@ DEMONSTRATIONS: tuple[Callable[[], list[Case]], ...] = (
     two_plane_damping.cases,
     two_plane_layers.cases,
 )
+
+
+_SPEEDS = (30.0, 120.0)
+
+
+def balls_figure(duration: float = 12.0) -> Figure:
+    """Deflection at both supports of a long and a short rotor, below and above the resonances."""
+    text = (
+        "Deflection of the axis at its two supports after a start at full speed, with two ball "
+        "balancers of two balls each in two planes; balls of 15 g on a radius of 80 mm, rotor of 10 kg "
+        "with a static and a couple unbalance. Made-up machine; no gravity."
+    )
+    room = {"left": 0.74, "top": 0.3, "between": 0.42, "below": 0.45, "apart": 0.5}
+    with page([1.6, 1.6], text, (2, 2), **room) as (figure, rows):
+        for row, name, rotor in zip(rows, ("long", "short"), (LONG, SHORT), strict=True):
+            for axes, speed in zip(row, _SPEEDS, strict=True):
+                _draw(axes, name, rotor, speed, duration)
+                axes.tick_params(labelbottom=name == "short", labelleft=speed == _SPEEDS[0])
+            row[0].set_ylabel("Deflection (mm)")
+        for axes in rows[-1]:
+            axes.set_xlabel("Time (s)")
+    return figure
+
+
+def _draw(axes: Any, name: str, rotor: TwoPlane, speed: float, duration: float) -> None:
+    """One rotor at one speed."""
+    system = rotor.system()
+    run = simulate(system, RACES, speed, duration, places=SCATTERED, samples=800)
+    for k, (support, dashes) in enumerate(zip(rotor.supports, ("-", "--"), strict=True)):
+        size = np.abs(run.deflection(system, support.position)) * MM
+        look: dict[str, Any] = {"color": f"C{k}", "linestyle": dashes, "linewidth": 1.0}
+        axes.plot(run.time, np.maximum(size, 1e-5), **look, label=f"support {k + 1}")
+    bare = max(bare_deflection(rotor, support.position, speed) for support in rotor.supports) * MM
+    look = {"color": "0.25", "linestyle": ":", "linewidth": 1.2}
+    axes.axhline(bare, **look, label="the larger of both without balancers")
+    said = bool(dynamic_balancing(of_two_planes(rotor, BALLS), speed).possible[0])
+    verdict = "conditions: yes" if said else "conditions: no"
+    axes.set_title(f"{name} rotor, {speed:.0f} rad/s; {verdict}")
+    logarithmic(axes, y=[1e-4, 1e-3, 1e-2, 1e-1, 1.0, 10.0])
+    axes.set_ylim(1e-4, 10.0)
+    axes.set_xlim(0.0, duration)
+
+
+if __name__ == "__main__":
+    launch(shown(two_plane_balls=balls_figure))

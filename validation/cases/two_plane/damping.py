@@ -21,7 +21,7 @@ from solvers.rotor.balls.states import balanced_places, quarter_turn
 from solvers.rotor.balls.steps import advance
 from solvers.rotor.balls.two_plane_balance import dynamic_balancing, of_two_planes
 from solvers.rotor.two_plane import TwoPlane
-from validation.cases.case import Case
+from validation.case import Case
 from validation.cases.two_plane.machine import BALLS, LONG, RACES, SCATTERED, bare_deflection
 from validation.study import launch, write
 

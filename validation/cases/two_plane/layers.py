@@ -16,7 +16,7 @@ from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
 from solvers.rotor.vibration import unbalance_response
 from solvers.runup.machine import Ramp
 from solvers.runup.runup import RunupNumerics, run_up
-from validation.cases.case import Case
+from validation.case import Case
 
 SUPPORTS = (Support(-0.3, 1e4, 200.0), Support(0.3, 1e4, 200.0))
 UNBALANCES = (PlaneUnbalance(-0.28, 6e-3, 0.0), PlaneUnbalance(0.28, 6e-3, 2.0))

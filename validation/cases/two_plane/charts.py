@@ -7,15 +7,12 @@ machine of the literature [RCFW08] over speed, unbalance and damping, and both k
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save_png, style
 from meshes.arrays import Array
 from solvers.rotor.balls.balancers import BallRace
 from solvers.rotor.balls.charts import Chart, Crossing, Machine, State, stability_chart
@@ -26,10 +23,9 @@ from solvers.rotor.system import RotorSystem
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
 from validation.cases.two_plane.damping import DAMPINGS, SIDES, damped, edge
 from validation.cases.two_plane.machine import BALLS, LONG, RACES
-from validation.study import launch
+from validation.page import Figure, Table, page
+from validation.study import launch, shown
 
-_FRAME = Frame(left=0.7, top=0.15, between=0.0, below=0.5)
-_APART = 0.65  # inches between two plots side by side
 # Of the reference machine: J_t, J_p, static unbalance and couple, a ball, its place, drag over mass.
 ACROSS, ALONG, SMALL, BALL, PLACE, DRAG = 3.25, 0.5, 5e-5, 1e-4, 2.0, 0.01
 DAMPING, PHASE = 0.02, 1.0
@@ -154,12 +150,14 @@ def _draw(axes: Any, chart: Chart, scale: float = 1.0) -> None:
     axes.set_ylim(scale * chart.second[0], scale * chart.second[-1])
 
 
-def damping_figure(directory: Path) -> Path:
+def damping_figure() -> Figure:
     """Where balls balance the long rotor over speed and damping, with motions in time on both sides."""
     chart = damping_chart()
-    with style():
-        figure = Figure()
-        axes: Any = figure.add_axes((0, 0, 1, 1))
+    text = (
+        "Balanced state of the long rotor with two ball balancers, by the roots of small motions: stable "
+        "where hatched. Rotor of 10 kg, balls of 15 g, drag of the races 0.3 N s/m. Made-up machine."
+    )
+    with page([2.9], text, left=0.7, below=0.5) as (figure, [[axes]]):
         _draw(axes, chart)
         above = dynamic_balancing(of_two_planes(LONG, BALLS), 1.0).above
         axes.axvline(above, color="0.25", linestyle=":", linewidth=1.4, label="conditions of FF20")
@@ -174,62 +172,53 @@ def damping_figure(directory: Path) -> Path:
         axes.set_ylabel("Damping of each support (N s/m)")
         axes.text(82.0, 2.6, "balanced", bbox={"facecolor": "white", "edgecolor": "none"})
         axes.text(33.0, 2.6, "not balanced", bbox={"facecolor": "white", "edgecolor": "none"})
-        text = (
-            "Balanced state of the long rotor with two ball balancers, by the roots of small motions: stable "
-            "where hatched. Rotor of 10 kg, balls of 15 g, drag of the races 0.3 N s/m. Made-up machine."
-        )
-        lay_out(figure, [[axes]], [2.9], _FRAME, text)
-    return save_png(figure, directory, "balls_damping", "Stability over speed and damping")
+    return figure
 
 
-def reference_figure(directory: Path) -> Path:
+def reference_figure() -> Figure:
     """Reference machine over speed and unbalance, and over speed and damping."""
     charts = reference_charts()
-    with style():
-        figure = Figure()
-        panels: list[Any] = [figure.add_axes((0, 0, 1, 1), label=str(k)) for k in range(2)]
+    text = (
+        "Balanced state of the dimensionless rotor with two races of two balls "
+        "of RCFW08, by the roots of "
+        "small motions: stable where hatched. Left: damping 0.02. Right: both "
+        "unbalances 5e-5. Drag of the "
+        "races over a ball's mass 0.01; supports alike in both directions."
+    )
+    with page([2.7], text, (2,), left=0.7, below=0.5, apart=0.65) as (figure, [panels]):
         for axes, chart in zip(panels, charts, strict=True):
             _draw(axes, chart)
             axes.set_xlabel("Speed over natural frequency of shift (\N{EN DASH})")
         panels[0].set_ylabel("Unbalances, 10\N{SUPERSCRIPT MINUS}\N{SUPERSCRIPT FIVE} (\N{EN DASH})")
         panels[1].set_ylabel("Damping over stiffness (\N{EN DASH})")
-        panels[0].xaxis.set_major_formatter(number)
-        text = (
-            "Balanced state of the dimensionless rotor with two races of two balls "
-            "of RCFW08, by the roots of "
-            "small motions: stable where hatched. Left: damping 0.02. Right: both "
-            "unbalances 5e-5. Drag of the "
-            "races over a ball's mass 0.01; supports alike in both directions."
-        )
-        lay_out(figure, [panels], [2.7], _FRAME, text)
-        _part(panels)
-    return save_png(figure, directory, "balls_reference", "Stability of the reference machine")
+    return figure
 
 
-def unlike_figure(directory: Path) -> Path:
+def unlike_figure() -> Figure:
     """Reference machine on unlike supports over speed and damping."""
     chart = unlike_chart()
-    with style():
-        figure = Figure()
-        axes: Any = figure.add_axes((0, 0, 1, 1))
+    text = (
+        "Balanced state of the dimensionless rotor of RCFW08 on supports of 5 and 45 in one "
+        "direction, 1 and 9 in the other, by the multipliers of half a turn: stable where "
+        "hatched. Unbalances 5e-5, drag of the races over a ball's mass 0.01."
+    )
+    with page([2.9], text, left=0.7, below=0.5) as (figure, [[axes]]):
         _draw(axes, chart)
         axes.set_xlabel("Speed over natural frequency of shift (\N{EN DASH})")
         axes.set_ylabel("Damping over stiffness (\N{EN DASH})")
-        text = (
-            "Balanced state of the dimensionless rotor of RCFW08 on supports of 5 and 45 in one "
-            "direction, 1 and 9 in the other, by the multipliers of half a turn: stable where "
-            "hatched. Unbalances 5e-5, drag of the races over a ball's mass 0.01."
-        )
-        lay_out(figure, [[axes]], [2.9], _FRAME, text)
-    return save_png(figure, directory, "balls_unlike", "Stability on unlike supports")
+    return figure
 
 
-def states_figure(directory: Path) -> Path:
+def states_figure() -> Figure:
     """Balanced state and balls together, over speed and what the balls hold."""
     balanced, slow, fast = state_charts()
-    with style():
-        figure = Figure()
-        panels: list[Any] = [figure.add_axes((0, 0, 1, 1), label=str(k)) for k in range(2)]
+    text = (
+        "Two balls on the rotor of examples/balls.toml, critical speed 105 rad/s: states by "
+        "the roots of small motions, stable where hatched. Left: balls that take all unbalance "
+        "away. Right: both in one place, where they stay below the critical speed, and above "
+        "it if they do not suffice; between the dashed curves no such state exists."
+    )
+    with page([2.7], text, (2,), left=0.7, top=0.35, below=0.5, apart=0.65) as (figure, [panels]):
         _draw(panels[0], balanced)
         _draw(panels[1], slow)
         _draw(panels[1], fast)
@@ -247,47 +236,19 @@ def states_figure(directory: Path) -> Path:
             axes.set_xlabel("Speed (rad/s)")
             axes.set_ylabel("Capacity over unbalance (\N{EN DASH})")
             axes.set_title(name)
-        text = (
-            "Two balls on the rotor of examples/balls.toml, critical speed 105 rad/s: states by "
-            "the roots of small motions, stable where hatched. Left: balls that take all unbalance "
-            "away. Right: both in one place, where they stay below the critical speed, and above "
-            "it if they do not suffice; between the dashed curves no such state exists."
-        )
-        lay_out(figure, [panels], [2.7], replace(_FRAME, top=0.35), text)
-        _part(panels)
-    return save_png(figure, directory, "balls_charts", "Stability of two states")
+    return figure
 
 
-def _part(panels: Sequence[Any]) -> None:
-    """Room for the labels between two plots side by side."""
-    for axes in panels:
-        box = axes.get_position()
-        shift = 0.5 * _APART / 6.3 if axes is panels[1] else 0.0
-        axes.set_position((box.x0 + shift, box.y0, box.width - 0.5 * _APART / 6.3, box.height))
-
-
-def table() -> str:
-    """Bands of speed in which the balanced reference machine is stable, as a table in Markdown."""
-    speeds = np.linspace(0.2, 8.0, 391)
-    lines = [
-        "| drag over a ball's mass | supports alike | supports 5 and 45 in one direction |",
-        "|---|---|---|",
-    ]
+def table() -> Table:
+    """Bands of speed in which the balanced reference machine is stable."""
+    speeds, rows = np.linspace(0.2, 8.0, 391), []
     for drag in (0.01, 1.0, 100.0):
-        cells = []
-        for alike in (True, False):
-            found = bands(speeds, reference_growth(speeds, alike, drag))
-            cells.append(", ".join(f"{low:.2f} to {high:.2f}" for low, high in found))
-        lines.append(f"| {drag:g} | {cells[0]} | {cells[1]} |")
-    return "\n".join(lines)
-
-
-def main(out: Path = Path("docs/images")) -> Iterator[Path | str]:
-    """Draw the figures and print the table."""
-    for draw in (damping_figure, reference_figure, unlike_figure, states_figure):
-        yield draw(out)
-    yield table()
+        found = [bands(speeds, reference_growth(speeds, alike, drag)) for alike in (True, False)]
+        rows.append((f"{drag:g}", *(", ".join(f"{a:.2f} to {b:.2f}" for a, b in each) for each in found)))
+    head = ("drag over a ball's mass", "supports alike", "supports 5 and 45 in one direction")
+    return Table(head, tuple(rows))
 
 
 if __name__ == "__main__":
-    launch(main)
+    figures = {"balls_damping": damping_figure, "balls_reference": reference_figure}
+    launch(shown(table, **figures, balls_unlike=unlike_figure, balls_charts=states_figure))

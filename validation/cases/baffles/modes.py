@@ -1,12 +1,13 @@
 """What radial baffles do to the slowest waves: a table over their number, depth and place.
 
-`python -m validation.figures.liquid.baffle_table` prints the tables of docs/modes.md.
+`python -m validation.cases.baffles.modes` prints the tables of docs/modes.md.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -15,6 +16,8 @@ from meshes.baffles import Baffles
 from solvers.sloshing.forced import forced_response, mode_damping
 from solvers.sloshing.modes import sloshing_modes, spectrum
 from solvers.sloshing.system import condense
+from validation.page import Table
+from validation.study import launch, shown
 
 RADIUS, SURFACE, SPIN, HEIGHT, WATER = 0.15, 0.135, 40.0, 0.05, 1.004e-6
 COUNTS, SHARES = (1, 2, 3, 4, 6, 8), (0.25, 0.5, 0.75, 1.0)
@@ -77,22 +80,19 @@ def baffle_rows(counts: Sequence[int], shares: Sequence[float], wall_gap: float 
     return rows + [baffle_row(count, share, wall_gap) for count in counts for share in shares]
 
 
-def markdown(rows: Sequence[BaffleRow]) -> list[str]:
-    """Table in Markdown; the first row is that without baffles."""
-    clear = rows[0]
-    lines = [
-        "| baffles | of the depth | against, rad/s | change | with, rad/s | change | decay, 1/s | G(0) |",
-        "|---|---|---|---|---|---|---|---|",
-    ]
+def table(rows: Sequence[BaffleRow]) -> Table:
+    """Rows as a table; the first is that without baffles."""
+    clear, lines = rows[0], []
     for row in rows:
-        stands = row.against == row.along
-        size = abs(row.against)
+        stands, size = row.against == row.along, abs(row.against)
         cells = [f"{row.count}", f"{100.0 * row.share:.0f} %"]
         cells += [f"{size:.3f} (stands)" if stands else f"{row.against:.3f}", _change(size, -clear.against)]
         cells += ["", ""] if stands else [f"{row.along:.3f}", _change(row.along, clear.along)]
-        decay = f"{row.damping_against:.3f}" + ("" if stands else f", {row.damping_along:.3f}")
-        lines.append("| " + " | ".join([*cells, decay, f"{row.synchronous:.4f}"]) + " |")
-    return lines
+        cells.append(f"{row.damping_against:.3f}" + ("" if stands else f", {row.damping_along:.3f}"))
+        lines.append((*cells, f"{row.synchronous:.4f}"))
+    head = ("against, rad/s", "change", "with, rad/s", "change", "decay, 1/s", "G(0)")
+    worst = f"Errors of the frequencies below {max(row.error for row in rows):.1g}."
+    return Table(("baffles", "of the depth", *head), tuple(lines), worst)
 
 
 def _change(value: float, clear: float) -> str:
@@ -100,8 +100,5 @@ def _change(value: float, clear: float) -> str:
 
 
 if __name__ == "__main__":
-    for gap, shares in ((0.0, SHARES), (0.25, (0.25, 0.5, 0.75))):
-        rows = baffle_rows(COUNTS, shares, gap)
-        worst = max(row.error for row in rows)
-        print(f"Gap at the wall {100.0 * gap:.0f} % of the depth; errors below {worst:.1g}")
-        print("\n".join(markdown(rows)), end="\n\n")
+    wall, gap = partial(baffle_rows, COUNTS, SHARES), partial(baffle_rows, COUNTS, SHARES[:3], 0.25)
+    launch(shown(lambda: table(wall()), lambda: table(gap())))

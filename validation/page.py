@@ -1,20 +1,19 @@
-"""What the notebooks show: tables and figures that display themselves in Jupyter and on a page of Sphinx."""
+"""What studies and notebooks show: tables and figures."""
 
 from __future__ import annotations
 
 import io
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from html import escape
-from pathlib import Path
-from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, get_args
+from typing import Any, get_args
 
-from validation.cases.case import Case, Value, Verdict
-
-if TYPE_CHECKING:
-    from leblanc.figures.drawing.page import Figure
+from leblanc.figures.drawing.page import WIDTH, Frame, lay_out, style
+from leblanc.figures.drawing.page import Figure as Figure
+from leblanc.figures.drawing.page import number as number
+from validation.case import Case, Value, Verdict
 
 _DPI, _WIDE = 160, 110  # dots of a file and of the screen to an inch
 _PLAIN = 10.0  # relative differences below are told in per cent, larger ones as factors
@@ -35,15 +34,16 @@ _BREAK = re.compile(r"(?<=[/_])(?=\w)")  # where a path or a name may go on in t
 
 @dataclass(frozen=True)
 class Table:
-    """Rows of texts and numbers."""
+    """Rows of texts and numbers; Markdown as text, HTML in Jupyter and on a page of Sphinx."""
 
     header: tuple[str, ...]  #: one word for each column
     rows: tuple[tuple[str, ...], ...]  #: as many cells each
     foot: str = ""  #: a line below, or empty
 
     def __repr__(self) -> str:
-        lines = [" | ".join(row) for row in (self.header, *self.rows)]
-        return "\n".join([*lines, self.foot] if self.foot else lines)
+        rows = [self.header, ("---",) * len(self.header), *self.rows]
+        lines = [f"| {' | '.join(row)} |" for row in rows]
+        return "\n".join([*lines, "", self.foot] if self.foot else lines)
 
     def _repr_html_(self) -> str:
         """For Jupyter and Sphinx; line breaks in a cell are kept."""
@@ -112,26 +112,58 @@ def verdicts(cases: Sequence[Case]) -> dict[str, set[str]]:
     return {verdict: names for verdict, names in found.items() if names}
 
 
-def picture(figure: Figure | Path) -> Picture:
-    """Figure of the page's size, or a PNG file with its title."""
-    from PIL import Image
-
-    from leblanc.figures.drawing.page import WIDTH, style
-
+def picture(figure: Figure) -> Picture:
+    """Figure of the page's size."""
     width = round(WIDTH * _WIDE)
-    if isinstance(figure, Path):
-        with Image.open(figure) as image:
-            return Picture(figure.read_bytes(), width, image.info["Title"])
     content = io.BytesIO()
     with style():
         figure.savefig(content, format="png", dpi=_DPI, metadata={"Software": None})
     return Picture(content.getvalue(), width, figure.alt or str(figure.caption))
 
 
-def drawn(draw: Callable[[Path], Path]) -> Picture:
-    """Figure that `draw` writes to a folder."""
-    with TemporaryDirectory() as folder:
-        return picture(draw(Path(folder)))
+@contextmanager
+def page(
+    heights: Sequence[float],
+    text: str,
+    columns: Sequence[int] = (),
+    *,
+    left: float = 0.72,
+    top: float = 0.15,
+    between: float = 0.12,
+    below: float = 0.42,
+    apart: float = 0.0,
+    lines: float = 4,
+) -> Iterator[tuple[Figure, list[list[Any]]]]:
+    """Figure in the house style and its rows of axes; laid out above its caption when the body ends.
+
+    Heights of the rows and the room round them in inches; columns: axes of each row, one if there is no
+    number; apart: inches between two beside one another; lines: of the caption at most.
+    """
+    with style():
+        figure, counts = Figure(), columns or (1,) * len(heights)
+        rows: list[list[Any]] = [
+            [figure.add_axes((0, 0, 1, 1), label=f"{k} {i}") for i in range(count)]
+            for k, count in enumerate(counts)
+        ]
+        yield figure, rows
+        for axis in (axis for row in rows for axes in row for axis in (axes.xaxis, axes.yaxis)):
+            if type(axis.get_major_formatter()).__name__ == "ScalarFormatter":
+                axis.set_major_formatter(number)
+        lay_out(figure, rows, list(heights), Frame(left, top, between, below), text, int(lines))
+        for row in rows:
+            for k, axes in enumerate(row if apart else ()):
+                box, room = axes.get_position(), apart / len(row) / WIDTH
+                axes.set_position((box.x0 + k * room, box.y0, box.width - room, box.height))
+
+
+def logarithmic(*axes: Any, x: Sequence[float] = (), y: Sequence[float] = ()) -> None:
+    """Set an axis with ticks to a logarithmic scale, with these ticks alone, in plain numbers."""
+    for each in axes:
+        for ticks, name in ((x, "x"), (y, "y")):
+            if ticks:
+                each.set(**{f"{name}scale": "log", f"{name}ticks": ticks})
+                getattr(each, f"{name}axis").set_major_formatter(number)
+                getattr(each, f"{name}axis").set_minor_formatter("")
 
 
 def _lines(text: str) -> str:
@@ -154,9 +186,3 @@ def _difference(value: Value) -> str:
     if abs(value) < _PLAIN:
         return f"{100.0 * value:+.3g} %"
     return f"printed is {value + 1.0:,.0f} times the computed"
-
-
-def from_markdown(lines: Sequence[str]) -> Table:
-    """Table that another module prints in Markdown: header, rule and rows."""
-    cells = [tuple(cell.strip() for cell in line.strip().strip("|").split("|")) for line in lines]
-    return Table(cells[0], tuple(cells[2:]))

@@ -1,13 +1,13 @@
 """How fast a run-up may be to show the steady response: the horizontal rig at several rates.
 
-`python -m validation.figures.rotors.runup_lag --out docs/images` draws its figure and tables of
+`python -m validation.cases.rotors.rig_lag --out docs/images` draws its figure and tables of
 docs/runup.md.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from functools import partial
@@ -18,13 +18,15 @@ from typing import Any
 import numpy as np
 
 from fluid.friction.laws import Friction, FrictionLaw
+from leblanc.core.units import RPM
 from leblanc.results.runup import turn_mean
 from meshes.arrays import Array, Complex
 from solvers.runup.machine import Ramp
 from solvers.runup.runup import RunupNumerics, run_up
 from solvers.synchronous.response import response
-from validation.cases.rotors.rigs import horizontal_rig, horizontal_rotor
-from validation.study import data, launch
+from validation.cases.rotors.rigs import horizontal_cases, horizontal_rig, horizontal_rotor
+from validation.page import Figure, Table, page
+from validation.study import data, launch, shown
 
 _RPM = 2.0 * math.pi / 60.0
 RATES = (40.0, 20.0, 10.0, 5.0, 2.5, 1.25)  # rad/s^2
@@ -94,8 +96,6 @@ def lag(rate: float, damping_ratio: float, cells: int = 64, gravity: float = _GR
 
 def fitted_damping() -> float:
     """Damping ratio fitted to the six angles by the steady response."""
-    from validation.cases.rotors.rigs import horizontal_cases
-
     found = next(case for case in horizontal_cases() if case.name == "horizontal_rig/rotor-and-liquid")
     assert isinstance(found.computed, float)
     return found.computed
@@ -109,53 +109,41 @@ def orders(lags: Sequence[Lag]) -> list[float]:
     ]
 
 
-def table(lags: Sequence[Lag], damping_ratio: float) -> str:
-    """Errors and the six angles, as two tables in Markdown."""
-    measured = data("dr18_fig24.json")
-    lines = [
-        "| rate, rad/s^2 | error to 1100 rpm | exponent | of the angle, deg | error beyond | energy left |",
-        "|---|---|---|---|---|---|",
-    ]
-    for point, order in zip(lags, [math.nan, *orders(lags)], strict=True):
-        exponent = "" if math.isnan(order) else f"{order:.2f}"
-        lines.append(
-            f"| {point.rate:g} | {point.error:.2%} | {exponent} | {math.degrees(point.angle_error):.1f} "
-            f"| {point.beyond:.2%} | {point.closure:.0e} |"
+def tables(lags: Sequence[Lag], damping_ratio: float) -> tuple[Table, Table]:
+    """Errors by the rate, and the six angles."""
+    errors = tuple(
+        (
+            *(f"{point.rate:g}", f"{point.error:.2%}", "" if math.isnan(order) else f"{order:.2f}"),
+            *(f"{math.degrees(point.angle_error):.1f}", f"{point.beyond:.2%}", f"{point.closure:.0e}"),
         )
-    head = " | ".join(f"{rpm:.0f} rpm" for rpm in measured["speed_rpm"])
-    lines += ["", f"| liquid behind the unbalance, deg | {head} |", "|---|" + "---|" * 6]
-    lines.append("| measured [DR18, Fig. 24] | " + " | ".join(map(str, measured["angle_deg"])) + " |")
+        for point, order in zip(lags, [math.nan, *orders(lags)], strict=True)
+    )
+    head = ("error to 1100 rpm", "exponent", "of the angle, deg", "error beyond", "energy left")
+    measured = data("dr18_fig24.json")
     _, exact = steady(np.array(measured["speed_rpm"]) * _RPM, damping_ratio)
     rows = [("steady response", exact)] + [(f"{point.rate:g} rad/s^2", point.angles) for point in lags[::-1]]
-    for name, angles in rows:
-        lines.append(f"| {name} | " + " | ".join(f"{angle:.1f}" for angle in np.degrees(angles)) + " |")
-    return "\n".join(lines)
+    told = [(name, *(f"{angle:.1f}" for angle in np.degrees(angles))) for name, angles in rows]
+    given = ("measured [DR18, Fig. 24]", *map(str, measured["angle_deg"]))
+    speeds = (f"{rpm:.0f} rpm" for rpm in measured["speed_rpm"])
+    angles_of = Table(("liquid behind the unbalance, deg", *speeds), (given, *told))
+    return Table(("rate, rad/s^2", *head), errors), angles_of
 
 
-def draw(lags: Sequence[Lag], damping_ratio: float, directory: Path) -> Path:
-    """Angle over speed and error over rate as PNG; lags by falling rate."""
-    from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save_png, style
-
-    with style():
-        figure = Figure()
-        upper: Any = figure.add_axes((0, 0, 1, 1), label="angle")
-        lower: Any = figure.add_axes((0, 0, 1, 1), label="error")
+def lag_figure(lags: Sequence[Lag], damping_ratio: float) -> Figure:
+    """Lag of a run-up behind the steady response: angle over speed, error over rate; lags by falling rate."""
+    text = (
+        "Horizontal rig [DR18, section 7.2], water, run up from 400 to 1500 rpm with the liquid a layer "
+        f"from the start. Damping ratio {damping_ratio:.3f}, fitted to the six angles by the steady "
+        "response. Annular long waves in time, 64 cells, laminar friction, gravity across the axis; "
+        "means over turns. Below: largest distance of the deflection from the steady one between 550 and "
+        "1100 rpm and between 1100 and 1450 rpm, where slow run-ups leave whirl the time to grow by "
+        "itself, over the largest steady one. Assumed: mass, damping, place of the unbalance, heights "
+        "of the chambers."
+    )
+    with page([2.3, 1.6], text, top=0.12, between=0.52, lines=8) as (figure, [[upper], [lower]]):
         _draw_angles(upper, lags, damping_ratio)
-        upper.xaxis.set_major_formatter(number)
         _draw_errors(lower, lags)
-        lower.xaxis.set_major_formatter(number)
-        frame = Frame(left=0.72, top=0.12, between=0.52, below=0.42)
-        text = (
-            "Horizontal rig [DR18, section 7.2], water, run up from 400 to 1500 rpm with the liquid a layer "
-            f"from the start. Damping ratio {damping_ratio:.3f}, fitted to the six angles by the steady "
-            "response. Annular long waves in time, 64 cells, laminar friction, gravity across the axis; "
-            "means over turns. Below: largest distance of the deflection from the steady one between 550 and "
-            "1100 rpm and between 1100 and 1450 rpm, where slow run-ups leave whirl the time to grow by "
-            "itself, over the largest steady one. Assumed: mass, damping, place of the unbalance, heights "
-            "of the chambers."
-        )
-        lay_out(figure, [[upper], [lower]], [2.3, 1.6], frame, text, 8)
-    return save_png(figure, directory, "runup_lag", "Lag of a run-up behind the steady response")
+    return figure
 
 
 def _draw_angles(axes: Any, lags: Sequence[Lag], damping_ratio: float) -> None:
@@ -201,13 +189,48 @@ def _draw_errors(axes: Any, lags: Sequence[Lag]) -> None:
     axes.set_ylabel("Error (%)")
 
 
-def main(out: Path, workers: int = 2) -> tuple[str, ...]:
+def main(out: Path, workers: int = 2) -> Iterator[object]:
     """Run the study in processes, draw and print it."""
-    damping_ratio = fitted_damping()
+    ratio = fitted_damping()
     with ProcessPoolExecutor(max_workers=workers) as pool:
-        lags = list(pool.map(partial(lag, damping_ratio=damping_ratio), RATES))
-    draw(lags, damping_ratio, out)
-    return f"damping ratio {damping_ratio:.4f}", "", table(lags, damping_ratio)
+        lags = list(pool.map(partial(lag, damping_ratio=ratio), RATES))
+    yield f"damping ratio {ratio:.4f}"
+    yield from shown(partial(tables, lags, ratio), runup_lag=partial(lag_figure, lags, ratio))(out)
+
+
+_READING = 15.0  # deg
+
+
+def angle_figure(damping_ratio: float) -> Figure:
+    """Angle of the liquid behind the unbalance over speed; damping ratio fitted to the six angles."""
+    measured = data("dr18_fig24.json")
+    speed = np.linspace(500.0, 1500.0, 501)
+    curves: tuple[tuple[float, str, Any], ...] = (
+        (damping_ratio, "#0072B2", "-"),
+        (0.5 * damping_ratio, "#56B4E9", (0, (5, 1.5))),
+        (2.0 * damping_ratio, "#E69F00", (0, (1, 1.2))),
+    )
+    text = (
+        "Horizontal rig with two chambers of 100 and 130 mm diameter, 10 ml of water in each. Bars: half "
+        "of the step of the readings. Lines: synchronous response with exact equilibrium of the liquid, "
+        "without gravity, critical speed held at 1000 rpm. Assumed: 4 kg, 20 mm height, 10 g on a radius "
+        "of 60 mm."
+    )
+    with page([2.75], text) as (figure, [[axes]]):
+        for ratio, color, dashes in curves:
+            angle = np.degrees(steady(speed / RPM, ratio)[1])
+            look_text = f"damping ratio {ratio:.3f}" + (", fitted" if ratio == damping_ratio else "")
+            axes.plot(speed, angle, color=color, linestyle=dashes, linewidth=1.4, label=look_text)
+        marks = {"marker": "s", "linestyle": "none", "color": "black", "markerfacecolor": "white"}
+        seen = np.array(measured["angle_deg"], dtype=float)
+        axes.vlines(measured["speed_rpm"], seen - _READING, seen + _READING, color="black", linewidth=0.8)
+        axes.plot(measured["speed_rpm"], seen, **marks, zorder=4, label="measured, DR18, Fig. 24")
+        axes.set_xlim(speed[0], speed[-1])
+        axes.set_ylim(-20.0, 200.0)
+        axes.set_yticks(range(0, 181, 30))
+        axes.set_xlabel("Speed (rpm)")
+        axes.set_ylabel("Liquid behind the unbalance (deg)")
+    return figure
 
 
 if __name__ == "__main__":

@@ -1,31 +1,30 @@
 """A run-up through a band of self-excited whirl and back, with the limit cycles that it follows.
 
-`python -m validation.figures.rotors.whirl_passage --out docs/images` draws the figure of docs/whirl.md
+`python -m validation.cases.rotors.whirl_passage --out docs/images` draws the figure of docs/whirl.md
 and prints its table.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from pathlib import Path
+from collections.abc import Sequence
+from functools import cache
 from typing import Any
 
 import numpy as np
 
-from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save_png, style
 from meshes.arrays import Array
 from solvers.cycles.cycles import Branch, LimitCycles, limit_cycles
 from solvers.runup.runup import RunupNumerics
 from solvers.whirl.edges import unstable_bands
 from validation.cases.rotors.whirl import BANDED, NATURAL, banded_rotor, slow_passage
-from validation.study import launch
+from validation.page import Figure, Table, page
+from validation.study import launch, shown
 from validation.whirl_in_time import Passage, passage
 
 RATES = (8.0, 4.0, 2.0, 1.0)  # rad/s^2, of the table
 DRAWN = 2.0
 _RANGE = 100.0, 325.0  # rad/s: beyond the fold where the large whirl ends
 _PLACES = ((1.4, False), (1.6, False), (1.6, True), (1.3, True))  # speed over the natural frequency, way down
-_FRAME = Frame(left=0.72, top=0.15, between=0.12, below=0.42)
 _UP, _DOWN, _BRANCH = "#0072B2", "#D55E00", "0.35"
 _SEED = 1e-3  # of the depth: offset of the rotor's mass
 _SEEN = 0.02  # of the depth: the frequency of a smaller whirl is not told from the unbalance
@@ -36,33 +35,39 @@ def passed() -> Passage:
     return passage(*banded_rotor(), BANDED, _RANGE, DRAWN, RunupNumerics(cells=64), _SEED)
 
 
+@cache
 def cycles() -> LimitCycles:
     """Limit cycles over the speeds of the figure."""
     rotor, fill = banded_rotor()
     return limit_cycles(rotor, [fill], _RANGE, BANDED)
 
 
-def table(found: LimitCycles, runs: Sequence[Passage]) -> str:
-    """Distance of run-ups and run-downs from the branch, in Markdown."""
-    heads = [f"{ratio:g}, {'down' if back else 'up'}" for ratio, back in _PLACES]
-    lines = ["| rate, rad/s^2 | " + " | ".join(heads) + " |", "|---|" + "---|" * len(_PLACES)]
-    for run in runs:
-        sizes = [
+def table() -> Table:
+    """Distance of run-ups and run-downs from the branch."""
+    found, rows = cycles(), []
+    for run in map(slow_passage, RATES):
+        sizes = (
             run.at(ratio * NATURAL, back) / found.largest_stable(ratio * NATURAL) - 1.0
             for ratio, back in _PLACES
-        ]
-        lines.append(f"| {run.rate:g} | " + " | ".join(f"{size:+.2%}" for size in sizes) + " |")
-    return "\n".join(lines)
+        )
+        rows.append((f"{run.rate:g}", *(f"{size:+.2%}" for size in sizes)))
+    heads = (f"{ratio:g}, {'down' if back else 'up'}" for ratio, back in _PLACES)
+    return Table(("rate, rad/s^2", *heads), tuple(rows))
 
 
-def passage_figure(run: Passage, found: LimitCycles) -> Figure:
-    """Amplitude and frequency over speed, up and down, with the stable and unstable limit cycles behind."""
+def passage_figure() -> Figure:
+    """Run-up through a band of self-excited whirl and back, with the limit cycles that it follows."""
+    run, found = passed(), cycles()
     rotor, fill = banded_rotor()
     ((band,),) = unstable_bands(rotor, [[fill]], np.linspace(*_RANGE, 401), BANDED)
-    with style():
-        figure = Figure()
-        panels: list[Any] = [figure.add_axes((0, 0, 1, 1), label=name) for name in ("size", "turning")]
-        upper, lower = panels
+    text = (
+        f"A rotor run up at {run.rate:g} rad/s\N{SUPERSCRIPT TWO} and at once down again, its mass "
+        "off the axis by 0.1 % of the depth; behind it the limit cycles by Newton's method. Planar rotor "
+        "with one layer, m_f/M = 0.1, h0/R = 0.1, damping ratio 0.02, linear friction 0.03 of the "
+        "natural frequency of 100 rad/s. Annular long waves, 64 cells, without dispersion."
+    )
+    with page([2.4, 1.3], text) as (figure, [[upper], [lower]]):
+        panels = upper, lower
         for axes in panels:
             axes.axvspan(
                 *(edge / NATURAL for edge in band),
@@ -85,17 +90,8 @@ def passage_figure(run: Passage, found: LimitCycles) -> Figure:
         upper.tick_params(labelbottom=False)
         for axes in panels:
             axes.set_xlim(_RANGE[0] / NATURAL, _RANGE[1] / NATURAL)
-            axes.yaxis.set_major_formatter(number)
-            axes.xaxis.set_major_formatter(number)
         upper.set_ylim(bottom=0.0)
         lower.set_ylim(0.92, 1.12)
-        text = (
-            f"A rotor run up at {run.rate:g} rad/s\N{SUPERSCRIPT TWO} and at once down again, its mass "
-            "off the axis by 0.1 % of the depth; behind it the limit cycles by Newton's method. Planar rotor "
-            "with one layer, m_f/M = 0.1, h0/R = 0.1, damping ratio 0.02, linear friction 0.03 of the "
-            "natural frequency of 100 rad/s. Annular long waves, 64 cells, without dispersion."
-        )
-        lay_out(figure, [[upper], [lower]], [2.4, 1.3], _FRAME, text)
         figure.alt = (
             "Amplitude and whirl speed over spin speed: the run-up leaves rest inside the band, follows the "
             "stable branch beyond the band's upper edge to its fold and falls to rest; the run-down stays at "
@@ -126,12 +122,5 @@ def _smooth(values: Array) -> Array:
     return np.asarray(np.convolve(np.pad(values, width // 2, mode="edge"), np.ones(width) / width, "valid"))
 
 
-def main(out: Path) -> Iterator[Path | str]:
-    """Draw the figure and print the table."""
-    found, name = cycles(), "Run-up through a band of self-excited whirl"
-    yield save_png(passage_figure(passed(), found), out, "whirl_passage", name)
-    yield table(found, [slow_passage(rate) for rate in RATES])
-
-
 if __name__ == "__main__":
-    launch(main)
+    launch(shown(table, whirl_passage=passage_figure))

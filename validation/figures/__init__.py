@@ -1,1 +1,0 @@
-"""Figures and tables of the pages, drawn from cases, sources and kept measurements."""

@@ -1,1 +1,0 @@
-"""Figures of liquid alone: layers, baffles, the exact wave, best volumes."""

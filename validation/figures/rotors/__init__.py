@@ -1,1 +1,0 @@
-"""Figures of rotors with liquid or balls."""
