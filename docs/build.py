@@ -93,13 +93,7 @@ def _older(path: Path, other: Path) -> bool:
 
 
 def sphinx(source: Path, out: Path) -> int:
-    """Run Sphinx with warnings as errors; its exit code.
-
-    Parameters
-    ----------
-    source : of `gather`
-    out : folder of the site
-    """
+    """Run Sphinx on what `gather` made with warnings as errors; its exit code."""
     # A date in a page would make two builds differ.
     settings = os.environ | {"SOURCE_DATE_EPOCH": os.environ.get("SOURCE_DATE_EPOCH", "0")}
     options = ["-W", "--keep-going", "-n", "-q", "-b", "html", "-d", str(out) + ".doctrees"]
@@ -115,13 +109,7 @@ def commands() -> int:
 
 
 def timed(name: str, work: Callable[[], int | None]) -> int:
-    """Do one part and say how long it took.
-
-    Parameters
-    ----------
-    name : of the part
-    work : the part; its exit code
-    """
+    """Do one part of the work and say how long it took; its exit code."""
     begin = time.perf_counter()
     code = work() or 0
     print(f"{name}: {time.perf_counter() - begin:.0f} s", flush=True)

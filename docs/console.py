@@ -101,14 +101,7 @@ def run(command: str, folder: Path) -> str:
 
 
 def agree(shown: Sequence[str], printed: Sequence[str], words: bool) -> bool:
-    """Whether lines shown are the lines printed.
-
-    Parameters
-    ----------
-    shown : with `...` for any lines
-    printed : by the command
-    words : numbers are not compared
-    """
+    """Whether lines shown, with `...` for any, are those printed; of `words` numbers do not count."""
     if not shown:
         return not [line for line in printed if line.strip()]
     if shown[0].strip() == "...":

@@ -277,16 +277,7 @@ def changed(recipe: Recipe, out: Path) -> list[str]:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Draw, and with `--check` compare.
-
-    Parameters
-    ----------
-    arguments : of the command line; None: the process's own
-
-    Returns
-    -------
-    Exit code, 1 if a committed picture has changed
-    """
+    """Draw, and with `--check` compare; exit code 1 if a committed picture has changed."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("--out", type=Path, default=IMAGES, help="folder of the pictures [docs/images]")
     parser.add_argument(

@@ -159,13 +159,7 @@ def shown(flows: Iterable[Flow]) -> str:
 
 
 def markdown(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """A table in Markdown.
-
-    Parameters
-    ----------
-    heads : of the columns
-    rows : cells of each
-    """
+    """A table in Markdown."""
     return "\n".join("| " + " | ".join(row) + " |" for row in (heads, ["---"] * len(heads), *rows))
 
 

@@ -71,29 +71,14 @@ class _Text(HTMLParser):
 
 
 def leaks(page: str) -> list[str]:
-    """Markup that shows in a page, and pictures without words.
-
-    Parameters
-    ----------
-    page : HTML
-
-    Returns
-    -------
-    A line for each place
-    """
+    """Markup that shows in a page of HTML, and pictures without words, a line for each place."""
     reader = _Text()
     reader.feed(page)
     return reader.leaks
 
 
 def width(tab: Browser, page: Path) -> int:
-    """How wide a page is on a telephone, pixels; that of the telephone if it fits.
-
-    Parameters
-    ----------
-    tab : of a browser
-    page : the file
-    """
+    """How wide a page is on a telephone, pixels; that of the telephone if it fits."""
     tab.open(page.resolve().as_uri(), *PHONE)
     return int(tab.value(_FRAMES))
 
@@ -125,16 +110,7 @@ def faults(folder: Path) -> list[str]:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Proofread folders.
-
-    Parameters
-    ----------
-    arguments : of the command line; None: the process's own
-
-    Returns
-    -------
-    Exit code
-    """
+    """Proofread folders; exit code."""
     wrong = [
         line for name in (sys.argv[1:] if arguments is None else arguments) for line in faults(Path(name))
     ]

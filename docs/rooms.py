@@ -284,17 +284,7 @@ def _spread(
 
 
 def draw_rooms(graph: Rooms, path: Path) -> tuple[Path, Path]:
-    """Draw rooms as PNG and as SVG.
-
-    Parameters
-    ----------
-    graph : rooms and their imports
-    path : of the picture; its ending is replaced by .png and by .svg
-
-    Returns
-    -------
-    The two files
-    """
+    """Draw rooms and their imports; the PNG and the SVG."""
     import matplotlib
 
     files = path.with_suffix(".png"), path.with_suffix(".svg")

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 from leblanc.core.question import called
 from leblanc.registry import answerer
-from leblanc.scene.scene import Scene, dry_rotor, scene_of
+from leblanc.scene.scene import Scene, dry_rotor, friction_of, scene_of
 from meshes.errors import InputError
 
 if TYPE_CHECKING:
@@ -177,7 +177,7 @@ def map_whirl(
     volumes: int = 101,
     speeds: int = 201,
     max_volume: Quantity | None = None,
-    friction: str | Friction | None = None,
+    friction: str | Mapping[str, object] | Friction | None = None,
     cycles: bool = False,
     progress: Callable[[int, int], None] | None = None,
 ) -> WhirlMap:
@@ -188,7 +188,8 @@ def map_whirl(
     scene : the machine, or the path of its file
     volumes, speeds : how many of each
     max_volume : most liquid in all chambers together, m^3; what fits if None
-    friction : none, stokes, wall[:ROUGHNESS], linear:RATE or quadratic:NUMBER; the scene's if None
+    friction : none, stokes, wall[:ROUGHNESS], linear:RATE or quadratic:NUMBER, a table as in a machine file,
+        or a `Friction`; the scene's if None
     cycles : find how large the whirls of the scene as it stands grow as well, in `cycles` and `folds`
     progress : called with the number of volumes done and of all
 
@@ -204,12 +205,11 @@ def map_whirl(
     """
     machine = scene_of(scene)
     from leblanc.core.units import VOLUME, parse_option
-    from leblanc.questions import friction_of
     from leblanc.studies.whirl_map import map_scene
 
     with _keywords():
         most = None if max_volume is None else parse_option(max_volume, VOLUME, "--max-volume")
-        law = None if friction is None else friction_of(friction)
+        law = None if friction is None else friction_of(friction, "friction")
         return map_scene(machine, volumes, speeds, most, law, progress, cycles)
 
 

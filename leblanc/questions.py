@@ -6,35 +6,18 @@ Quantities are numbers in SI units or texts with a unit. Faults name the option,
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any
 
-from fluid.friction.laws import Friction
-from leblanc.core.units import (
-    LENGTH,
-    allowed_as_typed,
-    parse_friction,
-    parse_option,
-)
+from leblanc.core.units import LENGTH, allowed_as_typed, parse_option
 from leblanc.scene.scene import Scene
 from leblanc.scene.tasks import OBJECTIVES, Optimisation
 from meshes.errors import InputError
 
-if TYPE_CHECKING:
-    pass
-
 Quantity = str | float
-Question = TypeVar("Question")
-_MOST_BAFFLES = 64
 
 
 def as_typed(error: InputError, given: Mapping[str, Any]) -> InputError:
-    """What is refused of an option, with the value as it was typed and its bounds in the unit typed.
-
-    Parameters
-    ----------
-    error : of a study, or of what reads the option
-    given : values by the names of the options
-    """
+    """What is refused of an option, with the value as it was typed and its bounds in the unit typed."""
     name = error.field.removeprefix("--").replace("-", "_")
     typed = given.get(name)
     if not isinstance(typed, str):
@@ -81,12 +64,7 @@ def optimisation_of(
 
 
 def require_no_emulator(store: object) -> None:
-    """Refuse an emulator of a sweep over volumes where balls are chosen.
-
-    Raises
-    ------
-    InputError : one is given
-    """
+    """Refuse an emulator of a sweep over volumes where balls are chosen."""
     if store is not None:
         raise InputError("--emulator", str(store), "left out with balls, whose designs it does not know")
 
@@ -97,8 +75,3 @@ def _length(given: Quantity, option: str) -> float:
     if not 1e-12 <= value <= 1e3:
         raise InputError(option, given, "from 1e-12 to 1000 m")
     return value
-
-
-def friction_of(friction: str | Friction) -> Friction:
-    """A friction law, or the one typed as none, stokes, wall[:ROUGHNESS], linear:RATE or quadratic:NUMBER."""
-    return friction if isinstance(friction, Friction) else parse_friction(friction, "--friction")

@@ -50,42 +50,16 @@ def bracketed_root(
     return root, found
 
 
-def single_root(
-    function: Callable[[float], float], low: float, high: float, relative: float = 4.0 * np.finfo(float).eps
-) -> float:
-    """Root of one function between ends where its signs differ, as `bracketed_root` finds it; else the end
-    where it is nearer to 0.
+def single_root(function: Callable[[float], float], low: float, high: float) -> float:
+    """Root of one function to rounding between ends where its signs differ; else the end nearer to 0."""
+    from scipy.optimize import brentq
 
-    Numbers in place of arrays: ten times as fast where the function costs nothing.
-    """
-    new, across, before = low, high, low
-    at_new, at_across = function(new), function(across)
-    at_before = at_new
-    if at_new * at_across > 0.0 or at_new == 0.0 or at_across == 0.0:
-        return new if abs(at_new) <= abs(at_across) else across
-    share = 0.5
-    while True:
-        x = new + share * (across - new)
-        fx = function(x)
-        if (fx < 0.0) == (at_new < 0.0):
-            before, at_before = new, at_new
-        else:
-            before, at_before, across, at_across = across, at_across, new, at_new
-        new, at_new = x, fx
-        width, least = abs(across - new), 0.5 * relative * max(abs(new), abs(across))
-        if at_new == 0.0 or width <= 2.0 * least:
-            return new if abs(at_new) <= abs(at_across) else across
-        share = 0.5
-        if before != across and at_before not in (at_across, at_new):
-            xi = (new - across) / (before - across)
-            phi = (at_new - at_across) / (at_before - at_across)
-            if phi * phi < xi and (1.0 - phi) ** 2 < 1.0 - xi:
-                share = at_new / (at_across - at_new) * at_before / (at_across - at_before)
-                share += (
-                    (before - new) / (across - new) * at_new / (at_before - at_new)
-                    * at_across / (at_before - at_across)
-                )  # fmt: skip
-        share = min(max(share, least / width), 1.0 - least / width)
+    at_low, at_high = function(low), function(high)
+    if at_low * at_high > 0.0 or at_low == 0.0 or at_high == 0.0:
+        return low if abs(at_low) <= abs(at_high) else high
+    return float(
+        brentq(function, low, high, xtol=np.finfo(float).tiny, rtol=4.0 * np.finfo(float).eps, maxiter=2000)
+    )
 
 
 class _Points(NamedTuple):

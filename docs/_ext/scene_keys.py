@@ -60,16 +60,7 @@ def page() -> str:
 
 
 def write(folder: Path) -> Path:
-    """Write the page.
-
-    Parameters
-    ----------
-    folder : where it goes
-
-    Returns
-    -------
-    The page
-    """
+    """Write the page of keys into a folder; its path."""
     path = folder / NAME
     path.write_text(page(), encoding="utf-8")
     return path

@@ -44,13 +44,7 @@ class Record:
     def open(
         self, folder: Path, source: Path, state: str, fresh: Sequence[Path] = (), aside: Path | None = None
     ) -> None:
-        """Take a folder; from now on its record says that this command has not finished there.
-
-        Parameters
-        ----------
-        folder : exists
-        source, state, fresh, aside : as in the class, the first as the user gave it
-        """
+        """Take a folder; from now on its record says that this command has not finished there."""
         self.folder, self.state, self.fresh, self.aside = folder, state, fresh, aside
         self.source = _seen_from(folder, source)
         self.previous, made = _read(folder), _made(folder)
@@ -145,19 +139,9 @@ def recording(command: str) -> Iterator[Record]:
 def results_dir(name: str, out: Path | None, source: Path, state: str, *files: str) -> Path:
     """Folder for what a command makes of a scene, as `leblanc.core.files.out_dir`.
 
-    Where `out` is not given and the folder holds what another scene of the same name gave, whose file is
-    still there, that folder is moved aside first: to its name with the next free number behind it.
-
-    Parameters
-    ----------
-    name, out : as there
-    source : the scene or study file
-    state : fingerprint of the scene
-    files : names of files that will be written there, tried before the work
-
-    Raises
-    ------
-    OSError : the folder cannot be made or written
+    `state` is the scene's fingerprint. Where `out` is not given and the folder holds what another scene of
+    the same name gave, whose file is still there, that folder is moved aside first: to its name with the next
+    free number behind it.
     """
     folder = chosen_dir(name, out)
     aside = _free_beside(folder) if out is None and _is_of_another(folder, source) else None

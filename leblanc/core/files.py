@@ -31,12 +31,7 @@ def path_of(given: str | os.PathLike[str] | None, name: str) -> Path | None:
 
 
 def chosen_dir(scene_name: str, out: Path | None) -> Path:
-    """Folder for the files of a command: the user's choice, or out/<scene name>.
-
-    Parameters
-    ----------
-    scene_name, out : as for `out_dir`
-    """
+    """Folder for the files of a command: the user's choice, or out/<scene name>."""
     return Path("out") / native(safe_name(scene_name)) if out is None else out
 
 
@@ -68,15 +63,9 @@ def out_dir(scene_name: str, out: Path | None, *names: str) -> Path:
 
 
 def require_writable(path: Path) -> None:
-    """Raise unless a file can be written or replaced there: better now than after the work.
+    """Refuse a file that cannot be written or replaced there, or is protected.
 
-    Parameters
-    ----------
-    path : of the file; its folder is made if it is missing
-
-    Raises
-    ------
-    OSError : it cannot be written, or is one that its owner has protected; carries the path
+    Better now than after the work. Its folder is made; the OSError carries the path.
     """
     with _naming(path):
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -108,21 +97,12 @@ def native(path: str) -> str:
     """A path from a text, as this process names the file whose name is that text in UTF-8.
 
     They differ where the locale has no such letters, as the locale C of batch jobs.
-
-    Parameters
-    ----------
-    path : as a scene or a study says it
     """
     return os.fsdecode(path.encode("utf-8", "surrogateescape"))
 
 
 def path_text(path: str | Path) -> str:
-    """The text of a path, the inverse of `native`; bytes that are no UTF-8 are written as escapes.
-
-    Parameters
-    ----------
-    path : as this process names the file
-    """
+    """The text of a path, the inverse of `native`; bytes that are no UTF-8 are written as escapes."""
     return os.fsencode(path).decode("utf-8", "backslashreplace")
 
 
@@ -161,12 +141,7 @@ def writing(path: Path) -> Iterator[Path]:
 
 @contextmanager
 def watched(watch: Callable[[Path], None]) -> Iterator[None]:
-    """Tell of each file that is written within the block.
-
-    Parameters
-    ----------
-    watch : called with the path of a file that is whole
-    """
+    """Tell of each file that is written whole within the block."""
     token = _WATCHES.set((*_WATCHES.get(), watch))
     try:
         yield

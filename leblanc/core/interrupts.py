@@ -131,12 +131,7 @@ def held() -> Iterator[None]:
 
 
 def behind(error: BaseException) -> KeyboardInterrupt | Terminated | None:
-    """The interrupt that compiled code has made another error of, if there is one.
-
-    Parameters
-    ----------
-    error : as it came, with what it came from
-    """
+    """The interrupt that compiled code has made another error of, if there is one."""
     found: BaseException | None = error
     while found is not None and not isinstance(found, KeyboardInterrupt | Terminated):
         found = found.__cause__ or found.__context__

@@ -92,15 +92,7 @@ class NamedArrays:
 
 
 def variable(dims: tuple[str, ...], values: Any, units: str, long_name: str, text: str = "") -> Variable:
-    """Variable with what a reader needs to use it.
-
-    Parameters
-    ----------
-    dims : names of its dimensions
-    values : of it
-    units, long_name : as CF asks
-    text : description, if there is more to say
-    """
+    """Variable with what a reader needs to use it: units and long name as CF asks, a description."""
     if units == "m" and "amplitude" in long_name + text and ZERO_TO_PEAK not in text:
         text = f"{ZERO_TO_PEAK}, {text}" if text else ZERO_TO_PEAK
     said = {"description": text} if text else {}
@@ -108,14 +100,7 @@ def variable(dims: tuple[str, ...], values: Any, units: str, long_name: str, tex
 
 
 def flags(dims: tuple[str, ...], values: NDArray[Any], meanings: str, name: str, text: str = "") -> Variable:
-    """Variable that stores one of a few states as a byte; the last of the meanings has the value 1.
-
-    Parameters
-    ----------
-    dims, values, text : as for `variable`
-    meanings : names of the states, in the order of their values
-    name : long name
-    """
+    """Variable of a few states, stored as bytes; the last of the names in `meanings` has the value 1."""
     found = variable(dims, values.astype(np.int8), "1", name, text)
     found.attrs["flag_values"] = np.arange(2 - len(meanings.split()), 2, dtype=np.int8)
     found.attrs["flag_meanings"] = meanings
@@ -146,14 +131,7 @@ def pair(name: str, dims: tuple[str, ...], values: NDArray[Any], long_name: str)
 def write_netcdf(found: NamedArrays, path: Path) -> None:
     """Write named arrays as netCDF 4, the file that xarray would write of their dataset.
 
-    Parameters
-    ----------
-    found : what to write
-    path : the file to write or replace; an interrupted run and a full disk leave the old one whole
-
-    Raises
-    ------
-    OSError : it cannot be written; carries the path
+    An interrupted run and a full disk leave the old file whole; the OSError carries the path.
     """
     content = _content(found)
     with writing(path) as temporary:
@@ -185,13 +163,7 @@ def _content(found: NamedArrays) -> bytes:
 def read_values(path: Path) -> dict[str, NDArray[Any]]:
     """Values of all variables of a file, by name.
 
-    Parameters
-    ----------
-    path : of the file
-
-    Raises
-    ------
-    InputError : it is no netCDF 4, or was cut or damaged in what HDF5 checks
+    An `InputError` refuses what is no netCDF 4, or was cut or damaged in what HDF5 checks.
     """
     import h5netcdf
 

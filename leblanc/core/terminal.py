@@ -52,12 +52,7 @@ def ready_streams() -> None:
 
 
 def drop(stream: TextIO) -> None:
-    """Let the interpreter's last flush of a stream that nobody reads go nowhere.
-
-    Parameters
-    ----------
-    stream : stdout or stderr
-    """
+    """Let the interpreter's last flush of a stream that nobody reads, stdout or stderr, go nowhere."""
     try:
         stream.flush()
     except OSError:
@@ -75,12 +70,7 @@ def print_table(
 ) -> None:
     """Print a table on stdout; on a terminal its texts are wrapped to fit, elsewhere to 110 characters.
 
-    Parameters
-    ----------
-    rows : texts of the cells
-    head : of the columns; none for labels and values
-    right : all columns but the first are aligned to the right
-    indent : blanks before each line
+    Without a head it has labels and values; `right` aligns all columns but the first to the right.
     """
     from rich.console import Console
     from rich.padding import Padding
@@ -102,13 +92,7 @@ def print_table(
 
 
 def print_json(value: object) -> None:
-    """Print one JSON object on stdout.
-
-    Parameters
-    ----------
-    value : dataclasses, mappings, sequences, arrays and numbers; a complex number becomes [re, im], and what
-        is not finite becomes null
-    """
+    """Print one JSON object on stdout, as `leblanc.core.quantities.plain` makes it."""
     from leblanc.core.quantities import plain
 
     sys.stdout.write(json.dumps(plain(value), allow_nan=False) + "\n")

@@ -158,21 +158,11 @@ class Unit:
     count: float  #: how many of it one SI unit is
 
     def number(self, value: float) -> str:
-        """The value in this unit for print, without the unit.
-
-        Parameters
-        ----------
-        value : SI
-        """
+        """An SI value in this unit for print, without the unit."""
         return number(value * self.count)
 
     def text(self, value: float) -> str:
-        """The value with this unit; what is not finite has none.
-
-        Parameters
-        ----------
-        value : SI
-        """
+        """An SI value with this unit; what is not finite has none."""
         return f"{self.number(value)} {self.name}" if math.isfinite(value) else number(value)
 
 
@@ -207,22 +197,12 @@ _USUAL |= {CURRENT: "mA"}
 
 
 def units_of(dimension: Dimension) -> tuple[Unit, ...]:
-    """Units in which values are shown, by rising size.
-
-    Parameters
-    ----------
-    dimension : of the values
-    """
+    """Units in which values are shown, by rising size."""
     return tuple(unit for _, unit in _UNITS.get(dimension, ((0.0, Unit(dimension.unit, 1.0)),)))
 
 
 def unit_for(dimension: Dimension, *values: float) -> Unit:
-    """Unit in which a person would write values that stand side by side.
-
-    Parameters
-    ----------
-    dimension : of the values; one without a choice of units is shown in its SI unit
-    values : SI; the largest finite one decides
+    """Unit in which a person would write SI values that stand side by side; the largest finite one decides.
 
     Examples
     --------
@@ -239,12 +219,7 @@ def unit_for(dimension: Dimension, *values: float) -> Unit:
 
 
 def unit_typed(value: object, dimension: Dimension) -> Unit:
-    """Unit in which a value stands in a file, its SI unit where it is a plain number.
-
-    Parameters
-    ----------
-    value : as it was given, free of faults
-    dimension : of the value
+    """Unit in which a value free of faults stands in a file, its SI unit where it is a plain number.
 
     Examples
     --------
@@ -259,12 +234,7 @@ def unit_typed(value: object, dimension: Dimension) -> Unit:
 
 
 def with_unit(value: float, dimension: Dimension) -> str:
-    """A value for print in the unit that a person would write.
-
-    Parameters
-    ----------
-    value : SI
-    dimension : what it measures
+    """An SI value for print in the unit that a person would write.
 
     Examples
     --------
@@ -275,34 +245,18 @@ def with_unit(value: float, dimension: Dimension) -> str:
 
 
 def in_rpm(speed: float, missing: str = NOT_FOUND) -> str:
-    """A speed for print.
-
-    Parameters
-    ----------
-    speed : rad/s
-    missing : in place of a speed that is not finite
-    """
+    """A speed in rad/s for print; `missing` stands in place of one that is not finite."""
     return with_unit(speed, ANGULAR_SPEED) if math.isfinite(speed) else missing
 
 
 def rpm_range(low: float, high: float) -> str:
-    """A range of speeds for print; one number where both ends print alike.
-
-    Parameters
-    ----------
-    low, high : rad/s
-    """
+    """A range of speeds in rad/s for print; one number where both ends print alike."""
     first, last = number(low * RPM), in_rpm(high)
     return last if last == in_rpm(low) else f"{first} to {last}"
 
 
 def over_rpm(low: float, high: float, before: str = "from", between: str = "to") -> str:
-    """Where a range of speeds is, as a part of a sentence: "from 1 to 2 rpm", or "at 2 rpm".
-
-    Parameters
-    ----------
-    low, high : rad/s
-    before, between : words of a range that is not one speed
+    """Where a range of speeds in rad/s is, as a part of a sentence: "from 1 to 2 rpm", or "at 2 rpm".
 
     Examples
     --------
@@ -314,22 +268,12 @@ def over_rpm(low: float, high: float, before: str = "from", between: str = "to")
 
 
 def rpm_bands(bands: Iterable[tuple[float, float]]) -> str:
-    """Ranges of speed for print; empty without any.
-
-    Parameters
-    ----------
-    bands : first and last speed of each, rad/s
-    """
+    """Ranges of speed for print, from their first and last speeds in rad/s; empty without any."""
     return ", ".join(rpm_range(low, high) for low, high in bands)
 
 
 def celsius(temperature: float) -> str:
-    """A temperature for print, as a person would write it.
-
-    Parameters
-    ----------
-    temperature : K
-    """
+    """A temperature in K for print, as a person would write it."""
     return f"{number(float(f'{temperature - 273.15:.10g}'))} degC"
 
 
@@ -347,21 +291,9 @@ def number(value: float) -> str:
 
 
 def parse(value: object, dimension: Dimension, field: str = "value") -> float:
-    """Value of a quantity in SI units.
+    """Finite value in `dimension.unit` of a plain number, taken as SI, or of a text of a number and a unit.
 
-    Parameters
-    ----------
-    value : a plain number, taken as SI, or a text of a number and a unit
-    dimension : what it must be
-    field : name of the value, for the message
-
-    Returns
-    -------
-    the value in `dimension.unit`; finite
-
-    Raises
-    ------
-    InputError : not a number, not finite, an unknown unit, a unit of something else
+    An `InputError` that names the field refuses anything else, and a unit of something else.
 
     Examples
     --------
@@ -391,10 +323,6 @@ _WHOLE = 1e6  # from here on a bound is a whole number
 def written_out(value: float) -> str:
     """A bound for a message without a power of ten: six digits or whole, many of them in groups of three.
 
-    Parameters
-    ----------
-    value : in the unit that follows it
-
     Examples
     --------
     >>> written_out(0.065), written_out(1e9), written_out(1e-12)
@@ -417,10 +345,7 @@ _POWERED = re.compile(r"(?<![\w.])-?\d+\.?\d*e[+-]?\d+(?![\w.])")
 def allowed_as_typed(allowed: str, typed: object) -> str:
     """What is allowed, its bounds in the unit that the user typed, all of them written out.
 
-    Parameters
-    ----------
-    allowed : as in "from 1e-06 to 1000 m"
-    typed : the value as it was given, of a list its first text; without a unit the text stays as it is
+    Of a list its first text counts; without a unit the text stays as it is.
 
     Examples
     --------
@@ -475,12 +400,7 @@ def _read(bound: str) -> float:
 
 
 def parse_option(text: str | float, dimension: Dimension, field: str) -> float:
-    """Value of an option of a command, where a plain number comes as text too, or of a keyword in Python.
-
-    Raises
-    ------
-    InputError : as `parse`
-    """
+    """Value of an option of a command, where a plain number is a text too, or of a keyword, as by `parse`."""
     try:
         number = float(text)
     except (ValueError, TypeError):

@@ -63,17 +63,10 @@ RPM_ROOM = 0.42  # for a second axis on the right, inches
 
 
 def unrolled(theta: Array, depth: Array) -> tuple[Array, Array]:
-    """Depth around the wall from -180 to 180 degrees, closed.
+    """Depth around the wall over angles that rise from -pi to pi, closed.
 
-    Parameters
-    ----------
-    theta : angles in any order, rad, shape (n,)
-    depth : there, m, shape (n,)
-
-    Returns
-    -------
-    Angles that rise from -pi to pi, and depth, linear between the angles given, equal at both ends; n + 2 of
-    them, less those that are there twice.
+    Angles in any order, rad, and depth, m, shape (n,); n + 2 of each come back, less those that are there
+    twice, the depth linear between the angles given.
     """
     angle = np.mod(theta + math.pi, 2.0 * math.pi) - math.pi
     order = np.argsort(angle, kind="stable")
@@ -89,18 +82,9 @@ def unrolled(theta: Array, depth: Array) -> tuple[Array, Array]:
 def free_surface(
     radius: float, theta: Array, depth: Array, factor: float, inner_radius: float = 0.0
 ) -> tuple[Array, Array]:
-    """Free surface as drawn: the wall is to scale, depths grow by a factor.
+    """Angles from -pi to pi, at most half a degree apart, rad, and the radius of the free surface there, m.
 
-    Parameters
-    ----------
-    radius : of the wall, m
-    theta, depth : angles, rad, and depth there, m, shape (n,)
-    factor : of the depth
-    inner_radius : of the inner wall, which cuts what is deeper than the room, m
-
-    Returns
-    -------
-    Angles that rise from -pi to pi, at most half a degree apart, rad, and the surface's radius there, m.
+    The wall is to scale, depths grow by a factor; an inner wall cuts what is deeper than the room.
     """
     angle, layer = unrolled(theta, depth)
     fine = np.union1d(angle, np.linspace(-math.pi, math.pi, RAYS))
@@ -108,16 +92,9 @@ def free_surface(
 
 
 def outline(radius: float, angle: Array, surface: Array) -> tuple[Array, Array]:
-    """Closed outline of the liquid: along the wall with the spin and back along the free surface.
+    """Closed outline of the liquid as x along angle 0 and y, m, shape (2 m,).
 
-    Parameters
-    ----------
-    radius : of the wall, m
-    angle, surface : from `free_surface`, shape (m,)
-
-    Returns
-    -------
-    x along angle 0 and y, m, shape (2 m,).
+    It runs along the wall with the spin and back along the free surface, both from `free_surface`.
     """
     wall, inner = radius * np.exp(1j * angle), surface * np.exp(1j * angle)
     edge = np.concatenate([wall, inner[::-1]])
@@ -127,9 +104,7 @@ def outline(radius: float, angle: Array, surface: Array) -> tuple[Array, Array]:
 def is_dry(depth: Array, mean_depth: float) -> NDArray[np.bool_]:
     """Stretches where nothing covers the wall; a point that the surface merely touches is none.
 
-    Parameters
-    ----------
-    depth, mean_depth : m, along rising angles, shape (..., n), n > 1; of the layer undisturbed
+    Depths along rising angles, m, shape (..., n), n > 1.
     """
     dry: NDArray[np.bool_] = depth <= DRY * mean_depth
     beside = np.zeros_like(dry)
@@ -139,13 +114,7 @@ def is_dry(depth: Array, mean_depth: float) -> NDArray[np.bool_]:
 
 
 def depth_factor(wave: Wave, deepest: float) -> float:
-    """Factor that makes a thin layer visible and keeps a deep one between the walls.
-
-    Parameters
-    ----------
-    wave : walls and mean depth
-    deepest : of all that is drawn on one scale, m
-    """
+    """Factor that makes a thin layer visible and keeps the deepest place drawn, m, between the walls."""
     if not (deepest > 0.0 and wave.mean_depth > 0.0):
         return 1.0
     # In this order no quotient of a depth near zero overflows.
@@ -157,13 +126,7 @@ def depth_factor(wave: Wave, deepest: float) -> float:
 def frames(wave: Wave, history: WaveFrames) -> NDArray[np.intp]:
     """Indices over time of a film's frames: all of the history, or as much of its end as the eye can follow.
 
-    Parameters
-    ----------
-    wave, history : speeds, times
-
-    Returns
-    -------
-    Rising, evenly spaced in time as far as the history is, at most 120.
+    They rise, evenly spaced in time as far as the history is, at most 120.
     """
     time, whirl_speed = history.time, abs(wave.seen_from_the_drum)
     span = float(time[-1] - time[0])
@@ -231,41 +194,19 @@ def walls(axes: Axes, wave: Wave) -> None:
 
 
 def wet_surface(wave: Wave, angle: Array, surface: Array, factor: float) -> Any:
-    """Points of the free surface as complex numbers, nan where the wall is dry.
-
-    Parameters
-    ----------
-    wave : the layer
-    angle, surface, factor : as drawn: rad, mm, shape (m,), factor of the depth
-    """
+    """Points of the free surface as drawn, mm, as complex numbers; nan where the wall is dry, shape (m,)."""
     dry = is_dry((wave.radius * MM - surface) / factor, wave.mean_depth * MM)
     return np.where(dry, np.nan, surface * np.exp(1j * angle))
 
 
 def dry_wall(wave: Wave, angle: Array, surface: Array, factor: float) -> Any:
-    """Points just outside the wall as complex numbers, nan where liquid covers it.
-
-    Parameters
-    ----------
-    wave, angle, surface, factor : as for `wet_surface`
-    """
+    """Points just outside the wall, mm, as complex numbers; nan where liquid covers it, shape (m,)."""
     dry = is_dry((wave.radius * MM - surface) / factor, wave.mean_depth * MM)
     return np.where(dry, 1.035 * wave.radius * MM * np.exp(1j * angle), np.nan)
 
 
 def arrow(axes: Axes, wave: Wave, direction: complex, color: str, label: str) -> Any:
-    """Arrow outside the wall.
-
-    Parameters
-    ----------
-    axes, wave : the drawing, what to draw
-    direction : of the size 1 at most, which sets the length; 0 draws none
-    color, label : of the line
-
-    Returns
-    -------
-    The line, to be moved.
-    """
+    """Arrow outside the wall, to be moved; as long as the size of its direction, at most 1; none if 0."""
     x, y, head = arrow_ends(wave, direction)
     return _line_with_head(axes, x, y, head, color, label)
 
@@ -279,16 +220,7 @@ def _line_with_head(axes: Axes, x: list[float], y: list[float], head: Any, color
 
 
 def arrow_ends(wave: Wave, direction: complex) -> tuple[list[float], list[float], Any]:
-    """Ends of an arrow outside the wall.
-
-    Parameters
-    ----------
-    wave, direction : as for `arrow`
-
-    Returns
-    -------
-    x and y of both ends, mm, nan if there is no direction; its head as a marker.
-    """
+    """x and y of both ends of an arrow, mm, nan if there is no direction; its head as a marker."""
     size, angle = abs(direction), cmath.phase(direction)
     start, stop = OUTSIDE
     ends = np.array([start, start + (stop - start) * size]) * cmath.exp(1j * angle) * wave.radius * MM
@@ -351,14 +283,7 @@ def draw_profile(axes: Axes, wave: Wave) -> None:
 
 
 def profile_axis(axes: Axes, top: float, dry: bool) -> None:
-    """Limits and labels of a plot of the depth around the wall.
-
-    Parameters
-    ----------
-    axes : the plot
-    top : the largest depth, mm
-    dry : leave a strip below zero for the bar that marks dry places
-    """
+    """Limits, mm, and labels of a plot of the depth around the wall; below zero a strip for dry places."""
     top = 1.12 * top if top > 0.0 else 1.0
     axes.set_xlim(-180.0, 180.0)
     axes.set_xticks(np.arange(-180.0, 181.0, 90.0))
@@ -646,24 +571,10 @@ def history_figure(wave: Wave, history: WaveFrames) -> Figure:
 def animate(
     wave: Wave, history: WaveFrames, path: Path, drawn: Callable[[int, int], None] | None = None
 ) -> int:
-    """Write the film of a wave, in the frame of the drum.
+    """Write the film of a wave in the frame of the drum, a .gif or with ffmpeg an .mp4; its number of frames.
 
-    One history gives the same GIF byte for byte, as long as the versions of matplotlib and Pillow stay the
-    same.
-
-    Parameters
-    ----------
-    wave, history : what to show; of a long history its end, as much of it as 120 frames can follow
-    path : a .gif, or an .mp4 if there is an ffmpeg
-    drawn : called after each frame with the number of frames drawn and of all
-
-    Returns
-    -------
-    Number of frames.
-
-    Raises
-    ------
-    InputError : another kind of file, an .mp4 without an ffmpeg, a layer deeper than the wall's radius
+    Of a long history its end, as much of it as 120 frames can follow. One history gives the same GIF byte for
+    byte, as long as the versions of matplotlib and Pillow stay the same.
     """
     require_film(path)
     wave.require_room(history)

@@ -120,6 +120,7 @@ def test_map(capsys: Capture, tmp_path: Path) -> None:
     given = {"volumes": 3, "speeds": 5, "max_volume": "20 ml", "friction": "linear:0.5"}
     printed = command(capsys, "map", str(RIG), *options(given), "--out", str(tmp_path))
     same(lb.map_whirl(RIG, **given), printed)
+    same(lb.map_whirl(RIG, **given | {"friction": {"linear": 0.5}}), printed)
 
 
 def test_optimise(capsys: Capture, tmp_path: Path) -> None:
