@@ -1,4 +1,4 @@
-"""Roots inside a bracket, many at once or one."""
+"""Roots inside a bracket, many at once."""
 
 from __future__ import annotations
 
@@ -48,18 +48,6 @@ def bracketed_root(
         active, points = active[keep], points.at(keep)
         share = points.share(least[keep] / width[keep])
     return root, found
-
-
-def single_root(function: Callable[[float], float], low: float, high: float) -> float:
-    """Root of one function to rounding between ends where its signs differ; else the end nearer to 0."""
-    from scipy.optimize import brentq
-
-    at_low, at_high = function(low), function(high)
-    if at_low * at_high > 0.0 or at_low == 0.0 or at_high == 0.0:
-        return low if abs(at_low) <= abs(at_high) else high
-    return float(
-        brentq(function, low, high, xtol=np.finfo(float).tiny, rtol=4.0 * np.finfo(float).eps, maxiter=2000)
-    )
 
 
 class _Points(NamedTuple):

@@ -32,7 +32,7 @@ from leblanc.studies.run.words import alts, amplitude_place
 from meshes.arrays import Array, Complex
 from meshes.baffles import Baffles
 from meshes.clip import Remainder, area_within, outside_circle, wall_loops
-from solvers.roots import single_root
+from solvers.roots import bracketed_root
 
 RAYS = 361  # one degree apart, closed
 BISECTIONS = 60  # from the radius down to rounding
@@ -269,11 +269,11 @@ def _square(taken: Callable[[Array], Array], area: float, farthest: float, ramp:
     whole, low, high = float(taken(np.array([math.inf]))[0]), -ramp, farthest
     share, weight = np.polynomial.legendre.leggauss(HEIGHTS) if ramp > 0.0 else (np.zeros(1), np.full(1, 2.0))
 
-    def excess(square: float) -> float:
+    def excess(square: Array, _: object) -> Array:
         squares = np.maximum(square + 0.5 * ramp * (1.0 + share), 0.0)
-        return whole - float(0.5 * weight @ taken(np.sqrt(squares))) - area
+        return np.array([whole - float(0.5 * weight @ taken(np.sqrt(squares))) - area])
 
-    return single_root(excess, low, high)
+    return float(bracketed_root(excess, np.array([low]), np.array([high]))[0][0])
 
 
 def _within(chamber: FilledChamber, loops: tuple[Complex, ...], centre: complex, radius: Array) -> Array:

@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
-import pytest
 
-from solvers.roots import bracketed_root, single_root
-from tests.mutants import kills
+from solvers.roots import bracketed_root
 
 
 def test_roots_of_many_functions() -> None:
@@ -50,16 +46,3 @@ def test_smooth_functions_take_few_steps() -> None:
     root, found = bracketed_root(function, np.zeros(5), np.full(5, 4.0))
     assert found.all() and calls < 15
     np.testing.assert_allclose(root, np.log(2.0 + np.arange(5)), rtol=1e-15)
-
-
-@kills("solvers.roots:single_root", "np.finfo(float).tiny", "1e-12")
-@kills("solvers.roots:single_root", "abs(at_low) <= abs(at_high)", "abs(at_low) > abs(at_high)")
-def test_one_root_is_found_as_many_are() -> None:
-    """To rounding whatever its size; where no sign changes the better end."""
-    for target in (1e-60, 2.0, 50.0):
-        root = single_root(lambda x, t=target: x**3 - t, 0.0, 10.0)
-        assert root == pytest.approx(math.cbrt(target), rel=1e-14, abs=0.0)
-    foot = single_root(lambda x: -1e-12 if x < 0.9 else (x - 0.9) * 1e6 - 1e-12, 0.0, 1.0)
-    assert foot == pytest.approx(0.9, rel=1e-14)
-    assert single_root(lambda x: x, 0.0, 1.0) == 0.0
-    assert single_root(lambda x: x**2 + 1.0, -1.0, 0.5) == 0.5

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from meshes.arrays import Array, Complex, Flags
 from meshes.errors import InputError
-from solvers.roots import single_root
+from solvers.roots import bracketed_root
 from solvers.rotor.balls.balancers import BallRace, race_arrays
 from solvers.rotor.system import RotorSystem
 
@@ -352,11 +352,11 @@ def _arc(count: int, wanted: float, share: complex) -> Array:
         gap = 2.0 * math.acos(0.5 * wanted)
     else:
         # The sum of unit vectors a gap apart falls from their number at 0 to 0 when they stand all round.
-        def left(at: float) -> float:
-            return math.sin(0.5 * count * at) / math.sin(0.5 * at) - wanted
+        def left(at: Array, _: object) -> Array:
+            return np.asarray(np.sin(0.5 * count * at) / np.sin(0.5 * at) - wanted)
 
         whole = 2.0 * math.pi / count
-        gap = single_root(left, 1e-9, whole) if wanted else whole
+        gap = float(bracketed_root(left, np.array([1e-9]), np.array([whole]))[0][0]) if wanted else whole
     middle = float(np.angle(share)) if share else gap * 0.5 * (count - 1)
     return np.asarray(middle + gap * (np.arange(count) - 0.5 * (count - 1)))
 
