@@ -34,7 +34,8 @@ def command(question: Callable[..., Any]) -> Callable[..., None]:
     The module of the question may name the `FILES` that its answer writes, the last being the data, and have
     a function `present` of the answer and of further options, which gives back what is shown.
     """
-    own = {one.name: one for one in parameters(question)}
+    everything = {one.name: one for one in parameters(question)}
+    own = {name: one for name, one in everything.items() if name not in ("folder", "progress")}
     present: Callable[..., Any] | None = getattr(sys.modules[question.__module__], "present", None)
     more = {one.name: one for one in list(parameters(present))[1:]} if present else {}
     asked = own | more
@@ -55,6 +56,7 @@ def command(question: Callable[..., Any]) -> Callable[..., None]:
         elif out is not None:
             folder = out_dir(question.__name__, out)
         values = {name: _value(own[name], given[name]) for name in own}
+        values |= {"folder": folder} if "folder" in everything else {}
         with working("preparing"):
             try:
                 shown = read(present, {name: given[name] for name in more}) if present else {}

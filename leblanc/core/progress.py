@@ -36,6 +36,16 @@ def told(listener: Update) -> Iterator[None]:
         _LISTENER.reset(token)
 
 
+def heard(progress: Callable[[float, float], object]) -> Update:
+    """Listener that calls a function of what is done and of the total, where both are known."""
+
+    def listener(done: float | None = None, total: float | None = None, what: str | None = None) -> None:
+        if done is not None and total is not None:
+            progress(done, total)
+
+    return listener
+
+
 @contextmanager
 def working(what: str) -> Iterator[Update]:
     """Show what is done, for how long by now, and how far it has come where that is known.

@@ -1,16 +1,19 @@
 """A question is the signature of its call; quantities are read from texts with units, faults name keywords.
 
 A parameter says in its type what it is: `speed: Annotated[Quantity, ANGULAR_SPEED, "Speed of the shaft."]`.
+Two are no options of its command: `folder`, where a study keeps what another run takes up, and `progress`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import nullcontext
 from dataclasses import dataclass
 from importlib import import_module
 from inspect import signature
 from typing import Annotated, Any, TypeVar, get_args, get_origin
 
+from leblanc.core.progress import heard, told
 from leblanc.core.units import Dimension, parse_option
 
 Quantity = str | float  # a number in SI units, or a text with its unit
@@ -75,11 +78,16 @@ def called(address: str) -> Callable[..., Any]:
 def ask(question: Callable[..., A], study: str, given: Mapping[str, Any]) -> A:
     """The answer of a study, "module:function", to the values of a question, as `locals()` of it has them.
 
+    `progress` is no value of the study: it is called with what is done and the total, as `update` says them.
+
     Raises
     ------
     InputError : a quantity that cannot be read, what the study refuses
     """
-    answer: A = called(study)(**read(question, given))
+    values = read(question, given)
+    progress = values.pop("progress", None)
+    with nullcontext() if progress is None else told(heard(progress)):
+        answer: A = called(study)(**values)
     return answer
 
 

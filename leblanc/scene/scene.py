@@ -280,6 +280,11 @@ class Scene(Part):
         """The races with balls, which stand behind the chambers with liquid."""
         return tuple(chamber for chamber in self.chambers if isinstance(chamber, BallRace))
 
+    @property
+    def kind(self) -> str:
+        """Kind of machine, by which a question finds who answers: "balls" with races, else that of the rotor."""
+        return "balls" if self.balls else self.rotor.kind
+
     def without_balls(self) -> Scene:
         """The same machine without its balls."""
         return self.altered(chambers=self.liquids) if self.balls else self
