@@ -14,7 +14,6 @@ if TYPE_CHECKING:
     from leblanc.api import (
         compare,
         explain,
-        fit,
         map_balls,
         map_whirl,
         optimise,
@@ -29,6 +28,7 @@ if TYPE_CHECKING:
     from leblanc.scene.schema.load import SceneError
     from leblanc.scene.spindle import Spindle
     from leblanc.studies.bearing import bearing
+    from leblanc.studies.fit import fit
     from leblanc.studies.layer import layer
     from leblanc.studies.modes import modes
     from leblanc.studies.volume import volume
@@ -66,7 +66,7 @@ __all__ = [
 ]
 
 _API = "leblanc.api"
-_QUESTIONS = ("bearing", "layer", "modes", "volume")  # each in a package of its name
+_QUESTIONS = ("bearing", "fit", "layer", "modes", "volume")  # each in a package of its name
 # Where each public name lives: its module, and its name there.
 _HOMES = {
     "Chamber": ("meshes.chamber", "Chamber"),

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 from leblanc.core.question import called
 from leblanc.registry import answerer
-from leblanc.scene.scene import Scene, dry_rotor, friction_of, scene_of
+from leblanc.scene.scene import Scene, friction_of, scene_of
 from meshes.errors import InputError
 
 if TYPE_CHECKING:
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from leblanc.core.answer import Answer
     from leblanc.questions import Quantity
     from leblanc.results.explanation import Explanation
-    from leblanc.results.fit import FitResult
     from leblanc.results.machine.layout import LayoutResult
     from leblanc.results.models.comparison import Comparison
     from leblanc.results.optimum import OptimumResult
@@ -351,62 +350,6 @@ def compare(scene: SceneOrPath, models: Sequence[str]) -> Comparison:
 
     with _keywords():
         return compare_models(machine, tuple(models))
-
-
-def fit(
-    scene: SceneOrPath,
-    measured: str | PathLike[str],
-    unknown: Sequence[str],
-    *,
-    starts: int = 2,
-    seed: int = 0,
-    scale: str = "given",
-    noise: str = "estimate",
-    column: Mapping[str, str] | None = None,
-) -> FitResult:
-    """Unknowns of a scene from a measured curve, each with its uncertainty.
-
-    Parameters
-    ----------
-    scene : the machine, or the path of its file; its values are the first guess
-    measured : path of a table over speed, time or liquid added, with a header such as
-        "speed [rpm], amplitude [mm]"; commas, semicolons or tabs between its columns
-    unknown : paths of the unknowns in the scene, as "rotor.mass"; "A=B" ties B to A
-    starts : searches at least; more follow until the best values have been found again
-    seed : of the values that they start from
-    scale : "given", "free" where the unit of the sensor is not known, "each" where every quantity has its own
-    noise : of the measured values: "estimate", "3 %" of each reading, or an error such as "0.1 mm"
-    column : headers of the file by the quantities that are meant, as in {"amplitude": "Schwingweg [um pp]"}
-
-    Raises
-    ------
-    SceneError, InputError : as for `run`; a table that cannot be read, an unknown that is no number above 0
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> from pathlib import Path
-    >>> import leblanc as lb
-    >>> rig = lb.example("horizontal_rig").replace({"speeds.count": 12})
-    >>> found = lb.run(rig)
-    >>> lines = [f"{s}, {a}" for s, a in zip(found.speed, found.amplitude)]
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     table = Path(folder) / "measured.csv"
-    ...     _ = table.write_text("\\n".join(["speed [rad/s], amplitude [m]", *lines]))
-    ...     answer = lb.fit(rig.replace({"rotor.mass": 4.4}), table, ["rotor.mass"], starts=1)
-    >>> round(answer.parameters["rotor.mass"]["value"], 3)
-    4.0
-    """
-    machine = scene_of(scene)
-    from leblanc.studies.fit import fit_scene
-    from leblanc.studies.fitting.measured import read_measured
-    from leblanc.studies.fitting.problem import require_scale
-
-    with _keywords():
-        free = require_scale(scale) != "given"
-        table = read_measured(measured, dry_rotor(machine).system().coordinates, free, column)
-        file = scene if isinstance(scene, str | PathLike) else None
-        return fit_scene(machine, table, tuple(unknown), starts, seed, scale, noise=noise, file=file)
 
 
 def sweep(

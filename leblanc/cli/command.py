@@ -7,7 +7,7 @@ import sys
 from collections.abc import Callable, Mapping, Sequence
 from inspect import Parameter, signature
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, get_origin
 
 import typer
 
@@ -16,7 +16,7 @@ from leblanc.core.answer import Answer, NotConverged
 from leblanc.core.contents import results_dir
 from leblanc.core.files import out_dir, path_text
 from leblanc.core.progress import working
-from leblanc.core.question import SCENE, Asked, called, parameters, read
+from leblanc.core.question import SCENE, Asked, Reader, called, parameters, read
 from leblanc.core.terminal import print_json, say, show
 from meshes.errors import InputError
 
@@ -63,7 +63,7 @@ def command(question: Callable[..., Any]) -> Callable[..., None]:
                 answer: Answer = question(**values | ({} if machine is None else {"scene": machine}))
                 answer = present(answer, **shown) if present else answer
             except InputError as error:
-                raise _of_option(error, given) from error
+                raise _of_option(error, asked) from error
         line = _command_line(question.__name__, list(own.values()), given)
         finish(answer, where, json, folder, machine, line)
 
@@ -91,7 +91,7 @@ def finish(
     else:
         show(answer.blocks())
         if folder is not None and (answer.page or answer.data):
-            print(_closing(answer, folder))
+            print(_closing(answer, folder, drawn))
     if not (answer.page or answer.data):
         for one in drawn:
             say(f"wrote {one.png}")
@@ -111,9 +111,13 @@ def _typed(one: Asked) -> Parameter:
     """A parameter as typer takes it: a scene is the path of its file, quantities are texts."""
     if one.read is SCENE:
         return _parameter(one.name, Path, typer.Argument(help="Scene file (TOML)."), Parameter.empty)
-    kind = one.kind
-    if one.read is not None:
+    kind: Any = one.kind
+    if get_origin(kind) is Sequence or (isinstance(one.read, Reader) and one.read.many):
+        kind = list[str] if one.default is Parameter.empty else list[str] | None
+    elif one.read is not None:
         kind = str if one.default is Parameter.empty else str | None
+    if one.option.argument:
+        return _parameter(one.name, kind, typer.Argument(help=one.text), one.default)
     if one.name == "workers":
         return _parameter(one.name, int | None, typer.Option(help=one.text), None)
     return _parameter(one.name, kind, typer.Option(*one.option.names, help=one.text), one.default)
@@ -123,9 +127,9 @@ def _value(one: Asked, value: Any) -> Any:
     return processes(value) if one.name == "workers" else value
 
 
-def _of_option(error: InputError, given: Mapping[str, Any]) -> InputError:
+def _of_option(error: InputError, asked: Mapping[str, Asked]) -> InputError:
     """A fault that names the option in place of the keyword."""
-    if error.field not in given:
+    if error.field not in asked or asked[error.field].option.argument:
         return error
     return InputError(f"--{error.field.replace('_', '-')}", error.value, error.allowed)
 
@@ -138,7 +142,7 @@ def _command_line(name: str, asked: Sequence[Asked], given: Mapping[str, Any]) -
         option = (
             one.option.names[-1].rpartition("/")[2] if one.option.names else f"--{one.name.replace('_', '-')}"
         )
-        if one.read is SCENE:
+        if one.read is SCENE or one.option.argument:
             parts.append(path_text(value))
         elif one.option.same or value == one.default:
             continue
@@ -175,8 +179,9 @@ def _drawn(answer: Answer, picture: Any, folder: Path) -> Any:
     return save(called(picture.draw)(answer), folder, picture.name, picture.title)
 
 
-def _closing(answer: Answer, folder: Path) -> str:
+def _closing(answer: Answer, folder: Path, drawn: Sequence[Any]) -> str:
     """Where to look now."""
-    first = f"Read {folder / answer.page}" if answer.page else ""
+    seen = f"See {drawn[0].png}" if drawn else ""
+    first = f"Read {folder / answer.page}" if answer.page else seen
     data = f"the data are in {folder / answer.data}" if answer.data else ""
     return "; ".join(part for part in (first, data) if part)

@@ -25,6 +25,7 @@ class Reader:
     """What reads a value that is no quantity."""
 
     address: str  #: "module:function" of the value and the name of its keyword
+    many: bool = False  #: its option may be repeated; a command gives a list of texts
 
 
 SCENE = Reader("leblanc.scene.scene:scene_of")  # a scene, or the path of its file
@@ -38,6 +39,7 @@ class Option:
     """How a parameter is typed where that is not --its-name."""
 
     names: tuple[str, ...] = ()  #: as typer takes them: "--from", "/--no-check"
+    argument: bool = False  #: by its place, without a name
     same: bool = False  #: the answer does not depend on it
 
 

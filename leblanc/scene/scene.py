@@ -266,6 +266,11 @@ class Scene(Part):
                 yield Conflict(("assumed", number), f'{text}"rotor.mass" or "chambers.0.height"')
 
     @cached_property
+    def file(self) -> str:
+        """Where it was read from; empty where it was made, or changed, in Python."""
+        return ""
+
+    @cached_property
     def fills(self) -> tuple[Fill, ...]:
         """The chambers with their liquids, as the solvers take them."""
         return tuple(chamber.fill() for chamber in self.liquids)
@@ -282,7 +287,7 @@ class Scene(Part):
 
     @property
     def kind(self) -> str:
-        """Kind of machine, by which a question finds who answers: "balls" with races, else that of the rotor."""
+        """Kind of machine, by which a question finds who answers: "balls" with races, else the rotor's."""
         return "balls" if self.balls else self.rotor.kind
 
     def without_balls(self) -> Scene:
@@ -441,15 +446,17 @@ def fault_in(path: str | PathLike[str], error: InputError) -> SceneError | None:
     return SceneError([SceneFault(str(path), error.field, shown(given), allowed, line)])
 
 
-def scene_from_table(table: Mapping[str, Any], file: str = "scene") -> Scene:
-    """Scene from the content of a TOML file, named `file` in the faults of the `SceneError`."""
+def scene_from_table(table: Mapping[str, Any], file: str = "") -> Scene:
+    """Scene from the content of a TOML file, which is named in the faults of the `SceneError`."""
     if "vary" in table and "rotor" not in table:
         text = "a scene; this is a study of many scenes, which `leblanc sweep` answers"
-        raise SceneError([SceneFault(file, "", None, text)])
+        raise SceneError([SceneFault(file or "scene", "", None, text)])
     try:
-        return Scene.model_validate(table)
+        scene = Scene.model_validate(table)
     except ValidationError as error:
-        raise SceneError(faults_of(error, file, Scene)) from error
+        raise SceneError(faults_of(error, file or "scene", Scene)) from error
+    vars(scene)["file"] = file
+    return scene
 
 
 def jeffcott(scene: Scene) -> Jeffcott:

@@ -14,13 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import chdtrc
 
-from leblanc.results.fit import FitResult
 from leblanc.scene.scene import Scene, scene_from_table
 from leblanc.scene.schema.load import SceneError
-from leblanc.studies.fit import fit_scene
-from leblanc.studies.fitting.measured import Measurement
-from leblanc.studies.fitting.problem import Problem, answer
-from leblanc.studies.fitting.search import descend
+from leblanc.studies.fit.answer import FitAnswer
+from leblanc.studies.fit.measured import Measurement
+from leblanc.studies.fit.problem import Problem, answer
+from leblanc.studies.fit.search import descend
+from leblanc.studies.fit.study import fit_scene
 from meshes.arrays import Array
 from meshes.errors import InputError
 
@@ -56,7 +56,7 @@ class Fitted:
     """One fit beside the truth."""
 
     truth: Array  #: SI, shape (p,)
-    result: FitResult
+    result: FitAnswer
     noise: float  #: of the readings, relative
     best: Array  #: where least squares from the truth ends, weighted by the noise as drawn, SI, shape (p,)
     rise: float  #: of that sum of squares from there to the truth, chi squared of p
@@ -178,7 +178,7 @@ def _from_truth(scene: Scene, table: Measurement, paths: tuple[str, ...], size: 
     return problem.values(valley.x), float(np.sum(np.square(residual(np.zeros(truth.size))))) - valley.cost
 
 
-def dry(random: np.random.Generator, kind: str, share: float = 0.03) -> FitResult:
+def dry(random: np.random.Generator, kind: str, share: float = 0.03) -> FitAnswer:
     """A dry planar machine with noise of one kind, stated, or estimated from either kind."""
     scene = scene_from_table(DRY)
     speed = scene.speed_array()

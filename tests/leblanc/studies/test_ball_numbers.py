@@ -15,9 +15,9 @@ from leblanc.results.races.numbers import BallExplanation
 from leblanc.results.races.states import BallsResult
 from leblanc.scene.scene import Scene, dry_rotor
 from leblanc.studies.batch import answer_scenes
-from leblanc.studies.fit import fit_scene
-from leblanc.studies.fitting.measured import Measurement
-from leblanc.studies.fitting.problem import answer as _answer
+from leblanc.studies.fit.measured import Measurement
+from leblanc.studies.fit.problem import answer as _answer
+from leblanc.studies.fit.study import fit_scene
 from leblanc.studies.sweep.block import outputs_of, scene_maker, values_of
 from leblanc.text.races.numbers import facts
 from meshes.errors import InputError

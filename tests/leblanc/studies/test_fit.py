@@ -12,14 +12,15 @@ import pytest
 
 import leblanc as lb
 from leblanc.cli import main
-from leblanc.results.fit import FitCode, Noise
 from leblanc.scene.scene import scene_from_table
-from leblanc.studies.fit import fit_scene
-from leblanc.studies.fitting.errors import averaged, curvature
-from leblanc.studies.fitting.measured import Measurement, read_measured
-from leblanc.studies.fitting.noise import Judged, alike_by_chance, refine
-from leblanc.studies.fitting.problem import Problem
-from leblanc.studies.fitting.problem import answer as _answer
+from leblanc.studies.fit.answer import Noise
+from leblanc.studies.fit.errors import averaged, curvature
+from leblanc.studies.fit.measured import Measurement, read_measured
+from leblanc.studies.fit.noise import Judged, alike_by_chance, refine
+from leblanc.studies.fit.notes import FitCode
+from leblanc.studies.fit.problem import Problem
+from leblanc.studies.fit.problem import answer as _answer
+from leblanc.studies.fit.study import fit_scene
 from meshes.arrays import Array
 from meshes.errors import InputError
 from tests.leblanc.studies.random_fits import DRY, covered, drawn
@@ -42,7 +43,7 @@ def one_valley(monkeypatch: pytest.MonkeyPatch) -> None:
     """Two searches, three at most: for tests that are of no search, of data with one valley."""
     less = {"_UNSEEN": math.inf, "_MOST": (3, 0), "_TRIED": 4, "_VALLEYS": 1}
     for name, value in less.items():
-        monkeypatch.setattr(f"leblanc.studies.fitting.search.{name}", value)
+        monkeypatch.setattr(f"leblanc.studies.fit.search.{name}", value)
 
 
 def over_speed(amplitude: Array, speed: Array = SPEED) -> Measurement:
@@ -57,8 +58,8 @@ def measured(noise: float, seed: int, scale: float = 1.0) -> Measurement:
 
 
 @pytest.mark.usefixtures("one_valley")
-@kills("leblanc.studies.fitting.noise:_noise", "np.sqrt(mean / share)", "np.sqrt(9.0 * mean / share)")
-@kills("leblanc.studies.fit:_result", "value, problem.spans)", "9.0 * value, problem.spans)")
+@kills("leblanc.studies.fit.noise:_noise", "np.sqrt(mean / share)", "np.sqrt(9.0 * mean / share)")
+@kills("leblanc.studies.fit.study:_answer", "value, problem.spans)", "9.0 * value, problem.spans)")
 def test_truth_within_its_errors() -> None:
     """Errors are as large as they are said to be: over five sets of noise their squares average to one."""
     squares = []
@@ -83,7 +84,7 @@ def test_without_noise() -> None:
 
 
 @pytest.mark.usefixtures("one_valley")
-@kills("leblanc.studies.fitting.noise:_noise", "is None else before", "is None or 1 else before")
+@kills("leblanc.studies.fit.noise:_noise", "is None else before", "is None or 1 else before")
 def test_a_free_scale() -> None:
     """A sensor in its own units: the same values, and its scale."""
     plain = fit_scene(GUESS, measured(0.02, 1), UNKNOWN, starts=1)
@@ -123,8 +124,8 @@ def test_what_the_data_cannot_tell() -> None:
 
 
 @pytest.mark.usefixtures("one_valley")
-@kills("leblanc.results.fit:quantile", "stdtrit(freedom, _UPPER)", "stdtrit(99, _UPPER)")
-@kills("leblanc.results.fit:FitResult.interval", "self.value / factor", "self.value - factor")
+@kills("leblanc.studies.fit.answer:quantile", "stdtrit(freedom, _UPPER)", "stdtrit(99, _UPPER)")
+@kills("leblanc.studies.fit.answer:FitAnswer.interval", "self.value / factor", "self.value - factor")
 def test_interval() -> None:
     """Student's t of the table, 2.306 for eight degrees of freedom, about the logarithm; wider for fewer."""
     speed = np.linspace(12.0, 50.0, 10)
@@ -179,7 +180,7 @@ def test_liquid_added() -> None:
 
 
 @pytest.mark.usefixtures("one_valley")
-@kills("leblanc.studies.fitting.problem:_factor", "own @ value", "own @ own")
+@kills("leblanc.studies.fit.problem:_factor", "own @ value", "own @ own")
 def test_a_factor_for_each_quantity() -> None:
     """Two sensors in two units: both factors are found, and angles have none."""
     names, speed = ["amplitude", "liquid_offset", "liquid_angle"], np.linspace(60.0, 180.0, 8)
@@ -193,7 +194,7 @@ def test_a_factor_for_each_quantity() -> None:
     assert note.data["scale"] == pytest.approx({"amplitude": 3.0, "liquid_offset": 50.0}, rel=1e-5)
 
 
-@kills("leblanc.studies.fitting.errors:curvature", "np.square(inverse)", "inverse")
+@kills("leblanc.studies.fit.errors:curvature", "np.square(inverse)", "inverse")
 def test_uncertainty_of_a_straight_line() -> None:
     """The textbook's covariance, and nan for what no row of the Jacobian knows."""
     x = np.linspace(0.0, 1.0, 20)
@@ -210,8 +211,8 @@ def test_uncertainty_of_a_straight_line() -> None:
     np.testing.assert_allclose(np.abs(blind.flat[0]), [0.0, 1.0], atol=1e-12)
 
 
-@kills("leblanc.studies.fitting.errors:averaged", "0.5 * min", "2.0 * min")
-@kills("leblanc.studies.fitting.errors:averaged", " + np.square(other.x - best.x)", "")
+@kills("leblanc.studies.fit.errors:averaged", "0.5 * min", "2.0 * min")
+@kills("leblanc.studies.fit.errors:averaged", " + np.square(other.x - best.x)", "")
 def test_two_kinds_of_noise() -> None:
     """Chances of 3 to 1: the variance of a mixture of two normal distributions about the likelier mean."""
     noise, none = Noise("absolute", False, (), ()), (np.ones(1),)
@@ -230,7 +231,7 @@ def test_two_kinds_of_noise() -> None:
     assert averaged(curvature(np.eye(1)), best, curvature(np.eye(1) / 0.2), other).std[0] == 1.0
 
 
-@kills("leblanc.studies.fitting.noise:unlikely", " + float(told)", "")
+@kills("leblanc.studies.fit.noise:unlikely", " + float(told)", "")
 def test_likelihood_of_a_kind() -> None:
     """That of the readings whatever the value: its integral, the value known to a factor of e before."""
     paths, table = ("rotor.stiffness",), measured(0.02, 3)
@@ -270,10 +271,12 @@ def _loaded(position: float, angle: float) -> lb.Scene:
 
 
 @pytest.mark.usefixtures("one_valley")
-@kills("leblanc.studies.fitting.problem:Problem.values", "np.isnan(spans)", "spans == spans")
-@kills("leblanc.studies.fit:_result", "value, problem.spans)", "value, value)")
+@kills("leblanc.studies.fit.problem:Problem.values", "np.isnan(spans)", "spans == spans")
+@kills("leblanc.studies.fit.study:_answer", "value, problem.spans)", "value, value)")
 @kills(
-    "leblanc.results.fit:FitResult.interval", "self.value - wide, self.value + wide", "ends[:, 0], ends[:, 1]"
+    "leblanc.studies.fit.answer:FitAnswer.interval",
+    "self.value - wide, self.value + wide",
+    "ends[:, 0], ends[:, 1]",
 )
 def test_where_a_load_lies() -> None:
     """Position and angle, from a guess of 0 and of the other sign; errors of linear least squares."""
@@ -344,7 +347,7 @@ def test_measured_angles_of_a_rig() -> None:
 
 
 @pytest.mark.usefixtures("one_valley")
-@kills("leblanc.studies.fit:_is_near", "[told]", "")
+@kills("leblanc.studies.fit.study:_is_near", "[told]", "")
 def test_an_unknown_that_nothing_tells() -> None:
     """An empty chamber's radius: not told; searches that differ in it alone are no other answer."""
     chamber = {"radius": 0.1, "height": 0.05, "volume": 0.0, "liquid": "water"}
@@ -370,9 +373,9 @@ def test_too_few_values_to_judge() -> None:
     np.testing.assert_allclose(exact.value, TRUTH, rtol=1e-5)
 
 
-@kills("leblanc.studies.fitting.noise:alike_by_chance", "trace / freedom,", "-trace / freedom,")
-@kills("leblanc.studies.fitting.noise:alike_by_chance", "both - trace**2", "both + trace**2")
-@kills("leblanc.studies.fitting.noise:alike_by_chance", "- 2.0 * float", "- float")
+@kills("leblanc.studies.fit.noise:alike_by_chance", "trace / freedom,", "-trace / freedom,")
+@kills("leblanc.studies.fit.noise:alike_by_chance", "both - trace**2", "both + trace**2")
+@kills("leblanc.studies.fit.noise:alike_by_chance", "- 2.0 * float", "- float")
 def test_how_alike_neighbours_are_by_chance() -> None:
     """Mean and variance of the neighbours' correlation: traces of the written-out matrices, and trials."""
     random = np.random.default_rng(0)
@@ -420,8 +423,8 @@ def test_rows_that_repeat_tell_their_noise() -> None:
 
 
 @pytest.mark.usefixtures("one_valley")
-@kills("leblanc.studies.fitting.noise:unexplained", "rms > POOR and", "0 and")
-@kills("leblanc.studies.fitting.noise:unexplained", "and _replicates(problem) <= _FEW", "")
+@kills("leblanc.studies.fit.noise:unexplained", "rms > POOR and", "0 and")
+@kills("leblanc.studies.fit.noise:unexplained", "and _replicates(problem) <= _FEW", "")
 def test_noise_of_a_half() -> None:
     """A resonance in the wrong place passes for it: it must be stated, or shown by rows that repeat."""
     speed = np.linspace(12.0, 55.0, 7)
@@ -463,7 +466,7 @@ def test_a_plateau_has_one_end() -> None:
     assert math.isnan(found.std[0]) and found.accepted
 
 
-@kills("leblanc.studies.fitting.search:search", "enough and _again(problem, found) > 1", "True or enough")
+@kills("leblanc.studies.fit.search:search", "enough and _again(problem, found) > 1", "True or enough")
 def test_a_guess_in_the_wrong_valley() -> None:
     """Two modes, guesses three times off: a first search ends at 4 % where the truth leaves half of that."""
     speed, random = np.linspace(43.0, 143.0, 10), np.random.default_rng(0)
@@ -482,7 +485,7 @@ def test_a_guess_in_the_wrong_valley() -> None:
     assert np.all(found.std < 0.05 * found.value)
 
 
-@kills("leblanc.studies.fitting.problem:Problem.with_values", "for path in group", "for path in group[:1]")
+@kills("leblanc.studies.fit.problem:Problem.with_values", "for path in group", "for path in group[:1]")
 def test_tied_supports() -> None:
     """Two springs that are alike are one unknown."""
     alike = ("rotor.supports.0.stiffness", "rotor.supports.1.stiffness")

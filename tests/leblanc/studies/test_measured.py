@@ -10,9 +10,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from leblanc.results.fit import FitCode
-from leblanc.studies.fitting.measured import named_columns, read_measured
-from leblanc.studies.fitting.noise import parse_noise
+from leblanc.studies.fit.measured import named_columns, read_measured
+from leblanc.studies.fit.noise import parse_noise
+from leblanc.studies.fit.notes import FitCode
 from meshes.errors import InputError
 from tests.mutants import kills
 
@@ -65,8 +65,8 @@ def test_tables_as_loggers_write_them(tmp_path: Path, text: str | bytes) -> None
     np.testing.assert_allclose(values, [1.5e-3, 2.25e-3])
 
 
-@kills("leblanc.studies.fitting.measured:_column", "size * factor, order", "size / factor, order")
-@kills("leblanc.studies.fitting.measured:read_measured", "at**each.order if", "at**-each.order if")
+@kills("leblanc.studies.fit.measured:_column", "size * factor, order", "size / factor, order")
+@kills("leblanc.studies.fit.measured:read_measured", "at**each.order if", "at**-each.order if")
 def test_motions_become_displacements() -> None:
     """One motion of 0.2 mm at 50 and 100 rad/s, as a displacement, velocity, acceleration and by its rms."""
     import tempfile

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from leblanc.core.notes import one_line
-from leblanc.core.units import MM, MM_PEAK, RPM, Unit
-from leblanc.figures.drawing.page import Caption, Figure, FigureFiles, Frame, lay_out, number, save, style
-from leblanc.results.fit import FitResult, Measured
+from leblanc.core.units import MM, MM_PEAK, RPM
+from leblanc.figures.drawing.page import Caption, Figure, Frame, lay_out, number, style
+from leblanc.studies.fit.answer import FitAnswer, Measured
 from meshes.arrays import Array
 
 Axes = Any  # matplotlib's, which no module that only draws imports
@@ -21,25 +20,25 @@ _OVER = {"speed": (RPM, "Speed (rpm)"), "time": (1.0, "Time (s)"), "added": (1e6
 _HEIGHTS = 2.2, 0.9  # inches: the quantity, what is left of it
 
 
-def fit_figure(result: FitResult) -> Figure:
+def fit_figure(answer: FitAnswer) -> Figure:
     """Each measured quantity with the fitted one over speed or time, and below it what is left."""
-    factor, label = _OVER[result.over]
+    factor, label = _OVER[answer.over]
     with style():
         figure = Figure()
         panels: list[list[Axes]] = []
-        for k, part in enumerate(result.measured):
+        for k, part in enumerate(answer.measured):
             panels += [[figure.add_axes((0, 0, 1, 1), label=f"{k}{row}")] for row in "ab"]
-            curve = None if result.curve is None else (result.curve.at * factor, result.curve.values[k])
-            _draw(panels[-2][0], panels[-1][0], result.at * factor, part, curve, labelled=k == 0)
+            curve = None if answer.curve is None else (answer.curve.at * factor, answer.curve.values[k])
+            _draw(panels[-2][0], panels[-1][0], answer.at * factor, part, curve, labelled=k == 0)
         for (axes,) in panels:
             axes.xaxis.set_major_formatter(number)
             axes.yaxis.set_major_formatter(number)
             axes.tick_params(labelbottom=axes is panels[-1][0])
         panels[-1][0].set_xlabel(label)
-        lay_out(figure, panels, list(_HEIGHTS) * len(result.measured), FRAME, _caption(result))
+        lay_out(figure, panels, list(_HEIGHTS) * len(answer.measured), FRAME, _caption(answer))
         figure.alt = (
             "Measured points and the fitted line, with what is left between them below; "
-            f"{100.0 * result.residual_rms:.2g} % of the measured size."
+            f"{100.0 * answer.residual_rms:.2g} % of the measured size."
         )
     return figure
 
@@ -73,24 +72,19 @@ def _draw(
     below.set_ylabel(f"left ({unit})")
 
 
-def _caption(result: FitResult) -> Caption:
-    found = "; ".join(_found(result, k) for k in range(len(result.unknown)))
-    over = "liquid added" if result.over == "added" else result.over
+def _caption(answer: FitAnswer) -> Caption:
+    found = "; ".join(_found(answer, k) for k in range(len(answer.unknown)))
+    over = "liquid added" if answer.over == "added" else answer.over
     return Caption(
         f"Measured and fitted over {over}, and what is left between them.",
-        f"Scene: {one_line(result.name)}. Found, with standard errors: {found}. Left: "
-        f"{100.0 * result.residual_rms:.2g} % of the measured size.",
+        f"Scene: {one_line(answer.name)}. Found, with standard errors: {found}. Left: "
+        f"{100.0 * answer.residual_rms:.2g} % of the measured size.",
     )
 
 
-def write_figures(result: FitResult, directory: Path) -> FigureFiles:
-    """Draw the figure of a fit."""
-    return save(fit_figure(result), directory, "fit", "Measured and fitted")
-
-
-def _found(result: FitResult, k: int) -> str:
+def _found(answer: FitAnswer, k: int) -> str:
     """One value with its standard error, in the unit of the scene's file."""
-    unit = result.units[k] if result.units else Unit("SI", 1.0)
-    std = float(result.std[k]) * unit.count
+    unit = answer.shown_in(k)
+    std = float(answer.std[k]) * unit.count
     error = f" ± {std:.2g}" if np.isfinite(std) else ""
-    return f"{result.unknown[k]} = {unit.number(float(result.value[k]))}{error} {unit.name}".rstrip()
+    return f"{answer.unknown[k]} = {unit.number(float(answer.value[k]))}{error} {unit.name}".rstrip()

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from leblanc.studies.fitting.problem import LIMIT, NO_ANSWER, Problem, Residual
+from leblanc.core.progress import update
+from leblanc.studies.fit.problem import LIMIT, NO_ANSWER, Problem, Residual
 from meshes.arrays import Array, Flags
 
 # Of the logarithms: how far off the other starts are, those that are looked at nearby and further away.
@@ -81,7 +82,6 @@ def search(
     starts: int,
     seed: int,
     explained: Callable[[Array], bool],
-    progress: Callable[[float], None] | None = None,
 ) -> Searched:
     """Ends of searches until the best has been found again and hardly any are unseen [theory: fit, eq. 6].
 
@@ -96,8 +96,7 @@ def search(
     for begin in begins[:most]:
         found.append(descend(problem, plain, begin))
         found.sort(key=lambda valley: valley.cost)
-        if progress is not None:
-            progress(len(found) / most)
+        update(len(found), most, "search")
         # The lowest places of a scan are followed one and all: it has seen what lies between them.
         enough = not alone and len(found) >= starts and _unseen(problem, found) <= _UNSEEN
         if enough and _again(problem, found) > 1 and explained(found[0].x):

@@ -10,10 +10,11 @@ import numpy as np
 
 from leblanc.core import units
 from leblanc.core.notes import Note
-from leblanc.results.fit import POOR, Noise, few_note, poor_note
-from leblanc.studies.fitting.measured import ANGLES, SIZES
-from leblanc.studies.fitting.problem import Problem, is_turn, model_error
-from leblanc.studies.fitting.search import descend
+from leblanc.studies.fit.answer import Noise
+from leblanc.studies.fit.measured import ANGLES, SIZES
+from leblanc.studies.fit.notes import POOR, few_note, poor_note
+from leblanc.studies.fit.problem import Problem, is_turn, model_error
+from leblanc.studies.fit.search import descend
 from meshes.arrays import Array
 from meshes.errors import InputError
 

@@ -2,34 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from os import PathLike
+from collections.abc import Mapping, Sequence
+from pathlib import Path
 
 import numpy as np
 
 from leblanc.core import units
 from leblanc.core.notes import Note
-from leblanc.results.fit import (
-    LARGE,
-    FitCode,
-    FitResult,
-    FittedCurve,
-    Measured,
-    fit_notes,
-    flat_note,
-    large_note,
-    lopsided_note,
-    plateau_note,
-    quantile,
-    repeated_note,
-)
-from leblanc.scene.scene import Scene, require_no_balls
+from leblanc.scene.scene import Scene, dry_rotor, require_no_balls
 from leblanc.scene.schema.load import given_at
 from leblanc.scene.schema.paths import rule_at
 from leblanc.scene.schema.rules import Refused
-from leblanc.studies.fitting.errors import Curvature, Profiles, averaged, curvature, profiles
-from leblanc.studies.fitting.measured import ANGLES, Measurement
-from leblanc.studies.fitting.noise import (
+from leblanc.studies.fit.answer import FitAnswer, FittedCurve, Measured, quantile
+from leblanc.studies.fit.errors import Curvature, Profiles, averaged, curvature, profiles
+from leblanc.studies.fit.measured import ANGLES, Measurement, read_measured
+from leblanc.studies.fit.noise import (
     ESTIMATE,
     Judged,
     here,
@@ -39,7 +26,17 @@ from leblanc.studies.fitting.noise import (
     relative_rms,
     unexplained,
 )
-from leblanc.studies.fitting.problem import (
+from leblanc.studies.fit.notes import (
+    LARGE,
+    FitCode,
+    fit_notes,
+    flat_note,
+    large_note,
+    lopsided_note,
+    plateau_note,
+    repeated_note,
+)
+from leblanc.studies.fit.problem import (
     LIMIT,
     Problem,
     answer,
@@ -48,7 +45,7 @@ from leblanc.studies.fitting.problem import (
     require_scale,
     ties_of,
 )
-from leblanc.studies.fitting.search import Searched, Valley, descend, floor, search
+from leblanc.studies.fit.search import Searched, Valley, descend, floor, search
 from leblanc.studies.models.validity import require_supported
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
@@ -58,9 +55,30 @@ _CANDIDATES = 3  # ends of searches that are compared by their likelihood
 _ROUNDING = 1e-9  # of the size: less left is nothing but rounding
 _ROUNDS = 4  # times that a profile may find better values
 _JOINTLY = 0.99  # of noise: less far from the best values by all unknowns at once
+_MOST_STARTS = 1000
 _POINTS = 400  # of the fitted curve
 _LOPSIDED = 4.0  # one arm of an interval over the other
 _TOLD = 0.2  # share of an unknown in a direction that the data do not tell
+
+
+def answer_fit(
+    scene: Scene,
+    measured: Path,
+    unknown: Sequence[str],
+    starts: int,
+    seed: int,
+    scale: str,
+    noise: str,
+    column: Mapping[str, str],
+) -> FitAnswer:
+    """What `fit` answers of a table of measured values."""
+    if not 1 <= starts <= _MOST_STARTS:
+        raise InputError("starts", starts, f"from 1 to {_MOST_STARTS}")
+    if seed < 0:
+        raise InputError("seed", seed, "a whole number, 0 or above")
+    free = require_scale(scale) != "given"
+    table = read_measured(measured, dry_rotor(scene).system().coordinates, free, column)
+    return fit_scene(scene, table, unknown, starts, seed, scale, noise)
 
 
 def fit_scene(
@@ -70,15 +88,13 @@ def fit_scene(
     starts: int = 2,
     seed: int = 0,
     scale: str = "given",
-    progress: Callable[[float], None] | None = None,
     noise: str = ESTIMATE,
-    file: str | PathLike[str] | None = None,
-) -> FitResult:
+) -> FitAnswer:
     """Values of a scene that bring its answer closest to what was measured [theory: fit, eq. 1-13].
 
     The scene's values are the first guess; "A=B" ties B to A. After at least `starts` searches more follow
     until the best values have been found twice and noise may explain what they leave. Scale "free" finds one
-    factor for all measured lengths, "each" one for every quantity; values are shown in the units of `file`.
+    factor for all measured lengths, "each" one for every quantity.
     """
     if measurement.over != "time":
         require_no_balls(scene, f"a fit over {measurement.over}; with balls it takes a run-up over time")
@@ -97,12 +113,12 @@ def fit_scene(
             unexplained(problem, here(problem, x, stated, k)) is None for k in kinds_of(problem, stated)
         )
 
-    searched = search(problem, max(starts, 1), seed, explained, progress)
+    searched = search(problem, starts, seed, explained)
     best, other = _likeliest(problem, searched, stated)
     reason = unexplained(problem, best)
     bent, profile, best = _errors(problem, best, other, stated, reason is None)
     reason = unexplained(problem, best)
-    return _result(problem, searched, best, bent, profile, reason, file)
+    return _answer(problem, searched, best, bent, profile, reason)
 
 
 def _likeliest(
@@ -182,15 +198,14 @@ def _is_near(x: Array, places: Sequence[Array], told: Flags) -> bool:
     return any(np.abs(x - place)[told].max(initial=0.0) <= _ALIKE for place in places)
 
 
-def _result(
+def _answer(
     problem: Problem,
     searched: Searched,
     best: Judged,
     bent: Curvature,
     profile: Profiles,
     reason: Note | None,
-    file: str | PathLike[str] | None,
-) -> FitResult:
+) -> FitAnswer:
     """What was found, with its uncertainty and notes."""
     measurement, scene, paths = problem.measurement, problem.scene, [group[0] for group in problem.unknown]
     raw = problem.answer(best.x)
@@ -233,7 +248,7 @@ def _result(
         if problem.scale != "given" and name not in ANGLES:
             own, unit = factor * own, ""
         parts.append(Measured(name, unit, measured, own))
-    return FitResult(
+    return FitAnswer(
         name=scene.name,
         source=scene.source,
         assumed=scene.assumed,
@@ -258,7 +273,7 @@ def _result(
         profile=ends if accepted else None,
         tied=tuple(group[1:] for group in problem.unknown),
         curve=_curve(problem, best.x, scales),
-        units=_units(scene, paths, file),
+        units=_units(scene, paths),
     )
 
 
@@ -338,7 +353,7 @@ def _curve(problem: Problem, x: Array, scales: Sequence[float]) -> FittedCurve |
     return FittedCurve(at, tuple(own * s for own, s in zip(found, scales, strict=True)))
 
 
-def _units(scene: Scene, paths: Sequence[str], file: str | PathLike[str] | None) -> tuple[units.Unit, ...]:
+def _units(scene: Scene, paths: Sequence[str]) -> tuple[units.Unit, ...]:
     """Units in which the scene's file has its values, SI units without a file."""
     found = []
     for path in paths:
@@ -346,6 +361,6 @@ def _units(scene: Scene, paths: Sequence[str], file: str | PathLike[str] | None)
             dimension = getattr(rule_at(Scene, scene.table(), path), "dimension", units.NUMBER)
         except Refused:  # of a run-up or programme, which no sweep varies
             dimension = units.NUMBER
-        stands, given, _ = (False, None, None) if file is None else given_at(file, path)
+        stands, given, _ = given_at(scene.file, path) if scene.file else (False, None, None)
         found.append(units.unit_typed(given if stands else None, dimension))
     return tuple(found)

@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from leblanc.studies.fitting.noise import Judged
-from leblanc.studies.fitting.problem import LIMIT, Problem, Residual
-from leblanc.studies.fitting.search import descend
+from leblanc.studies.fit.noise import Judged
+from leblanc.studies.fit.problem import LIMIT, Problem, Residual
+from leblanc.studies.fit.search import descend
 from meshes.arrays import Array, Flags
 
 _NULL = 1e-7  # of the strongest direction: a weaker one changes nothing

@@ -9,13 +9,14 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
+from types import MappingProxyType
 
 import numpy as np
 
 from leblanc.core import units
 from leblanc.core.notes import Note
 from leblanc.core.units import Dimension
-from leblanc.results.fit import FitCode
+from leblanc.studies.fit.notes import FitCode
 from meshes.arrays import Array
 from meshes.errors import InputError
 
@@ -83,7 +84,7 @@ def read_measured(
     path: str | PathLike[str],
     coordinates: Sequence[str],
     free: bool = False,
-    column: Mapping[str, str] | None = None,
+    column: Mapping[str, str] = MappingProxyType({}),
 ) -> Measurement:
     """Table of measured values: a header of names with units, then numbers; faults name the line.
 
@@ -107,7 +108,7 @@ def read_measured(
         )
     place = f"{path}:{line}"
     known = OVER | QUANTITIES | {c: units.ANGLE if c in TURNS else units.LENGTH for c in coordinates}
-    taken = _columns(head, known, free, column or {}, place)
+    taken = _columns(head, known, free, column, place)
     names = [each.name for each in taken.values()]
     over = [name for name in names if name in OVER]
     if len(over) != 1 or len(names) < 2:
@@ -133,8 +134,12 @@ def read_measured(
     )
 
 
-def named_columns(given: Sequence[str], field: str = "column") -> dict[str, str]:
-    """Headers by quantities, from texts such as "amplitude=Schwingweg [um pp]"."""
+def named_columns(
+    given: Mapping[str, str] | Sequence[str] | None, field: str = "column"
+) -> Mapping[str, str]:
+    """Headers by quantities, from texts such as "amplitude=Schwingweg [um pp]" where they are none yet."""
+    if given is None or isinstance(given, Mapping):
+        return given or {}
     found: dict[str, str] = {}
     for text in given:
         name, sign, header = (part.strip() for part in text.partition("="))

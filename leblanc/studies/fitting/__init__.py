@@ -1,1 +1,0 @@
-"""Steps of a fit: the table that was measured, the scene's answer to it, the search, noise and errors."""
