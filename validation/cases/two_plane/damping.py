@@ -21,9 +21,11 @@ from solvers.rotor.balls.states import balanced_places, quarter_turn
 from solvers.rotor.balls.steps import advance
 from solvers.rotor.balls.two_plane_balance import dynamic_balancing, of_two_planes
 from solvers.rotor.two_plane import TwoPlane
-from validation.case import Case
+from validation.case import Case, Claims
 from validation.cases.two_plane.machine import BALLS, LONG, RACES, SCATTERED, bare_deflection
 from validation.study import launch, write
+
+CLAIMS = Claims("two_plane")
 
 DAMPINGS = (0.5, 5.0, 40.0, 8000.0)  # N s/m, of each support
 SIDES = (0.98, 1.02)  # of the edge, at which motions in time are looked at
@@ -175,15 +177,14 @@ def cases() -> list[Case]:
         away = printed / speed - 1.0
         told = ", ".join(f"{each.seen:+.2g} 1/s at {each.speed:.2f}" for each in sides)
         found.append(
-            Case(
-                name=f"two_plane/damping-{damping:g}",
-                source=_SOURCE,
-                quantity=f"speed from which balls balance a long rotor, supports of {damping:g} N s/m, rad/s",
+            CLAIMS.case(
+                "damping",
+                speed,
+                damping=damping,
                 printed=printed,
-                computed=speed,
                 difference=away,
                 verdict="differs" if not confirmed else "agrees" if abs(away) <= 0.02 else "erratum",
-                note=f"in time a disturbance grows by {told}",
+                told=told,
             )
         )
     return [*found, *_long(kept())]
