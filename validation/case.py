@@ -167,7 +167,7 @@ class Claims:
     """What the sources of a group say, one entry of `data/cases/<group>.toml` a case or family of cases.
 
     An entry has the fields of `Case`, or `tolerance` and `otherwise` as of `compare`. Its verdict is `holds`,
-    by default `agrees`, where a statement agrees, else `otherwise`. Words in braces come with what is computed.
+    by default `agrees`, where a statement agrees, else `otherwise`. Words in braces are computed.
     """
 
     def __init__(self, group: str) -> None:

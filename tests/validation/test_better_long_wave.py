@@ -12,8 +12,8 @@ import pytest
 from fluid.long_wave import layer_log
 from solvers.potential import steady as exact
 from tests.mutants import kills
-from tests.validation.better_long_wave import CELLS, KEPT, marched
 from tests.oracles.better_steady import Model, half_ring, steady
+from tests.validation.better_long_wave import CELLS, KEPT, marched
 
 # What stands for tanh(x)/x in the linear waves of each model.
 SHARES = {
