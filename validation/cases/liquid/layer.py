@@ -208,6 +208,11 @@ def rotor_cases() -> list[Case]:
     ]
 
 
+def all_cases() -> list[Case]:
+    """The layer alone, and with its rotor."""
+    return [*cases(), *rotor_cases()]
+
+
 _FLOW = {"color": "black", "marker": "s", "linestyle": "none", "markerfacecolor": "white", "zorder": 4}
 # Of the four variants of the bore: colour and line.
 _LOOKS: dict[str, tuple[str, str, Any]] = {
