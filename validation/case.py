@@ -174,7 +174,7 @@ class Claims:
         file = resources.files("validation").joinpath("data", "cases", f"{group}.toml")
         self.group, self.entries = group, tomllib.loads(file.read_text(encoding="utf-8"))
 
-    def case(self, entry: str, computed: Value = None, agrees: bool | None = None, **given: Any) -> Case:
+    def case(self, entry: str, computed: Any = None, agrees: Any = None, **given: Any) -> Case:
         """Case of an entry; given: fields that hang on what is computed, and the words of texts."""
         row = {"name": entry, "difference": "in words", "printed": None} | self.entries[entry]
         row = {key: value.format(**given) if isinstance(value, str) else value for key, value in row.items()}
@@ -190,7 +190,7 @@ class Claims:
             return compare(**row)
         holds, otherwise = row.pop("holds", "agrees"), row.pop("otherwise", "differs")
         if agrees is not None:
-            same = agrees if holds != "trend" else shape_verdict(agrees, row.get("effect")) == "trend"
+            same = agrees if holds != "trend" else shape_verdict(bool(agrees), row.get("effect")) == "trend"
             row["verdict"] = holds if same else otherwise
         return Case(**row)
 
