@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 import re
+import tomllib
 from dataclasses import asdict, dataclass
+from importlib import resources
 from typing import Any, Literal, get_args
 
 from meshes.errors import InputError
@@ -159,3 +161,38 @@ def compare(
         otherwise = shape_verdict(True, effect)
     verdict: Verdict = "agrees" if agrees else otherwise
     return Case(name, source, quantity, printed, computed, difference, verdict, note, effect, origin)
+
+
+class Claims:
+    """What the sources of a group say, one entry of `data/cases/<group>.toml` a case or family of cases.
+
+    An entry has the fields of `Case`, or `tolerance` and `otherwise` as of `compare`. Its verdict is `holds`,
+    by default `agrees`, where a statement agrees, else `otherwise`. Words in braces are computed.
+    """
+
+    def __init__(self, group: str) -> None:
+        file = resources.files("validation").joinpath("data", "cases", f"{group}.toml")
+        self.group, self.entries = group, tomllib.loads(file.read_text(encoding="utf-8"))
+
+    def case(self, entry: str, computed: Any = None, agrees: Any = None, **given: Any) -> Case:
+        """Case of an entry; given: fields that hang on what is computed, and the words of texts."""
+        row = {"name": entry, "difference": "in words", "printed": None} | self.entries[entry]
+        row = {key: value.format(**given) if isinstance(value, str) else value for key, value in row.items()}
+        row |= {key: value for key, value in given.items() if key in _FIELDS}
+        if computed is not None:
+            row["computed"] = computed
+        row["name"] = f"{self.group}/{row['name']}"
+        origin = row.get("origin", PRINTED)
+        if not isinstance(origin, Origin):
+            row["origin"] = Origin(*([origin] if isinstance(origin, str) else origin))
+        if "tolerance" in row:
+            del row["difference"]
+            return compare(**row)
+        holds, otherwise = row.pop("holds", "agrees"), row.pop("otherwise", "differs")
+        if agrees is not None:
+            same = agrees if holds != "trend" else shape_verdict(bool(agrees), row.get("effect")) == "trend"
+            row["verdict"] = holds if same else otherwise
+        return Case(**row)
+
+
+_FIELDS = {*Case.__dataclass_fields__, "tolerance", "otherwise"} - {"computed"}

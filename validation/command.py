@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from importlib import import_module
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -11,11 +12,27 @@ if TYPE_CHECKING:
 
     from validation.case import Case
 
-GROUPS = (
-    *("errata", "optimal_volume", "vector_model", "horizontal_rig", "vertical_rig", "layer", "whirl", "tub"),
-    *("two_plane", "exciter", "runup", "fill_sweep", "baffles", "exact_wave", "claims"),
-    *("blood_pump", "spindle", "turning"),
-)
+# Group, module below `validation.cases` and the function there, where it is not `cases`.
+GROUPS = {
+    "errata": "errata",
+    "optimal_volume": "liquid.optimal_volume",
+    "vector_model": "rotors.vector_model",
+    "horizontal_rig": "rotors.rigs:horizontal_cases",
+    "vertical_rig": "rotors.rigs:vertical_cases",
+    "layer": "liquid.layer:all_cases",
+    "whirl": "rotors.whirl",
+    "tub": "rotors.tub",
+    "two_plane": "two_plane",
+    "exciter": "exciter",
+    "runup": "rotors.runup",
+    "fill_sweep": "fill_sweep",
+    "baffles": "baffles",
+    "exact_wave": "liquid.exact_wave",
+    "claims": "claims",
+    "blood_pump": "rotors.blood_pump",
+    "spindle": "rotors.spindle",
+    "turning": "rotors.turning",
+}
 
 
 def validate(
@@ -57,40 +74,13 @@ def all_cases(
 
     if group is not None and group not in GROUPS:
         raise InputError("case", group, "one of " + ", ".join(GROUPS))
-    chosen = GROUPS if group is None else (group,)
+    chosen = tuple(GROUPS) if group is None else (group,)
     found: list[Case] = []
     for done, name in enumerate(chosen):
         progress(done, len(chosen), name.replace("_", " "))
-        found += _group(name)()
+        module, _, function = GROUPS[name].partition(":")
+        found += getattr(import_module(f"validation.cases.{module}"), function or "cases")()
     return found
-
-
-def _group(name: str) -> Callable[[], list[Case]]:
-    """The function that computes a group."""
-    from validation.cases import baffles, claims, errata, exciter, fill_sweep, two_plane
-    from validation.cases.liquid import exact_wave, layer, optimal_volume
-    from validation.cases.rotors import blood_pump, rigs, runup, spindle, tub, turning, vector_model, whirl
-
-    return {
-        "errata": errata.cases,
-        "optimal_volume": optimal_volume.cases,
-        "vector_model": vector_model.cases,
-        "horizontal_rig": rigs.horizontal_cases,
-        "vertical_rig": rigs.vertical_cases,
-        "layer": lambda: [*layer.cases(), *layer.rotor_cases()],
-        "whirl": whirl.cases,
-        "tub": tub.cases,
-        "two_plane": two_plane.cases,
-        "exciter": exciter.cases,
-        "runup": runup.cases,
-        "fill_sweep": fill_sweep.cases,
-        "baffles": baffles.cases,
-        "exact_wave": exact_wave.cases,
-        "blood_pump": blood_pump.cases,
-        "claims": claims.cases,
-        "spindle": spindle.cases,
-        "turning": turning.cases,
-    }[name]
 
 
 def _shown(value: float | str | None) -> str:

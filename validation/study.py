@@ -127,6 +127,13 @@ def read(file: Path, kind: type[_Kept]) -> _Kept:
     return found
 
 
+def stored(
+    file: Path, kind: type[_Kept], **layout: Any
+) -> tuple[Callable[[], _Kept], Callable[[_Kept], None]]:
+    """What reads the records of a file, and what writes new ones; layout as of `write`."""
+    return lambda: read(file, kind), lambda found: write(file, found, **layout)
+
+
 def _built(found: Any, kind: Any) -> Any:
     origin, parts = get_origin(kind), get_args(kind)
     if isinstance(kind, type) and is_dataclass(kind):

@@ -12,8 +12,8 @@ import pytest
 from fluid.long_wave import layer_log
 from solvers.potential import steady as exact
 from tests.mutants import kills
-from validation.exact.better_long_wave import CELLS, KEPT, marched
-from validation.exact.better_steady import Model, half_ring, steady
+from tests.oracles.better_steady import Model, half_ring, steady
+from tests.validation.better_long_wave import CELLS, KEPT, marched
 
 # What stands for tanh(x)/x in the linear waves of each model.
 SHARES = {
@@ -32,11 +32,9 @@ def linear_force(layer: float, detuning: float, share: float) -> float:
     return layer * (2.0 - layer) + (1.0 - layer) * amplitude
 
 
-@kills("validation.exact.better_steady:_present", "less * stretch", "stretch")
-@kills("validation.exact.better_steady:residuals", "/ 15.0)[..., 1:-1]", "/ 16.0)[..., 1:-1]")
-@kills(
-    "validation.exact.better_steady:residuals", "gained * inverse - rest - area", "gained * inverse - rest"
-)
+@kills("tests.oracles.better_steady:_present", "less * stretch", "stretch")
+@kills("tests.oracles.better_steady:residuals", "/ 15.0)[..., 1:-1]", "/ 16.0)[..., 1:-1]")
+@kills("tests.oracles.better_steady:residuals", "gained * inverse - rest - area", "gained * inverse - rest")
 def test_small_waves() -> None:
     """The force of a small whirl is that of the model's own dispersion."""
     layer, whirl = 0.25, 1e-6
@@ -48,7 +46,7 @@ def test_small_waves() -> None:
         assert found.force_ratio == pytest.approx(wanted, rel=1e-7)
 
 
-@kills("validation.exact.better_steady:residuals", "+ area - pull", "+ area - 1.01 * pull")
+@kills("tests.oracles.better_steady:residuals", "+ area - pull", "+ area - 1.01 * pull")
 def test_circles() -> None:
     """Under a synchronous whirl all have the circle about the rotation axis, and a force ratio of 1."""
     for model in Model:
@@ -59,8 +57,8 @@ def test_circles() -> None:
         assert np.ptp(np.abs(radius * np.exp(1j * angle) + 0.15)) < 1e-12
 
 
-@kills("validation.exact.better_steady:residuals", "log**4 * curved**2 / 18.0", "log**4 * curved**2 / 9.0")
-@kills("validation.exact.better_steady:residuals", "share * (bend - 0.5 * share)", "share * (bend - share)")
+@kills("tests.oracles.better_steady:residuals", "log**4 * curved**2 / 18.0", "log**4 * curved**2 / 9.0")
+@kills("tests.oracles.better_steady:residuals", "share * (bend - 0.5 * share)", "share * (bend - share)")
 @pytest.mark.parametrize(
     ("layer", "ratio", "whirl", "first", "second"),
     # Measured 2.5e-5 and 4e-9, 2.4e-3 and 1.3e-5 of the force.

@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from validation.study import read, write
+from validation.study import stored
 
 KEPT = Path(__file__).parent / "results.json"
 
@@ -65,11 +65,4 @@ class Kept:
     beside: tuple[Beside, ...]
 
 
-def kept() -> Kept:
-    """What was computed last."""
-    return read(KEPT, Kept)
-
-
-def keep(results: Kept) -> None:
-    """Write what was computed."""
-    write(KEPT, results)
+kept, keep = stored(KEPT, Kept)

@@ -22,7 +22,7 @@ from solvers.potential.histories import whirl_push
 from solvers.potential.in_time import BREAKING, Steps, course
 from solvers.potential.steady import linear_detuning
 from solvers.potential.unsteady import node_angles, seen, still
-from validation.study import read, write
+from validation.study import stored
 
 KEPT = Path(__file__).parent / "crests.json"
 # Layer and whirl over it, nodes at most, and moments, the last of which no number of nodes reaches.
@@ -105,16 +105,9 @@ def followed(most: int, times: Sequence[float] = TIMES, breaking: float = BREAKI
     return found
 
 
-def kept() -> tuple[Crest, ...]:
-    """What was computed last, for each number of nodes its moments."""
-    return read(KEPT, tuple[Crest, ...])
+kept, keep = stored(KEPT, tuple[Crest, ...], compact=True)
 
 
-def keep(found: Sequence[Crest]) -> None:
-    """Write the moments of each number of nodes."""
-    write(KEPT, found, compact=True)
-
-
-def computed() -> list[Crest]:
+def computed() -> tuple[Crest, ...]:
     """All that is kept, in a minute."""
-    return [row for most in MOST for row in followed(most, breaking=math.inf)]
+    return tuple(row for most in MOST for row in followed(most, breaking=math.inf))

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from meshes.arrays import Array, Flags
-from validation.study import read, write
+from validation.study import stored
 
 KEPT = Path(__file__).parent / "results.json"
 # Models by their names here; one family answers the whirl behind the drum and its twin ahead, which the
@@ -80,11 +80,5 @@ class Measured:
     seconds: float  #: that the measurement took
 
 
-def kept() -> Measured:
-    """What was measured last."""
-    return read(KEPT, Measured)
-
-
-def keep(measured: Measured) -> None:
-    """Write what was measured, nine digits of it: more than any model is right to."""
-    write(KEPT, measured, digits=9, compact=True)
+# Nine digits: more than any model is right to.
+kept, keep = stored(KEPT, Measured, digits=9, compact=True)

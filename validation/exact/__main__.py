@@ -130,14 +130,5 @@ def main(auto: bool = False) -> Iterator[str]:
         yield words(measured.drawn, tolerance, choices(measured.drawn, tolerance))
 
 
-def _tell_choices(measured: Measured) -> int:
-    """The table of what auto takes, at the draws of chance."""
-    print("| tolerance | linear | kdv | potential | long_wave | covered | largest error | no smooth wave |")
-    print("|---|---|---|---|---|---|---|---|")
-    for tolerance in TOLERANCES:
-        print(words(measured.drawn, tolerance, choices(measured.drawn, tolerance)), flush=True)
-    return 0
-
-
 if __name__ == "__main__":
     launch(main)

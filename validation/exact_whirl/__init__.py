@@ -10,7 +10,7 @@ from pathlib import Path
 
 from validation.exact_whirl.in_time import Grown
 from validation.exact_whirl.lagging import Circle
-from validation.study import read, write
+from validation.study import stored
 
 KEPT = Path(__file__).parent / "results.json"
 
@@ -46,11 +46,4 @@ class Kept:
     grown: tuple[Grown, ...]  #: in time, until the wave ends
 
 
-def kept() -> Kept:
-    """What was computed last."""
-    return read(KEPT, Kept)
-
-
-def keep(results: Kept) -> None:
-    """Write what was computed, nine digits of it."""
-    write(KEPT, results, digits=9, compact=True)
+kept, keep = stored(KEPT, Kept, digits=9, compact=True)

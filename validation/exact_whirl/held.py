@@ -16,7 +16,7 @@ from solvers.held.hold import compile_kernels, start
 from solvers.held.state import HoldNumerics
 from solvers.synchronous.response import response
 from solvers.whirl.growth import asynchronous_growth
-from validation.study import launch, read, write
+from validation.study import launch, stored
 
 KEPT = Path(__file__).parent / "held.json"
 # Example, rpm, nodes of the exact wave, cells of the long ones.
@@ -80,17 +80,15 @@ def pair(name: str, rpm: float, nodes: int, cells: int) -> Pair:
     return Pair(name, rpm, held_at(name, rpm, "potential", nodes), held_at(name, rpm, "long_wave", cells))
 
 
-def kept() -> tuple[Pair, ...]:
-    """What was computed last."""
-    return read(KEPT, tuple[Pair, ...])
+kept, keep = stored(KEPT, tuple[Pair, ...])
 
 
 def main() -> Iterator[str]:
     """Compute, keep, print."""
-    pairs = []
+    pairs: tuple[Pair, ...] = ()
     for case in CASES:
-        pairs.append(pair(*case))
-        write(KEPT, pairs)
+        pairs = (*pairs, pair(*case))
+        keep(pairs)
         yield f"{pairs[-1]} {pairs[-1].apart:.2e}"
 
 

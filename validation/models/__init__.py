@@ -9,7 +9,7 @@ import math
 from dataclasses import dataclass
 from pathlib import Path
 
-from validation.study import read, write
+from validation.study import stored
 
 KEPT = Path(__file__).parent / "results.json"
 
@@ -45,14 +45,7 @@ class ModelTable:
     rows: tuple[ModelRow, ...]  #: the models
 
 
-def kept() -> tuple[ModelTable, ...]:
-    """What was measured last."""
-    return read(KEPT, tuple[ModelTable, ...])
-
-
-def keep(tables: tuple[ModelTable, ...]) -> None:
-    """Write what was measured."""
-    write(KEPT, tables)
+kept, keep = stored(KEPT, tuple[ModelTable, ...])
 
 
 def error_words(row: ModelRow, best: float) -> str:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import math
-from typing import Any
+from dataclasses import replace
 
 from leblanc.scene.examples import example
 from validation.case import Case, Origin, compare
 from validation.trade import kept, names
 from validation.trade.cases import Question, questions, refined_to
-from validation.trade.judge import Comparison, Row
+from validation.trade.judge import Comparison
+from validation.trade.results import record_of
 from validation.trade.trade import TradeRecord, error_table
 
 # Errors are made again on two scenes, up to so many cells.
@@ -72,33 +72,4 @@ def _default(name: str, comparison: Comparison) -> Case:
 
 def record(name: str) -> TradeRecord:
     """Kept comparison of a scene as `trade` found it."""
-    content = kept(name)
-    comparisons = tuple(_comparison(question, content["rows"]) for question in content["questions"])
-    words = content["name"], f"kept in validation/trade/{name}.json"
-    return TradeRecord(
-        *words, tuple(content["assumed"]), content["digest"], content["tolerance"], comparisons
-    )
-
-
-def _comparison(question: dict[str, Any], rows: list[dict[str, Any]]) -> Comparison:
-    return Comparison(
-        question=question["question"],
-        about=question["about"],
-        reference=question["reference"],
-        reference_error=_number(question["reference_error"]),
-        order=_number(question["order"]),
-        rows=tuple(_row(row) for row in rows if row["question"] == question["question"]),
-        dominated_by=tuple(question["default_dominated_by"]),
-        overhead=_number(question["default_overhead"]),
-        ripple=_number(question["ripple"]),
-    )
-
-
-def _row(values: dict[str, Any]) -> Row:
-    known = {key: value for key, value in values.items() if key != "time_ratio"}
-    numbers = {key: _number(known[key]) for key in ("error", "peak_error", "estimate", "ripple_error")}
-    return Row(**(known | numbers | {"used": tuple(known["used"])}))
-
-
-def _number(value: float | None) -> float:
-    return math.nan if value is None else value
+    return replace(record_of(kept(name)), source=f"kept in validation/trade/{name}.json")

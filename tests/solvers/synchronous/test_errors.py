@@ -34,7 +34,7 @@ from solvers.synchronous.pairs import pair_machines
 from solvers.synchronous.response import machine_responses, response
 from tests.leblanc.studies.test_runup import history_of
 from tests.mutants import kills
-from validation.extremes.model_error import (
+from tests.extremes.model_error import (
     gravity_sample,
     held_sample,
     linear_sample,

@@ -18,13 +18,14 @@ from meshes.chamber import Chamber
 from solvers.layer.baffles import TORQUE
 from solvers.layer.inside import Inside, inside_of
 from solvers.sloshing.blocked import blocked_share
-from validation.case import COMPUTED_FLOW, Case, Effect, compare, shape_verdict
+from validation.case import Case, Claims, Effect
 from validation.page import Figure, page
 from validation.study import data, launch, shown
 
-_SOURCE = "interFoam, baffles.json"
+CLAIMS = Claims("baffles")
+
 # Lag of a decay, as a share of the spin; loss of a driven run, relative.
-_LAG, _LOSS, _STROKE = 0.03, 0.25, 0.25
+_LAG, _LOSS = 0.03, 0.25
 _COURANT = 0.4
 _KNOWN = "the reference itself is known to 0.005 at first and 15 % of the lag later"
 
@@ -144,15 +145,14 @@ def _decay(name: str, smeared: bool = False) -> Case:
     k = int(np.argmax(np.abs(off)))
     height = 0.0 if run["r_tip"] is None else 1e3 * (run["R"] - run["r_tip"])
     plates = f"{run['N']} baffles of {height:.0f} mm" if height else "no baffles"
-    return Case(
-        name=f"baffles/{name}{'_sink' * smeared}",
-        source=_SOURCE,
-        origin=COMPUTED_FLOW,
+    return CLAIMS.case(
+        "decay",
+        float(lag[k] + off[k]),
+        abs(off[k]) <= _LAG,
+        name=f"{name}{'_sink' * smeared}",
         quantity=f"lag {time[k]:.3g} s after 0.25, where it differs most; {plates}{_SINK * smeared}",
         printed=float(lag[k]),
-        computed=float(lag[k] + off[k]),
         difference=f"{off[k]:+.3f} of the spin",
-        verdict="agrees" if abs(off[k]) <= _LAG else "differs",
         note="agrees within 0.03 of the spin; " + ("without wall friction" if height == 0.0 else _KNOWN),
     )
 
@@ -160,16 +160,13 @@ def _decay(name: str, smeared: bool = False) -> Case:
 def _driven(name: str, smeared: bool = False) -> Case:
     """Loss coefficient of a flow held by a steady spin-up."""
     run = reference(name)
-    return compare(
-        f"baffles/{name}{'_sink' * smeared}",
-        _SOURCE,
-        f"loss coefficient of baffles of {1e3 * (run['R'] - run['r_tip']):.0f} mm at a spin-up of "
-        f"{-run['aDrive']:g} rad/s^2{_SINK * smeared}",
-        run["fits"][0]["zeta_torque"],
+    return CLAIMS.case(
+        "driven",
         loss(name, smeared),
-        tolerance=_LOSS,
-        origin=COMPUTED_FLOW,
-        note="the reference is known to 10 %; its quarters differ by 5 to 20 %",
+        name=f"{name}{'_sink' * smeared}",
+        quantity=f"loss coefficient of baffles of {1e3 * (run['R'] - run['r_tip']):.0f} mm at a spin-up of "
+        f"{-run['aDrive']:g} rad/s^2{_SINK * smeared}",
+        printed=run["fits"][0]["zeta_torque"],
     )
 
 
@@ -178,15 +175,12 @@ def _struck(name: str) -> Case:
     run = reference(name)
     fill = plane_ring(run)
     stroke = -run["start_impulse_on_baffles_Nms_per_m"]
-    return compare(
-        f"baffles/{name}_start",
-        _SOURCE,
-        f"share of the lag that baffles of {1e3 * (run['R'] - run['r_tip']):.0f} mm take when struck",
-        stroke / (run["Omega"] * fill.mass * run["r_mean"] ** 2 * run["lag0"]),
+    return CLAIMS.case(
+        "start",
         blocked_share(fill),
-        tolerance=_STROKE,
-        origin=COMPUTED_FLOW,
-        note="potential flow of the stroke; the bound of 25 % was set after looking",
+        run=name,
+        height=1e3 * (run["R"] - run["r_tip"]),
+        printed=stroke / (run["Omega"] * fill.mass * run["r_mean"] ** 2 * run["lag0"]),
     )
 
 
@@ -200,18 +194,16 @@ def _behind() -> Case:
     held = float(most.torque[most.froude <= SUPERCRITICAL].max())
     asked = abs(run["aDrive"]) * plane_ring(run).mass * run["r_mean"] ** 2
     effect = Effect("growth of the lag", float(lag[-1] - lag[0]), float(mine - lag[0]))
-    return Case(
-        name="baffles/d6s",
-        source=_SOURCE,
-        origin=COMPUTED_FLOW,
+    return CLAIMS.case(
+        "d6s",
+        mine,
+        bool(mine > lag[0]),
         quantity=f"lag after {end:.2g} s of a spin-up of 40 rad/s^2, from {run['lag0']:g}; 6 mm",
         printed=float(lag[-1]),
-        computed=mine,
         difference=f"{mine - lag[-1]:+.3f} of the spin",
-        verdict=shape_verdict(bool(mine > lag[0]), effect),
+        held=held,
+        asked=asked,
         effect=effect,
-        note="left behind in both, but the long waves' lag then stands; the law gives at "
-        f"most {held:.0f} N m per metre, the ramp asks for {asked:.0f}",
     )
 
 
@@ -220,17 +212,7 @@ def _slosh() -> Case:
     run = reference("s6")
     seen = float(run["fits"][4]["zeta_osc_from_energy"])
     law = float(baffle_torque(plane_ring(run), run["Omega"], np.array([1e-3])).loss[0])
-    return Case(
-        name="baffles/s6",
-        source=_SOURCE,
-        origin=COMPUTED_FLOW,
-        quantity="loss coefficient in sloshing without a lag, from the loss of energy; 6 mm",
-        printed=seen,
-        computed=law,
-        difference="not compared: the law is one of steady flow",
-        verdict="agrees" if abs(law / seen - 1.0) <= _LOSS else "differs",
-        note="oscillating flow loses two to four times as much",
-    )
+    return CLAIMS.case("s6", law, abs(law / seen - 1.0) <= _LOSS, printed=seen)
 
 
 # Of each run: what it is, colour and line.

@@ -18,9 +18,11 @@ from leblanc.scene.examples import example
 from leblanc.scene.scene import Scene
 from leblanc.studies.run.study import run_scene
 from leblanc.studies.runup import runup_scene
-from validation.case import Case, Verdict, shape_verdict
+from validation.case import Case, Claims, Verdict, shape_verdict
 from validation.page import Figure, page
 from validation.study import launch, shown
+
+CLAIMS = Claims("claims")
 
 Kind = Literal["concentric", "stacked"]
 
@@ -135,17 +137,15 @@ def _case(kind: Kind, measure: str, meaning: str) -> Case:
         alike = bool(np.all(np.abs(sizes / sizes[0] - 1.0) <= _EVEN))
         outcome = "no effect" if alike else "not throughout" if sizes.min() < sizes[0] else "the opposite"
     added = ", ".join(f"{gain(count, kind).added:.3g}" for count in COUNTS)
-    return Case(
-        name=f"claims/chambers-{kind}-{measure.replace('_', '-')}",
-        source="DR18, below eq. 20",
-        quantity=f"{meaning}, 1 l in 1, 2, 3, 4 {kind} rings",
-        printed="several chambers are the most effective",
-        # No more digits than the cells of a run-up carry.
-        computed=", ".join(f"{size:{'.2f' if measure == 'run_up' else '.4g'}}" for size in sizes),
+    return CLAIMS.case(
+        "chambers",
+        ", ".join(f"{size:{'.2f' if measure == 'run_up' else '.4g'}}" for size in sizes),
+        name=f"chambers-{kind}-{measure.replace('_', '-')}",
+        meaning=meaning,
+        kind=kind,
         difference=outcome,
         verdict=verdict,
-        note="vertical rig; 30 kg, 40 mm, damping ratio 0.01, smooth walls and the ramp are assumed; full "
-        f"mass of the rings over the rotor's {added}",
+        added=added,
     )
 
 

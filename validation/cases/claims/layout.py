@@ -16,15 +16,16 @@ from solvers.rotor.layout import PAIRS, couplings
 from solvers.rotor.tub import Mount, Tub, Vector
 from solvers.rotor.two_plane import PlaneUnbalance
 from solvers.rotor.vibration import unbalance_response
-from validation.case import Case, shape_verdict
+from validation.case import Case, Claims
 from validation.cases.rotors.tub import DAMPER, SPRING, suspended_tub
+
+CLAIMS = Claims("claims")
 
 NAMES = ("x", "y", "z", "alpha", "beta", "gamma")
 _SPREAD = (0.2, 0.15)  # m, of the mounts across and along the axis
 _SHIFT = 0.03  # m, by which a rule is broken
 _NONE = 1e-12  # a coupling that is rounding alone
 _SPEEDS = np.linspace(2.0, 60.0, 581)  # rad/s, over all resonances
-_ASSUMED = "inertias and places of the mounts are assumed; broken by 30 mm"
 
 
 def centred_tub(drum: Vector = (0.0, 0.0, 0.0), springs: float = 0.0, dampers: float = 0.0) -> Tub:
@@ -102,15 +103,14 @@ def _rule(name: str, meaning: str, kept: dict[str, float], broken: dict[str, flo
     """A rule that must take every coupling away, and without which there are some."""
     holds = not kept and bool(broken)
     left = ", ".join(f"{pair} {size:.3f}" for pair, size in broken.items())
-    return Case(
-        name=f"claims/layout-{name}",
-        source="DR18, sections 2 and 8; DG21, section 5",
+    return CLAIMS.case(
+        "layout",
+        f"none; broken: {left}" if not kept else ", ".join(kept),
+        holds,
+        name=f"layout-{name}",
         quantity=meaning,
-        printed="none where the rule is kept",
-        computed=f"none; broken: {left}" if not kept else ", ".join(kept),
         difference="the same" if holds else "another",
-        verdict=shape_verdict(holds),
-        note=f"{_ASSUMED}: {broken_by}",
+        broken_by=broken_by,
     )
 
 
@@ -125,16 +125,12 @@ def _dynamic_unbalance(plain: Tub) -> Case:
     couple = replace(plain, loads=(PlaneUnbalance(0.06, size), PlaneUnbalance(-0.06, size, np.pi)))
     kept, broken = _turns(plain), _turns(couple)
     holds = kept < _NONE < broken
-    return Case(
-        name="claims/layout-2-inertia",
-        source="DR18, sections 2 and 8",
-        quantity="largest turn of the tub under a static unbalance, rad",
-        printed="none where the drum's axis is one of its main central axes of inertia",
-        computed=f"{kept:.1g}; with a tenth of the unbalance at 60 mm on both sides, opposite: {broken:.2g}",
+    return CLAIMS.case(
+        "layout-2-inertia",
+        agrees=holds,
+        kept=kept,
+        broken=broken,
         difference="the same" if holds else "another",
-        verdict=shape_verdict(holds),
-        note="section 8 says: of the tank's inertia, section 2: of the drum's; both are needed, the tank's "
-        "for a diagonal mass matrix, which the coordinates suppose already",
     )
 
 
@@ -144,13 +140,9 @@ def _separate(plain: Tub) -> Case:
     rest = {**_couplings(system.mass), **_couplings(system.stiffness), **_couplings(system.damping)}
     turning = [f"{NAMES[i]}-{NAMES[j]}" for i, j in PAIRS if abs(system.gyroscopic[i, j]) > 0.0]
     holds = not rest and turning == ["alpha-gamma"]
-    return Case(
-        name="claims/layout-separate",
-        source="DR18, section 2",
-        quantity="couplings of the free motions with every rule kept",
-        printed="none while the drum does not turn",
-        computed=f"none at rest; {', '.join(turning)} by J_b omega while it turns",
+    return CLAIMS.case(
+        "layout-separate",
+        f"none at rest; {', '.join(turning)} by J_b omega while it turns",
+        holds,
         difference="the same" if holds else "another",
-        verdict=shape_verdict(holds),
-        note="no place of a mount takes the gyroscopic coupling away",
     )

@@ -13,8 +13,10 @@ from solvers.rotor.balls.two_plane_balance import dynamic_balancing, of_two_plan
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.two_plane import TwoPlane
 from solvers.rotor.vibration import unbalance_response
-from validation.case import Case, compare
+from validation.case import Case, Claims
 from validation.cases.two_plane.machine import BALLS, LONG, RACES
+
+CLAIMS = Claims("errata")
 
 
 def cases() -> list[Case]:
@@ -41,15 +43,8 @@ def _products_of_inertia() -> Case:
     inertia -= 2 * (d * second * third + e * first * third + f * first * second)
     slope = sp.diff(-(spin**2) * inertia / 2, second).subs({first: 0, second: 0})
     computed = sp.simplify(slope / spin**2)
-    return Case(
-        "errata/dr-eq-13",
-        "DR18, eq. 13, second line",
-        "dW/d(gamma_2) over omega^2 of the upright body, without gravity",
-        "E",
-        str(computed),
-        "none" if computed == e else "another moment",
-        "agrees" if computed == e else "erratum",
-        "the first line has E in its place; eq. 15, D = E = 0, needs both",
+    return CLAIMS.case(
+        "dr-eq-13", str(computed), computed == e, difference="none" if computed == e else "another moment"
     )
 
 
@@ -68,15 +63,12 @@ def _peak_shift() -> Case:
         return float(found.x)
 
     shift = peak(0.2)
-    return Case(
-        "errata/dr-fig-20",
-        "DR18, below Fig. 20(b)",
-        "speed of the largest deflection under an unbalance over the natural frequency, damping ratio 0.2",
-        "below 1: to lower speeds as damping grows",
+    return CLAIMS.case(
+        "dr-fig-20",
         shift,
-        "the opposite" if shift > 1.0 else "the same",
-        "erratum" if shift > 1.0 else "agrees",
-        f"1/sqrt(1 - 2 zeta^2) = {1.0 / math.sqrt(1.0 - 2.0 * 0.2**2):.4f}; a force of one size "
+        shift <= 1.0,
+        difference="the opposite" if shift > 1.0 else "the same",
+        note=f"1/sqrt(1 - 2 zeta^2) = {1.0 / math.sqrt(1.0 - 2.0 * 0.2**2):.4f}; a force of one size "
         "at all speeds has its peak below",
     )
 
@@ -97,24 +89,11 @@ def _bearing() -> list[Case]:
         for across in (1.0, math.cos(math.radians(15.0)))
     ]
     return [
-        compare(
-            "errata/dr-table-bpfo",
-            "DR18, chapter 2.2, table 1",
-            "spindle's frequency at which BPFO is 33 Hz, Hz",
-            _OUTER,
-            computed,
-            tolerance=0.5 * 0.01 / _OUTER,
-            otherwise="erratum",
-            note=f"of the table's own FTF and BPFI: d cos(theta)/D = {share:.4f}, {balls} balls",
-        ),
-        compare(
-            "errata/dr-table-bsf",
-            "DR18, chapter 2.2, table 1",
-            "spindle's frequency at which BSF is 33 Hz, contact angle 15 deg, Hz",
-            16.1,
+        CLAIMS.case("dr-table-bpfo", computed, tolerance=0.5 * 0.01 / _OUTER, share=share, balls=balls),
+        CLAIMS.case(
+            "dr-table-bsf",
             rolling[1],
             tolerance=0.5 * 0.1 / 16.1,
-            otherwise="erratum",
             note=f"printed is that of a contact angle of 0, {rolling[0]:.2f}; bearings 7004 have one",
         ),
     ]
@@ -128,19 +107,7 @@ _ROWS = {"X_5": ((1, 2), (1, 3), (1, 4), (1, 5)), "X_6": ((6, 2), (6, 3), (6, 4)
 def _housing() -> list[Case]:
     """Place of X_5 on the spindle's housing: eq. 14 and 16 against eq. 4 and 5."""
     (place,) = {row for row, _ in _ROWS["X_5"]}
-    return [
-        compare(
-            f"errata/dr-eq-{number}-x5",
-            f"DR18, chapter 2.2, eq. {number}",
-            "section of the housing whose compliance multiplies X_5",
-            5.0,
-            float(place),
-            tolerance=0.0,
-            otherwise="erratum",
-            note="the row of X_5 in eq. 5; by reciprocity its column in eq. 4 as well; section 5 carries X_4",
-        )
-        for number in (14, 16)
-    ]
+    return [CLAIMS.case("dr-eq-x5", float(place), number=number) for number in (14, 16)]
 
 
 def _drag_number() -> list[Case]:
@@ -156,14 +123,11 @@ def _drag_number() -> list[Case]:
         ("eq-41", "table 1 and eq. 41", full, "eq. 41 has r^2 l over the length as well, r = d/2"),
     ):
         found.append(
-            compare(
-                f"errata/dr-pump-drag-{name}",
-                f"DR18, chapter 2.3, {source}",
-                "similarity number of the blood's drag, Pi_H",
-                1.48e-7,
+            CLAIMS.case(
+                "dr-pump-drag",
                 computed,
-                tolerance=0.01,
-                otherwise="erratum",
+                name=f"dr-pump-drag-{name}",
+                source=f"DR18, chapter 2.3, {source}",
                 note=note,
             )
         )
@@ -176,16 +140,8 @@ def _weak_supports() -> Case:
     weak = replace(LONG, supports=tuple(replace(support, damping=damping) for support in LONG.supports))
     printed = dynamic_balancing(of_two_planes(weak, BALLS), 1.0).above
     usual = first_stable_speed(LONG)
-    return compare(
-        "errata/ff-conclusion-2",
-        "FF20, conclusion 2",
-        f"speed from which two ball balancers hold a long rotor, supports of {damping:g} N s/m, rad/s",
-        float(printed),
-        first_stable_speed(weak),
-        tolerance=0.05,
-        otherwise="erratum",
-        note="eigenvalues about the balanced state; with 40 N s/m it is "
-        f"{usual:.2f}: damping in the supports does move the region",
+    return CLAIMS.case(
+        "ff-conclusion-2", first_stable_speed(weak), damping=damping, printed=float(printed), usual=usual
     )
 
 

@@ -9,7 +9,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from validation.case import Case, compare
+from validation.case import Case, Claims
+
+CLAIMS = Claims("errata")
 
 # Coefficients of the stiffness matrix as DR18 prints them below eq. 8, one spring, places counted from 1;
 # the other places of the upper triangle it gives as 0 or leaves out.
@@ -110,18 +112,7 @@ def _gyroscopic_cases(matrices: TubMatrices) -> list[Case]:
         ("gamma", "alpha", 5, 3, 2.0),
     ):
         computed = float(sp.simplify(matrices.gyroscopic[row, column] / unit))
-        found.append(
-            compare(
-                f"errata/dr-gyroscopic-{equation}",
-                "DR18, equations below eq. 7",
-                f"coefficient of {rate}' in the equation of {equation}, over J_b omega",
-                printed,
-                computed,
-                tolerance=0.0,
-                otherwise="erratum",
-                note="from the kinetic energy of the spinning drum; the sign is right",
-            )
-        )
+        found.append(CLAIMS.case("dr-gyroscopic", computed, equation=equation, rate=rate, printed=printed))
     return found
 
 
@@ -136,15 +127,14 @@ def _stiffness_cases(matrices: TubMatrices) -> list[Case]:
         if sp.expand(printed - computed) != 0:
             wrong.append((row, column, _written(printed), _written(computed)))
     return [
-        Case(
-            f"errata/dr-a{row}{column}",
-            "DR18, list below eq. 8",
-            f"a_{row}{column} of one spring (c_x, c_y, c_z) at (x, y, z)",
-            printed,
+        CLAIMS.case(
+            "dr-a",
             computed,
-            "another expression",
-            "erratum",
-            f"from the springs' energy; {len(_PLACES) - len(wrong)} of {len(_PLACES)} coefficients agree",
+            row=row,
+            column=column,
+            printed=printed,
+            same=len(_PLACES) - len(wrong),
+            all=len(_PLACES),
         )
         for row, column, printed, computed in wrong
     ]
@@ -158,15 +148,12 @@ def _order_cases(matrices: TubMatrices) -> list[Case]:
     found = []
     for order, matrix, printed in (("gamma'", matrices.gyroscopic, 1.0), ("gamma''", matrices.mass, 0.0)):
         found.append(
-            compare(
-                f"errata/dr-y-equation-{'first' if printed else 'second'}-derivative",
-                "DR18, equations below eq. 7",
-                f"coefficient of {order} in the equation of y, over m_2 x_D",
-                printed,
+            CLAIMS.case(
+                "dr-y-equation-derivative",
                 float(sp.simplify(matrix[1, 5] / unit)),
-                tolerance=0.0,
-                otherwise="erratum",
-                note="the equations of z, alpha, beta and gamma print first derivatives in the same way",
+                name=f"dr-y-equation-{'first' if printed else 'second'}-derivative",
+                order=order,
+                printed=printed,
             )
         )
     return found
@@ -206,17 +193,17 @@ def _row_cases(matrices: TubMatrices) -> list[Case]:
         shown, derived = (_as_damping(_written(text), term.damping) for text in (term.printed, computed))
         kind = "rate" if term.rate else "damping" if term.damping else "stiffness"
         found.append(
-            Case(
-                f"errata/dr-{_NAMES[term.row]}-equation-{kind}",
-                "DR18, equations below eq. 7",
-                f"coefficient of {of} in the equation of {_NAMES[term.row]}, of one "
+            CLAIMS.case(
+                "dr-equation",
+                derived,
+                name=f"dr-{_NAMES[term.row]}-equation-{kind}",
+                quantity=f"coefficient of {of} in the equation of {_NAMES[term.row]}, of one "
                 + ("damper (h_x, h_y, h_z)" if term.damping else "spring (c_x, c_y, c_z)")
                 + " at (x, y, z)",
-                f"0, and {shown} of {of}'" if term.rate else shown,
-                derived,
-                "another expression",
-                "erratum",
-                "a stiffness multiplies the angle, not its rate" if term.rate else "symmetric, as J^T c J is",
+                printed=f"0, and {shown} of {of}'" if term.rate else shown,
+                note="a stiffness multiplies the angle, not its rate"
+                if term.rate
+                else "symmetric, as J^T c J is",
             )
         )
     return found
@@ -244,17 +231,16 @@ def _energy_cases(matrices: TubMatrices) -> list[Case]:
     import sympy as sp
 
     return [
-        compare(
-            f"errata/dr-eq-4-{_NAMES[first]}-{_NAMES[second]}",
-            "DR18, eq. 4",
-            f"coefficient of {_NAMES[first]}' {_NAMES[second]}' in the kinetic energy, over {_written(unit)}",
-            printed,
+        CLAIMS.case(
+            "dr-eq-4",
             float(sp.simplify(matrices.mass[first, second] / sp.sympify(unit))),
-            tolerance=0.0,
-            otherwise="erratum",
-            note=f"from m_2 |v_D|^2/2: {note}",
+            first=_NAMES[first],
+            second=_NAMES[second],
+            unit=_written(unit),
+            printed=printed,
+            why=why,
         )
-        for first, second, unit, printed, note in _PRODUCTS
+        for first, second, unit, printed, why in _PRODUCTS
     ]
 
 
@@ -266,16 +252,7 @@ def _energy_of_unbalance() -> Case:
     place = sp.Matrix([-radius * sp.cos(spin * time), radius * sp.sin(spin * time)])
     energy = sp.simplify(mass * place.diff(time).dot(place.diff(time)) / 2)
     unit = mass * spin**2 * radius**2
-    return compare(
-        "errata/dr-eq-4-unbalance",
-        "DR18, eq. 4",
-        "energy of the eccentric mass on its circle over m_2 omega^2 e^2, at t = 0",
-        1.0,
-        float(sp.simplify(energy / unit)),
-        tolerance=0.0,
-        otherwise="erratum",
-        note="printed with a factor cos(omega t), derived constant; neither moves the tub",
-    )
+    return CLAIMS.case("dr-eq-4-unbalance", float(sp.simplify(energy / unit)))
 
 
 def _energy_of_spin(matrices: TubMatrices) -> Case:
@@ -283,17 +260,7 @@ def _energy_of_spin(matrices: TubMatrices) -> Case:
     import sympy as sp
 
     unit = sp.symbols("J_b") * sp.symbols("omega")
-    return compare(
-        "errata/dr-eq-4-gyroscopic",
-        "DR18, eq. 4",
-        "gyroscopic coupling by the bracket that multiplies I_b2 omega, over J_b omega",
-        2.0,
-        float(sp.simplify(matrices.gyroscopic[5, 3] / unit)),
-        tolerance=0.0,
-        otherwise="erratum",
-        note="printed are equal products of rates that cancel; with one rate in each, alpha' gamma - alpha "
-        "gamma', it is twice what turns the drum: the 2 J_b omega of the equations",
-    )
+    return CLAIMS.case("dr-eq-4-gyroscopic", float(sp.simplify(matrices.gyroscopic[5, 3] / unit)))
 
 
 def _groups(matrices: TubMatrices) -> Case:
@@ -308,13 +275,9 @@ def _groups(matrices: TubMatrices) -> Case:
         if entry != 0 and sp.expand(scaled - scale * entry) == 0:
             static.append((row, column))
     inside = sum(row <= 3 and column <= 3 for row, column in static)
-    return Case(
-        "errata/dr-third-group",
-        "DR18, groups of coefficients below eq. 8",
-        "places of the static moments of rigidity in the stiffness matrix",
-        "i, j <= 3 and i different from j",
+    return CLAIMS.case(
+        "dr-third-group",
         f"i <= 3 < j: {len(static) - inside} of them, and {inside} with i, j <= 3",
-        "another block" if inside < len(static) else "none",
-        "erratum" if inside < len(static) else "agrees",
-        "with i, j <= 3 all but the diagonal are 0 for springs along the axes",
+        inside >= len(static),
+        difference="another block" if inside < len(static) else "none",
     )

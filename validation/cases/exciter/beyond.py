@@ -31,13 +31,14 @@ from solvers.rotor.exciter.stability import (
     third_speed,
 )
 from solvers.rotor.exciter.tangent import follow
-from validation.case import Case, compare
+from validation.case import Case, Claims
 from validation.cases.exciter.speeds import sample
 from validation.page import Figure, logarithmic, page
 from validation.study import launch, shown
 
+CLAIMS = Claims("exciter")
+
 DATA = Path(__file__).parents[2] / "data" / "exciter_beyond.json"
-_SOURCE = "YF17, section 5.3"
 # Smallness and damping of a map; the first that of the typical experiment, the other the corner of the
 # source's ranges where a ball at the third speed slips most.
 MAPS = ((0.01, 0.03), (0.005, 0.07))
@@ -115,29 +116,19 @@ def _stuck(sweeps: list[dict[str, Any]]) -> list[Case]:
     through, parting = characteristic_speeds(machine).through_resonance, _slowest_parting()
     typical = next(s for s in sweeps if s["smallness"] == 0.01 and s["unbalance"] == 0.25)
     return [
-        Case(
-            name="exciter/stuck-stable-up-to",
-            source=_SOURCE,
-            quantity="shaft speed from which small disturbances of the stuck motion grow, typical experiment",
-            printed=7.0,
-            computed=through,
+        CLAIMS.case(
+            "stuck-stable-up-to",
+            through,
+            abs(7.0 - through) <= 0.05,
             difference=7.0 / through - 1.0,
-            # Half of the last digit printed.
-            verdict="agrees" if abs(7.0 - through) <= 0.05 else "differs",
             note="at n2 the balls part, at n3 the motion ends in a fold; no oscillation starts before "
             f"({_growing_roots()} of 196 machines); a slow run-up in time loses it at {typical['lost']:.2f}",
         ),
-        Case(
-            name="exciter/third-together",
-            source=_SOURCE,
-            quantity="both balls together at the third stuck speed: slowest rate at which they part, "
-            "196 machines of the source's ranges at 1.25 n1",
-            printed="may be stable",
-            computed=parting,
+        CLAIMS.case(
+            "third-together",
+            parting,
+            parting <= 0.0,
             difference="they part" if parting > 0.0 else "some stay",
-            verdict="differs" if parting > 0.0 else "agrees",
-            note="any stuck speed above the natural frequency drives balls apart; in units of the natural "
-            "frequency",
         ),
     ]
 
@@ -149,25 +140,18 @@ def _third() -> list[Case]:
     third = found.regime.kind is Kind.THIRD
     all_told = all(made is not None for made in found.made_of)
     beyond = sum(made is None for made in found.made_of_two)
-    what = "delta = 0.05, otherwise the typical experiment, n = 8.15"
     return [
-        compare(
-            "exciter/third-speed",
-            "YF17, eq. 9",
-            f"third stuck speed of one ball of two, the other at the resonance, {what}",
-            third_speed(THREE, THREE_SPEED, 0.5),
+        CLAIMS.case(
+            "third-speed",
             fast,
-            tolerance=1e-3,
+            printed=third_speed(THREE, THREE_SPEED, 0.5),
             note="eq. 9 with chi = h/(2 b), one ball of two" + ("" if third else "; it did not stay there"),
         ),
-        Case(
-            name="exciter/third-lines",
-            source=_SOURCE,
-            quantity=f"lines of the platform above 0.5 % of the largest, {what}",
-            printed="resonance, shaft, third",
-            computed=", ".join(f"{w:.3f}" for w in found.lines.frequency.tolist()),
+        CLAIMS.case(
+            "third-lines",
+            ", ".join(f"{w:.3f}" for w in found.lines.frequency.tolist()),
+            third and all_told and beyond,
             difference="none" if all_told else "other lines",
-            verdict="agrees" if third and all_told and beyond else "differs",
             note=f"all are sums of the three speeds; {beyond} of {len(found.made_of)} are not sums of two",
         ),
     ]
@@ -183,14 +167,13 @@ def _regimes(kept: dict[str, Any]) -> list[Case]:
     note = "kept runs over the source's ranges of b and delta, four starts each"
 
     def counted(name: str, quantity: str, number: int, more: str) -> Case:
-        return Case(
-            name=f"exciter/beyond-{name}",
-            source=_SOURCE,
+        return CLAIMS.case(
+            "beyond",
+            float(number),
+            number,
+            name=f"beyond-{name}",
             quantity=f"of {len(runs)} runs at 1.25 times the critical speed: {quantity}",
-            printed="may occur",
-            computed=float(number),
             difference="none" if number else "never",
-            verdict="agrees" if number else "differs",
             note=more,
         )
 

@@ -29,9 +29,11 @@ from solvers.rotor.exciter.motion import (
     integrate,
     printed_critical_speed,
 )
-from validation.case import Case, Effect, compare, shape_verdict
+from validation.case import Case, Claims, Effect
 from validation.page import Figure, Table, logarithmic, page
 from validation.study import launch, shown
+
+CLAIMS = Claims("exciter")
 
 # The typical experiment [YF17, section 5.3].
 MACHINE = Dimensionless(smallness=0.01, drag=0.4, unbalance=0.25, damping=0.03)
@@ -72,14 +74,12 @@ def _roots() -> list[Case]:
     found = stuck_speeds(5.0, MACHINE)
     printed = (0.9465, 1.0732, 4.61875)
     return [
-        compare(
-            f"exciter/stuck-{k + 1}",
-            "YF17, section 5.3",
-            f"stuck speed {k + 1} at n = 5, h = 0.03, b = 0.4",
-            value,
+        CLAIMS.case(
+            "stuck",
             float(found[k]),
-            tolerance=5e-5,
-            note="half a unit of the last digit printed",
+            name=f"stuck-{k + 1}",
+            quantity=f"stuck speed {k + 1} at n = 5, h = 0.03, b = 0.4",
+            printed=value,
         )
         for k, value in enumerate(printed)
     ]
@@ -87,29 +87,10 @@ def _roots() -> list[Case]:
 
 def _characteristic() -> list[Case]:
     known = characteristic_speeds(MACHINE)
-    source, at = "YF17, eq. 13 and section 5.3", "of the shaft at h = 0.03, b = 0.4"
     return [
-        compare(
-            "exciter/n1",
-            source,
-            f"characteristic speed n1 {at}",
-            1.808,
-            known.second_pair,
-            tolerance=5e-4,
-            otherwise="erratum",
-            note="an approximation for small chi (to third order 1.8090); 1.4 % below the exact value",
-        ),
-        compare(
-            "exciter/n2",
-            source,
-            f"characteristic speed n2 {at}",
-            21.833,
-            known.through_resonance,
-            tolerance=2.5e-5,
-        ),
-        compare(
-            "exciter/n3", source, f"characteristic speed n3 {at}", 21.877, known.merger, tolerance=2.5e-5
-        ),
+        CLAIMS.case("n1", known.second_pair),
+        CLAIMS.case("n2", known.through_resonance),
+        CLAIMS.case("n3", known.merger),
     ]
 
 
@@ -118,78 +99,43 @@ def _integrated() -> list[Case]:
     slow, fast = platform_motion(MACHINE, 5.0, motion.stuck_speed)
     off = max(abs(motion.slow / abs(slow) - 1.0), abs(motion.fast / abs(fast) - 1.0))
     return [
-        compare(
-            "exciter/mean-speed",
-            "YF17, section 5.3",
-            "mean speed of the balls at n = 5, eps = 0.01, delta = 0.25, by time integration",
-            0.9469,
-            motion.stuck_speed,
-            tolerance=1.5e-4,
-            note="balls together: " + ("yes" if motion.holds else "no"),
+        CLAIMS.case(
+            "mean-speed", motion.stuck_speed, note="balls together: " + ("yes" if motion.holds else "no")
         ),
-        Case(
-            name="exciter/platform",
-            source="YF17, section 5.3",
-            quantity="platform's two amplitudes at n = 5: lowest order against time integration",
-            printed="within 1.105 %",
-            computed=off,
-            difference=f"{100.0 * off:.2f} %",
-            verdict="agrees" if off <= 0.01105 else "differs",
-            note="the source compares the motions point by point, here the amplitudes",
-        ),
+        CLAIMS.case("platform", off, off <= 0.01105, difference=f"{100.0 * off:.2f} %"),
     ]
 
 
 def _critical() -> list[Case]:
     """The source's 7.0 beside the critical speed from several starts."""
-    source = "YF17, section 5.3"
     found = {
         "released": critical_speed(MACHINE),
         "rest": critical_speed(MACHINE, start=Start("rest", 0.3)),
         "regime": critical_speed(MACHINE, start=Start("regime", 0.05)),
     }
     regression = float(printed_critical_speed(0.01, 0.4, 0.25, 0.03))
-    note = "the start is not printed; platform at rest, balls at the natural frequency, 0.3 rad apart"
-    quantity = "critical speed at eps = 0.01, b = 0.4, delta = 0.25, h = 0.03"
     by = {name: Effect(f"critical speed, {name}", 7.0, check.holds) for name, check in found.items()}
     return [
-        Case(
-            name="exciter/critical-speed",
-            source=source,
-            quantity=quantity,
-            printed=7.0,
-            computed=found["released"].holds,
+        CLAIMS.case(
+            "critical-speed",
+            found["released"].holds,
+            True,
             difference=7.0 / found["released"].holds - 1.0,
-            verdict=shape_verdict(True, by["released"]),
-            note=note,
             effect=by["released"],
         ),
-        Case(
-            name="exciter/critical-speed-by-start",
-            source=source,
-            quantity=quantity,
-            printed=7.0,
-            computed=", ".join(f"{name} {check.holds:.2f}" for name, check in found.items()),
-            difference="by the start",
-            verdict=shape_verdict(True, by["regime"]),
-            note="the motion is stable far beyond the speed up to which it is reached",
+        CLAIMS.case(
+            "critical-speed-by-start",
+            ", ".join(f"{name} {check.holds:.2f}" for name, check in found.items()),
+            True,
             effect=by["regime"],
         ),
-        compare(
-            "exciter/regression",
-            "YF17, eq. 18-20",
-            "printed regression at the same numbers against the printed 7.0",
-            7.0,
-            regression,
-            tolerance=0.06,
-            note="the source claims 6 %; over its ranges see docs/exciter.md",
-        ),
+        CLAIMS.case("regression", regression),
     ]
 
 
 def _table() -> list[Case]:
     """Dimensionless numbers of the worked table [YF17, section 5.2], empty and loaded."""
-    source, found = "YF17, section 5.2", []
+    found = []
     printed = {
         "smallness": (0.0126, 0.0051, 0.005),
         "drag": (0.138, 0.537, 0.005),
@@ -199,14 +145,13 @@ def _table() -> list[Case]:
     for name, (empty, loaded, tolerance) in printed.items():
         for load, mass, value in (("empty", 36.1, empty), ("loaded", 90.1, loaded)):
             found.append(
-                compare(
-                    f"exciter/table-{name}-{load}",
-                    source,
-                    f"{name} of the {load} table, from its dimensions",
-                    value,
+                CLAIMS.case(
+                    "table",
                     float(getattr(vibratory_table(mass).dimensionless(), name)),
+                    name=f"table-{name}-{load}",
+                    quantity=f"{name} of the {load} table, from its dimensions",
+                    printed=value,
                     tolerance=tolerance,
-                    otherwise="erratum",
                     note="the printed number belongs to a drag of 0.05 N s/m, not to the printed 0.03"
                     if name == "drag"
                     else "",

@@ -23,10 +23,12 @@ from solvers.rotor.exciter.machine import (
     stuck_speeds,
 )
 from solvers.rotor.exciter.motion import Trace, critical_speeds, trace
-from validation.case import Case, compare
+from validation.case import Case, Claims
 from validation.cases.exciter.speeds import vibratory_table
 from validation.page import Figure, logarithmic, page
 from validation.study import launch, shown, write
+
+CLAIMS = Claims("exciter")
 
 DATA = Path(__file__).parents[2] / "data" / "exciter_more.json"
 TYPICAL = Dimensionless(smallness=0.01, drag=0.4, unbalance=0.25, damping=0.03)
@@ -107,22 +109,16 @@ def cases() -> list[Case]:
 
 def _traces() -> list[Case]:
     found = traces()
-    source = "YF17, fig. 3"
     names = ("displacement", "velocity", "acceleration")
     worst = float(found.gap.max())
     rows = [
-        Case(
-            name="exciter/trace-gap",
-            source=source,
-            quantity="platform at n = 5, point by point: largest gap to the lowest order, relative",
-            printed="within 1.105 %",
-            computed=worst,
+        CLAIMS.case(
+            "trace-gap",
+            worst,
+            worst <= _PRINTED_GAP * 1.1,
             difference=", ".join(
                 f"{name} {100 * gap:.2f} %" for name, gap in zip(names, found.gap, strict=True)
             ),
-            verdict="agrees" if worst <= _PRINTED_GAP * 1.1 else "differs",
-            note="the phase of the balls is fitted; the axis of the source's gap ends at 0.147, "
-            "1.105 % of 13.3",
         )
     ]
     for name, printed, values in (
@@ -131,14 +127,13 @@ def _traces() -> list[Case]:
         ("acceleration", 14.0, np.abs(found.motion.acceleration).max()),
     ):
         rows.append(
-            compare(
-                f"exciter/trace-{name}",
-                source,
-                f"largest value of the trace at n = 5: {name.replace('-', ' ')}",
-                printed,
+            CLAIMS.case(
+                "trace",
                 float(values),
+                name=f"trace-{name}",
+                quantity=f"largest value of the trace at n = 5: {name.replace('-', ' ')}",
+                printed=printed,
                 tolerance=0.1 if name == "acceleration" else 0.02,
-                note="read from the axis: to a mark of it",
             )
         )
     return rows
@@ -152,17 +147,7 @@ def _dimensional() -> list[Case]:
         2.0 * table.damping * table.ball_damping
     )
     exact = characteristic_speeds(table.dimensionless()).through_resonance * own
-    return [
-        compare(
-            "exciter/eq-21",
-            "YF17, eq. 21",
-            "critical speed at eps = 0 of the loaded table from its dimensions, rad/s",
-            printed,
-            exact,
-            tolerance=1e-12,
-            note="eq. 21 is n2 in dimensions; at eps = 0.005 the motion is lost far below it",
-        )
-    ]
+    return [CLAIMS.case("eq-21", exact, printed=printed)]
 
 
 def _trends(panels: list[dict[str, Any]]) -> list[Case]:
@@ -176,17 +161,14 @@ def _trends(panels: list[dict[str, Any]]) -> list[Case]:
         same = worst <= _SLACK
         shape = "rises" if rises else "falls"
         found.append(
-            Case(
-                name=f"exciter/fig-{figure}",
-                source=f"YF17, fig. {figure}",
+            CLAIMS.case(
+                "fig",
+                f"{shape} all the way" if same else f"not all the way: {100 * worst:.0f} % against it",
+                same,
+                figure=figure,
                 quantity=f"critical speed over {along}, {len(steps)} curves",
-                printed=f"{shape} all the way",
-                computed=f"{shape} all the way"
-                if same
-                else f"not all the way: {100 * worst:.0f} % against it",
+                shape=shape,
                 difference="none" if same else "in places",
-                verdict="trend" if same else "differs",
-                note="kept runs; released, 0.3 rad apart, which the source does not print",
             )
         )
     return found

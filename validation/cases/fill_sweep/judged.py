@@ -7,17 +7,14 @@ from typing import Any
 import numpy as np
 
 from meshes.arrays import Array
-from validation.case import MEASURED, Case, Effect, shape_verdict
+from validation.case import Case, Claims, Effect, shape_verdict
 from validation.cases.fill_sweep.contact import of_kept
 from validation.cases.fill_sweep.fitted import NEAREST, SCATTER, bands, kept, measured, ratios
 from validation.page import Figure, page
 from validation.study import data, launch, shown
 
-_GROUP = "fill_sweep"
-_SOURCE = "washing machine with a balance ring, see fill_sweep.json"
-_ASSUMED = (
-    "one machine for all fills, its values drawn from ranges and fitted to 0 and 300 ml, see fill_sweep.toml"
-)
+CLAIMS = Claims("fill_sweep")
+
 _FLAT = 0.02  # relative; a curve that changes by less says nothing of a best volume
 
 
@@ -50,17 +47,15 @@ def _curve(name: str, text: str, added: Array, seen: Array, own: Array, band: Ar
     inside = int(np.count_nonzero(((seen >= low) & (seen <= high))[1:-1]))
     effect = Effect(f"at {added[worst]:g} ml over that at 0 ml", float(seen[worst]), float(own[worst]))
     same = _least(added, seen) == _least(added, own)
-    return Case(
-        name=f"{_GROUP}/{name}",
-        source=_SOURCE,
-        origin=MEASURED,
+    return CLAIMS.case(
+        "curve",
+        _words(own),
+        name=name,
         quantity=f"{text}, {', '.join(f'{ml:g}' for ml in added[1:])} ml added over 0 ml",
         printed=_words(seen),
-        computed=_words(own),
         difference=f"the five fills between are off by factors of {factors.min():.2g} to "
         f"{factors.max():.2g}; {inside} of them within the band of the draws that come closest",
         verdict="agrees" if inside == factors.size else shape_verdict(same, effect),
-        note=_ASSUMED,
         effect=effect,
     )
 
@@ -85,16 +80,13 @@ def _clearance(added: Array, seen: Array) -> Case:
     effect = Effect(f"at {added[worst]:g} ml over that at 0 ml", float(seen[worst]), float(own[worst]))
     inside = int(np.count_nonzero(((seen >= low) & (seen <= high))[1:-1]))
     at = found.steps(seen)
-    return Case(
-        name=f"{_GROUP}/clearance",
-        source=_SOURCE,
-        origin=MEASURED,
-        quantity="largest shaking at the resonance over 0 ml, of a tub that touches its cabinet",
+    return CLAIMS.case(
+        "clearance",
+        _words(own),
+        _least(added, seen) == _least(added, own),
         printed=_words(seen),
-        computed=_words(own),
         difference=f"the five fills between are off by factors of {factors.min():.2g} to "
         f"{factors.max():.2g}; {inside} of them within nine tenths of what is allowed",
-        verdict=shape_verdict(_least(added, seen) == _least(added, own), effect),
         note=f"the middle of {found.draw.size} pairs of values and clearances that 0 and 300 ml allow. These "
         f"two do not tell where the step is: {at[1]:.0%} have it at {added[1]:g} ml, {at[step]:.0%} at "
         f"{added[step]:g} ml as measured; {found.within(seen, 1.5):.0%} meet all five within a factor of 1.5",
@@ -110,13 +102,10 @@ def _coast(computed: float) -> Case:
     seen = {added: down / up for added, down, up in rows if down is not None}
     effect = Effect("way down over way up, 0 ml", seen[0], computed)
     agrees = abs(np.log(computed / seen[0])) <= SCATTER
-    return Case(
-        name=f"{_GROUP}/coast-down",
-        source=_SOURCE,
-        origin=MEASURED,
-        quantity="largest shaking at the resonance with the motor off over that with the motor on, 0 ml",
+    return CLAIMS.case(
+        "coast-down",
+        computed,
         printed=float(seen[0]),
-        computed=computed,
         difference=float(seen[0] / computed - 1.0),
         verdict="agrees" if agrees else shape_verdict(bool((computed > 1.0) == (seen[0] > 1.0)), effect),
         note=", ".join(f"{ratio:.2f} with {added} ml" for added, ratio in seen.items() if added)
@@ -130,16 +119,12 @@ def _order(added: Array, seen: tuple[Array, Array], own: tuple[Array, Array]) ->
     """Which quantity wants more liquid."""
     best, found = ([_least(added, curve) for curve in pair] for pair in (seen, own))
     same = best == found
-    return Case(
-        name=f"{_GROUP}/order",
-        source=_SOURCE,
-        origin=MEASURED,
-        quantity="best volumes added for the resonance and for the cruise, ml",
+    return CLAIMS.case(
+        "order",
+        ", ".join(map(_volume, found)),
+        same,
         printed=", ".join(map(_volume, best)),
-        computed=", ".join(map(_volume, found)),
         difference="the same" if same else "not the same",
-        verdict="trend" if same else "differs",
-        note="one run for each volume: whether 250 or 300 ml are better nobody can say; " + _ASSUMED,
     )
 
 
@@ -152,18 +137,14 @@ def _columns() -> Case:
     found = data("fill_sweep.json")
     column, logs = found["resonance_peak"], found["logs"]
     known = [hz for hz in logs["resonance_column_frequency_Hz"] if hz is not None]
-    return Case(
-        name=f"{_GROUP}/columns",
-        source=_SOURCE,
-        origin=MEASURED,
-        quantity="the source's resonance peak with 0, 50 and 100 ml, LSB",
+    return CLAIMS.case(
+        "columns",
+        ", ".join(f"{value}" for value in logs["passage_peak"][:3]) + ": largest at the resonance",
+        column[:3] == logs["passage_peak"][:3],
         printed=", ".join(f"{value}" for value in column[:3]) + ": largest from 28 to 32 s",
-        computed=", ".join(f"{value}" for value in logs["passage_peak"][:3]) + ": largest at the resonance",
         difference="in the window of the source the drum turns at "
         + ", ".join(f"{hz:g}" for hz in known)
         + " Hz; the resonance is at 4.3",
-        verdict="agrees" if column[:3] == logs["passage_peak"][:3] else "erratum",
-        note="frequencies read from the logs; with 100 ml and more the resonance was passed a sprint before",
     )
 
 

@@ -26,11 +26,12 @@ from solvers.liquid_model import Whirl
 from solvers.pypde.settle import settle, simulate
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.runup.long_wave import couple
-from validation.case import COMPUTED_FLOW, Case, Effect, Origin, compare, shape_verdict
+from validation.case import Case, Claims, Effect
 from validation.page import Figure, page
 from validation.study import data
 
-_SOURCE = "interFoam, openfoam_layer.json"
+CLAIMS = Claims("layer")
+
 _HEIGHT = 0.01  # the flow is plane: any height will do
 # Force of the bore over the reference's modulus in the first three whirl periods. From the fourth on the
 # reference depends on its mesh by more than a fourth, and is no target: a trend.
@@ -61,16 +62,16 @@ def _steady(run: dict[str, Any]) -> Case:
     whitham = complex(settle(fill, whirl, numerics=Numerics(dispersion=True)).force_ratio[-1])
     exact = float(force_ratio((fill.chamber.radius / fill.surface_radius) ** 2, whirl.speed / whirl.spin))
     off = abs(whitham - reference) / abs(reference)
-    return Case(
-        name=f"layer/{run['name']}",
-        source=_SOURCE,
-        origin=COMPUTED_FLOW,
+    return CLAIMS.case(
+        "steady",
+        whitham.real,
+        off <= 0.01,
+        name=f"{run['name']}",
         quantity=f"force ratio at whirl ratio {whirl.speed / whirl.spin:g}",
         printed=reference.real,
-        computed=whitham.real,
         difference=(reference.real - whitham.real) / abs(whitham),
-        verdict="agrees" if off <= 0.01 else "differs",
-        note=f"with dispersion; without {plain.real:.5f}; exact linear theory {exact:.5f}; agrees within 1 %",
+        real=plain.real,
+        exact=exact,
     )
 
 
@@ -118,27 +119,21 @@ def _force_cases(
     early, late = off[:_PERIODS], off[_PERIODS:]
     sizes = [float(np.abs(each[_PERIODS:]).mean()) for each in (reference, force)]
     return [
-        Case(
-            name=f"layer/{run}-{variant}",
-            source=_SOURCE,
-            origin=COMPUTED_FLOW,
-            quantity="force of the bore, three whirl periods, deviation over the reference's modulus",
-            printed=0.0,
-            computed=float(np.max(early)),
+        CLAIMS.case(
+            "force_cases",
+            float(np.max(early)),
+            bool(np.all(early <= _EARLY)),
+            run=run,
+            variant=variant,
             difference=_percent(early),
-            verdict="agrees" if bool(np.all(early <= _EARLY)) else "differs",
-            note="agrees within 10 %; computed is the largest",
         ),
-        Case(
-            name=f"layer/{run}-{variant}-late",
-            source=_SOURCE,
-            origin=COMPUTED_FLOW,
-            quantity="the same in the six periods after those, where the reference depends on its mesh",
-            printed=0.0,
-            computed=float(np.max(late)),
+        CLAIMS.case(
+            "late",
+            float(np.max(late)),
+            True,
+            run=run,
+            variant=variant,
             difference=_percent(late),
-            verdict=shape_verdict(True, Effect("mean modulus of the force ratio", *sizes)),
-            note="computed is the largest",
             effect=Effect("mean modulus of the force ratio", *sizes),
         ),
     ]
@@ -154,16 +149,12 @@ def _rotation_case(run: dict[str, Any], time: NDArray[np.float64], rotation: NDA
     inside = given[:, 0] <= time[-1]
     ours = np.interp(given[inside, 0], time, rotation)
     off = np.abs(ours / given[inside, 1] - 1.0)
-    return Case(
-        name=f"layer/{run['name']}-mean-rotation",
-        source=_SOURCE,
-        origin=COMPUTED_FLOW,
-        quantity="mean rotation of the liquid against the drum, deviation at each of the reference's times",
-        printed=0.0,
-        computed=float(off.max()),
+    return CLAIMS.case(
+        "mean-rotation",
+        float(off.max()),
+        bool(np.all(off <= _ROTATION)),
+        name=f"{run['name']}-mean-rotation",
         difference=_percent(off),
-        verdict="agrees" if bool(np.all(off <= _ROTATION)) else "differs",
-        note="agrees within 25 %; with dispersion and laminar wall friction",
     )
 
 
@@ -200,29 +191,26 @@ def rotor_cases() -> list[Case]:
     pairs = {cells: deflections(cells) for cells in CELLS}
     apart = {cells: abs(first - second) / abs(second) for cells, (first, second) in pairs.items()}
     found = [
-        Case(
-            name=f"layer/rotor-{cells}-cells",
-            source="py-pde, Runge-Kutta of the rates of rotor and layer",
-            origin=Origin("second code", "py-pde's own Runge-Kutta of the rates of rotor and layer"),
-            quantity=f"deflection of a rotor with its layer after a turn from rest, mm, {cells} cells",
+        CLAIMS.case(
+            "rotor-cells",
+            1e3 * abs(second),
+            apart[cells] <= _SHARE * (2.0 * math.pi / cells) ** 2,
+            cells=cells,
             printed=1e3 * abs(first),
-            computed=1e3 * abs(second),
             difference=apart[cells],
-            verdict="agrees" if apart[cells] <= _SHARE * (2.0 * math.pi / cells) ** 2 else "differs",
-            note="computed by the steps of run-ups; the difference is that of the complex deflections",
         )
         for cells, (first, second) in pairs.items()
     ]
     order = math.log2(apart[CELLS[-2]] / apart[CELLS[-1]])
-    what = "order in which the two come together, from the two finest meshes"
     return [
         *found,
-        compare(
-            *("layer/rotor-order", "second order of both schemes", what, 2.0, order),
-            tolerance=0.1,
-            origin=Origin("closed form", "order of both schemes"),
-        ),
+        CLAIMS.case("rotor-order", order),
     ]
+
+
+def all_cases() -> list[Case]:
+    """The layer alone, and with its rotor."""
+    return [*cases(), *rotor_cases()]
 
 
 _FLOW = {"color": "black", "marker": "s", "linestyle": "none", "markerfacecolor": "white", "zorder": 4}

@@ -13,8 +13,10 @@ from leblanc.studies.volume.study import answer_volume
 from meshes.chamber import Chamber
 from solvers.statics.hydrostatics import equilibrium, optimal_volume
 from solvers.synchronous.models import Statics
-from validation.case import Case, Origin, compare
+from validation.case import Case, Claims
 from validation.page import Figure, logarithmic, page
+
+CLAIMS = Claims("optimal_volume")
 
 _GRAVITY = 9.81
 _ML = 1e6
@@ -30,27 +32,22 @@ def cases() -> list[Case]:
             at = f"R {radius:g} m, h {height:g} m, {speed:g} rad/s, e {e * 1e3:g} mm"
             name = f"{radius * 1e3:g}-{speed:g}-{e * 1e3:g}"
             found.append(
-                compare(
-                    f"optimal_volume/fem-{name}",
-                    "scikit-fem, quadratic triangles",
-                    f"optimal volume, ml: {at}",
-                    answer.optimal_volume_fem * _ML,
+                CLAIMS.case(
+                    "fem",
                     answer.optimal_volume * _ML,
-                    tolerance=1e-6,
-                    origin=Origin("second code", "scikit-fem, quadratic triangles"),
-                    note="the mesh's wall runs inside the circle by the amount it was chosen for",
+                    name=f"fem-{name}",
+                    at=at,
+                    printed=answer.optimal_volume_fem * _ML,
                 )
             )
             if answer.printed_eq18 is not None:
                 found.append(
-                    compare(
-                        f"optimal_volume/eq18-{name}",
-                        "DR18, eq. 18",
-                        f"optimal volume, ml: {at}",
-                        answer.printed_eq18 * _ML,
+                    CLAIMS.case(
+                        "eq18",
                         answer.optimal_volume * _ML,
-                        tolerance=0.05,
-                        otherwise="erratum",
+                        name=f"eq18-{name}",
+                        at=at,
+                        printed=answer.printed_eq18 * _ML,
                     )
                 )
     return [*found, _double_thickness(), _bend()]
@@ -62,14 +59,7 @@ def _double_thickness() -> Case:
     volume = float(optimal_volume(chamber, e, 1.0, gravity=0.0))
     # A crescent between circles of radius R and R - e that touch: twice its mean thickness is its largest.
     mean = volume / (3.141592653589793 * (2 * chamber.radius - e) * chamber.height)
-    return compare(
-        "optimal_volume/thickness",
-        "DR18, eq. 19",
-        "thickness of the layer opposite the dry point over e, fast spin",
-        2.0,
-        2.0 * mean / e,
-        tolerance=1e-9,
-    )
+    return CLAIMS.case("thickness", 2.0 * mean / e)
 
 
 def _bend() -> Case:
@@ -84,16 +74,7 @@ def _bend() -> Case:
     bend = Statics().linear_limit(
         Fills.of([Fill(chamber, known_liquid("water"), volume)]), np.array([50.0]), np.zeros(1)
     )
-    return compare(
-        "optimal_volume/bend",
-        "theory: statics, eq. 9",
-        "deflection at which the unbalance stops growing with a full chamber's mass, mm",
-        e * 1e3,
-        float(bend[0]) * 1e3,
-        tolerance=1e-8,
-        note="no gravity along the axis",
-        origin=Origin("closed form", "volume that touches the wall, turned round"),
-    )
+    return CLAIMS.case("bend", float(bend[0]) * 1e3, printed=e * 1e3)
 
 
 CHAMBER, GRAVITY = Chamber(0.2, 0.05), 9.81

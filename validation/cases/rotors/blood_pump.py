@@ -22,9 +22,11 @@ from solvers.rotor.magnetic.machine import (
     screw_drag,
 )
 from solvers.rotor.magnetic.motion import SpeedLaw, integrate, settling_time
-from validation.case import Case, compare
+from validation.case import Case, Claims
 from validation.page import Figure, Table, logarithmic, page
 from validation.study import launch, shown
+
+CLAIMS = Claims("blood_pump")
 
 LENGTH, RADIUS, GAP = 22e-3, 7.8e-3, 2e-4  # l, d/2 and delta of table 1
 SHAPE, COEFFICIENT, VISCOSITY = 0.202, 0.91, 0.056  # k_m, c_w and eta
@@ -63,49 +65,22 @@ def cases() -> list[Case]:
 
 def _table() -> list[Case]:
     """Dimensionless numbers and inertias of table 1."""
-    numbers, source = dimensionless(MACHINE, LENGTH), "BG18, table 1"
+    numbers = dimensionless(MACHINE, LENGTH)
     whole = COEFFICIENT * VISCOSITY * math.pi * LENGTH**3 * numbers.time / MACHINE.transverse_inertia
     cylinder = MACHINE.mass * (3.0 * RADIUS**2 + LENGTH**2) / 12.0
     digits = "the inertias are printed with two and three digits"
     return [
-        compare("blood_pump/pi-1", source, "Pi_1 = I_z/I_x", 0.548, numbers.gyroscopic, tolerance=1e-3),
-        compare(
-            *("blood_pump/pi-2", source, "Pi_2 = m l^2/I_x", 8.714, numbers.slenderness),
-            tolerance=5e-3,
+        CLAIMS.case("pi-1", numbers.gyroscopic),
+        CLAIMS.case(
+            "pi-2",
+            numbers.slenderness,
             note=f"{digits}; with those of a uniform cylinder {MACHINE.mass * LENGTH**2 / cylinder:.4f}",
         ),
-        compare(
-            *("blood_pump/inertia-across", source, "I_x of a uniform cylinder, kg m^2", 6.9e-7, cylinder),
-            tolerance=5e-3,
-            note="the table's inertias are those of a solid cylinder of the rotor's size and mass",
-        ),
-        compare(
-            *("blood_pump/inertia-about", source, "I_z of a uniform cylinder, kg m^2"),
-            *(3.78e-7, 0.5 * MACHINE.mass * RADIUS**2),
-            tolerance=1e-3,
-        ),
-        compare(
-            *("blood_pump/pi-h", "BG18, eq. 41 and table 1", "Pi_H from its definition"),
-            *(1.48e-7, numbers.drag),
-            tolerance=0.01,
-            otherwise="erratum",
-            note="no reading of the definition gives the printed number; the drag is small either way",
-        ),
-        compare(
-            *("blood_pump/pi-h-table", source, "Pi_H from the table's formula, l^3 for r^2 l"),
-            *(1.48e-7, whole),
-            tolerance=0.01,
-            otherwise="erratum",
-            note="the table's formula lacks the square of the radius over the length, 0.126",
-        ),
-        compare(
-            *("blood_pump/force-44", "BG18, section 2"),
-            "least distance of the force from its straight line beyond half the gap, over the force",
-            *(0.44, _beyond()),
-            # Half of the last printed digit.
-            tolerance=0.005 / 0.44,
-            note="the text says more than 44 % beyond half the gap; at half of it 7/16, which rounds to 44 %",
-        ),
+        CLAIMS.case("inertia-across", cylinder),
+        CLAIMS.case("inertia-about", 0.5 * MACHINE.mass * RADIUS**2),
+        CLAIMS.case("pi-h", numbers.drag),
+        CLAIMS.case("pi-h-table", whole),
+        CLAIMS.case("force-44", _beyond(), tolerance=0.005 / 0.44),
     ]
 
 
@@ -170,46 +145,10 @@ def _equations() -> list[Case]:
     off = float(np.abs(printed / found - 1.0).max())
     share = float((PULSATION.rate(0.0) / PULSATION.mean**2).max())
     return [
-        Case(
-            name="blood_pump/equations",
-            source="BG18, eq. 21-39",
-            quantity="accelerations by the dimensionless equations as printed and by the package's",
-            printed="eq. 39 with one derivative",
-            computed=f"differ by {off:.1e} at most",
-            difference=off,
-            verdict="agrees" if off < 1e-9 else "differs",
-            note="bearings at unequal distances, so that every printed term counts",
-        ),
-        Case(
-            name="blood_pump/eq-39-order",
-            source="BG18, eq. 39",
-            quantity="order of the derivatives of alpha_2 and beta_2, which are rates already",
-            printed="second: two primes",
-            computed="first: the units need it, and eq. 45 has it",
-            difference="in words",
-            verdict="erratum",
-        ),
-        Case(
-            name="blood_pump/numbering",
-            source="BG18, sections 2 and 3",
-            quantity="numbers by which the text cites its equations",
-            printed="1 to 36",
-            computed="17 to 52: each printed number is that of the citation and 16",
-            difference="in words",
-            verdict="erratum",
-            note="one citation is wrong beyond that: the functional equations of psi_5 to psi_8 are eq. 51, "
-            "cited as 32, which would be 48",
-        ),
-        Case(
-            name="blood_pump/acceleration",
-            source="BG18, section 2",
-            quantity="rate of change of the speed over its square, 9000 +- 700 rpm at 1 Hz",
-            printed="influence infinitely small",
-            computed=share,
-            difference="in words",
-            verdict="agrees" if share < 1e-3 else "differs",
-            note="by that share the load of the unbalances turns; here it is kept",
-        ),
+        CLAIMS.case("equations", agrees=off < 1e-9, off=off, difference=off),
+        CLAIMS.case("eq-39-order"),
+        CLAIMS.case("numbering"),
+        CLAIMS.case("acceleration", share, share < 1e-3),
     ]
 
 
@@ -221,28 +160,16 @@ def _stability(loop: Loop) -> list[Case]:
     weak = closed_loop(MACHINE, control(weight=1.0), SPEED)
     growth = float(weak.poles.real.max())
     return [
-        Case(
-            name="blood_pump/poles",
-            source="BG18, eq. 47, 49, 51 and 52",
-            quantity="slow poles of the closed loop with the printed T, h, mu, 1/s",
+        CLAIMS.case(
+            "poles",
+            f"{slow.real:.2f} +- {abs(slow.imag):.2f} i",
+            abs(slow / promised + 1.0) <= 0.05,
             printed=f"-1/T_1 and -1/T_5 follow: {-promised:.2f} twice",
-            computed=f"{slow.real:.2f} +- {abs(slow.imag):.2f} i",
             difference="a pair that swings with a damping ratio of "
             f"{-slow.real / abs(slow):.3f}, for two that do not",
-            verdict="erratum" if abs(slow / promised + 1.0) > 0.05 else "agrees",
-            note="the estimate is taken off as if it were a load of the rotor; it is one of the controller, "
-            f"and what it adds is feedback. The fastest pole, {fast:.2g} 1/s, asks for coils that nobody has",
+            fast=fast,
         ),
-        Case(
-            name="blood_pump/stability",
-            source="BG18, eq. 52",
-            quantity="stability with h = 1 in place of 4000, for which mu h > 0 as well",
-            printed="mu h > 0 suffices",
-            computed=f"grows by {growth:.0f} 1/s",
-            difference="needs as well D P > mu Z",
-            verdict="erratum" if growth > 0.0 else "agrees",
-            note="Routh's condition of s^3 + D s^2 + P s + mu Z; the printed h and mu keep it",
-        ),
+        CLAIMS.case("stability", agrees=growth <= 0.0, growth=growth),
     ]
 
 
@@ -254,47 +181,24 @@ def _transients(loop: Loop) -> list[Case]:
     past = float(-place.min())
     start = integrate(MACHINE, control(), PULSATION, 0.6, place=(0.7 * GAP, 0.0, 0.0, 0.0), samples=1201)
     home, over = settling_time(start, REQUIRED), float(-start.displacement[:, 0].min()) / (0.7 * GAP)
-    source = "BG18, section 4"
     return [
-        Case(
-            name="blood_pump/transient",
-            source=source,
-            quantity="share of the largest deflection that is left 0.4 s after a constant load",
-            printed="transient time 0.4 s",
-            computed=left / peak,
-            difference=f"{100.0 * left / peak:.2f} % left",
-            verdict="agrees" if left < 0.02 * peak else "differs",
+        CLAIMS.case(
+            "transient", left / peak, left < 0.02 * peak, difference=f"{100.0 * left / peak:.2f} % left"
         ),
-        Case(
-            name="blood_pump/overshoot",
-            source=source,
-            quantity="deflection beyond the centre after a constant load over the largest",
-            printed="no oscillation, no overregulation",
-            computed=past / peak,
-            difference=f"{100.0 * past / peak:.2f} % beyond",
-            verdict="agrees" if past < 0.01 * peak else "differs",
+        CLAIMS.case(
+            "overshoot", past / peak, past < 0.01 * peak, difference=f"{100.0 * past / peak:.2f} % beyond"
         ),
-        Case(
-            name="blood_pump/accuracy",
-            source=source,
-            quantity="largest deflection under a constant load of c_m delta = 1.2 N, m",
-            printed="4 um fulfilled",
-            computed=peak,
+        CLAIMS.case(
+            "accuracy",
+            peak,
+            peak < REQUIRED,
             difference=f"4 um are kept up to {LOAD * REQUIRED / peak:.2f} N, "
             f"{LOAD * REQUIRED / peak / MACHINE.mass / 9.81:.1f} times the weight",
-            verdict="trend" if peak < REQUIRED else "differs",
-            note="the source's loads are not given",
         ),
-        Case(
-            name="blood_pump/startup",
-            source=f"{source}, fig. 6a",
-            quantity="start from 0.7 of the gap, with assumed magnets",
-            printed="comes home from the largest deflection that the safety bearings allow",
-            computed=f"within 4 um after {home:.3f} s, {100.0 * over:.0f} % beyond the centre on the way",
-            difference="in words",
-            verdict="trend" if math.isfinite(home) else "differs",
-            note="without a load the integral of the deflection must come back to 0, so the rotor must pass "
-            "the centre; where the safety bearings are is not given",
+        CLAIMS.case(
+            "startup",
+            f"within 4 um after {home:.3f} s, {100.0 * over:.0f} % beyond the centre on the way",
+            math.isfinite(home),
         ),
     ]
 
@@ -324,15 +228,11 @@ def _robustness() -> list[Case]:
     worst, most = max(slowest, key=lambda name: slowest[name]), max(shaken, key=lambda name: shaken[name])
     stable = slowest[worst] < 0.0
     return [
-        Case(
-            name="blood_pump/robustness",
-            source="BG18, section 4",
-            quantity="Pi_1, Pi_2, Pi_H, a_1, a_2, e and gamma doubled and halved, the controller unchanged",
-            printed="asymptotically stable",
-            computed=f"slowest pole {slowest[worst]:.1f} 1/s ({worst}), deflection by the unbalances at most "
+        CLAIMS.case(
+            "robustness",
+            f"slowest pole {slowest[worst]:.1f} 1/s ({worst}), deflection by the unbalances at most "
             f"{1e9 * shaken[most]:.1f} nm ({most})",
-            difference="in words",
-            verdict="agrees" if stable and shaken[most] < REQUIRED else "differs",
+            stable and shaken[most] < REQUIRED,
         )
     ]
 

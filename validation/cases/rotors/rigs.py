@@ -21,8 +21,10 @@ from meshes.chamber import Chamber
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.vector_model import deflection_lag
 from solvers.synchronous.response import critical_speed, response
-from validation.case import MEASURED, Case, Effect, shape_verdict
+from validation.case import Case, Claims, Effect
 from validation.study import data
+
+HORIZONTAL, VERTICAL = Claims("horizontal_rig"), Claims("vertical_rig")
 
 
 def horizontal_rig() -> tuple[Fill, ...]:
@@ -108,32 +110,27 @@ def _summary(name: str, what: str, angle: Array, parameters: Array, residual: Ar
     effect = Effect(
         "turn of the liquid through resonance, deg", float(np.ptp(angle)), float(turned[-1] - turned[0])
     )
-    return Case(
-        name=f"horizontal_rig/{name}",
-        source="DR18, Fig. 24",
-        quantity=f"damping ratio fitted to six angles by {what}",
-        printed=None,
-        computed=float(parameters[0]),
-        difference=f"residuals {listed} deg, root mean square {spread:.1f} deg",
-        verdict=shape_verdict(bool(np.all(np.diff(turned) > 0.0)), effect),
-        note="the damping is not given; the angles are read to 30 deg",
+    return HORIZONTAL.case(
+        "summary",
+        float(parameters[0]),
+        bool(np.all(np.diff(turned) > 0.0)),
+        name=name,
+        what=what,
+        listed=listed,
+        spread=spread,
         effect=effect,
-        origin=MEASURED,
     )
 
 
 def _points(rpm: list[float], angle: Array, residual: Array) -> list[Case]:
     return [
-        Case(
-            name=f"horizontal_rig/{at:.0f}-rpm",
-            source="DR18, Fig. 24",
-            quantity=f"angle of the liquid behind the unbalance at {at:.0f} rpm, deg",
+        HORIZONTAL.case(
+            "rpm",
+            float(given + off),
+            abs(off) <= _READING,
+            at=at,
             printed=float(given),
-            computed=float(given + off),
             difference=f"{-off:+.1f} deg",
-            verdict="agrees" if abs(off) <= _READING else "differs",
-            note="with the fitted damping ratio; agrees within half the step of the readings, 15 deg",
-            origin=MEASURED,
         )
         for at, given, off in zip(rpm, angle, residual, strict=True)
     ]
@@ -146,16 +143,7 @@ def _gravity(speed: Array) -> Case:
         kappa = (fill.chamber.radius / fill.surface_radius) ** 2
         shifts.append(np.asarray(gravity_displacement(kappa, speed, 9.81)) / fill.depth)
     largest, slowest = float(np.max(np.abs(shifts))), speed[0] / _RPM
-    return Case(
-        name="horizontal_rig/gravity",
-        source="DR18, section 8",
-        quantity="gravity's share in the liquid's angle",
-        printed="decreases the tangential component that moves the liquid",
-        computed="none in linear theory: its pull turns backwards in the drum",
-        difference=f"it moves the surface by {largest:.2f} of the mean depth at most, at {slowest:.0f} rpm",
-        verdict="differs",
-        note="neither gravity nor the liquid's own unbalance explains the residuals",
-    )
+    return HORIZONTAL.case("gravity", largest=largest, slowest=slowest)
 
 
 def vertical_cases() -> list[Case]:
@@ -170,17 +158,13 @@ def vertical_cases() -> list[Case]:
         lag = -math.degrees(answer.liquid_angle[k])
         helps = lag > 90.0 and gain[k] < 1.0
         found.append(
-            Case(
-                name=f"vertical_rig/{spin:g}-rad-s",
-                source="DR18, section 7.1",
-                quantity=f"liquid opposite the unbalance at {spin:g} rad/s",
-                printed="it compensates",
-                computed=f"{lag:.0f} deg behind the unbalance, amplitude times {gain[k]:.2f}",
+            VERTICAL.case(
+                "rad-s",
+                f"{lag:.0f} deg behind the unbalance, amplitude times {gain[k]:.2f}",
+                helps,
+                spin=spin,
                 difference="the same" if helps else "the liquid adds to the vibration here",
-                verdict=shape_verdict(helps),
-                note=f"mass, heights, damping and radius of the 30 g are assumed; critical speed with liquid "
-                f"{wet:.1f} rad/s; equilibrium compensates above it only",
-                origin=MEASURED,
+                wet=wet,
             )
         )
     return found

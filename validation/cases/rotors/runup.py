@@ -24,9 +24,11 @@ from solvers.runup.runup import RunupNumerics, run_up
 from solvers.statics.hydrostatics import optimal_volume
 from solvers.synchronous.response import response
 from solvers.whirl.edges import unstable_bands
-from validation.case import Case, Origin, compare
+from validation.case import Case, Claims
 from validation.page import Figure, Table, logarithmic, page
 from validation.study import launch, shown
+
+CLAIMS = Claims("runup")
 
 _MASS, _NATURAL, _UNBALANCE, _GRAVITY = 30.0, 25.0, 0.1, 9.81
 ROTOR = Jeffcott(_MASS, _MASS * _NATURAL**2, 2.0 * 0.06 * _MASS * _NATURAL, _UNBALANCE)
@@ -113,10 +115,7 @@ def band(volumes: Sequence[float], friction: float) -> tuple[Array, Array]:
     return low, high
 
 
-# The figures have three or four digits, and the other code's friction is 1.6 % weaker at half a litre.
-_TOLERANCE = 0.012
 _FRICTION = "the other friction brings a layer to rest at the rate k exactly, this one at k h R/A"
-_SOURCE = "another code, validation/cases/rotors/runup.py"
 
 
 def cases() -> list[Case]:
@@ -133,16 +132,12 @@ def cases() -> list[Case]:
         )
         for (kind, quantity, value), printed in zip(rows, given, strict=True):
             found.append(
-                compare(
-                    f"runup/{kind}-{name}",
-                    _SOURCE,
-                    f"{quantity}: {what}",
-                    printed,
+                CLAIMS.case(
+                    "cases",
                     value,
-                    tolerance=_TOLERANCE,
-                    origin=Origin(
-                        "second code", "run-ups written before the package had them, with its own friction"
-                    ),
+                    name=f"{kind}-{name}",
+                    quantity=f"{quantity}: {what}",
+                    printed=printed,
                     note=_FRICTION if volume else "",
                 )
             )

@@ -14,12 +14,13 @@ from solvers.rotor.rolling_bearing import Bearing, fit_bearing
 from solvers.rotor.shaft.natural import natural_frequencies
 from solvers.rotor.shaft.structure import Coordinate, Structure, compliances
 from solvers.rotor.shaft.substructures import connections, free_compliances, substructures
-from validation.case import MEASURED, Case, compare
+from validation.case import Case, Claims
+
+CLAIMS = Claims("spindle")
 
 FRAME = 33.0  # Hz, first natural frequency of the frame [DP18, figure 5c]
 # Speeds of the spindle at which each frequency of the bearing meets that of the frame, Hz [DP18, table 1].
 PRINTED = {"ftf": 85.77, "bpfo": 9.55, "bpfi": 5.96, "bsf": 16.1}
-_TABLE = "DP18, table 1"
 
 
 def cases() -> list[Case]:
@@ -32,27 +33,10 @@ def _multiples() -> list[Case]:
     turn = 2.0 * math.pi
     frame = float(natural_frequencies(_machine(), 10.0 * turn, 100.0 * turn)[0]) / turn
     found = [
-        compare(
-            f"spindle/harmonic-{k}",
-            _TABLE,
-            f"speed at which {k} times the spindle's frequency meets the frame's first natural one, Hz",
-            printed,
-            frame / k,
-            tolerance=1e-3,
-            note="examples/spindle.toml, whose joint of the frame is set so that this is 33 Hz",
-        )
+        CLAIMS.case("harmonic", frame / k, k=k, printed=printed)
         for k, printed in ((1, 33.0), (2, 16.5), (3, 11.0))
     ]
-    found.append(
-        compare(
-            "spindle/speed",
-            "DP18, section 5.2",
-            "660 rpm, as a scene would give it, Hz",
-            11.0,
-            parse("660 rpm", ANGULAR_SPEED) / turn,
-            tolerance=1e-12,
-        )
-    )
+    found.append(CLAIMS.case("speed", parse("660 rpm", ANGULAR_SPEED) / turn))
     return found
 
 
@@ -74,57 +58,24 @@ def _bearing() -> list[Case]:
     speeds = {name: FRAME / order for name, order in known.orders().items()}
     fit = fit_bearing({name: FRAME / speed for name, speed in PRINTED.items()})
     found = [
-        compare(
-            "spindle/balls",
-            _TABLE,
-            "balls of the bearing by FTF and BPFI: a whole number",
-            float(known.balls),
+        CLAIMS.case(
+            "balls",
             FRAME / PRINTED["bpfi"] / (1.0 - cage),
-            tolerance=1.5e-3,
+            printed=float(known.balls),
             note=f"half a unit of the last digit printed; the fit to all four rows has {fit.bearing.balls} "
             f"too, residual {100.0 * fit.residual_rms:.2f} %, with {fit.next_balls} balls "
             f"{100.0 * fit.next_rms:.0f} %",
         ),
-        compare(
-            "spindle/bpfi",
-            _TABLE,
-            "speed at which the inner ring's frequency meets 33 Hz, 9 balls, Hz",
-            PRINTED["bpfi"],
-            speeds["bpfi"],
-            tolerance=8.4e-4,
-            note=f"d cos(theta)/D = {known.diameter_ratio:.4f} from FTF",
-        ),
-        compare(
-            "spindle/bpfo",
-            _TABLE,
-            "speed at which the outer ring's frequency meets 33 Hz, 9 balls, Hz",
-            PRINTED["bpfo"],
-            speeds["bpfo"],
-            tolerance=5.3e-4,
-            otherwise="erratum",
-            note="the table's own formula with its own FTF; half a unit of the last digit is 0.05 %",
-        ),
-        compare(
-            "spindle/bsf",
-            _TABLE,
-            "speed at which a ball's frequency meets 33 Hz, contact angle 0, Hz",
-            PRINTED["bsf"],
-            speeds["bsf"],
-            tolerance=3.2e-3,
-        ),
+        CLAIMS.case("bpfi", speeds["bpfi"], printed=PRINTED["bpfi"], diameter_ratio=known.diameter_ratio),
+        CLAIMS.case("bpfo", speeds["bpfo"], printed=PRINTED["bpfo"]),
+        CLAIMS.case("bsf", speeds["bsf"], printed=PRINTED["bsf"]),
     ]
     for degrees in (15.0, 25.0):
         angle = math.radians(degrees)
         tilted = Bearing(known.balls, known.diameter_ratio / math.cos(angle), angle)
         found.append(
-            compare(
-                f"spindle/bsf-{degrees:.0f}-degrees",
-                _TABLE,
-                f"the same with the contact angle of {degrees:.0f} deg of an angular contact bearing, Hz",
-                PRINTED["bsf"],
-                FRAME / tilted.orders()["bsf"],
-                tolerance=3.2e-3,
-                note="the bearing 7004 is one of angular contact; the table was made with an angle near 0",
+            CLAIMS.case(
+                "bsf-degrees", FRAME / tilted.orders()["bsf"], degrees=degrees, printed=PRINTED["bsf"]
             )
         )
     return found
@@ -151,39 +102,22 @@ def _equations() -> list[Case]:
     printed = complex(found.motions[0][0, 0, 0]) / printed_housing(machine, rate)
     order = found.matrix.shape[-1]
     apart = abs(by_reactions / exact - 1.0)
-    in_place = "examples/spindle.toml, whose values are assumed"
     return [
-        Case(
-            name="spindle/matrix",
-            source="DP18, eq. 3-7 and 12-15",
-            quantity="W13 by the matrix of 8 reactions and by the exact assembly at 33 Hz",
-            printed="a matrix of 8 by 8 compliances",
-            computed=f"{order} by {order}, {len(connections(machine, omega))} reactions, {apart:.0e} apart",
-            difference=f"{apart:.0e}",
-            verdict="agrees" if order == 8 and apart < 1e-9 else "differs",
-            note=in_place,
+        CLAIMS.case(
+            "matrix",
+            f"{order} by {order}, {len(connections(machine, omega))} reactions, {apart:.0e} apart",
+            order == 8 and apart < 1e-9,
+            apart=apart,
         ),
-        Case(
-            name="spindle/eq-14",
-            source="DP18, eq. 14 and 16",
-            quantity="W13 at 33 Hz: alpha_i5 at X5 as printed; alpha_i1 as in equations 4 and 5",
+        CLAIMS.case(
+            "eq-14",
+            f"{abs(exact):.3f} at {math.degrees(cmath.phase(exact)):.0f} deg",
+            abs(printed / exact - 1.0) < 1e-6,
             printed=f"{abs(printed):.3f} at {math.degrees(cmath.phase(printed)):.0f} deg",
-            computed=f"{abs(exact):.3f} at {math.degrees(cmath.phase(exact)):.0f} deg",
             difference=f"{abs(printed / exact - 1.0):.2f}",
-            verdict="agrees" if abs(printed / exact - 1.0) < 1e-6 else "erratum",
-            note=in_place,
         ),
         _flat(machine),
-        Case(
-            name="spindle/discussion",
-            source="DP18, section 5.3",
-            quantity="range of frequency that holds the two resonances of the frame, Hz",
-            printed="up to 70, with resonances at 33 and 335",
-            computed="335 lies beyond 70",
-            difference="the two statements exclude one another",
-            verdict="erratum",
-            note="figures 10 (b) to (f) that the text names are those of figure 9; no figure 10 is there",
-        ),
+        CLAIMS.case("discussion"),
     ]
 
 
@@ -195,14 +129,4 @@ def _flat(machine: Structure) -> Case:
     ratio = answer[:, 0] / answer[:, 1]
     size, turn = np.abs(ratio), np.abs(np.degrees(np.angle(ratio))).max()
     same = size.max() / size.min() < 1.2 and turn < 5.0
-    return Case(
-        name="spindle/flat",
-        source="DP18, section 5.3 and figure 7",
-        quantity="W13 from 5 to 70 Hz",
-        printed="practically linear: the frame carries both",
-        computed=f"{size.min():.2f} to {size.max():.2f}, phase within {turn:.2f} deg",
-        difference="in words",
-        verdict="trend" if same else "differs",
-        note="examples/spindle.toml, whose values are assumed; figures 5 to 9 cannot be computed",
-        origin=MEASURED,
-    )
+    return CLAIMS.case("flat", f"{size.min():.2f} to {size.max():.2f}, phase within {turn:.2f} deg", same)

@@ -17,9 +17,11 @@ from meshes.arrays import Array
 from solvers.rotor.system import cage_speed
 from solvers.rotor.tub import Mount, Tub, Vector
 from solvers.rotor.vibration import orbit, unbalance_response
-from validation.case import MEASURED, Case, Origin, compare, shape_verdict
+from validation.case import Case, Claims
 from validation.page import Figure, page
 from validation.study import launch, shown
+
+CLAIMS = Claims("tub")
 
 # Given in table 1.
 TUB_MASS, DRUM_MASS = 48.2, 12.5  # kg
@@ -102,7 +104,6 @@ def amplitude(machine: Tub, speed: Array, coordinate: str) -> Array:
 
 
 _RPM = math.pi / 30.0
-_ASSUMED = "inertias and places of springs and dampers are assumed"
 _PLACES = np.linspace(0.0, FARTHEST, 7)
 _SPEEDS = np.linspace(30.0, 400.0, 1481) * _RPM
 
@@ -127,15 +128,8 @@ def _supercritical() -> Case:
     machine = suspended_tub()
     system = machine.system()
     found = orbit(system, unbalance_response(system, [1e4]), 0.0)
-    return compare(
-        "tub/supercritical",
-        "DG21, table 1",
-        "amplitude far above resonance, m, y_D = 0",
-        DRUM_MASS * ECCENTRICITY / (TUB_MASS + DRUM_MASS),
-        float(found.amplitude[0]),
-        tolerance=1e-3,
-        note="m_2 e/(m_1 + m_2) of the table; 3.7 mm for 1800 g mm of section 4 is an erratum",
-        origin=Origin("closed form", "centre of mass at rest far above resonance"),
+    return CLAIMS.case(
+        "supercritical", float(found.amplitude[0]), printed=DRUM_MASS * ECCENTRICITY / (TUB_MASS + DRUM_MASS)
     )
 
 
@@ -143,17 +137,11 @@ def _measured() -> Case:
     """The one amplitude that was measured, with an unbalance that cannot be the one that is stated."""
     size = 1e3 * amplitude(suspended_tub(), _SPEEDS, "z")
     share = 1800e-6 / (DRUM_MASS * ECCENTRICITY)
-    return Case(
-        name="tub/measured-amplitude",
-        source="DG21, section 4",
-        quantity="vertical amplitude with an unbalance of 1800 g mm, mm, y_D = 0; no speed is given",
-        printed="4 measured, 3.7 computed by the authors",
-        computed=f"{share * size[-1]:.2g} at {_SPEEDS[-1] / _RPM:.0f} rpm, {share * size.max():.2g} at most",
+    return CLAIMS.case(
+        "measured-amplitude",
+        f"{share * size[-1]:.2g} at {_SPEEDS[-1] / _RPM:.0f} rpm, {share * size.max():.2g} at most",
+        share * size.max() >= 3.5,
         difference=f"with the table's m_2 e it is {size[-1]:.3g} and {size.max():.3g}",
-        # No speed is given: any at which it is as large would do, to half of the digit printed.
-        verdict="agrees" if share * size.max() >= 3.5 else "differs",
-        note="the amplitude fits the table's unbalance, a hundred times the stated one; " + _ASSUMED,
-        origin=MEASURED,
     )
 
 
@@ -167,15 +155,14 @@ def _with_distance() -> list[Case]:
         size = [1e3 * float(amplitude(suspended_tub(y), _SPEEDS, coordinate).max()) for y in _PLACES]
         rises = bool(np.all(np.diff(size) > 0.0))
         found.append(
-            Case(
-                name=f"tub/{name}",
-                source="DG21, section 5 and Fig. 5",
-                quantity=f"largest {meaning}, {unit}, for y_D = 0 to 90 mm in steps of 15 mm",
-                printed="grows with y_D",
-                computed=", ".join(f"{value:.3g}" for value in size),
+            CLAIMS.case(
+                "with_distance",
+                ", ".join(f"{value:.3g}" for value in size),
+                rises,
+                name=f"{name}",
+                meaning=meaning,
+                unit=unit,
                 difference="the same" if rises else "does not grow throughout",
-                verdict=shape_verdict(rises),
-                note=_ASSUMED + "; angles beyond 100 mrad are more than linear theory can say",
             )
         )
     return found
@@ -188,26 +175,8 @@ def _springs() -> list[Case]:
     printed = (flat * out) ** 2 + (flat * math.sin(turn)) ** 2 + (up * out) ** 2
     way = direction(SPRING_ANGLE, turn, 1.0)
     return [
-        compare(
-            "tub/dg-spring-direction",
-            "DG21, below Fig. 7",
-            "(C_x^2 + C_y^2 + C_z^2)/C^2 at 75 deg, turned by 30 deg",
-            printed,
-            sum(cosine**2 for cosine in way),
-            tolerance=1e-9,
-            otherwise="erratum",
-            note="C_y = C sin(phi) fits C_x and C_z; printed is C cos(chi) sin(phi)",
-        ),
-        compare(
-            "tub/dg-spring-projection",
-            "DG21, below Fig. 7; DR18, eq. 5",
-            "stiffness of one spring at 75 deg across, over C",
-            flat,
-            flat**2,
-            tolerance=1e-9,
-            otherwise="erratum",
-            note="a stiffness is projected twice, displacement and force: c d d^T",
-        ),
+        CLAIMS.case("dg-spring-direction", sum(cosine**2 for cosine in way), printed=printed),
+        CLAIMS.case("dg-spring-projection", flat**2, printed=flat),
     ]
 
 
@@ -216,29 +185,16 @@ def _rigidity_centre() -> Case:
     shifts = np.array([0.0, 0.01, 0.02, 0.03])
     size = [1e3 * float(amplitude(suspended_tub(shift=shift), _SPEEDS, "alpha").max()) for shift in shifts]
     rises = bool(np.all(np.diff(size) > 0.0))
-    return Case(
-        name="tub/rigidity-centre",
-        source="DG21, section 5; DR18, section 2",
-        quantity="largest turn about x, mrad, for l_c = 0, 10, 20, 30 mm and y_D = 0",
-        printed="least where the rigidity centre is at the centre of gravity",
-        computed=", ".join(f"{value:.3g}" for value in size),
+    return CLAIMS.case(
+        "rigidity-centre",
+        ", ".join(f"{value:.3g}" for value in size),
+        rises,
         difference="the same" if rises else "it is not least there",
-        verdict=shape_verdict(rises),
-        note=_ASSUMED + "; the source does not say along which axis l_c lies: here along the spin axis",
     )
 
 
 def _cage() -> Case:
-    return compare(
-        "tub/dr-eq-10",
-        "DR18, eq. 10",
-        "speed of the cage over that of the shaft, ball bearing 203, contact angle 0",
-        0.5,
-        float(cage_speed(1.0, _CIRCLE, _BALL, 0.0)),
-        tolerance=0.01,
-        otherwise="erratum",
-        note="eq. 9 for beta = 0; eq. 10 forgets the balls: a cage without slip seems to lag by 24 %",
-    )
+    return CLAIMS.case("dr-eq-10", float(cage_speed(1.0, _CIRCLE, _BALL, 0.0)))
 
 
 _LINES = ("-", (0, (5, 1.5)), (0, (6, 1.5, 1, 1.5)), (0, (1, 1.2)), (0, (6, 1.5, 1, 1.5, 1, 1.5)))

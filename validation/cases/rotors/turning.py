@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 
-from validation.case import MEASURED, Case, compare
+from validation.case import Case, Claims
+
+CLAIMS = Claims("turning")
 
 
 def speed(cutting_speed: float, diameter: float) -> float:
@@ -18,37 +20,15 @@ def cases() -> list[Case]:
 
 
 def _speeds() -> list[Case]:
-    text = "the text says almost 5000, a round number"
     need = speed(500.0 / 60.0, 0.020) * 60.0
     least = speed(500.0 / 60.0, 1.0) * 60.0 / 15_000.0
     return [
-        compare(
-            "turning/300-m-min",
-            "ZSK18, section 2",
-            "speed of a workpiece of 20 mm at 300 m/min, rpm",
-            5000.0,
-            speed(300.0 / 60.0, 0.020) * 60.0,
-            tolerance=0.05,
-            note=text,
-        ),
-        Case(
-            name="turning/500-m-min",
-            source="ZSK18, section 2",
-            quantity="speed of a workpiece of 20 mm at 500 m/min, rpm",
-            printed="only specialised lathes reach it",
-            computed=need,
-            difference="in words",
-            verdict="agrees" if 6000.0 < need < 10_000.0 else "differs",
-            note="usual lathes of the list end at 6000 rpm, those named for it begin at 10 000",
-        ),
-        Case(
-            name="turning/10-mm",
-            source="ZSK18, section 2",
-            quantity="least diameter that turns at 500 m/min, of a lathe of 15 000 rpm, mm",
-            printed="lathes of 10 000 and 15 000 rpm do not reach it on less than 10 mm",
-            computed=1e3 * least,
-            difference="in words",
-            verdict="agrees" if 10.0 <= 1e3 * least < 11.0 else "differs",
+        CLAIMS.case("300-m-min", speed(300.0 / 60.0, 0.020) * 60.0),
+        CLAIMS.case("500-m-min", need, 6000.0 < need < 10_000.0),
+        CLAIMS.case(
+            "10-mm",
+            1e3 * least,
+            10.0 <= 1e3 * least < 11.0,
             note=f"10 mm need {speed(500.0 / 60.0, 0.010) * 60.0:.0f} rpm",
         ),
     ]
@@ -81,18 +61,17 @@ def _resonances() -> list[Case]:
         ratios = [single_mode_damping(hertz, off, size / amplitude) for off, size in beside.items()]
         width, gap = 2.0 * min(ratios) * hertz, min(abs(hertz - other) for other in _PEAKS if other != hertz)
         found.append(
-            Case(
-                name=f"turning/resonance-{hertz:.0f}",
-                source="ZSK18, section 5",
+            CLAIMS.case(
+                "resonance",
+                width,
+                width < gap,
+                hertz=hertz,
                 quantity=f"width at half the power of the resonance at {hertz:.0f} Hz, by the amplitudes at "
                 f"it and at {' and '.join(f'{off:.0f}' for off in beside)} Hz, Hz",
-                printed=f"one of three resonances, {gap:.0f} Hz from the next",
-                computed=width,
+                gap=gap,
                 difference=f"{width / gap:.2f} of that distance",
-                verdict="agrees" if width < gap else "differs",
                 note=f"one mode under an unbalance, damping ratio {min(ratios):.3f}, {60.0 * hertz:.0f} rpm; "
                 "the source gives neither mass nor stiffness, so the resonance itself cannot be computed",
-                origin=MEASURED,
             )
         )
     return found
@@ -100,27 +79,10 @@ def _resonances() -> list[Case]:
 
 def _contradictions() -> list[Case]:
     return [
-        Case(
-            name="turning/modulation",
-            source="ZSK18, section 5 and conclusion 3",
-            quantity="does modulating the speed at 1 to 5 Hz smooth the surface at 4500 rpm and more",
-            printed="conclusion 3: proved, as a way to the least roughness",
-            computed="section 5, lathe 1700BF30: no clear result, within one class and within the "
-            "error of the instrument",
-            difference="the two statements exclude one another",
-            verdict="erratum",
+        CLAIMS.case(
+            "modulation",
             note="only the lathe 16K20T1 shows it, Ra 1.7 to 0.8 um, at 40 m/min on 60 mm: "
             f"{speed(40.0 / 60.0, 0.060) * 60.0:.0f} rpm, not a high speed",
         ),
-        Case(
-            name="turning/amplitude",
-            source="ZSK18, section 5",
-            quantity="amplitude of the tool's vibration over the speed",
-            printed="0.005 to 0.01 mm at idle; 0.2 to 0.45 um over tool positions",
-            computed=f"a factor of {5.0 / 0.45:.0f} to {10.0 / 0.2:.0f} between two figures of one lathe",
-            difference="not explained; different quantities or units",
-            verdict="differs",
-            note="figures 7 and 9; nothing in the text relates them",
-            origin=MEASURED,
-        ),
+        CLAIMS.case("amplitude"),
     ]

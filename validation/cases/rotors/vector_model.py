@@ -11,8 +11,10 @@ from meshes.errors import InputError
 from solvers.rotor.vector_model import balance_residual, deflection_lag, unbalance_left
 from solvers.statics.hydrostatics import equilibrium
 from solvers.synchronous.response import response
-from validation.case import Case
+from validation.case import Case, Claims
 from validation.cases.rotors.rigs import horizontal_rig, horizontal_rotor
+
+CLAIMS = Claims("vector_model")
 
 _RPM = 2.0 * math.pi / 60.0
 
@@ -35,23 +37,17 @@ def cases() -> list[Case]:
     left = np.asarray(unbalance_left(angle, ratio))
     total = np.abs(rotor.unbalance + liquid * np.exp(1j * answer.liquid_angle)) / rotor.unbalance
     return [
-        Case(
-            name="vector_model/eq-24",
-            source="DR18, eq. 24",
-            quantity="largest residual of the balance of angles over 201 speeds of the solved response",
-            printed=0.0,
-            computed=float(residual.max()),
+        CLAIMS.case(
+            "eq-24",
+            float(residual.max()),
+            residual.max() < 1e-10,
             difference="rounding" if residual.max() < 1e-10 else "more than rounding",
-            verdict="agrees" if residual.max() < 1e-10 else "differs",
         ),
-        Case(
-            name="vector_model/eq-26",
-            source="DR18, eq. 26",
-            quantity="largest difference of the total unbalance over the rotor's from the solved response",
-            printed=0.0,
-            computed=float(np.max(np.abs(left - total))),
+        CLAIMS.case(
+            "eq-26",
+            float(np.max(np.abs(left - total))),
+            np.max(np.abs(left - total)) < 1e-10,
             difference="rounding" if np.max(np.abs(left - total)) < 1e-10 else "more than rounding",
-            verdict="agrees" if np.max(np.abs(left - total)) < 1e-10 else "differs",
         ),
         _printed_angle(lag, ratio, angle, speed),
     ]
@@ -65,14 +61,12 @@ def _printed_angle(lag: np.ndarray, ratio: np.ndarray, angle: np.ndarray, speed:
         printed: float | None = math.degrees(liquid_angle_as_printed(float(lag[k]), float(ratio[k])))
     except InputError:
         printed = None
-    return Case(
-        name="vector_model/eq-25",
-        source="DR18, eq. 25",
+    return CLAIMS.case(
+        "eq-25",
+        computed,
+        not (printed is None or abs(printed - computed) > 1e-6),
         quantity=f"angle of the liquid at {speed[k] / _RPM:.0f} rpm, deg",
         printed=printed,
-        computed=computed,
         difference="no real angle" if printed is None else f"{printed - computed:+.1f} deg",
-        # Both are closed forms: they agree to rounding or not at all.
-        verdict="erratum" if printed is None or abs(printed - computed) > 1e-6 else "agrees",
         note=f"the cosine lost a factor 1/k; here k = {ratio[k]:.3g}",
     )

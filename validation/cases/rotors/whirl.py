@@ -23,14 +23,12 @@ from solvers.rotor.two_plane import Support, TwoPlane
 from solvers.runup.runup import RunupNumerics
 from solvers.whirl.edges import unstable_bands
 from solvers.whirl.growth import asynchronous_growth
-from validation.case import Case, Origin, compare
+from validation.case import Case, Claims
 from validation.page import Figure, page
 from validation.whirl_in_time import Passage, large_whirl_in_time, passage, whirl_in_time
 
-_SOURCE = "Wolf's problem, scan in steps of 5e-4"
-_SCAN = Origin("scan", "characteristic equation in steps of 5e-4 of the natural frequency")
-_LINEAR = Origin("closed form", "root of the characteristic equation of small whirls")
-_BALANCE = Origin("second code", "limit cycles by Newton's method on the balance of rotor and wave")
+CLAIMS = Claims("whirl")
+
 NATURAL = 100.0  # rad/s
 _STEP, _DIGIT = 5e-4, 5e-4
 _BANDS = ((0.1, 0.1, 1.1225, 1.475), (0.5, 0.2, 0.969, 1.699))
@@ -44,19 +42,9 @@ def cases() -> list[Case]:
     for mu, depth, low, high in _BANDS:
         rotor, fill = layered_rotor(mu, depth, 0.0)
         ((band,),) = unstable_bands(rotor, [[fill]], RANGE * NATURAL)
-        for name, printed, edge in (("lower", low, band[0]), ("upper", high, band[1])):
-            found.append(
-                compare(
-                    f"whirl/mu-{mu:g}-{name}-edge",
-                    _SOURCE,
-                    f"{name} edge over the natural frequency, m_f/M = {mu:g}, h0/R = {depth:g}, no damping",
-                    printed,
-                    edge / NATURAL,
-                    tolerance=1.2 * _STEP,
-                    note="agrees within a step of the scan",
-                    origin=_SCAN,
-                )
-            )
+        for end, printed, edge in (("lower", low, band[0]), ("upper", high, band[1])):
+            at = {"mu": mu, "depth": depth, "end": end, "tolerance": 1.2 * _STEP}
+            found.append(CLAIMS.case("edge", edge / NATURAL, printed=printed, **at))
     return [*found, *_peaks(), _weak(), *_limits(), *_in_time(), *_limit_cycles(), *_run_ups()]
 
 
@@ -79,17 +67,7 @@ def _in_time() -> list[Case]:
         seen = whirl_in_time(rotor.system(), [fill], speed, law, duration, numerics)
         damped = f", damping ratio {zeta:g}, friction {rate:g} 1/s" if rate else ", no damping"
         found.append(
-            compare(
-                f"whirl/in-time-{ratio:g}",
-                "linear theory",
-                f"growth of a small whirl at {ratio:g} of the natural frequency{damped}, 1/s",
-                float(growth[0]),
-                seen.growth,
-                # What a run-up was asked to keep; 256 cells with dispersion keep it far better.
-                tolerance=0.02,
-                note="printed is the characteristic equation's root, computed the coupled long waves in time",
-                origin=_LINEAR,
-            )
+            CLAIMS.case("in-time", seen.growth, ratio=ratio, damped=damped, printed=float(growth[0]))
         )
     return found
 
@@ -115,16 +93,13 @@ def _limit_cycles() -> list[Case]:
         size = cycles.largest_stable(spin)
         seen = large_whirl_in_time(rotor, fills, spin, law, 0.7 * size)
         found.append(
-            compare(
-                f"whirl/limit-cycle-{name}",
-                "limit cycles by balance",
-                f"amplitude of the self-excited whirl at {ratio:g} times 100 rad/s, m",
-                size,
+            CLAIMS.case(
+                "limit-cycle",
                 seen.amplitude,
-                tolerance=0.01,
-                note="printed is the branch by Newton's method, computed rotor and layers in time, kicked; "
-                f"whirl speed {seen.whirl_speed:.5g} rad/s",
-                origin=_BALANCE,
+                name=f"limit-cycle-{name}",
+                ratio=ratio,
+                printed=size,
+                whirl_speed=seen.whirl_speed,
             )
         )
     return found
@@ -157,30 +132,15 @@ def _run_ups() -> list[Case]:
         speed, way = ratio * NATURAL, "down" if back else "up"
         size = branch.largest_stable(speed)
         ends = fast.at(speed, back), slow.at(speed, back)
-        found.append(
-            compare(
-                f"whirl/run-{way}-{ratio:g}",
-                "limit cycles by balance",
-                f"amplitude on the way {way} at {ratio:g} times 100 rad/s in the limit of a slow ramp, m",
-                size,
-                2.0 * ends[1] - ends[0],
-                # What is left is of second order in the lag, which is 7 % at most.
-                tolerance=0.005,
-                note="printed is the branch by Newton's method, computed a line through two run-ups",
-                origin=_BALANCE,
-            )
-        )
+        found.append(CLAIMS.case("run", 2.0 * ends[1] - ends[0], way=way, ratio=ratio, printed=size))
         apart = [abs(end / size - 1.0) for end in ends]
         found.append(
-            compare(
-                f"whirl/run-{way}-lag-{ratio:g}",
-                "limit cycles by balance",
-                f"exponent over the rate of the distance from the branch on the way {way} at {ratio:g}",
-                1.0,
+            CLAIMS.case(
+                "run-lag",
                 math.log2(apart[0] / apart[1]),
-                tolerance=0.1,
+                way=way,
+                ratio=ratio,
                 note=f"{apart[0]:.2%} at {_RATES[0]:g} rad/s^2, {apart[1]:.2%} at {_RATES[1]:g}",
-                origin=_BALANCE,
             )
         )
     return [*found, _beginning()]
@@ -196,16 +156,12 @@ def _beginning() -> Case:
     growth, _ = asynchronous_growth(rotor, [fill], (seen.speed - seen.lag)[part], BANDED)
     by_drum, _ = asynchronous_growth(rotor, [fill], seen.speed[part], BANDED)
     time = seen.time[part]
-    return compare(
-        "whirl/run-up-growth",
-        "linear theory",
-        "factor by which a small whirl grows in a run-up at 4 rad/s^2, its logarithm",
-        float(np.trapezoid(growth, time)),
+    return CLAIMS.case(
+        "run-up-growth",
         math.log(seen.amplitude[last] / seen.amplitude[first]),
-        tolerance=0.02,
+        printed=float(np.trapezoid(growth, time)),
         note="printed is the growth rate over the time at the liquid's own speed, which lags by "
         f"{seen.lag[first]:.3g} rad/s; at the drum's it would be {float(np.trapezoid(by_drum, time)):.4g}",
-        origin=_LINEAR,
     )
 
 
@@ -231,15 +187,12 @@ def growth_over_speed(zeta: float, friction: Friction = NO_FRICTION) -> Array:
 
 def _peaks() -> list[Case]:
     return [
-        compare(
-            f"whirl/peak-zeta-{zeta:g}",
-            _SOURCE,
-            f"largest growth over the natural frequency, m_f/M = h0/R = 0.1, damping ratio {zeta:g}",
-            printed,
+        CLAIMS.case(
+            "peak-zeta",
             float(growth_over_speed(zeta).max()),
-            # Half of the last digit.
+            zeta=zeta,
+            printed=printed,
             tolerance=_DIGIT / printed,
-            origin=_SCAN,
         )
         for zeta, printed in _PEAKS
     ]
@@ -249,16 +202,11 @@ def _weak() -> Case:
     """Damping of the support alone leaves every speed unstable; with laminar friction a band remains."""
     alone, both = growth_over_speed(0.05), growth_over_speed(0.05, Friction(FrictionLaw.STOKES))
     unstable = RANGE[both > 0.0]
-    return Case(
-        name="whirl/damping-alone",
-        source=_SOURCE,
-        origin=_SCAN,
-        quantity="share of unstable speeds from 0.3 to 4 natural frequencies, damping ratio 0.05, no liquid "
-        "friction",
-        printed=1.0,
-        computed=float(np.mean(alone > 0.0)),
+    return CLAIMS.case(
+        "damping-alone",
+        float(np.mean(alone > 0.0)),
+        np.all(alone > 0.0),
         difference="none" if np.all(alone > 0.0) else "some are stable",
-        verdict="agrees" if np.all(alone > 0.0) else "differs",
         note=f"smallest growth {alone.min():.2g} of the natural frequency; with the laminar friction of "
         f"water on a wall of 0.1 m at 100 rad/s unstable from {unstable[0]:.3f} to {unstable[-1]:.3f}",
     )
@@ -278,15 +226,12 @@ def _limits() -> list[Case]:
         growth, _ = asynchronous_growth(machine, [Fill(chamber, water, volume)], speed)
         largest = float(growth.max())
         found.append(
-            Case(
-                name=f"whirl/{name}",
-                source="limit",
-                origin=Origin("closed form", "nothing drives a whirl there"),
-                quantity="largest growth of a whirl, 1/s",
-                printed=0.0,
-                computed=largest,
+            CLAIMS.case(
+                "limits",
+                largest,
+                largest == 0.0,
+                name=f"{name}",
                 difference="none" if math.isclose(largest, 0.0) else f"{largest:.3g} 1/s",
-                verdict="agrees" if largest == 0.0 else "differs",
             )
         )
     return found

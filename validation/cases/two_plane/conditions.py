@@ -18,12 +18,14 @@ from solvers.rotor.balls.two_plane_balance import (
     potential_hessian,
 )
 from solvers.rotor.two_plane import TwoPlane
-from validation.case import Case
+from validation.case import Case, Claims
 from validation.cases.two_plane import damping as two_plane_damping
 from validation.cases.two_plane import layers as two_plane_layers
 from validation.cases.two_plane.machine import BALLS, LONG, RACES, SCATTERED, SHORT, bare_deflection
 from validation.page import Figure, logarithmic, page
 from validation.study import launch, shown
+
+CLAIMS = Claims("two_plane")
 
 
 @dataclass(frozen=True)
@@ -64,15 +66,8 @@ def _hessian() -> Case:
         definite = [np.linalg.eigvalsh(potential_hessian(rotor, float(w)))[0] > 0.0 for w in answer.speed]
         wrong += int(np.sum(answer.possible != np.array(definite)))
         count += answer.speed.size
-    return Case(
-        name="two_plane/potential",
-        source="FF20, eq. 32-35",
-        quantity=f"answers of the conditions that the potential's minimum contradicts, of {count}",
-        printed=0.0,
-        computed=float(wrong),
-        difference="none" if wrong == 0 else f"{wrong}",
-        verdict="agrees" if wrong == 0 else "differs",
-        note="eq. 21, 27 to 31 print the form with the other sign; eq. 34 to 37 write c for k and a for v",
+    return CLAIMS.case(
+        "potential", float(wrong), wrong == 0, count=count, difference="none" if wrong == 0 else f"{wrong}"
     )
 
 
@@ -85,15 +80,13 @@ def _special() -> Case:
         if printed >= math.sqrt(2e4 / 10.0)
         else "of eq. 37 does not hold: tilt is the lower"
     )
-    return Case(
-        name="two_plane/uncoupled",
-        source="FF20, eq. 37",
-        quantity="speed above which a rotor with k14 = 0 is balanced, rad/s",
+    return CLAIMS.case(
+        "uncoupled",
+        computed,
+        math.isclose(printed, computed, rel_tol=1e-12),
         printed=printed,
-        computed=computed,
         difference=printed / computed - 1.0,
-        verdict="agrees" if math.isclose(printed, computed, rel_tol=1e-12) else "differs",
-        note=f"the order of the limits {order}",
+        order=order,
     )
 
 
@@ -106,14 +99,14 @@ def _balls() -> list[Case]:
             said, seen = bool(answer.possible[0]), balls_in_time(rotor, speed)
             balanced = seen.left < 1e-6
             found.append(
-                Case(
-                    name=f"two_plane/balls-{name}-{speed:.0f}",
-                    source="FF20, eq. 33-35",
+                CLAIMS.case(
+                    "balls",
+                    seen.left,
+                    seen.converged and said == balanced,
+                    name=f"balls-{name}-{speed:.0f}",
                     quantity=f"{name} rotor, two ball balancers, {speed:.0f} rad/s: deflection over the bare",
                     printed="balanced" if said else "not balanced",
-                    computed=seen.left,
                     difference="none" if said == balanced else "the other way",
-                    verdict="agrees" if seen.converged and said == balanced else "differs",
                     note=answer.why(),
                 )
             )

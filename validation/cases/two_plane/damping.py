@@ -21,9 +21,11 @@ from solvers.rotor.balls.states import balanced_places, quarter_turn
 from solvers.rotor.balls.steps import advance
 from solvers.rotor.balls.two_plane_balance import dynamic_balancing, of_two_planes
 from solvers.rotor.two_plane import TwoPlane
-from validation.case import Case
+from validation.case import Case, Claims
 from validation.cases.two_plane.machine import BALLS, LONG, RACES, SCATTERED, bare_deflection
 from validation.study import launch, write
+
+CLAIMS = Claims("two_plane")
 
 DAMPINGS = (0.5, 5.0, 40.0, 8000.0)  # N s/m, of each support
 SIDES = (0.98, 1.02)  # of the edge, at which motions in time are looked at
@@ -37,7 +39,7 @@ LONG_RUNS = (
 )
 OFF = (0.2, -0.1, 0.1, 0.15)  # rad, from the balanced places
 _SMALL = 1e-8  # of the radius of a race and of a radian: size of a disturbance, whose square is nothing
-_SOURCE = "FF20, conclusion 2"
+_NOT_REACHED = "not reached: the balls creep round"
 # Growth over a run, in powers of e, and the least and the longest run, s.
 _POWERS, _LEAST, _LONGEST = 0.5, 0.3, 4.0
 
@@ -175,15 +177,14 @@ def cases() -> list[Case]:
         away = printed / speed - 1.0
         told = ", ".join(f"{each.seen:+.2g} 1/s at {each.speed:.2f}" for each in sides)
         found.append(
-            Case(
-                name=f"two_plane/damping-{damping:g}",
-                source=_SOURCE,
-                quantity=f"speed from which balls balance a long rotor, supports of {damping:g} N s/m, rad/s",
+            CLAIMS.case(
+                "damping",
+                speed,
+                damping=damping,
                 printed=printed,
-                computed=speed,
                 difference=away,
                 verdict="differs" if not confirmed else "agrees" if abs(away) <= 0.02 else "erratum",
-                note=f"in time a disturbance grows by {told}",
+                told=told,
             )
         )
     return [*found, *_long(kept())]
@@ -196,26 +197,14 @@ def _long(runs: list[dict[str, float]]) -> list[Case]:
         balanced = run["rate"] < 0.0 and run["left"] < 1.0
         # Where the state is stable and this start does not lead to it, the source is not wrong.
         stable = run["root"] < 0.0
-        rates = f"a kept run; the deflection changes by {run['rate']:.2g} 1/s, by the root {run['root']:.2g}"
-        start = "near the balanced places" if run["near"] else "scattered"
-        found.append(
-            Case(
-                name=f"two_plane/long-run-{run['damping']:g}-{run['speed']:g}"
-                + ("-near" if run["near"] else ""),
-                source=_SOURCE,
-                quantity=f"deflection over the bare one after {run['duration']:g} s, long rotor, supports of "
-                f"{run['damping']:g} N s/m, {run['speed']:g} rad/s, balls {start} at first",
-                printed="balanced",
-                computed=run["left"],
-                difference="none"
-                if balanced
-                else "not reached: the balls creep round"
-                if stable
-                else "it grows",
-                verdict="agrees" if balanced else "differs" if stable else "erratum",
-                note=rates,
-            )
-        )
+        words = {
+            "run": run,
+            "start": "near the balanced places" if run["near"] else "scattered",
+            "where": "-near" if run["near"] else "",
+            "difference": "none" if balanced else _NOT_REACHED if stable else "it grows",
+            "verdict": "agrees" if balanced else "differs" if stable else "erratum",
+        }
+        found.append(CLAIMS.case("long-run", run["left"], **words))
     return found
 
 

@@ -16,7 +16,9 @@ from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
 from solvers.rotor.vibration import unbalance_response
 from solvers.runup.machine import Ramp
 from solvers.runup.runup import RunupNumerics, run_up
-from validation.case import Case
+from validation.case import Case, Claims
+
+CLAIMS = Claims("two_plane")
 
 SUPPORTS = (Support(-0.3, 1e4, 200.0), Support(0.3, 1e4, 200.0))
 UNBALANCES = (PlaneUnbalance(-0.28, 6e-3, 0.0), PlaneUnbalance(0.28, 6e-3, 2.0))
@@ -62,15 +64,14 @@ def cases() -> list[Case]:
             run = layers_in_time(rotor, speed)
             better = bool(np.all(run.left < 1.0))
             found.append(
-                Case(
-                    name=f"two_plane/layers-{name}-{speed:g}",
-                    source="FF20, eq. 32-35",
+                CLAIMS.case(
+                    "layers",
+                    "yes" if better else "no",
+                    better == run.possible,
+                    name=f"layers-{name}-{speed:g}",
                     quantity=f"two liquid layers on a {name} rotor at {speed:g} rad/s: do both planes gain?",
                     printed="yes" if run.possible else "no",
-                    computed="yes" if better else "no",
                     difference=f"deflections {run.left[0]:.2f} and {run.left[1]:.2f} of those without liquid",
-                    verdict="agrees" if better == run.possible else "differs",
-                    note="liquid never balances to nothing: it adds full chambers to the rotor's inertia",
                 )
             )
     return found

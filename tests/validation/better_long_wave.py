@@ -1,6 +1,6 @@
 """What a better long wave would bring: errors of the force beside the exact wave, by model and by cells.
 
-`python -m validation.exact.better_long_wave` computes the tables of docs/theory/long_wave.md, in minutes, and
+`python -m tests.validation.better_long_wave` computes the tables of docs/theory/long_wave.md, in minutes, and
 keeps them in better_long_wave.json.
 """
 
@@ -18,7 +18,7 @@ from solvers.layer.state import means, ring
 from solvers.layer.step import centre, march, scratch
 from solvers.potential import steady as exact
 from solvers.potential.strip import nodes
-from validation.exact.better_steady import Model, Wave, steady
+from tests.oracles.better_steady import Model, Wave, steady
 from validation.study import launch, write
 
 KEPT = Path(__file__).with_suffix(".json")

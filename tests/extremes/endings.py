@@ -1,6 +1,6 @@
 """Commands ended by signals at random moments, and on a full disk: what they leave behind.
 
-`python -m validation.extremes.endings --trials 10` prints a table; POSIX only.
+`python -m tests.extremes.endings --trials 10` prints a table; POSIX only.
 """
 
 from __future__ import annotations

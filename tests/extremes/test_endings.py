@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from validation.extremes.endings import COMMANDS, SIGNALS, by_signal, on_a_full_disk, small_disk
+from tests.extremes.endings import COMMANDS, SIGNALS, by_signal, on_a_full_disk, small_disk
 
-TRIALS = 2  # `python -m validation.extremes.endings --trials N` makes as many as wanted
+TRIALS = 2  # `python -m tests.extremes.endings --trials N` makes as many as wanted
 
 
 @pytest.mark.slow

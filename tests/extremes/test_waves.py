@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from validation.extremes.waves import Extreme, extremes, outcome
+from tests.extremes.waves import Extreme, extremes, outcome
 
 CASES = list(extremes("long_wave"))
 

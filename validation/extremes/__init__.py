@@ -1,1 +1,0 @@
-"""The models at the ends of what may be asked: an answer with its error, or a plain no."""
