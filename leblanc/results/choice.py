@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from leblanc.core.notes import EXACT, percent
 from leblanc.core.units import TIME, with_unit
-from leblanc.results.motion.held import HELD_MODELS
+from leblanc.studies.run.motion import HELD_MODELS
 from meshes.arrays import Array, Flags, Index
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from leblanc.core.page import About
 from leblanc.scene.rows import Row, Value
-from leblanc.studies.run.answer import RunResult
+from leblanc.studies.run.answer import RunAnswer
 
 VOID = {"meta", "img", "br"}
 ONLY_IN = {"tr": {"thead", "tbody"}, "td": {"tr"}, "th": {"tr"}, "dt": {"div"}, "dd": {"div"}, "li": {"ul"}}
@@ -136,7 +136,7 @@ def check_rules(page: Page, text: str) -> None:
     assert "None" not in page.all_text.split()
 
 
-def about_record(record: RunResult) -> About:
+def about_record(record: RunAnswer) -> About:
     """What a report of a made-up record is about: the record's own list of inputs."""
     values = [(label, Value(text, (path,)).marked(record.assumed)) for label, text, path in record.inputs]
     rows = tuple(Row(label, (value,)) for label, value in values)

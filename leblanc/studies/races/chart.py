@@ -13,15 +13,15 @@ import numpy as np
 from fluid.fill import Fill
 from leblanc.core.notes import Note
 from leblanc.core.units import parse_option
-from leblanc.results.notes import balls as notes
 from leblanc.results.races.chart import BallChart, Curve
 from leblanc.scene.scene import Scene, dry_rotor
 from leblanc.scene.schema.load import SceneError
 from leblanc.scene.schema.paths import keys_of, rule_at
 from leblanc.scene.schema.rules import Quantity, Refused
+from leblanc.studies.balls import notes
+from leblanc.studies.balls.states import liquid_beside
 from leblanc.studies.models.choose import axial_gravity
 from leblanc.studies.models.validity import doubts
-from leblanc.studies.races.states import liquid_beside
 from meshes.arrays import Array
 from meshes.errors import InputError, require_positive
 from solvers.liquid_model import LiquidModel

@@ -20,8 +20,7 @@ from leblanc.core.units import (
 )
 from leblanc.results.choice import Choice, HeldCost
 from leblanc.results.motion.cycles import LargeWhirl
-from leblanc.results.motion.held import HELD_MODELS, Held
-from leblanc.results.motion.self_excited import SelfExcited
+from leblanc.studies.run.motion import HELD_MODELS, Held, SelfExcited
 from meshes.arrays import Array
 
 if TYPE_CHECKING:

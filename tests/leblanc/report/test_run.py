@@ -21,10 +21,10 @@ from leblanc.figures.drawing.page import FigureFiles
 from leblanc.report import page as report
 from leblanc.report import run as report_run
 from leblanc.results.base import FilledChamber
-from leblanc.results.motion.self_excited import SelfExcited
 from leblanc.scene.scene import load_scene
 from leblanc.studies.run import words as words
-from leblanc.studies.run.answer import RunResult
+from leblanc.studies.run.answer import RunAnswer
+from leblanc.studies.run.motion import SelfExcited
 from leblanc.studies.run.notes import OF_MODELS, RunCode
 from leblanc.studies.run.study import run_scene
 from leblanc.studies.run.words import MODELS
@@ -49,7 +49,7 @@ def figure(folder: Path, name: str, svg: str, png: bytes = PNG) -> FigureFiles:
     return files
 
 
-def page_of(record: RunResult, folder: Path, figures: Sequence[FigureFiles] = (), tolerance=None) -> Page:
+def page_of(record: RunAnswer, folder: Path, figures: Sequence[FigureFiles] = (), tolerance=None) -> Page:
     path = folder / "summary.html"
     report_run.write_run_report(replace(record, tolerance=tolerance), about_record(record), figures, path)
     return read_page(path)
@@ -89,7 +89,7 @@ def test_ranges() -> None:
     assert ranges(speed, ~holds) == "100; 400; 600 rpm"
 
 
-def quiet() -> RunResult:
+def quiet() -> RunAnswer:
     """A record of which nothing is to be said."""
     r = rig().response
     always = np.ones(201, dtype=np.bool_)
@@ -106,7 +106,7 @@ def some(first: int, last: int) -> np.ndarray:
     return mask
 
 
-def troubled() -> dict[str, tuple[RunResult, str]]:
+def troubled() -> dict[str, tuple[RunAnswer, str]]:
     """One trouble each: heading of the check, record, speeds that it must name; see `WITH`."""
     record = quiet()
     r, whirl = record.response, record.whirl
@@ -447,7 +447,7 @@ def test_unicode_survives_and_control_characters_do_not(tmp_path: Path) -> None:
     ],
     ids=["folded", "one speed", "bare", "nothing found"],
 )
-def test_extremes_give_a_page(record: RunResult, tmp_path: Path) -> None:
+def test_extremes_give_a_page(record: RunAnswer, tmp_path: Path) -> None:
     page_of(record, tmp_path)
 
 

@@ -12,11 +12,10 @@ import pytest
 import leblanc as lb
 from leblanc.cli import main
 from leblanc.report.run import held_motions
-from leblanc.results.motion.held import MOTIONS
-from leblanc.results.motion.self_excited import SelfExcited
 from leblanc.studies.run import notes as notes
 from leblanc.studies.run import words as words
-from leblanc.studies.run.answer import RunResult
+from leblanc.studies.run.answer import RunAnswer
+from leblanc.studies.run.motion import MOTIONS, SelfExcited
 from leblanc.studies.run.notes import RunCode
 from meshes.errors import InputError
 from tests.mutants import kills
@@ -26,16 +25,16 @@ from tests.oracles.records import RPM, held_rig, rig
 SOME = slice(8, 16)  # 860 to 1525 rpm: the limit cycles and two speeds more
 
 
-def held_of(result: RunResult):
+def held_of(result: RunAnswer):
     assert result.held is not None
     return result.held
 
 
-def at(result: RunResult, rpm: float) -> int:
+def at(result: RunAnswer, rpm: float) -> int:
     return int(np.argmin(np.abs(result.speed - rpm * RPM)))
 
 
-def cut(result: RunResult, rpm: float) -> RunResult:
+def cut(result: RunAnswer, rpm: float) -> RunAnswer:
     """The speeds up to one, which is then the last."""
     last = np.arange(at(result, rpm) + 1)
     held = held_of(result)

@@ -40,7 +40,7 @@ def test_peak_is_the_largest() -> None:
 
 @kills("leblanc.core.netcdf:finite", "[values.real, values.imag]", "[values.imag, values.real]")
 @kills(
-    "leblanc.studies.run.answer:RunResult.to_json",
+    "leblanc.studies.run.answer:RunAnswer.to_json",
     '"liquid_angle": finite(r.liquid_angle)',
     '"liquid_angle": finite(-r.liquid_angle)',
 )

@@ -14,7 +14,7 @@ import leblanc as lb
 from leblanc.core.files import writing
 from leblanc.core.netcdf import write_netcdf
 from leblanc.core.units import amplitude_sentence
-from leblanc.studies.run.answer import RunResult
+from leblanc.studies.run.answer import RunAnswer
 from leblanc.studies.run.words import summary
 from meshes.errors import InputError
 from tests.oracles.records import folded, record_of, response_of, rig
@@ -33,11 +33,11 @@ CONTRACT = [
 
 
 @pytest.fixture(scope="module", params=[rig, folded, lambda: rig(1)], ids=["rig", "folded", "one speed"])
-def record(request) -> RunResult:
+def record(request) -> RunAnswer:
     return request.param()
 
 
-def test_file_holds_what_was_written(record: RunResult, tmp_path: Path):
+def test_file_holds_what_was_written(record: RunAnswer, tmp_path: Path):
     path = tmp_path / "run.nc"
     write_netcdf(record.named_arrays(), path)
     r = record.response
@@ -111,7 +111,7 @@ def test_interrupted_writing_leaves_the_old_file(tmp_path: Path):
     assert list(tmp_path.iterdir()) == [path]
 
 
-def test_json_keeps_its_promise(record: RunResult):
+def test_json_keeps_its_promise(record: RunAnswer):
     found = json.loads(json.dumps(record.to_json(), allow_nan=False))
     count = record.response.speed.size
     for key in CONTRACT:

@@ -15,12 +15,11 @@ import leblanc as lb
 from fluid.fill import Fill
 from fluid.liquid import Liquid
 from leblanc.core.blocks import Table
-from leblanc.results.motion.closed_forms import ClosedForms
 from leblanc.scene.schema.load import SceneError
 from leblanc.studies.closed_forms import told
-from leblanc.studies.closed_forms.told import vector_model
+from leblanc.studies.closed_forms.answer import HEAD, ClosedForms, closed_form_rows, vector_rows
+from leblanc.studies.closed_forms.study import vector_model
 from leblanc.studies.models.choose import prepare
-from leblanc.text.closed_forms import HEAD, closed_form_rows, vector_rows
 from meshes.chamber import Chamber
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.vector_model import balance_residual
@@ -77,8 +76,8 @@ def test_balance_of_angles_over_machines(
     assert found.unbalance_left[0] == pytest.approx(total / (unbalance * mass), rel=1e-12)
 
 
-@kills("leblanc.studies.closed_forms.told:vector_model", "-answer.liquid_angle", "answer.liquid_angle")
-@kills("leblanc.studies.closed_forms.told:_nearest_balance", "abs(apart).argmin", "abs(apart).argmax")
+@kills("leblanc.studies.closed_forms.study:vector_model", "-answer.liquid_angle", "answer.liquid_angle")
+@kills("leblanc.studies.closed_forms.study:_nearest_balance", "abs(apart).argmin", "abs(apart).argmax")
 def test_angle_of_a_rotor_at_its_wet_resonance() -> None:
     """By hand: with K = (M + m_f) W^2 the deflection is U0/(i C/W): the unbalance leads by a quarter turn."""
     chamber = Chamber(0.1, 0.05)

@@ -22,7 +22,7 @@ from leblanc.studies.optimise.answers import FilledMachine, with_volumes
 from leblanc.studies.optimise.objectives import PeakOver
 from leblanc.studies.optimise.optimise import optimise_scene
 from leblanc.studies.peaks import _distinct, responses_between
-from leblanc.studies.run.answer import RunResult
+from leblanc.studies.run.answer import RunAnswer
 from leblanc.studies.run.notes import RunCode
 from leblanc.studies.run.study import run_scene
 from leblanc.studies.run.words import alts, answer, remarks, summary
@@ -40,7 +40,7 @@ def scene(name: str, count: int, **changes: Any) -> Scene:
 
 
 @cache
-def run(name: str, count: int) -> RunResult:
+def run(name: str, count: int) -> RunAnswer:
     return run_scene(scene(name, count))
 
 
@@ -153,7 +153,7 @@ def test_peak_at_an_end() -> None:
     assert "The largest amplitude lies at an end of the range of speeds." in remarks(below)
 
 
-def assert_unbounded(own: Scene) -> RunResult:
+def assert_unbounded(own: Scene) -> RunAnswer:
     """A resonance that nothing damps has no peak that could be named, and everyone says so."""
     found = run_scene(own)
     assert math.isinf(found.peak["amplitude"]) and math.isinf(found.peak_dry["amplitude"])
@@ -273,7 +273,7 @@ def test_the_largest_amplitude_is_that_of_speeds_at_which_the_answer_holds() -> 
 
 
 @cache
-def lying(name: str) -> RunResult:
+def lying(name: str) -> RunAnswer:
     return run_scene(lb.example(name).replace(LYING[name] | {"speeds.count": 12}))
 
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from leblanc.results.races.states import reported_state
 from leblanc.scene.scene import Scene, dry_rotor, require_clear
+from leblanc.studies.balls.answer import reported_state
 from leblanc.studies.models.choose import axial_gravity
 from leblanc.studies.models.liquid import synchronous_model
 from meshes.arrays import Array, Complex, Flags
