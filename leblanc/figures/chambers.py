@@ -25,9 +25,9 @@ from leblanc.figures.drawing.page import (
     style,
 )
 from leblanc.results.base import FilledChamber
+from leblanc.results.choice import HELD_MODELS
 from leblanc.results.drawn.machine import chord, rounded_down
 from leblanc.studies.run.answer import RunAnswer, peak, phase
-from leblanc.studies.run.motion import HELD_MODELS
 from leblanc.studies.run.words import alts, amplitude_place
 from meshes.arrays import Array, Complex
 from meshes.baffles import Baffles

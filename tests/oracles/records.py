@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from leblanc.results.base import FilledChamber
+from leblanc.studies.held.answer import Held
 from leblanc.studies.run import notes as run_notes
 from leblanc.studies.run.answer import RunAnswer
-from leblanc.studies.run.motion import Held
 from meshes.arrays import Array
 from solvers.synchronous.response import Response
 

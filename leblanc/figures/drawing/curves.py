@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 
 from leblanc.core.units import MM, RPM
+from leblanc.results.choice import HELD_MODELS
+from leblanc.studies.held.answer import Held
 from leblanc.studies.run.answer import RunAnswer, phase
-from leblanc.studies.run.motion import HELD_MODELS, Held
 from meshes.arrays import Array, Complex, Flags, Index
 
 Span = tuple[float, float]

@@ -12,8 +12,8 @@ import numpy as np
 from leblanc.core.answer import Result, attributes
 from leblanc.core.netcdf import NamedArrays, Variable, flags
 from leblanc.core.netcdf import variable as var
+from leblanc.studies.held.answer import MOTIONS
 from leblanc.studies.run.answer import RunAnswer
-from leblanc.studies.run.motion import MOTIONS
 from meshes.arrays import Array
 from meshes.errors import InputError
 

@@ -15,13 +15,12 @@ from leblanc.studies.balls import notes
 from leblanc.studies.balls.answer import BallsAnswer
 from leblanc.studies.balls.estimates import carried_balls, gravity_on_balls, liquid_errors
 from leblanc.studies.balls.races import RaceOfBalls
-from leblanc.studies.balls.states import liquid_beside
+from leblanc.studies.balls.states import liquid_beside, own_family
 from leblanc.studies.closed_forms.study import closed_forms
 from leblanc.studies.loads.answer import MachineLoads
 from leblanc.studies.loads.study import loaded_machine, loads_over_speed
 from leblanc.studies.models.choose import Prepared, axial_gravity, carried_from, choose_all, prepare
 from leblanc.studies.models.validity import doubts
-from leblanc.studies.races.chart import own_family
 from leblanc.studies.run import notes as response_notes
 from meshes.arrays import Array
 from meshes.errors import InputError

@@ -10,7 +10,6 @@ from leblanc.core.question import SCENE, Option, ask
 if TYPE_CHECKING:
     from leblanc.core.answer import Answer
     from leblanc.scene.scene import SceneOrPath
-    from leblanc.studies.balls.answer import BallsAnswer
     from leblanc.studies.run.answer import RunAnswer
 
 FILES = ("summary.html", "response.nc")
@@ -28,7 +27,7 @@ def run(
         bool, Option(("--cycles",)), "Find how large whirls that grow by themselves become."
     ] = False,
     folder: Path | None = None,
-) -> RunAnswer | Answer | BallsAnswer:
+) -> RunAnswer | Answer:
     """Answer of the machine at each speed. Figures, data file, report.
 
     The response at each speed; of an exciter its stuck speeds and vibration, of a rotor in magnetic bearings

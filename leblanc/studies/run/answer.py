@@ -16,12 +16,13 @@ from leblanc.core.netcdf import NamedArrays
 from leblanc.core.notes import Note, one_line
 from leblanc.core.units import amplitude_sentence
 from leblanc.results.base import FilledChamber
-from leblanc.results.choice import ModelSpan
+from leblanc.results.choice import HELD_MODELS, ModelSpan
 from leblanc.results.notes.baffles import BaffleCode
 from leblanc.studies.closed_forms.answer import HEAD, ClosedForms, closed_form_table, vector_rows
+from leblanc.studies.held.answer import MOTIONS, Held
 from leblanc.studies.loads.answer import MachineLoads, load_table
 from leblanc.studies.run import words
-from leblanc.studies.run.motion import HELD_MODELS, MOTIONS, Held, Motion, SelfExcited
+from leblanc.studies.run.motion import Motion, SelfExcited
 from leblanc.studies.run.notes import OF_MODELS, RunCode
 from meshes.arrays import Array, Complex, Flags
 from meshes.errors import InputError

@@ -17,12 +17,13 @@ from leblanc.core.question import called
 from leblanc.core.units import small_whirl_friction
 from leblanc.registry import answerer
 from leblanc.results.base import FilledChamber
-from leblanc.results.choice import Choice, model_spans
+from leblanc.results.choice import HELD_MODELS, Choice, model_spans
 from leblanc.results.notes.baffles import compartment_notes, smeared_baffles
 from leblanc.scene.inputs import input_rows
 from leblanc.scene.scene import Scene, TubRotor
 from leblanc.scene.unbalances import left_in_the_end, sheds_of
 from leblanc.studies.closed_forms.study import closed_forms
+from leblanc.studies.held.answer import Held
 from leblanc.studies.held.holding import HERE, Began, Holding
 from leblanc.studies.loads.answer import MachineLoads
 from leblanc.studies.loads.study import loaded_machine, loads_over_speed
@@ -43,7 +44,7 @@ from leblanc.studies.models.validity import doubts
 from leblanc.studies.peaks import responses_between
 from leblanc.studies.run import notes as notes
 from leblanc.studies.run.answer import RunAnswer
-from leblanc.studies.run.motion import HELD_MODELS, Held, Motion, RestMode, SelfExcited
+from leblanc.studies.run.motion import Motion, RestMode, SelfExcited
 from leblanc.studies.whirl_map import large_whirl
 from meshes.arrays import Array, Complex
 from meshes.chamber_section import liquid_of

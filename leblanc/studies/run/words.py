@@ -27,8 +27,8 @@ from leblanc.core.units import (
     unit_for,
     with_unit,
 )
-from leblanc.results.choice import ModelSpan
-from leblanc.studies.run.motion import HELD_MODELS, Held
+from leblanc.results.choice import HELD_MODELS, ModelSpan
+from leblanc.studies.held.answer import Held
 from leblanc.studies.run.notes import plane_words
 from meshes.arrays import Array, Flags, Index
 from solvers.rotor.balance_quality import GRADES, grade_name, grade_of

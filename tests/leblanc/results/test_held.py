@@ -12,10 +12,11 @@ import pytest
 import leblanc as lb
 from leblanc.cli import main
 from leblanc.report.run import held_motions
+from leblanc.studies.held.answer import MOTIONS
 from leblanc.studies.run import notes as notes
 from leblanc.studies.run import words as words
 from leblanc.studies.run.answer import RunAnswer
-from leblanc.studies.run.motion import MOTIONS, SelfExcited
+from leblanc.studies.run.motion import SelfExcited
 from leblanc.studies.run.notes import RunCode
 from meshes.errors import InputError
 from tests.mutants import kills

@@ -11,8 +11,8 @@ import pytest
 from leblanc.core.terminal import print_json
 from leblanc.figures.comparison import LOOKS
 from leblanc.results.models.comparison import Comparison, ModelAnswer
+from leblanc.studies.held.answer import Held
 from leblanc.studies.run.answer import RunAnswer
-from leblanc.studies.run.motion import Held
 from leblanc.text.explanation import comparison_head, comparison_rows, refusals
 from meshes.errors import InputError
 from tests.mutants import kills
