@@ -16,8 +16,8 @@ from fluid.fill import Fill
 from fluid.liquid import Liquid
 from leblanc.core.blocks import Table
 from leblanc.scene.schema.load import SceneError
-from leblanc.studies.closed_forms import told
-from leblanc.studies.closed_forms.answer import HEAD, ClosedForms, closed_form_rows, vector_rows
+from leblanc.studies.closed_forms import study
+from leblanc.studies.closed_forms.answer import HEAD, ClosedForms, closed_form_table, vector_rows
 from leblanc.studies.closed_forms.study import vector_model
 from leblanc.studies.models.choose import prepare
 from meshes.chamber import Chamber
@@ -32,7 +32,7 @@ WATER = Liquid("water", 998.2, 1e-6)
 
 
 def closed_forms(scene: lb.Scene) -> ClosedForms:
-    return told.closed_forms(prepare(scene))
+    return study.closed_forms(prepare(scene))
 
 
 def top() -> lb.Scene:
@@ -95,7 +95,7 @@ def test_no_unbalance_has_no_angle() -> None:
     found = lb.run(scene).vector_model
     assert found is not None
     assert np.isnan(found.ratio).all() and np.isnan(found.balance_angle).all()
-    (row,) = closed_form_rows(lb.run(scene).closed_forms)
+    (row,) = closed_form_table(lb.run(scene).closed_forms).rows
     assert "no angle balances" in row[1]
 
 
@@ -111,8 +111,8 @@ def test_conditions_of_two_planes_reach_the_command() -> None:
     short = scene.replace({"rotor.polar_inertia": 0.9})
     data = lb.explain(short).to_json()["balancing"]
     assert data["above"] is None and not any(data["possible"])
-    labels = dict(closed_form_rows(closed_forms(short)))
-    assert "not possible at any speed" in labels["balancing in two planes"]
+    labels = dict(closed_form_table(closed_forms(short)).rows)
+    assert "not possible at any speed" in labels["Balancing in two planes"]
 
 
 def test_one_plane_says_why_not() -> None:
@@ -134,7 +134,7 @@ def test_cages_of_bearings() -> None:
     np.testing.assert_allclose(first.speed, 0.5 * speed * (1.0 - 0.5 * 6.75 / 28.5), rtol=1e-14)
     assert np.isnan(first.printed).all()
     np.testing.assert_array_equal(second.printed, 0.5 * speed)
-    assert "half the shaft's" in dict(closed_form_rows(closed_forms(scene)))["cage of bearing 1"]
+    assert "half the shaft's" in dict(closed_form_table(closed_forms(scene)).rows)["Cage of bearing 1"]
     bare = scene.replace({"rotor.bearings": [{"position": -0.06}, {"position": -0.15}]})
     assert any("ball_diameter" in text for text in lb.explain(bare).not_told)
 
@@ -213,7 +213,7 @@ def test_upright_rotation_turns_where_it_is_said_to() -> None:
         assert at.upright is not None and bool(at.upright.stable[-1]) is stable
     np.testing.assert_array_equal(found.margin, found.frozen - found.surface)
     assert np.all(found.surface > 0.0)
-    text = dict(closed_form_rows(closed_forms(scene)))["upright rotation"]
+    text = dict(closed_form_table(closed_forms(scene)).rows)["Upright rotation"]
     assert text.startswith("unstable at first, turns at 444.2 rpm")
 
 

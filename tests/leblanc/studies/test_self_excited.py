@@ -15,7 +15,7 @@ from leblanc.studies.run.motion import SelfExcited
 from leblanc.studies.run.notes import RunCode
 from leblanc.studies.run.notes import self_excited as note_of
 from leblanc.studies.run.study import _thick_layers, run_scene, self_excited
-from leblanc.studies.run.words import limits
+from leblanc.studies.run.words import checks
 from meshes.arrays import Array
 from solvers.whirl import laminar
 from solvers.whirl.growth import asynchronous_growth
@@ -79,7 +79,7 @@ def test_what_is_not_known_is_not_stable(monkeypatch: pytest.MonkeyPatch) -> Non
         assert not any(low < b and high > a for a, b in answer["whirl_bands"])
     np.testing.assert_array_equal(told[1:-1], unknown[1:-1])
     assert "do not take it for stable" in note_of(result.whirl).text
-    assert "Stability not known" in [limit.label for limit in limits(result)]
+    assert "Stability not known" in [limit.label for limit in checks(result)]
     flag = result.to_dataset()["stability"]
     meaning = dict(zip(flag.attrs["flag_values"].tolist(), flag.attrs["flag_meanings"].split(), strict=True))
     assert [meaning[value] for value in flag.values.tolist()] == result.stability.tolist()
