@@ -30,65 +30,13 @@ if TYPE_CHECKING:
     from leblanc.results.races.chart import BallChart
     from leblanc.results.races.design import BallDesignResult
     from leblanc.results.races.numbers import BallExplanation
-    from leblanc.results.races.states import BallsResult
     from leblanc.results.runup import RunupResult
     from leblanc.results.sweep import SweepResult
     from leblanc.results.whirl_map import WhirlMap
-    from leblanc.studies.run.answer import RunResult
 
 SceneOrPath = Scene | str | PathLike[str]
 
 _OPTION = re.compile(r"--([a-z][a-z-]*)")
-
-
-def run(
-    scene: SceneOrPath, *, workers: int = 1, solver: str | None = None, cycles: bool = False
-) -> RunResult | Answer | BallsResult:
-    """Response and the liquid's centre of mass at each speed of a scene.
-
-    Parameters
-    ----------
-    scene : the machine, or the path of its file
-    workers : processes that hold long waves in time, where the scene asks for that; this one alone if 1. The
-        answer does not depend on it
-    solver : of py-pde, by name, that holds them, an independent check: "runge-kutta", "scipy"; the compiled
-        steps if None
-    cycles : find how large whirls that grow by themselves become, in `self_excited_amplitude`, `cycles` and
-        `folds`; it takes some seconds
-
-    Returns
-    -------
-    The response at each speed; of an exciter its stuck speeds and vibration, of a rotor in magnetic bearings
-    its poles, margins and motion, of a spindle its compliances and natural frequencies;
-    with balls in races the states in which they rest
-
-    Raises
-    ------
-    SceneError : with everything that is wrong with the file
-    InputError : the scene names a liquid model that does not know its chambers, fewer than one worker
-
-    Examples
-    --------
-    >>> import leblanc as lb
-    >>> answer = lb.run(lb.example("horizontal_rig"))
-    >>> answer.speed.shape == answer.amplitude.shape == (201,)
-    True
-    """
-    if workers < 1:
-        raise InputError("workers", workers, "1 or more")
-    machine = scene_of(scene)
-    if (address := answerer("run", machine.rotor.kind)) is not None:
-        answer: Answer = called(address)(machine)
-        return answer
-    if machine.balls:
-        from leblanc.studies.races.balls import run_balls
-
-        return run_balls(machine)
-    from leblanc.studies.held.holding import Holding
-    from leblanc.studies.run.study import run_scene
-    from solvers.held.state import COUPLED
-
-    return run_scene(machine, holding=Holding(workers, solver=solver or COUPLED), cycles=cycles)
 
 
 def explain(

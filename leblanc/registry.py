@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-# "module:function" of a scene, by kind of rotor and by question.
+# "module:function" of a scene, by kind of machine and by question.
 WINGS: dict[str, dict[str, str]] = {
+    "balls": {"run": "leblanc.studies.balls.study:run_balls"},
     "exciter": {
         "run": "leblanc.wings.exciter.study:run_exciter",
         "explain": "leblanc.wings.exciter.study:explain_exciter",
@@ -21,5 +22,5 @@ WINGS: dict[str, dict[str, str]] = {
 
 
 def answerer(question: str, kind: str) -> str | None:
-    """What answers a question about a kind of rotor; None where the core does."""
+    """What answers a question about a kind of machine; None where the core does."""
     return WINGS.get(kind, {}).get(question)

@@ -28,6 +28,9 @@ class Q:
     coordinate: bool = False  #: a scalar that the others belong to, as the one speed of an answer
     when: str = ""  #: it is left out where this attribute is None
     part: bool = False  #: a record, whose own quantities are the answer's as well
-    prefix: str = ""  #: a record, nested in the JSON, its variables named "prefix_speed"
+    #: a record, nested in the JSON; those without a `variable` named after it: "prefix_speed"
+    prefix: str = ""
     rows: str = ""  #: records along this dimension; those without a `variable` named after it: "check_speed"
     only: tuple[str, ...] = ()  #: of such a record these quantities alone
+    #: attribute of a table that is nan where there is nothing: rows of the JSON have what is there alone
+    sparse: str = ""

@@ -216,7 +216,7 @@ def test_public_names_and_results_are_described_once_with_an_example(tmp_path: P
     )
     assert len(described) == len(set(described))
     results = [member.full for member in pages.results()]
-    assert {"leblanc.core.answer.Answer", "leblanc.studies.run.answer.RunResult"} < set(results)
+    assert {"leblanc.core.answer.Answer", "leblanc.studies.run.answer.RunAnswer"} < set(results)
     assert {"leblanc.wings.exciter.answer.ExciterAnswer", "leblanc.results.races.chart.BallChart"} < set(
         results
     )

@@ -19,17 +19,7 @@ from typing import Annotated, Any
 import typer
 from typer.main import get_command
 
-from leblanc.cli import (
-    compare,
-    explain,
-    map,
-    new,
-    optimise,
-    run,
-    runup,
-    sweep,
-    view,
-)
+from leblanc.cli import compare, explain, map, new, optimise, runup, sweep, view
 from leblanc.core.answer import NotConverged
 from leblanc.core.contents import recording
 from leblanc.core.interrupts import INTERRUPTED, TERMINATED, Terminated, behind, heard, leave, said
@@ -39,15 +29,16 @@ from meshes.errors import InputError
 
 DONE, UNREAD, WRONG_INPUT, NOT_CONVERGED = 0, 1, 2, 3
 
-# Modules with one command each, a function of the module's name, in the order of the help.
-COMMANDS = (new, explain, run, compare, map, runup, optimise, sweep, view)
-QUESTIONS = (
-    "fit",
-    "layer",
-    "modes",
-    "bearing",
-    "volume",
-)  # whose command is made from the signature of their call
+# Commands in the order of the help: of some the module, a function of its name in it; those of the others are
+# made from the signature of their call.
+NAMES = (
+    *("new", "explain", "run", "compare", "fit", "map", "runup", "optimise", "sweep", "view"),
+    *("layer", "modes", "bearing", "volume"),
+)
+MODULES = {
+    module.__name__.rpartition(".")[2]: module
+    for module in (new, explain, compare, map, runup, optimise, sweep, view)
+}
 
 # The current folder may hold a stranger's files: a pickle.py is not for the processes that are started from
 # here, nor is the .numba_config.yaml to say where compiled code is kept, which numba would unpickle.
@@ -189,12 +180,11 @@ def application(wanted: str = "") -> typer.Typer:
     ) -> None:
         """Passive liquid balancers: from the free surface to the machine."""
 
-    own = {module.__name__.rpartition(".")[2]: module for module in COMMANDS} | dict.fromkeys(QUESTIONS)
-    for name in [wanted] if wanted in own else own:
-        module = own[name]
-        found.command(name)(_as_typed(_asked(name) if module is None else getattr(module, name)))
-    if wanted not in own:
-        others = {name: entry for name, entry in _announcements().items() if name not in own}
+    for name in [wanted] if wanted in NAMES else NAMES:
+        own = getattr(MODULES[name], name) if name in MODULES else _asked(name)
+        found.command(name)(_as_typed(own))
+    if wanted not in NAMES:
+        others = {name: entry for name, entry in _announcements().items() if name not in NAMES}
         for name in [wanted] if wanted in others else sorted(others):
             _add_announced(found, others[name])
     return found

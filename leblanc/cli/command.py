@@ -21,6 +21,7 @@ from leblanc.core.terminal import print_json, say, show
 from meshes.errors import InputError
 
 if TYPE_CHECKING:
+    from leblanc.core.blocks import Picture
     from leblanc.scene.scene import Scene
 
 _OUT = "Folder for the files [default: out/<scene name>]."
@@ -163,7 +164,7 @@ def write(answer: Answer, folder: Path, machine: Scene | None = None, line: str 
     if answer.data:
         write_netcdf(answer.named_arrays(), folder / answer.data)
     pictures = (block for block in flat(answer.blocks(), "page") if isinstance(block, Picture))
-    figures = {one.name: _drawn(answer, one, folder) for one in pictures}
+    figures = {one.name: drawing(answer, one, folder) for one in pictures}
     if answer.page:
         assert machine is not None
         from leblanc.scene.inputs import about
@@ -173,7 +174,8 @@ def write(answer: Answer, folder: Path, machine: Scene | None = None, line: str 
     return list(figures.values())
 
 
-def _drawn(answer: Answer, picture: Any, folder: Path) -> Any:
+def drawing(answer: Answer, picture: Picture, folder: Path) -> Any:
+    """Files of a picture of an answer, drawn."""
     from leblanc.figures.drawing.page import save
 
     return save(called(picture.draw)(answer), folder, picture.name, picture.title)

@@ -58,8 +58,8 @@ def _print_balls(answer: BallExplanation) -> None:
 def _print(answer: Explanation) -> None:
     """The explanation as text; of the liquid only where there is any."""
     from leblanc.core.notes import percent
+    from leblanc.studies.closed_forms.answer import closed_form_table
     from leblanc.studies.run.words import described
-    from leblanc.text.closed_forms import closed_form_rows
     from leblanc.text.explanation import (
         ESTIMATES,
         estimate_rows,
@@ -88,7 +88,7 @@ def _print(answer: Explanation) -> None:
         print_table(rows, ESTIMATES, indent=4)
     if answer.models:
         print_table(described(span.model for span in answer.models), indent=2)
-    told = closed_form_rows(answer.closed_forms)
+    told = [(str(row[0]), str(row[1])) for row in closed_form_table(answer.closed_forms).rows]
     told += [("not told", text) for text in answer.closed_forms.lacking]
     if told:
         print("closed forms")

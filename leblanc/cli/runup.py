@@ -11,7 +11,7 @@ from leblanc.cli.terminal.output import load, processes
 from leblanc.core.contents import results_dir
 from leblanc.core.files import require_writable
 from leblanc.core.progress import working
-from leblanc.core.terminal import print_json, print_table, say
+from leblanc.core.terminal import print_json, print_table, say, show
 
 if TYPE_CHECKING:
     from leblanc.results.runup import RunupResult
@@ -101,15 +101,13 @@ def _film(result: RunupResult, path: Path) -> None:
 def _tell(result: RunupResult, folder: Path) -> None:
     """The run as text."""
     from leblanc.core.units import amplitude_sentence
-    from leblanc.text.machine import load_table
+    from leblanc.studies.loads.answer import load_table
     from leblanc.text.runup import answer_rows, ball_rows, passage_rows
 
     print_table([*answer_rows(result), *ball_rows(result), *passage_rows(result)])
     print(amplitude_sentence(result.plane))
     if result.loads is not None:
-        head, lines = load_table(result.loads)
-        print()
-        print_table(lines, head)
+        show([load_table(result.loads)])
     for note in result.notes:
         print(f"note: {note.text}")
     print(f"Read {folder / 'runup.html'}; the data are in {folder / 'runup.nc'}")

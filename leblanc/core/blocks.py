@@ -89,6 +89,7 @@ class Picture:
     name: str  #: of its files
     title: str
     draw: str  #: "module:function" of the answer
+    alone: bool = False  #: a file only, on no page
     shown: Shown = "page"
 
 
@@ -118,6 +119,7 @@ class Section:
     title: str
     blocks: Sequence[Block]
     width: str = ""  #: of its pictures, as in "120mm"; empty: that of the page
+    screen: bool = False  #: left out where the page is printed on paper
     shown: Shown = "both"
 
 

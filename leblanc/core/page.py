@@ -174,7 +174,8 @@ def _sections(blocks: Sequence[Block], figures: Mapping[str, Any]) -> list[dict[
         if section.shown != "text":
             inner = list(_rendered(section.blocks, figures, numbers))
             if inner:
-                found.append({"title": section.title, "width": section.width, "blocks": inner})
+                look = {"title": section.title, "width": section.width, "screen": section.screen}
+                found.append(look | {"blocks": inner})
     return found
 
 
@@ -182,12 +183,15 @@ def _rendered(
     blocks: Iterable[Block], figures: Mapping[str, Any], numbers: Iterator[int]
 ) -> Iterator[dict[str, Any]]:
     """Blocks of a page as the template takes them, neighbouring pictures together; nothing for empty ones."""
-    shown = (block for block in blocks if block.shown != "text" and not isinstance(block, Headline | Section))
+    shown = [block for block in blocks if block.shown != "text" and not isinstance(block, Headline | Section)]
+    shown = [block for block in shown if not (isinstance(block, Picture) and block.alone)]
+    # Two in a row below pictures that stand beside tables.
+    layout = "two" if any(isinstance(block, Columns) and block.wide for block in shown) else "one"
     for drawn, group in groupby(shown, lambda block: isinstance(block, Picture)):
         if drawn:
             names = [one.name for one in group if isinstance(one, Picture)]
             pictures = [{"number": next(numbers), **picture(figures[name])} for name in names]
-            yield {"kind": "pictures", "pictures": pictures, "layout": "one"}
+            yield {"kind": "pictures", "pictures": pictures, "layout": layout}
         else:
             for block in group:
                 yield from _one(block, figures, numbers)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import builtins
 import cmath
 import math
 import sys
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, fields, is_dataclass, replace
+from itertools import pairwise
 from pathlib import Path
 from types import MappingProxyType
 from typing import Annotated, Any, get_args, get_origin
@@ -16,14 +16,8 @@ import numpy as np
 
 from leblanc.core.netcdf import NamedArrays, Variable, finite, flags, variable
 from leblanc.core.notes import Note
+from leblanc.core.question import Names
 from meshes.quantity import Q
-
-
-class _Names(dict[str, Any]):
-    """Names of a module; one that only a type checker imports stands for any type."""
-
-    def __missing__(self, name: str) -> Any:
-        return getattr(builtins, name, Any)
 
 
 @dataclass(frozen=True)
@@ -54,7 +48,7 @@ def _declared(kind: type) -> dict[str, _Declared]:
             if isinstance(value, property) and value.fget is not None:
                 said_of = getattr(value.fget, "__annotations__", {})  # none of what `carried` makes
                 written[name] = said_of.get("return", "")
-        names = _Names(vars(sys.modules[base.__module__]))
+        names = Names(vars(sys.modules[base.__module__]))
         for name, hint in written.items():
             said: Any = eval(hint, {}, names) if isinstance(hint, str) and "Q(" in hint else hint
             if get_origin(said) is Annotated:
@@ -145,6 +139,10 @@ def to_json(record: Any, only: Collection[str] = ()) -> dict[str, Any]:
                 found |= value.to_json() if hasattr(value, "to_json") else to_json(value)
         elif q.prefix and value is not None:
             found[key] = to_json(value, q.only)
+        elif q.sparse:
+            there = ~np.isnan(getattr(record, q.sparse))
+            each, ends = plain(value[there]), np.cumsum(there.sum(axis=1)).tolist()
+            found[key] = [each[start:end] for start, end in pairwise([0, *ends])]
         elif not q.prefix:
             found[key] = plain(value)
     return found
@@ -177,7 +175,8 @@ def _with_parts(record: Any, only: Collection[str] = ()) -> Iterator[tuple[str, 
             for name, inner, each in _with_parts(value, q.only):
                 over = tuple(f"{q.prefix}_{dim}" if dim in own else dim for dim in inner.over)
                 text = ", ".join(part for part in (q.text, inner.text) if part)
-                yield f"{q.prefix}_{name}", replace(inner, over=over, text=text), each
+                found = name if inner.variable else f"{q.prefix}_{name}"
+                yield found, replace(inner, over=over, text=text), each
         elif q.rows:
             for name, each in _declared(type(value[0])).items() if value else ():
                 if each.q.data:

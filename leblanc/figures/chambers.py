@@ -25,9 +25,9 @@ from leblanc.figures.drawing.page import (
     style,
 )
 from leblanc.results.base import FilledChamber
+from leblanc.results.choice import HELD_MODELS
 from leblanc.results.drawn.machine import chord, rounded_down
-from leblanc.results.motion.held import HELD_MODELS
-from leblanc.studies.run.answer import RunResult, peak, phase
+from leblanc.studies.run.answer import RunAnswer, peak, phase
 from leblanc.studies.run.words import alts, amplitude_place
 from meshes.arrays import Array, Complex
 from meshes.baffles import Baffles
@@ -338,7 +338,7 @@ class Views:
     left_out: int  #: number of chambers that found no room
 
 
-def chamber_figure(result: RunResult) -> Figure:
+def chamber_figure(result: RunAnswer) -> Figure:
     """Chambers as seen along the axis at the largest deflection and at the working speed."""
     views = choose_views(result)
     zero = "unbalance" if result.motion is None else result.motion.zero
@@ -378,7 +378,7 @@ def chamber_figure(result: RunResult) -> Figure:
     return figure
 
 
-def choose_views(result: RunResult) -> Views:
+def choose_views(result: RunAnswer) -> Views:
     """The chambers at the resonance peak and at the working speed, the last one.
 
     Speeds without an answer are not drawn.
@@ -415,7 +415,7 @@ def choose_views(result: RunResult) -> Views:
     return Views(drawn, instants, scales, largest, inner, bowls, left_out)
 
 
-def bend_at(result: RunResult, index: int) -> float:
+def bend_at(result: RunAnswer, index: int) -> float:
     """Growth of the squared radius of the free surface along the axis at a speed, 2 g/Omega^2, m."""
     return 2.0 * result.axial_gravity / float(result.curve.speed[index]) ** 2
 
@@ -434,12 +434,12 @@ def _scales(at: list[list[tuple[FilledChamber, complex]]], bends: list[float]) -
     return [exaggeration(chambers, *zip(*pairs, strict=True)) for pairs in of_view]
 
 
-def moved(result: RunResult, chambers: tuple[FilledChamber, ...], index: int) -> complex:
+def moved(result: RunAnswer, chambers: tuple[FilledChamber, ...], index: int) -> complex:
     """Deflection of the axis at the chambers of one drawing, m; the unbalance along the real axis."""
     return complex(result.chamber_curve[index, result.chambers.index(chambers[0])])
 
 
-def describe_scale(result: RunResult, views: Views) -> str:
+def describe_scale(result: RunAnswer, views: Views) -> str:
     """The exaggeration as text."""
     scales = views.scales[:1] if len(set(views.scales)) <= 1 else views.scales
     names = [_at_speed(result, i) if len(scales) > 1 else "" for i in views.instants]
@@ -462,11 +462,11 @@ def _times(factor: float) -> str:
     return "to scale" if factor == 1.0 else f"{TIMES}\N{NO-BREAK SPACE}{factor:g}"
 
 
-def _at_speed(result: RunResult, index: int) -> str:
+def _at_speed(result: RunAnswer, index: int) -> str:
     return f" at {in_rpm(result.curve.speed[index])}"
 
 
-def describe_view(result: RunResult, index: int) -> str:
+def describe_view(result: RunAnswer, index: int) -> str:
     """Name and speed of one view."""
     r = result.curve
     name = "Working speed" if index == r.speed.size - 1 else "Largest deflection"
@@ -474,13 +474,13 @@ def describe_view(result: RunResult, index: int) -> str:
     return text if r.in_range[index] else f"{text}\n(model out of range)"
 
 
-def more_heading_rows(result: RunResult, views: Views) -> int:
+def more_heading_rows(result: RunAnswer, views: Views) -> int:
     """Lines above the drawings besides the first."""
     out_of_range = not result.curve.in_range[views.instants].all()
     return int(len(views.drawings) > 1) + int(out_of_range)
 
 
-def describe_state(result: RunResult, index: int) -> str:
+def describe_state(result: RunAnswer, index: int) -> str:
     """Numbers of one view as text."""
     r = result.curve
     w, offset = r.deflection[index], r.liquid_offset[index]
@@ -575,7 +575,7 @@ def _draw_walls(axes: Axes, chamber: FilledChamber, centre: complex, depth_facto
             axes.plot(x, y, **look)
 
 
-def write_numbers(axes: Axes, result: RunResult, views: Views, index: int) -> None:
+def write_numbers(axes: Axes, result: RunAnswer, views: Views, index: int) -> None:
     """Heading above and numbers below the drawings of one view, from the first of them to the right."""
     middle = 0.5 * len(views.drawings)
     place = {"xycoords": "axes fraction", "textcoords": "offset points", "ha": "center"}

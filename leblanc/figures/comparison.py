@@ -22,7 +22,7 @@ from leblanc.figures.drawing.page import (
 )
 from leblanc.figures.drawing.page import save as save  # a figure is drawn and written together
 from leblanc.results.models.comparison import Comparison
-from leblanc.studies.run.answer import RunResult
+from leblanc.studies.run.answer import RunAnswer
 from leblanc.studies.run.figure import DRY, OUT_OF_RANGE, SHADE, SHARE, value_axis, wider_words
 from leblanc.studies.run.notes import plane_label
 from leblanc.text.explanation import comparison_alt
@@ -137,7 +137,7 @@ def _draw_amplitude(axes: Axes, found: Comparison, limits: Span) -> None:
     value_axis(axes, 0.0, [*lines, bare])
 
 
-def _draw_swing(axes: Axes, name: str, result: RunResult, color: object) -> None:
+def _draw_swing(axes: Axes, name: str, result: RunAnswer, color: object) -> None:
     """From the least to the largest distance over time of a motion that was held, where the two differ."""
     if result.held is None:
         return

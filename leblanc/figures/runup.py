@@ -25,9 +25,9 @@ from leblanc.figures.drawing.page import (
     save,
     style,
 )
-from leblanc.figures.machine import machine_figure
-from leblanc.results.races.balls import in_race
 from leblanc.results.runup import RunupResult
+from leblanc.studies.balls.races import in_race
+from leblanc.studies.loads.figure import machine_figure
 from leblanc.studies.run.figure import DRY, SHADE, UNSTABLE, WET
 from leblanc.studies.run.notes import plane_label
 from leblanc.text.runup import describe_model, largest, largest_dry

@@ -25,7 +25,7 @@ MODEL = (
 
 def write_chart_report(result: BallChart, about: About, figure: FigureFiles, path: Path) -> None:
     """Write the report."""
-    rows = [(limit.label, Cell(limit.where, warning=limit.failed)) for limit in limits(result)]
+    rows = [(limit.label, Cell(limit.where, warning=bool(limit.grade))) for limit in limits(result)]
     checks = table("", ("Limits of the answer", ""), rows)
     low, high = (number(float(result.speed[k]) * RPM) for k in (0, -1))
     parts = {

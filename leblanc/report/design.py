@@ -9,7 +9,6 @@ from leblanc.core.blocks import Cell
 from leblanc.core.notes import texts
 from leblanc.core.page import About, picture, render
 from leblanc.report.parts import Table, doubt, table
-from leblanc.report.run import limit_checks
 from leblanc.results.races.design import BallDesignResult
 from leblanc.text.races.design import RACE_HEAD, answer, constraint_rows, facts, limits, paste, race_rows
 
@@ -43,7 +42,8 @@ def constraints(result: BallDesignResult) -> Table:
 
 def write_design_report(result: BallDesignResult, what: About, figure: FigureFiles, path: Path) -> None:
     """Write the report."""
-    checks = limit_checks(limits(result))
+    rows = [(one.label, Cell(one.where, warning=bool(one.grade))) for one in limits(result)]
+    checks = table("", ("Limits of the answer", "at"), rows)
     parts = {
         "title": "Best balls",
         "machine": f"Objective {result.objective}: the {result.meaning}.",

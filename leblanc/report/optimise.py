@@ -14,9 +14,10 @@ from leblanc.core.notes import texts
 from leblanc.core.page import About, picture, render
 from leblanc.core.units import LENGTH, MASS, ML, VOLUME, in_rpm, number, unit_for, with_unit
 from leblanc.report.page import models, notes, why
-from leblanc.report.parts import Table, doubt, load_part, table
-from leblanc.report.run import response_checks as response_checks
+from leblanc.report.parts import Table, doubt, table
 from leblanc.results.optimum import OptimumResult
+from leblanc.studies.loads.answer import load_table
+from leblanc.studies.run import words
 from leblanc.text.optimum import amplitude_plane, answer, over_conditions, quality, shown, worst_condition
 
 if TYPE_CHECKING:
@@ -154,7 +155,9 @@ def checks(result: OptimumResult) -> Table:
         ),
     ]
     if result.response is not None:
-        rows += response_checks(result.response).rows
+        rows += [
+            (one.label, Cell(one.where, warning=bool(one.grade))) for one in words.checks(result.response)
+        ]
     return table("", ("Limits of the answer", "with the best volumes, at"), rows)
 
 
@@ -175,7 +178,7 @@ def write_optimise_report(
         "facts": table("", (), facts(result)),
         "volumes": volumes(result),
         "constraints": constraints(result),
-        "loads": load_part(loads),
+        "loads": loads and load_table(loads),
         "front": front(result),
         "conditions": conditions(result),
         "worst": None if result.robust is None else worst_condition(result.robust),

@@ -7,8 +7,6 @@ from dataclasses import dataclass
 
 from leblanc.core.blocks import Cell, Check, Grade
 from leblanc.core.page import doubt as sentence
-from leblanc.results.machine.loads import MachineLoads
-from leblanc.text.machine import load_rows, verdict
 
 
 @dataclass(frozen=True)
@@ -27,23 +25,6 @@ def table(
     """Table of texts and cells."""
     cells = tuple(tuple(cell if isinstance(cell, Cell) else Cell(cell) for cell in row) for row in rows)
     return Table(title, tuple(head), cells, sentences)
-
-
-def load_part(loads: MachineLoads | None) -> Table | None:
-    """What a machine is judged by, as one table; None where the scene asks for nothing."""
-    if loads is None:
-        return None
-    time = ("after (s)",) if loads.in_time else ()
-    rows = [
-        (
-            # A number keeps its unit beside it.
-            *(row.label, Cell(row.size.replace(" ", "\N{NO-BREAK SPACE}"), warning=row.failed), row.speed),
-            *((row.time,) if time else ()),
-            row.remark,
-        )
-        for row in load_rows(loads)
-    ]
-    return table(verdict(loads), ("Machine", "worst", "at (rpm)", *time, ""), rows)
 
 
 def doubt(checks: Table, holds: str = "") -> str:

@@ -28,9 +28,10 @@ from leblanc.core.units import (
     with_unit,
 )
 from leblanc.report.page import models, notes
-from leblanc.report.parts import Table, doubt, load_part, table
+from leblanc.report.parts import Table, doubt, table
 from leblanc.results.notes.runup import ERROR, IN_TABLES
 from leblanc.results.runup import RunupResult
+from leblanc.studies.loads.answer import load_table
 from leblanc.studies.run.answer import peak
 from leblanc.studies.run.notes import CLOSURE
 from leblanc.text.runup import answer, ball_rows, describe_model, largest_dry, rounding
@@ -249,7 +250,7 @@ def write_runup_report(result: RunupResult, what: About, figures: Sequence[Figur
         "machine": machine,
         "moments": moments(result),
         "passages": passages(result),
-        "loads": load_part(result.loads),
+        "loads": result.loads and load_table(result.loads),
         "facts": table("", (), facts(result)),
         "energy": energy(result),
         "checks": checks(result),

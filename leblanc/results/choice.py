@@ -10,11 +10,13 @@ from numpy.typing import NDArray
 
 from leblanc.core.notes import EXACT, percent
 from leblanc.core.units import TIME, with_unit
-from leblanc.results.motion.held import HELD_MODELS
 from meshes.arrays import Array, Flags, Index
 
 if TYPE_CHECKING:
     from solvers.synchronous.errors import GravityError, LinearError
+
+# Liquid models of motions held in time, with what goes round each wall, in words.
+HELD_MODELS = {"long_wave": ("long waves", "cells"), "potential": ("exact waves", "nodes")}
 
 
 @dataclass(frozen=True)

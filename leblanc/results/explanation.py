@@ -12,10 +12,10 @@ from fluid.numbers import LayerNumbers
 from leblanc.core.answer import Result, attributes, carried
 from leblanc.core.netcdf import NamedArrays, Variable, flags
 from leblanc.core.netcdf import variable as var
-from leblanc.core.quantities import plain
+from leblanc.core.quantities import named_arrays, plain, to_json
 from leblanc.results.choice import HeldCost, ModelSpan, SpeedEstimate
-from leblanc.results.motion.closed_forms import ClosedForms
-from leblanc.results.motion.tilting import RestMode
+from leblanc.studies.closed_forms.answer import ClosedForms
+from leblanc.studies.run.motion import RestMode
 
 if TYPE_CHECKING:
     pass
@@ -141,7 +141,7 @@ class Explanation(Result):
         if not self.layers:
             own["critical_speed_wet"] = None
         answer: dict[str, Any] = plain(
-            {**own, **self.closed_forms.to_json(), "not_told": list(self.closed_forms.lacking)}
+            {**own, **to_json(self.closed_forms), "not_told": list(self.closed_forms.lacking)}
         )
         return answer
 
@@ -171,7 +171,7 @@ class Explanation(Result):
                 "reason": var(span, spans["reason"], "1", "why that model"),
                 **_layer_variables(self.layers),
                 **_estimate_variables(self.estimates),
-                **self.closed_forms.variables("at"),
+                **_at(self.closed_forms),
             },
             coords={"speed": var(("end",), ends, rate, "spin speed", "first and last of the scene")},
             attrs=attributes(self, "explain", {}, ()),
@@ -242,3 +242,11 @@ def _layer_variables(layers: tuple[LayerExplanation | None, ...]) -> dict[str, V
         table = np.array(values, dtype=float).reshape(-1, 2)
         found[each.name] = var(("chamber", "end"), table, "1", each.name.replace("_", " "))
     return found
+
+
+def _at(forms: ClosedForms) -> dict[str, Variable]:
+    """Variables of closed forms over the speeds of an explanation."""
+    return {
+        name: Variable(tuple("at" if dim == "speed" else dim for dim in each.dims), each.values, each.attrs)
+        for name, each in named_arrays(forms).arrays.items()
+    }

@@ -18,7 +18,7 @@ from leblanc.core.units import LENGTH, VOLUME, in_rpm, with_unit
 from leblanc.results.base import ConstraintValue
 from leblanc.results.choice import ModelSpan
 from leblanc.results.sweep import EmulatorError
-from leblanc.studies.run.answer import RunResult
+from leblanc.studies.run.answer import RunAnswer
 from meshes.arrays import Array, Flags
 
 
@@ -335,7 +335,7 @@ class OptimumResult(Result):
     notes: tuple[Note, ...]  #: limits and findings
     #: of the machine with these volumes over the scene's speeds; None where the liquid model of the search
     #: gives no steady answer, or where it was not computed; its models are those of the search
-    response: RunResult | None = None
+    response: RunAnswer | None = None
     #: what the emulator that the search asked says of the answer; None without one
     emulator: EmulatedAnswer | None = None
     #: amplitudes over temperature and unbalance, for the objective of that name; None for any other

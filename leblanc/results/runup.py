@@ -15,12 +15,13 @@ from fluid.friction.laws import Friction
 from leblanc.core.answer import Result, attributes
 from leblanc.core.netcdf import NamedArrays, flags, variable
 from leblanc.core.notes import Note, one_line, texts
+from leblanc.core.quantities import to_json
 from leblanc.core.units import LENGTH, ZERO_TO_PEAK, friction_words, with_unit
 from leblanc.results.base import FilledChamber
 from leblanc.results.machine.keys import Loaded
-from leblanc.results.machine.loads import MachineLoads
 from leblanc.results.motion.passages import Passage, falling, pieces
-from leblanc.results.races.balls import RaceOfBalls, ball_moment, in_race
+from leblanc.studies.balls.races import RaceOfBalls, ball_moment, in_race
+from leblanc.studies.loads.answer import MachineLoads
 from leblanc.studies.run.answer import phase
 from leblanc.studies.run.notes import plane_words
 from meshes.arrays import Array, Complex, Flags
@@ -446,7 +447,7 @@ class RunupResult(Loaded, Result):
             "energy": self._energy(),
             "transfers": [asdict(transfer) | {"lost": transfer.lost} for transfer in self.transfers],
             "notes": texts(self.notes),
-            **({} if self.loads is None else self.loads.to_json()),
+            **({} if self.loads is None else to_json(self.loads)),
             **({name: getattr(self, name) for name in _BALLS} if self.races else {}),
         }
 

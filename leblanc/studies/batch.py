@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from leblanc.scene.scene import JeffcottRotor, Scene
+from leblanc.studies.balls.study import run_balls
 from leblanc.studies.models.choose import choose_all, prepare
 from leblanc.studies.models.liquid import synchronous_model
 from leblanc.studies.peaks import responses_between
-from leblanc.studies.races.balls import run_balls
 from leblanc.studies.run.answer import phase
 from leblanc.studies.run.study import run_scene
 from meshes.arrays import Array, Flags, Index

@@ -22,12 +22,11 @@ from leblanc.results.explanation import (
     SpinUp,
     WhirlOutlook,
 )
-from leblanc.results.motion.tilting import RestMode
 from leblanc.results.notes.baffles import closed_compartments
 from leblanc.results.races.numbers import BallExplanation
 from leblanc.scene.rows import baffle_words
 from leblanc.scene.scene import Runup, Scene
-from leblanc.studies.closed_forms.told import closed_forms
+from leblanc.studies.closed_forms.study import closed_forms
 from leblanc.studies.models.choose import (
     Prepared,
     balance_from,
@@ -39,6 +38,7 @@ from leblanc.studies.models.choose import (
 )
 from leblanc.studies.models.liquid import synchronous_model
 from leblanc.studies.races.numbers import ball_numbers
+from leblanc.studies.run.motion import RestMode
 from leblanc.studies.run.study import rest_modes
 from meshes.errors import InputError
 from solvers.cycles.estimate import largest_estimate

@@ -23,17 +23,17 @@ from leblanc.results.notes.runup import RunupCode
 from leblanc.results.runup import Bands, RunupFrames, RunupResult, run_faults
 from leblanc.scene.inputs import runup_rows
 from leblanc.scene.scene import JeffcottRotor, Runup, Scene, dry_rotor, jeffcott, require_clear
+from leblanc.studies.balls.study import races_shown, started_balls
 from leblanc.studies.drives import drive_of as drive_of  # asked for with a run-up
 from leblanc.studies.drives import numerics_of as numerics_of
 from leblanc.studies.drives import planned as planned
 from leblanc.studies.drives import programme_notes, rotor_in_time, unbalance_left
-from leblanc.studies.machine import loaded_machine, loads_over_time
+from leblanc.studies.loads.study import loaded_machine, loads_over_time
 from leblanc.studies.models.choose import across_gravity as across_gravity  # of a run-up, asked for with it
 from leblanc.studies.models.choose import axial_gravity, captured_speed, is_cut, prepare, ruled_out_linear
 from leblanc.studies.models.liquid import RUNUP_MODELS, runup_model
 from leblanc.studies.models.validity import doubts, require_supported
 from leblanc.studies.peaks import responses_between
-from leblanc.studies.races.balls import races_shown, started_balls
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
 from solvers.layer.records import Outcome

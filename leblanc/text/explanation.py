@@ -27,7 +27,7 @@ from leblanc.results.explanation import (
     SpinUp,
 )
 from leblanc.results.models.comparison import Comparison, ModelAnswer
-from leblanc.results.motion.tilting import RestMode
+from leblanc.studies.run.motion import RestMode
 from leblanc.studies.run.words import amplitude_place, error_words, speeds_words
 from meshes.arrays import Array
 

@@ -3,25 +3,47 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from meshes.arrays import Array, Index
 from meshes.errors import InputError
+from meshes.quantity import Q
 from solvers.roots import bracketed_root
 from solvers.rotor.system import RotorSystem
 from solvers.rotor.vibration import modes, whirl_direction
+
+_BOTH = ("spin", "mode")
 
 
 @dataclass(frozen=True)
 class Campbell:
     """Modes over spin speed, each in its own column; s speeds, n modes, c crossings."""
 
-    spin: Array  #: Omega, rising, rad/s, shape (s,)
-    frequency: Array  #: damped natural frequencies, rad/s, 0 where overdamped, shape (s, n)
-    damping_ratio: Array  #: shape (s, n)
-    direction: Array  #: of the axis' whirl, -1 against the spin to 1 with it, shape (s, n)
+    spin: Annotated[Array, Q("rad s-1", "spin speed", "of the Campbell diagram", ("spin",), json=False)]
+    #: 0 where overdamped
+    frequency: Annotated[
+        Array,
+        Q(
+            *("rad s-1", "natural frequency", "damped, without liquid", _BOTH),
+            key="campbell_frequency",
+            json=False,
+        ),
+    ]
+    damping_ratio: Annotated[
+        Array,
+        Q("1", "damping ratio", "without liquid", _BOTH, key="campbell_damping_ratio", json=False),
+    ]
+    direction: Annotated[
+        Array,
+        Q(
+            *("1", "direction of the whirl", "-1 against the spin to 1 with it", _BOTH),
+            key="campbell_direction",
+            json=False,
+        ),
+    ]
     crossing: Array  #: speeds at which a natural frequency equals the spin, rising, rad/s, shape (c,)
     crossing_direction: Array  #: direction of the whirl there, shape (c,)
     converged: NDArray[np.bool_]  #: each crossing was found to rounding, shape (c,)

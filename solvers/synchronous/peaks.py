@@ -10,10 +10,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
 from meshes.arrays import Array, Complex, Index
+from meshes.quantity import Q
 
 # Complex amplitudes of some machines at some speeds, shape (m,) each: their parts, shape (m, p).
 Answer = Callable[[Index, Array], Complex]
@@ -37,8 +39,10 @@ _SHARED = 0.5  # half widths up to which a resonance takes another one's speed f
 class Peak:
     """Largest amplitude over a range of speeds."""
 
-    speed: float  #: rad/s; nan where no amplitude is known
-    amplitude: float  #: m; infinite where it has no bound, nan where none is known
+    #: nan where no amplitude is known
+    speed: Annotated[float, Q("rad s-1", "speed of the largest amplitude")]
+    #: infinite where it has no bound, nan where none is known
+    amplitude: Annotated[float, Q("m", "largest amplitude")]
 
     @property
     def known(self) -> bool:

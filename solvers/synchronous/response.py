@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields, replace
-from typing import Any, TypeVar
+from typing import Annotated, Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 from fluid.fill import Fill, Fills
 from meshes.arrays import Array, Complex, Flags, Index
 from meshes.errors import InputError
+from meshes.quantity import Q
 from solvers.liquid_model import ROUNDING, LiquidModel, Whirls
 from solvers.roots import bracketed_root
 from solvers.rotor.jeffcott import Jeffcott, PlanarMachine
@@ -168,6 +169,9 @@ def _added_mass(
 _Value = TypeVar("_Value", bound=np.generic)
 _ASIDE = "position", "over_time"  # fields that are not one value a speed
 _NONE = complex(np.nan, np.nan)  # in tables of branches, where there are fewer
+_OVER, _EACH, _YES, _SLOW = ("speed",), ("speed", "branch"), "no yes", "against slow disturbances"
+_AXES = ("along the unbalance", "90 deg ahead of it")
+LAG = "from the unbalance, positive with the spin, a lag is negative"
 
 
 @dataclass(frozen=True)
@@ -179,22 +183,39 @@ class Response:
     positive with the spin; a lag is negative.
     """
 
-    speed: Array  #: spin speed Omega, rad/s, shape (n,)
-    #: complex deflection w of the branch reported, m, shape (n,): of the stable ones the largest, which is
-    #: where a slow run-up of this hardening system arrives and the one to design for
-    deflection: Complex
-    deflection_dry: Complex  #: the same rotor without liquid, m, shape (n,)
-    liquid_offset: Array  #: distance of the liquid's centre of mass from the rotation axis, m, shape (n,)
-    liquid_angle: Array  #: angle from the unbalance to the liquid's centre of mass, rad, shape (n,)
-    dry_patch: Flags  #: the wall is dry somewhere in at least one chamber, shape (n,)
-    #: the branch reported is stable against slow disturbances [theory: rotor, eq. 8 and 35], shape (n,)
-    stable: Flags
-    model: NDArray[np.str_]  #: name of the liquid model used, shape (n,)
-    in_range: Flags  #: the model holds there, shape (n,)
-    converged: Flags  #: every branch was found, shape (n,); with chambers in several planes, one was
-    #: all branches by rising amplitude, m, shape (n, b), nan where there are fewer
-    branch_deflection: Complex
-    branch_stable: Flags  #: their stability, shape (n, b)
+    speed: Annotated[Array, Q("rad s-1", "spin speed", "of the rotor about its axis", _OVER)]
+    #: w; of the stable branches the largest, which is where a slow run-up of this hardening system arrives
+    #: and the one to design for
+    deflection: Annotated[Complex, Q("m", "deflection of the branch reported", over=_OVER, axes=_AXES)]
+    deflection_dry: Annotated[
+        Complex, Q("m", "deflection without liquid", over=_OVER, axes=_AXES, json=False)
+    ]
+    liquid_offset: Annotated[Array, Q("m", "liquid offset", "rotation axis to centre of mass", _OVER)]
+    liquid_angle: Annotated[Array, Q("rad", "angle of the liquid's centre of mass", LAG, _OVER)]
+    dry_patch: Annotated[Flags, Q(name="dry patch", text="the wall is dry somewhere", over=_OVER, flags=_YES)]
+    #: against slow disturbances [theory: rotor, eq. 8 and 35]; an answer counts whirls as well
+    stable: Annotated[
+        Flags, Q(name="the branch reported is stable", text=f"{_SLOW} and whirls", over=_OVER, flags=_YES)
+    ]
+    model: Annotated[NDArray[np.str_], Q("1", "liquid model", "used at this speed", _OVER)]
+    in_range: Annotated[
+        Flags, Q(name="in range", text="the liquid model holds there", over=_OVER, flags=_YES)
+    ]
+    #: with chambers in several planes one branch was
+    converged: Annotated[Flags, Q(name="converged", text="every branch was found", over=_OVER, flags=_YES)]
+    #: by rising amplitude, nan where there are fewer
+    branch_deflection: Annotated[
+        Complex,
+        Q(
+            *("m", "deflection of every branch", "", _EACH, _AXES),
+            key="branches",
+            variable="branch",
+            sparse="branch_deflection",
+        ),
+    ]
+    branch_stable: Annotated[
+        Flags, Q(name="stability of every branch", over=_EACH, sparse="branch_deflection", data=False)
+    ]
     backward: Complex  #: backward part of the branch reported, and without liquid, m, shape (n,)
     backward_dry: Complex
     branch_backward: Complex  #: of all branches, m, shape (n, b)
@@ -222,19 +243,38 @@ class Response:
         return np.stack((self.deflection_dry, self.backward_dry), axis=1)
 
     @property
-    def amplitude(self) -> Array:
-        """Largest distance of the axis from the line it rests in, of the branch reported, m, shape (n,).
+    def branch(
+        self,
+    ) -> Annotated[Index, Q("1", "branch", "rank by rising amplitude", ("branch",), json=False)]:
+        return np.arange(self.branch_deflection.shape[1], dtype=np.int32)
 
-        The mean where motions were integrated in time.
-        """
+    @property
+    def branch_state(
+        self,
+    ) -> Annotated[
+        Index,
+        Q(
+            *("", "stability of every branch", _SLOW, _EACH),
+            flags="absent unstable stable",
+            variable="branch_stable",
+            json=False,
+        ),
+    ]:
+        return np.where(np.isnan(self.branch_deflection), -1, self.branch_stable)
+
+    @property
+    def amplitude(
+        self,
+    ) -> Annotated[
+        Array, Q("m", "amplitude", "of the axis about where it rests; its mean if held in time", _OVER)
+    ]:
         size = np.abs(self.parts).sum(axis=1)
         if self.over_time.size == 0:
             return np.asarray(size)
         return np.where(np.isnan(self.over_time), size, self.over_time)
 
     @property
-    def amplitude_dry(self) -> Array:
-        """Amplitude of the rotor without liquid, m, shape (n,)."""
+    def amplitude_dry(self) -> Annotated[Array, Q("m", "amplitude", "without liquid", _OVER)]:
         return np.asarray(np.abs(self.parts_dry).sum(axis=1))
 
     @property

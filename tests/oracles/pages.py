@@ -4,12 +4,17 @@ from __future__ import annotations
 
 import base64
 import math
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 
-from leblanc.core.page import About
+from leblanc.core.answer import Answer
+from leblanc.core.blocks import Block, Cell, Checks, Columns, Picture, Section, Table, flat
+from leblanc.core.page import About, write_page
+from leblanc.figures.drawing.page import FigureFiles
 from leblanc.scene.rows import Row, Value
-from leblanc.studies.run.answer import RunResult
+from leblanc.studies.run.answer import RunAnswer
 
 VOID = {"meta", "img", "br"}
 ONLY_IN = {"tr": {"thead", "tbody"}, "td": {"tr"}, "th": {"tr"}, "dt": {"div"}, "dd": {"div"}, "li": {"ul"}}
@@ -136,7 +141,7 @@ def check_rules(page: Page, text: str) -> None:
     assert "None" not in page.all_text.split()
 
 
-def about_record(record: RunResult) -> About:
+def about_record(record: RunAnswer) -> About:
     """What a report of a made-up record is about: the record's own list of inputs."""
     values = [(label, Value(text, (path,)).marked(record.assumed)) for label, text, path in record.inputs]
     rows = tuple(Row(label, (value,)) for label, value in values)
@@ -156,3 +161,32 @@ def printed(value: float) -> str:
     if "e" not in text and "." in text:
         text = text.rstrip("0").rstrip(".")
     return text.replace("-", "\N{MINUS SIGN}")
+
+
+def rows_of(answer: Answer) -> dict[str, str]:
+    """First cell of every row and check that an answer shows, and the second."""
+    found: dict[str, str] = {}
+    for block in (*flat(answer.blocks(), "page"), *flat(answer.blocks(), "text")):
+        if isinstance(block, Checks):
+            found |= {one.label: one.where for one in block.rows}
+        elif isinstance(block, Table):
+            texts = [[cell.text if isinstance(cell, Cell) else cell for cell in row] for row in block.rows]
+            found |= {row[0]: row[1] for row in texts if len(row) > 1}
+    return found
+
+
+def write_page_of(answer: Answer, what: About, figures: Sequence[FigureFiles], path: Path) -> None:
+    """Page of an answer with those of its pictures that there are."""
+    files = {one.name: one for one in figures}
+    write_page(answer.title, tuple(_drawn(answer.blocks(), set(files))), what, files, path)
+
+
+def _drawn(blocks: Iterable[Block], names: set[str]) -> Iterator[Block]:
+    for block in blocks:
+        if isinstance(block, Columns):
+            left, right = (tuple(_drawn(side, names)) for side in (block.left, block.right))
+            yield replace(block, left=left, right=right)
+        elif isinstance(block, Section):
+            yield replace(block, blocks=tuple(_drawn(block.blocks, names)))
+        elif not isinstance(block, Picture) or block.name in names:
+            yield block

@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from leblanc.results.base import FilledChamber
-from leblanc.results.motion.held import Held
+from leblanc.studies.held.answer import Held
 from leblanc.studies.run import notes as run_notes
-from leblanc.studies.run.answer import RunResult
+from leblanc.studies.run.answer import RunAnswer
 from meshes.arrays import Array
 from solvers.synchronous.response import Response
 
@@ -60,8 +60,8 @@ def response_of(speed: Array, added: float = ADDED, depth: float = 1.24e-3) -> R
     )
 
 
-def record_of(response: Response, **changes: object) -> RunResult:
-    record = RunResult(
+def record_of(response: Response, **changes: object) -> RunAnswer:
+    record = RunAnswer(
         name="Horizontal rig",
         source="DR18, section 7.2",
         assumed=("rotor.mass", "rotor.damping_ratio", "chambers.0.height"),
@@ -95,12 +95,12 @@ def record_of(response: Response, **changes: object) -> RunResult:
     return replace(record, **changes)  # type: ignore[arg-type]
 
 
-def rig(count: int = 201, start: float = 100.0, stop: float = 2000.0) -> RunResult:
+def rig(count: int = 201, start: float = 100.0, stop: float = 2000.0) -> RunAnswer:
     """A horizontal rig whose liquid is captured from 350 rpm on."""
     return record_of(response_of(np.linspace(start, stop, count) * RPM))
 
 
-def folded(count: int = 241, follow: str = "low") -> RunResult:
+def folded(count: int = 241, follow: str = "low") -> RunAnswer:
     """A lightly damped machine whose thin layer saturates: up to three branches at one speed.
 
     Reported is the lowest or, as in a run-up, the highest of them.
@@ -149,7 +149,7 @@ def folded(count: int = 241, follow: str = "low") -> RunResult:
     )
 
 
-def held_rig(count: int = 21, at: slice = slice(None)) -> RunResult:
+def held_rig(count: int = 21, at: slice = slice(None)) -> RunAnswer:
     """The rig held in time from 100 to 2000 rpm: calm, but for three speeds of limit cycles and one lost.
 
     With 21 speeds, 95 rpm apart: not settled at 195 rpm, limit cycles from 1145 to 1335 rpm and, on the way
@@ -193,7 +193,7 @@ def held_rig(count: int = 21, at: slice = slice(None)) -> RunResult:
     return replace(plain, response=response, held=held, error_estimate=error, tolerance=1e-3)
 
 
-def nothing_found() -> RunResult:
+def nothing_found() -> RunAnswer:
     r = rig(50).response
     empty = {
         name: np.full_like(getattr(r, name), np.nan)
@@ -202,7 +202,7 @@ def nothing_found() -> RunResult:
     return record_of(replace(r, **empty, converged=~r.converged))
 
 
-def not_converged_in_the_fold() -> RunResult:
+def not_converged_in_the_fold() -> RunAnswer:
     record = folded()
     r = record.response
     w, branches, converged = r.deflection.copy(), r.branch_deflection.copy(), r.converged.copy()
@@ -210,7 +210,7 @@ def not_converged_in_the_fold() -> RunResult:
     return replace(record, response=replace(r, deflection=w, branch_deflection=branches, converged=converged))
 
 
-def scaled(factor: float) -> RunResult:
+def scaled(factor: float) -> RunAnswer:
     r = rig(50).response
     lengths = {
         name: getattr(r, name) * factor
@@ -219,29 +219,29 @@ def scaled(factor: float) -> RunResult:
     return record_of(replace(r, **lengths))
 
 
-def everywhere() -> RunResult:
+def everywhere() -> RunAnswer:
     r = rig(50).response
     always = np.ones(50, dtype=np.bool_)
     return record_of(replace(r, dry_patch=always, in_range=~always, stable=~always))
 
 
-def awkward_texts() -> RunResult:
+def awkward_texts() -> RunAnswer:
     name = "<b>$x_1^{$</b> \N{CJK UNIFIED IDEOGRAPH-6D17} \x07\n" + "W" * 300
     return replace(rig(20), name=name, assumed=tuple(f"chambers.{i}.height" for i in range(40)))
 
 
-def many_chambers() -> RunResult:
+def many_chambers() -> RunAnswer:
     sizes = (0.1, 0.09, 0.08, 0.07, 0.06)
     return replace(
         rig(20), chambers=tuple(FilledChamber(R, 0.0, 0.04, 1e-4, "water", R - 0.01) for R in sizes)
     )
 
 
-def out_of_range_with_many_chambers() -> RunResult:
+def out_of_range_with_many_chambers() -> RunAnswer:
     return replace(everywhere(), chambers=many_chambers().chambers)
 
 
-def undamped() -> RunResult:
+def undamped() -> RunAnswer:
     """Infinite amplitude at one of the speeds."""
     r = rig(50).response
     w, branches = r.deflection.copy(), r.branch_deflection.copy()
@@ -249,18 +249,18 @@ def undamped() -> RunResult:
     return record_of(replace(r, deflection=w, deflection_dry=w, branch_deflection=branches))
 
 
-def full_annulus() -> RunResult:
+def full_annulus() -> RunAnswer:
     return replace(rig(20), chambers=(FilledChamber(0.065, 0.02, 0.02, 1e-4, "water", 0.02),))
 
 
-def no_liquid() -> RunResult:
+def no_liquid() -> RunAnswer:
     r = rig(20).response
     return record_of(
         replace(r, liquid_offset=0.0 * r.speed), chambers=(FilledChamber(0.065, 0, 0.02, 0, "water", 0.065),)
     )
 
 
-EXTREMES: dict[str, Callable[[], RunResult]] = {
+EXTREMES: dict[str, Callable[[], RunAnswer]] = {
     "rig": rig,
     "folded": folded,
     "one speed": lambda: rig(1, 1200.0, 1200.0),

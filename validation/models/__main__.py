@@ -11,7 +11,7 @@ from leblanc.scene.examples import example
 from leblanc.scene.scene import Scene
 from leblanc.studies.compare import compare_models
 from leblanc.studies.held.holding import Holding, cores
-from leblanc.studies.run.answer import RunResult
+from leblanc.studies.run.answer import RunAnswer
 from solvers.synchronous.response import distance
 from validation.models import ModelRow, ModelTable, keep
 from validation.study import launch
@@ -63,12 +63,12 @@ def _once(scene: Scene, model: str) -> ModelAnswer:
     return answer
 
 
-def _estimate(result: RunResult) -> np.ndarray:
+def _estimate(result: RunAnswer) -> np.ndarray:
     found = result.error_estimate
     return np.full(result.speed.shape, np.nan) if found is None else found
 
 
-def row_of(model: str, cells: int | None, answer: ModelAnswer, reference: RunResult | None) -> ModelRow:
+def row_of(model: str, cells: int | None, answer: ModelAnswer, reference: RunAnswer | None) -> ModelRow:
     """What the table says of an answer beside the best one."""
     result = answer.result
     if result is None or reference is None:

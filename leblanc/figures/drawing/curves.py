@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 
 from leblanc.core.units import MM, RPM
-from leblanc.results.motion.held import HELD_MODELS, Held
-from leblanc.studies.run.answer import RunResult, phase
+from leblanc.results.choice import HELD_MODELS
+from leblanc.studies.held.answer import Held
+from leblanc.studies.run.answer import RunAnswer, phase
 from meshes.arrays import Array, Complex, Flags, Index
 
 Span = tuple[float, float]
@@ -158,7 +159,7 @@ def _reported(branches: Complex, deflection: Complex, chain: Index) -> Index:
     return number
 
 
-def prepare(result: RunResult) -> Curves:
+def prepare(result: RunAnswer) -> Curves:
     """Curves of a study, ready for drawing."""
     r = result.curve
     order = np.argsort(r.speed, kind="stable")
@@ -203,7 +204,7 @@ def prepare(result: RunResult) -> Curves:
     )
 
 
-def _over_time(result: RunResult) -> tuple[Array, Array]:
+def _over_time(result: RunAnswer) -> tuple[Array, Array]:
     """Least and largest amplitude on the curve, mm, nan where no motion was held, shape (p,).
 
     At speeds between those asked for their shares of the mean are interpolated: there only the mean is kept.
@@ -222,7 +223,7 @@ def _over_time(result: RunResult) -> tuple[Array, Array]:
     return least, largest
 
 
-def _held_curves(result: RunResult, held: Held) -> HeldCurves:
+def _held_curves(result: RunAnswer, held: Held) -> HeldCurves:
     """Motions held in time, ready for drawing."""
     order = np.argsort(result.speed, kind="stable")
     mean, apart, drawn = result.amplitude[order], held.hysteresis[order], held.at[order]

@@ -29,7 +29,7 @@ from numpy.typing import ArrayLike
 from leblanc.core.files import writing
 from leblanc.core.notes import one_line
 from leblanc.core.units import LENGTH, MASS, RPM, VOLUME, unit_for, units_of
-from leblanc.studies.run.answer import RunResult
+from leblanc.studies.run.answer import RunAnswer
 from meshes.arrays import Complex
 from meshes.errors import InputError
 
@@ -356,14 +356,14 @@ def _player() -> str:
     return str(matplotlib.rcParams["animation.ffmpeg_path"]) if own else "ffmpeg"
 
 
-def caption(result: RunResult, text: str) -> Caption:
+def caption(result: RunAnswer, text: str) -> Caption:
     """What the figure shows, the scene, the model and the values it assumes."""
     assumed = ", ".join(map(one_line, result.assumed)) or "nothing"
     model = ", ".join(result.models_used)
     return Caption(text, f"Scene: {one_line(result.name)}. Liquid model: {model}. Assumed: {assumed}.")
 
 
-def zero_of(result: RunResult) -> str:
+def zero_of(result: RunAnswer) -> str:
     """What angles count from."""
     motion = result.motion
     return "the unbalance" if motion is None or motion.zero == "unbalance" else motion.zero

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from fluid.fill import Fill
 from leblanc.results.drawn.machine import DrawnRace, Liquid, MachineParts, Scale
-from leblanc.results.races.states import BallsResult
+from leblanc.studies.balls.answer import BallsAnswer
 from meshes.arrays import Array, Complex
 
 
@@ -14,7 +14,7 @@ from meshes.arrays import Array, Complex
 class BallView:
     """A machine with balls at some speeds; s speeds, c chambers, N balls. All in the drum frame."""
 
-    result: BallsResult  #: what `run` says of them
+    result: BallsAnswer  #: what `run` says of them
     fills: tuple[Fill, ...]  #: chambers with liquid, then a ring without any for each race; their middles, m
     places: tuple[float, ...]
     moved: bool  #: some are drawn apart although the scene gives them one plane

@@ -19,7 +19,7 @@ from meshes.liquid_section import LiquidSection
 
 if TYPE_CHECKING:
     from leblanc.results.runup import RunupFrames, RunupResult
-    from leblanc.studies.run.answer import RunResult
+    from leblanc.studies.run.answer import RunAnswer
 
 LARGEST_FACTOR = 1e6  # of a depth as drawn
 FILLED = 0.55  # deepest place as drawn over the room between the walls
@@ -255,7 +255,7 @@ class MachineParts:
 class MachineMotion:
     """A machine at some speeds; s speeds, c chambers. Angles count from the unbalance, in the drum frame."""
 
-    response: RunResult  #: what `run` says of them
+    response: RunAnswer  #: what `run` says of them
     fills: tuple[Fill, ...]  #: the chambers with their liquid
     places: tuple[float, ...]  #: middle of each chamber along the axis as it is drawn, m
     moved: bool  #: some of them are drawn apart although the scene gives them one plane

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from typing import Any
 
-from leblanc.results.machine.loads import MachineLoads
+from leblanc.core.quantities import to_json
+from leblanc.studies.loads.answer import MachineLoads
 
 
 def told(name: str) -> Any:
     """A key of the JSON of the loads as an attribute of the result."""
 
     def value(result: Any) -> Any:
-        found = None if result.loads is None else result.loads.to_json()
+        found = None if result.loads is None else to_json(result.loads)
         if found is None or name not in found:
             raise AttributeError(name)
         return found[name]

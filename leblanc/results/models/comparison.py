@@ -12,8 +12,8 @@ import numpy as np
 from leblanc.core.answer import Result, attributes
 from leblanc.core.netcdf import NamedArrays, Variable, flags
 from leblanc.core.netcdf import variable as var
-from leblanc.results.motion.held import MOTIONS
-from leblanc.studies.run.answer import RunResult
+from leblanc.studies.held.answer import MOTIONS
+from leblanc.studies.run.answer import RunAnswer
 from meshes.arrays import Array
 from meshes.errors import InputError
 
@@ -27,7 +27,7 @@ _OVER_SPEED = (
 )  # fmt: skip
 
 
-def _estimates(result: RunResult) -> Array:
+def _estimates(result: RunAnswer) -> Array:
     """Estimated error at each speed; nan where there is none."""
     found = result.error_estimate
     return np.full(result.speed.shape, np.nan) if found is None else found
@@ -56,7 +56,7 @@ class ModelAnswer:
     model: str  #: its name, as a scene has it
     reason: str  #: why it does not answer; empty where it does
     cpu_time: float | None  #: processor time that the answer took, s; None where there is none
-    result: RunResult | None  #: the answer; None where there is none
+    result: RunAnswer | None  #: the answer; None where there is none
 
     @property
     def answered(self) -> bool:
@@ -129,7 +129,7 @@ class Comparison(Result):
         return tuple(answer.model for answer in self.answers)
 
     @property
-    def results(self) -> dict[str, RunResult]:
+    def results(self) -> dict[str, RunAnswer]:
         """The answers that there are, by the name of their model."""
         return {answer.model: answer.result for answer in self.answers if answer.result is not None}
 
@@ -141,12 +141,12 @@ class Comparison(Result):
     @property
     def speed(self) -> Array:
         """Spin speed, rad/s, shape (n,)."""
-        return self.results[self.reference].speed
+        return self.results[self.reference].response.speed
 
     @property
     def amplitude_dry(self) -> Array:
         """Amplitude of the rotor without liquid, m, shape (n,)."""
-        return self.results[self.reference].amplitude_dry
+        return self.results[self.reference].response.amplitude_dry
 
     def difference(self, model: str) -> Array:
         """Amplitude of a model less that of the reference, over the reference's largest, shape (n,).
@@ -199,7 +199,7 @@ class Comparison(Result):
         each, over = ("model",), ("model", "speed")
         answered = np.array([answer.answered for answer in self.answers])
 
-        def table(take: Callable[[RunResult], Array]) -> Array:
+        def table(take: Callable[[RunAnswer], Array]) -> Array:
             nothing = np.full(self.speed.shape, np.nan)
             return np.stack(
                 [nothing if answer.result is None else take(answer.result) for answer in self.answers]

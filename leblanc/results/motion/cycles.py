@@ -4,17 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 
-from leblanc.core.netcdf import Variable, finite, flags
+from leblanc.core.netcdf import Variable, flags
 from leblanc.core.netcdf import variable as var
 from meshes.arrays import Array, Flags
+from meshes.quantity import Q
 
 if TYPE_CHECKING:
     from solvers.cycles.cycles import Branch
 
+_OVER = ("speed",)
 # Of the spin: the long waves' profile of the flow does not describe a layer that lags more.
 FAST_LAG = 1.0 / 3.0
 DEEP = 0.9  # of the layer's depth: whirls beyond that lay walls dry, or come near to it
@@ -97,32 +99,30 @@ class LargeWhirl:
     """How large the self-excited whirl becomes that comes on top of the response to the unbalance."""
 
     branches: tuple[Branch, ...]  #: of limit cycles, without unbalance
-    #: of the first chamber's axis in the largest stable whirl, m, 0 where there is none, nan where a small
-    #: whirl grows and none was found that it grows to, shape (n,)
-    amplitude: Array
-    whirl_speed: Array  #: of that whirl in space, rad/s, nan where there is none, shape (n,)
+    #: in the largest stable whirl, 0 where there is none, nan where a small whirl grows and none was found
+    #: that it grows to
+    amplitude: Annotated[
+        Array,
+        Q(
+            *("m", "amplitude of self-excited whirl", "of the first chamber's axis", _OVER),
+            key="self_excited_amplitude",
+        ),
+    ]
+    #: nan where there is none
+    whirl_speed: Annotated[
+        Array, Q("rad s-1", "speed of self-excited whirl", "in space", _OVER, key="self_excited_whirl_speed")
+    ]
     #: a small whirl does not grow there: a kick starts this one or a run-up carries it, shape (n,)
     kicked: Flags
     reason: str = ""  #: why there are none, or what is not among them; empty if nothing is to be said
 
     @property
-    def cycles(self) -> list[dict[str, Any]]:
-        """As `cycle_rows` has them."""
+    def cycles(self) -> Annotated[list[dict[str, Any]], Q(text="limit cycles along their branches")]:
         return cycle_rows(self.branches)
 
     @property
-    def folds(self) -> list[dict[str, Any]]:
-        """As `fold_rows` has them."""
+    def folds(self) -> Annotated[list[dict[str, Any]], Q(text="where branches turn back in speed")]:
         return fold_rows(self.branches)
-
-    def to_json(self) -> dict[str, Any]:
-        """The largest whirl at each speed, and the branches."""
-        return {
-            "self_excited_amplitude": finite(self.amplitude),
-            "self_excited_whirl_speed": finite(self.whirl_speed),
-            "cycles": self.cycles,
-            "folds": self.folds,
-        }
 
     def variables(self) -> dict[str, Variable]:
         """Arrays over `speed`, `cycle` and `fold`."""

@@ -13,7 +13,7 @@ from leblanc.core.netcdf import NamedArrays
 from leblanc.core.netcdf import variable as var
 from leblanc.core.notes import Note, texts
 from leblanc.results.base import ConstraintValue, number_or_none
-from leblanc.results.races.states import BallsResult
+from leblanc.studies.balls.answer import BallsAnswer
 from meshes.arrays import Array
 
 
@@ -91,7 +91,7 @@ class BallDesignResult(Result):
     evaluations: int  #: designs judged
     tried: TriedDesigns  #: all of them
     volume: Array  #: of liquid in each chamber, which stays, m^3
-    response: BallsResult  #: what `run` says of the best balls
+    response: BallsAnswer  #: what `run` says of the best balls
     interrupted: bool  #: from the keyboard; the best of what was tried until then
     notes: tuple[Note, ...] = field(default_factory=tuple)  #: of the search
 

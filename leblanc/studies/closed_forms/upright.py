@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from leblanc.results.motion.closed_forms import Upright
 from leblanc.scene.scene import Scene, TwoPlaneRotor
+from leblanc.studies.closed_forms.answer import Upright
 from meshes.arrays import Array
 from solvers.statics.upright import Top, sign_changes, upright_margin
 

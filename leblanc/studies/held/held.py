@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fluid.whirl import covering_speed
+from leblanc.core.progress import update
 from leblanc.results.choice import Choice
-from leblanc.results.motion.held import Held
+from leblanc.studies.held.answer import Held
 from leblanc.studies.held.holding import Began, Holding
 from leblanc.studies.held.store import FOLDER, kept
 from leblanc.studies.held.whirls import wave_errors
@@ -34,7 +35,6 @@ def hold_answer(
     choice: Choice,
     began: Began,
     holding: Holding,
-    progress: Callable[[str], object] = lambda _: None,
 ) -> tuple[Choice, Response, Response, Held, dict[float, HeldState]]:
     """The answer of a machine with the wave held in time where that is wanted.
 
@@ -53,7 +53,8 @@ def hold_answer(
     def told(count: int) -> None:
         nonlocal done
         done += count
-        progress(f"waves held in time, {done} of {total} speeds" if done <= total else "waves carried on")
+        what = f"waves held in time, {done} of {total} speeds" if done <= total else "waves carried on"
+        update(what=what)
 
     told(0)
     found = hold_speeds(machine, steady.at(order), growth, holding, told)

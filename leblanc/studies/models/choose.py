@@ -16,8 +16,7 @@ from fluid.pool import balance_speed, pool_of
 from fluid.waves import capture_speed
 from fluid.whirl import covering_speed
 from leblanc.core.notes import percent
-from leblanc.results.choice import Choice, HeldCost
-from leblanc.results.motion.held import HELD_MODELS
+from leblanc.results.choice import HELD_MODELS, Choice, HeldCost
 from leblanc.scene.scene import Scene, dry_rotor, require_no_balls
 from leblanc.studies.models.liquid import RUNUP_MODELS, synchronous_model
 from leblanc.studies.models.validity import require_supported

@@ -14,7 +14,7 @@ import numpy as np
 from leblanc.core.units import LENGTH, over_rpm, with_unit
 from leblanc.scene.scene import Scene, Speeds
 from leblanc.scene.tasks import LOADS, Optimisation
-from leblanc.studies.machine import loaded_machine, steady_power
+from leblanc.studies.loads.study import loaded_machine, steady_power
 from leblanc.studies.optimise.answers import FilledMachine, with_volumes
 from leblanc.studies.optimise.constraints import Constraint
 from leblanc.studies.optimise.passages import Passages, WorstLoads

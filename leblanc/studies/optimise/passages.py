@@ -54,7 +54,7 @@ class Passages:
 
     def _one(self, volumes: Array) -> Passage:
         from leblanc.studies.drives import rotor_in_time
-        from leblanc.studies.machine import loaded_machine, loads_over_time
+        from leblanc.studies.loads.study import loaded_machine, loads_over_time
         from solvers.runup.runup import run_up
 
         filled = with_volumes(self.scene, volumes)

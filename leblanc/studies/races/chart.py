@@ -6,26 +6,21 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import NamedTuple
 
 import numpy as np
 
-from fluid.fill import Fill
 from leblanc.core.notes import Note
 from leblanc.core.units import parse_option
-from leblanc.results.notes import balls as notes
 from leblanc.results.races.chart import BallChart, Curve
 from leblanc.scene.scene import Scene, dry_rotor
 from leblanc.scene.schema.load import SceneError
 from leblanc.scene.schema.paths import keys_of, rule_at
 from leblanc.scene.schema.rules import Quantity, Refused
-from leblanc.studies.models.choose import axial_gravity
+from leblanc.studies.balls import notes
+from leblanc.studies.balls.states import Parts, liquid_beside, machine_at, own_family, parts_of
 from leblanc.studies.models.validity import doubts
-from leblanc.studies.races.states import liquid_beside
 from meshes.arrays import Array
-from meshes.errors import InputError, require_positive
-from solvers.liquid_model import LiquidModel
-from solvers.rotor.balls.balancers import BallRace
+from meshes.errors import InputError
 from solvers.rotor.balls.charts import (
     Edge,
     Family,
@@ -37,8 +32,6 @@ from solvers.rotor.balls.charts import (
     stable_bands,
 )
 from solvers.rotor.balls.states import turning
-from solvers.rotor.system import RotorSystem
-from solvers.synchronous.balls import in_step
 
 VALUES, SPEEDS = 31, 61
 FEWEST, MOST = 2, 1000  # values or speeds of a chart
@@ -199,51 +192,22 @@ def _curve(edge: Edge, log: bool) -> Curve:
     return Curve(edge.kind.name.lower(), edge.first, value, edge.frequency, ends)
 
 
-class _Parts(NamedTuple):
-    """Dry rotor, races, liquid, gravity along the axis and the model of the liquid."""
-
-    system: RotorSystem
-    races: tuple[BallRace, ...]
-    fills: tuple[Fill, ...]
-    gravity: float
-    model: LiquidModel
-
-
-def _parts(scene: Scene) -> _Parts:
-    races = tuple(race.race() for race in scene.balls)
-    return _Parts(
-        dry_rotor(scene).system(), races, scene.fills, axial_gravity(scene), liquid_beside(scene)[1]
-    )
-
-
-def _machine(parts: _Parts, speed: float) -> Machine:
-    """At a speed, with the liquid in step [theory: races, eq. 8]."""
-    require_positive("speed", speed)  # a curve that is followed may lead out of the chart
-    return Machine(in_step(parts.system, parts.fills, speed, parts.gravity, parts.model), parts.races, speed)
-
-
-def own_family(scene: Scene) -> Family:
-    """The scene's machine at each speed, as it stands."""
-    own = _parts(scene)
-    return lambda speed, _: _machine(own, speed)
-
-
 def _family(scene: Scene, varied: _Varied, log: bool) -> Family:
     """The scene's machine at each speed and value, or logarithm of one."""
 
     @lru_cache(maxsize=_KEPT)
-    def parts(at: float) -> _Parts:
+    def parts(at: float) -> Parts:
         value = math.exp(at) if log else at
         changes = {path: value * share for path, share in zip(varied.paths, varied.shares, strict=True)}
         try:
-            return _parts(scene.replace(changes))
+            return parts_of(scene.replace(changes))
         except SceneError as error:
             fault = error.faults[0]
             where = f"{varied.paths[0]} at {value:g}"
             allowed = f"such that {fault.field} is {fault.allowed}"
             raise InputError("--over", where, allowed) from None
 
-    return lambda speed, at: _machine(parts(at), speed)
+    return lambda speed, at: machine_at(parts(at), speed)
 
 
 def _told(family: Family, total: int, progress: Callable[[int, int], None] | None) -> Family:

@@ -12,7 +12,7 @@ from leblanc.results.races.numbers import BallExplanation, RaceNumbers
 from leblanc.scene.races import BallRace
 from leblanc.scene.scene import Scene, TwoPlaneRotor, dry_rotor, require_clear
 from leblanc.scene.unbalances import unbalances_of
-from leblanc.studies.races.states import worst_states
+from leblanc.studies.balls.states import worst_states
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
 from solvers.rotor.balls.states import RotorWithBalls, balancing_shares, turning

@@ -38,13 +38,13 @@ from leblanc.figures.drawing.page import (
     style,
     zero_of,
 )
-from leblanc.figures.machine import machine_figure
-from leblanc.studies.run.answer import RunResult
+from leblanc.studies.loads.figure import machine_figure
+from leblanc.studies.run.answer import RunAnswer
 from leblanc.studies.run.notes import plane_label
 from leblanc.studies.run.words import alts, amplitude_place
 from meshes.arrays import Array, Flags
 
-Draw = Callable[[Any, Curves, RunResult], None]
+Draw = Callable[[Any, Curves, RunAnswer], None]
 
 FRAME = Frame(left=0.72, top=0.46, between=0.12, below=0.42)
 SHARE = 0.52  # of the height of a panel that two have each, the whole range and the resonances below it
@@ -80,7 +80,7 @@ STYLES = (
 )
 
 
-def write_figures(result: RunResult, directory: Path) -> tuple[FigureFiles, ...]:
+def write_figures(result: RunAnswer, directory: Path) -> tuple[FigureFiles, ...]:
     """Draw all figures of a study and write each as PNG and SVG.
 
     One result gives the same files byte for byte, as long as the version of matplotlib stays the same.
@@ -100,13 +100,13 @@ def write_figures(result: RunResult, directory: Path) -> tuple[FigureFiles, ...]
     return tuple(save(draw(result), directory, name, title) for name, title, draw in figures)
 
 
-def loads_figure(result: RunResult) -> Figure:
+def loads_figure(result: RunAnswer) -> Figure:
     """Clearances, forces under the feet, margin against walking and torque over speed."""
     assert result.loads is not None
     return machine_figure(result.loads, lambda text: caption(result, text))
 
 
-def amplitude_figure(result: RunResult) -> Figure:
+def amplitude_figure(result: RunAnswer) -> Figure:
     """Amplitude over speed with and without liquid; one curve of a machine without chambers."""
     text = "Amplitude of the deflection."
     if result.motion is not None:
@@ -122,7 +122,7 @@ def amplitude_figure(result: RunResult) -> Figure:
     return _over_speed(result, "amplitude", panels, text)
 
 
-def liquid_figure(result: RunResult) -> Figure:
+def liquid_figure(result: RunAnswer) -> Figure:
     """Distance and angle of the liquid's centre of mass over speed."""
     panels = [(1.55, draw_offset), (1.55, draw_angle)]
     text = f"Centre of mass of the liquid: distance from the rotation axis, angle from {zero_of(result)}."
@@ -134,13 +134,13 @@ def liquid_figure(result: RunResult) -> Figure:
     return _over_speed(result, "liquid", panels, text)
 
 
-def phase_figure(result: RunResult) -> Figure:
+def phase_figure(result: RunAnswer) -> Figure:
     """Phase of the deflection over speed with and without liquid."""
     text = f"Angle from {zero_of(result)} to the deflection; a lag is negative."
     return _over_speed(result, "phase", [(2.75, draw_phase)], text)
 
 
-def _over_speed(result: RunResult, name: str, panels: Sequence[tuple[float, Draw]], text: str) -> Figure:
+def _over_speed(result: RunAnswer, name: str, panels: Sequence[tuple[float, Draw]], text: str) -> Figure:
     """Panels above one another that share the speed, in rpm below and in rad/s above."""
     curves = prepare(result)
     with style():
@@ -203,12 +203,12 @@ def wider_words() -> str:
     return f"Below, wider: resonances under {100.0 * NARROW:g} % of the axis (half-power band)."
 
 
-def _layers_held(result: RunResult) -> bool:
+def _layers_held(result: RunAnswer) -> bool:
     """Some layer was held in time."""
     return result.held is not None and bool(np.isfinite(result.held.ripple).any())
 
 
-def draw_amplitude(axes: Axes, curves: Curves, result: RunResult) -> None:
+def draw_amplitude(axes: Axes, curves: Curves, result: RunAnswer) -> None:
     """Deflection amplitude with and without liquid, all branches; its range over time where it was held."""
     lines = [(curves.rpm, curves.amplitude), (curves.rpm, curves.amplitude_dry)]
     if curves.held is not None:
@@ -248,7 +248,7 @@ def _draw_held(axes: Axes, curves: Curves, held: HeldCurves) -> list[tuple[Array
     return [(curves.rpm, curves.largest), (held.rpm, held.down)]
 
 
-def _draw_on_top(axes: Axes, curves: Curves, result: RunResult) -> list[tuple[Array, Array]]:
+def _draw_on_top(axes: Axes, curves: Curves, result: RunAnswer) -> list[tuple[Array, Array]]:
     """What the amplitude beats between with self-excited whirl on top; the line that needs room."""
     large = None if result.whirl is None else result.whirl.large
     if large is None:
@@ -264,7 +264,7 @@ def _draw_on_top(axes: Axes, curves: Curves, result: RunResult) -> list[tuple[Ar
     return [(curves.rpm, high)]
 
 
-def draw_whirl(axes: Axes, curves: Curves, result: RunResult) -> None:
+def draw_whirl(axes: Axes, curves: Curves, result: RunAnswer) -> None:
     """Speed of the whirl of limit cycles in space, and the spin."""
     held = curves.held
     assert held is not None
@@ -281,7 +281,7 @@ def draw_whirl(axes: Axes, curves: Curves, result: RunResult) -> None:
     axes.set_ylabel("Whirl speed (rpm)")
 
 
-def draw_layers(axes: Axes, curves: Curves, result: RunResult) -> None:
+def draw_layers(axes: Axes, curves: Curves, result: RunAnswer) -> None:
     """Each layer's centre of mass off its chamber's axis, mean and swing."""
     held = curves.held
     assert held is not None and result.held is not None
@@ -314,7 +314,7 @@ def _within(rpm: Array, spans: Sequence[tuple[float, float]]) -> Flags:
     return found
 
 
-def draw_offset(axes: Axes, curves: Curves, result: RunResult) -> None:
+def draw_offset(axes: Axes, curves: Curves, result: RunAnswer) -> None:
     """Distance of the liquid's centre of mass from the rotation axis."""
     reported(axes, curves, curves.offset, "liquid's centre of mass")
     value_axis(axes, room_below(curves), [(curves.rpm, curves.offset)])
@@ -322,7 +322,7 @@ def draw_offset(axes: Axes, curves: Curves, result: RunResult) -> None:
     axes.set_ylabel("Liquid offset (mm)")
 
 
-def draw_angle(axes: Axes, curves: Curves, result: RunResult) -> None:
+def draw_angle(axes: Axes, curves: Curves, result: RunAnswer) -> None:
     """Angle of the liquid's centre of mass from the unbalance."""
     reported(axes, curves, curves.angle, "liquid's centre of mass")
     angle_axis(axes, curves, [curves.angle])
@@ -330,7 +330,7 @@ def draw_angle(axes: Axes, curves: Curves, result: RunResult) -> None:
     axes.set_ylabel("Liquid angle (deg)")
 
 
-def draw_phase(axes: Axes, curves: Curves, result: RunResult) -> None:
+def draw_phase(axes: Axes, curves: Curves, result: RunAnswer) -> None:
     """Angle from the unbalance to the deflection, with and without liquid."""
     reported(axes, curves, curves.phase, "without liquid" if result.chamberless else "with liquid")
     if not result.chamberless:
@@ -391,7 +391,7 @@ def _turns(degrees: Array) -> Flags:
     return np.abs(np.where(np.isnan(step), 0.0, step)) > 180.0
 
 
-def background(axes: Axes, curves: Curves, result: RunResult, lines: list[Array]) -> None:
+def background(axes: Axes, curves: Curves, result: RunAnswer, lines: list[Array]) -> None:
     """Ranges of speed and marked speeds, behind the lines."""
     low, high = curves.limits
     axes.set_xlim(low, high)
@@ -510,7 +510,7 @@ def _say_empty(axes: Axes) -> None:
     axes.text(0.5, 0.5, "no values", transform=axes.transAxes, horizontalalignment="center", bbox=box)
 
 
-def campbell_figure(result: RunResult) -> Figure:
+def campbell_figure(result: RunAnswer) -> Figure:
     """Natural frequencies of the dry rotor over its speed."""
     with style():
         figure = Figure()
@@ -525,7 +525,7 @@ def campbell_figure(result: RunResult) -> Figure:
     return figure
 
 
-def draw_campbell(axes: Axes, result: RunResult) -> None:
+def draw_campbell(axes: Axes, result: RunAnswer) -> None:
     """Natural frequencies over speed, forward and backward distinguished, and where the spin meets them."""
     assert result.motion is not None
     diagram = result.motion.campbell

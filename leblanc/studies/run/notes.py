@@ -18,10 +18,10 @@ from leblanc.core.units import (
     rpm_range,
     with_unit,
 )
-from leblanc.results.choice import Choice, HeldCost
+from leblanc.results.choice import HELD_MODELS, Choice, HeldCost
 from leblanc.results.motion.cycles import LargeWhirl
-from leblanc.results.motion.held import HELD_MODELS, Held
-from leblanc.results.motion.self_excited import SelfExcited
+from leblanc.studies.held.answer import Held
+from leblanc.studies.run.motion import SelfExcited
 from meshes.arrays import Array
 
 if TYPE_CHECKING:

@@ -2,29 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fluid.fill import Fill
 from fluid.whirl import plane_layer, slower_slip
+from leblanc.core.answer import Answer
 from leblanc.core.notes import Note
+from leblanc.core.progress import update
+from leblanc.core.question import called
 from leblanc.core.units import small_whirl_friction
+from leblanc.registry import answerer
 from leblanc.results.base import FilledChamber
-from leblanc.results.choice import Choice, model_spans
-from leblanc.results.machine.loads import MachineLoads
-from leblanc.results.motion.held import HELD_MODELS, Held
-from leblanc.results.motion.self_excited import SelfExcited
-from leblanc.results.motion.tilting import Motion, RestMode
+from leblanc.results.choice import HELD_MODELS, Choice, model_spans
 from leblanc.results.notes.baffles import compartment_notes, smeared_baffles
 from leblanc.scene.inputs import input_rows
 from leblanc.scene.scene import Scene, TubRotor
 from leblanc.scene.unbalances import left_in_the_end, sheds_of
-from leblanc.studies.closed_forms.told import closed_forms
+from leblanc.studies.closed_forms.study import closed_forms
+from leblanc.studies.held.answer import Held
 from leblanc.studies.held.holding import HERE, Began, Holding
-from leblanc.studies.machine import loaded_machine, loads_over_speed
+from leblanc.studies.loads.answer import MachineLoads
+from leblanc.studies.loads.study import loaded_machine, loads_over_speed
 from leblanc.studies.models.choose import (
     Prepared,
     by_elements,
@@ -41,7 +43,8 @@ from leblanc.studies.models.liquid import element_model, synchronous_model
 from leblanc.studies.models.validity import doubts
 from leblanc.studies.peaks import responses_between
 from leblanc.studies.run import notes as notes
-from leblanc.studies.run.answer import RunResult
+from leblanc.studies.run.answer import RunAnswer
+from leblanc.studies.run.motion import Motion, RestMode, SelfExcited
 from leblanc.studies.whirl_map import large_whirl
 from meshes.arrays import Array, Complex
 from meshes.chamber_section import liquid_of
@@ -99,12 +102,10 @@ def self_excited(machine: Prepared) -> SelfExcited:
     return SelfExcited(growth, whirl_speed, bands, friction, bands_not_known(speed, growth))
 
 
-def _grown_whirl(
-    machine: Prepared, progress: Callable[[str], object]
-) -> tuple[SelfExcited, tuple[Note, ...]]:
+def _grown_whirl(machine: Prepared) -> tuple[SelfExcited, tuple[Note, ...]]:
     """Growth of small whirls, how large they become, and what is to be said of that."""
     whirl = self_excited(machine)
-    progress("limit cycles")
+    update(what="limit cycles")
     large, said = large_whirl(machine, whirl.growth)
     return replace(whirl, large=large), said
 
@@ -173,12 +174,19 @@ def _directed(
     return tuple((float(critical), float(way)) for critical, way in zip(speed, sense, strict=True))
 
 
-def run_scene(
-    scene: Scene,
-    progress: Callable[[str], object] = lambda _: None,
-    holding: Holding = HERE,
-    cycles: bool = False,
-) -> RunResult:
+def answer(
+    scene: Scene, *, workers: int, fresh: bool, solver: str | None, cycles: bool, folder: Path | None
+) -> Answer:
+    """The answer of the kind of machine, as `leblanc.run` takes its parameters."""
+    if workers < 1:
+        raise InputError("workers", workers, "1 or more")
+    if (address := answerer("run", scene.kind)) is not None:
+        found: Answer = called(address)(scene)
+        return found
+    return run_scene(scene, Holding(workers, folder, fresh, solver or COUPLED), cycles)
+
+
+def run_scene(scene: Scene, holding: Holding = HERE, cycles: bool = False) -> RunAnswer:
     """Response to the unbalance and the liquid's centre of mass at each speed of a scene."""
     scene = scene.as_read()
     if holding.solver != COUPLED and not may_hold(scene):
@@ -186,9 +194,9 @@ def run_scene(
             "solver", holding.solver, "left out: the scene has no motion held in time ([model] held)"
         )
     machine = prepare(scene)
-    progress("choosing the liquid model")
+    update(what="choosing the liquid model")
     (choice,) = choose_all([machine])
-    progress("response to the unbalance")
+    update(what="response to the unbalance")
     motion: Motion | None = None
     if isinstance(machine.rotor, Jeffcott):
         gravity, rotor = machine.axial_gravity, machine.rotor
@@ -197,14 +205,14 @@ def run_scene(
         wet = critical_speed(rotor, scene.fills, gravity, synchronous_model(choice.model))
     else:
         answer, motion, (dry, wet) = motion_response(machine, choice)
-    progress("peaks between the speeds")
+    update(what="peaks between the speeds")
     in_range_too = replace(answer, in_range=answer.in_range & choice.in_range)
     (refined,) = responses_between([machine], [in_range_too], drawn=True)
     if by_elements(scene):
-        progress("finite elements")
+        update(what="finite elements")
         choice, answer, refined = element_answers(machine, choice, answer, refined)
-    progress("self-excited whirl")
-    whirl, grown = _grown_whirl(machine, progress) if cycles else (self_excited(machine), ())
+    update(what="self-excited whirl")
+    whirl, grown = _grown_whirl(machine) if cycles else (self_excited(machine), ())
     choice = costed(machine, choice, whirl.growth)
     at, held, stable = held_at(scene, choice, whirl.growth), None, whirl.leaves_stable(answer.stable)
     states: dict[float, HeldState] = {}
@@ -212,7 +220,7 @@ def run_scene(
         from leblanc.studies.held.held import hold_answer
 
         began = Began(answer, refined, whirl.growth, at)
-        choice, answer, refined, held, states = hold_answer(machine, choice, began, holding, progress)
+        choice, answer, refined, held, states = hold_answer(machine, choice, began, holding)
         stable = np.where(at, answer.stable, stable)
         if motion is not None:
             forward = _at_chambers(machine.system, scene.fills, answer)
@@ -232,7 +240,7 @@ def run_scene(
     loads = _loads(scene, answer, refined, states)
     obstructed = any(fill.uneven and fill.volume > 0.0 for fill in scene.fills)
     stands = () if loads is None else (notes.loads(obstructed),)
-    return RunResult(
+    return RunAnswer(
         name=scene.name,
         source=scene.source,
         assumed=scene.assumed,

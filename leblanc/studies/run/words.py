@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
+from leblanc.core.blocks import Check, Grade, Section, Table, Words
 from leblanc.core.notes import one_line, percent
 from leblanc.core.units import (
     LENGTH,
@@ -15,7 +18,6 @@ from leblanc.core.units import (
     NOT_FOUND,
     RPM,
     VOLUME,
-    amplitudes_are,
     in_peak,
     in_rpm,
     number,
@@ -25,16 +27,19 @@ from leblanc.core.units import (
     unit_for,
     with_unit,
 )
-from leblanc.results.choice import ModelSpan
-from leblanc.results.motion.held import HELD_MODELS, Held
-from leblanc.studies.run.answer import RunResult, grade_words
+from leblanc.results.choice import HELD_MODELS, ModelSpan
+from leblanc.studies.held.answer import Held
 from leblanc.studies.run.notes import plane_words
-from meshes.arrays import Array, Flags
+from meshes.arrays import Array, Flags, Index
+from solvers.rotor.balance_quality import GRADES, grade_name, grade_of
+
+if TYPE_CHECKING:
+    from leblanc.studies.run.answer import RunAnswer
 
 AGAINST = 0.5  # from here on a whirl counts as one with or against the spin
 
 
-def answer(result: RunResult) -> str:
+def answer(result: RunAnswer) -> str:
     """What the liquid does, in one sentence."""
     most, at, last, *_ = comparisons(result)
     if most.wet == NOT_FOUND:
@@ -67,7 +72,7 @@ def answer(result: RunResult) -> str:
     return f"{first} and {bare} at {at.dry} rpm without; at {speed} {at_last}."
 
 
-def _where_it_holds(result: RunResult) -> str:
+def _where_it_holds(result: RunAnswer) -> str:
     """Said of a largest amplitude that others exceed at speeds at which the answer does not hold."""
     curve = result.curve
     return " where the answer holds" if np.any(curve.amplitude > curve.peak.amplitude) else ""
@@ -86,7 +91,7 @@ def largest(amplitude: Array) -> int | None:
     return None if np.isnan(amplitude).all() else int(np.nanargmax(amplitude))
 
 
-def _aside(result: RunResult, index: int) -> str:
+def _aside(result: RunAnswer, index: int) -> str:
     """What an amplitude is beside its size, in brackets; empty where there is nothing to say."""
     found = _wrong(result, index)
     if (ends := _ends(result, index)) is not None:
@@ -98,13 +103,13 @@ def _aside(result: RunResult, index: int) -> str:
 RIPPLE = 0.01  # of the amplitude, beyond which its change over time is told
 
 
-def _on_average(result: RunResult, index: int) -> str:
+def _on_average(result: RunAnswer, index: int) -> str:
     """Said of an amplitude that changes over time."""
     told = result.cycling[index] or _ends(result, index) is not None
     return " on average" if told else ""
 
 
-def _ends(result: RunResult, index: int) -> tuple[float, float] | None:
+def _ends(result: RunAnswer, index: int) -> tuple[float, float] | None:
     """Least and largest amplitude over time at a place of the curve; None where it hardly changes.
 
     Where an orbit is an ellipse its amplitude is that of each turn's largest distance: only more is told.
@@ -123,7 +128,7 @@ def _ends(result: RunResult, index: int) -> tuple[float, float] | None:
     return (least, largest) if changes and math.isfinite(swing) else None
 
 
-def _wrong(result: RunResult, index: int) -> list[str]:
+def _wrong(result: RunAnswer, index: int) -> list[str]:
     """What keeps an amplitude from being believed."""
     r = result.curve
     found = [] if r.in_range[index] else ["out of range"]
@@ -137,7 +142,7 @@ def _wrong(result: RunResult, index: int) -> list[str]:
     return found
 
 
-def _unknown(result: RunResult, index: int) -> bool:
+def _unknown(result: RunAnswer, index: int) -> bool:
     """Nothing tells whether the answer at a place of the curve is stable."""
     r, whirl = result.curve, result.whirl
     if whirl is None or not r.branch_stable[index].any():
@@ -147,14 +152,14 @@ def _unknown(result: RunResult, index: int) -> bool:
     return bool((lost & ~whirl.inside(speed))[0])
 
 
-def amplitude_place(result: RunResult) -> str:
+def amplitude_place(result: RunAnswer) -> str:
     """Where along the axis amplitudes are those of; empty for a rotor that moves in one plane."""
     if result.motion is None:
         return ""
     return plane_words(result.motion.position, bool(result.chambers))
 
 
-def largest_error(result: RunResult) -> str:
+def largest_error(result: RunAnswer) -> str:
     """The largest error that the models estimate; empty where none is estimated."""
     if result.chamberless or result.error_estimate is None or np.isnan(result.error_estimate).all():
         return ""
@@ -165,7 +170,7 @@ def largest_error(result: RunResult) -> str:
     return (f"at most {most}" if most[0].isdigit() else most) + rest
 
 
-def comparison_table(result: RunResult) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
+def comparison_table(result: RunAnswer) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
     """Heads and rows of `comparisons`, as printed; of a machine without chambers one column."""
     rows = comparisons(result)
     if result.chamberless:
@@ -197,7 +202,7 @@ class Comparison:
         return f"{size} {self.unit}" if size[-1:].isdigit() else size
 
 
-def comparisons(result: RunResult) -> list[Comparison]:
+def comparisons(result: RunAnswer) -> list[Comparison]:
     """Largest and last amplitude, critical speed (planar), balance quality, with and without liquid."""
     r = result.curve
     wet, dry = r.top, largest(r.amplitude_dry)
@@ -225,7 +230,13 @@ def quality_words(quality: float) -> str:
     return f"{number(quality * 1e3)} mm/s ({grade_words(quality)})"
 
 
-def _compared(label: str, result: RunResult, wet: int | None, dry: int | None) -> Comparison:
+def grade_words(quality: float) -> str:
+    """The finest grade of ISO 21940-11 that a balance quality, m/s, keeps, in words."""
+    finest = grade_of(quality)
+    return f"above {grade_name(GRADES[-1])}" if finest is None else grade_name(finest)
+
+
+def _compared(label: str, result: RunAnswer, wet: int | None, dry: int | None) -> Comparison:
     """Amplitudes at two places of the curve."""
     with_liquid = math.nan if wet is None else float(result.curve.amplitude[wet])
     without = math.nan if dry is None else float(result.curve.amplitude_dry[dry])
@@ -237,7 +248,7 @@ def _compared(label: str, result: RunResult, wet: int | None, dry: int | None) -
     return Comparison(f"{label} ({in_peak(unit.name)}{wrong})", wet_text, dry_text, ratio, unit.name)
 
 
-def facts(result: RunResult) -> list[tuple[str, str]]:
+def facts(result: RunAnswer) -> list[tuple[str, str]]:
     """What else a reader wants to know: label and value."""
     r = result.response
     where = NOT_FOUND if math.isnan(r.liquid_offset[-1]) else "none"
@@ -254,7 +265,7 @@ def facts(result: RunResult) -> list[tuple[str, str]]:
     ]
 
 
-def _held_facts(result: RunResult) -> list[tuple[str, str]]:
+def _held_facts(result: RunAnswer) -> list[tuple[str, str]]:
     """How much was held in time, and how much the liquid swings."""
     held = result.held
     if held is None:
@@ -282,7 +293,7 @@ def _largest_known(values: Array) -> float:
     return float(known.max()) if known.size else math.nan
 
 
-def _vibration(result: RunResult) -> list[tuple[str, str]]:
+def _vibration(result: RunAnswer) -> list[tuple[str, str]]:
     """Critical speeds and natural frequencies; "b" marks a whirl against the spin."""
     if result.motion is None:
         return []
@@ -303,82 +314,73 @@ def _vibration(result: RunResult) -> list[tuple[str, str]]:
     ]
 
 
-@dataclass(frozen=True)
-class Limit:
-    """A check of the answer."""
-
-    label: str  #: what is checked
-    where: str  #: speeds that fail it
-    failed: bool  #: some do
-
-
-def limits(result: RunResult) -> list[Limit]:
-    """Where the answer is not what it seems: each check with the speeds that fail it."""
+def checks(result: RunAnswer) -> list[Check]:
+    """Where the answer is not what it seems: each check with its speeds, and the largest error."""
     r, tolerance, held = result.response, result.tolerance, result.held
     lost = ~r.converged if held is None else ~r.converged & ~held.at
-    found = [_limit("Not converged", r.speed, lost)] if held is None or lost.any() else []
+    found = [failing("Not converged", r.speed, lost)] if held is None or lost.any() else []
     found += _held_limits(result, held) if held is not None else []
     if not result.chamberless:
-        found.append(_limit("Liquid model out of range", r.speed, ~r.in_range))
+        found.append(failing("Liquid model out of range", r.speed, ~r.in_range))
     if result.capture_speed is not None:
         loose = r.speed <= result.capture_speed
         edge = f" (below {in_rpm(result.capture_speed)})" if loose.any() else ""
-        found.append(Limit("No ring of liquid stands", f"{ranges(r.speed, loose)}{edge}", bool(loose.any())))
+        found.append(Check("No ring of liquid stands", f"{ranges(r.speed, loose)}{edge}", grade(loose.any())))
     if result.carried_from is not None:
         loose, where = r.speed < result.carried_from, "by nothing: without friction"
         if math.isfinite(result.carried_from):
             where = f"below {in_rpm(result.carried_from)}"
         edge = f" ({where})" if loose.any() else ""
         found.append(
-            Limit("Not carried round from rest", f"{ranges(r.speed, loose)}{edge}", bool(loose.any()))
+            Check("Not carried round from rest", f"{ranges(r.speed, loose)}{edge}", grade(loose.any()))
         )
     if tolerance is not None and result.error_estimate is not None and not result.chamberless:
         missed = ~(result.error_estimate <= tolerance)
-        found.append(_limit(f"Error above {number(100.0 * tolerance)} % or unknown", r.speed, missed))
+        found.append(failing(f"Error above {number(100.0 * tolerance)} % or unknown", r.speed, missed))
     if not result.chamberless:
-        found.append(_limit("Wall dry in part", r.speed, r.dry_patch))
+        found.append(failing("Wall dry in part", r.speed, r.dry_patch))
     unstable = result.stability == "unstable"
     found.append(
-        _limit("Answer unstable", r.speed, unstable if held is None else unstable & ~held.limit_cycle)
+        failing("Answer unstable", r.speed, unstable if held is None else unstable & ~held.limit_cycle)
     )
     lost = result.stability == "not_known"
     if held is not None:
         lost &= ~held.not_settled
     if lost.any():
-        found.append(_limit("Stability not known", r.speed, lost))
+        found.append(failing("Stability not known", r.speed, lost))
     if result.whirl is not None:
         parts = [rpm_bands(result.whirl.bands)] if result.whirl.bands else []
         lost = np.isnan(result.whirl.growth)
         parts += [f"not known at {ranges(r.speed, lost)}"] if lost.any() else []
-        found.append(Limit("Self-excited whirl", ", ".join(parts) or "none", bool(parts)))
+        found.append(Check("Self-excited whirl", ", ".join(parts) or "none", grade(bool(parts))))
     infinite = np.isinf(result.curve.amplitude)
     if infinite.any():
-        found.append(_limit("Amplitude infinite", result.curve.speed, infinite))
-    return found
+        found.append(failing("Amplitude infinite", result.curve.speed, infinite))
+    error = largest_error(result)
+    return [*found, Check("Estimated error of the liquid model", error)] if error else found
 
 
-def _held_limits(result: RunResult, held: Held) -> list[Limit]:
+def grade(failed: bool | np.bool_) -> Grade:
+    """Of a check that fails, or passes."""
+    return Grade.WARNING if failed else Grade.NOTHING
+
+
+def failing(label: str, speed: Array, fails: Flags) -> Check:
+    """A check with the speeds that fail it."""
+    return Check(label, ranges(speed, fails), grade(fails.any()))
+
+
+def _held_limits(result: RunAnswer, held: Held) -> list[Check]:
     """What motions held in time are that did not settle to one that repeats."""
-    found = [_limit("Not settled", result.speed, held.not_settled)]
-    cycles = _limit("Limit cycle", result.speed, held.limit_cycle)
-    if cycles.failed:
+    found = [failing("Not settled", result.speed, held.not_settled)]
+    cycles = failing("Limit cycle", result.speed, held.limit_cycle)
+    if cycles.grade:
         most = with_unit(float(held.largest[held.limit_cycle].max()), LENGTH)
         cycles = replace(cycles, where=f"{cycles.where}, amplitude up to {most}")
-    return [*found, cycles, _limit("Up and down differ", result.speed, held.hysteresis)]
+    return [*found, cycles, failing("Up and down differ", result.speed, held.hysteresis)]
 
 
-def limit_rows(result: RunResult) -> list[tuple[str, str]]:
-    """The checks of the answer for a terminal: label and speeds, the largest error among them."""
-    rows = [(limit.label, limit.where) for limit in limits(result)]
-    error = largest_error(result)
-    return [*rows, ("Estimated error of the liquid model", error)] if error else rows
-
-
-def _limit(label: str, speed: Array, fails: Flags) -> Limit:
-    return Limit(label, ranges(speed, fails), bool(fails.any()))
-
-
-def unanswered(result: RunResult) -> list[str]:
+def unanswered(result: RunAnswer) -> list[str]:
     """What has no answer, a line a kind, each with its first speeds."""
     held, found = result.held, []
     lost = ~result.converged if held is None else ~result.converged & ~held.at
@@ -391,11 +393,15 @@ def unanswered(result: RunResult) -> list[str]:
         places = [in_rpm(speed) for speed in result.speed[held.not_settled].tolist()]
         told = [f"{place} ({reason})" for place, reason in zip(places, why, strict=True)] if why else places
         count = f"{len(places)} of {np.count_nonzero(held.at)}"
-        found.append(f"the motion has not settled at {count} speeds at which it was held: {_first(told)}")
+        found += [
+            f"the motion has not settled at {count} speeds at which it was held: {_first(told)}",
+            "all files are written; what has not settled is marked not_settled, with the numbers of its last "
+            "turns. The states are kept in the folder held beside them: another run takes them from there",
+        ]
     return found
 
 
-def _unfound(result: RunResult, lost: Flags, what: str) -> list[str]:
+def _unfound(result: RunAnswer, lost: Flags, what: str) -> list[str]:
     """What is missing at some speeds, in a line with the first of them; no line where it is at none."""
     if not lost.any():
         return []
@@ -408,7 +414,7 @@ def _first(parts: list[str]) -> str:
     return ", ".join(parts[:10]) + (", ..." if len(parts) > 10 else "")
 
 
-def machine(result: RunResult) -> str:
+def machine(result: RunAnswer) -> str:
     """The machine and its speeds, in one sentence."""
     r = result.response
     count = len(result.chambers)
@@ -422,7 +428,7 @@ def machine(result: RunResult) -> str:
     return f"A rotor with a {result.axis} axis that carries {carries}, {speeds}."
 
 
-def remarks(result: RunResult) -> list[str]:
+def remarks(result: RunAnswer) -> list[str]:
     """Remarks that follow from the numbers themselves, besides the notes."""
     r, found = result.curve, []
     highest = r.top
@@ -441,7 +447,7 @@ def remarks(result: RunResult) -> list[str]:
     return found
 
 
-def alts(result: RunResult) -> dict[str, str]:
+def alts(result: RunAnswer) -> dict[str, str]:
     """What each figure shows, with the numbers a reader would take from it."""
     most, at, last, *_ = comparisons(result)
     where = f" {place}" if (place := amplitude_place(result)) else ""
@@ -470,23 +476,23 @@ def alts(result: RunResult) -> dict[str, str]:
     }
 
 
-def _held_alt(result: RunResult) -> str:
+def _held_alt(result: RunAnswer) -> str:
     """What a figure of the amplitude shows of motions held in time."""
     held = result.held
     if held is None:
         return ""
     rows = {limit.label: limit for limit in _held_limits(result, held)}
     parts = ["A band from the least to the largest amplitude over time"]
-    if (cycles := rows["Limit cycle"]).failed:
+    if (cycles := rows["Limit cycle"]).grade:
         parts.append(f"diamonds and, below, the speed of the whirl at limit cycles: {cycles.where}")
-    if (differ := rows["Up and down differ"]).failed:
+    if (differ := rows["Up and down differ"]).grade:
         parts.append(f"a thin line while the speed falls: {differ.where}")
-    if (lost := rows["Not settled"]).failed:
+    if (lost := rows["Not settled"]).grade:
         parts.append(f"not settled: {lost.where}")
     return f" {'; '.join(parts)}."
 
 
-def _on_top_alt(result: RunResult) -> str:
+def _on_top_alt(result: RunAnswer) -> str:
     """What a figure of the amplitude shows of self-excited whirl."""
     large = None if result.whirl is None else result.whirl.large
     if large is None or not np.nanmax(large.amplitude, initial=0.0) > 0.0:
@@ -496,7 +502,7 @@ def _on_top_alt(result: RunResult) -> str:
     return f" A band of beating with self-excited whirl, which is largest, {most}, at {where}."
 
 
-def _swing_alt(result: RunResult) -> str:
+def _swing_alt(result: RunAnswer) -> str:
     """What a figure of the liquid shows of layers held in time."""
     if result.held is None or not result.held.ripple.size:
         return ""
@@ -505,14 +511,6 @@ def _swing_alt(result: RunResult) -> str:
         " Below, each layer's centre of mass off its chamber's axis with a band as wide as its swing, at "
         f"most {most}."
     )
-
-
-def summary(result: RunResult) -> list[tuple[str, str]]:
-    """Main numbers: label and value."""
-    both = ((row.label, f"{row.wet} with liquid, {row.dry} without") for row in comparisons(result))
-    rows = [(row.label, row.wet) for row in comparisons(result)] if result.chamberless else list(both)
-    plane = amplitudes_are(amplitude_place(result))
-    return [("Scene", one_line(result.name)), plane, *rows, *facts(result)]
 
 
 # What the model does, and what it takes for granted.
@@ -563,6 +561,27 @@ BALLS = (
 )
 
 
+def models_section(result: RunAnswer) -> Iterator[Section]:
+    """Liquid models that answered, why, and what they take for granted; nothing without chambers."""
+    held = result.held is not None
+    if result.models:
+        yield of_models(result.models_used, why(result.models), held)
+    elif not result.chamberless:
+        rows = [(name, ranges(result.speed, result.model == name)) for name in result.models_used]
+        yield of_models(result.models_used, Table(rows, ("Model", "Speeds"), sentences=True), held)
+
+
+def of_models(
+    names: Iterable[str],
+    reasons: Table | None = None,
+    held: bool = False,
+    title: str = "Liquid model, and why",
+) -> Section:
+    """Each liquid model once, with what it does and takes for granted, below the reasons why it was taken."""
+    shown = [Words(text, name=name, small=True) for name, text in described(names, held) if text]
+    return Section(title, (*([] if reasons is None else [reasons]), *shown), shown="page")
+
+
 def described(names: Iterable[str], held: bool = False) -> list[tuple[str, str]]:
     """Name of each model once, with what it does and takes for granted; nothing of one that is not known."""
     found: dict[str, tuple[str, ...]] = {name: MODELS.get(name, ()) for name in names}
@@ -570,6 +589,20 @@ def described(names: Iterable[str], held: bool = False) -> list[tuple[str, str]]
         does, granted = MODELS[name]
         found[name] = (does, HELD, granted)
     return [(name, " ".join(told)) for name, told in found.items()]
+
+
+def why(spans: Iterable[ModelSpan]) -> Table:
+    """Which liquid model answers at which speeds, how well, and why."""
+    rows = [
+        (
+            speeds_words(span),
+            span.model + ("" if span.in_range else " (out of range)"),
+            error_words(span),
+            f"{span.reason[:1].upper()}{span.reason[1:]}.",
+        )
+        for span in spans
+    ]
+    return Table(rows, ("Speeds (rpm)", "Model", "Estimated error", "Why"), sentences=True)
 
 
 def speeds_words(span: ModelSpan) -> str:
@@ -583,3 +616,60 @@ def error_words(span: ModelSpan) -> str:
     if np.isfinite(span.error):
         return percent(span.error)
     return "not known" if np.isnan(span.error) else "without a bound"
+
+
+def held_motions(result: RunAnswer) -> tuple[Table, ...]:
+    """Limit cycles by ranges of speed, and where the way down differs; nothing where no motion was held."""
+    held = result.held
+    if held is None:
+        return ()
+    mean, least, largest = result.amplitude, result.amplitude_min, result.amplitude_max
+    unit = unit_for(LENGTH, *mean[held.at].tolist())
+    tables: list[Table] = []
+
+    def size(values: Array) -> str:
+        return _extent(values * unit.count)
+
+    cycles = [
+        (
+            *(_extent(result.speed[part] * RPM), size(mean[part])),
+            *(unit.number(float(least[part].min())), unit.number(float(largest[part].max()))),
+            _extent(held.whirl_speed[part] * RPM),
+        )
+        for part in _runs(result.speed, held.limit_cycle)
+    ]
+    if cycles:
+        sizes = (f"{name} ({in_peak(unit.name)})" for name in ("mean amplitude", "least", "largest"))
+        tables.append(Table(cycles, ("Limit cycles (rpm)", *sizes, "whirl speed (rpm)")))
+
+    def motion(states: NDArray[np.str_], values: Array) -> str:
+        return f"{', '.join(dict.fromkeys(states.tolist()))}, {size(values)}".replace("_", " ")
+
+    apart = [
+        (
+            _extent(result.speed[part] * RPM),
+            motion(held.state[part], mean[part]),
+            motion(held.state_down[part], held.amplitude_down[part]),
+        )
+        for part in _runs(result.speed, held.hysteresis)
+    ]
+    if apart:
+        ways = (f"{way} speed: motion, amplitude ({in_peak(unit.name)})" for way in ("rising", "falling"))
+        tables.append(Table(apart, ("Up and down differ (rpm)", *ways)))
+    return tuple(tables)
+
+
+def _runs(speed: Array, mask: Flags) -> list[Index]:
+    """Neighbouring speeds at which a condition holds, each run by rising speed."""
+    order = np.argsort(speed, kind="stable")
+    holds = np.flatnonzero(mask[order])
+    return [order[run] for run in np.split(holds, np.flatnonzero(np.diff(holds) > 1) + 1) if run.size]
+
+
+def _extent(values: Array) -> str:
+    """Least and largest of some values; one where they print alike."""
+    known = values[np.isfinite(values)]
+    if not known.size:
+        return NOT_FOUND
+    ends = number(float(known.min())), number(float(known.max()))
+    return ends[0] if ends[0] == ends[1] else " to ".join(ends)

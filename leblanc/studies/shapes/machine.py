@@ -24,7 +24,7 @@ from leblanc.results.drawn.machine import (
 from leblanc.results.runup import RunupFrames, RunupResult
 from leblanc.scene.scene import Exciter, JeffcottRotor, Scene, Speeds, dry_rotor
 from leblanc.studies.models.choose import across_gravity, axial_gravity, choose, liquid_models
-from leblanc.studies.run.answer import RunResult
+from leblanc.studies.run.answer import RunAnswer
 from leblanc.studies.run.study import run_scene
 from leblanc.studies.runup import runup_scene
 from leblanc.studies.shapes.balls import drawn_races, ringed, side_by_side
@@ -88,7 +88,7 @@ def require_rotor(scene: Scene) -> None:
         raise InputError("rotor.kind", "exciter", allowed)
 
 
-def _lean(scene: Scene, result: RunResult) -> Complex:
+def _lean(scene: Scene, result: RunAnswer) -> Complex:
     """Slope of the axis, from its forward part at two places of the rigid rotor."""
     if isinstance(scene.rotor, JeffcottRotor):
         return np.zeros(result.response.speed.shape, dtype=complex)

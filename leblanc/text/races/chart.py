@@ -6,9 +6,10 @@ import math
 
 import numpy as np
 
+from leblanc.core.blocks import Check
 from leblanc.core.units import RPM, UNBALANCE, in_rpm, number, rpm_bands, unit_for, with_unit
 from leblanc.results.races.chart import BallChart, Curve
-from leblanc.studies.run.words import Limit
+from leblanc.studies.run.words import grade
 
 STATES = {
     "balanced": "the balanced state",
@@ -103,15 +104,19 @@ def curves(result: BallChart) -> list[tuple[str, ...]]:
     return rows
 
 
-def limits(result: BallChart) -> list[Limit]:
+def limits(result: BallChart) -> list[Check]:
     """Where the chart is not what it seems: each check with what fails it."""
     cut = sum("long" in edge.ends for edge in result.edges)
     stands = math.isfinite(result.stable_from)
     lost = bool(result.missing.any())
     return [
-        Limit("No such state", f"{_share(result.missing)} of the points" if lost else "none", lost),
-        Limit("Curves not followed to their end", str(cut) if cut else "none", cut > 0),
-        Limit("Unstable at the last speed in the scene as it stands", "no" if stands else "yes", not stands),
+        Check("No such state", f"{_share(result.missing)} of the points" if lost else "none", grade(lost)),
+        Check("Curves not followed to their end", str(cut) if cut else "none", grade(cut > 0)),
+        Check(
+            "Unstable at the last speed in the scene as it stands",
+            "no" if stands else "yes",
+            grade(not stands),
+        ),
     ]
 
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 
+from leblanc.core.blocks import Check
 from leblanc.core.units import LENGTH, MASS, MM, NOT_FOUND, UNBALANCE, in_rpm, number, with_unit
 from leblanc.results.races.design import BallDesignResult, DesignedRace
-from leblanc.studies.run.words import Limit
+from leblanc.studies.run.words import grade
 from leblanc.text.optimum import shown
 
 Rows = list[tuple[str, str]]
@@ -128,14 +129,14 @@ def paste(result: BallDesignResult) -> list[str]:
     return found
 
 
-def limits(result: BallDesignResult) -> list[Limit]:
+def limits(result: BallDesignResult) -> list[Check]:
     """Where the answer is not what it seems: each check with what fails it."""
     exceeded = [name.replace("_", " ") for name in result.exceeded]
     lost = not math.isfinite(result.vibration)
     return [
-        Limit("Constraints exceeded", ", ".join(exceeded) or "none", bool(exceeded)),
-        Limit("No stable state where it works", "yes" if lost else "no", lost),
-        Limit("Interrupted", "yes" if result.interrupted else "no", result.interrupted),
+        Check("Constraints exceeded", ", ".join(exceeded) or "none", grade(bool(exceeded))),
+        Check("No stable state where it works", "yes" if lost else "no", grade(lost)),
+        Check("Interrupted", "yes" if result.interrupted else "no", grade(result.interrupted)),
     ]
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from leblanc.core.progress import update
 from leblanc.scene.spindle import Spindle
-from leblanc.studies.closed_forms.told import cages_of
+from leblanc.studies.closed_forms.study import cages_of
 from leblanc.wings.spindle.answer import NaturalMode, SpindleAnswer, Turning
 from meshes.arrays import Array, Complex
 from meshes.errors import InputError

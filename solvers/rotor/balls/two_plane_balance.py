@@ -5,12 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from meshes.arrays import Array, Complex, Flags
 from meshes.errors import InputError, require_not_negative, require_positive
+from meshes.quantity import Q
 from solvers.rotor.balls.balancers import BallRace
 from solvers.rotor.balls.stability import balanced_stability
 from solvers.rotor.system import RotorSystem
@@ -56,22 +58,24 @@ class RigidRotor:
 class Condition:
     """One condition for balancing, over speed."""
 
-    name: str  #: the condition, as written
-    value: Array  #: what must be above 0, shape (n,)
-    satisfied: Flags  #: whether it is, shape (n,)
-    above: float  #: speed above which it holds, rad/s; infinite if at none
+    name: Annotated[str, Q(text="as written")]
+    value: Annotated[Array, Q(text="must be above 0", over=("speed",))]
+    satisfied: Annotated[Flags, Q(text="it is", over=("speed",))]
+    #: infinite if at none
+    above: Annotated[float, Q("rad s-1", "speed above which it holds")]
 
 
 @dataclass(frozen=True)
 class Balancing:
     """Result of `dynamic_balancing`."""
 
-    speed: Array  #: rad/s, shape (n,)
-    possible: Flags  #: whether balancing occurs, shape (n,)
-    conditions: tuple[Condition, ...]  #: each of them, in the order of the source
-    above: float  #: speed above which all hold, rad/s; infinite if at none
-    resonances: tuple[float, ...]  #: resonance speeds of the rotor without damping, ascending, rad/s
-    long: bool  #: both transverse inertias exceed the polar one
+    speed: Annotated[Array, Q("rad s-1", "spin speed", over=("speed",), data=False)]
+    possible: Annotated[Flags, Q(name="balancing in two planes", over=("speed",), flags="no yes")]
+    conditions: Annotated[tuple[Condition, ...], Q(text="each of them, in the order of the source")]
+    #: infinite if at none
+    above: Annotated[float, Q("rad s-1", "speed above which all hold", data=False)]
+    resonances: Annotated[tuple[float, ...], Q(text="speeds of the rotor without damping, ascending, rad/s")]
+    long: Annotated[bool, Q(text="both transverse inertias exceed the polar one")]
     #: largest real part of the roots of rotor and balls about the balanced state, 1/s, shape (n,); None where
     #: no balls were given
     growth: Array | None = None

@@ -25,7 +25,7 @@ from leblanc.results.base import FilledChamber
 from leblanc.results.runup import RunupFrames
 from leblanc.studies.modes.figure import modes_figure
 from leblanc.studies.modes.study import Resolution, SectionSource, answer_modes
-from leblanc.studies.run.answer import RunResult
+from leblanc.studies.run.answer import RunAnswer
 from meshes.baffles import Baffles
 from meshes.chamber import Chamber
 from meshes.chamber_section import ChamberSection, chamber_section, level
@@ -74,7 +74,7 @@ def chamber(kind: str, share: float, inner: float) -> FilledChamber:
     return found
 
 
-def machine(chambers: tuple[FilledChamber, ...], *deflections: complex, slowest: float = 0.0) -> RunResult:
+def machine(chambers: tuple[FilledChamber, ...], *deflections: complex, slowest: float = 0.0) -> RunAnswer:
     """An answer at as many speeds; upright, if a slowest speed is given."""
     first = slowest or 100.0
     w, at = np.array(deflections, dtype=complex), response_of(first * np.linspace(1.0, 2.0, len(deflections)))

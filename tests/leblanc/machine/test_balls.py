@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import leblanc as lb
-from leblanc.results.races.states import BallsResult
+from leblanc.studies.balls.answer import BallsAnswer
 from leblanc.studies.drives import drive_of, numerics_of, planned
-from leblanc.studies.machine import loaded_machine
+from leblanc.studies.loads.study import loaded_machine
 from leblanc.studies.runup import across_gravity, chosen_run
 from tests.mutants import kills
 
@@ -44,7 +44,7 @@ def tub(**changes: Any) -> lb.Scene:
     return lb.Scene(**table)
 
 
-def welded(scene: lb.Scene, result: BallsResult, k: int) -> lb.Scene:
+def welded(scene: lb.Scene, result: BallsAnswer, k: int) -> lb.Scene:
     """The same machine at its k-th speed with the balls as a part of its rotor."""
     ball = scene.balls[0].each
     moment = ball * scene.balls[0].radius
@@ -88,7 +88,7 @@ def test_balls_at_rest_are_a_part_of_the_tub() -> None:
     """Welded where they rest they are laundry: feet, springs, bearings and points carry the same."""
     scene = tub()
     result = lb.run(scene)
-    assert isinstance(result, BallsResult)
+    assert isinstance(result, BallsAnswer)
     assert result.stable.all()
     found = result.to_json()
     for k in (0, 2, 4):
@@ -99,7 +99,7 @@ def test_balls_at_rest_are_a_part_of_the_tub() -> None:
 def test_balls_at_rest_are_a_part_of_the_planar_rotor() -> None:
     scene = rig({"mass": 1e-3})  # too light to balance: some unbalance is left at every speed
     result = lb.run(scene)
-    assert isinstance(result, BallsResult)
+    assert isinstance(result, BallsAnswer)
     found = result.to_json()
     stable = np.flatnonzero(result.stable)
     assert stable.size > 3
@@ -111,7 +111,7 @@ def test_balls_at_rest_are_a_part_of_the_planar_rotor() -> None:
 def test_balanced_rotor_leaves_its_feet_in_peace() -> None:
     """Nothing with the spin is left: weights alone, the margin is whole, the motor rests."""
     result = lb.run(rig())
-    assert isinstance(result, BallsResult)
+    assert isinstance(result, BallsAnswer)
     assert result.loads is not None
     balanced = (result.state == "balanced") & result.stable
     assert balanced.any()
@@ -126,7 +126,7 @@ def test_balanced_rotor_leaves_its_feet_in_peace() -> None:
     assert np.all(power > 0.0)
     upright = rig(**{"cabinet": None, "rotor.axis": "vertical"})
     still = lb.run(upright)
-    assert isinstance(still, BallsResult)
+    assert isinstance(still, BallsAnswer)
     assert still.loads is not None
     np.testing.assert_allclose(still.loads.torque[balanced], 0.0, atol=1e-15)
     np.testing.assert_allclose(worst.clearance[balanced, 0], 2e-3, rtol=1e-12)
@@ -134,7 +134,7 @@ def test_balanced_rotor_leaves_its_feet_in_peace() -> None:
 
 def test_where_no_state_is_stable_nothing_is_told() -> None:
     result = lb.run(rig())
-    assert isinstance(result, BallsResult)
+    assert isinstance(result, BallsAnswer)
     assert result.loads is not None
     assert result.unstable.any()
     assert np.isnan(result.loads.worst.walking[result.unstable]).all()
@@ -170,7 +170,7 @@ def scene_with_waves(scene: lb.Scene) -> lb.Scene:
     return scene.replace({"model": {"liquid": "long_wave"}})
 
 
-@kills("leblanc.studies.machine:loaded_machine", "tuple(race.race() for race in scene.balls)", "()")
+@kills("leblanc.studies.loads.study:loaded_machine", "tuple(race.race() for race in scene.balls)", "()")
 def test_the_mean_force_on_the_floor_is_the_weight() -> None:
     """Balls that hang behind the drum at the bottom press with their weight, though they go round with none.
 

@@ -9,11 +9,11 @@ import pytest
 import leblanc as lb
 from leblanc.scene.schema.load import SceneError
 from leblanc.scene.tasks import LOADS
+from leblanc.studies.loads.answer import load_rows, verdict
 from leblanc.studies.optimise.answers import FilledMachine
 from leblanc.studies.optimise.loads import LoadsOver
 from leblanc.studies.optimise.optimise import optimise_scene
 from leblanc.studies.optimise.passages import Passages
-from leblanc.text.machine import load_rows, verdict
 from meshes.errors import InputError
 from tests.mutants import kills
 
@@ -141,7 +141,7 @@ def test_the_table_tells_the_hardest_blow() -> None:
     assert label not in {row.label for row in load_rows(none)}
 
 
-@kills("leblanc.results.machine.loads:MachineLoads.over_turn", "- 2.0 * math.pi", "- math.pi")
+@kills("leblanc.studies.loads.answer:MachineLoads.over_turn", "- 2.0 * math.pi", "- math.pi")
 def test_worst_over_a_turn() -> None:
     """By brute force."""
     loads = _tub_runup().loads
@@ -153,7 +153,7 @@ def test_worst_over_a_turn() -> None:
     np.testing.assert_array_equal(loads.over_turn(values, least=True), [part.min() for part in expected])
 
 
-@kills("leblanc.studies.machine:loads_over_speed", "if spin in states:", "if False:")
+@kills("leblanc.studies.loads.study:loads_over_speed", "if spin in states:", "if False:")
 def test_motions_held_in_time_have_their_own_forces() -> None:
     """With gravity across the axis a layer throws its rotor about: forces follow the largest deflection."""
     speed = {"speeds.start": "1200 rpm", "speeds.stop": "1300 rpm", "speeds.count": 2}

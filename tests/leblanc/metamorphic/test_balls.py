@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from leblanc.scene.scene import Scene
-from leblanc.studies.races.balls import run_balls
+from leblanc.studies.balls.study import run_balls
 from tests.oracles.machines import Table
 from tests.oracles.random_balls import machine_with_balls, nudged_balls
 

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from leblanc.report.run import write_run_report
-from leblanc.scene.inputs import about
+from leblanc.cli.command import drawing, write
+from leblanc.core.blocks import Picture, flat
+from leblanc.core.page import write_page
 from leblanc.scene.scene import load_scene
-from leblanc.studies.run.figure import write_figures
 from leblanc.studies.run.study import run_scene
 from tests.oracles.browser import Browser, browser, found
 from tests.oracles.pages import about_record
@@ -34,20 +34,17 @@ def pages(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     folder, files = tmp_path_factory.mktemp("pages"), {}
     for name in ("centrifuge", "horizontal_rig", "tub"):
         scene = load_scene(ROOT / f"examples/{name}.toml")
-        record, place = run_scene(scene), folder / name
-        figures = write_figures(record, place)
-        what = about(scene, f"leblanc run {name}.toml", "response.nc", unused=("runup", "optimise"))
-        files[name] = place / "summary.html"
-        write_run_report(record, what, figures, files[name])
+        write(run_scene(scene), folder / name, scene, f"leblanc run {name}.toml")
+        files[name] = folder / name / "summary.html"
     for name, record in (
         ("many", many_chambers()),
         ("awkward", awkward_texts()),
         ("nothing", nothing_found()),
     ):
         files[name] = folder / f"{name}.html"
-        if name == "many":
-            figures = write_figures(record, folder / name)
-        write_run_report(record, about_record(record), figures, files[name])
+        pictures = (one for one in flat(record.blocks(), "page") if isinstance(one, Picture))
+        drawn = {one.name: drawing(record, one, folder / name) for one in pictures}
+        write_page(record.title, record.blocks(), about_record(record), drawn, files[name])
     return files
 
 

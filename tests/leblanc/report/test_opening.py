@@ -11,11 +11,9 @@ import pytest
 
 import leblanc as lb
 from leblanc.cli import main
-from leblanc.core.blocks import Cell
-from leblanc.core.page import made_on
-from leblanc.report.parts import doubt, table
-from leblanc.report.run import response_checks
-from leblanc.studies.run.words import answer
+from leblanc.core.blocks import Check, Grade
+from leblanc.core.page import doubt, made_on
+from leblanc.studies.run.words import answer, checks
 
 COMMANDS = {
     "run": (["run", "{scene}"], "summary.html"),
@@ -57,9 +55,8 @@ def test_every_report_opens_with_result_doubt_and_date(
 def test_the_doubt_names_the_two_gravest_limits_and_counts_the_rest() -> None:
     """Two clauses at most, each with its speeds as the table has them; all limits stand in the table."""
     result = lb.run(lb.example("horizontal_rig").replace({"speeds.count": 20}))
-    checks = response_checks(result)
-    said = doubt(checks)
-    failed = {label.text: where.text for label, where in checks.rows if where.warning}
+    said = doubt(checks(result))
+    failed = {check.label: check.where for check in checks(result) if check.grade}
     assert len(failed) > 3
     unstable, out = failed["Answer unstable"], failed["Liquid model out of range"]
     wanted = f"Doubtful: answer unstable: {unstable}; liquid model out of range: {out} "
@@ -67,10 +64,13 @@ def test_the_doubt_names_the_two_gravest_limits_and_counts_the_rest() -> None:
 
 
 def test_up_to_two_limits_are_all_told() -> None:
-    bad = Cell("100 rpm", warning=True)
-    rows = [("Wall dry in part", bad), ("Liquid model out of range", Cell("none")), ("Error above 1 %", bad)]
-    assert doubt(table("", (), rows[:2])) == "Doubtful: wall dry in part: 100 rpm."
-    assert doubt(table("", (), rows)) == "Doubtful: error above 1 %: 100 rpm; wall dry in part: 100 rpm."
+    names, bad = (
+        ("Wall dry in part", "Liquid model out of range", "Error above 1 %"),
+        ("100 rpm", Grade.WARNING),
+    )
+    rows = [Check(name, *(bad if k != 1 else ("none",))) for k, name in enumerate(names)]
+    assert doubt(rows[:2]) == "Doubtful: wall dry in part: 100 rpm."
+    assert doubt(rows) == "Doubtful: error above 1 %: 100 rpm; wall dry in part: 100 rpm."
 
 
 @pytest.mark.parametrize("volume", ["0 ml", "10 ml"])
@@ -89,9 +89,9 @@ def test_an_amplitude_without_a_bound_is_told_as_a_person_would(volume: str, cou
 
 
 def test_no_doubt_where_nothing_is_passed() -> None:
-    calm = table("", (), [("Not converged", Cell("none"))])
+    calm = [Check("Not converged", "none")]
     assert doubt(calm) == "No limit of the models is passed."
-    assert doubt(calm, "estimated error at most 0.05 %").endswith("passed; estimated error at most 0.05 %.")
+    assert doubt(calm, "at most 0.05 %").endswith("passed; estimated error at most 0.05 %.")
 
 
 def test_a_result_without_an_answer_says_so() -> None:

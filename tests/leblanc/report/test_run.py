@@ -13,22 +13,23 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import leblanc as lb
 from leblanc.cli import main
+from leblanc.core.blocks import Notes
 from leblanc.core.notes import Note
 from leblanc.core.page import LIGHT, all_versions, citation, picture
 from leblanc.core.units import number, ranges
 from leblanc.figures.drawing.page import FigureFiles
-from leblanc.report import page as report
-from leblanc.report import run as report_run
+from leblanc.report.page import command_line
 from leblanc.results.base import FilledChamber
-from leblanc.results.motion.self_excited import SelfExcited
 from leblanc.scene.scene import load_scene
 from leblanc.studies.run import words as words
-from leblanc.studies.run.answer import RunResult
+from leblanc.studies.run.answer import RunAnswer
+from leblanc.studies.run.motion import SelfExcited
 from leblanc.studies.run.notes import OF_MODELS, RunCode
 from leblanc.studies.run.study import run_scene
 from leblanc.studies.run.words import MODELS
-from tests.oracles.pages import WARNING, Page, about_record, printed, read_page
+from tests.oracles.pages import WARNING, Page, about_record, printed, read_page, write_page_of
 from tests.oracles.records import RPM, folded, record_of, response_of, rig
 
 ROOT = Path(__file__).parents[3]
@@ -49,9 +50,9 @@ def figure(folder: Path, name: str, svg: str, png: bytes = PNG) -> FigureFiles:
     return files
 
 
-def page_of(record: RunResult, folder: Path, figures: Sequence[FigureFiles] = (), tolerance=None) -> Page:
+def page_of(record: RunAnswer, folder: Path, figures: Sequence[FigureFiles] = (), tolerance=None) -> Page:
     path = folder / "summary.html"
-    report_run.write_run_report(replace(record, tolerance=tolerance), about_record(record), figures, path)
+    write_page_of(replace(record, tolerance=tolerance), about_record(record), figures, path)
     return read_page(path)
 
 
@@ -89,7 +90,7 @@ def test_ranges() -> None:
     assert ranges(speed, ~holds) == "100; 400; 600 rpm"
 
 
-def quiet() -> RunResult:
+def quiet() -> RunAnswer:
     """A record of which nothing is to be said."""
     r = rig().response
     always = np.ones(201, dtype=np.bool_)
@@ -106,7 +107,7 @@ def some(first: int, last: int) -> np.ndarray:
     return mask
 
 
-def troubled() -> dict[str, tuple[RunResult, str]]:
+def troubled() -> dict[str, tuple[RunAnswer, str]]:
     """One trouble each: heading of the check, record, speeds that it must name; see `WITH`."""
     record = quiet()
     r, whirl = record.response, record.whirl
@@ -145,15 +146,14 @@ WITH = {"Stability not known": {"Self-excited whirl"}, "Amplitude infinite": {"S
 
 
 def test_warnings() -> None:
-    calm = report_run.response_checks(replace(quiet(), tolerance=1e-3))
-    assert not any(cell.warning for row in calm.rows for cell in row)
+    assert not any(check.grade for check in words.checks(replace(quiet(), tolerance=1e-3)))
     for name, (record, where) in troubled().items():
         heading, marked = name.strip(), {name.strip()} | WITH.get(name, set())
-        rows = report_run.response_checks(replace(record, tolerance=1e-3)).rows
-        assert {row[0].text for row in rows if row[1].warning} == marked
-        (text,) = [row[1].text for row in rows if row[0].text == heading]
-        assert text == where, heading
-        assert all(row[1].text == "none" for row in rows if row[0].text not in marked)
+        checks = {check.label: check for check in words.checks(replace(record, tolerance=1e-3))}
+        assert {label for label, check in checks.items() if check.grade} == marked
+        assert checks[heading].where == where, heading
+        left = checks.keys() - marked - {"Estimated error of the liquid model"}
+        assert all(checks[label].where == "none" for label in left)
 
 
 def test_warnings_stand_on_the_page_where_the_flags_say_so(tmp_path: Path) -> None:
@@ -170,8 +170,7 @@ def test_whirl_that_was_not_found_is_a_warning() -> None:
     record = quiet()
     assert record.whirl is not None
     lost = replace(record, whirl=replace(record.whirl, growth=np.where(some(0, 1), np.nan, -1.0)))
-    rows = [row for row in report_run.response_checks(lost).rows if row[1].warning]
-    assert [(row[0].text, row[1].text) for row in rows] == [
+    assert [(check.label, check.where) for check in words.checks(lost) if check.grade] == [
         ("Stability not known", "100 to 109.5 rpm"),
         ("Self-excited whirl", "not known at 100 to 109.5 rpm"),
     ]
@@ -281,11 +280,11 @@ def test_numbers_are_those_of_the_json(name: str, tmp_path: Path, capsys) -> Non
 def test_why_gives_the_error_of_each_range() -> None:
     scene = load_scene(ROOT / "examples/horizontal_rig.toml")
     spans = run_scene(scene).models
-    rows = report.why(spans).rows
-    assert [row[2].text for row in rows] == ["not known", "2.1 %", "0.094 %"]
-    assert [row[0].text for row in rows] == ["100 to 128.5", "138 to 1107", "1116 to 2000"]
-    unbounded = report.why([replace(spans[2], error=math.inf)]).rows[0]
-    assert unbounded[2].text == "without a bound"
+    rows = words.why(spans).rows
+    assert [row[2] for row in rows] == ["not known", "2.1 %", "0.094 %"]
+    assert [row[0] for row in rows] == ["100 to 128.5", "138 to 1107", "1116 to 2000"]
+    unbounded = words.why([replace(spans[2], error=math.inf)]).rows[0]
+    assert unbounded[2] == "without a bound"
 
 
 def test_page_names_machine_model_notes_and_versions(tmp_path: Path) -> None:
@@ -366,7 +365,7 @@ def test_the_phase_stands_on_the_page_of_a_rotor_that_tilts_only(tmp_path: Path)
     names = ["amplitude", "liquid", "phase", "chamber", "campbell"]
     figures = [figure(tmp_path, name, SVG) for name in names]
     assert len(page_of(rig(), tmp_path, figures[:4]).addresses) == 3
-    assert len(page_of(rig(), tmp_path, figures).addresses) == 5
+    assert len(page_of(run_scene(lb.example("two_plane_rig")), tmp_path, figures).addresses) == 5
 
 
 def test_captions_are_text_and_cut_from_the_picture(tmp_path: Path) -> None:
@@ -402,7 +401,8 @@ def test_notes_that_the_page_says_elsewhere_are_left_out() -> None:
     result = run_scene(load_scene(ROOT / "examples/horizontal_rig.toml"))
     codes = [note.code for note in result.notes]
     assert codes[:2] == list(OF_MODELS)
-    assert report.notes(result.notes, OF_MODELS) == [str(note) for note in result.notes[2:]]
+    (shown,) = (block for block in result.blocks() if isinstance(block, Notes))
+    assert list(shown.texts) == [str(note) for note in result.notes[2:]]
 
 
 def test_user_text_is_text(tmp_path: Path) -> None:
@@ -447,7 +447,7 @@ def test_unicode_survives_and_control_characters_do_not(tmp_path: Path) -> None:
     ],
     ids=["folded", "one speed", "bare", "nothing found"],
 )
-def test_extremes_give_a_page(record: RunResult, tmp_path: Path) -> None:
+def test_extremes_give_a_page(record: RunAnswer, tmp_path: Path) -> None:
     page_of(record, tmp_path)
 
 
@@ -461,11 +461,9 @@ def test_same_record_same_page(tmp_path: Path, drawing: FigureFiles) -> None:
 
 
 def test_command_that_makes_it_again() -> None:
-    line = report.command_line("map", Path("my scene.toml"), ("--volumes", 5, 101), ("--speeds", 9, 9))
+    line = command_line("map", Path("my scene.toml"), ("--volumes", 5, 101), ("--speeds", 9, 9))
     assert line == "leblanc map 'my scene.toml' --volumes 5"
-    line = report.command_line(
-        "optimise", Path("s.toml"), ("--steady", True, False), ("--limit", "1 mm", None)
-    )
+    line = command_line("optimise", Path("s.toml"), ("--steady", True, False), ("--limit", "1 mm", None))
     assert line == "leblanc optimise s.toml --steady --limit '1 mm'"
 
 

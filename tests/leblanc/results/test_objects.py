@@ -25,7 +25,7 @@ from leblanc.scene.tasks import Optimisation
 from leblanc.studies.compare import compare_models
 from leblanc.studies.explain import explain_scene
 from leblanc.studies.models.choose import choose_all, prepare
-from leblanc.studies.run.answer import RunResult
+from leblanc.studies.run.answer import RunAnswer
 from leblanc.studies.run.study import run_scene
 from leblanc.studies.volume import volume
 from leblanc.studies.volume.answer import Coverage
@@ -51,7 +51,7 @@ WARM = Optimisation(objective="robust", temperature=(280.0, 330.0), volumes=((0.
 
 
 @cache
-def run() -> RunResult:
+def run() -> RunAnswer:
     return run_scene(scene("tub"))
 
 

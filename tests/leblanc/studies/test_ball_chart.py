@@ -14,7 +14,7 @@ import leblanc as lb
 from leblanc.cli import main
 from leblanc.figures.races.chart import chart_figure, regions
 from leblanc.results.races.chart import BallChart
-from leblanc.results.races.states import BallsResult
+from leblanc.studies.balls.answer import BallsAnswer
 from leblanc.text.races.chart import answer, curves, facts, limits
 from meshes.errors import InputError
 from solvers.rotor.balls.steady import BallKind
@@ -57,7 +57,7 @@ def beside_liquid(**changes: Any) -> lb.Scene:
 def growth_by_run(machine: lb.Scene, kind: BallKind) -> np.ndarray:
     """Growth about the states of a kind at each speed, by the solver of `run`, which shares no code."""
     found = lb.run(machine)
-    assert isinstance(found, BallsResult)
+    assert isinstance(found, BallsAnswer)
     rows = np.where(found.states.kind == kind, found.states.growth, np.nan)
     return np.asarray(np.nanmin(rows, axis=1))
 
@@ -88,7 +88,7 @@ def test_an_even_share_is_one_of_the_family() -> None:
     """Two races of one plane share the unbalance by what they hold: growth in the range of all members."""
     machine = scene("balls_and_liquid", speeds__count=3)
     chart, found = lb.map_balls(machine, values=2, speeds=3), lb.run(machine)
-    assert isinstance(found, BallsResult) and found.growth_range is not None
+    assert isinstance(found, BallsAnswer) and found.growth_range is not None
     balanced = (found.states.kind[:, 0] == BallKind.BALANCED) & (found.chosen == 0)
     assert balanced.sum() >= 2
     least, largest = found.growth_range[balanced].T

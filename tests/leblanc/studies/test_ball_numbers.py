@@ -12,8 +12,8 @@ import pytest
 import leblanc as lb
 from leblanc.cli import main
 from leblanc.results.races.numbers import BallExplanation
-from leblanc.results.races.states import BallsResult
 from leblanc.scene.scene import Scene, dry_rotor
+from leblanc.studies.balls.answer import BallsAnswer
 from leblanc.studies.batch import answer_scenes
 from leblanc.studies.fit.measured import Measurement
 from leblanc.studies.fit.problem import answer as _answer
@@ -120,7 +120,7 @@ def test_a_sweep_keeps_what_run_tells() -> None:
     assert set(kept) == {output.name for output in outputs_of(balls=True)}
     for k, scene in enumerate(scenes):
         result = lb.run(scene)
-        assert isinstance(result, BallsResult)
+        assert isinstance(result, BallsAnswer)
         np.testing.assert_array_equal(kept["amplitude"][k], result.amplitude)
         np.testing.assert_array_equal(kept["growth"][k], result.growth)
         assert kept["state"][k].tolist() == result.state.tolist()

@@ -11,8 +11,8 @@ import pytest
 
 import leblanc as lb
 from leblanc.cli import main
-from leblanc.results.races.states import BallsResult
-from leblanc.studies.races.balls import run_balls
+from leblanc.studies.balls.answer import BallsAnswer
+from leblanc.studies.balls.study import run_balls
 from meshes.errors import InputError
 from solvers.rotor.balls.swing import ball_swing
 from tests.mutants import kills
@@ -22,7 +22,7 @@ ROOT = Path(__file__).resolve().parents[3]
 
 def test_the_example_balances_above_its_critical_speed() -> None:
     result = lb.run(lb.example("balls").replace({"speeds.count": 15}))
-    assert isinstance(result, BallsResult)
+    assert isinstance(result, BallsAnswer)
     assert result.state[0] == "together"
     assert result.state[-1] == "balanced"
     unbalance, held = 6e-4, result.capacity[0]
@@ -48,7 +48,7 @@ def test_races_fit_rotors_that_tilt(name: str) -> None:
     table["runup"] = {"start": 5.0, "stop": 20.0, "rate": 10.0, "duration": 2.0, "cells": 16}
     both = lb.Scene(**table).replace({"speeds.count": 5})
     result = lb.run(both)
-    assert isinstance(result, BallsResult)
+    assert isinstance(result, BallsAnswer)
     assert result.converged.all()
     run = lb.run_up(both, samples=40, check=False)
     assert run.converged
@@ -63,7 +63,7 @@ def test_races_fit_rotors_that_tilt(name: str) -> None:
             assert told.worst.bearing.shape[1] == 2
 
 
-@kills("leblanc.studies.races.balls:_balanced_bands", "np.array([low, high])", "np.array([low, 0.9 * high])")
+@kills("leblanc.studies.balls.study:_balanced_bands", "np.array([low, high])", "np.array([low, 0.9 * high])")
 def test_the_speed_from_which_balls_balance_does_not_hang_on_the_speeds() -> None:
     """Its edge is solved: the balanced state grows next to it on one side and decays on the other."""
     found = [lb.run(lb.example("balls").replace({"speeds.count": n})).balanced_from for n in (7, 60)]
@@ -73,7 +73,7 @@ def test_the_speed_from_which_balls_balance_does_not_hang_on_the_speeds() -> Non
         assert bool(run_balls(near, edges=False).balanced[0]) is stable
 
 
-@kills("leblanc.studies.races.balls:_balanced_bands", "family.any()", "False")
+@kills("leblanc.studies.balls.study:_balanced_bands", "family.any()", "False")
 def test_a_family_of_balanced_states_has_no_edge_of_one() -> None:
     """More balls than a balance needs stand in many ways, of unlike stability: the speeds asked for tell."""
     many = lb.example("balls_and_liquid").replace({"speeds.count": 2})
@@ -85,7 +85,7 @@ def test_a_family_of_balanced_states_has_no_edge_of_one() -> None:
 def test_balls_that_resist_leave_a_band() -> None:
     scene = lb.example("balls").replace({"chambers.0.rolling_resistance": 1e-3, "speeds.count": 3})
     result = lb.run(scene)
-    assert isinstance(result, BallsResult)
+    assert isinstance(result, BallsAnswer)
     assert result.sticking == (1e-3 * 0.065,)
     assert any(note.code == "sticks" for note in result.notes)
 
@@ -134,7 +134,7 @@ def error_beside_held(model: str) -> None:
     # So large that the surface touches the wall's end somewhere, which linear theory does not know.
     scene = lying(**{"model.liquid": model, "rotor.unbalance": "4 kg*mm", "speeds.start": "900 rpm"})
     result = lb.run(scene)
-    assert isinstance(result, BallsResult)
+    assert isinstance(result, BallsAnswer)
     assert result.error_estimate is not None
     assert (np.nanmax(result.error_estimate[result.stable]) > 0.1) == (model == "linear")
     assert set(result.model) == {f"balls and {model}"}
@@ -157,8 +157,8 @@ def error_beside_held(model: str) -> None:
         assert result.amplitude[k] == pytest.approx(alone.amplitude[0], rel=1e-6)
 
 
-@kills("leblanc.studies.races.estimates:liquid_errors", "law.worst if linear", "0.0 if linear")
-@kills("leblanc.studies.races.estimates:_errors", "np.full(count, across)", "np.full(count, 0.0)")
+@kills("leblanc.studies.balls.estimates:liquid_errors", "law.worst if linear", "0.0 if linear")
+@kills("leblanc.studies.balls.estimates:_errors", "np.full(count, across)", "np.full(count, 0.0)")
 def test_the_error_is_that_of_the_rotor_with_its_balls_held() -> None:
     for model in ("statics", "linear"):
         error_beside_held(model)
@@ -179,7 +179,7 @@ def test_gravity_is_told_with_its_size() -> None:
     """On a lying drum: its share, swings as of a ball alone on a stiff rotor, what leaves the walls."""
     scene = lying()
     result = lb.run(scene)
-    assert isinstance(result, BallsResult)
+    assert isinstance(result, BallsAnswer)
     assert result.gravity is not None
     assert result.in_range is not None
     np.testing.assert_allclose(result.gravity.share, 9.81 / (0.05 * result.speed**2))
@@ -192,7 +192,7 @@ def test_gravity_is_told_with_its_size() -> None:
     assert set(told["gravity"]) == {"share", "ball_swing", "amplitude", "power"}
     assert told["in_range"] == [True] * 7
     slow = lb.run(lying(**{"speeds.start": "60 rpm", "speeds.stop": "160 rpm"}))
-    assert isinstance(slow, BallsResult)
+    assert isinstance(slow, BallsAnswer)
     assert slow.in_range is not None
     # Of the layer of the rig, whose surface is farther out than the balls, and of the balls.
     np.testing.assert_array_equal(slow.in_range, 0.05 * slow.speed**2 > 9.81)
@@ -215,7 +215,7 @@ def test_a_race_for_each_ball_does_as_one_race() -> None:
     (race,) = scene.balls
     apart = scene.replace({"chambers": [race.model_dump(exclude_none=True) | {"count": 1}] * 2})
     one, two = lb.run(scene), lb.run(apart)
-    assert isinstance(one, BallsResult) and isinstance(two, BallsResult)
+    assert isinstance(one, BallsAnswer) and isinstance(two, BallsAnswer)
     assert two.can_balance and two.balanced_from == pytest.approx(one.balanced_from, rel=1e-9)
     np.testing.assert_allclose(two.amplitude, one.amplitude, atol=1e-12)
     np.testing.assert_allclose(two.growth, one.growth, rtol=1e-7, atol=1e-9 * scene.speeds.stop)
@@ -238,7 +238,7 @@ def test_commands_say_in_words_that_there_is_no_state(
     path = tmp_path / "none.toml"
     path.write_text(NO_STATE.format(count=count, stop=stop))
     result = lb.run(lb.load_scene(path))
-    assert isinstance(result, BallsResult)
+    assert isinstance(result, BallsAnswer)
     assert not result.converged.any() and set(result.state) == {"none"}
     assert np.isnan(result.growth).all() and np.isnan(result.amplitude).all()
     for command in (["run"], ["explain"], ["view", "--screenshot", str(tmp_path / "none.png")]):

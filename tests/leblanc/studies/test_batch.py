@@ -11,7 +11,7 @@ import pytest
 from fluid.friction.laws import Friction
 from leblanc.scene.scene import Scene, load_scene
 from leblanc.studies.batch import Answers, answer_scenes
-from leblanc.studies.run.answer import RunResult, phase
+from leblanc.studies.run.answer import RunAnswer, phase
 from leblanc.studies.run.study import run_scene
 from meshes.errors import InputError
 from tests.mutants import kills
@@ -29,7 +29,7 @@ def scene(name: str, share: float = 1.0) -> Scene:
     return found.altered(chambers=chambers, speeds=found.speeds.altered(count=COUNT))
 
 
-def outputs(record: RunResult) -> dict[str, np.ndarray]:
+def outputs(record: RunAnswer) -> dict[str, np.ndarray]:
     """What `run` says, under the names of the answers."""
     one, whirl = record.response, record.whirl
     assert whirl is not None

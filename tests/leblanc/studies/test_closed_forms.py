@@ -15,12 +15,11 @@ import leblanc as lb
 from fluid.fill import Fill
 from fluid.liquid import Liquid
 from leblanc.core.blocks import Table
-from leblanc.results.motion.closed_forms import ClosedForms
 from leblanc.scene.schema.load import SceneError
-from leblanc.studies.closed_forms import told
-from leblanc.studies.closed_forms.told import vector_model
+from leblanc.studies.closed_forms import study
+from leblanc.studies.closed_forms.answer import HEAD, ClosedForms, closed_form_table, vector_rows
+from leblanc.studies.closed_forms.study import vector_model
 from leblanc.studies.models.choose import prepare
-from leblanc.text.closed_forms import HEAD, closed_form_rows, vector_rows
 from meshes.chamber import Chamber
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.vector_model import balance_residual
@@ -33,7 +32,7 @@ WATER = Liquid("water", 998.2, 1e-6)
 
 
 def closed_forms(scene: lb.Scene) -> ClosedForms:
-    return told.closed_forms(prepare(scene))
+    return study.closed_forms(prepare(scene))
 
 
 def top() -> lb.Scene:
@@ -77,8 +76,8 @@ def test_balance_of_angles_over_machines(
     assert found.unbalance_left[0] == pytest.approx(total / (unbalance * mass), rel=1e-12)
 
 
-@kills("leblanc.studies.closed_forms.told:vector_model", "-answer.liquid_angle", "answer.liquid_angle")
-@kills("leblanc.studies.closed_forms.told:_nearest_balance", "abs(apart).argmin", "abs(apart).argmax")
+@kills("leblanc.studies.closed_forms.study:vector_model", "-answer.liquid_angle", "answer.liquid_angle")
+@kills("leblanc.studies.closed_forms.study:_nearest_balance", "abs(apart).argmin", "abs(apart).argmax")
 def test_angle_of_a_rotor_at_its_wet_resonance() -> None:
     """By hand: with K = (M + m_f) W^2 the deflection is U0/(i C/W): the unbalance leads by a quarter turn."""
     chamber = Chamber(0.1, 0.05)
@@ -96,7 +95,7 @@ def test_no_unbalance_has_no_angle() -> None:
     found = lb.run(scene).vector_model
     assert found is not None
     assert np.isnan(found.ratio).all() and np.isnan(found.balance_angle).all()
-    (row,) = closed_form_rows(lb.run(scene).closed_forms)
+    (row,) = closed_form_table(lb.run(scene).closed_forms).rows
     assert "no angle balances" in row[1]
 
 
@@ -112,8 +111,8 @@ def test_conditions_of_two_planes_reach_the_command() -> None:
     short = scene.replace({"rotor.polar_inertia": 0.9})
     data = lb.explain(short).to_json()["balancing"]
     assert data["above"] is None and not any(data["possible"])
-    labels = dict(closed_form_rows(closed_forms(short)))
-    assert "not possible at any speed" in labels["balancing in two planes"]
+    labels = dict(closed_form_table(closed_forms(short)).rows)
+    assert "not possible at any speed" in labels["Balancing in two planes"]
 
 
 def test_one_plane_says_why_not() -> None:
@@ -135,7 +134,7 @@ def test_cages_of_bearings() -> None:
     np.testing.assert_allclose(first.speed, 0.5 * speed * (1.0 - 0.5 * 6.75 / 28.5), rtol=1e-14)
     assert np.isnan(first.printed).all()
     np.testing.assert_array_equal(second.printed, 0.5 * speed)
-    assert "half the shaft's" in dict(closed_form_rows(closed_forms(scene)))["cage of bearing 1"]
+    assert "half the shaft's" in dict(closed_form_table(closed_forms(scene)).rows)["Cage of bearing 1"]
     bare = scene.replace({"rotor.bearings": [{"position": -0.06}, {"position": -0.15}]})
     assert any("ball_diameter" in text for text in lb.explain(bare).not_told)
 
@@ -214,7 +213,7 @@ def test_upright_rotation_turns_where_it_is_said_to() -> None:
         assert at.upright is not None and bool(at.upright.stable[-1]) is stable
     np.testing.assert_array_equal(found.margin, found.frozen - found.surface)
     assert np.all(found.surface > 0.0)
-    text = dict(closed_form_rows(closed_forms(scene)))["upright rotation"]
+    text = dict(closed_form_table(closed_forms(scene)).rows)["Upright rotation"]
     assert text.startswith("unstable at first, turns at 444.2 rpm")
 
 

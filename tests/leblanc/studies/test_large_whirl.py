@@ -11,7 +11,7 @@ import pytest
 from leblanc.results.notes.whirl_map import MapCode
 from leblanc.scene.scene import Scene, load_scene
 from leblanc.studies.models.choose import prepare
-from leblanc.studies.run.answer import RunResult
+from leblanc.studies.run.answer import RunAnswer
 from leblanc.studies.run.figure import amplitude_figure
 from leblanc.studies.run.notes import RunCode
 from leblanc.studies.run.study import run_scene
@@ -33,7 +33,7 @@ def machine() -> Scene:
 
 
 @cache
-def answer() -> RunResult:
+def answer() -> RunAnswer:
     return run_scene(machine(), cycles=True)
 
 

@@ -22,13 +22,14 @@ from leblanc.studies.optimise.answers import FilledMachine, with_volumes
 from leblanc.studies.optimise.objectives import PeakOver
 from leblanc.studies.optimise.optimise import optimise_scene
 from leblanc.studies.peaks import _distinct, responses_between
-from leblanc.studies.run.answer import RunResult
+from leblanc.studies.run.answer import RunAnswer
 from leblanc.studies.run.notes import RunCode
 from leblanc.studies.run.study import run_scene
-from leblanc.studies.run.words import alts, answer, remarks, summary
+from leblanc.studies.run.words import alts, answer, remarks
 from meshes.arrays import Array
 from solvers.synchronous.response import Response, by_speed, response
 from tests.mutants import kills
+from tests.oracles.pages import rows_of
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 
@@ -40,7 +41,7 @@ def scene(name: str, count: int, **changes: Any) -> Scene:
 
 
 @cache
-def run(name: str, count: int) -> RunResult:
+def run(name: str, count: int) -> RunAnswer:
     return run_scene(scene(name, count))
 
 
@@ -153,7 +154,7 @@ def test_peak_at_an_end() -> None:
     assert "The largest amplitude lies at an end of the range of speeds." in remarks(below)
 
 
-def assert_unbounded(own: Scene) -> RunResult:
+def assert_unbounded(own: Scene) -> RunAnswer:
     """A resonance that nothing damps has no peak that could be named, and everyone says so."""
     found = run_scene(own)
     assert math.isinf(found.peak["amplitude"]) and math.isinf(found.peak_dry["amplitude"])
@@ -199,7 +200,7 @@ def test_a_result_keeps_the_speeds_asked_for() -> None:
         np.all(np.diff(found.curve.speed) > 0.0) and found.curve.speed.size == 60 + found.refined.speed.size
     )
     assert found.chamber_curve.shape == (found.curve.speed.size, 1)
-    assert dict(summary(found))["at the speed (rpm)"].startswith(f"{found.peak['speed'] * RPM:.4g} ")
+    assert rows_of(found)["at the speed (rpm)"] == f"{found.peak['speed'] * RPM:.4g}"
 
 
 def test_one_speed_has_no_range() -> None:
@@ -273,7 +274,7 @@ def test_the_largest_amplitude_is_that_of_speeds_at_which_the_answer_holds() -> 
 
 
 @cache
-def lying(name: str) -> RunResult:
+def lying(name: str) -> RunAnswer:
     return run_scene(lb.example(name).replace(LYING[name] | {"speeds.count": 12}))
 
 
@@ -287,8 +288,8 @@ def test_what_the_largest_amplitude_leaves_out_is_told() -> None:
         assert note.data["amplitude"] == found.curve.amplitude.max() > found.peak["amplitude"]
         assert note.data["at_edge"] is beside and ("lies at the edge" in note.text) is beside
         assert "no annular layer exists" in note.text
-        rows = dict(summary(found))
-        assert rows["at the speed (rpm)"].startswith(f"{found.peak['speed'] * RPM:.4g} ")
+        rows = rows_of(found)
+        assert rows["at the speed (rpm)"] == f"{found.peak['speed'] * RPM:.4g}"
         assert "where the answer holds is" in answer(found)
         assert all("where the answer holds" in alts(found)[figure] for figure in ("amplitude", "chamber"))
     upright = run("centrifuge", 241)
@@ -296,7 +297,9 @@ def test_what_the_largest_amplitude_leaves_out_is_told() -> None:
     assert "holds" not in answer(upright)
 
 
-@kills("leblanc.studies.run.answer:_curve_json", "result.curve", "result.response")
+@kills(
+    "leblanc.studies.run.answer:RunAnswer.curve", "by_speed([self.response, self.refined])", "self.refined"
+)
 def test_one_curve_contains_its_peaks() -> None:
     """The largest amplitude of the curve, among the speeds in range, is the peak of the table."""
     for found in (run("centrifuge", 241), lying("two_plane_rig")):

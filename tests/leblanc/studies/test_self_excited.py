@@ -9,13 +9,13 @@ import pytest
 
 from fluid.friction.laws import NO_FRICTION, layer_thickness
 from fluid.whirl import damped_waves
-from leblanc.results.motion.self_excited import SelfExcited
 from leblanc.scene.scene import dry_rotor, load_scene
 from leblanc.studies.models.choose import prepare
+from leblanc.studies.run.motion import SelfExcited
 from leblanc.studies.run.notes import RunCode
 from leblanc.studies.run.notes import self_excited as note_of
 from leblanc.studies.run.study import _thick_layers, run_scene, self_excited
-from leblanc.studies.run.words import limits
+from leblanc.studies.run.words import checks
 from meshes.arrays import Array
 from solvers.whirl import laminar
 from solvers.whirl.growth import asynchronous_growth
@@ -27,7 +27,7 @@ def found(growth: list[float], bands: tuple[tuple[float, float], ...]) -> SelfEx
     return SelfExcited(np.array(growth), np.array([50.0, 60.0, 70.0]), bands, "none")
 
 
-_ANSWER = "leblanc.results.motion.self_excited:SelfExcited"
+_ANSWER = "leblanc.studies.run.motion:SelfExcited"
 
 
 @kills(
@@ -49,7 +49,7 @@ def test_stability() -> None:
     "(self.growth <= 0.0)",
     "~(self.growth > 0.0)",
 )
-@kills("leblanc.studies.run.answer:RunResult.stability", "(kept & np.isnan(growth))", "False")
+@kills("leblanc.studies.run.answer:RunAnswer.stability", "(kept & np.isnan(growth))", "False")
 @kills("leblanc.studies.run.study:self_excited", "bands_not_known(speed, growth)", "()")
 def test_what_is_not_known_is_not_stable(monkeypatch: pytest.MonkeyPatch) -> None:
     """A search that fails is told apart from a stable machine in every way out, and its bands are listed."""
@@ -79,7 +79,7 @@ def test_what_is_not_known_is_not_stable(monkeypatch: pytest.MonkeyPatch) -> Non
         assert not any(low < b and high > a for a, b in answer["whirl_bands"])
     np.testing.assert_array_equal(told[1:-1], unknown[1:-1])
     assert "do not take it for stable" in note_of(result.whirl).text
-    assert "Stability not known" in [limit.label for limit in limits(result)]
+    assert "Stability not known" in [limit.label for limit in checks(result)]
     flag = result.to_dataset()["stability"]
     meaning = dict(zip(flag.attrs["flag_values"].tolist(), flag.attrs["flag_meanings"].split(), strict=True))
     assert [meaning[value] for value in flag.values.tolist()] == result.stability.tolist()

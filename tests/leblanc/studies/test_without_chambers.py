@@ -12,7 +12,6 @@ import pytest
 import leblanc as lb
 from leblanc.cli import main
 from leblanc.core.page import About
-from leblanc.report.run import write_run_report
 from leblanc.report.runup import write_runup_report
 from leblanc.results.runup import OF_LIQUID as OF_LIQUID_IN_TIME
 from leblanc.scene.inputs import about
@@ -127,7 +126,7 @@ def test_pages_and_texts_speak_of_one_machine(scene: Scene, tmp_path: Path) -> N
         return text[: text.index("<footer")]
 
     answer, ramp = run_scene(scene), runup_scene(scene, check=False)
-    text = page(write_run_report, answer, about(scene, "leblanc run", unused=("model",)))
+    text = page(write_page_of, answer, about(scene, "leblanc run", unused=("model",)))
     text += page(write_runup_report, ramp, about(scene, "leblanc runup", unused=("model",)))
     for word in ("with liquid", "Wall dry", "Liquid model", "vector model"):
         assert word not in text

@@ -13,7 +13,7 @@ import leblanc as lb
 from leblanc.cli import main
 from leblanc.results.drawn.balls import BallView
 from leblanc.results.drawn.machine import DrawnRace
-from leblanc.results.races.states import BallsResult
+from leblanc.studies.balls.answer import BallsAnswer
 from leblanc.studies.shapes.balls import ball_radius, ball_view, drawn_races, ringed, side_by_side
 from leblanc.studies.shapes.machine import runup_view
 from leblanc.view.balls import ball_still
@@ -49,7 +49,7 @@ def stand_where_run_says(speed: float) -> None:
     away = across - middle(view, 0)
     np.testing.assert_allclose(np.abs(away), 1e3 * race.radius, rtol=1e-12)
     found = lb.run(machine.replace({"speeds.start": speed, "speeds.stop": speed, "speeds.count": 1}))
-    assert isinstance(found, BallsResult) and along.tolist() == [0.0, 0.0]
+    assert isinstance(found, BallsAnswer) and along.tolist() == [0.0, 0.0]
     total = np.exp(1j * np.angle(away)).sum()
     expected = np.exp(1j * found.ball_angle[0]).sum()
     # Apart or side by side, the middle of both has the direction that `run` tells.

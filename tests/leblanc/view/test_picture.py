@@ -11,8 +11,8 @@ import pytest
 
 from fluid.waves import free_wave_frequencies
 from leblanc.results.drawn.machine import LiquidShape, Scale
-from leblanc.results.motion.self_excited import SelfExcited
 from leblanc.scene.scene import Scene, Speeds, load_scene
+from leblanc.studies.run.motion import SelfExcited
 from leblanc.studies.run.study import run_scene
 from leblanc.studies.shapes.machine import machine_motion, mode_view, table_view
 from leblanc.studies.shapes.scale import scale_of

@@ -19,6 +19,7 @@ from leblanc.results.notes import ball_design as notes
 from leblanc.scene.scene import Runup, Scene, dry_rotor, require_clear, require_whirl
 from leblanc.scene.tasks import Optimisation
 from leblanc.scene.unbalances import unbalances_of, with_unbalances
+from leblanc.studies.balls.states import WorstStates, planes_of, worst_states
 from leblanc.studies.drives import drive_of, numerics_of, planned, rotor_in_time
 from leblanc.studies.models.choose import across_gravity, axial_gravity
 from leblanc.studies.optimise.balls.design import (
@@ -31,7 +32,6 @@ from leblanc.studies.optimise.balls.design import (
 )
 from leblanc.studies.optimise.problem import operating_speeds, working_speed
 from leblanc.studies.optimise.robust import DOUBLE, operating_conditions, unbalance_range
-from leblanc.studies.races.states import WorstStates, planes_of, worst_states
 from leblanc.studies.runup import chosen_run
 from meshes.arrays import Array
 from meshes.errors import InputError

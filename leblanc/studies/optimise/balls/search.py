@@ -15,6 +15,8 @@ from leblanc.results.races.design import BallDesignResult, DesignedRace, TriedDe
 from leblanc.scene.races import BallRace
 from leblanc.scene.scene import Scene
 from leblanc.scene.tasks import Optimisation
+from leblanc.studies.balls.states import worst_states
+from leblanc.studies.balls.study import run_balls
 from leblanc.studies.models.validity import doubts
 from leblanc.studies.optimise.balls.design import (
     named_ranges,
@@ -26,8 +28,6 @@ from leblanc.studies.optimise.balls.design import (
     with_balls,
 )
 from leblanc.studies.optimise.balls.problem import WHOLE, BallProblem, Verdict, ball_problem
-from leblanc.studies.races.balls import run_balls
-from leblanc.studies.races.states import worst_states
 from meshes.arrays import Array
 from meshes.errors import InputError
 

@@ -11,8 +11,8 @@ import pytest
 from leblanc.core.terminal import print_json
 from leblanc.figures.comparison import LOOKS
 from leblanc.results.models.comparison import Comparison, ModelAnswer
-from leblanc.results.motion.held import Held
-from leblanc.studies.run.answer import RunResult
+from leblanc.studies.held.answer import Held
+from leblanc.studies.run.answer import RunAnswer
 from leblanc.text.explanation import comparison_head, comparison_rows, refusals
 from meshes.errors import InputError
 from tests.mutants import kills
@@ -25,13 +25,13 @@ def comparison(*answers: ModelAnswer) -> Comparison:
     return Comparison("Rig", "a book", ("rotor.mass",), "abc", answers)
 
 
-def answer(model: str, result: RunResult | None = None) -> ModelAnswer:
+def answer(model: str, result: RunAnswer | None = None) -> ModelAnswer:
     if result is None:
         return ModelAnswer(model, "model.liquid must be another", None, None)
     return ModelAnswer(model, "", 0.25, result)
 
 
-def wet(added: float) -> RunResult:
+def wet(added: float) -> RunAnswer:
     return record_of(response_of(SPEED, added))
 
 
@@ -177,7 +177,7 @@ def test_narrow_resonances_are_drawn_wider_below() -> None:
     speed = np.linspace(100.0, 6000.0, 2000) * RPM
     light = 2.0 * 0.01 * MASS * 1000.0 * RPM
 
-    def narrow(added: float) -> RunResult:
+    def narrow(added: float) -> RunAnswer:
         response = response_of(speed, added)
         own, dry = (dry_deflection(speed, MASS + share, light) for share in (added, 0.0))
         return record_of(replace(response, deflection=own, deflection_dry=dry))

@@ -186,10 +186,10 @@ def test_a_speed_without_a_stable_state_is_no_design() -> None:
     assert near.excess > 0.0
 
 
-@kills("leblanc.studies.races.states:worst_states", "np.where(stable, sizes[rows, chosen], most)", "most")
+@kills("leblanc.studies.balls.states:worst_states", "np.where(stable, sizes[rows, chosen], most)", "most")
 def test_the_peak_counts_balls_on_the_heavy_side() -> None:
     """Where nothing is stable: (U + N m R) Omega^2 over the dynamic stiffness; elsewhere the stable state."""
-    from leblanc.studies.races.states import worst_states
+    from leblanc.studies.balls.states import worst_states
 
     scene, speed = planar(mass=0.007), np.array([40.0, 105.0, 300.0])
     found = worst_states(scene, speed)

@@ -10,9 +10,9 @@ import numpy as np
 
 from fluid.fill import Fill
 from fluid.friction.laws import Friction
-from leblanc.results.machine.loads import MachineLoads
 from leblanc.scene.scene import JeffcottRotor, Scene, TubRotor, dry_rotor
 from leblanc.studies.drives import rotor_in_time
+from leblanc.studies.loads.answer import MachineLoads
 from meshes.arrays import Array, Complex, Flags, Index
 from solvers.held.state import HeldState
 from solvers.rotor.loads.machine import LoadedMachine
@@ -154,7 +154,7 @@ def _loads(
         gaps=np.array([np.nan if point.gap is None else point.gap for point in machine.points]),
         torque=torque,
         power=power,
-        orbit=orbit,
+        semi_axes=orbit,
         asked=asked,
         impulse=np.zeros((0, 2 if machine.bearings is not None else 0)) if impulse is None else impulse,
         jumps=np.zeros(0) if jumps is None else jumps,

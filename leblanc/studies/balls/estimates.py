@@ -8,7 +8,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from leblanc.results.races.balls import GravityOnBalls
+from leblanc.studies.balls.races import GravityOnBalls
 from leblanc.studies.models.choose import Prepared
 from meshes.arrays import Array, Complex, Flags, Index
 from solvers.liquid_model import ROUNDING

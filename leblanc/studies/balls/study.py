@@ -8,20 +8,19 @@ from dataclasses import replace
 import numpy as np
 
 from leblanc.core.notes import Note
-from leblanc.results.machine.loads import MachineLoads
-from leblanc.results.notes import balls as notes
-from leblanc.results.races.balls import RaceOfBalls
-from leblanc.results.races.states import BallsResult
 from leblanc.scene.inputs import input_rows
 from leblanc.scene.races import BallRace
 from leblanc.scene.scene import Scene
-from leblanc.studies.closed_forms.told import closed_forms
-from leblanc.studies.machine import loaded_machine, loads_over_speed
+from leblanc.studies.balls import notes
+from leblanc.studies.balls.answer import BallsAnswer
+from leblanc.studies.balls.estimates import carried_balls, gravity_on_balls, liquid_errors
+from leblanc.studies.balls.races import RaceOfBalls
+from leblanc.studies.balls.states import liquid_beside, own_family
+from leblanc.studies.closed_forms.study import closed_forms
+from leblanc.studies.loads.answer import MachineLoads
+from leblanc.studies.loads.study import loaded_machine, loads_over_speed
 from leblanc.studies.models.choose import Prepared, axial_gravity, carried_from, choose_all, prepare
 from leblanc.studies.models.validity import doubts
-from leblanc.studies.races.chart import own_family
-from leblanc.studies.races.estimates import carried_balls, gravity_on_balls, liquid_errors
-from leblanc.studies.races.states import liquid_beside
 from leblanc.studies.run import notes as response_notes
 from meshes.arrays import Array
 from meshes.errors import InputError
@@ -67,7 +66,7 @@ def _places(race: BallRace) -> list[float]:
     return [math.pi + apart * (k - 0.5 * (race.count - 1)) for k in range(race.count)]
 
 
-def run_balls(scene: Scene, families: bool = True, edges: bool = True) -> BallsResult:
+def run_balls(scene: Scene, families: bool = True, edges: bool = True) -> BallsAnswer:
     """States in which the balls of a scene rest in the drum, at each of its speeds [theory: races, eq. 5-8].
 
     `families`: look for the least and the largest growth rate over families of states; `edges`: solve the
@@ -84,7 +83,7 @@ def run_balls(scene: Scene, families: bool = True, edges: bool = True) -> BallsR
     way = orbit(system, found.states.coordinates, place)
     lost = found.states.kind == BallKind.NONE
     without = response(rotor, scene.fills, speed, gravity, model, position=place)
-    answer = BallsResult(
+    answer = BallsAnswer(
         name=scene.name,
         source=scene.source,
         assumed=scene.assumed,
@@ -122,7 +121,7 @@ def run_balls(scene: Scene, families: bool = True, edges: bool = True) -> BallsR
 
 
 def _balanced_bands(
-    scene: Scene, system: RotorSystem, answer: BallsResult
+    scene: Scene, system: RotorSystem, answer: BallsAnswer
 ) -> tuple[tuple[float, float], ...] | None:
     """Bands of speed in which the balanced state is stable; None for a family, and on unlike supports."""
     states, (low, high) = answer.states, (float(answer.speed.min()), float(answer.speed.max()))
@@ -133,7 +132,7 @@ def _balanced_bands(
 
 
 def _growth_range(
-    scene: Scene, system: RotorSystem, races: list[Race], answer: BallsResult, model: LiquidModel
+    scene: Scene, system: RotorSystem, races: list[Race], answer: BallsAnswer, model: LiquidModel
 ) -> Array:
     """Least and largest growth over the family of each state reported, 1/s, shape (s, 2)."""
     found = np.repeat(answer.growth[:, None], 2, axis=1)
@@ -155,8 +154,8 @@ def _growth_range(
 
 
 def _estimated(
-    machine: Prepared, races: list[Race], answer: BallsResult
-) -> tuple[BallsResult, GravityError | None]:
+    machine: Prepared, races: list[Race], answer: BallsAnswer
+) -> tuple[BallsAnswer, GravityError | None]:
     """The same with what its states leave out: errors of the liquid's model, gravity across the axis."""
     error = in_range = captured_from = waves = None
     if answer.liquid_model:
@@ -173,7 +172,7 @@ def _estimated(
     return replace(answer, capture_speed=captured_from, gravity=swing), waves
 
 
-def _loads(scene: Scene, answer: BallsResult) -> MachineLoads | None:
+def _loads(scene: Scene, answer: BallsAnswer) -> MachineLoads | None:
     """Forces and clearances of the stable states; None where the scene asks for none."""
     machine = loaded_machine(scene)
     if machine is None:
@@ -187,7 +186,7 @@ def _loads(scene: Scene, answer: BallsResult) -> MachineLoads | None:
 
 
 def _run_notes(
-    scene: Scene, answer: BallsResult, alike: bool, waves: GravityError | None
+    scene: Scene, answer: BallsAnswer, alike: bool, waves: GravityError | None
 ) -> tuple[Note, ...]:
     """What was assumed, and what is not told."""
     found = [notes.capacity(answer.can_balance, sum(answer.capacity)), notes.points()]
@@ -222,7 +221,7 @@ def _run_notes(
     return (*found, *doubts(scene))
 
 
-def _gravity(answer: BallsResult) -> Note:
+def _gravity(answer: BallsAnswer) -> Note:
     """How much gravity across the axis does, at the last speed and where it does most to balls that rest."""
     assert answer.gravity is not None
     assert answer.in_range is not None
@@ -233,7 +232,7 @@ def _gravity(answer: BallsResult) -> Note:
     return notes.lies(list(zip(*(column[at].tolist() for column in columns), strict=True)))
 
 
-def _waves(answer: BallsResult, waves: GravityError) -> Note:
+def _waves(answer: BallsAnswer, waves: GravityError) -> Note:
     """What gravity's waves in the liquid do to the states that are told."""
     assert answer.in_range is not None
     worst = float(np.max(waves.amplitude[answer.stable & answer.in_range], initial=0.0))

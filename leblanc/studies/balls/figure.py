@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,27 +12,23 @@ from leblanc.figures.drawing.curves import gapped
 from leblanc.figures.drawing.page import (
     Caption,
     Figure,
-    FigureFiles,
     Frame,
     add_rate_axis,
     lay_out,
     number,
-    save,
     style,
 )
-from leblanc.figures.machine import machine_figure
-from leblanc.results.races.balls import in_race
-from leblanc.results.races.states import BallsResult
+from leblanc.studies.balls.answer import BallsAnswer, alt, sentence
+from leblanc.studies.balls.races import in_race
+from leblanc.studies.loads.figure import machine_figure
 from leblanc.studies.run.figure import DRY, WET
-from leblanc.text.races.balls import alt, answer
 
 FRAME = Frame(left=0.72, top=0.46, between=0.14, below=0.42)
-TITLE = "Amplitude with balls and where they rest"
 _RACES = ((WET, "o"), ("#CC79A7", "s"), ("#009E73", "^"))  # colour and mark of a race
 _FAR = 1.6  # times the largest of stable states and of the bare rotor: unstable ones above are cut
 
 
-def balls_figure(result: BallsResult) -> Figure:
+def balls_figure(result: BallsAnswer) -> Figure:
     """Amplitudes above, angles of the balls in the drum below."""
     with style():
         figure = Figure()
@@ -52,27 +47,18 @@ def balls_figure(result: BallsResult) -> Figure:
         below.set_xlabel("Speed (rpm)")
         add_rate_axis(above, "Speed (rad/s)")
         zero = "the unbalance" if result.kind == "jeffcott" else "angle 0 of the unbalances"
-        text = f"{answer(result)} Zero mark: {zero}."
+        text = f"{sentence(result)} Zero mark: {zero}."
         lay_out(figure, [[above], [below]], [2.3, 1.6], FRAME, _caption(result, text), most_lines=6)
     return figure
 
 
-def write_balls_figures(result: BallsResult, directory: Path) -> tuple[FigureFiles, ...]:
-    """Draw the figures and write each as PNG and SVG."""
-    found = [save(balls_figure(result), directory, "balls", TITLE)]
-    if result.loads is not None:
-        title = "Clearances and forces on the floor"
-        found.append(save(loads_figure(result), directory, "machine", title))
-    return tuple(found)
-
-
-def loads_figure(result: BallsResult) -> Figure:
+def loads_figure(result: BallsAnswer) -> Figure:
     """Clearances, forces under the feet, margin against walking and torque of stable states over speed."""
     assert result.loads is not None
     return machine_figure(result.loads, lambda text: _caption(result, f"{text} Stable states only."))
 
 
-def _draw_amplitudes(axes: Any, result: BallsResult) -> None:
+def _draw_amplitudes(axes: Any, result: BallsAnswer) -> None:
     """Stable state, unstable ones as small marks, and the rotor without balls."""
     rpm, shown = result.speed * RPM, np.where(result.stable, result.amplitude, np.nan)
     bare = np.where(np.isfinite(result.amplitude_without), result.amplitude_without, np.nan)
@@ -92,7 +78,7 @@ def _draw_amplitudes(axes: Any, result: BallsResult) -> None:
     axes.set_ylabel(f"Amplitude ({MM_PEAK})")
 
 
-def _draw_angles(axes: Any, result: BallsResult) -> None:
+def _draw_angles(axes: Any, result: BallsAnswer) -> None:
     """Each ball of the stable state, a mark for each race."""
     rpm, race = result.speed * RPM, in_race(result.races)
     angle = np.degrees(np.where(result.stable[:, None], result.ball_angle, np.nan))
@@ -108,7 +94,7 @@ def _draw_angles(axes: Any, result: BallsResult) -> None:
     axes.set_ylabel("Angle from the\nzero mark (deg)")
 
 
-def _caption(result: BallsResult, text: str) -> Caption:
+def _caption(result: BallsAnswer, text: str) -> Caption:
     assumed = ", ".join(map(one_line, result.assumed)) or "nothing"
     count = sum(race.count for race in result.races)
     return Caption(

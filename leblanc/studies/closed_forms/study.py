@@ -8,9 +8,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from fluid.printed import liquid_angle_as_printed
-from leblanc.results.motion.closed_forms import Cage, ClosedForms, VectorModel
 from leblanc.scene.bearings import CagedBearing
 from leblanc.scene.scene import Scene, TubRotor, TwoPlaneRotor
+from leblanc.studies.closed_forms.answer import Cage, ClosedForms, VectorModel
 from leblanc.studies.closed_forms.upright import lacking, upright
 from leblanc.studies.models.choose import Prepared
 from meshes.arrays import Array

@@ -1,0 +1,1 @@
+"""Balls in races: how they rest in the drum at each speed."""
