@@ -20,6 +20,7 @@ from leblanc.studies.batch import answer_scenes
 from leblanc.studies.run.answer import OF_LIQUID
 from leblanc.studies.run.study import run_scene
 from leblanc.studies.runup import runup_scene
+from tests.oracles.pages import write_page_of
 
 ROUNDING = 1e-12
 JEFFCOTT = """
