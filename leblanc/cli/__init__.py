@@ -27,7 +27,6 @@ from leblanc.cli import (
     new,
     optimise,
     run,
-    runup,
     sweep,
     view,
 )
@@ -41,8 +40,10 @@ from meshes.errors import InputError
 DONE, UNREAD, WRONG_INPUT, NOT_CONVERGED = 0, 1, 2, 3
 
 # Modules with one command each, a function of the module's name, in the order of the help.
-COMMANDS = (new, explain, run, compare, fit, map, runup, optimise, sweep, view)
-QUESTIONS = ("layer", "modes", "bearing", "volume")  # whose command is made from the signature of their call
+COMMANDS = (new, explain, run, compare, fit, map, optimise, sweep, view)
+# Whose command is made from the signature of their call.
+QUESTIONS = ("runup", "layer", "modes", "bearing", "volume")
+ALIASES = {"run_up": "runup", "run-up": "runup"}  # names that are read as well
 
 # The current folder may hold a stranger's files: a pickle.py is not for the processes that are started from
 # here, nor is the .numba_config.yaml to say where compiled code is kept, which numba would unpickle.
@@ -67,6 +68,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for name, value in SAFE.items():
         os.environ.setdefault(name, value)
     given = list(sys.argv[1:] if arguments is None else arguments) or ["--help"]
+    given[0] = ALIASES.get(given[0], given[0])
     if arguments is None:
         ready_streams()
         # By default a fifth of a short command is a search for cyclic garbage, of which imports leave none.
