@@ -23,7 +23,7 @@ from leblanc.figures.machine import machine_figure
 from leblanc.results.races.balls import in_race
 from leblanc.studies.run.figure import DRY, SHADE, UNSTABLE, WET
 from leblanc.studies.run.notes import plane_label
-from leblanc.studies.runup.answer import RunupAnswer
+from leblanc.studies.runup.answer import RunupAnswer, pieces
 from leblanc.studies.runup.words import GAINS, describe_model, largest, largest_dry, terms
 from meshes.arrays import Array, Flags
 
@@ -74,7 +74,7 @@ def speed_figure(result: RunupAnswer) -> Figure:
                     for part in np.split(np.arange(x.size), np.flatnonzero(np.isnan(x))):
                         known = part[~np.isnan(x[part])]
                         _arrows(axes, x[known], y[known], scale, look["color"])
-        _draw_ranges(axes, result)
+        _draw_band(axes, result)
         axes.set_xlim(low - room, high + room)
         axes.set_ylim(0.0, top)
         axes.set_xlabel("Speed (rpm)")
@@ -125,41 +125,24 @@ def largest_drawn(result: RunupAnswer) -> float:
     return max(ensemble, *(float(result.whole_curve(dry)[2].max(initial=0.0)) for dry in (False, True)))
 
 
-def _draw_ranges(axes: Axes, result: RunupAnswer, over_time: bool = False) -> None:
-    """Between the least and the largest amplitude of an ensemble, over the speed or over time."""
-    spread = result.spread
-    if spread is None:
-        _draw_error(axes, result, over_time)
+def _draw_band(axes: Axes, result: RunupAnswer, over_time: bool = False) -> None:
+    """The range of an ensemble, or else the error of the amplitude, over the speed or over time."""
+    spread, error = result.spread, result.amplitude_error
+    if spread is not None:
+        low, high, look = spread.amplitude_min, spread.amplitude_max, {"alpha": 0.7, "zorder": 2.8}
+        label = f"range over {spread.members} runs that rounding tells apart"
+        label += ", thinner than the line" if spread.largest_spread < THIN else ""
+    elif np.isnan(error).all() or float(np.nanmax(error)) < THIN * float(result.amplitude.max()):
         return
-    ways = result.pieces(result.history, False)
-    ways += result.pieces(result.history, True) if result.turns_back else []
-    for i, part in enumerate(ways):
-        place = result.time[part] if over_time else result.speed[part] * RPM
-        edges = spread.amplitude_min[part] * MM, spread.amplitude_max[part] * MM
-        label = "_" if i else f"range over {spread.members} runs that rounding tells apart"
-        if not i and spread.largest_spread < THIN:
-            label += ", thinner than the line"
-        axes.fill_between(place, *edges, facecolor=RANGE, alpha=0.7, linewidth=0, zorder=2.8, label=label)
-
-
-def _draw_error(axes: Axes, result: RunupAnswer, over_time: bool) -> None:
-    """The band that cells, steps and the hand-over of liquid leave about the amplitude."""
-    error = result.amplitude_error
-    if np.isnan(error).all() or float(np.nanmax(error)) < THIN * float(result.amplitude.max()):
-        return
-    ways = result.pieces(result.history, False)
-    ways += result.pieces(result.history, True) if result.turns_back else []
-    for i, part in enumerate(ways):
-        place = result.time[part] if over_time else result.speed[part] * RPM
-        low, high = result.amplitude[part] - error[part], result.amplitude[part] + error[part]
-        label = "_" if i else f"error by {_sources(result)}"
-        look = {"facecolor": RANGE, "alpha": 0.55, "linewidth": 0, "zorder": 2.0}
-        axes.fill_between(place, np.maximum(low, 0.0) * MM, high * MM, label=label, **look)
-
-
-def _sources(result: RunupAnswer) -> str:
-    """What the error of the amplitude was estimated from."""
-    return "cells and steps" if math.isnan(result.handover_estimate) else "cells, steps and hand-over"
+    else:
+        low, high = np.maximum(result.amplitude - error, 0.0), result.amplitude + error
+        label, look = "error by cells, steps and hand-over", {"alpha": 0.55, "zorder": 2.0}
+        if math.isnan(result.handover_estimate):
+            label = "error by cells and steps"
+    across = result.time if over_time else result.speed * RPM
+    for i, part in enumerate(part for way in (~result.falling, result.falling) for part in pieces(way)):
+        shown = across[part], low[part] * MM, high[part] * MM
+        axes.fill_between(*shown, facecolor=RANGE, linewidth=0, label="_" if i else label, **look)
 
 
 def _shade(axes: Axes, result: RunupAnswer, limits: tuple[float, float]) -> None:
@@ -298,7 +281,7 @@ def _draw_amplitude(axes: Axes, result: RunupAnswer) -> None:
     axes.plot(*_over_time(result, False), color=DRY if dry else UP, linewidth=1.2)
     if not dry and result.history_dry is not None:
         axes.plot(*_over_time(result, True), **_bare(result))
-    _draw_ranges(axes, result, over_time=True)
+    _draw_band(axes, result, over_time=True)
     axes.set_ylim(0.0, 1.12 * largest_drawn(result) * MM or 1.0)
     axes.set_ylabel(_label(result).replace(" at ", "\nat ", 1))
 

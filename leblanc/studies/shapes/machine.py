@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -174,11 +173,9 @@ def table_view(scene: Scene, speed: float | None = None) -> TableView:
     )
 
 
-def runup_view(
-    scene: Scene, frames: int, factor: float | None = None, progress: Callable[[float], None] | None = None
-) -> RunupView:
+def runup_view(scene: Scene, frames: int, factor: float | None = None) -> RunupView:
     """Run a scene up and draw its layers."""
-    result = runup_scene(scene, check=False, progress=progress, frames=frames)
+    result = runup_scene(scene, check=False, frames=frames)
     kept = result.frames
     assert kept is not None
     if factor is None:
