@@ -259,7 +259,10 @@ def runup_scene(
     drive, gravity = drive_of(plan, scene.rotor), across_gravity(scene)
     times = () if frames is None else np.linspace(0.0, float(drive.corners()[0, -1]), frames)
     share = 1.0 / (1.0 + 0.8 * ensemble / workers)
-    tasks = ensemble_tasks(scene, drive, gravity, numerics, ensemble, seed)
+    tasks = []  # with long waves until it is known which model is taken
+    if ensemble:
+        given = rotor_in_time(scene), scene.fills, drive, scene.model.friction, gravity, numerics
+        tasks = made_ensemble(*given, model_of(scene, "long_wave"), ensemble, seed)
     machine = loaded_machine(scene)
     taken = chosen_run(scene, drive, gravity, numerics, times, machine is not None, share)
     history = taken.history
@@ -381,17 +384,6 @@ def model_of(scene: Scene, name: str) -> RunupModel:
 def _position(scene: Scene) -> float:
     """Plane of the first race, m; 0 without one."""
     return scene.balls[0].plane if scene.balls else 0.0
-
-
-def ensemble_tasks(
-    scene: Scene, drive: Drive, gravity: float, numerics: RunupNumerics, count: int, seed: int
-) -> list[EnsembleTask]:
-    """The runs of an ensemble, with long waves until it is known which model is taken."""
-    if count == 0:
-        return []
-    system, friction = rotor_in_time(scene), scene.model.friction
-    model = model_of(scene, "long_wave")
-    return made_ensemble(system, scene.fills, drive, friction, gravity, numerics, model, count, seed)
 
 
 def rounding_spread(

@@ -27,13 +27,13 @@ from leblanc.core.units import (
     LENGTH,
     MASS,
     MINUS,
-    MOST_RANGES,
     RPM,
     UNBALANCE,
     amplitude_sentence,
     in_peak,
     in_rpm,
     number,
+    ranges,
     rpm_bands,
     rpm_range,
     unit_for,
@@ -45,18 +45,17 @@ from leblanc.studies.run.words import described
 from leblanc.studies.runup.answer import Moment, RunupAnswer
 from leblanc.studies.runup.notes import ERROR, SETTLED, RunupCode
 from leblanc.text.machine import load_rows, verdict
-from meshes.arrays import Array, Flags
+from meshes.arrays import Flags
 from solvers.runup.runup import EnergyAudit
 
 DRY = 1e-3  # of the layer's mean depth: a wall with less on it counts as dry
 MASS_CHANGE = 1e-6  # relative change of a layer's volume to speak of
 GAINS = ("unbalance", "drive", "gravity", "captured")  # terms of the energy that bring some in
 TERMS = (*GAINS, "support", "friction", "bores", "baffles", "profile", "change", "remainder")
-MOST_EVENTS = 12  # listed one by one
 # What the tables of a report say as well.
 IN_TABLES = (
-    *(RunupCode.LIQUID_MODEL, RunupCode.ROUGH, RunupCode.ENERGY, RunupCode.PEAK_STEADY),
-    *(RunupCode.CAPTURED, RunupCode.FALLS_BACK, RunupCode.SELF_EXCITED),
+    *(RunupCode.LIQUID_MODEL, RunupCode.ROUGH, RunupCode.ENERGY),
+    *(RunupCode.PEAK_STEADY, RunupCode.SELF_EXCITED),
 )
 _GAP = Words("", shown="text")  # a line between tables
 _ROUGH = 0.1  # of an amplitude: an error beyond this is told with its cause
@@ -72,8 +71,11 @@ def blocks(answer: RunupAnswer) -> tuple[Block, ...]:
         title = "Clearances and forces on the floor"
         figures.append(Picture("runup_machine", title, f"{_HERE}:loads_figure"))
     tables = Columns(
-        (moments(answer), _GAP, Table(facts(answer)), energy(answer)),
-        (Checks(checks(answer), shown="page"), events(answer), balance),
+        (
+            *(moments(answer), _GAP, Table(known(answer))),
+            *(Table(facts(answer), shown="page"), energy(answer)),
+        ),
+        (Checks(tuple(checks(answer)), shown="page"), balance),
     )
     of_programme = (_GAP, passages(answer)) if answer.passages else ()
     rest = [note.text for note in answer.notes if note.code not in IN_TABLES]
@@ -239,24 +241,29 @@ def passages(answer: RunupAnswer) -> Table:
     return Table(rows, head, title="Steps of the programme")
 
 
-def facts(answer: RunupAnswer) -> list[tuple[str, str]]:
-    """How well the amplitudes are known, the end of the run, its resolution and its errors."""
-    last, place = -1, answer.history.liquid_position[-1]
+def known(answer: RunupAnswer) -> list[tuple[str, str]]:
+    """How well the amplitudes are known, and what balls do at the end: label and value."""
     rows = []
-    if known := peak_known(answer):
-        rows.append(("Largest of all known to", known))
+    if error := peak_known(answer):
+        rows.append(("Largest of all known to", error))
     if not answer.chamberless:
         rows.append(("Liquid model holds", f"for {_fair(answer)} of the run"))
     if answer.spread is not None:
         rows.append(("By rounding alone", rounding(answer)))
     if answer.races:
-        size, angle = float(answer.ball_unbalance[last]), _degrees(answer.ball_unbalance_angle[last])
+        size, angle = float(answer.ball_unbalance[-1]), _degrees(answer.ball_unbalance_angle[-1])
         most = with_unit(sum(race.count * race.moment for race in answer.races), UNBALANCE)
-        behind = answer.speed[last] - answer.ball_speed[last]
+        behind = answer.speed[-1] - answer.ball_speed[-1]
         rows += [
             ("Unbalance of the balls at the end", f"{with_unit(size, UNBALANCE)} at {angle}, of {most}"),
             ("Slowest ball behind the drum at the end", in_rpm(float(behind[np.argmax(np.abs(behind))]))),
         ]
+    return rows
+
+
+def facts(answer: RunupAnswer) -> list[tuple[str, str]]:
+    """The end of the run, its resolution and its errors: label and value."""
+    place, rows = answer.history.liquid_position[-1], []
     if not answer.chamberless:
         off = f"{with_unit(abs(place), LENGTH)} off the axis at {_degrees(np.angle(place))}"
         rows += [
@@ -264,7 +271,7 @@ def facts(answer: RunupAnswer) -> list[tuple[str, str]]:
             ("Its centre of mass at the end", off if answer.wet else "none"),
         ]
     rows += [
-        ("Phase of the deflection at the end", _degrees(answer.phase[last])),
+        ("Phase of the deflection at the end", _degrees(answer.phase[-1])),
         ("Resolution", f"{answer.cells} cells, {answer.steps} steps, {answer.time.size} samples kept"),
         ("Error by half the cells, of the largest", _share(answer.error_estimate)),
         ("Error of model and steps", _share(answer.model_error)),
@@ -321,25 +328,22 @@ def energy(answer: RunupAnswer) -> Table:
     return Table(rows, ("Energy", "J", "% of the work"), shown="page")
 
 
-def checks(answer: RunupAnswer) -> list[Check]:
+def checks(answer: RunupAnswer) -> Iterator[Check]:
     """Where the run is not what it seems, each with the times or the size."""
-    return [
-        Check(label, text, Grade.WARNING if bad else Grade.NOTHING) for label, text, bad in _checks(answer)
-    ]
+    history = answer.history
 
+    def check(label: str, where: str, bad: bool) -> Check:
+        return Check(label, where, Grade.WARNING if bad else Grade.NOTHING)
 
-def _checks(answer: RunupAnswer) -> Iterator[tuple[str, str, bool]]:
-    """What is checked, what fails it, and whether any does."""
-    history, faults = answer.history, "; ".join(answer.faults)
-    yield "Stopped before its end", one_line(history.reason) or "no", not history.converged
-    yield "Energy or deflection not physical", one_line(faults) or "no", bool(faults)
+    def at_times(label: str, mask: Flags) -> Check:
+        return check(label, ranges(history.time, mask, "s"), bool(mask.any()))
 
-    def at_times(label: str, mask: Flags) -> tuple[str, str, bool]:
-        return label, times(history.time, mask), bool(mask.any())
-
-    def above(label: str, value: float, most: float) -> tuple[str, str, bool]:
+    def above(label: str, value: float, most: float) -> Check:
         bad = not value <= most
-        return f"{label} {number(100.0 * most)} %", _share(value) if bad else "no", bad
+        return check(label.format(f"{number(100.0 * most)} %"), _share(value) if bad else "no", bad)
+
+    yield check("Stopped before its end", history.reason or "no", not history.converged)
+    yield check("Energy or deflection not physical", "; ".join(answer.faults) or "no", bool(answer.faults))
 
     if not answer.chamberless:
         yield at_times("Liquid model out of range", ~answer.in_range)
@@ -352,40 +356,11 @@ def _checks(answer: RunupAnswer) -> Iterator[tuple[str, str, bool]]:
         dry = ~loose & (np.nan_to_num(history.depth_min[:, k], nan=math.inf) <= DRY * depth)
         yield at_times(f"{name} leaves a wall dry", dry)
     bands = "not examined" if answer.bands is None else rpm_bands(answer.bands) or "none"
-    yield "Self-excited whirl, linear theory", bands, bool(answer.bands)
-    label, text, bad = above("Error above", answer.error_estimate, ERROR)
-    yield f"{label} or unknown", text, bad
-    yield above("Energy lost above", answer.energy_error, CLOSURE)
+    yield check("Self-excited whirl, linear theory", bands, bool(answer.bands))
+    yield above("Error above {} or unknown", answer.error_estimate, ERROR)
+    yield above("Energy lost above {}", answer.energy_error, CLOSURE)
     if not answer.chamberless:
-        yield above("Mass changed above", answer.mass_error, MASS_CHANGE)
-
-
-def times(time: Array, mask: Flags) -> str:
-    """Times at which a condition holds, in words."""
-    if not mask.any():
-        return "none"
-    if mask.all():
-        return "all the time"
-    change = np.flatnonzero(np.diff(np.concatenate(([False], mask, [False]))))
-    first, last = time[change[::2]], time[change[1::2] - 1]
-    if first.size > MOST_RANGES:
-        return f"{first.size} times between {first[0]:.3g} and {last[-1]:.3g} s"
-    pairs = zip(first.tolist(), last.tolist(), strict=True)
-    ends = [(f"{a:.3g}", f"{b:.3g}") for a, b in pairs]
-    return "; ".join(f"{a} s" if a == b else f"{a} to {b} s" for a, b in ends)
-
-
-def events(answer: RunupAnswer) -> Table:
-    """When liquid began and ceased to ride with the drum."""
-    rows = [
-        (
-            number(each.time),
-            number(each.speed * RPM),
-            f"chamber {each.chamber + 1}: {'captured' if each.captured else 'falls back'}",
-        )
-        for each in answer.transfers[:MOST_EVENTS]
-    ]
-    return Table(rows, ("Time (s)", "speed (rpm)", "liquid"), shown="page")
+        yield above("Mass changed above {}", answer.mass_error, MASS_CHANGE)
 
 
 def liquid_model(answer: RunupAnswer) -> Section:

@@ -30,6 +30,7 @@ from leblanc.studies.run.study import run_scene
 from leblanc.studies.run.words import MODELS
 from leblanc.studies.runup import words
 from leblanc.studies.runup.answer import RunupAnswer
+from leblanc.studies.runup.notes import RunupCode
 from leblanc.studies.runup.study import runup_scene
 from leblanc.studies.whirl_map import map_scene
 from leblanc.text import whirl_map as text_map
@@ -397,7 +398,7 @@ def test_runup_warnings() -> None:
     assert not any(one.grade for one in words.checks(record))
     part = np.zeros(h.time.size, dtype=np.bool_)
     part[10:20] = True
-    where = f"{h.time[10]:.3g} to {h.time[19]:.3g} s"
+    where = f"{printed(h.time[10])} to {printed(h.time[19])} s"
 
     def with_history(**changes: Any) -> RunupAnswer:
         return replace(record, history=replace(h, **changes))
@@ -427,16 +428,13 @@ def test_events() -> None:
     h = record.history
     state = h.captured[:, 0]
     change = [k for k in range(1, state.size) if state[k] != state[k - 1]]
-    rows = words.events(record).rows
-    assert len(rows) == len(change) >= 2
-    for row, k in zip(rows, change, strict=True):
-        what = "captured" if state[k] else "falls back"
-        time, speed, told = row
-        assert told == f"chamber 1: {what}"
-        # Four digits are printed.
-        assert h.time[k - 1] * (1.0 - 1e-3) <= float(time) <= h.time[k] * (1.0 + 1e-3)
-        spin = float(np.interp(float(time), h.time, h.speed)) * RPM
-        assert float(speed) == pytest.approx(spin, rel=2e-3)
+    notes = [note for note in record.notes if note.code in (RunupCode.CAPTURED, RunupCode.FALLS_BACK)]
+    assert len(notes) == len(change) >= 2
+    for note, k in zip(notes, change, strict=True):
+        assert ("is captured" if state[k] else "falls back") in note.text
+        time, speed = note.data["time"], note.data["speed"]
+        assert isinstance(time, float) and h.time[k - 1] <= time <= h.time[k]
+        assert speed == pytest.approx(float(np.interp(time, h.time, h.speed)), rel=1e-6)
 
 
 def test_runup_report_is_the_json() -> None:

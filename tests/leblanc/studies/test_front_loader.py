@@ -16,7 +16,7 @@ from fluid.liquid import Liquid
 from leblanc.scene.scene import Scene
 from leblanc.studies.runup.notes import RunupCode, numerical_error
 from leblanc.studies.runup.study import runup_scene
-from leblanc.studies.runup.words import facts, peak_known, sentence
+from leblanc.studies.runup.words import known, peak_known, sentence
 from meshes.baffles import Baffles
 from meshes.chamber import Chamber
 from solvers.pypde.coupled import RotorLayersPDE
@@ -101,7 +101,7 @@ def test_what_a_reader_is_told() -> None:
         history = replace(found.history, peak_gaps=(gaps[0] * largest, gaps[1] * largest))
         one = replace(found, history=history)
         assert peak_known(one).endswith(told) and peak_known(one) in sentence(one)
-        assert ("Largest of all known to", peak_known(one)) in facts(one)
+        assert ("Largest of all known to", peak_known(one)) in known(one)
     half = replace(found, in_range=np.arange(found.time.size) % 2 == 0)
     assert f"for {100.0 * half.in_range.mean():.3g} % of the run" in sentence(half)
 
