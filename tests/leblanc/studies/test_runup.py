@@ -14,6 +14,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
+import leblanc as lb
 import leblanc.studies.runup.study as runup_module
 from fluid.fill import Fill
 from fluid.liquid import known_liquid
@@ -23,6 +24,7 @@ from leblanc.core.netcdf import write_netcdf
 from leblanc.core.units import LENGTH, with_unit
 from leblanc.results.drawn.machine import film_factor, half_angle
 from leblanc.scene.scene import Scene, scene_from_table
+from leblanc.scene.schema.load import SceneError
 from leblanc.studies.drives import drive_of, planned
 from leblanc.studies.runup import figure as figures
 from leblanc.studies.runup import film as film_figures
@@ -157,6 +159,16 @@ def test_drive() -> None:
     driven = scene(runup={"start": 20.0, "stop": 40.0, "rate": None, "motor": curve, "duration": 3.0})
     motor = drive_of(planned(driven))
     assert motor == Motor(20.0, 2.0, (0.0, 50.0), (4.0, 1.0), 3.0)
+
+
+def test_other_names() -> None:
+    """The call and the table of a scene have two names each; both tables together are one too many."""
+    assert lb.runup is lb.run_up
+    content = table()
+    other = {("run_up" if key == "runup" else key): value for key, value in content.items()}
+    assert scene_from_table(other).table() == scene().table()
+    with pytest.raises(SceneError, match="run_up"):
+        scene_from_table(content | other)
 
 
 def test_a_scene_without_run_up_is_refused() -> None:
