@@ -81,18 +81,6 @@ class RunupCode(NoteCode):
     BALLS_RUN = "balls_run"
 
 
-# What the tables of a report say as well.
-IN_TABLES = (
-    RunupCode.LIQUID_MODEL,
-    RunupCode.ROUGH,
-    RunupCode.ENERGY,
-    RunupCode.PEAK_STEADY,
-    RunupCode.CAPTURED,
-    RunupCode.FALLS_BACK,
-    RunupCode.SELF_EXCITED,
-)
-
-
 def happened(
     history: RunupHistory,
     steady: Response | None,

@@ -881,7 +881,11 @@ def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert len(got["time"]) == 20
     assert got["cells"] == 8
     assert got["error_estimate"] is None
-    assert {path.name for path in (tmp_path / "out").iterdir()} == FILES | {"runup.nc", "runup.html"}
+    assert {path.name for path in (tmp_path / "out").iterdir()} == FILES | {
+        "runup.nc",
+        "runup.html",
+        "contents.json",
+    }
     assert main(["run-up", *again[1:]]) == 0  # another name of the command
     text = capsys.readouterr()
     assert "Largest amplitude" in text.out
@@ -893,7 +897,7 @@ def test_command_refuses_before_it_runs(tmp_path: Path, capsys: pytest.CaptureFi
     file = write_scene(tmp_path / "s.toml", table())
     linear = write_scene(tmp_path / "linear.toml", table(model={"liquid": "linear"}))
     for scene, options, told in (
-        (bare, [], "runup: must be a table [runup]"),
+        (bare, [], 'runup = "missing": must be a table [runup]'),
         (file, ["--animate", "film.txt"], "must be a file that ends in .gif or .mp4"),
         (file, ["--cells", "3"], "--cells = 3: must be from 8 to 65536"),
         (file, ["--workers", "0"], "--workers = 0: must be 1 or more"),
@@ -928,7 +932,11 @@ def test_what_was_reached_is_written(tmp_path: Path, capsys: pytest.CaptureFixtu
     assert got["converged"] is False
     # 20 rad/s are gone after 0.2 s.
     assert 0.0 < got["time"][-1] < 0.25
-    assert {path.name for path in (tmp_path / "out").iterdir()} == FILES | {"runup.nc", "runup.html"}
+    assert {path.name for path in (tmp_path / "out").iterdir()} == FILES | {
+        "runup.nc",
+        "runup.html",
+        "contents.json",
+    }
 
 
 def test_an_interrupted_run_leaves_its_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
