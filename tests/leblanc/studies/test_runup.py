@@ -870,7 +870,8 @@ def _toml(value: Any) -> str:
     return json.dumps(value)
 
 
-FILES = {f"runup_{name}.{kind}" for name in ("speed", "time", "energy") for kind in ("png", "svg")}
+PICTURES = {f"runup_{name}.{kind}" for name in ("speed", "time", "energy") for kind in ("png", "svg")}
+FILES = {*PICTURES, "runup.nc", "runup.html", "contents.json"}
 
 
 def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
