@@ -141,7 +141,7 @@ class RunupAnswer(Loaded, Answer):
     loads: Annotated[MachineLoads | None, Q(part=True)] = None
     bore: str = "none"  #: what bores leave behind, "none" or "enstrophy"
     #: those that were reached; none of a run-up
-    passages: Annotated[tuple[Passage, ...], Q(text="the steps of a programme", when="programmed")] = ()
+    passages: Annotated[tuple[Passage, ...], Q(text="the steps of a programme", when="passages")] = ()
     #: shape (k,); None where none leaves
     unbalance_left: Annotated[
         Array | None,
@@ -167,9 +167,8 @@ class RunupAnswer(Loaded, Answer):
         return run_faults(self.history, self.chambers)
 
     @property
-    def converged(
-        self,
-    ) -> Annotated[bool, Q(text="it came to its end, its energy closes, no axis left its chamber")]:
+    def converged(self) -> Annotated[bool, Q(text="it came to its end and is physical")]:
+        """Its energy closes as well, and no axis left its chamber."""
         return self.history.converged and not self.faults
 
     @property
@@ -228,16 +227,6 @@ class RunupAnswer(Loaded, Answer):
         return "" if self.kind == "jeffcott" else plane_words(self.planes[0], chambers=True)
 
     @property
-    def programmed(self) -> tuple[Passage, ...] | None:
-        """The steps of a programme; None of a run-up."""
-        return self.passages or None
-
-    @property
-    def rolling(self) -> tuple[RaceOfBalls, ...] | None:
-        """The races with balls; None without any."""
-        return self.races or None
-
-    @property
     def wet(self) -> bool:
         """There is liquid."""
         return bool(self.history.layer_mass.sum() > 0.0)
@@ -261,32 +250,32 @@ class RunupAnswer(Loaded, Answer):
     @property
     def race(
         self,
-    ) -> Annotated[Array, Q("1", "number of the ball's race", over=("ball",), json=False, when="rolling")]:
+    ) -> Annotated[Array, Q("1", "number of the ball's race", over=("ball",), json=False, when="races")]:
         return (in_race(self.races) + 1).astype(np.int32)
 
     @property
     def ball_angle(
         self,
-    ) -> Annotated[Array, Q("rad", f"angle of the ball {_DRUM}", over=_BALLS, when="rolling")]:
+    ) -> Annotated[Array, Q("rad", f"angle of the ball {_DRUM}", over=_BALLS, when="races")]:
         """Whole turns counted, shape (k, N)."""
         return self.history.ball_angle
 
     @property
     def ball_speed(
         self,
-    ) -> Annotated[Array, Q("rad s-1", "speed of the ball in space", over=_BALLS, when="rolling")]:
+    ) -> Annotated[Array, Q("rad s-1", "speed of the ball in space", over=_BALLS, when="races")]:
         return self.history.ball_speed
 
     @property
     def ball_unbalance(
         self,
-    ) -> Annotated[Array, Q("kg m", "unbalance of all balls together", over=_OVER, when="rolling")]:
+    ) -> Annotated[Array, Q("kg m", "unbalance of all balls together", over=_OVER, when="races")]:
         return np.asarray(np.abs(ball_moment(self.races, self.ball_angle)))
 
     @property
     def ball_unbalance_angle(
         self,
-    ) -> Annotated[Array, Q("rad", f"angle of that unbalance {_DRUM}", over=_OVER, when="rolling")]:
+    ) -> Annotated[Array, Q("rad", f"angle of that unbalance {_DRUM}", over=_OVER, when="races")]:
         return np.asarray(np.angle(ball_moment(self.races, self.ball_angle)))
 
     @property
