@@ -57,7 +57,6 @@ IN_TABLES = (
     *(RunupCode.LIQUID_MODEL, RunupCode.ROUGH, RunupCode.ENERGY),
     *(RunupCode.PEAK_STEADY, RunupCode.SELF_EXCITED),
 )
-_GAP = Words("", shown="text")  # a line between tables
 _ROUGH = 0.1  # of an amplitude: an error beyond this is told with its cause
 _CAUSES = {"cells": "cells and steps", "handover": "how the liquid becomes a ring"}
 _HERE = "leblanc.studies.runup.figure"
@@ -70,28 +69,21 @@ def blocks(answer: RunupAnswer) -> tuple[Block, ...]:
     if answer.loads is not None:
         title = "Clearances and forces on the floor"
         figures.append(Picture("runup_machine", title, f"{_HERE}:loads_figure"))
-    tables = Columns(
-        (
-            *(moments(answer), _GAP, Table(known(answer))),
-            *(Table(facts(answer), shown="page"), energy(answer)),
+    results = (
+        Picture("runup_speed", "Amplitude over speed on the run-up", f"{_HERE}:speed_figure"),
+        Columns(
+            (moments(answer), Words("", shown="text"), Table(known(answer))),
+            (Checks(tuple(checks(answer)), shown="page"),),
         ),
-        (Checks(tuple(checks(answer)), shown="page"), balance),
+        *load_tables(answer),
+        *([passages(answer)] if answer.passages else []),
+        Columns((Table(facts(answer)), energy(answer)), (balance,), shown="page"),
     )
-    of_programme = (_GAP, passages(answer)) if answer.passages else ()
     rest = [note.text for note in answer.notes if note.code not in IN_TABLES]
     return (
         Headline(sentence(answer), about(answer)),
-        Section(
-            "Results",
-            (
-                Picture("runup_speed", "Amplitude over speed on the run-up", f"{_HERE}:speed_figure"),
-                *load_tables(answer),
-                tables,
-                *of_programme,
-            ),
-            width="120mm",
-        ),
-        Words(amplitude_sentence(answer.plane), shown="text"),
+        Section("Results", results, width="120mm"),
+        Words(f"\n{amplitude_sentence(answer.plane)}", shown="text"),
         *([] if answer.chamberless else [liquid_model(answer)]),
         Section("Figures", figures, width="138mm"),
         Notes(texts(answer.notes), shown="text"),
@@ -325,7 +317,7 @@ def energy(answer: RunupAnswer) -> Table:
     if audit.motor != 0.0:
         who = "drag on the coasting drum" if answer.passages else "the motor"
         rows.append((f"besides, work of {who}", number(audit.motor), ""))
-    return Table(rows, ("Energy", "J", "% of the work"), shown="page")
+    return Table(rows, ("Energy", "J", "% of the work"))
 
 
 def checks(answer: RunupAnswer) -> Iterator[Check]:
@@ -390,4 +382,3 @@ def load_tables(answer: RunupAnswer) -> Iterator[Block]:
             for row in load_rows(answer.loads)
         ]
         yield Table(rows, ("Machine", "worst", "at (rpm)", "after (s)", ""), title=verdict(answer.loads))
-        yield _GAP
