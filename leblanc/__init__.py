@@ -17,7 +17,6 @@ if TYPE_CHECKING:
         map_balls,
         map_whirl,
         optimise,
-        run_up,
         sweep,
     )
     from leblanc.scene.examples import example
@@ -31,6 +30,7 @@ if TYPE_CHECKING:
     from leblanc.studies.layer import layer
     from leblanc.studies.modes import modes
     from leblanc.studies.run import run
+    from leblanc.studies.runup import run_up, runup
     from leblanc.studies.volume import volume
     from meshes.chamber import Chamber
     from meshes.errors import InputError
@@ -61,12 +61,13 @@ __all__ = [
     "optimise",
     "run",
     "run_up",
+    "runup",
     "sweep",
     "volume",
 ]
 
 _API = "leblanc.api"
-_QUESTIONS = ("bearing", "fit", "layer", "modes", "run", "volume")  # each in a package of its name
+_QUESTIONS = ("bearing", "fit", "layer", "modes", "run", "runup", "volume")  # each in a package of its name
 # Where each public name lives: its module, and its name there.
 _HOMES = {
     "Chamber": ("meshes.chamber", "Chamber"),
@@ -82,12 +83,13 @@ _HOMES = {
     "TubRotor": ("leblanc.scene.rotors", "TubRotor"),
     "TwoPlaneRotor": ("leblanc.scene.rotors", "TwoPlaneRotor"),
     **{name: (f"leblanc.studies.{name}", name) for name in _QUESTIONS},
+    "run_up": ("leblanc.studies.runup", "runup"),
     "example": ("leblanc.scene.examples", "example"),
     "load_scene": ("leblanc.scene.scene", "load_scene"),
     **{
         name: (_API, name)
         for name in __all__
-        if name.islower() and name not in (*_QUESTIONS, "example", "load_scene")
+        if name.islower() and name not in (*_QUESTIONS, "run_up", "example", "load_scene")
     },
 }
 

@@ -30,7 +30,6 @@ if TYPE_CHECKING:
     from leblanc.results.races.chart import BallChart
     from leblanc.results.races.design import BallDesignResult
     from leblanc.results.races.numbers import BallExplanation
-    from leblanc.results.runup import RunupResult
     from leblanc.results.sweep import SweepResult
     from leblanc.results.whirl_map import WhirlMap
 
@@ -71,51 +70,6 @@ def explain(
     from leblanc.studies.explain import explain_scene
 
     return explain_scene(machine)
-
-
-def run_up(
-    scene: SceneOrPath,
-    *,
-    cells: int | None = None,
-    samples: int | None = None,
-    check: bool = True,
-    frames: int | None = None,
-    progress: Callable[[float], None] | None = None,
-    ensemble: int = 0,
-    seed: int = 0,
-    workers: int = 1,
-) -> RunupResult:
-    """Rotor and liquid through the speeds in time, as the scene's table [runup] says.
-
-    Parameters
-    ----------
-    scene : the machine, or the path of its file
-    cells, samples : round each wall, and times that are recorded; the scene's if None
-    check : run once more with half the cells to estimate the error
-    frames : how many times the layers are kept for a film; not at all if None
-    progress : called with the share of the work that is done
-    ensemble : how many times the run is repeated with its unbalance changed in the last digits, to tell what
-        rounding alone does
-    seed : of those changes
-    workers : processes that repeat it
-
-    Raises
-    ------
-    SceneError : with everything that is wrong with the file
-    InputError : no table [runup], a value out of its range
-
-    Examples
-    --------
-    >>> import leblanc as lb
-    >>> short = lb.example("runup").replace({"runup.duration": "1 s", "runup.cells": 16})
-    >>> bool(lb.run_up(short, samples=50, check=False).amplitude.max() > 0.0)
-    True
-    """
-    from leblanc.studies.runup import runup_scene
-
-    if workers < 1:
-        raise InputError("workers", workers, "1 or more")
-    return runup_scene(scene_of(scene), cells, samples, check, progress, frames, ensemble, seed, workers)
 
 
 def map_whirl(

@@ -26,7 +26,7 @@ class Q:
     json: bool = True  #: it stands in the JSON
     data: bool = True  #: it is a variable of the data file
     coordinate: bool = False  #: a scalar that the others belong to, as the one speed of an answer
-    when: str = ""  #: it is left out where this attribute is None
+    when: str = ""  #: it is left out where this attribute is None or an empty tuple
     part: bool = False  #: a record, whose own quantities are the answer's as well
     #: a record, nested in the JSON; those without a `variable` named after it: "prefix_speed"
     prefix: str = ""

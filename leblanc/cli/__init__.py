@@ -19,7 +19,7 @@ from typing import Annotated, Any
 import typer
 from typer.main import get_command
 
-from leblanc.cli import compare, explain, map, new, optimise, runup, sweep, view
+from leblanc.cli import compare, explain, map, new, optimise, sweep, view
 from leblanc.core.answer import NotConverged
 from leblanc.core.contents import recording
 from leblanc.core.interrupts import INTERRUPTED, TERMINATED, Terminated, behind, heard, leave, said
@@ -37,8 +37,9 @@ NAMES = (
 )
 MODULES = {
     module.__name__.rpartition(".")[2]: module
-    for module in (new, explain, compare, map, runup, optimise, sweep, view)
+    for module in (new, explain, compare, map, optimise, sweep, view)
 }
+ALIASES = {"run_up": "runup", "run-up": "runup"}  # names that are read as well
 
 # The current folder may hold a stranger's files: a pickle.py is not for the processes that are started from
 # here, nor is the .numba_config.yaml to say where compiled code is kept, which numba would unpickle.
@@ -63,6 +64,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for name, value in SAFE.items():
         os.environ.setdefault(name, value)
     given = list(sys.argv[1:] if arguments is None else arguments) or ["--help"]
+    given[0] = ALIASES.get(given[0], given[0])
     if arguments is None:
         ready_streams()
         # By default a fifth of a short command is a search for cyclic garbage, of which imports leave none.

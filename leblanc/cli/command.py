@@ -36,7 +36,8 @@ def command(question: Callable[..., Any]) -> Callable[..., None]:
     a function `present` of the answer and of further options, which gives back what is shown.
     """
     everything = {one.name: one for one in parameters(question)}
-    own = {name: one for name, one in everything.items() if name not in ("folder", "progress")}
+    films = {name: one.option.film for name, one in everything.items() if one.option.film}
+    own = {name: one for name, one in everything.items() if name not in ("folder", "progress", *films)}
     present: Callable[..., Any] | None = getattr(sys.modules[question.__module__], "present", None)
     more = {one.name: one for one in list(parameters(present))[1:]} if present else {}
     asked = own | more
@@ -58,6 +59,7 @@ def command(question: Callable[..., Any]) -> Callable[..., None]:
             folder = out_dir(question.__name__, out)
         values = {name: _value(own[name], given[name]) for name in own}
         values |= {"folder": folder} if "folder" in everything else {}
+        values |= films if given.get("animate") is not None else {}
         with working("preparing"):
             try:
                 shown = read(present, {name: given[name] for name in more}) if present else {}
@@ -87,6 +89,7 @@ def finish(
     Faults name `where` they are; `line` is the command that makes the answer again.
     """
     drawn = [] if folder is None else write(answer, folder, machine, line)
+    answer.after()
     if json:
         print_json(answer.to_json())
     else:

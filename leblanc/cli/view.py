@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -203,20 +202,20 @@ def _film(machine: Scene, wave: Any, path: Path, frames: int | None, factor: flo
         if wave is not None:
             film = called(wave.film)(wave, **({} if frames is None else {"frames": frames}))
         else:
-            film = _film_of(machine, frames or FRAMES, factor, lambda done: update(done, 1.0))
+            film = _film_of(machine, frames or FRAMES, factor)
         update(0.0, film.count, "drawing")
         count = write_film(film, path, update)
     say(f"wrote {path}, {count} frames")
 
 
-def _film_of(machine: Scene, frames: int, factor: float | None, progress: Callable[[float], None]) -> Film:
+def _film_of(machine: Scene, frames: int, factor: float | None) -> Film:
     """The run-up of a scene, or its steady states over the speeds if it has none."""
     from leblanc.view.film import runup_film, sweep_film
 
     if machine.runup is not None and machine.rotor.kind != "exciter":
         from leblanc.studies.shapes.machine import runup_view
 
-        return runup_film(runup_view(machine, frames, factor, progress))
+        return runup_film(runup_view(machine, frames, factor))
     if machine.balls:
         from leblanc.studies.shapes.balls import ball_view
         from leblanc.view.film import ball_film

@@ -152,6 +152,9 @@ class Answer(Result):
         """What was done, for the end of a command."""
         return ""
 
+    def after(self) -> None:
+        """What the command does once its files are written."""
+
     def __getattr__(self, name: str) -> Any:
         """A quantity of one of its parts; None where it has no such part."""
         from leblanc.core.quantities import reached

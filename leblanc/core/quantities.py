@@ -64,7 +64,8 @@ def _declared(kind: type) -> dict[str, _Declared]:
 def _of(record: Any) -> Iterator[tuple[str, Q, Any]]:
     """Public name, declaration and value of each quantity that a record has."""
     for key, each in _declared(type(record)).items():
-        if not each.q.when or getattr(record, each.q.when) is not None:
+        there = getattr(record, each.q.when) if each.q.when else record
+        if there is not None and not (isinstance(there, tuple) and not there):
             yield key, each.q, getattr(record, each.attribute)
 
 

@@ -1,7 +1,7 @@
 """A question is the signature of its call; quantities are read from texts with units, faults name keywords.
 
 A parameter says in its type what it is: `speed: Annotated[Quantity, ANGULAR_SPEED, "Speed of the shaft."]`.
-Two are no options of its command: `folder`, where a study keeps what another run takes up, and `progress`.
+No options of its command are `folder`, where a study keeps what another run takes up, and `progress`.
 """
 
 from __future__ import annotations
@@ -46,9 +46,10 @@ LIQUID = Reader("leblanc.scene.scene:liquid_of")  # a liquid, or a known name
 class Option:
     """How a parameter is typed where that is not --its-name."""
 
-    names: tuple[str, ...] = ()  #: as typer takes them: "--from", "/--no-check"
+    names: tuple[str, ...] = ()  #: as typer takes them: "--from", " /--no-check"
     argument: bool = False  #: by its place, without a name
     same: bool = False  #: the answer does not depend on it
+    film: int = 0  #: no option: so many where the command is asked for a film by --animate
 
 
 @dataclass(frozen=True)

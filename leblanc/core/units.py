@@ -559,23 +559,23 @@ def in_peak(unit: str) -> str:
 MOST_RANGES = 4  # listed one by one
 
 
-def ranges(speed: Array, mask: Flags) -> str:
-    """Speeds (rad/s, in any order) at which a condition holds, in words."""
+def ranges(place: Array, mask: Flags, unit: str = "rpm") -> str:
+    """Speeds (rad/s, in any order), or else times in s, at which a condition holds, in words."""
     import numpy as np
 
     if not mask.any():
         return "none"
     if mask.all():
-        return "all speeds"
-    order = np.argsort(speed, kind="stable")
-    rpm, holds = speed[order] * RPM, mask[order]
+        return "all speeds" if unit == "rpm" else "all the time"
+    order = np.argsort(place, kind="stable")
+    sorted_, holds = place[order] * (RPM if unit == "rpm" else 1.0), mask[order]
     change = np.flatnonzero(np.diff(np.concatenate(([False], holds, [False]))))
-    first, last = rpm[change[::2]], rpm[change[1::2] - 1]
+    first, last = sorted_[change[::2]], sorted_[change[1::2] - 1]
     if first.size > MOST_RANGES:
-        return f"{first.size} ranges between {number(first[0])} and {number(last[-1])} rpm"
+        return f"{first.size} ranges between {number(first[0])} and {number(last[-1])} {unit}"
     pairs = zip(first.tolist(), last.tolist(), strict=True)
     parts = [number(a) if a == b else f"{number(a)} to {number(b)}" for a, b in pairs]
-    return "; ".join(parts) + " rpm"
+    return f"{'; '.join(parts)} {unit}"
 
 
 def amplitudes_are(place: str = "") -> tuple[str, str]:

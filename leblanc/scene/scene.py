@@ -246,6 +246,13 @@ class Scene(Part):
     )
 
     @classmethod
+    def as_table(cls, given: Any) -> Any:
+        """The same with [run_up], another name, as [runup]; both are left for the check to refuse."""
+        if not isinstance(given, Mapping) or "run_up" not in given or "runup" in given:
+            return given
+        return {"runup" if key == "run_up" else key: value for key, value in given.items()}
+
+    @classmethod
     def conflicts(cls, values: Mapping[str, Any], given: Mapping[str, Any]) -> Iterator[Conflict]:
         """One table drives it, and what is assumed stands in the file."""
         yield from _ball_conflicts(values)

@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from leblanc.core.notes import Note
-from leblanc.results.motion.passages import Passage
-from leblanc.results.notes import runup as notes
 from leblanc.scene.programme.steps import Step
 from leblanc.scene.rotors import AnyRotor
 from leblanc.scene.scene import MagneticRotor, Programme, Runup, Scene, dry_rotor, require_whirl
@@ -129,48 +125,3 @@ def unbalance_left(scene: Scene, history: RunupHistory) -> Array | None:
     if history.left is None or not leaving.size or not sum(sizes) > 0.0:
         return None
     return np.asarray(1.0 - (1.0 - history.left) @ leaving / sum(sizes))
-
-
-def programme_notes(
-    scene: Scene, history: RunupHistory, drive: Drive, passages: Sequence[Passage]
-) -> tuple[Note, ...]:
-    """What was assumed of a spin programme, and which of its steps did not come to their speeds."""
-    plan = scene.programme
-    if plan is None or not isinstance(drive, programme.Programme):
-        return ()
-    stands = plan.start < drive.floor or bool((history.speed <= drive.floor * (1.0 + 1e-3)).any())
-    found = [notes.standing(drive.floor)] if stands else []
-    if plan.coasts and drive.drag_torque == 0.0 and drive.drag_rate == 0.0:
-        found.append(notes.without_drag())
-    found += _limited_steps(history, drive)
-    for passage in passages:
-        step, stage = plan.steps[passage.step - 1], drive.stages[passage.step - 1]
-        if step.kind != "coast":
-            continue
-        stop = drive.target(stage, passage.speed_begin)
-        lasts = passage.end - passage.begin
-        if lasts < (stage.duration or 0.0) * (1.0 - _REACHED) and passage.speed_end > stop * (1.0 + _REACHED):
-            found.append(notes.stood(passage.step, passage.end, passage.speed_end))
-        if step.speed is None or lasts < plan.coast_limit:
-            continue
-        found.append(notes.coast_not_ended(passage.step, stop, passage.speed_end, plan.coast_limit))
-    return tuple(found)
-
-
-# Of a step's speed, that it counts as reached.
-_REACHED = 1e-4
-
-
-def _limited_steps(history: RunupHistory, drive: programme.Programme) -> Iterator[Note]:
-    """Steps in which the motor gave less than was asked."""
-    if history.limited is None or history.stage is None:
-        return
-    length = np.diff(history.time, prepend=0.0)
-    for number in np.unique(history.stage[history.limited]).tolist():
-        rows, stage = np.flatnonzero(history.limited & (history.stage == number)), drive.stages[number]
-        speed = history.speed[np.union1d(rows, rows - 1)]
-        last = float(history.speed[history.stage == number][-1])
-        missed = stage.stop is not None and last < stage.stop * (1.0 - _REACHED)
-        wanted = stage.stop if missed else None
-        time = float(length[rows].sum())
-        yield notes.motor_limited(number + 1, time, float(speed.min()), float(speed.max()), wanted)

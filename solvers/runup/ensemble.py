@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from typing import Annotated
 
 import numpy as np
 
@@ -14,6 +15,7 @@ from fluid.fill import Fill
 from fluid.friction.laws import Friction
 from meshes.arrays import Array
 from meshes.errors import InputError
+from meshes.quantity import Q
 from solvers.rotor.system import RotorSystem
 from solvers.runup.machine import Drive, RunupModel
 from solvers.runup.runup import RunupHistory, RunupNumerics, run_up
@@ -50,26 +52,34 @@ class Member:
 class Spread:
     """The range of an ensemble over k times."""
 
-    asked: int  #: runs that were wanted, the unchanged one among them
-    members: int  #: those of them that were made
-    lost: int  #: of those, how many did not come to their end
-    change: float  #: largest relative change of the unbalance
-    seed: int  #: of the changes
-    #: over the members, of the modulus of the first deflection, m, shape (k,); nan where none came so far
-    amplitude_min: Array
-    amplitude_max: Array
-    amplitude_median: Array
-    #: largest amplitude of every member, on the way back too, the unchanged run first, m, shape (members,)
-    peaks: Array
+    asked: Annotated[int, Q(text="runs that were wanted, the unchanged one among them")]
+    members: Annotated[int, Q(text="those of them that were made")]
+    lost: Annotated[int, Q(text="how many of those did not come to their end")]
+    change: Annotated[float, Q("1", "largest relative change of the unbalance", data=False)]
+    seed: Annotated[int, Q(text="random seed of the changes")]
+    #: of the modulus of the first deflection, nan where no member came so far
+    amplitude_min: Annotated[
+        Array, Q("m", "amplitude, min over runs that rounding tells apart", over=("time",))
+    ]
+    amplitude_max: Annotated[
+        Array, Q("m", "amplitude, max over runs that rounding tells apart", over=("time",))
+    ]
+    amplitude_median: Annotated[
+        Array, Q("m", "amplitude, median over runs that rounding tells apart", over=("time",))
+    ]
+    #: of all ways, the unchanged run first, shape (members,)
+    peaks: Annotated[Array, Q("m", "largest amplitude of every member", over=("member",), data=False)]
 
     @property
-    def peak_spread(self) -> float:
+    def peak_spread(self) -> Annotated[float, Q("1", "range of the peaks over the median", data=False)]:
         """Difference of the largest and the smallest peak over the median one; 0 where nothing moves."""
         middle = float(np.median(self.peaks))
         return float(np.ptp(self.peaks)) / middle if middle > 0.0 else 0.0
 
     @property
-    def largest_spread(self) -> float:
+    def largest_spread(
+        self,
+    ) -> Annotated[float, Q("1", "widest range at one time over the median peak", data=False)]:
         """Largest width of the range at one time over the median peak; 0 where nothing moves."""
         middle = float(np.median(self.peaks))
         width = float(np.nanmax(self.amplitude_max - self.amplitude_min, initial=0.0))

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
-from typing import Any, Protocol
+from typing import Annotated, Any, Protocol
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from fluid.fill import Fill
 from fluid.friction.laws import Friction
 from meshes.arrays import Array, Complex, Flags, Index
 from meshes.errors import InputError, require_positive
+from meshes.quantity import Q
 from solvers.layer.records import Outcome
 from solvers.rotor.system import RotorSystem
 from solvers.runup.programme import Programme, require_curve
@@ -88,16 +89,18 @@ class Handover(StrEnum):
 class Transfer:
     """Liquid that became a layer, or fell to the bottom; what was handed over."""
 
-    chamber: int  #: its number
-    captured: bool  #: it became a layer
-    time: float  #: s and rad/s
-    speed: float
-    angular_momentum: tuple[float, float]  #: of the liquid about its chamber's axis before and after, N m s
-    energy: tuple[float, float]  #: kinetic and elastic energy of rotor and liquid before and after, J
-    lifted: float  #: change of the liquid's potential energy, J
+    chamber: Annotated[int, Q(text="its number, from 0")]
+    captured: Annotated[bool, Q(text="it became a layer")]
+    time: Annotated[float, Q("s", "time")]
+    speed: Annotated[float, Q("rad s-1", "spin speed")]
+    #: about its chamber's axis, N m s
+    angular_momentum: Annotated[tuple[float, float], Q(text="of the liquid before and after")]
+    #: kinetic and elastic, J
+    energy: Annotated[tuple[float, float], Q(text="of rotor and liquid before and after")]
+    lifted: Annotated[float, Q("J", "change of the liquid's potential energy")]
 
     @property
-    def lost(self) -> float:
+    def lost(self) -> Annotated[float, Q("J", "energy that becomes heat")]:
         """Energy that the sudden change turns into heat, J; below zero what the drum gives."""
         return self.energy[0] - self.energy[1] - self.lifted
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, fields, replace
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,6 +18,7 @@ from fluid.friction.laws import NO_FRICTION, Friction
 from fluid.whirl import is_full
 from meshes.arrays import Array, Complex, Flags, Index
 from meshes.errors import InputError
+from meshes.quantity import Q
 from solvers.layer.records import Outcome
 from solvers.rotor.system import RotorSystem
 from solvers.runup.course import highest, legs, marked
@@ -35,6 +36,8 @@ from solvers.runup.path import Recorder, RotorPath, fastest_frequency
 from solvers.runup.shedding import Shedding
 from solvers.runup.state import WORKS
 from solvers.slices import step_budget
+
+_OVER, _EACH = ("time",), ("time", "chamber")
 
 
 @dataclass(frozen=True)
@@ -74,18 +77,19 @@ HEATS = {
 class EnergyAudit:
     """Where the energy went, J [theory: coupling, eq. 9-10]."""
 
-    unbalance: float  #: work of the unbalance, of the drive on the liquid, of gravity on the liquid
-    drive: float
-    gravity: float
-    #: energy that capture and release of the liquid brought in, less what water that leaves takes
-    captured: float
-    change: float  #: of the energy of rotor and liquid
-    support: float  #: heat in the supports and by wall friction
-    friction: float
-    bores: float  #: lost in bores and by the scheme
-    profile: float  #: missed by the assumed profile of the flow while the spin changes
-    motor: float  #: work of the motor, 0 for a given speed
-    baffles: float = 0.0  #: lost at the baffles
+    unbalance: Annotated[float, Q("J", "work of the unbalance")]
+    drive: Annotated[float, Q("J", "work of the drive on the liquid")]
+    gravity: Annotated[float, Q("J", "work of gravity")]
+    #: less what water that leaves takes
+    captured: Annotated[float, Q("J", "brought in by capture")]
+    change: Annotated[float, Q("J", "left in rotor and liquid")]
+    support: Annotated[float, Q("J", "heat in the supports")]
+    friction: Annotated[float, Q("J", "heat by wall friction")]
+    bores: Annotated[float, Q("J", "loss in bores", "and by the scheme")]
+    #: while the spin changes
+    profile: Annotated[float, Q("J", "missed by the flow's profile")]
+    motor: Annotated[float, Q("J", "work of the motor", "0 for a given speed")]
+    baffles: Annotated[float, Q("J", "loss at baffles")] = 0.0
 
     @property
     def dissipated(self) -> float:
@@ -98,13 +102,13 @@ class EnergyAudit:
         return max(abs(self.unbalance), abs(self.drive), abs(self.motor), self.dissipated)
 
     @property
-    def remainder(self) -> float:
+    def remainder(self) -> Annotated[float, Q("J", "not accounted for")]:
         """What the balance leaves, J."""
         gained = self.unbalance + self.drive + self.gravity + self.captured
         return gained - self.change - self.profile - self.dissipated
 
     @property
-    def closure(self) -> float:
+    def closure(self) -> Annotated[float, Q("1", "not accounted for, over the largest term")]:
         """The remainder over the scale: 0 where nothing moves, infinite where a term is no number."""
         if not math.isfinite(self.remainder):
             return math.inf
@@ -134,10 +138,11 @@ class EnergyAudit:
 class RunupHistory:
     """A run-up at k times with l layers. Angles in the drum, from its zero mark, positive with the spin."""
 
-    time: Array  #: s and rad/s, shape (k,)
-    speed: Array
-    angle: Array  #: of rotation, rad, shape (k,)
-    coordinates: Array  #: of the rotor, from the static equilibrium, shape (k, n)
+    time: Annotated[Array, Q("s", "time", over=_OVER)]
+    speed: Annotated[Array, Q("rad s-1", "spin speed", over=_OVER)]
+    angle: Annotated[Array, Q("rad", "angle of rotation", over=_OVER, json=False)]
+    #: from the static equilibrium, shape (k, n)
+    coordinates: Annotated[Array, Q("1", "of the rotor, m or rad", over=("time", "coordinate"), json=False)]
     #: of each chamber's axis in the standing frame, complex, m, shape (k, l); without a chamber, of the axis
     #: at position 0, shape (k, 1)
     deflection: Complex
@@ -145,30 +150,45 @@ class RunupHistory:
     largest: Array
     largest_speed: Array  #: where that was, rad/s and s, shape (k,)
     largest_time: Array
-    #: of each layer's centre of mass from its chamber's axis, standing frame, complex, m, shape (k, l)
-    offset: Complex
-    captured: Flags  #: the layer rides with the drum, shape (k, l)
-    depth_min: Array  #: of each layer, m, shape (k, l); nan while it is not captured
-    depth_max: Array
-    mean_rotation: Array  #: of each layer or swinging pool relative to its drum, rad/s, shape (k, l)
-    layer_mass: Array  #: kg, shape (l,)
-    mass_error: float  #: largest relative change of a layer's volume
+    offset: Annotated[
+        Complex,
+        Q(
+            "m",
+            "offset of the liquid's centre of mass from its chamber's axis, standing frame",
+            over=_EACH,
+            axes=("first direction", "second direction"),
+            json=False,
+        ),
+    ]
+    captured: Annotated[
+        Flags, Q(name="the liquid rides with the drum as a layer", over=_EACH, flags="no yes")
+    ]
+    #: nan while it is not captured
+    depth_min: Annotated[Array, Q("m", "least depth around the wall", over=_EACH)]
+    depth_max: Annotated[Array, Q("m", "largest depth around the wall", over=_EACH)]
+    #: of each layer or swinging pool
+    mean_rotation: Annotated[Array, Q("rad s-1", "mean rotation of the liquid in the drum", over=_EACH)]
+    layer_mass: Annotated[Array, Q("kg", "mass of the liquid", over=("chamber",), json=False)]
+    mass_error: Annotated[float, Q("1", "largest relative change of a layer's volume", data=False)]
     #: of the amplitude, relative to its largest: difference to the run with half the cells and twice the
     #: steps; nan without that run
-    error_estimate: float
+    error_estimate: Annotated[float, Q("1", "relative error by half the cells", data=False)]
     audit: EnergyAudit  #: of the energy
-    steps: int  #: of time, and of single layers within them
-    layer_steps: int
+    steps: Annotated[int, Q(text="steps of time")]
+    layer_steps: int  #: of single layers within them
     disagreement: float  #: largest relative difference left between the accelerations of rotor and layers
     outcome: Outcome  #: how it ended
     reason: str  #: why it did not come to the end, and when; or empty
     #: of the layers, cell by cell, at the times asked for; None where none were
     snapshots: LayerSnapshots | None = None
-    transfers: tuple[Transfer, ...] = ()  #: liquid that became a layer or fell, in the order of time
+    #: in the order of time
+    transfers: Annotated[tuple[Transfer, ...], Q(text="liquid that became a layer or fell")] = ()
     handover: Handover = Handover.RIDING  #: how liquid at the bottom of a lying chamber becomes a layer
     #: of the amplitude, relative to its largest: what another sensible hand-over changes, by the drum that
     #: takes the liquid along at once, of the largest value within a turn; nan without it
-    handover_estimate: float = math.nan
+    handover_estimate: Annotated[
+        float, Q("1", "relative error by how liquid becomes a layer", data=False)
+    ] = math.nan
     #: of the largest amplitude of the run, m: what half the cells change of it, and what that hand-over
     #: changes; nan without those runs
     peak_gaps: tuple[float, float] = (math.nan, math.nan)
@@ -191,8 +211,12 @@ class RunupHistory:
         return self.outcome is Outcome.DONE
 
     @property
-    def amplitude(self) -> Array:
-        """Modulus of the first deflection, m, shape (k,)."""
+    def amplitude(
+        self,
+    ) -> Annotated[
+        Array, Q("m", "deflection of the first chamber's axis, modulus", "zero to peak", over=_OVER)
+    ]:
+        """Modulus of the first deflection, shape (k,)."""
         first = self.deflection[:, 0]
         # As the steps take it: numpy's modulus of many numbers at once may differ in the last digit.
         return np.hypot(first.real, first.imag)

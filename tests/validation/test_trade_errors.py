@@ -21,8 +21,8 @@ from fluid.waves import capture_speed
 from leblanc.cli import main
 from leblanc.core.answer import versions
 from leblanc.scene.scene import Scene, load_scene
+from leblanc.studies.drives import planned
 from leblanc.studies.run.study import run_scene
-from leblanc.studies.runup import planned
 from tests.mutants import kills
 from validation.trade.answers import (
     DISPERSION,

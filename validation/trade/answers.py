@@ -13,6 +13,7 @@ from fluid.fill import Fill
 from fluid.friction.laws import Friction, FrictionLaw
 from leblanc.results.choice import Choice
 from leblanc.scene.scene import Exciter, Runup, Scene, dry_rotor
+from leblanc.studies.drives import drive_of, planned
 from leblanc.studies.models.choose import (
     across_gravity,
     axial_gravity,
@@ -21,7 +22,7 @@ from leblanc.studies.models.choose import (
     liquid_models,
     prepare,
 )
-from leblanc.studies.runup import RunupChoice, chosen_run, drive_of, judged, planned
+from leblanc.studies.runup.study import RunupChoice, chosen_run, judged
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
 from solvers.layer.places import fewest_cells

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shutil
 from collections.abc import Callable, Iterator, Sequence
@@ -26,7 +27,7 @@ from matplotlib.ticker import MaxNLocator
 from matplotlib.ticker import MultipleLocator as MultipleLocator  # handed on: this is the only door
 from numpy.typing import ArrayLike
 
-from leblanc.core.files import writing
+from leblanc.core.files import path_of, require_writable, writing
 from leblanc.core.notes import one_line
 from leblanc.core.units import LENGTH, MASS, RPM, VOLUME, unit_for, units_of
 from leblanc.studies.run.answer import RunAnswer
@@ -316,6 +317,15 @@ def require_film(path: Path) -> str:
     if kind == ".mp4" and shutil.which(_player()) is None:
         raise InputError("--animate", str(path), "a .gif, since no ffmpeg was found to write an .mp4")
     return kind
+
+
+def film_path(given: str | os.PathLike[str] | None, name: str) -> Path | None:
+    """Where a film goes, tried before the work; None without one."""
+    path = path_of(given, name)
+    if path is not None:
+        require_film(path)
+        require_writable(path)
+    return path
 
 
 def write_film(

@@ -18,8 +18,8 @@ from meshes.clip import Remainder, outside_circle, radius_for
 from meshes.liquid_section import LiquidSection
 
 if TYPE_CHECKING:
-    from leblanc.results.runup import RunupFrames, RunupResult
     from leblanc.studies.run.answer import RunAnswer
+    from leblanc.studies.runup.answer import RunupAnswer, RunupFrames
 
 LARGEST_FACTOR = 1e6  # of a depth as drawn
 FILLED = 0.55  # deepest place as drawn over the room between the walls
@@ -325,7 +325,7 @@ class DrawnRace:
 class RunupView:
     """A run-up frame by frame with its layers as they are drawn; f frames."""
 
-    result: RunupResult  #: the run-up
+    result: RunupAnswer  #: the run-up
     frames: RunupFrames  #: times, deflections and layers
     fills: tuple[Fill, ...]  #: chambers with their liquid; their middles along the axis, m
     places: tuple[float, ...]

@@ -11,12 +11,12 @@ import numpy as np
 
 from leblanc.scene.scene import JeffcottRotor, Scene, dry_rotor
 from leblanc.scene.schema.load import SceneError
-from leblanc.studies.drives import numerics_of, planned
+from leblanc.studies.drives import drive_of, numerics_of, planned
 from leblanc.studies.fit.answer import REACH
 from leblanc.studies.fit.measured import ANGLES, FIELD, SIZES, TURNS, Measurement
 from leblanc.studies.models.choose import across_gravity, choose_all, liquid_models, models_at, prepare
 from leblanc.studies.models.liquid import synchronous_model
-from leblanc.studies.runup import chosen_run, drive_of
+from leblanc.studies.runup.study import chosen_run
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
 from solvers.runup.runup import RunupHistory

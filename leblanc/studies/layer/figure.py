@@ -1,25 +1,12 @@
-"""Figures of a layer's answers: its wave, its whirl periods; where a film goes."""
+"""Figures of a layer's answers: its wave, its whirl periods."""
 
 from __future__ import annotations
 
-import os
-from pathlib import Path
-
-from leblanc.core.files import path_of, require_writable
 from leblanc.core.units import MM
-from leblanc.figures.drawing.page import Figure, lay_out, require_film, style
+from leblanc.figures.drawing.page import Figure, lay_out, style
 from leblanc.figures.wave import NOTED_LINES, TIME_FRAME, wave_figure
 from leblanc.figures.wave import animate as animate  # a film is drawn and written together
 from leblanc.studies.layer.answer import FreeWaveAnswer, LayerAnswer, PeriodsAnswer
-
-
-def film_path(given: str | os.PathLike[str] | None, name: str) -> Path | None:
-    """Where a film goes, tried before the work; None without one."""
-    path = path_of(given, name)
-    if path is not None:
-        require_film(path)
-        require_writable(path)
-    return path
 
 
 def layer_figure(result: LayerAnswer | FreeWaveAnswer) -> Figure:

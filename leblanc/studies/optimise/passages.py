@@ -36,7 +36,9 @@ class Passages:
     """The run-ups of a scene; no volumes are run twice."""
 
     def __init__(self, scene: Scene, cells: int | None = None, loaded: bool = False) -> None:
-        from leblanc.studies.runup import across_gravity, drive_of, liquid_model, numerics_of, planned
+        from leblanc.studies.drives import drive_of, numerics_of, planned
+        from leblanc.studies.models.choose import across_gravity
+        from leblanc.studies.runup.study import liquid_model
 
         plan = planned(scene)
         self.scene, self.drive, self.gravity = scene, drive_of(plan, scene.rotor), across_gravity(scene)

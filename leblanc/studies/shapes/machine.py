@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -21,12 +20,12 @@ from leblanc.results.drawn.machine import (
     film_factor,
     rounded_down,
 )
-from leblanc.results.runup import RunupFrames, RunupResult
 from leblanc.scene.scene import Exciter, JeffcottRotor, Scene, Speeds, dry_rotor
 from leblanc.studies.models.choose import across_gravity, axial_gravity, choose, liquid_models
 from leblanc.studies.run.answer import RunAnswer
 from leblanc.studies.run.study import run_scene
-from leblanc.studies.runup import runup_scene
+from leblanc.studies.runup.answer import RunupAnswer, RunupFrames
+from leblanc.studies.runup.study import runup_scene
 from leblanc.studies.shapes.balls import drawn_races, ringed, side_by_side
 from leblanc.studies.shapes.bodies import is_cut, wall_is_dry
 from leblanc.studies.shapes.layer import body_of_layer, body_of_pool
@@ -174,11 +173,9 @@ def table_view(scene: Scene, speed: float | None = None) -> TableView:
     )
 
 
-def runup_view(
-    scene: Scene, frames: int, factor: float | None = None, progress: Callable[[float], None] | None = None
-) -> RunupView:
+def runup_view(scene: Scene, frames: int, factor: float | None = None) -> RunupView:
     """Run a scene up and draw its layers."""
-    result = runup_scene(scene, check=False, progress=progress, frames=frames)
+    result = runup_scene(scene, check=False, frames=frames)
     kept = result.frames
     assert kept is not None
     if factor is None:
@@ -213,7 +210,7 @@ def strobe(time: Array, speed: Array) -> tuple[Array, float]:
     return np.concatenate([[0.0], np.cumsum(steps)]) / slower, slower
 
 
-def runup_scale(radius: float, result: RunupResult, frames: RunupFrames) -> Scale:
+def runup_scale(radius: float, result: RunupAnswer, frames: RunupFrames) -> Scale:
     """One factor for deflections and depths, so that a surface round the axis at rest stays so as drawn.
 
     Where there is no room for it the deflection alone grows, so that the whirl can be seen.

@@ -155,7 +155,7 @@ def test_variables_have_names_units_and_dimensions() -> None:
     assert everything["cycles"].values == 14.0 and everything["curve_speed"].values.size == 3
 
 
-@kills(f"{AT}:_of", "if not each.q.when or", "if True or")
+@kills(f"{AT}:_of", "if there is not None and", "if True or")
 def test_what_is_not_there_is_left_out() -> None:
     bare = replace(whole(), gap=None, refined=None, motion=None, drawn=None, rows=())
     assert {"gap", "refined", "lean", "size", "cycles"}.isdisjoint(bare.to_json())

@@ -20,12 +20,12 @@ from matplotlib.path import Path as Lines
 from fluid.liquid import known_liquid
 from leblanc import figures
 from leblanc.figures.chambers import SURFACE, bodies
-from leblanc.figures.films import film_figure
 from leblanc.results.base import FilledChamber
-from leblanc.results.runup import RunupFrames
 from leblanc.studies.modes.figure import modes_figure
 from leblanc.studies.modes.study import Resolution, SectionSource, answer_modes
 from leblanc.studies.run.answer import RunAnswer
+from leblanc.studies.runup.answer import RunupFrames
+from leblanc.studies.runup.film import film_figure
 from meshes.baffles import Baffles
 from meshes.chamber import Chamber
 from meshes.chamber_section import ChamberSection, chamber_section, level

@@ -12,7 +12,8 @@ import leblanc as lb
 from leblanc.studies.balls.answer import BallsAnswer
 from leblanc.studies.drives import drive_of, numerics_of, planned
 from leblanc.studies.loads.study import loaded_machine
-from leblanc.studies.runup import across_gravity, chosen_run
+from leblanc.studies.models.choose import across_gravity
+from leblanc.studies.runup.study import chosen_run
 from tests.mutants import kills
 
 FEET = [[-0.3, 0.15, 0.2], [-0.3, -0.15, 0.2], [-0.3, -0.15, -0.2], [-0.3, 0.15, -0.2]]

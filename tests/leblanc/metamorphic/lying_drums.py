@@ -8,9 +8,9 @@ from __future__ import annotations
 import argparse
 from collections import Counter
 
-from leblanc.results.runup import RunupResult
 from leblanc.scene.scene import scene_from_table
-from leblanc.studies.runup import runup_scene
+from leblanc.studies.runup.answer import RunupAnswer
+from leblanc.studies.runup.study import runup_scene
 from solvers.layer.records import Outcome
 from tests.oracles.random_machines import lying_drum
 
@@ -18,12 +18,12 @@ from tests.oracles.random_machines import lying_drum
 PHYSICAL = (Outcome.DONE, Outcome.STOPPED)
 
 
-def run(seed: int) -> RunupResult:
+def run(seed: int) -> RunupAnswer:
     """The run of a seed's drum, without its estimate of the error."""
     return runup_scene(scene_from_table(lying_drum(seed), f"seed {seed}"), check=False)
 
 
-def outcome(result: RunupResult) -> str:
+def outcome(result: RunupAnswer) -> str:
     """How a run ended: "sound", "beyond its wall", or what is wrong with it."""
     if result.outcome not in PHYSICAL:
         return f"broke off: {result.outcome.name}"

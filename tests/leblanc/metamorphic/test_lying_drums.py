@@ -7,10 +7,10 @@ from __future__ import annotations
 
 import pytest
 
-from leblanc.results.notes.runup import RunupCode
-from leblanc.results.runup import RunupResult
 from leblanc.scene.scene import scene_from_table
-from leblanc.studies.runup import runup_scene
+from leblanc.studies.runup.answer import RunupAnswer
+from leblanc.studies.runup.notes import RunupCode
+from leblanc.studies.runup.study import runup_scene
 from tests.leblanc.metamorphic.lying_drums import PHYSICAL_REASONS, outcome, run
 from tests.oracles.machines import MACHINES, Table
 from tests.oracles.random_balls import machine_with_balls
@@ -34,7 +34,7 @@ def test_lying_drums_end_for_a_physical_reason(seed: int) -> None:
     assert result.energy_error < 0.05
 
 
-def sound(result: RunupResult, open_: float) -> None:
+def sound(result: RunupAnswer, open_: float) -> None:
     """No heat below zero, and a balance that leaves no more than a share of its largest term."""
     audit = result.energy
     assert result.history.converged, result.history.reason
@@ -42,7 +42,7 @@ def sound(result: RunupResult, open_: float) -> None:
     assert audit.scale > 0.0 and result.energy_error < open_
 
 
-def programme(table: Table, liquid: str, drag: float) -> RunupResult:
+def programme(table: Table, liquid: str, drag: float) -> RunupAnswer:
     """From rest to a speed, down, up again and coasting to a stand."""
     top = table["speeds"]["stop"]
     steps = [f"to {top} rad/s in 0.6 s", f"to {0.3 * top} rad/s in 0.2 s", f"to {top} rad/s in 0.1 s"]

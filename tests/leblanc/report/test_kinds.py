@@ -17,25 +17,27 @@ import pytest
 from leblanc.cli import main
 from leblanc.cli.command import write
 from leblanc.core.blocks import Table, flat
+from leblanc.core.quantities import quantities
 from leblanc.report import optimise as report_optimise
 from leblanc.report import run as report_map
-from leblanc.report import runup as report_runup
 from leblanc.results.base import ConstraintValue
-from leblanc.results.notes.runup import IN_TABLES
 from leblanc.results.optimum import Feasibility, OptimumResult
-from leblanc.results.runup import RunupResult
 from leblanc.results.whirl_map import WhirlMap
 from leblanc.scene.inputs import about
 from leblanc.scene.scene import scene_from_table
 from leblanc.studies.optimise.optimise import optimise_scene
 from leblanc.studies.run.study import run_scene
 from leblanc.studies.run.words import MODELS
-from leblanc.studies.runup import runup_scene
+from leblanc.studies.runup import words
+from leblanc.studies.runup.answer import RunupAnswer
+from leblanc.studies.runup.notes import RunupCode
+from leblanc.studies.runup.study import runup_scene
 from leblanc.studies.whirl_map import map_scene
 from leblanc.text import whirl_map as text_map
 from leblanc.wings.exciter.answer import NUMBERS, ExciterAnswer, facts, limits
 from leblanc.wings.exciter.study import run_exciter
 from solvers.layer.records import Outcome
+from solvers.runup.runup import EnergyAudit
 from tests.leblanc.studies.test_runup import lying
 from tests.leblanc.studies.test_runup import table as machine
 from tests.oracles.pages import Page, printed, read_page
@@ -325,7 +327,7 @@ def test_a_given_deflection_has_its_report() -> None:
 
 
 @cache
-def run() -> RunupResult:
+def run() -> RunupAnswer:
     """Up and down, lying, so that its liquid is captured and let go."""
     ramp = {"start": 3.0, "stop": 30.0, "rate": 20.0, "back": True, "duration": 2.0, "capture": "riding"}
     return runup_scene(lying(runup=ramp))
@@ -334,11 +336,12 @@ def run() -> RunupResult:
 def test_runup_numbers() -> None:
     record = run()
     h = record.history
-    rows = {row[0].text: [cell.text for cell in row[1:]] for row in report_runup.moments(record).rows}
+    rows = {label: cells for label, *cells in words.moments(record).rows}
     turn = int(np.flatnonzero(h.speed == h.speed.max())[-1])
     up = int(np.argmax(h.amplitude[: turn + 1]))
     down = turn + 1 + int(np.argmax(h.amplitude[turn + 1 :]))
     for label, k in (("Largest on the way up", up), ("Largest on the way down", down), ("At the end", -1)):
+        label += "" if record.in_range_at(h.time[k]) else " (out of range)"
         assert rows[label] == [printed(h.amplitude[k] * 1e3), printed(h.speed[k] * RPM), printed(h.time[k])]
     assert record.steady is not None
     k = int(np.nanargmax(np.abs(record.steady.deflection)))
@@ -346,7 +349,7 @@ def test_runup_numbers() -> None:
     assert rows["Largest of the steady response"] == [*map(printed, steady), ""]
     audit = h.audit
     work = max(abs(audit.unbalance), audit.support + audit.friction + audit.bores)
-    energy = {row[0].text: [cell.text for cell in row[1:]] for row in report_runup.energy(record).rows}
+    energy = {label: cells for label, *cells in words.energy(record).rows}
     assert energy.get("+ work of the unbalance") == [
         printed(audit.unbalance),
         printed(100.0 * audit.unbalance / work),
@@ -365,7 +368,7 @@ def test_runup_numbers() -> None:
     size = sum(abs(value(one[0])) for one in energy.values())
     assert abs(total - left) < 1e-3 * size  # each term has four digits
     assert abs(value(energy["= not accounted for"][1])) == pytest.approx(100.0 * audit.closure, rel=1e-3)
-    found = dict(report_runup.facts(record))
+    found = dict(words.facts(record))
     assert found["Energy not accounted for, of the work"] == f"{printed(100.0 * audit.closure)} %"
     assert found["Error by half the cells, of the largest"] == f"{printed(100.0 * h.error_estimate)} %"
     assert found["Largest change of a layer's mass"] == f"{printed(100.0 * h.mass_error)} %"
@@ -377,7 +380,7 @@ def test_runup_numbers() -> None:
     )
 
 
-def calm_run() -> RunupResult:
+def calm_run() -> RunupAnswer:
     record = run()
     h = record.history
     all_the_time = np.ones_like(h.captured)
@@ -392,12 +395,12 @@ def calm_run() -> RunupResult:
 def test_runup_warnings() -> None:
     record = calm_run()
     h = record.history
-    assert not any(cell.warning for row in report_runup.checks(record).rows for cell in row)
+    assert not any(one.grade for one in words.checks(record))
     part = np.zeros(h.time.size, dtype=np.bool_)
     part[10:20] = True
-    where = f"{h.time[10]:.3g} to {h.time[19]:.3g} s"
+    where = f"{printed(h.time[10])} to {printed(h.time[19])} s"
 
-    def with_history(**changes: Any) -> RunupResult:
+    def with_history(**changes: Any) -> RunupAnswer:
         return replace(record, history=replace(h, **changes))
 
     audit = replace(h.audit, unbalance=1.0, support=0.99)
@@ -416,8 +419,7 @@ def test_runup_warnings() -> None:
         ("Energy lost above 0.1 %", "1 %", with_history(audit=audit)),
         ("Mass changed above 0.0001 %", "0.01 %", with_history(mass_error=1e-4)),
     ):
-        rows = report_runup.checks(troubled).rows
-        assert [(row[0].text, row[1].text) for row in rows if row[1].warning] == [(heading, text)]
+        assert [(one.label, one.where) for one in words.checks(troubled) if one.grade] == [(heading, text)]
 
 
 def test_events() -> None:
@@ -426,16 +428,13 @@ def test_events() -> None:
     h = record.history
     state = h.captured[:, 0]
     change = [k for k in range(1, state.size) if state[k] != state[k - 1]]
-    rows = report_runup.events(record).rows
-    assert len(rows) == len(change) >= 2
-    for row, k in zip(rows, change, strict=True):
-        what = "captured" if state[k] else "falls back"
-        time, speed, told = (cell.text for cell in row)
-        assert told == f"chamber 1: {what}"
-        # Four digits are printed.
-        assert h.time[k - 1] * (1.0 - 1e-3) <= float(time) <= h.time[k] * (1.0 + 1e-3)
-        spin = float(np.interp(float(time), h.time, h.speed)) * RPM
-        assert float(speed) == pytest.approx(spin, rel=2e-3)
+    notes = [note for note in record.notes if note.code in (RunupCode.CAPTURED, RunupCode.FALLS_BACK)]
+    assert len(notes) == len(change) >= 2
+    for note, k in zip(notes, change, strict=True):
+        assert ("is captured" if state[k] else "falls back") in note.text
+        time, speed = note.data["time"], note.data["speed"]
+        assert isinstance(time, float) and h.time[k - 1] <= time <= h.time[k]
+        assert speed == pytest.approx(float(np.interp(time, h.time, h.speed)), rel=1e-6)
 
 
 def test_runup_report_is_the_json() -> None:
@@ -448,6 +447,8 @@ def test_runup_report_is_the_json() -> None:
         ("Without liquid", "peak_dry"),
     ):  # fmt: skip
         one = answer[name]
+        at = min(int(np.searchsorted(answer["time"], one["time"])), len(answer["time"]) - 1)
+        label += "" if name == "peak_dry" or answer["in_range"][at] else " (out of range)"
         assert page.row(label) == [
             printed(one["amplitude"] * 1e3),
             printed(one["speed"] * RPM),
@@ -455,7 +456,8 @@ def test_runup_report_is_the_json() -> None:
         ]
     energy = answer["energy"]
     # Without baffles they have no line.
-    for name, text in report_runup.TERMS.items() - {("baffles", report_runup.TERMS["baffles"])}:
+    for name in set(words.TERMS) - {"baffles"}:
+        text = quantities(EnergyAudit)[name].name
         (row,) = [row for row in page.rows if row and row[0][2:] == text]
         assert row[1] == printed(energy[name])
     assert page.row("= not accounted for")[0] == printed(energy["remainder"])
@@ -485,7 +487,7 @@ def test_runup_report_is_the_json() -> None:
     # No note is lost: it stands among the remarks, or a table says it.
     notes = runup_scene(scene_from_table(content), cells=32).notes
     assert [note.text for note in notes] == answer["notes"]
-    assert page.of("li") == [note.text for note in notes if note.code not in IN_TABLES]
+    assert page.of("li") == [note.text for note in notes if note.code not in words.IN_TABLES]
     check_command(page, "runup", "runup.nc")
 
 
@@ -494,7 +496,7 @@ def test_a_run_that_stopped_says_so(tmp_path: Path) -> None:
     stopped = replace(
         record, history=replace(record.history, outcome=Outcome.AT_AXIS, reason="the layer <left> the drum")
     )
-    report_runup.write_runup_report(stopped, about(lying()), (), tmp_path / "runup.html")
+    write(stopped, tmp_path, lying())
     page = read_page(tmp_path / "runup.html")
     assert page.row("Stopped before its end") == ["Warning: the layer <left> the drum"]
 
@@ -585,8 +587,6 @@ def test_reports_of_one_scene_do_not_overwrite_one_another() -> None:
         "runup.nc",
     ]
     assert len(set(names)) == len(names)
-    source = "".join(
-        (ROOT / f"leblanc/cli/{name}.py").read_text(encoding="utf-8")
-        for name in ("run", "map", "optimise", "runup")
-    )
+    places = ("cli/run", "cli/map", "cli/optimise", "studies/runup/answer")
+    source = "".join((ROOT / f"leblanc/{name}.py").read_text(encoding="utf-8") for name in places)
     assert all(f'"{name}"' in source for name in names)

@@ -19,7 +19,7 @@ from leblanc.studies.batch import answer_scenes
 from leblanc.studies.explain import explain_scene
 from leblanc.studies.models.choose import choose
 from leblanc.studies.run.study import run_scene
-from leblanc.studies.runup import runup_scene
+from leblanc.studies.runup.study import runup_scene
 from leblanc.studies.whirl_map import map_scene
 from meshes.baffles import Baffles
 from meshes.errors import InputError

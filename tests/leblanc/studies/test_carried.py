@@ -12,7 +12,7 @@ import leblanc as lb
 from fluid.friction.baffles import baffle_torque
 from leblanc.scene.scene import Scene, scene_from_table
 from leblanc.studies.explain import explain_scene
-from leblanc.studies.runup import runup_scene
+from leblanc.studies.runup.study import runup_scene
 from leblanc.text.explanation import layer_rows
 from meshes.errors import InputError
 from tests.mutants import kills

@@ -16,7 +16,7 @@ from leblanc.scene.scene import Scene, load_scene
 from leblanc.scene.tasks import Optimisation
 from leblanc.studies.explain import explain_scene
 from leblanc.studies.optimise.constraints import whirl_size
-from leblanc.studies.runup import runup_scene, whirl_on_the_way
+from leblanc.studies.runup.study import runup_scene, whirl_on_the_way
 from leblanc.studies.whirl_map import map_scene
 from leblanc.text.explanation import facts as explained
 from leblanc.text.whirl_map import answer, facts

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
@@ -11,11 +10,11 @@ import pytest
 from pytest import approx
 
 from leblanc.cli import main
-from leblanc.figures.runup import speed_figure, time_figure
-from leblanc.results.runup import RunupResult
 from leblanc.scene.scene import load_scene
-from leblanc.studies.runup import runup_scene
-from leblanc.text.runup import summary
+from leblanc.studies.runup.answer import RunupAnswer
+from leblanc.studies.runup.figure import speed_figure, time_figure
+from leblanc.studies.runup.study import runup_scene
+from leblanc.studies.runup.words import describe_model
 from meshes.errors import InputError
 from solvers.runup.ensemble import CHANGE, Member, ensemble, spread_over
 from tests.mutants import kills
@@ -26,16 +25,16 @@ SHORT = load_scene(ROOT / "examples/runup.toml").replace(
 )
 
 
-def members(**changes: Any) -> RunupResult:
+def members(**changes: Any) -> RunupAnswer:
     return runup_scene(SHORT, check=False, **{"ensemble": 3, **changes})
 
 
 @pytest.fixture(scope="module")
-def found() -> RunupResult:
+def found() -> RunupAnswer:
     return members()
 
 
-def test_the_range_holds_the_run_itself_and_every_other(found: RunupResult) -> None:
+def test_the_range_holds_the_run_itself_and_every_other(found: RunupAnswer) -> None:
     spread = found.spread
     assert spread is not None and spread.members == spread.asked == 4 and spread.lost == 0
     assert np.all(spread.amplitude_min <= found.amplitude) and np.all(found.amplitude <= spread.amplitude_max)
@@ -44,7 +43,7 @@ def test_the_range_holds_the_run_itself_and_every_other(found: RunupResult) -> N
     assert spread.peaks[0] == found.history.largest.max() and spread.peaks.shape == (4,)
 
 
-def test_a_run_without_bores_enlarges_nothing(found: RunupResult) -> None:
+def test_a_run_without_bores_enlarges_nothing(found: RunupAnswer) -> None:
     # A second of it: the amplitude goes with the unbalance, so that the range is at most twice the change and
     # what rounding adds in some thousand steps.
     spread = found.spread
@@ -53,7 +52,7 @@ def test_a_run_without_bores_enlarges_nothing(found: RunupResult) -> None:
     assert "does not matter" in note.text
 
 
-def test_any_number_of_workers_gives_the_same(found: RunupResult) -> None:
+def test_any_number_of_workers_gives_the_same(found: RunupAnswer) -> None:
     there = members(workers=2)
     assert found.spread is not None and there.spread is not None
     for name in ("amplitude_min", "amplitude_max", "amplitude_median", "peaks"):
@@ -104,8 +103,8 @@ def test_ranges_by_hand() -> None:
     assert spread.peak_spread == approx(0.4) and spread.largest_spread == approx(4.0 / 5.0)
 
 
-def test_json_data_and_figures_carry_it(found: RunupResult) -> None:
-    told = json.loads(json.dumps(found.to_json()["ensemble"], default=lambda each: np.asarray(each).tolist()))
+def test_json_data_and_figures_carry_it(found: RunupAnswer) -> None:
+    told = found.to_json()["ensemble"]
     data = found.to_dataset()
     assert told["amplitude_max"] == approx(data["amplitude_max"].values)
     assert data.attrs["ensemble_members"] == told["members"] == 4
@@ -120,8 +119,8 @@ def test_a_scene_says_what_its_bores_leave() -> None:
     assert rolling.digest != SHORT.digest
     assert SHORT.replace({"runup.bore": "none"}).digest == SHORT.digest
     found = runup_scene(rolling, check=False)
-    assert found.bore == "enstrophy" and "bores with enstrophy" in dict(summary(found))["Liquid model"]
-    assert "bores" not in dict(summary(runup_scene(SHORT, check=False)))["Liquid model"]
+    assert found.bore == "enstrophy" and "bores with enstrophy" in describe_model(found)
+    assert "bores" not in describe_model(runup_scene(SHORT, check=False))
     assert found.named_arrays().attrs["bore"] == "enstrophy"
 
 

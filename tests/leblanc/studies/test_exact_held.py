@@ -12,7 +12,7 @@ from leblanc.scene.scene import load_scene
 from leblanc.studies.held.held import held_machine
 from leblanc.studies.models.choose import prepare
 from leblanc.studies.run.study import run_scene
-from leblanc.studies.runup import runup_scene
+from leblanc.studies.runup.study import runup_scene
 from meshes.errors import InputError
 from solvers.held.exact import march
 from solvers.held.hold import start

@@ -13,10 +13,10 @@ import leblanc as lb
 from fluid.fill import Fill
 from fluid.friction.laws import Friction
 from fluid.liquid import Liquid
-from leblanc.results.notes.runup import RunupCode, numerical_error
 from leblanc.scene.scene import Scene
-from leblanc.studies.runup import runup_scene
-from leblanc.text.runup import answer, answer_rows, peak_known
+from leblanc.studies.runup.notes import RunupCode, numerical_error
+from leblanc.studies.runup.study import runup_scene
+from leblanc.studies.runup.words import known, peak_known, sentence
 from meshes.baffles import Baffles
 from meshes.chamber import Chamber
 from solvers.pypde.coupled import RotorLayersPDE
@@ -83,14 +83,14 @@ def test_motions_held_with_many_baffles() -> None:
     assert RotorLayersPDE(rotor.system(), [fill], 40.0, friction=Friction(), gravity=9.81).layers.all()
 
 
-@kills("leblanc.text.runup:peak_known", "error <= _ROUGH", "error > _ROUGH")
-@kills("leblanc.text.runup:peak_known", "max(parts", "min(parts")
+@kills("leblanc.studies.runup.words:peak_known", "error <= _ROUGH", "error > _ROUGH")
+@kills("leblanc.studies.runup.words:peak_known", "max(parts", "min(parts")
 def test_what_a_reader_is_told() -> None:
     """The headline has the peak's error, its cause where it is large, and for how long the model holds."""
     short = lb.example("runup").replace({"runup.duration": "1 s", "runup.cells": 16})
     found = runup_scene(short, samples=50, check=False)
     found = replace(found, in_range=np.ones(found.time.size, dtype=bool))
-    assert peak_known(found) == "" and "for all of the run" in answer(found)
+    assert peak_known(found) == "" and "for all of the run" in sentence(found)
     largest = float(found.history.largest.max())
     for gaps, told in (
         ((0.01, math.nan), "1 %"),
@@ -100,10 +100,10 @@ def test_what_a_reader_is_told() -> None:
     ):
         history = replace(found.history, peak_gaps=(gaps[0] * largest, gaps[1] * largest))
         one = replace(found, history=history)
-        assert peak_known(one).endswith(told) and peak_known(one) in answer(one)
-        assert ("Largest of all known to", peak_known(one)) in answer_rows(one)
+        assert peak_known(one).endswith(told) and peak_known(one) in sentence(one)
+        assert ("Largest of all known to", peak_known(one)) in known(one)
     half = replace(found, in_range=np.arange(found.time.size) % 2 == 0)
-    assert f"for {100.0 * half.in_range.mean():.3g} % of the run" in answer(half)
+    assert f"for {100.0 * half.in_range.mean():.3g} % of the run" in sentence(half)
 
 
 def test_a_look_that_is_too_coarse_says_so() -> None:

@@ -10,14 +10,15 @@ import pytest
 
 import leblanc as lb
 from leblanc.cli import main
-from leblanc.figures.runup import speed_figure, time_figure
-from leblanc.results.notes.runup import RunupCode
-from leblanc.results.runup import RunupResult
+from leblanc.core.units import number
 from leblanc.scene.examples import example_path
 from leblanc.scene.scene import Scene, scene_from_table
 from leblanc.studies.drives import rotor_in_time
 from leblanc.studies.optimise.objectives import RunupPeak
-from leblanc.text.runup import summary
+from leblanc.studies.runup.answer import RunupAnswer, pieces
+from leblanc.studies.runup.figure import speed_figure, time_figure
+from leblanc.studies.runup.notes import RunupCode
+from leblanc.studies.runup.words import passages
 from tests.mutants import kills
 
 STEPS = ["to 60 rad/s in 4 s", "hold 1 s", "to 20 rad/s in 3 s", "to 45 rad/s in 3 s", "coast to 8 rad/s"]
@@ -40,12 +41,12 @@ def machine(**changes: object) -> Scene:
 
 
 @pytest.fixture(scope="module")
-def result() -> RunupResult:
+def result() -> RunupAnswer:
     return lb.run_up(machine())
 
 
-@kills("leblanc.results.motion.passages:falling", 'passage.way == "down"', 'passage.way != "up"')
-def test_each_passage_has_its_peak(result: RunupResult) -> None:
+@kills("leblanc.studies.runup.answer:RunupAnswer._falls", 'passage.way == "down"', 'passage.way != "up"')
+def test_each_passage_has_its_peak(result: RunupAnswer) -> None:
     """Those up and those down, apart; the largest of all is that of every step kept in the run."""
     ways = [passage.way for passage in result.passages]
     assert ways == ["up", "hold", "down", "up", "down"] and result.turns_back
@@ -62,20 +63,20 @@ def test_each_passage_has_its_peak(result: RunupResult) -> None:
     np.testing.assert_array_equal(result.falling[1:], np.diff(result.speed) < 0.0)
 
 
-def test_curves_have_every_sample_once(result: RunupResult) -> None:
+def test_curves_have_every_sample_once(result: RunupAnswer) -> None:
     time, speed, amplitude = result.whole_curve()
     assert set(result.time) <= set(time) and time.size <= result.time.size + 2 and (np.diff(time) > 0.0).all()
     assert np.nanmax(amplitude) == result.history.largest.max()
     for back in (False, True):
         time, speed, _ = result.curve(back)
         assert np.isnan(time).sum() == 1
-        for part in result.pieces(result.history, back):
+        for part in pieces(result.falling == back):
             inner = np.diff(result.speed[part])
             assert (inner <= 0.0).all() if back else (inner >= -1e-9).all()
     assert np.isnan(speed).sum() == 1
 
 
-def test_without_liquid_at_the_same_times(result: RunupResult) -> None:
+def test_without_liquid_at_the_same_times(result: RunupAnswer) -> None:
     """While the speed is given both have it; a coast of another length is told at the times of this one."""
     given = result.time <= result.passages[-1].begin
     np.testing.assert_allclose(result.speed_dry[given], result.speed[given], rtol=1e-9)
@@ -87,7 +88,7 @@ def test_without_liquid_at_the_same_times(result: RunupResult) -> None:
     assert all(np.isfinite(passage.amplitude_dry) for passage in result.passages)
 
 
-def test_notes(result: RunupResult) -> None:
+def test_notes(result: RunupAnswer) -> None:
     codes = {note.code for note in result.notes}
     assert not codes & {RunupCode.STANDING, RunupCode.NO_DRAG, RunupCode.COAST_NOT_ENDED}
     short = ["to 40 rad/s in 2 s", "coast to 0"]
@@ -97,12 +98,13 @@ def test_notes(result: RunupResult) -> None:
     assert free.time[-1] == pytest.approx(4.0, rel=1e-12)
 
 
-def test_what_is_shown(result: RunupResult) -> None:
+def test_what_is_shown(result: RunupAnswer) -> None:
     told = json.loads(json.dumps(result.to_json()["passages"]))
     assert [part["way"] for part in told] == [part.way for part in result.passages]
     assert told[4]["text"] == STEPS[4].replace("8 rad/s", "76.39 rpm")
-    labels = dict(summary(result))
-    assert "mm at" in labels["Step 5, coast to 76.39 rpm"]
+    table, passage = passages(result), result.passages[4]
+    assert table.rows[4][:2] == ("5", "coast to 76.39 rpm")
+    assert table.rows[4][4] == number(passage.speed * 30.0 / np.pi)
     axes = speed_figure(result).axes[0]
     drawn = {line.get_label() for line in axes.get_lines()}
     assert {"run-up", "run-down", "run-down, without liquid"} <= drawn
@@ -144,7 +146,7 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     scene.write_text(text.replace('"to 1000 rpm at', '"to 500 rpm at'), encoding="utf-8")
     assert main(["runup", str(scene), "--no-check", "--out", str(tmp_path / "out")]) == 0
     said = capsys.readouterr().out
-    assert "Step 7, coast to a stand" in said and "Largest on the way down" in said
+    assert "coast to a stand" in said and "Largest on the way down" in said
     report = (tmp_path / "out" / "runup.html").read_text(encoding="utf-8")
     assert "Steps of the programme" in report and "coast to a stand" in report
 

@@ -11,15 +11,15 @@ import pytest
 
 import leblanc as lb
 from leblanc.cli import main
+from leblanc.cli.command import write
 from leblanc.core.page import About
-from leblanc.report.runup import write_runup_report
-from leblanc.results.runup import OF_LIQUID as OF_LIQUID_IN_TIME
 from leblanc.scene.inputs import about
 from leblanc.scene.scene import Scene, scene_from_table
 from leblanc.studies.batch import answer_scenes
 from leblanc.studies.run.answer import OF_LIQUID
 from leblanc.studies.run.study import run_scene
-from leblanc.studies.runup import runup_scene
+from leblanc.studies.runup.answer import OF_LIQUID as OF_LIQUID_IN_TIME
+from leblanc.studies.runup.study import runup_scene
 from tests.oracles.pages import write_page_of
 
 ROUNDING = 1e-12
@@ -128,7 +128,8 @@ def test_pages_and_texts_speak_of_one_machine(scene: Scene, tmp_path: Path) -> N
 
     answer, ramp = run_scene(scene), runup_scene(scene, check=False)
     text = page(write_page_of, answer, about(scene, "leblanc run", unused=("model",)))
-    text += page(write_runup_report, ramp, about(scene, "leblanc runup", unused=("model",)))
+    write(ramp, tmp_path, scene)
+    text += (tmp_path / "runup.html").read_text(encoding="utf-8").partition("<footer")[0]
     for word in ("with liquid", "Wall dry", "Liquid model", "vector model"):
         assert word not in text
     figure = answer.plot()

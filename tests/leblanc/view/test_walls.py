@@ -17,11 +17,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from leblanc.figures import films
 from leblanc.results.base import FilledChamber
 from leblanc.results.drawn.machine import MachineMotion, Scale, pool
-from leblanc.results.runup import RunupFrames
 from leblanc.scene.scene import scene_from_table
+from leblanc.studies.runup import film as films
+from leblanc.studies.runup.answer import RunupFrames
 from leblanc.studies.shapes.layer import body_of_pool
 from leblanc.studies.shapes.machine import drawn_liquid, machine_motion, mode_view
 from leblanc.studies.shapes.scale import scale_of

@@ -17,7 +17,7 @@ from leblanc.scene.chambers import Chamber
 from leblanc.scene.examples import example
 from leblanc.scene.scene import Scene
 from leblanc.studies.run.study import run_scene
-from leblanc.studies.runup import runup_scene
+from leblanc.studies.runup.study import runup_scene
 from validation.case import Case, Claims, Verdict, shape_verdict
 from validation.page import Figure, page
 from validation.study import launch, shown

@@ -19,7 +19,7 @@ import numpy as np
 
 from fluid.friction.laws import Friction, FrictionLaw
 from leblanc.core.units import RPM
-from leblanc.results.runup import turn_mean
+from leblanc.studies.runup.answer import turn_mean
 from meshes.arrays import Array, Complex
 from solvers.runup.machine import Ramp
 from solvers.runup.runup import RunupNumerics, run_up

@@ -10,7 +10,7 @@ from typing import Any
 from leblanc.core.units import MM, RPM
 from leblanc.scene.examples import example
 from leblanc.scene.scene import Scene
-from leblanc.studies.runup import runup_scene
+from leblanc.studies.runup.study import runup_scene
 from solvers.runup.runup import RunupHistory
 from validation.page import Figure, page
 from validation.study import launch, shown

@@ -32,7 +32,7 @@ from leblanc.studies.optimise.balls.design import (
 )
 from leblanc.studies.optimise.problem import operating_speeds, working_speed
 from leblanc.studies.optimise.robust import DOUBLE, operating_conditions, unbalance_range
-from leblanc.studies.runup import chosen_run
+from leblanc.studies.runup.study import chosen_run
 from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.rotor.balance_quality import balance_quality

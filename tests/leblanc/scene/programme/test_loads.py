@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 import leblanc as lb
-from leblanc.results.notes.runup import RunupCode
 from leblanc.scene.inputs import input_rows
 from leblanc.scene.rotors import TubRotor
 from leblanc.scene.scene import Scene, dry_rotor, scene_from_table
@@ -16,6 +15,7 @@ from leblanc.scene.schema.load import SceneError
 from leblanc.scene.unbalances import sheds_of, unbalances_of, with_unbalances
 from leblanc.studies.drives import rotor_in_time
 from leblanc.studies.run.notes import RunCode
+from leblanc.studies.runup.notes import RunupCode
 from tests.mutants import kills
 
 SHEDS = {"share": 0.3, "time_constant": "0.5 s", "above": "20 rad/s"}

@@ -19,7 +19,7 @@ from leblanc.studies.models.choose import axial_gravity, choose, choose_all, pre
 from leblanc.studies.models.liquid import synchronous_model
 from leblanc.studies.run.notes import RunCode
 from leblanc.studies.run.study import run_scene
-from leblanc.studies.runup import runup_scene
+from leblanc.studies.runup.study import runup_scene
 from leblanc.text.explanation import machine_rows
 from meshes.errors import InputError
 from solvers.held.cost import hold_seconds

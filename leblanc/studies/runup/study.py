@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -15,26 +15,29 @@ from fluid.pool import balance_speed, pool_of
 from fluid.waves import capture_speed
 from fluid.whirl import covering_speed, is_full
 from leblanc.core.notes import Note, percent
+from leblanc.core.progress import update
 from leblanc.results.base import FilledChamber
-from leblanc.results.motion.passages import passages_of
-from leblanc.results.notes import runup as notes
 from leblanc.results.notes.baffles import smeared_baffles
-from leblanc.results.notes.runup import RunupCode
-from leblanc.results.runup import Bands, RunupFrames, RunupResult, run_faults
 from leblanc.scene.inputs import runup_rows
 from leblanc.scene.scene import JeffcottRotor, Runup, Scene, dry_rotor, jeffcott, require_clear
 from leblanc.studies.balls.study import races_shown, started_balls
-from leblanc.studies.drives import drive_of as drive_of  # asked for with a run-up
-from leblanc.studies.drives import numerics_of as numerics_of
-from leblanc.studies.drives import planned as planned
-from leblanc.studies.drives import programme_notes, rotor_in_time, unbalance_left
+from leblanc.studies.drives import drive_of, numerics_of, planned, rotor_in_time, unbalance_left
 from leblanc.studies.loads.study import loaded_machine, loads_over_time
-from leblanc.studies.models.choose import across_gravity as across_gravity  # of a run-up, asked for with it
-from leblanc.studies.models.choose import axial_gravity, captured_speed, is_cut, prepare, ruled_out_linear
+from leblanc.studies.models.choose import (
+    across_gravity,
+    axial_gravity,
+    captured_speed,
+    is_cut,
+    prepare,
+    ruled_out_linear,
+)
 from leblanc.studies.models.liquid import RUNUP_MODELS, runup_model
 from leblanc.studies.models.validity import doubts, require_supported
 from leblanc.studies.peaks import responses_between
-from meshes.arrays import Array, Flags
+from leblanc.studies.runup import notes
+from leblanc.studies.runup.answer import Bands, Passage, RunupAnswer, RunupFrames, run_faults
+from leblanc.studies.runup.notes import RunupCode
+from meshes.arrays import Array, Flags, Index
 from meshes.errors import InputError
 from solvers.layer.records import Outcome
 from solvers.liquid_model import LONG
@@ -43,6 +46,7 @@ from solvers.runup.ensemble import ensemble as made_ensemble
 from solvers.runup.linear import couple_linear
 from solvers.runup.long_wave import couple
 from solvers.runup.machine import Drive, Handover, RunupModel
+from solvers.runup.programme import Programme
 from solvers.runup.runup import (
     MOST_LAG,
     MOST_WAVE,
@@ -55,28 +59,10 @@ from solvers.runup.runup import (
 from solvers.synchronous.models import LINEAR
 from solvers.synchronous.response import Response, by_speed, response
 
-BALLS_REST = 1e-3  # of the spin: balls that pass the drum by less are at rest in it
-FRAMES = 180  # of a film
-MOST_FRAMES = 2000
-
-
-def require_layers(scene: Scene) -> None:
-    """A film shows the layers cell by cell."""
-    if scene.model.liquid == "linear":
-        raise InputError("model.liquid", "linear", "auto or long_wave for a film")
-
-
-def require_room(scene: Scene) -> None:
-    """Compartments are for long waves."""
-    if scene.model.liquid == "linear" and any(fill.compartments > 1 for fill in scene.fills):
-        text = "auto or long_wave where baffles cut the liquid into compartments"
-        raise InputError("model.liquid", "linear", text)
-
-
-def require_frames(frames: int) -> None:
-    """A number of frames that a film can have."""
-    if not 2 <= frames <= MOST_FRAMES:
-        raise InputError("frames", frames, f"from 2 to {MOST_FRAMES}")
+MOST_FRAMES = 2000  # of a film
+STEADY_SPEEDS = 401  # of the steady response drawn behind the run-up
+BAND_SPEEDS = 201  # at which self-excited whirl is looked for
+_STEADY = 1e-9  # relative change of the speed that is none
 
 
 def runup_frames(history: RunupHistory) -> RunupFrames | None:
@@ -157,9 +143,6 @@ def held_from(scene: Scene, fill: Fill) -> float:
     return max(slowest, covering_speed(fill, axial_gravity(scene)))
 
 
-Progress = Callable[[float], None] | None
-
-
 @dataclass(frozen=True)
 class RunupChoice:
     """A run-up and the liquid model it took."""
@@ -177,50 +160,51 @@ def chosen_run(
     drive: Drive,
     gravity: float,
     numerics: RunupNumerics,
-    progress: Progress = None,
     snapshots: ArrayLike = (),
     follow: bool = False,
+    share: float | None = None,
 ) -> RunupChoice:
     """Run a scene up with the cheapest liquid model whose estimated error is within its tolerance.
 
     Linear layers take a twentieth of the time of long waves and are tried first. What they cannot have rules
     them out before: a motor that feels the wave, friction that small waves do not feel, and a tolerance that
-    not even the smallest waves are known to meet.
+    not even the smallest waves are known to meet. It says how far it has come
+    where it is given a `share` of all work.
     """
     scene = scene.as_read()
     require_supported(scene)
     model, tolerance = liquid_model(scene), scene.model.tolerance
     system, friction = rotor_in_time(scene), scene.model.friction
 
-    def run(name: str, resolved: RunupNumerics, report: Progress) -> RunupHistory:
-        model = model_of(scene, name)
-        given = system, scene.fills, drive, friction, gravity, resolved, report, model, snapshots, follow
-        return run_up(*given)
+    def run(name: str, resolved: RunupNumerics = numerics, tell: bool = True) -> RunupHistory:
+        told = None if share is None or not tell else lambda part: update(share * part, 1.0)
+        given = system, scene.fills, drive, friction, gravity, resolved, told
+        return run_up(*given, model_of(scene, name), snapshots, follow)
 
     if not scene.chambers:
         # Both models step the rotor alike; this one is the quicker, the other has the cells of a film.
         model = "long_wave" if np.size(snapshots) else "linear"
-        history = run(model, numerics, progress)
+        history = run(model)
         return RunupChoice(history, model, _by_steps(history), "the machine has no chamber.")
     if scene.model.liquid == "long_wave":
-        history = run(model, numerics, progress)
+        history = run(model)
         return RunupChoice(history, model, _by_steps(history), "the scene asks for long waves.")
     if scene.model.liquid == "linear":
-        history = run(model, numerics, progress)
+        history = run(model)
         found = linear_run_error(history, scene.fills)
         reason = f"the scene asks for linear layers; {_judged_by(found)}."
         return RunupChoice(history, model, found.estimate + history.error_estimate, reason)
     ruled_out = ruled_out_linear(scene)
     if not ruled_out:
-        first = run("linear", replace(numerics, companion=False), None)
+        first = run("linear", replace(numerics, companion=False), tell=False)
         found = linear_run_error(first, scene.fills)
         if found.estimate <= tolerance:
-            history = run("linear", numerics, progress) if numerics.companion else first
+            history = run("linear") if numerics.companion else first
             error = found.estimate + (0.0 if math.isnan(history.error_estimate) else history.error_estimate)
             reason = f"linear layers, as {_judged_by(found)}, within the tolerance of {percent(tolerance)}."
             return RunupChoice(history, "linear", error, reason)
         ruled_out = f"with linear layers {_judged_by(found)}, and the tolerance is {percent(tolerance)}"
-    history = run(model, numerics, progress)
+    history = run(model)
     return RunupChoice(history, model, _by_steps(history), f"long waves: {ruled_out}.")
 
 
@@ -232,12 +216,14 @@ def _by_steps(history: RunupHistory) -> float:
 
 def _judged_by(found: LinearRunError) -> str:
     """What a linear run says of its own error."""
-    limits = MOST_WAVE, MOST_LAG
-    return notes.linear_layers(found.wave, found.lag, found.touches, found.estimate, limits)
-
-
-STEADY_SPEEDS = 401  # of the steady response drawn behind the run-up
-BAND_SPEEDS = 201  # at which self-excited whirl is looked for
+    size = f"waves reach {percent(found.wave)} of the depth and the liquid lags by up to "
+    size += f"{percent(found.lag)} of the spin"
+    if found.touches:
+        return f"{size}, and a surface touches an inner wall, beyond any estimate"
+    if math.isfinite(found.estimate):
+        return f"{size}, an estimated error of {percent(found.estimate)} against long waves"
+    most = " and ".join(map(percent, (MOST_WAVE, MOST_LAG)))
+    return f"{size}, beyond the {most} up to which an error is estimated"
 
 
 def runup_scene(
@@ -245,46 +231,77 @@ def runup_scene(
     cells: int | None = None,
     samples: int | None = None,
     check: bool = True,
-    progress: Progress = None,
     frames: int | None = None,
     ensemble: int = 0,
     seed: int = 0,
     workers: int = 1,
-) -> RunupResult:
+) -> RunupAnswer:
     """Run the machine of a scene through its speeds [theory: coupling].
 
     `check`: once more with half the cells to estimate the error; `frames` times at which the layers are kept
     for a film; `ensemble` repetitions with the unbalance changed in the last digits, the same with any number
     of workers. What was reached if the run did not come to its end.
     """
+    if workers < 1:
+        raise InputError("workers", workers, "1 or more")
     scene = scene.as_read()
-    require_clear(scene, "a run-up, whose waves run in a ring with circular walls", baffles=True)
-    require_room(scene)
     plan = planned(scene)
-    if frames is not None:
-        require_frames(frames)
-        require_layers(scene)
+    require_clear(scene, "a run-up, whose waves run in a ring with circular walls", baffles=True)
+    if scene.model.liquid == "linear" and any(fill.compartments > 1 for fill in scene.fills):
+        text = "auto or long_wave where baffles cut the liquid into compartments"
+        raise InputError("model.liquid", "linear", text)
+    if frames is not None and not 2 <= frames <= MOST_FRAMES:
+        raise InputError("frames", frames, f"from 2 to {MOST_FRAMES}")
+    if frames is not None and scene.model.liquid == "linear":
+        raise InputError("model.liquid", "linear", "auto or long_wave for a film")
+    update(what="running up")
     numerics = numerics_of(plan, cells, samples, check)
     drive, gravity = drive_of(plan, scene.rotor), across_gravity(scene)
     times = () if frames is None else np.linspace(0.0, float(drive.corners()[0, -1]), frames)
     share = 1.0 / (1.0 + 0.8 * ensemble / workers)
-    first = None if progress is None else lambda part: progress(share * part)
-    tasks = ensemble_tasks(scene, drive, gravity, numerics, ensemble, seed)
+    tasks = []  # with long waves until it is known which model is taken
+    if ensemble:
+        given = rotor_in_time(scene), scene.fills, drive, scene.model.friction, gravity, numerics
+        tasks = made_ensemble(*given, model_of(scene, "long_wave"), ensemble, seed)
     machine = loaded_machine(scene)
-    taken = chosen_run(scene, drive, gravity, numerics, first, times, machine is not None)
+    taken = chosen_run(scene, drive, gravity, numerics, times, machine is not None, share)
     history = taken.history
-    rest = None if progress is None else lambda part: progress(share + (1.0 - share) * part)
     if taken.model == "linear":
         tasks = [replace(task, model=model_of(scene, "linear")) for task in tasks]
-    spread = rounding_spread(taken, tasks, seed, workers, rest)
+    spread = rounding_spread(taken, tasks, seed, workers, share)
     dry = dry_run(scene, history, drive, gravity, numerics)
     steady, bands = steady_response(scene, history.speed), whirl_bands(scene, history.speed)
     in_range, limits = judged(scene, history, taken.model)
     steps = () if scene.programme is None else tuple(step.words() for step in scene.programme.steps)
     passages, left = passages_of(history, dry, steps), unbalance_left(scene, history)
     fastest = np.flatnonzero(history.speed == history.speed.max())
-    stands = () if machine is None else (notes.loads(),)
-    return RunupResult(
+    chambers = tuple(_chamber(fill) for fill in scene.fills)
+
+    def found() -> Iterator[Note]:
+        if scene.chambers:
+            yield Note(RunupCode.LIQUID_MODEL, {"model": taken.model}, f"Liquid model: {taken.reason}")
+        pools = taken.model == "long_wave" and gravity > 0.0 and bool(scene.fills)
+        faults = run_faults(history, chambers)
+        yield from notes.happened(history, steady, spread, faults, numerics.cells if pools else None)
+        yield from _never_caught(scene, history)
+        if bands is None and not scene.balls:
+            yield notes.WHIRL_BESIDE_BAFFLES
+        if bands:
+            whirl = whirl_on_the_way(scene, bands)
+            yield notes.self_excited_on_the_way(bands, scene.model.friction, whirl)
+        if scene.programme is not None and isinstance(drive, Programme):
+            yield from notes.programme_notes(scene.programme, history, drive, passages)
+        if left is not None:
+            yield notes.unbalance_left(float(left[-1]))
+        yield from limits
+        if scene.balls:
+            yield from notes.of_balls(history, bool(scene.fills))
+        yield from smeared_baffles(scene.fills, None if taken.model == "linear" else numerics.cells)
+        if machine is not None:
+            yield notes.LOADS
+        yield from doubts(scene)
+
+    return RunupAnswer(
         name=scene.name,
         source=scene.source,
         assumed=scene.assumed,
@@ -304,18 +321,9 @@ def runup_scene(
         in_range=in_range,
         steady=steady,
         bands=bands,
-        chambers=tuple(_chamber(fill) for fill in scene.fills),
+        chambers=chambers,
         planes=tuple(fill.chamber.plane for fill in scene.fills) or (_position(scene),),
-        notes=(
-            *_notes(scene, taken, steady, bands, spread, numerics.cells),
-            *programme_notes(scene, history, drive, passages),
-            *([] if left is None else [notes.unbalance_left(float(left[-1]))]),
-            *limits,
-            *_ball_notes(scene, history),
-            *smeared_baffles(scene.fills, None if taken.model == "linear" else numerics.cells),
-            *stands,
-            *doubts(scene),
-        ),
+        notes=tuple(found()),
         frames=runup_frames(history),
         history_dry=dry,
         spread=spread,
@@ -324,7 +332,45 @@ def runup_scene(
         unbalance_left=left,
         loads=None if machine is None else loads_over_time(scene, machine, history),
         races=races_shown(scene),
+        unused=("speeds", *(() if scene.chambers else ("model",)), "optimise"),
     )
+
+
+def passages_of(
+    history: RunupHistory, dry: RunupHistory | None, texts: tuple[str, ...]
+) -> tuple[Passage, ...]:
+    """The steps of a programme that were reached, in their order."""
+
+    def samples(run: RunupHistory | None, step: int) -> Index:
+        """Samples that a step leads to; the one at the beginning belongs to none."""
+        if run is None or run.stage is None:
+            return np.empty(0, dtype=np.intp)
+        found = np.flatnonzero(run.stage == step)
+        return found[found > 0]
+
+    found = []
+    for step, text in enumerate(texts):
+        rows, bare = samples(history, step), samples(dry, step)
+        if not rows.size:
+            continue
+        largest, first, last = rows[np.argmax(history.largest[rows])], rows[0] - 1, rows[-1]
+        begin, end = float(history.speed[first]), float(history.speed[last])
+        found.append(
+            Passage(
+                step=step + 1,
+                text=text,
+                way="hold" if abs(end - begin) <= _STEADY * begin else "up" if end > begin else "down",
+                begin=float(history.time[first]),
+                end=float(history.time[last]),
+                speed_begin=begin,
+                speed_end=end,
+                amplitude=float(history.largest[largest]),
+                speed=float(history.largest_speed[largest]),
+                time=float(history.largest_time[largest]),
+                amplitude_dry=math.nan if dry is None or not bare.size else float(dry.largest[bare].max()),
+            )
+        )
+    return tuple(found)
 
 
 def model_of(scene: Scene, name: str) -> RunupModel:
@@ -340,41 +386,20 @@ def _position(scene: Scene) -> float:
     return scene.balls[0].plane if scene.balls else 0.0
 
 
-def _ball_notes(scene: Scene, history: RunupHistory) -> Iterator[Note]:
-    """What was assumed of the balls, and whether they can balance and have come to rest."""
-    if not scene.balls:
-        return
-    yield notes.balls_as_points()
-    if scene.fills:
-        yield notes.whirl_beside_balls()
-    behind = np.abs(history.ball_speed[-1] - history.speed[-1])
-    if behind.max() > BALLS_REST * history.speed[-1]:
-        yield notes.balls_run(float(behind.max()), float(history.speed[-1]))
-
-
-def ensemble_tasks(
-    scene: Scene, drive: Drive, gravity: float, numerics: RunupNumerics, count: int, seed: int
-) -> list[EnsembleTask]:
-    """The runs of an ensemble, with long waves until it is known which model is taken."""
-    if count == 0:
-        return []
-    system, friction = rotor_in_time(scene), scene.model.friction
-    model = model_of(scene, "long_wave")
-    return made_ensemble(system, scene.fills, drive, friction, gravity, numerics, model, count, seed)
-
-
 def rounding_spread(
-    taken: RunupChoice, tasks: list[EnsembleTask], seed: int, workers: int, progress: Progress = None
+    taken: RunupChoice, tasks: list[EnsembleTask], seed: int, workers: int, share: float
 ) -> Spread | None:
-    """The range that rounding leaves a run-up; None where none was asked for or the run did not end."""
+    """The range that rounding leaves a run-up; None where none was asked for or the run did not end.
+
+    `share` of the work is done before.
+    """
     if not tasks or not taken.history.converged:
         return None
     members = [member_of(taken.history)]
     try:
-        for member in _each(tasks, workers):
+        for count, member in enumerate(_each(tasks, workers), 1):
             members.append(member)
-            if progress is not None:
-                progress((len(members) - 1) / len(tasks))
+            update(share + (1.0 - share) * count / len(tasks), 1.0)
     except KeyboardInterrupt:
         # What is there by now is told.
         pass
@@ -406,34 +431,6 @@ def dry_run(
     if scene.balls:
         model = partial(couple_linear, position=_position(scene))
     return run_up(rotor_in_time(scene), empty, drive, scene.model.friction, gravity, alone, None, model)
-
-
-def _notes(
-    scene: Scene,
-    taken: RunupChoice,
-    steady: Response | None,
-    bands: Bands | None,
-    spread: Spread | None,
-    cells: int,
-) -> list[Note]:
-    """What happened and how far it can be trusted."""
-    h = taken.history
-    pools = taken.model == "long_wave" and across_gravity(scene) > 0.0 and bool(scene.fills)
-    found = [
-        notes.liquid_model(taken.model, taken.reason) if scene.chambers else None,
-        None if h.converged else notes.stopped(h.reason),
-        notes.numerical_error(h.error_estimate, cells if pools else None),
-        notes.handover_error(h.handover_estimate),
-        None if spread is None else notes.rounding(spread, h),
-        notes.not_physical(run_faults(h, tuple(_chamber(fill) for fill in scene.fills))),
-        notes.energy_left(h.audit.closure),
-        notes.largest_amplitude(h, steady),
-        *notes.captures(h.transfers, h.handover),
-        *_never_caught(scene, h),
-        None if bands is not None or scene.balls else notes.whirl_beside_baffles(),
-        notes.self_excited_on_the_way(bands or (), scene.model.friction, whirl_on_the_way(scene, bands)),
-    ]
-    return [note for note in found if note is not None]
 
 
 def _never_caught(scene: Scene, history: RunupHistory) -> Iterator[Note]:

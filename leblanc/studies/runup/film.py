@@ -22,10 +22,10 @@ from leblanc.figures.drawing.page import (
     style,
     write_film,
 )
-from leblanc.figures.runup import caption
 from leblanc.results.base import FilledChamber
 from leblanc.results.drawn.machine import film_factor, pool
-from leblanc.results.runup import RunupFrames, RunupResult
+from leblanc.studies.runup.answer import RunupAnswer, RunupFrames
+from leblanc.studies.runup.figure import caption
 from meshes.arrays import Array
 
 Axes = Any  # matplotlib's, which no module that only draws imports
@@ -41,14 +41,14 @@ LIQUID, SURFACE, WALL, AXIS = "#56B4E9", "#0072B2", "0.15", "#D55E00"
 
 
 def animate(
-    result: RunupResult, frames: RunupFrames, path: Path, drawn: Callable[[int, int], None] | None = None
+    result: RunupAnswer, frames: RunupFrames, path: Path, drawn: Callable[[int, int], None] | None = None
 ) -> int:
     """Write the film of a run-up in the frame of the drum; its number of frames, as of `write_film`."""
     count = range(frames.time.size)
     return write_film(lambda: film_figure(result, frames), count, FRAME_RATE, path, drawn)
 
 
-def film_figure(result: RunupResult, frames: RunupFrames) -> tuple[Figure, Show]:
+def film_figure(result: RunupAnswer, frames: RunupFrames) -> tuple[Figure, Show]:
     """Figure of a film and what sets it to a frame."""
     groups = drawings(result.chambers, result.planes)
     shown = groups[:MOST_DRAWINGS]
@@ -108,7 +108,7 @@ def drawings(chambers: tuple[FilledChamber, ...], planes: tuple[float, ...]) -> 
 
 
 def _draw_group(
-    axes: Axes, result: RunupResult, frames: RunupFrames, group: list[int], factor: float
+    axes: Axes, result: RunupAnswer, frames: RunupFrames, group: list[int], factor: float
 ) -> Show:
     """Draw what is fixed of some chambers, and return what moves the rest."""
     widest, largest = result.chambers[group[0]].radius * MM, max(c.radius for c in result.chambers) * MM
@@ -181,7 +181,7 @@ def liquid_shape(
     return edge * MM, np.concatenate(gaps) * MM if gaps else np.zeros(0, dtype=complex)
 
 
-def _draw_curve(axes: Axes, result: RunupResult, frames: RunupFrames) -> Show:
+def _draw_curve(axes: Axes, result: RunupAnswer, frames: RunupFrames) -> Show:
     """Amplitude over speed and a dot that moves along it."""
     _, speed, amplitude = result.whole_curve()
     axes.plot(speed * RPM, amplitude * MM, color="0.6", linewidth=0.9, label="whole run-up")

@@ -1,12 +1,8 @@
-"""The figures of a run-up: amplitude over speed, everything over time, where the energy went.
-
-The figures of a run-up and its film.
-"""
+"""The figures of a run-up: amplitude over speed, everything over time, where the energy went."""
 
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -18,19 +14,17 @@ from leblanc.figures.drawing.page import (
     WIDTH,
     Caption,
     Figure,
-    FigureFiles,
     Frame,
     lay_out,
     number,
-    save,
     style,
 )
-from leblanc.results.runup import RunupResult
 from leblanc.studies.balls.races import in_race
 from leblanc.studies.loads.figure import machine_figure
 from leblanc.studies.run.figure import DRY, SHADE, UNSTABLE, WET
 from leblanc.studies.run.notes import plane_label
-from leblanc.text.runup import describe_model, largest, largest_dry
+from leblanc.studies.runup.answer import RunupAnswer, pieces
+from leblanc.studies.runup.words import GAINS, describe_model, largest, largest_dry, terms
 from meshes.arrays import Array, Flags
 
 Axes = Any  # matplotlib's, which no module that only draws imports
@@ -53,25 +47,13 @@ _RATES = (lambda rpm: rpm / RPM, lambda rate: rate * RPM)  # from rpm to rad/s a
 LAYERS = ((WET, "-"), (DRY, (0, (3.5, 1.5))), ("#009E73", (0, (1, 1.2))))  # colour and line of a chamber
 
 
-def write_figures(result: RunupResult, directory: Path) -> tuple[FigureFiles, ...]:
-    """Draw all figures of a run-up and write each as PNG and SVG."""
-    figures = [
-        ("runup_speed", "Amplitude over speed on the run-up", speed_figure),
-        ("runup_time", "Run-up over time", time_figure),
-        ("runup_energy", "Where the energy of the run-up went", energy_figure),
-    ]
-    if result.loads is not None:
-        figures.append(("runup_machine", "Clearances and forces on the floor", loads_figure))
-    return tuple(save(draw(result), directory, name, title) for name, title, draw in figures)
-
-
-def loads_figure(result: RunupResult) -> Figure:
+def loads_figure(result: RunupAnswer) -> Figure:
     """Clearances, forces under the feet, margin against walking and torque over time."""
     assert result.loads is not None
     return machine_figure(result.loads, lambda text: caption(result, text))
 
 
-def speed_figure(result: RunupResult) -> Figure:
+def speed_figure(result: RunupAnswer) -> Figure:
     """Amplitude over speed with and without liquid, up and back, with the steady branches behind."""
     speed = result.speed * RPM
     every = np.concatenate((speed, result.speed_dry[~np.isnan(result.speed_dry)] * RPM))
@@ -92,7 +74,7 @@ def speed_figure(result: RunupResult) -> Figure:
                     for part in np.split(np.arange(x.size), np.flatnonzero(np.isnan(x))):
                         known = part[~np.isnan(x[part])]
                         _arrows(axes, x[known], y[known], scale, look["color"])
-        _draw_ranges(axes, result)
+        _draw_band(axes, result)
         axes.set_xlim(low - room, high + room)
         axes.set_ylim(0.0, top)
         axes.set_xlabel("Speed (rpm)")
@@ -122,7 +104,7 @@ _LOOKS: tuple[dict[str, Any], ...] = (
 )
 
 
-def _ways(result: RunupResult) -> list[tuple[str, Array, Array]]:
+def _ways(result: RunupAnswer) -> list[tuple[str, Array, Array]]:
     """Name, speed in rpm and amplitude in mm on the way up and back, then both without liquid."""
     up = "run-up" if result.turns_back else "run-up and hold"
     bare = f", {result.without}"
@@ -135,7 +117,7 @@ def _ways(result: RunupResult) -> list[tuple[str, Array, Array]]:
     return found + [("", np.empty(0), np.empty(0))] * (len(_LOOKS) - len(found))
 
 
-def largest_drawn(result: RunupResult) -> float:
+def largest_drawn(result: RunupAnswer) -> float:
     """Largest amplitude of the run, with liquid or without, m."""
     ensemble = 0.0 if result.spread is None else float(np.nanmax(result.spread.amplitude_max))
     if result.spread is None and not np.isnan(result.amplitude_error).all():
@@ -143,44 +125,27 @@ def largest_drawn(result: RunupResult) -> float:
     return max(ensemble, *(float(result.whole_curve(dry)[2].max(initial=0.0)) for dry in (False, True)))
 
 
-def _draw_ranges(axes: Axes, result: RunupResult, over_time: bool = False) -> None:
-    """Between the least and the largest amplitude of an ensemble, over the speed or over time."""
-    spread = result.spread
-    if spread is None:
-        _draw_error(axes, result, over_time)
+def _draw_band(axes: Axes, result: RunupAnswer, over_time: bool = False) -> None:
+    """The range of an ensemble, or else the error of the amplitude, over the speed or over time."""
+    spread, error = result.spread, result.amplitude_error
+    if spread is not None:
+        low, high, look = spread.amplitude_min, spread.amplitude_max, {"alpha": 0.7, "zorder": 2.8}
+        label = f"range over {spread.members} runs that rounding tells apart"
+        label += ", thinner than the line" if spread.largest_spread < THIN else ""
+    elif np.isnan(error).all() or float(np.nanmax(error)) < THIN * float(result.amplitude.max()):
         return
-    ways = result.pieces(result.history, False)
-    ways += result.pieces(result.history, True) if result.turns_back else []
-    for i, part in enumerate(ways):
-        place = result.time[part] if over_time else result.speed[part] * RPM
-        edges = spread.amplitude_min[part] * MM, spread.amplitude_max[part] * MM
-        label = "_" if i else f"range over {spread.members} runs that rounding tells apart"
-        if not i and spread.largest_spread < THIN:
-            label += ", thinner than the line"
-        axes.fill_between(place, *edges, facecolor=RANGE, alpha=0.7, linewidth=0, zorder=2.8, label=label)
+    else:
+        low, high = np.maximum(result.amplitude - error, 0.0), result.amplitude + error
+        label, look = "error by cells, steps and hand-over", {"alpha": 0.55, "zorder": 2.0}
+        if math.isnan(result.handover_estimate):
+            label = "error by cells and steps"
+    across = result.time if over_time else result.speed * RPM
+    for i, part in enumerate(part for way in (~result.falling, result.falling) for part in pieces(way)):
+        shown = across[part], low[part] * MM, high[part] * MM
+        axes.fill_between(*shown, facecolor=RANGE, linewidth=0, label="_" if i else label, **look)
 
 
-def _draw_error(axes: Axes, result: RunupResult, over_time: bool) -> None:
-    """The band that cells, steps and the hand-over of liquid leave about the amplitude."""
-    error = result.amplitude_error
-    if np.isnan(error).all() or float(np.nanmax(error)) < THIN * float(result.amplitude.max()):
-        return
-    ways = result.pieces(result.history, False)
-    ways += result.pieces(result.history, True) if result.turns_back else []
-    for i, part in enumerate(ways):
-        place = result.time[part] if over_time else result.speed[part] * RPM
-        low, high = result.amplitude[part] - error[part], result.amplitude[part] + error[part]
-        label = "_" if i else f"error by {_sources(result)}"
-        look = {"facecolor": RANGE, "alpha": 0.55, "linewidth": 0, "zorder": 2.0}
-        axes.fill_between(place, np.maximum(low, 0.0) * MM, high * MM, label=label, **look)
-
-
-def _sources(result: RunupResult) -> str:
-    """What the error of the amplitude was estimated from."""
-    return "cells and steps" if math.isnan(result.handover_estimate) else "cells, steps and hand-over"
-
-
-def _shade(axes: Axes, result: RunupResult, limits: tuple[float, float]) -> None:
+def _shade(axes: Axes, result: RunupAnswer, limits: tuple[float, float]) -> None:
     """Speeds at which the model is out of range, and those of self-excited whirl."""
     speed = result.speed * RPM
     order = np.argsort(speed, kind="stable")
@@ -193,7 +158,7 @@ def _shade(axes: Axes, result: RunupResult, limits: tuple[float, float]) -> None
         axes.axvspan(left * RPM, right * RPM, zorder=0.5, label=label, **look)
 
 
-def _steady(axes: Axes, result: RunupResult) -> float:
+def _steady(axes: Axes, result: RunupAnswer) -> float:
     """Draw branches of the steady response, thin, also without liquid; the largest value to hold, mm.
 
     A peak far above the run's is told in words instead.
@@ -247,12 +212,12 @@ def _arrows(axes: Axes, x: Array, y: Array, scale: tuple[float, float], color: s
         axes.annotate("", (x[head], y[head]), xytext=(x[tail], y[tail]), arrowprops=look, zorder=4)
 
 
-def time_figure(result: RunupResult) -> Figure:
+def time_figure(result: RunupAnswer) -> Figure:
     """Speed, amplitude, place of the liquid and depths over time; capture and release marked."""
     panels = [(0.8, _draw_speed), (1.1, _draw_amplitude)]
     if result.races:
         panels.append((1.1, _draw_balls))
-    if result.layer_mass.sum() > 0.0:
+    if result.wet:
         panels += [(0.95, _draw_offset), (0.95, _draw_angle), (1.1, _draw_depths)]
     time = result.time
     first, last = float(time[0]), float(time[-1])
@@ -285,7 +250,7 @@ def time_figure(result: RunupResult) -> Figure:
     return figure
 
 
-def _mark_time(axes: Axes, result: RunupResult) -> None:
+def _mark_time(axes: Axes, result: RunupAnswer) -> None:
     """Times out of range, capture and release."""
     time = result.time
     limits = (float(time[0]), float(time[-1]))
@@ -301,7 +266,7 @@ def _mark_time(axes: Axes, result: RunupResult) -> None:
         axes.axvline(each.time, color="0.3", linewidth=0.9, linestyle=dashes, label=label, zorder=1)
 
 
-def _draw_speed(axes: Axes, result: RunupResult) -> None:
+def _draw_speed(axes: Axes, result: RunupAnswer) -> None:
     axes.plot(result.time, result.speed * RPM, color="0.15", linewidth=1.2)
     if np.nanmax(np.abs(result.speed_dry - result.speed), initial=0.0) > 1e-3 * float(result.speed.max()):
         axes.plot(result.time, result.speed_dry * RPM, **_bare(result))
@@ -311,23 +276,23 @@ def _draw_speed(axes: Axes, result: RunupResult) -> None:
     beside.set_ylabel("(rad/s)")
 
 
-def _draw_amplitude(axes: Axes, result: RunupResult) -> None:
+def _draw_amplitude(axes: Axes, result: RunupAnswer) -> None:
     dry = result.bare
     axes.plot(*_over_time(result, False), color=DRY if dry else UP, linewidth=1.2)
     if not dry and result.history_dry is not None:
         axes.plot(*_over_time(result, True), **_bare(result))
-    _draw_ranges(axes, result, over_time=True)
+    _draw_band(axes, result, over_time=True)
     axes.set_ylim(0.0, 1.12 * largest_drawn(result) * MM or 1.0)
     axes.set_ylabel(_label(result).replace(" at ", "\nat ", 1))
 
 
-def _over_time(result: RunupResult, dry: bool) -> Line:
+def _over_time(result: RunupAnswer, dry: bool) -> Line:
     """Time and amplitude, mm."""
     time, _, amplitude = result.whole_curve(dry)
     return time, amplitude * MM
 
 
-def _bare(result: RunupResult) -> dict[str, Any]:
+def _bare(result: RunupAnswer) -> dict[str, Any]:
     """Look of the run that it is compared with."""
     return {
         **{"color": DRY, "linewidth": 0.9, "zorder": 1.9, "label": result.without},
@@ -335,24 +300,24 @@ def _bare(result: RunupResult) -> dict[str, Any]:
     }
 
 
-def _label(result: RunupResult) -> str:
+def _label(result: RunupAnswer) -> str:
     """Of an axis of amplitudes."""
     return f"Amplitude{plane_label(chambers=True) if result.plane else ''} ({MM_PEAK})"
 
 
-def _place(result: RunupResult) -> Any:
+def _place(result: RunupAnswer) -> Any:
     """Liquid's centre of mass as it is drawn."""
-    return result.mean_position if result.gravity > 0.0 else result.liquid_position
+    return result.mean_position if result.gravity > 0.0 else result.history.liquid_position
 
 
-def _draw_offset(axes: Axes, result: RunupResult) -> None:
+def _draw_offset(axes: Axes, result: RunupAnswer) -> None:
     offset = np.abs(_place(result)) * MM
     axes.plot(result.time, offset, color=UP, linewidth=1.2)
     axes.set_ylim(0.0, 1.12 * float(offset.max()) or 1.0)
     axes.set_ylabel("Liquid offset\n(mm)")
 
 
-def _draw_angle(axes: Axes, result: RunupResult) -> None:
+def _draw_angle(axes: Axes, result: RunupAnswer) -> None:
     place = _place(result)
     angle = lag_degrees(np.angle(place), np.where(result.in_range, np.abs(place), 0.0))
     step = np.diff(angle)
@@ -365,7 +330,7 @@ def _draw_angle(axes: Axes, result: RunupResult) -> None:
     axes.set_ylabel("Liquid angle\n(deg)")
 
 
-def _draw_balls(axes: Axes, result: RunupResult) -> None:
+def _draw_balls(axes: Axes, result: RunupAnswer) -> None:
     """Angle of each ball in the drum from -180 to 180 deg, a look for each race; gaps where it goes round."""
     race = in_race(result.races)
     for j, way in enumerate(result.ball_angle.T):
@@ -383,7 +348,7 @@ def _draw_balls(axes: Axes, result: RunupResult) -> None:
     axes.set_ylabel("Angle of balls\n(deg)")
 
 
-def _draw_depths(axes: Axes, result: RunupResult) -> None:
+def _draw_depths(axes: Axes, result: RunupAnswer) -> None:
     """Largest and least depth of the first layers; filled between."""
     top = 0.0
     for j, (color, dashes) in enumerate(LAYERS[: len(result.chambers)]):
@@ -397,41 +362,29 @@ def _draw_depths(axes: Axes, result: RunupResult) -> None:
     axes.set_ylabel("Depth (mm)")
 
 
-def energy_figure(result: RunupResult) -> Figure:
+def energy_figure(result: RunupAnswer) -> Figure:
     """Work done and where it went, as bars."""
-    audit = result.energy
-    terms = [
-        ("work of the unbalance", audit.unbalance, True),
-        (f"work of the drive on the {'balls' if result.races else 'liquid'}", audit.drive, True),
-        ("work of gravity", audit.gravity, True),
-        ("brought in by capture", audit.captured, True),
-        ("heat in the supports", audit.support, False),
-        (f"heat by {'the drag of balls' if result.races else 'wall friction'}", audit.friction, False),
-        ("loss in bores", audit.bores, False),
-        *([("loss at baffles", audit.baffles, False)] if audit.baffles else []),
-        ("missed by the flow's profile", audit.profile, False),
-        ("left in rotor and liquid", audit.change, False),
-        ("not accounted for", audit.remainder, False),
-    ]
+    rows = terms(result)
     with style():
         figure = Figure()
         axes: Axes = figure.add_axes((0, 0, 1, 1))
-        for row, (_, value, gained) in enumerate(terms):
+        for row, (name, _, value) in enumerate(rows):
+            gained = name in GAINS
             look = {"color": GAINED if gained else USED, "label": "brought in" if gained else "used"}
             hatch = None if gained else "//"
             axes.barh(row, value, height=0.62, hatch=hatch, edgecolor="white", linewidth=0.5, **look)
-        largest = max(abs(value) for _, value, _ in terms) or 1.0
-        least = min(0.0, *(value for _, value, _ in terms))
-        for row, (_, value, _) in enumerate(terms):
+        largest = max(abs(value) for *_, value in rows) or 1.0
+        least = min(0.0, *(value for *_, value in rows))
+        for row, (*_, value) in enumerate(rows):
             axes.text(max(value, 0.0) + 0.01 * largest, row, f" {_joule(value)} J", va="center", fontsize=7)
         axes.axvline(0.0, color="0.15", linewidth=0.8)
         axes.set_xlim(1.1 * least - 0.01 * largest, 1.2 * largest)
-        axes.set_ylim(len(terms) - 0.4, -0.6)
-        axes.set_yticks(range(len(terms)), [name for name, _, _ in terms])
+        axes.set_ylim(len(rows) - 0.4, -0.6)
+        axes.set_yticks(range(len(rows)), [text for _, text, _ in rows])
         axes.grid(visible=False, axis="y")
         axes.set_xlabel("Energy (J)")
         axes.xaxis.set_major_formatter(number)
-        text = f"Energy over the whole run; not accounted for: {audit.closure:.2%} of the work."
+        text = f"Energy over the whole run; not accounted for: {result.energy_error:.2%} of the work."
         lay_out(figure, [[axes]], [2.3], ENERGY_FRAME, caption(result, text), LINES)
         figure.alt = (
             "Bars of the work done on rotor and liquid and of where it went, as in the table of the energy."
@@ -443,7 +396,7 @@ def _joule(value: float) -> str:
     return f"{value:.3g}".replace("-", "\N{MINUS SIGN}")
 
 
-def caption(result: RunupResult, text: str) -> Caption:
+def caption(result: RunupAnswer, text: str) -> Caption:
     """What a figure shows, the scene, model, friction, resolution, error and what is assumed."""
     error = result.error_estimate
     size = "not estimated" if math.isnan(error) else f"{error:.1%} of the largest"
@@ -456,6 +409,6 @@ def caption(result: RunupResult, text: str) -> Caption:
     return Caption(
         f"{text}{stopped}",
         f"Scene: {one_line(result.name)}, {result.axis} axis. Liquid model: "
-        f"{describe_model(result.model, result.cells, result.dispersion, result.bore)}; liquid friction: "
+        f"{describe_model(result)}; liquid friction: "
         f"{friction_words(result.friction)}. Error of the amplitude: {size}. Assumed: {assumed}.",
     )

@@ -1,14 +1,13 @@
-"""Notes of a run-up: the largest amplitude, errors, capture, limits of validity."""
+"""Notes of a run-up: what happened, how well it is known, where its models hold."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fluid.friction.laws import Friction
 from leblanc.core.notes import Note, NoteCode, percent
 from leblanc.core.units import (
     LENGTH,
@@ -25,8 +24,12 @@ from leblanc.studies.run.notes import CLOSURE, STANDS
 from meshes.arrays import Flags
 
 if TYPE_CHECKING:
+    from fluid.friction.laws import Friction
+    from leblanc.scene.programme.table import Programme
+    from leblanc.studies.runup.answer import Passage
     from solvers.runup.ensemble import Spread
     from solvers.runup.machine import Transfer
+    from solvers.runup.programme import Programme as Stages
     from solvers.runup.runup import RunupHistory
     from solvers.synchronous.response import Response
 
@@ -36,6 +39,9 @@ ERROR = 0.02  # of the largest amplitude: an error estimate to speak of
 # Round a wall: on front loaders with 0.2 to 1.4 l in each ring 32 cells change the largest amplitude by up to
 # 7 % beside 128 cells, 64 by up to 4 %.
 ENOUGH_CELLS = 64
+FEW = 4  # times that liquid is caught or falls and is told of one by one
+BALLS_REST = 1e-3  # of the spin: balls that pass the drum by less are at rest in it
+_REACHED = 1e-4  # of a step's speed, that it counts as reached
 
 
 class RunupCode(NoteCode):
@@ -75,86 +81,39 @@ class RunupCode(NoteCode):
     BALLS_RUN = "balls_run"
 
 
-# What the tables of a report say as well.
-IN_TABLES = (
-    RunupCode.LIQUID_MODEL,
-    RunupCode.ROUGH,
-    RunupCode.ENERGY,
-    RunupCode.PEAK_STEADY,
-    RunupCode.CAPTURED,
-    RunupCode.FALLS_BACK,
-    RunupCode.SELF_EXCITED,
-)
+def happened(
+    history: RunupHistory,
+    steady: Response | None,
+    spread: Spread | None,
+    faults: Sequence[str],
+    cells: int | None,
+) -> Iterator[Note]:
+    """What happened, and how well it is known.
 
-
-def loads() -> Note:
-    """What forces and clearances of a run-up leave out."""
-    text = f"{STANDS}; the blow of liquid that is caught or falls is told as an impulse on the bearings."
-    return Note(RunupCode.LOADS, {}, text)
-
-
-def liquid_model(model: str, reason: str) -> Note:
-    """Which liquid model the run-up took, and why."""
-    return Note(RunupCode.LIQUID_MODEL, {"model": model}, f"Liquid model: {reason}")
-
-
-def standing(floor: float) -> Note:
-    """Below which speed, rad/s, a drum counts as standing."""
-    text = f"The programme takes a drum slower than {in_rpm(floor)}, 0.005 of its highest speed, as standing."
-    return Note(RunupCode.STANDING, {"floor": floor}, text)
-
-
-def without_drag() -> Note:
-    """A coast without drag."""
-    text = (
-        "No drag is given: only the liquid and the supports brake the coasting drum; programme.drag_torque "
-        "and programme.drag_rate are those of bearings and belt."
-    )
-    return Note(RunupCode.NO_DRAG, {}, text)
-
-
-def coast_not_ended(step: int, wanted: float, reached: float, limit: float) -> Note:
-    """A coast that its limit of time ended."""
-    text = (
-        f"Step {step}: the drum coasts for {with_unit(limit, TIME)}, programme.coast_limit, down to "
-        f"{in_rpm(reached)} instead of {in_rpm(wanted)}."
-    )
-    return Note(RunupCode.COAST_NOT_ENDED, {"step": step, "wanted": wanted, "reached": reached}, text)
-
-
-def stood(step: int, time: float, reached: float) -> Note:
-    """A coast that ended with the drum at a stand before its speed was followed down."""
-    text = f"Step {step}: the drum stands at {with_unit(time, TIME)}, at once from {in_rpm(reached)}."
-    return Note(RunupCode.STOOD, {"step": step, "time": time, "reached": reached}, text)
-
-
-def motor_limited(step: int, time: float, low: float, high: float, wanted: float | None) -> Note:
-    """A step of a programme that asked for more than the motor gives; s, between two speeds, rad/s.
-
-    `wanted` is the speed that was not reached, None where it was.
+    `cells` of a layer that comes from a pool across the axis, None of others.
     """
-    text = (
-        f"Step {step} asks for more than the motor gives for {with_unit(time, TIME)}, "
-        f"{rpm_range(low, high)}: there the speed follows the motor."
-    )
-    if wanted is not None:
-        text += f" It does not come to {in_rpm(wanted)}."
-    data = {"step": step, "time": time, "low": low, "high": high, "reached": wanted is None}
-    return Note(RunupCode.MOTOR_LIMITED, data, text)
-
-
-def unbalance_left(share: float) -> Note:
-    """How much of the unbalances is left at the end, over what they were at first."""
-    text = (
-        f"{percent(share)} of the unbalance is left at the end; the mass of what has left still counts as "
-        "the drum's, and what leaves takes its momentum along."
-    )
-    return Note(RunupCode.UNBALANCE_LEFT, {"share": share}, text)
-
-
-def stopped(reason: str) -> Note:
-    """The run did not come to its end."""
-    return Note(RunupCode.STOPPED, {}, f"The run stopped: {reason}.")
+    if not history.converged:
+        yield Note(RunupCode.STOPPED, {}, f"The run stopped: {history.reason}.")
+    if (note := numerical_error(history.error_estimate, cells)) is not None:
+        yield note
+    if (error := history.handover_estimate) > ERROR:
+        text = (
+            "How liquid becomes a ring is known roughly: if the drum took it along at once, the "
+            f"amplitude would differ by up to {error:.1%} of its largest."
+        )
+        yield Note(RunupCode.HANDOVER, {"error": error}, text)
+    if spread is not None:
+        yield rounding(spread, history)
+    if faults:
+        yield Note(RunupCode.NOT_PHYSICAL, {"faults": list(faults)}, f"Not physical: {'; '.join(faults)}.")
+    if (closure := history.audit.closure) > CLOSURE:
+        text = f"The energy balance leaves {closure:.1%} of the work unaccounted for."
+        yield Note(RunupCode.ENERGY, {"closure": closure}, text)
+    yield largest_amplitude(history, steady)
+    for chamber in sorted({transfer.chamber for transfer in history.transfers}):
+        own = [transfer for transfer in history.transfers if transfer.chamber == chamber]
+        few = len(own) <= FEW
+        yield from (capture(each, history.handover) for each in own) if few else [_again_and_again(own)]
 
 
 def numerical_error(error: float, cells: int | None = None) -> Note | None:
@@ -178,17 +137,6 @@ def numerical_error(error: float, cells: int | None = None) -> Note | None:
         "more cells would sharpen it."
     )
     return Note(RunupCode.ROUGH, {"error": error}, text)
-
-
-def handover_error(error: float) -> Note | None:
-    """What another sensible way of becoming a ring changes; None where it is little, or no liquid does."""
-    if not error > ERROR:
-        return None
-    text = (
-        "How liquid becomes a ring is known roughly: if the drum took it along at once, the "
-        f"amplitude would differ by up to {error:.1%} of its largest."
-    )
-    return Note(RunupCode.HANDOVER, {"error": error}, text)
 
 
 def rounding(spread: Spread, history: RunupHistory) -> Note:
@@ -222,14 +170,6 @@ def rounding(spread: Spread, history: RunupHistory) -> Note:
     return Note(RunupCode.ROUNDING, data, text)
 
 
-def energy_left(closure: float) -> Note | None:
-    """What the energy balance leaves over the work; None where that is little."""
-    if closure <= CLOSURE:
-        return None
-    text = f"The energy balance leaves {closure:.1%} of the work unaccounted for."
-    return Note(RunupCode.ENERGY, {"closure": closure}, text)
-
-
 def largest_amplitude(history: RunupHistory, steady: Response | None) -> Note:
     """The largest amplitude beside that of the steady response, where there is one."""
     k = int(np.argmax(history.largest))
@@ -242,54 +182,6 @@ def largest_amplitude(history: RunupHistory, steady: Response | None) -> Note:
     most, at = float(abs(steady.deflection[highest])), float(steady.speed[highest])
     text = f"{text}; in the steady response it is {with_unit(most, LENGTH)} at {in_rpm(at)}."
     return Note(RunupCode.PEAK_STEADY, data | {"steady_amplitude": most, "steady_speed": at}, text)
-
-
-def balls_as_points() -> Note:
-    """What every motion of balls assumes."""
-    text = (
-        "The balls are points: they pass through one another, and are always pressed to their race. Their "
-        "drag is that of the scene at any speed."
-    )
-    return Note(RunupCode.BALLS_AS_POINTS, {}, text)
-
-
-def whirl_beside_balls() -> Note:
-    """Whirls that the liquid excites are only in the run itself."""
-    text = "Bands of self-excited whirl are not looked for beside balls; the run itself has such whirls."
-    return Note(RunupCode.WHIRL_BESIDE_BALLS, {}, text)
-
-
-def whirl_beside_baffles() -> Note:
-    """Bands of whirl are not part of a run-up beside baffles."""
-    text = (
-        "Bands of self-excited whirl are not examined here beside baffles: `leblanc run` and `leblanc map` "
-        "do; the run itself has such whirls."
-    )
-    return Note(RunupCode.WHIRL_BESIDE_BAFFLES, {}, text)
-
-
-def not_physical(faults: Sequence[str]) -> Note | None:
-    """Violations of the energy balance or of the chamber's walls; None for a sound run."""
-    text = f"Not physical: {'; '.join(faults)}."
-    return Note(RunupCode.NOT_PHYSICAL, {"faults": list(faults)}, text) if faults else None
-
-
-def balls_run(behind: float, speed: float) -> Note:
-    """Balls that have not come to rest in the drum but pass it at a rate, rad/s."""
-    text = f"At the end a ball still runs in its race, by {in_rpm(behind)} at {in_rpm(speed)} of the drum."
-    return Note(RunupCode.BALLS_RUN, {"behind": behind, "speed": speed}, text)
-
-
-FEW = 4  # times that liquid is caught or falls and is told of one by one
-
-
-def captures(transfers: Sequence[Transfer], handover: str) -> list[Note]:
-    """When liquid became rings, or fell: each time, or all at once where it happens again and again."""
-    found: list[Note] = []
-    for chamber in sorted({transfer.chamber for transfer in transfers}):
-        own = [transfer for transfer in transfers if transfer.chamber == chamber]
-        found += [capture(each, handover) for each in own] if len(own) <= FEW else [_again_and_again(own)]
-    return found
 
 
 def _again_and_again(own: Sequence[Transfer]) -> Note:
@@ -342,16 +234,12 @@ def not_carried(chamber: int, speed: float, balance: float) -> Note:
 
 
 def self_excited_on_the_way(
-    bands: tuple[tuple[float, float], ...],
-    friction: Friction,
-    whirl: tuple[float, float] | None = None,
-) -> Note | None:
-    """Speeds at which whirl grows by itself, rad/s; None where there are none.
+    bands: tuple[tuple[float, float], ...], friction: Friction, whirl: tuple[float, float] | None
+) -> Note:
+    """Speeds at which whirl grows by itself, rad/s.
 
     `whirl` is the estimated amplitude of the largest, m, and its spin speed, rad/s.
     """
-    if not bands:
-        return None
     listed = rpm_bands(bands)
     law = small_whirl_friction(friction)
     text = f"By linear theory with liquid friction {law}, some whirl grows by itself at {listed}."
@@ -364,6 +252,70 @@ def self_excited_on_the_way(
             "band, by an estimate, and may be carried beyond the band; `leblanc map --cycles` solves for it."
         )
     return Note(RunupCode.SELF_EXCITED, found, text)
+
+
+def programme_notes(
+    plan: Programme, history: RunupHistory, drive: Stages, passages: Sequence[Passage]
+) -> Iterator[Note]:
+    """What was assumed of a spin programme, and which of its steps did not come to their speeds."""
+    floor = drive.floor
+    if plan.start < floor or bool((history.speed <= floor * (1.0 + 1e-3)).any()):
+        slow = f"slower than {in_rpm(floor)}, 0.005 of its highest speed"
+        text = f"The programme takes a drum {slow}, as standing."
+        yield Note(RunupCode.STANDING, {"floor": floor}, text)
+    if plan.coasts and drive.drag_torque == 0.0 and drive.drag_rate == 0.0:
+        text = (
+            "No drag is given: only the liquid and the supports brake the coasting drum; "
+            "programme.drag_torque and programme.drag_rate are those of bearings and belt."
+        )
+        yield Note(RunupCode.NO_DRAG, {}, text)
+    yield from _limited_steps(history, drive)
+    for passage in passages:
+        step, stage = plan.steps[passage.step - 1], drive.stages[passage.step - 1]
+        if step.kind != "coast":
+            continue
+        stop, reached = drive.target(stage, passage.speed_begin), passage.speed_end
+        lasts, data = passage.end - passage.begin, {"step": passage.step}
+        if lasts < (stage.duration or 0.0) * (1.0 - _REACHED) and reached > stop * (1.0 + _REACHED):
+            when = with_unit(passage.end, TIME)
+            text = f"Step {passage.step}: the drum stands at {when}, at once from {in_rpm(reached)}."
+            yield Note(RunupCode.STOOD, data | {"time": passage.end, "reached": reached}, text)
+        if step.speed is not None and lasts >= plan.coast_limit:
+            text = (
+                f"Step {passage.step}: the drum coasts for {with_unit(plan.coast_limit, TIME)}, "
+                f"programme.coast_limit, down to {in_rpm(reached)} instead of {in_rpm(stop)}."
+            )
+            yield Note(RunupCode.COAST_NOT_ENDED, data | {"wanted": stop, "reached": reached}, text)
+
+
+def _limited_steps(history: RunupHistory, drive: Stages) -> Iterator[Note]:
+    """Steps in which the motor gave less than was asked."""
+    if history.limited is None or history.stage is None:
+        return
+    length = np.diff(history.time, prepend=0.0)
+    for k in np.unique(history.stage[history.limited]).tolist():
+        rows, stop = np.flatnonzero(history.limited & (history.stage == k)), drive.stages[k].stop
+        speed = history.speed[np.union1d(rows, rows - 1)]
+        low, high, time = float(speed.min()), float(speed.max()), float(length[rows].sum())
+        last = float(history.speed[history.stage == k][-1])
+        missed = stop is not None and last < stop * (1.0 - _REACHED)
+        text = (
+            f"Step {k + 1} asks for more than the motor gives for {with_unit(time, TIME)}, "
+            f"{rpm_range(low, high)}: there the speed follows the motor."
+        )
+        if stop is not None and missed:
+            text += f" It does not come to {in_rpm(stop)}."
+        data = {"step": k + 1, "time": time, "low": low, "high": high, "reached": not missed}
+        yield Note(RunupCode.MOTOR_LIMITED, data, text)
+
+
+def unbalance_left(share: float) -> Note:
+    """How much of the unbalances is left at the end, over what they were at first."""
+    text = (
+        f"{percent(share)} of the unbalance is left at the end; the mass of what has left still counts as "
+        "the drum's, and what leaves takes its momentum along."
+    )
+    return Note(RunupCode.UNBALANCE_LEFT, {"share": share}, text)
 
 
 def out_of_range(code: RunupCode, chamber: int, holds: Flags, limit: float = math.nan) -> Note | None:
@@ -404,16 +356,34 @@ def full_gap(chamber: int, full: Flags) -> Note | None:
     return Note(RunupCode.FULL_GAP, {"chamber": chamber + 1, "share": share}, text)
 
 
-def linear_layers(wave: float, lag: float, touches: bool, error: float, limits: tuple[float, float]) -> str:
-    """What a run with linear layers says of its own error, infinite where there is no estimate.
+def of_balls(history: RunupHistory, filled: bool) -> Iterator[Note]:
+    """What was assumed of the balls, beside liquid where a chamber is `filled`, and whether they rest."""
+    text = (
+        "The balls are points: they pass through one another, and are always pressed to their race. Their "
+        "drag is that of the scene at any speed."
+    )
+    yield Note(RunupCode.BALLS_AS_POINTS, {}, text)
+    if filled:
+        text = "Bands of self-excited whirl are not looked for beside balls; the run itself has such whirls."
+        yield Note(RunupCode.WHIRL_BESIDE_BALLS, {}, text)
+    speed = float(history.speed[-1])
+    behind = float(np.abs(history.ball_speed[-1] - speed).max())
+    if behind > BALLS_REST * speed:
+        text = (
+            f"At the end a ball still runs in its race, by {in_rpm(behind)} at {in_rpm(speed)} of the drum."
+        )
+        yield Note(RunupCode.BALLS_RUN, {"behind": behind, "speed": speed}, text)
 
-    `wave` is the largest rise over depth, `lag` the largest lag over the spin; `limits` up to which an error
-    is estimated.
-    """
-    size = f"waves reach {percent(wave)} of the depth and the liquid lags by up to {percent(lag)} of the spin"
-    if touches:
-        return f"{size}, and a surface touches an inner wall, beyond any estimate"
-    if math.isfinite(error):
-        return f"{size}, an estimated error of {percent(error)} against long waves"
-    most = " and ".join(map(percent, limits))
-    return f"{size}, beyond the {most} up to which an error is estimated"
+
+# What these two leave out.
+WHIRL_BESIDE_BAFFLES = Note(
+    RunupCode.WHIRL_BESIDE_BAFFLES,
+    {},
+    "Bands of self-excited whirl are not examined here beside baffles: `leblanc run` and `leblanc map` "
+    "do; the run itself has such whirls.",
+)
+LOADS = Note(
+    RunupCode.LOADS,
+    {},
+    f"{STANDS}; the blow of liquid that is caught or falls is told as an impulse on the bearings.",
+)
