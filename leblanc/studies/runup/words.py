@@ -68,7 +68,7 @@ def blocks(answer: RunupAnswer) -> tuple[Block, ...]:
     if answer.loads is not None:
         title = "Clearances and forces on the floor"
         figures.append(Picture("runup_machine", title, f"{_HERE}:loads_figure"))
-    results = (
+    results: tuple[Block, ...] = (
         Picture("runup_speed", "Amplitude over speed on the run-up", f"{_HERE}:speed_figure"),
         Columns(
             (moments(answer), Words("", shown="text"), Table(known(answer))),

@@ -587,6 +587,6 @@ def test_reports_of_one_scene_do_not_overwrite_one_another() -> None:
         "runup.nc",
     ]
     assert len(set(names)) == len(names)
-    places = ("cli/run", "cli/map", "cli/optimise", "studies/runup/answer")
+    places = ("studies/run/answer", "cli/map", "cli/optimise", "studies/runup/answer")
     source = "".join((ROOT / f"leblanc/{name}.py").read_text(encoding="utf-8") for name in places)
     assert all(f'"{name}"' in source for name in names)

@@ -39,7 +39,7 @@ def test_peak_is_the_largest() -> None:
 
 
 @kills("leblanc.core.netcdf:finite", "[values.real, values.imag]", "[values.imag, values.real]")
-@kills("leblanc.studies.run.answer:RunAnswer.phase", "self.response.deflection", "-self.response.deflection")
+@kills("leblanc.core.quantities:to_json", "value[there]", "value[there][::-1]")
 def test_json_is_the_record() -> None:
     """Complex numbers go as [re, im]; what was not found as null."""
     record = folded(31)

@@ -66,7 +66,7 @@ def test_one_rotor_two_ways() -> None:
     one, other = run_scene(read(JEFFCOTT)), run_scene(read(AS_TWO_PLANE))
     np.testing.assert_allclose(other.amplitude, one.amplitude, rtol=1e-8)
     np.testing.assert_allclose(other.amplitude_dry, one.amplitude_dry, rtol=1e-8)
-    np.testing.assert_allclose(other.branch_amplitude, one.branch_amplitude, rtol=1e-8)
+    np.testing.assert_allclose(other.response.branch_amplitude, one.response.branch_amplitude, rtol=1e-8)
     np.testing.assert_allclose(other.response.liquid_offset, one.response.liquid_offset, rtol=1e-8)
     np.testing.assert_array_equal(other.response.dry_patch, one.response.dry_patch)
     assert one.response.dry_patch.any()

@@ -126,7 +126,11 @@ def test_held_states_have_a_column_of_their_own() -> None:
     some, nothing = np.where(at, 1e-3, np.nan), np.full(size, np.nan)
     least, most = 0.5 * steady.amplitude, np.where(at, 1.5 * steady.amplitude, np.nan)
     liquid = np.zeros((size, 1), dtype=complex)
-    motions = Held(at, state, least, most, nothing, liquid, np.abs(liquid), some, state, nothing, 64)
+    nobody = np.full(size, "")
+    motions = Held(
+        *(at, state, least, most, nothing, liquid, np.abs(liquid), some, state, nothing, 64),
+        *(nobody, nothing, nothing),
+    )
     waves = replace(steady, held=motions, error_estimate=np.where(at, 0.02, 0.001))
     found = comparison(answer("statics", steady), answer("long_wave", waves))
     kinds = {"steady": 13, "periodic": 5, "limit_cycle": 2, "not_settled": 0}
