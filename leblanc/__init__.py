@@ -60,7 +60,6 @@ __all__ = [
     "modes",
     "optimise",
     "run",
-    "run_up",
     "runup",
     "sweep",
     "volume",

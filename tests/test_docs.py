@@ -618,8 +618,9 @@ class TestProofreading:
         commands = get_command(application()).commands  # type: ignore[attr-defined]
         for name, command in commands.items():
             assert f"leblanc {name}" in page
-            options = [param for param in command.params if param.opts[-1].startswith("-")]
-            assert options and not [option for option in options if option.opts[-1] not in page]
+            names = [(param.opts or param.secondary_opts)[-1] for param in command.params]
+            options = [name for name in names if name.startswith("-")]
+            assert options and not [name for name in options if name not in page]
             assert not [param.name for param in command.params if param.help and param.help not in page]
 
 

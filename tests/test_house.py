@@ -100,13 +100,19 @@ def test_types_of_arrays_are_named_in_one_place() -> None:
     assert not twice
 
 
+def _says(function: ast.FunctionDef) -> bool:
+    """What a function returns is declared in its type."""
+    return function.returns is not None and "Q(" in ast.unparse(function.returns)
+
+
 def test_every_public_function_is_documented() -> None:
     """What an answer declares is described by its declaration."""
     bare = []
     for path in _sources():
         tree = ast.parse(path.read_text(encoding="utf-8"))
         told = path.name == "answer.py" and path.parent.parent.name in ("studies", "wings")
-        public = [n for n in _public(tree.body) if not (told and isinstance(n, ast.FunctionDef))]
+        every = _public(tree.body)
+        public = [n for n in every if not (isinstance(n, ast.FunctionDef) and (told or _says(n)))]
         bare += [f"{path.name}:{n.name}" for n in public if not ast.get_docstring(n)]
     assert not bare
 

@@ -42,7 +42,7 @@ SECTIONS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
         "Calls",
         "Each does what the command of its name does, and returns a result.",
         (
-            *("run", "run_up", "map_whirl", "map_balls", "optimise", "sweep", "compare", "fit", "explain"),
+            *("run", "runup", "map_whirl", "map_balls", "optimise", "sweep", "compare", "fit", "explain"),
             *("layer", "modes", "volume", "bearing"),
         ),
     ),
