@@ -19,7 +19,6 @@ if TYPE_CHECKING:
         optimise,
         run,
         run_up,
-        sweep,
     )
     from leblanc.scene.examples import example
     from leblanc.scene.magnetic import MagneticRotor
@@ -31,6 +30,7 @@ if TYPE_CHECKING:
     from leblanc.studies.fit import fit
     from leblanc.studies.layer import layer
     from leblanc.studies.modes import modes
+    from leblanc.studies.sweep import sweep
     from leblanc.studies.volume import volume
     from meshes.chamber import Chamber
     from meshes.errors import InputError
@@ -66,7 +66,7 @@ __all__ = [
 ]
 
 _API = "leblanc.api"
-_QUESTIONS = ("bearing", "fit", "layer", "modes", "volume")  # each in a package of its name
+_QUESTIONS = ("bearing", "fit", "layer", "modes", "sweep", "volume")  # each in a package of its name
 # Where each public name lives: its module, and its name there.
 _HOMES = {
     "Chamber": ("meshes.chamber", "Chamber"),

@@ -19,17 +19,7 @@ from typing import Annotated, Any
 import typer
 from typer.main import get_command
 
-from leblanc.cli import (
-    compare,
-    explain,
-    map,
-    new,
-    optimise,
-    run,
-    runup,
-    sweep,
-    view,
-)
+from leblanc.cli import compare, explain, map, new, optimise, run, runup, view
 from leblanc.core.answer import NotConverged
 from leblanc.core.contents import recording
 from leblanc.core.interrupts import INTERRUPTED, TERMINATED, Terminated, behind, heard, leave, said
@@ -40,9 +30,10 @@ from meshes.errors import InputError
 DONE, UNREAD, WRONG_INPUT, NOT_CONVERGED = 0, 1, 2, 3
 
 # Modules with one command each, a function of the module's name, in the order of the help.
-COMMANDS = (new, explain, run, compare, map, runup, optimise, sweep, view)
+COMMANDS = (new, explain, run, compare, map, runup, optimise, view)
 QUESTIONS = (
     "fit",
+    "sweep",
     "layer",
     "modes",
     "bearing",

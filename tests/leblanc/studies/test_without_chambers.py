@@ -17,10 +17,10 @@ from leblanc.report.runup import write_runup_report
 from leblanc.results.runup import OF_LIQUID as OF_LIQUID_IN_TIME
 from leblanc.scene.inputs import about
 from leblanc.scene.scene import Scene, scene_from_table
-from leblanc.studies.batch import answer_scenes
 from leblanc.studies.run.answer import OF_LIQUID
 from leblanc.studies.run.study import run_scene
 from leblanc.studies.runup import runup_scene
+from leblanc.studies.sweep.batch import answer_scenes
 
 ROUNDING = 1e-12
 JEFFCOTT = """
