@@ -17,7 +17,6 @@ if TYPE_CHECKING:
         map_balls,
         map_whirl,
         optimise,
-        sweep,
     )
     from leblanc.scene.examples import example
     from leblanc.scene.magnetic import MagneticRotor
@@ -31,6 +30,7 @@ if TYPE_CHECKING:
     from leblanc.studies.modes import modes
     from leblanc.studies.run import run
     from leblanc.studies.runup import run_up, runup
+    from leblanc.studies.sweep import sweep
     from leblanc.studies.volume import volume
     from meshes.chamber import Chamber
     from meshes.errors import InputError
@@ -66,7 +66,16 @@ __all__ = [
 ]
 
 _API = "leblanc.api"
-_QUESTIONS = ("bearing", "fit", "layer", "modes", "run", "runup", "volume")  # each in a package of its name
+_QUESTIONS = (
+    "bearing",
+    "fit",
+    "layer",
+    "modes",
+    "run",
+    "runup",
+    "sweep",
+    "volume",
+)  # each in a package of its name
 # Where each public name lives: its module, and its name there.
 _HOMES = {
     "Chamber": ("meshes.chamber", "Chamber"),

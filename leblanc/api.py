@@ -30,7 +30,6 @@ if TYPE_CHECKING:
     from leblanc.results.races.chart import BallChart
     from leblanc.results.races.design import BallDesignResult
     from leblanc.results.races.numbers import BallExplanation
-    from leblanc.results.sweep import SweepResult
     from leblanc.results.whirl_map import WhirlMap
 
 SceneOrPath = Scene | str | PathLike[str]
@@ -252,46 +251,6 @@ def compare(scene: SceneOrPath, models: Sequence[str]) -> Comparison:
 
     with _keywords():
         return compare_models(machine, tuple(models))
-
-
-def sweep(
-    study: str | PathLike[str],
-    out: str | PathLike[str] | None = None,
-    *,
-    workers: int | None = None,
-    scheduler: str | None = None,
-    fresh: bool = False,
-    progress: Callable[[int, int], None] | None = None,
-) -> SweepResult:
-    """Answers of many scenes that differ in a few values; after a stop the same call continues.
-
-    Parameters
-    ----------
-    study : path of the study file
-    out : folder of the store; out/<study name> if None
-    workers : local processes, 0 for none but this; the cores if None
-    scheduler : address of a Dask scheduler, in place of local processes
-    fresh : start anew, without what is in the store
-    progress : called with the number of samples finished and of all
-
-    Raises
-    ------
-    SceneError : with everything that is wrong with the files
-    InputError : a store of another study, a scheduler that does not answer
-
-    Examples
-    --------
-    >>> import leblanc as lb
-    >>> found = lb.sweep("study.toml", workers=0)  # doctest: +SKIP
-    """
-    from leblanc.core.files import out_dir
-    from leblanc.studies.sweep.study import load_sweep
-    from leblanc.studies.sweep.summary import sweep_result
-
-    plan = load_sweep(Path(study))
-    folder = out_dir(plan.name, None if out is None else Path(out))
-    with _keywords():
-        return sweep_result(plan, folder, workers, scheduler, fresh, progress)
 
 
 @contextmanager

@@ -265,7 +265,7 @@ def test_products_of_units_are_no_emphasis() -> None:
 def test_every_key_has_its_line_and_a_meaning() -> None:
     from leblanc.scene.scene import Scene
     from leblanc.scene.schema.paths import tables_of
-    from leblanc.studies.sweep.study import FORMS, KINDS, Study
+    from leblanc.studies.sweep.plan import FORMS, KINDS, Study
 
     keys = _module("scene_keys", "docs/_ext")
     text = (DOCS / keys.NAME).read_text(encoding="utf-8")

@@ -13,7 +13,7 @@ from leblanc.scene.scene import Scene
 from leblanc.scene.schema.part import Part, parts_of, rule_of
 from leblanc.scene.schema.paths import entry_rule, tables_of
 from leblanc.scene.schema.rules import Entries, Flag, OneOf, Quantity, Several, Span, Text, Whole
-from leblanc.studies.sweep.study import FORMS, Study
+from leblanc.studies.sweep.plan import FORMS, Study
 
 NAME = "scene.md"
 ROTORS = parts_of(Scene.model_fields["rotor"])

@@ -19,7 +19,7 @@ from typing import Annotated, Any
 import typer
 from typer.main import get_command
 
-from leblanc.cli import compare, explain, map, new, optimise, sweep, view
+from leblanc.cli import compare, explain, map, new, optimise, view
 from leblanc.core.answer import NotConverged
 from leblanc.core.contents import recording
 from leblanc.core.interrupts import INTERRUPTED, TERMINATED, Terminated, behind, heard, leave, said
@@ -36,8 +36,7 @@ NAMES = (
     *("layer", "modes", "bearing", "volume"),
 )
 MODULES = {
-    module.__name__.rpartition(".")[2]: module
-    for module in (new, explain, compare, map, optimise, sweep, view)
+    module.__name__.rpartition(".")[2]: module for module in (new, explain, compare, map, optimise, view)
 }
 ALIASES = {"run_up": "runup", "run-up": "runup"}  # names that are read as well
 

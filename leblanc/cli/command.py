@@ -4,19 +4,19 @@ from __future__ import annotations
 
 import shlex
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from inspect import Parameter, signature
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, get_origin
 
 import typer
 
-from leblanc.cli.terminal.output import load, processes
-from leblanc.core.answer import Answer, NotConverged
+from leblanc.cli.terminal.output import load, load_study, processes
+from leblanc.core.answer import Answer
 from leblanc.core.contents import results_dir
 from leblanc.core.files import out_dir, path_text
 from leblanc.core.progress import working
-from leblanc.core.question import SCENE, Asked, Reader, called, parameters, read
+from leblanc.core.question import SCENE, STUDY, Asked, Reader, called, parameters, read
 from leblanc.core.terminal import print_json, say, show
 from meshes.errors import InputError
 
@@ -24,9 +24,11 @@ if TYPE_CHECKING:
     from leblanc.core.blocks import Picture
     from leblanc.scene.scene import Scene
 
-_OUT = "Folder for the files [default: out/<scene name>]."
+_OUT = "Folder for the files [default: out/<{} name>]."
 _ONLY_OUT = "Folder for the figure; without it none is written."
 _JSON = "Print one JSON object instead of words."
+_FOLDER = ("folder", "out")  # of a study
+_LOADED: Mapping[Any, Callable[[Path], Any]] = {SCENE: load, STUDY: load_study}
 
 
 def command(question: Callable[..., Any]) -> Callable[..., None]:
@@ -37,36 +39,41 @@ def command(question: Callable[..., Any]) -> Callable[..., None]:
     """
     everything = {one.name: one for one in parameters(question)}
     films = {name: one.option.film for name, one in everything.items() if one.option.film}
-    own = {name: one for name, one in everything.items() if name not in ("folder", "progress", *films)}
+    apart = (*_FOLDER, "progress", *films)
+    own = {name: one for name, one in everything.items() if name not in apart}
     present: Callable[..., Any] | None = getattr(sys.modules[question.__module__], "present", None)
     more = {one.name: one for one in list(parameters(present))[1:]} if present else {}
     asked = own | more
+    named = {"out", *(name for name, one in asked.items() if not one.option.argument)}
     files: tuple[str, ...] = getattr(sys.modules[question.__module__], "FILES", ())
+    subject = next((one for one in own.values() if one.read in _LOADED), None)
     options = [_typed(one) for one in asked.values()]
     if files:
-        help_of_out = _OUT if "scene" in asked else _ONLY_OUT
+        help_of_out = _ONLY_OUT if subject is None else _OUT.format(subject.name)
         options.append(_parameter("out", Path | None, typer.Option(help=help_of_out), None))
     options.append(_parameter("json", bool, typer.Option("--json", help=_JSON), False))
 
     def run(json: bool, out: Path | None = None, **given: Any) -> None:
-        source = given.get("scene")
         machine, folder, where = None, None, f"leblanc {question.__name__}"
-        if source is not None:
-            machine, where = load(source), str(source)
+        if subject is not None:
+            source = Path(given[subject.name])
+            machine, where = _LOADED[subject.read](source), str(source)
             if files:
-                folder = results_dir(machine.name, out, source, machine.digest, *files)
+                state = getattr(machine, "scene", machine).digest
+                folder = results_dir(machine.name, out, source, state, *files)
         elif out is not None:
             folder = out_dir(question.__name__, out)
         values = {name: _value(own[name], given[name]) for name in own}
-        values |= {"folder": folder} if "folder" in everything else {}
+        values |= {name: folder for name in _FOLDER if name in everything}
+        values |= {} if subject is None else {subject.name: machine}
         values |= films if given.get("animate") is not None else {}
         with working("preparing"):
             try:
                 shown = read(present, {name: given[name] for name in more}) if present else {}
-                answer: Answer = question(**values | ({} if machine is None else {"scene": machine}))
+                answer: Answer = question(**values)
                 answer = present(answer, **shown) if present else answer
             except InputError as error:
-                raise _of_option(error, asked) from error
+                raise _of_option(error, named) from error
         line = _command_line(question.__name__, list(own.values()), given)
         finish(answer, where, json, folder, machine, line)
 
@@ -101,10 +108,11 @@ def finish(
             say(f"wrote {one.png}")
     if answer.interrupted:
         raise KeyboardInterrupt
-    if answer.failed:
-        raise NotConverged([f"{where}: {fault}" for fault in answer.failed])
-    if answer.done:
-        say(answer.done)
+    fault = answer.fault(where)
+    if fault is not None:
+        raise fault
+    if answer.closing:
+        say(answer.closing)
 
 
 def _parameter(name: str, kind: Any, option: Any, default: Any) -> Parameter:
@@ -128,12 +136,12 @@ def _typed(one: Asked) -> Parameter:
 
 
 def _value(one: Asked, value: Any) -> Any:
-    return processes(value) if one.name == "workers" else value
+    return processes(value) if one.name == "workers" and one.default is not None else value
 
 
-def _of_option(error: InputError, asked: Mapping[str, Asked]) -> InputError:
+def _of_option(error: InputError, named: Collection[str]) -> InputError:
     """A fault that names the option in place of the keyword."""
-    if error.field not in asked or asked[error.field].option.argument:
+    if error.field not in named:
         return error
     return InputError(f"--{error.field.replace('_', '-')}", error.value, error.allowed)
 

@@ -143,12 +143,16 @@ class Answer(Result):
         return {}
 
     @property
-    def failed(self) -> Sequence[str]:
+    def faults(self) -> Sequence[str]:
         """Why there is no answer, or none to rely on, a line each."""
         return ()
 
+    def fault(self, where: str) -> Exception | None:
+        """With what a command ends whose answer is none, or none to rely on."""
+        return NotConverged([f"{where}: {fault}" for fault in self.faults]) if self.faults else None
+
     @property
-    def done(self) -> str:
+    def closing(self) -> str:
         """What was done, for the end of a command."""
         return ""
 

@@ -114,7 +114,7 @@ def plain(value: Any) -> Any:
     if isinstance(value, Note):
         return value.text
     if is_dataclass(value) and not isinstance(value, type):
-        return to_json(value)
+        return plain(value.to_json()) if hasattr(value, "to_json") else to_json(value)
     if isinstance(value, np.ndarray) and value.dtype.kind in "fc" and value.ndim:
         return finite(value)
     if hasattr(value, "tolist"):  # arrays and their scalars

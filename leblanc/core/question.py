@@ -1,7 +1,8 @@
 """A question is the signature of its call; quantities are read from texts with units, faults name keywords.
 
 A parameter says in its type what it is: `speed: Annotated[Quantity, ANGULAR_SPEED, "Speed of the shaft."]`.
-No options of its command are `folder`, where a study keeps what another run takes up, and `progress`.
+No options of its command are `folder`, or `out` as Python calls it, where a study keeps what another run takes
+up, and `progress`.
 """
 
 from __future__ import annotations
@@ -37,6 +38,7 @@ class Reader:
 
 
 SCENE = Reader("leblanc.scene.scene:scene_of")  # a scene, or the path of its file
+STUDY = Reader("leblanc.studies.sweep.plan:study_of")  # a sweep, or the path of its study file
 FILE = Reader("leblanc.core.files:path_of")  # the path of a file
 FRICTION = Reader("leblanc.scene.scene:friction_of")  # a law, its text, or its table
 LIQUID = Reader("leblanc.scene.scene:liquid_of")  # a liquid, or a known name

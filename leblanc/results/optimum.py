@@ -17,8 +17,8 @@ from leblanc.core.notes import Note, NoteCode, texts
 from leblanc.core.units import LENGTH, VOLUME, in_rpm, with_unit
 from leblanc.results.base import ConstraintValue
 from leblanc.results.choice import ModelSpan
-from leblanc.results.sweep import EmulatorError
 from leblanc.studies.run.answer import RunAnswer
+from leblanc.studies.sweep.answer import EmulatorError
 from meshes.arrays import Array, Flags
 
 

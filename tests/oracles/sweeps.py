@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 
 from leblanc.scene.scene import Scene, jeffcott
-from leblanc.studies.batch import Answers
-from leblanc.studies.sweep.study import Sweep, load_sweep
+from leblanc.studies.sweep.batch import Answers
+from leblanc.studies.sweep.plan import Sweep, load_sweep
 
 ROOT = Path(__file__).parents[2]
 
@@ -136,7 +136,7 @@ def added_mass_answers(scenes: Sequence[Scene]) -> Answers:
 @pytest.fixture
 def quick(monkeypatch: pytest.MonkeyPatch) -> None:
     """Answers in a closed form in place of the real ones."""
-    monkeypatch.setattr("leblanc.studies.batch.answer_scenes", added_mass_answers)
+    monkeypatch.setattr("leblanc.studies.sweep.batch.answer_scenes", added_mass_answers)
 
 
 def leblanc(*arguments: str, cwd: Path, **options: object) -> subprocess.Popen[str]:

@@ -16,8 +16,8 @@ from pathlib import Path
 
 from leblanc.scene.examples import example_path
 from leblanc.scene.schema.load import read_toml
-from leblanc.studies.sweep.study import Sweep, load_sweep
-from leblanc.studies.sweep.sweep import run_sweep
+from leblanc.studies.sweep.plan import Sweep, load_sweep
+from leblanc.studies.sweep.study import run_sweep
 from validation.study import launch
 
 _STUDY = """

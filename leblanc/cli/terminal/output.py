@@ -9,6 +9,7 @@ from leblanc.core.terminal import say
 
 if TYPE_CHECKING:
     from leblanc.scene.scene import Scene
+    from leblanc.studies.sweep.plan import Sweep
 
 
 def load(path: Path) -> Scene:
@@ -27,6 +28,20 @@ def load(path: Path) -> Scene:
         _, _, line = given_at(path, str(note.data["field"]))
         say(f"{escaped(str(path))}{f':{line}' if line else ''}: warning: {note.text}")
     return scene
+
+
+def load_study(path: Path) -> Sweep:
+    """Sweep from a study file, as `load` reads a scene."""
+    from leblanc.studies.models.validity import doubts
+    from leblanc.studies.sweep.plan import load_sweep
+    from leblanc.studies.sweep.sampling import sampling_note
+
+    plan = load_sweep(path)
+    for doubt in doubts(plan.scene, plan.table):
+        say(f"{plan.scene_path}: warning: {doubt.text}")
+    if note := sampling_note(plan):
+        say(f"{plan.name}: {note}")
+    return plan
 
 
 def processes(wanted: int | None) -> int:

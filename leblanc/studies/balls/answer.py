@@ -341,12 +341,12 @@ class BallsAnswer(Answer):
         return {"inputs": "\n".join(one_line("{}: {} [{}]".format(*entry)) for entry in self.inputs)}
 
     @property
-    def failed(self) -> tuple[str, ...]:
+    def faults(self) -> tuple[str, ...]:
         lost = "no state of the balls was found at some speeds; they are empty"
         return () if self.converged.all() else (lost,)
 
     @property
-    def done(self) -> str:
+    def closing(self) -> str:
         return f"{self.name}: {self.speed.size} speeds done"
 
     def blocks(self) -> tuple[Block, ...]:

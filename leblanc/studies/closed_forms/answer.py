@@ -103,7 +103,8 @@ class ClosedForms:
     def cage_speed(
         self,
     ) -> Annotated[
-        dict[str, list[float]] | None, Q(text="of each cage, rad/s, by its bearing", when="cage_speed", data=False)
+        dict[str, list[float]] | None,
+        Q(text="of each cage, rad/s, by its bearing", when="cage_speed", data=False),
     ]:
         return {cage.name: cage.speed.tolist() for cage in self.cages} or None
 

@@ -148,12 +148,12 @@ class FitAnswer(Answer):
         return {"residual_rms": self.residual_rms, "scale": self.scale, **said}
 
     @property
-    def failed(self) -> tuple[str, ...]:
+    def faults(self) -> tuple[str, ...]:
         unknown = ", ".join("=".join((path, *also)) for path, also in self._tied())
         return () if self.converged else (f"the search for {unknown} did not come to its end",)
 
     @property
-    def done(self) -> str:
+    def closing(self) -> str:
         return f"{self.name}: {len(self.unknown)} unknowns, {self.evaluations} answers"
 
     def _tied(self) -> tuple[tuple[str, tuple[str, ...]], ...]:

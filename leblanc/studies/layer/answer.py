@@ -130,7 +130,7 @@ class _Layered(Answer):
         }
 
     @property
-    def failed(self) -> tuple[str, ...]:
+    def faults(self) -> tuple[str, ...]:
         reason = self.notes[0].text if self.notes else "no answer"
         return () if self.converged else (f"{reason}; {_HELP[self.case.model]}",)
 

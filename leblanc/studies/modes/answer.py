@@ -101,7 +101,7 @@ class ModesAnswer(Answer):
         return found | {name: getattr(self, name) for name in names}
 
     @property
-    def failed(self) -> tuple[str, ...]:
+    def faults(self) -> tuple[str, ...]:
         reason = "the eigenproblem was not solved to rounding; a coarser mesh may help"
         return () if self.converged else (reason,)
 

@@ -277,11 +277,11 @@ class RunAnswer(Answer):
         return {"inputs": rows, **model, "axis": self.axis}
 
     @property
-    def failed(self) -> tuple[str, ...]:
+    def faults(self) -> tuple[str, ...]:
         return () if self.response.converged.all() else tuple(words.unanswered(self))
 
     @property
-    def done(self) -> str:
+    def closing(self) -> str:
         return f"{self.name}: {self.response.speed.size} speeds done"
 
     def to_json(self) -> dict[str, Any]:

@@ -175,11 +175,11 @@ class RunupAnswer(Answer):
         return "; ".join((*filter(None, [self.history.reason]), *self.faults))
 
     @property
-    def failed(self) -> tuple[str, ...]:
+    def faults(self) -> tuple[str, ...]:
         return () if self.converged else (f"{self.reason}; what was reached is written",)
 
     @property
-    def done(self) -> str:
+    def closing(self) -> str:
         return f"{self.name}: {self.steps} steps done, energy closed to {self.energy_error:.1e}"
 
     def after(self) -> None:

@@ -1,1 +1,53 @@
-"""Sweeps over scenes: what varies, samples, workers, the store, what was found."""
+"""Answers of many scenes that differ in a few values: a grid or a sample, resumable, here or on a cluster."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from os import PathLike
+from typing import TYPE_CHECKING, Annotated, Any
+
+from leblanc.core.question import STUDY, Option, ask, called
+
+if TYPE_CHECKING:
+    from leblanc.studies.sweep.answer import SweepAnswer
+
+FILES = ("sweep.nc",)
+
+
+def sweep(
+    study: Annotated[Any, STUDY, Option(argument=True), "Study file (TOML)."],
+    out: str | PathLike[str] | None = None,
+    *,
+    workers: Annotated[int | None, "Local processes, 0 for none but this [default: the cores]."] = None,
+    scheduler: Annotated[str | None, "Address of a Dask scheduler, in place of local processes."] = None,
+    fresh: Annotated[bool, Option(("--fresh",)), "Start anew, without what is in the store."] = False,
+    progress: Callable[[float, float], None] | None = None,
+) -> SweepAnswer:
+    """Answers of many scenes that differ in a few values. The same call continues after a stop.
+
+    The store is made in the folder `out`, out/<study name> if None.
+
+    Raises
+    ------
+    SceneError : with everything that is wrong with the files
+    InputError : a store of another study, a scheduler that does not answer
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> found = lb.sweep("study.toml", workers=0)  # doctest: +SKIP
+    """
+    return ask(sweep, "leblanc.studies.sweep.study:answer_sweep", locals())
+
+
+def present(
+    answer: Any,
+    *,
+    netcdf: Annotated[bool, Option(("--netcdf",)), "Write a netCDF copy of the store."] = False,
+    emulate: Annotated[
+        bool, Option(("--emulate",)), "Fit emulators to the outputs, with their errors on unseen samples."
+    ] = False,
+) -> SweepAnswer:
+    """What the command alone is asked for: a copy of the store, emulators."""
+    shown: SweepAnswer = called("leblanc.studies.sweep.study:present")(answer, netcdf, emulate)
+    return shown

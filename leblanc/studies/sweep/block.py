@@ -10,7 +10,7 @@ import functools
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,137 +22,11 @@ from leblanc.scene.schema.load import SceneError, escaped
 from leblanc.scene.schema.part import Part, rule_of
 from leblanc.scene.schema.paths import Keys, tables_of, with_values
 from leblanc.scene.schema.rules import Quantity
+from leblanc.studies.sweep.outputs import Answers, blank, outputs_of
 from meshes.errors import InputError
-
-if TYPE_CHECKING:
-    from leblanc.studies.batch import Answers
-
 
 PENDING, DONE, FAILED, NOT_CONVERGED = range(4)
 STATUS = ("pending", "done", "failed", "not_converged")
-
-NUMBER, FLAG, TEXT = "float64", "int8", "str"
-
-
-@dataclass(frozen=True)
-class Output:
-    """One variable of the store."""
-
-    name: str  #: of the variable
-    kind: str  #: "float64"; "int8", -1 where there is no answer; "str"
-    over_speed: bool  #: one value at each speed, not one in all
-    units: str  #: as CF asks, and what more there is to say
-    long_name: str
-    text: str = ""
-    meanings: tuple[str, ...] = ()  #: names of the values of a flag, from -1 on
-
-
-_LAG = "from the unbalance, positive with the spin, a lag is negative"
-_MOST = "of the whirl that grows most"
-
-
-def _flag(name: str, long_name: str, text: str) -> Output:
-    return Output(name, FLAG, True, "1", long_name, text, ("absent", "no", "yes"))
-
-
-OVER_SPEED: tuple[Output, ...] = (
-    Output("speed", NUMBER, True, "rad s-1", "spin speed", "of the rotor about its axis"),
-    Output("amplitude", NUMBER, True, "m", "amplitude", "of the branch reported"),
-    Output("amplitude_dry", NUMBER, True, "m", "amplitude", "without liquid"),
-    Output("phase", NUMBER, True, "rad", "phase of the deflection", _LAG),
-    Output("liquid_offset", NUMBER, True, "m", "liquid offset", "rotation axis to centre of mass"),
-    Output("liquid_angle", NUMBER, True, "rad", "angle of the liquid's centre of mass", _LAG),
-    Output("growth", NUMBER, True, "s-1", "growth rate", f"{_MOST}; above 0 unstable"),
-    Output("whirl_speed", NUMBER, True, "rad s-1", "whirl speed", f"{_MOST}, in space"),
-    _flag("dry_patch", "dry patch", "the wall is dry somewhere"),
-    _flag("stable", "the branch reported is stable", "against slow disturbances and whirls"),
-    _flag("in_range", "in range", "the liquid model holds there"),
-    _flag("converged", "converged", "every branch was found"),
-    Output(
-        "error_estimate", NUMBER, True, "1", "estimated error", "relative, of amplitude and liquid the larger"
-    ),
-    Output("model", TEXT, True, "1", "liquid model", "used at this speed"),
-)
-
-SINGLE: tuple[Output, ...] = (
-    Output("peak_amplitude", NUMBER, False, "m", "largest amplitude", "over the speeds at which it holds"),
-    Output(
-        "peak_amplitude_dry",
-        NUMBER,
-        False,
-        "m",
-        "largest amplitude",
-        "over the range of speeds, without liquid",
-    ),
-    Output("last_amplitude", NUMBER, False, "m", "amplitude at the last speed"),
-    Output("last_amplitude_dry", NUMBER, False, "m", "amplitude at the last speed", "without liquid"),
-    Output("peak_growth", NUMBER, False, "s-1", "largest growth rate", "over the speeds; above 0 unstable"),
-)
-
-OUTPUTS = OVER_SPEED + SINGLE
-
-# Of scenes with balls besides.
-BALLS_OVER_SPEED: tuple[Output, ...] = (
-    Output("amplitude_without", NUMBER, True, "m", "amplitude", "without balls, with the liquid"),
-    Output("state", TEXT, True, "1", "how the balls rest", "balanced, together, apart or none"),
-    _flag("balanced", "the balanced state is stable", "whichever state is reported"),
-)
-BALLS_SINGLE: tuple[Output, ...] = (
-    Output(
-        "balanced_from",
-        NUMBER,
-        False,
-        "rad s-1",
-        "speed from which on the balanced state is stable",
-        "of these",
-    ),
-)
-
-
-def outputs_of(balls: bool) -> tuple[Output, ...]:
-    """What a store keeps of each sample."""
-    return OUTPUTS + BALLS_OVER_SPEED + BALLS_SINGLE if balls else OUTPUTS
-
-
-def single_outputs(balls: bool) -> tuple[Output, ...]:
-    """Those that are one number a sample; the parameter is that of `outputs_of`."""
-    return SINGLE + BALLS_SINGLE if balls else SINGLE
-
-
-def with_balls(table: Mapping[str, Any]) -> bool:
-    """Whether the content of a scene file has races with balls."""
-    return any(chamber.get("kind") == "balls" for chamber in table.get("chambers", ()))
-
-
-def blank(output: Output, samples: int, speeds: int) -> NDArray[Any]:
-    """Values of samples without an answer: nan, -1 or an empty text."""
-    shape = (samples, speeds) if output.over_speed else (samples,)
-    if output.kind == TEXT:
-        return np.full(shape, "", dtype=object)
-    return np.full(shape, np.nan if output.kind == NUMBER else -1, dtype=output.kind)
-
-
-def values_of(answers: Answers) -> dict[str, NDArray[Any]]:
-    """Outputs by name, from the answers of some scenes."""
-    balls = answers.balanced_from is not None
-    values = {
-        output.name: np.asarray(getattr(answers, output.name)).astype(
-            object if output.kind == TEXT else output.kind
-        )
-        for output in OVER_SPEED + (BALLS_OVER_SPEED if balls else ())
-    }
-    if balls:
-        values["balanced_from"] = np.asarray(answers.balanced_from)
-    # fmax takes the other of two where one is not a number; a whole row without numbers gives none.
-    values["peak_growth"] = np.fmax.reduce(values["growth"], axis=1)
-    # Where no whirl is known to grow and some are not known, whether one grows is not known either.
-    unknown = np.isnan(values["growth"]).any(axis=1) & ~(values["peak_growth"] > 0.0)
-    values["peak_growth"] = np.where(unknown, np.nan, values["peak_growth"])
-    for name in ("peak_amplitude", "peak_amplitude_dry"):
-        values[name] = getattr(answers, name)
-    for name in ("amplitude", "amplitude_dry"):
-        values[f"last_{name}"] = values[name][:, -1]
-    return values
 
 
 _WORDS_ONLY = ("source", "assumed", "runup", "programme")  # no answer of a sweep depends on them
@@ -272,8 +146,9 @@ def answer_block(block: Block) -> BlockAnswer:
         kept = [k for k, scene in enumerate(scenes) if scene is not None]
         pieces = _answer([scene for scene in scenes if scene is not None])
     speeds = int(block.table["speeds"]["count"])
-    balls = with_balls(block.table)
-    values = {output.name: blank(output, len(scenes), speeds) for output in outputs_of(balls)}
+    balls = any(chamber.get("kind") == "balls" for chamber in block.table.get("chambers", ()))
+    outputs = outputs_of(balls)
+    values = {name: blank(output, len(scenes), speeds) for name, output in outputs.items()}
     status = np.full(len(scenes), FAILED, dtype=np.int8)
     done = 0
     for count, found in pieces:
@@ -282,8 +157,8 @@ def answer_block(block: Block) -> BlockAnswer:
         if isinstance(found, str):
             reasons[places[0]] = found
             continue
-        for name, value in values_of(found).items():
-            values[name][places] = value
+        for name in outputs:
+            values[name][places] = getattr(found, name)
         lost = np.count_nonzero(~np.asarray(found.converged), axis=1)
         status[places] = np.where(lost == 0, DONE, NOT_CONVERGED)
         for k in np.flatnonzero(lost):
@@ -300,7 +175,7 @@ def own_versions() -> Mapping[str, str]:
 
 def _answer(scenes: Sequence[Scene]) -> list[tuple[int, Answers | str]]:
     """Answers of as many scenes at once as do not fail together; the reason of one that fails alone."""
-    from leblanc.studies.batch import answer_scenes
+    from leblanc.studies.sweep.batch import answer_scenes
 
     if not scenes:
         return []

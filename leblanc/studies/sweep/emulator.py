@@ -16,8 +16,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from leblanc.results.sweep import EmulatorError
-from leblanc.studies.sweep.block import DONE, SINGLE
+from leblanc.studies.sweep.answer import Emulated, EmulatorError, NotEmulated
+from leblanc.studies.sweep.block import DONE
+from leblanc.studies.sweep.outputs import single_outputs
 from leblanc.studies.sweep.store import Store, read_store
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
@@ -150,7 +151,7 @@ def _fit(points: Array, standard: Array) -> tuple[Any, bool]:
     return process, all("close to" in str(warning.message) for warning in ours)
 
 
-EMULATED = tuple(output.name for output in SINGLE)
+EMULATED = tuple(single_outputs(balls=False))
 
 
 def emulate_store(store: Store | Path, output: str, seed: int = 0) -> Emulator:
@@ -167,14 +168,15 @@ def emulate_store(store: Store | Path, output: str, seed: int = 0) -> Emulator:
     return emulate(fields, np.stack(columns, axis=1), values, seed)
 
 
-def emulated_outputs(store: Store, seed: int = 0) -> dict[str, Emulator | str]:
-    """An emulator of every output that is one number a sample, or the reason why there is none."""
-    found: dict[str, Emulator | str] = {}
+def emulated_outputs(store: Store, seed: int = 0) -> dict[str, Emulated | NotEmulated]:
+    """Error of an emulator of every output that is one number a sample, or the reason why there is none."""
+    found: dict[str, Emulated | NotEmulated] = {}
     for output in EMULATED:
         try:
-            found[output] = emulate_store(store, output, seed)
+            emulator = emulate_store(store, output, seed)
+            found[output] = Emulated(emulator.settled, emulator.error, emulator.positive)
         except InputError as error:
-            found[output] = f"{error.field} must be {error.allowed}"
+            found[output] = NotEmulated(f"{error.field} must be {error.allowed}")
     return found
 
 

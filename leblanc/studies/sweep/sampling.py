@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from leblanc.studies.sweep.study import Choice, Levels, Sweep, VariedField
+from leblanc.studies.sweep.plan import Choice, Levels, Sweep, VariedField
 from meshes.arrays import Array
 
 Rows = Callable[[int, int], Array]

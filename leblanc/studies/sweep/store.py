@@ -28,9 +28,11 @@ from leblanc.core.answer import versions
 from leblanc.core.netcdf import NamedArrays, variable
 from leblanc.core.notes import one_line
 from leblanc.scene.schema.load import shown
-from leblanc.studies.sweep.block import FLAG, NUMBER, PENDING, STATUS, TEXT, Output, outputs_of
-from leblanc.studies.sweep.study import Sweep, VariedField
+from leblanc.studies.sweep.block import PENDING, STATUS
+from leblanc.studies.sweep.outputs import kind_of, outputs_of
+from leblanc.studies.sweep.plan import Sweep, VariedField
 from meshes.errors import InputError
+from meshes.quantity import Q
 
 STORE = "sweep.zarr"
 
@@ -41,6 +43,7 @@ _UNFINISHED = "*.partial"  # what zarr calls a file before it is whole
 _METADATA = "zarr.json"
 # Attributes of the whole: checksums of the arrays' metadata by name, and that of all other attributes.
 _CHECKSUMS, _SEAL = "checksums", "checksum"
+_EMPTY = {"float64": np.nan, "int8": -1, "str": ""}  # what stands where there is no answer
 
 
 @dataclass(frozen=True)
@@ -90,7 +93,7 @@ def locked(folder: Path) -> Iterator[None]:
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError as error:
-            raise InputError("--out", str(folder), "a folder in which no other sweep runs") from error
+            raise InputError("out", str(folder), "a folder in which no other sweep runs") from error
         yield
 
 
@@ -217,31 +220,28 @@ def _create(path: Path, sweep: Sweep) -> None:
             attributes=attributes,
         )
 
-    for output in outputs_of(bool(sweep.scene.balls)):
-        fill = {NUMBER: np.nan, FLAG: -1, TEXT: ""}[output.kind]
-        array(output.name, output.kind, output.over_speed, fill, _output_attributes(output))
+    for name, output in outputs_of(bool(sweep.scene.balls)).items():
+        kind = kind_of(output)
+        array(name, kind, bool(output.over), _EMPTY[kind], _output_attributes(output))
     for field in sweep.fields:
-        kind, empty = (TEXT, "") if field.categorical else (NUMBER, np.nan)
+        kind = "str" if field.categorical else "float64"
         said = {"units": field.unit, "long_name": field.path, "description": "varied field of the scene"}
-        array(field.path, kind, False, empty, said)
+        array(field.path, kind, False, _EMPTY[kind], said)
     states = {"flag_values": list(range(len(STATUS))), "flag_meanings": " ".join(STATUS)}
-    array("status", FLAG, False, PENDING, {"units": "1", "long_name": "state of the sample"} | states)
-    array("reason", TEXT, False, "", {"units": "1", "long_name": "why the sample is not done"})
+    array("status", "int8", False, PENDING, {"units": "1", "long_name": "state of the sample"} | states)
+    array("reason", "str", False, "", {"units": "1", "long_name": "why the sample is not done"})
     names = sorted(file.parent.name for file in path.glob(f"*/{_METADATA}"))
     found = {name: _checksum((path / name / _METADATA).read_bytes()) for name in names}
     said = dict(group.attrs) | {_CHECKSUMS: found}
     group.attrs.put(said | {_SEAL: _seal(said)})
 
 
-def _output_attributes(output: Output) -> dict[str, Any]:
-    said: dict[str, Any] = {"units": output.units, "long_name": output.long_name}
+def _output_attributes(output: Q) -> dict[str, Any]:
+    said: dict[str, Any] = {"units": output.unit or "1", "long_name": output.name}
     if output.text:
         said["description"] = output.text
-    if output.meanings:
-        said |= {
-            "flag_values": list(range(-1, len(output.meanings) - 1)),
-            "flag_meanings": " ".join(output.meanings),
-        }
+    if output.flags:
+        said |= {"flag_values": [-1, 0, 1], "flag_meanings": f"absent {output.flags}"}
     return said
 
 

@@ -1,433 +1,240 @@
-"""A sweep: a scene, what varies in it by which distribution and how it is sampled, read from a study file."""
+"""A sweep from start to end: what is missing in the store is answered and written, then summarised."""
 
 from __future__ import annotations
 
-import hashlib
-import json
-import math
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import asdict, dataclass, replace
+import functools
+import re
+import signal
+import sys
+import threading
+from collections import Counter
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import fields, replace
 from os import PathLike
 from pathlib import Path
-from typing import Annotated, Any
+from types import FrameType
 
 import numpy as np
-from pydantic import Field, PlainValidator, ValidationError
 
-from leblanc.core import units
-from leblanc.core.files import native, path_text
-from leblanc.core.units import allowed_as_typed
-from leblanc.scene.scene import WITHOUT_CHAMBERS, Scene, scene_from_table
-from leblanc.scene.schema.load import (
-    SceneError,
-    SceneFault,
-    field_path,
-    read_scene,
-    read_toml,
-    shown,
-    with_lines,
-)
-from leblanc.scene.schema.part import Conflict, Part, allowed_at, faults_of
-from leblanc.scene.schema.paths import Keys, keys_of, rule_at
-from leblanc.scene.schema.rules import Entries, Quantity, Refused, Text, Whole, one_of, whole
+from leblanc.core.files import out_dir
+from leblanc.core.progress import update
+from leblanc.scene.schema.load import SceneError, SceneFault, shown
+from leblanc.studies.held.holding import cores
+from leblanc.studies.run.notes import plane_words
+from leblanc.studies.sweep.answer import QUANTILES, Reason, Statistics, SweepAnswer
+from leblanc.studies.sweep.block import DONE, FAILED, NOT_CONVERGED, Block, BlockAnswer
+from leblanc.studies.sweep.cluster import answer_blocks, require_scheduler
+from leblanc.studies.sweep.outputs import single_outputs
+from leblanc.studies.sweep.plan import Sweep
+from leblanc.studies.sweep.sampling import Rows, sample_rows
+from leblanc.studies.sweep.sensitivity import sensitivity
+from leblanc.studies.sweep.store import Store, field_values, locked, open_store, read_store, write_block
 from meshes.arrays import Array
 from meshes.errors import InputError
 
-MAX_LEVELS = 1_000_000
-MAX_CHOICES = 1000
-
-_INSIDE = (2.0**-54, 1.0 - 2.0**-53)  # where every inverse distribution function is finite
-
-
-@dataclass(frozen=True)
-class Uniform:
-    """Evenly spread from `low` to `high`."""
-
-    low: float
-    high: float
-
-    def at(self, u: Array) -> Array:
-        """Value below which the share u lies [theory: sampling, eq. 1]."""
-        return np.asarray(self.low + (self.high - self.low) * u)
+OVER_SPEED = ("amplitude", "amplitude_dry")
+_VALUES = 4_000_000  # read at once
+_NUMBER = re.compile(r"(?<![\w.])[-+]?\d[\w.+-]*")
 
 
-@dataclass(frozen=True)
-class Normal:
-    """Gauss's bell around `mean` with a standard deviation."""
-
-    mean: float
-    deviation: float
-
-    def at(self, u: Array) -> Array:
-        """Value below which the share u lies [theory: sampling, eq. 2]."""
-        return np.asarray(self.mean + self.deviation * _standard_normal(u))
-
-
-@dataclass(frozen=True)
-class LogNormal:
-    """Its logarithm is normal: two thirds lie within `factor` of the `median`, up and down."""
-
-    median: float
-    factor: float
-
-    def at(self, u: Array) -> Array:
-        """Value below which the share u lies [theory: sampling, eq. 3]."""
-        return np.asarray(self.median * np.exp(math.log(self.factor) * _standard_normal(u)))
+def answer_sweep(
+    study: Sweep,
+    out: str | PathLike[str] | None = None,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    fresh: bool = False,
+) -> SweepAnswer:
+    """Answer what the store does not hold yet, and say what all samples have in common."""
+    if workers is not None and workers < 0:
+        raise InputError("workers", workers, "0 or more")
+    folder = out_dir(study.name, None if out is None else Path(out))
+    return summarise(run_sweep(study, folder, workers, scheduler, fresh), study)
 
 
-@dataclass(frozen=True)
-class Choice:
-    """One of a few values, each as likely."""
+def present(answer: SweepAnswer, netcdf: bool, emulate: bool) -> SweepAnswer:
+    """The answer with a copy of its store, and with emulators of its outputs."""
+    if not emulate:
+        return replace(answer, netcdf=netcdf)
+    from leblanc.studies.sweep.emulator import emulated_outputs
 
-    options: tuple[Any, ...]  #: as a scene writes them; a quantity in SI
-
-    @property
-    def categorical(self) -> bool:
-        """Some option is no number."""
-        return not all(isinstance(option, float | int) for option in self.options)
-
-    def at(self, u: Array) -> Array:
-        """Number of the option at the share u [theory: sampling, eq. 4]."""
-        return np.minimum(np.floor(u * len(self.options)), len(self.options) - 1.0)
-
-    def levels(self) -> Array:
-        """Numbers of all options."""
-        return np.arange(len(self.options), dtype=np.float64)
+    emulators = emulated_outputs(read_store(answer.store), answer.seed)
+    return replace(answer, netcdf=netcdf, emulators=emulators)
 
 
-@dataclass(frozen=True)
-class Levels:
-    """Evenly spaced values of a grid, both ends among them."""
+def run_sweep(
+    sweep: Sweep,
+    folder: Path,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    fresh: bool = False,
+) -> Store:
+    """Answer every sample that the store does not hold yet.
 
-    first: float
-    last: float
-    count: int
-
-    def levels(self) -> Array:
-        """All values."""
-        return np.linspace(self.first, self.last, self.count)
-
-
-Distribution = Uniform | Normal | LogNormal | Choice | Levels
-
-
-def _standard_normal(u: Array) -> Array:
-    """Quantiles of the standard normal distribution."""
-    from scipy.special import ndtri
-
-    return np.asarray(ndtri(np.clip(u, *_INSIDE)))
-
-
-def read_distribution(kind: str, given: Any, rule: Any) -> Distribution:
-    """Distribution as a study file writes it."""
-    return KINDS[kind](given, rule)
-
-
-def _quantity(rule: Any, kind: str) -> Quantity:
-    """The rule of a field that takes any number between bounds."""
-    if not isinstance(rule, Quantity):
-        raise Refused(f"choice, since the field must be {rule.allowed}: it has no {kind}")
-    return rule
-
-
-def _several(given: Any, count: int, what: str) -> list[Any]:
-    return list(Entries(count, count, what)(given))
+    It may be ended at any moment, in any way; the same call continues from the finished blocks, and the store
+    comes out the same, byte for byte, whatever the workers.
+    """
+    if fresh and scheduler is not None:
+        require_scheduler(scheduler)  # before the old store is gone
+    with locked(folder):
+        store = open_store(folder, sweep, fresh)
+        missing = store.pending
+        finished = sweep.samples - sum(stop - start for start, stop in map(store.bounds, missing))
+        update(finished, sweep.samples, "samples")
+        if not missing:
+            return store
+        _probe(sweep)
+        rows = sample_rows(sweep)
+        blocks = (_block(sweep, store, rows, number) for number in missing)
+        if workers is None:  # a single block needs no process of its own
+            workers = 0 if len(missing) == 1 else min(cores(), len(missing))
+        with _interrupts() as interrupted:
+            for answer in answer_blocks(blocks, workers, scheduler):
+                _write(sweep, store, rows, answer)
+                start, stop = store.bounds(answer.number)
+                finished += stop - start
+                update(finished, sweep.samples)
+                if interrupted.is_set():
+                    raise KeyboardInterrupt
+    return replace(store, pending=())
 
 
-def _uniform(given: Any, rule: Any) -> Uniform:
-    rule = _quantity(rule, "uniform")
-    low, high = map(rule, _several(given, 2, f"values, lowest and highest, each {rule.allowed}"))
-    if low >= high:
-        raise Refused("a lowest value below the highest")
-    return Uniform(low, high)
+@contextmanager
+def _interrupts() -> Iterator[threading.Event]:
+    """Notices a Ctrl-C that was lost: Python drops one that comes while it destroys an object."""
+    seen = threading.Event()
+    if threading.current_thread() is not threading.main_thread():
+        yield seen  # only the main thread may set handlers
+        return
+    before, complain = signal.getsignal(signal.SIGINT), sys.unraisablehook
 
+    def note(number: int, frame: FrameType | None) -> None:
+        seen.set()
+        if callable(before):
+            before(number, frame)
 
-def _normal(given: Any, rule: Any) -> Normal:
-    rule = _quantity(rule, "normal")
-    mean, spread = _several(given, 2, f"values, mean and standard deviation, each {rule.allowed}")
-    deviation = units.parse(spread, rule.dimension)
-    if deviation <= 0.0:
-        raise Refused("a mean and a standard deviation above 0")
-    return Normal(rule(mean), deviation)
+    if callable(before):
+        note = functools.wraps(before)(
+            note
+        )  # tells `leblanc.core.interrupts` that it passes on what it hears
 
+    def drop(what: sys.UnraisableHookArgs) -> None:
+        if what.exc_type is not KeyboardInterrupt:
+            complain(what)
 
-def _lognormal(given: Any, rule: Any) -> LogNormal:
-    rule = _quantity(rule, "lognormal")
-    middle, spread = _several(given, 2, f"values, median and factor; the median {rule.allowed}")
-    median, factor = rule(middle), Quantity(units.NUMBER, 1.0, 1e6)(spread)
-    if median <= 0.0 or factor <= 1.0:
-        raise Refused("a median above 0 and a factor above 1")
-    return LogNormal(median, factor)
-
-
-def _choice(given: Any, rule: Any) -> Choice:
-    options = Entries(1, MAX_CHOICES, f"values, each {rule.allowed}")(given)
-    checked = [rule(option) for option in options]
-    return Choice(tuple(checked) if isinstance(rule, Quantity) else tuple(options))
-
-
-def _linspace(given: Any, rule: Any) -> Levels:
-    rule = _quantity(rule, "linspace")
-    first, last, count = _several(
-        given, 3, f"values, first, last and how many; first and last {rule.allowed}"
-    )
-    levels = Levels(rule(first), rule(last), Whole(2, MAX_LEVELS)(count))
-    if levels.first == levels.last:
-        raise Refused("two different ends")
-    return levels
-
-
-KINDS: dict[str, Callable[[Any, Any], Distribution]] = {
-    "uniform": _uniform,
-    "normal": _normal,
-    "lognormal": _lognormal,
-    "choice": _choice,
-    "linspace": _linspace,
-}
-
-# How a study file writes each, and what it means.
-FORMS: dict[str, tuple[str, str]] = {
-    "uniform": ("{ uniform = [low, high] }", "evenly spread between the two"),
-    "normal": ("{ normal = [mean, deviation] }", "Gauss's bell with that mean and standard deviation"),
-    "lognormal": (
-        "{ lognormal = [median, factor] }",
-        "two thirds within that factor of the median",
-    ),
-    "choice": ("{ choice = [a, b, ...] }", "each as likely; the only one for words; in a grid all of them"),
-    "linspace": (
-        "{ linspace = [first, last, count] }",
-        "evenly spaced, with both ends; only in a grid",
-    ),
-}
-
-REFUSALS = (Refused, InputError)
-
-
-METHODS = ("grid", "latin_hypercube", "sobol", "random", "saltelli")
-MAX_SAMPLES = 10_000_000
-MAX_VARIED = 1000  # fields
-MAX_SEED = 2**63 - 1  # the largest whole number of TOML
-
-_EXAMPLE = '"rotor.mass" = { uniform = ["3 kg", "12 kg"] }'
-
-
-class Varying:
-    """[vary]: fields of the scene by their paths, each with one distribution."""
-
-    allowed = f"a table of 1 to {MAX_VARIED} fields of the scene by their paths, such as {_EXAMPLE}"
-
-    def __call__(self, value: object) -> dict[str, Any]:
-        """The fields, each with what the file says about it."""
-        if isinstance(value, dict) and 1 <= len(value) <= MAX_VARIED:
-            return value
-        raise Refused(self.allowed)
-
-
-class Study(Part):
-    """The content of a study file: many scenes that differ in a few values."""
-
-    scene: Annotated[str, PlainValidator(Text(4000))] = Field(
-        description="file of the base, its path counts from the study's"
-    )
-    method: Annotated[str, one_of(*METHODS)] = Field(description="how the scenes are chosen")
-    samples: Annotated[int | None, whole(1, MAX_SAMPLES)] = Field(
-        None, description="how many scenes, points of the design for saltelli; left out for a grid"
-    )
-    seed: Annotated[int, whole(0, MAX_SEED)] = Field(0, description="of the random numbers")
-    vary: Annotated[dict[str, Any], PlainValidator(Varying())] = Field(
-        description="fields of the scene by their paths, each with one distribution"
-    )
-
-    @classmethod
-    def conflicts(cls, values: Mapping[str, Any], given: Mapping[str, Any]) -> Iterator[Conflict]:
-        """A grid has the number of its samples by its levels."""
-        method = values.get("method")
-        if method == "grid" and "samples" in given:
-            yield Conflict(("samples",), "left out where method is grid")
-        elif method not in (None, "grid") and "samples" not in given:
-            yield Conflict(("samples",), f"given: {allowed_at(cls.model_fields['samples'])}")
-
-
-def check_study(table: Mapping[str, Any], file: str) -> Study:
-    """Every value of a study but the varied fields, which need the scene, checked."""
-    if "rotor" in table and "vary" not in table:
-        text = "a study with the keys scene, method and [vary]; this is a scene, which `leblanc run` answers"
-        raise SceneError([SceneFault(file, "", None, text)])
+    if before is not signal.SIG_IGN:
+        signal.signal(signal.SIGINT, note)
+    sys.unraisablehook = drop
     try:
-        return Study.model_validate(table)
-    except ValidationError as error:
-        raise SceneError(faults_of(error, file, Study)) from error
+        yield seen
+    finally:
+        signal.signal(signal.SIGINT, before)
+        sys.unraisablehook = complain
 
 
-_MOST_PERMUTED = 50_000_000  # numbers of a Latin hypercube, which is made as a whole
+def _probe(sweep: Sweep) -> None:
+    """Answer the scene itself: what no sample can answer is one fault then, not as many as samples."""
+    from leblanc.studies.sweep.batch import answer_scenes
+
+    if any(field.path == "model.liquid" for field in sweep.fields):
+        return
+    try:
+        answer_scenes([sweep.scene])
+    except InputError as error:
+        raise SceneError(
+            [SceneFault(sweep.scene_path, error.field, shown(error.value), error.allowed)]
+        ) from error
 
 
-@dataclass(frozen=True)
-class VariedField:
-    """A field of the scene and the values it takes."""
-
-    path: str  #: of the field, as in "chambers.0.volume"
-    unit: str  #: SI unit of its values; "1" where they have none
-    distribution: Distribution  #: of the values
-
-    @property
-    def keys(self) -> Keys:
-        """Keys along the path."""
-        return keys_of(self.path)
-
-    @property
-    def categorical(self) -> bool:
-        """The values are texts, and samples hold their indices."""
-        return isinstance(self.distribution, Choice) and self.distribution.categorical
-
-    def value(self, drawn: float) -> Any:
-        """What the scene gets for a sampled number."""
-        if isinstance(self.distribution, Choice):
-            return self.distribution.options[int(drawn)]
-        return float(drawn)
-
-
-@dataclass(frozen=True)
-class Sweep:
-    """Many scenes that differ in a few values."""
-
-    name: str  #: of the study file, without its ending
-    scene_path: str  #: of the scene they are made from
-    table: Mapping[str, Any]  #: content of that file
-    scene: Scene  #: that scene
-    method: str  #: of sampling
-    points: int  #: of the design: samples, but for a "saltelli" design, which has some for each point
-    seed: int  #: of the samples
-    fields: tuple[VariedField, ...]  #: what varies
-
-    @property
-    def samples(self) -> int:
-        """How many scenes there are."""
-        return self.points * samples_for_each_point(self.method, len(self.fields))
-
-    @property
-    def digest(self) -> str:
-        """Fingerprint of all that the results depend on but the code (SHA-256)."""
-        content = {
-            "scene": self.scene.digest,
-            "method": self.method,
-            "points": self.points,
-            "seed": self.seed,
-            "fields": [
-                [field.path, type(field.distribution).__name__, asdict(field.distribution)]
-                for field in self.fields
-            ],
-        }
-        return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
-
-
-def samples_for_each_point(method: str, fields: int) -> int:
-    """Samples for each point of a design: with both sets and each field exchanged in "saltelli", else one."""
-    return fields + 2 if method == "saltelli" else 1
-
-
-def load_sweep(path: str | PathLike[str]) -> Sweep:
-    """Sweep from a study file."""
-    given = read_toml(path)
-    with with_lines(path):
-        return _sweep_of(given, path)
-
-
-def _sweep_of(given: Mapping[str, Any], path: str | PathLike[str]) -> Sweep:
-    """Sweep from the content of a study file."""
-    file = str(path)
-    table = check_study(given, file)
-    scene_path = Path(path).parent / native(table.scene)
-    scene_table = read_scene(scene_path)
-    with with_lines(scene_path):
-        scene = scene_from_table(scene_table, str(scene_path))
-    if isinstance(scene.rotor, WITHOUT_CHAMBERS):
-        allowed = "a scene whose rotor answers at its speeds: jeffcott, two_plane or tub"
-        raise SceneError([SceneFault(file, "scene", shown(table.scene), allowed)])
-    fields = _fields(table.vary, scene_table, table.method, file)
-    points = table.samples
-    if points is None:
-        points = math.prod(_levels(field.distribution) for field in fields)
-    sweep = Sweep(
-        name=path_text(Path(path).stem),
-        scene_path=table.scene,
-        table=scene_table,
-        scene=scene,
-        method=table.method,
-        points=points,
-        seed=table.seed,
-        fields=fields,
+def _block(sweep: Sweep, store: Store, rows: Rows, number: int) -> Block:
+    drawn = rows(*store.bounds(number))
+    values = tuple(
+        tuple(field.value(value) for field, value in zip(sweep.fields, row, strict=True)) for row in drawn
     )
-    _check_size(sweep, file)
-    return sweep
+    return Block(number, sweep.table, tuple(field.keys for field in sweep.fields), values)
 
 
-def _levels(distribution: Distribution) -> int:
-    """How many values a field of a grid takes."""
-    assert isinstance(distribution, Choice | Levels)  # no other stands in a grid
-    return int(distribution.levels().size)
+def _write(sweep: Sweep, store: Store, rows: Rows, answer: BlockAnswer) -> None:
+    drawn = rows(*store.bounds(answer.number))
+    variables = {field.path: field_values(field, drawn[:, j]) for j, field in enumerate(sweep.fields)}
+    variables |= answer.values
+    variables["reason"] = np.array(answer.reason, dtype=object)
+    write_block(store, answer.number, variables, answer.status)
 
 
-def _fields(
-    vary: Mapping[str, Any], scene: Mapping[str, Any], method: str, file: str
-) -> tuple[VariedField, ...]:
-    """The varied fields, or all faults of them."""
-    faults: list[SceneFault] = []
-    fields = []
-    for path, given in vary.items():
-        where: tuple[str, ...] = ("vary", path)
-        value: object = None
-        try:
-            rule = rule_at(Scene, scene, path)
-            kind = _kind(given, method)
-            where, value = (*where, kind), given[kind]
-            distribution = read_distribution(kind, value, rule)
-        except ValidationError as error:  # of a table that stands for the value, as a liquid's
-            own = faults_of(error, file, rule.table)
-            faults += [replace(one, field=f"{field_path(where)}.{one.field}") for one in own]
-            continue
-        except REFUSALS as error:
-            said = None if value is None else shown(value)
-            if value is None and not isinstance(given, Mapping):
-                said = shown(given)
-            faults.append(SceneFault(file, field_path(where), said, allowed_as_typed(error.allowed, value)))
-            continue
-        unit = rule.dimension.unit if isinstance(rule, Quantity) else ""
-        fields.append(VariedField(path, unit or "1", distribution))
-    faults = faults or _nested(vary, file)
-    if faults:
-        raise SceneError(faults)
-    return tuple(fields)
+def summarise(store: Store, sweep: Sweep) -> SweepAnswer:
+    """Statistics over all samples; reads a few of the store's columns at a time."""
+    counts = np.bincount(store.read("status"), minlength=4)
+    drawn = sample_rows(sweep)(0, store.samples)
+    categorical = [field.categorical for field in sweep.fields]
+    single, shares = {}, {}
+    for name in single_outputs(bool(sweep.scene.balls)):
+        values = store.read(name)
+        single[name] = statistics(values)
+        shares[name] = sensitivity(sweep.method, drawn, categorical, values, sweep.seed)
+    speeds = sweep.scene.speeds.count
+    own_speeds = any(field.path.startswith("speeds.") for field in sweep.fields)
+    return SweepAnswer(
+        name=sweep.name,
+        scene=sweep.scene.name,
+        store=store.path,
+        method=sweep.method,
+        seed=sweep.seed,
+        fields=tuple(field.path for field in sweep.fields),
+        speeds=speeds,
+        samples=store.samples,
+        done=int(counts[DONE]),
+        failed=int(counts[FAILED]),
+        not_converged=int(counts[NOT_CONVERGED]),
+        reasons=_grouped(store),
+        speed=None if own_speeds else sweep.scene.speed_array(),
+        outputs=single,
+        over_speed={
+            name: _over_speed(store, name, speeds)
+            for name in (*OVER_SPEED, *(["amplitude_without"] if sweep.scene.balls else []))
+        },
+        sensitivity=shares,
+        digest=sweep.digest,
+        plane="" if sweep.scene.rotor.kind == "jeffcott" else _plane(sweep),
+    )
 
 
-def _kind(given: object, method: str) -> str:
-    """Which distribution a field has."""
-    names = [kind for kind in KINDS if (kind in ("linspace", "choice")) or method != "grid"]
-    if method != "grid":
-        names.remove("linspace")
-    if not isinstance(given, Mapping) or len(given) != 1 or next(iter(given)) not in names:
-        raise Refused(f"a table of exactly one of {', '.join(names)} where method is {method}")
-    return str(next(iter(given)))
+def _plane(sweep: Sweep) -> str:
+    """Plane of the amplitudes, with its place unless that varies."""
+    if not sweep.scene.chambers:
+        return plane_words(0.0, chambers=False)
+    varied = any(field.path.startswith("chambers.0.plane") for field in sweep.fields)
+    words = plane_words(sweep.scene.chambers[0].plane, chambers=True)
+    return words.partition(" at ")[0] if varied else words
 
 
-def _nested(vary: Mapping[str, Any], file: str) -> list[SceneFault]:
-    """Fields that are part of another varied field."""
-    keys = {path: keys_of(path) for path in vary}
-    return [
-        SceneFault(file, field_path(("vary", path)), None, f"left out where {other} varies as a whole")
-        for path, own in keys.items()
-        for other, above in keys.items()
-        if len(above) < len(own) and own[: len(above)] == above
+def statistics(values: Array) -> Statistics:
+    """Statistics of the numbers that are finite."""
+    known = np.sort(values[np.isfinite(values)])
+    if known.size == 0:
+        return Statistics(0, np.nan, np.nan, np.full(len(QUANTILES), np.nan))
+    spread = known.std(ddof=1) if known.size > 1 else 0.0
+    return Statistics(known.size, float(known.mean()), float(spread), np.quantile(known, QUANTILES))
+
+
+def _over_speed(store: Store, name: str, speeds: int) -> Statistics:
+    """Statistics at each speed, as many speeds read at once as a bounded memory takes."""
+    width = max(1, _VALUES // store.samples)
+    each = [
+        statistics(column)
+        for start in range(0, speeds, width)
+        for column in store.read(name, columns=slice(start, start + width)).T
     ]
+    return Statistics(*(np.array([getattr(one, part.name) for one in each]) for part in fields(Statistics)))
 
 
-def _check_size(sweep: Sweep, file: str) -> None:
-    """Neither more samples than can be numbered nor a design that would not fit the memory."""
-    field = "vary" if sweep.method == "grid" else "samples"
-    allowed = ""
-    if sweep.samples > MAX_SAMPLES:
-        allowed = f"at most {MAX_SAMPLES} scenes in all"
-    elif sweep.method == "latin_hypercube" and sweep.points * len(sweep.fields) > _MOST_PERMUTED:
-        allowed = f"at most {_MOST_PERMUTED // len(sweep.fields)} with {len(sweep.fields)} varied fields"
-    if allowed:
-        raise SceneError([SceneFault(file, field, str(sweep.samples), allowed)])
+def _grouped(store: Store) -> tuple[Reason, ...]:
+    """Reasons that differ in numbers only count as one."""
+    counts: Counter[str] = Counter()
+    examples: dict[str, str] = {}
+    for start in range(0, store.samples, store.block):
+        for reason in filter(None, store.read("reason", slice(start, start + store.block))):
+            kind = _NUMBER.sub("#", reason)
+            counts[kind] += 1
+            examples.setdefault(kind, reason)
+    return tuple(Reason(examples[kind], count) for kind, count in counts.most_common())

@@ -77,7 +77,7 @@ class VolumeAnswer(Answer):
     surface: Annotated[Surface | None, Q(part=True)] = None  #: of that volume
 
     @property
-    def failed(self) -> tuple[str, ...]:
+    def faults(self) -> tuple[str, ...]:
         lost = self.surface is not None and not self.surface.converged
         return ("no surface found that holds the volume asked for",) if lost else ()
 

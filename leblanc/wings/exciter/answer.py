@@ -204,12 +204,12 @@ class ExciterAnswer(_Known, DryAnswer):
         return np.full(self.speed.shape, "balls")
 
     @property
-    def failed(self) -> tuple[str, ...]:
+    def faults(self) -> tuple[str, ...]:
         lost = "a time integration beside the formulas did not stay finite"
         return () if self.converged else (lost,)
 
     @property
-    def done(self) -> str:
+    def closing(self) -> str:
         return f"{self.name}: {self.speed.size} speeds done"
 
     def blocks(self) -> tuple[Block, ...]:

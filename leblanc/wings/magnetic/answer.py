@@ -305,11 +305,11 @@ class MagneticAnswer(DryAnswer):
         return all(motion.ending.value != "failed" for motion in self.trials)
 
     @property
-    def failed(self) -> tuple[str, ...]:
+    def faults(self) -> tuple[str, ...]:
         return () if self.converged else ("the trial in time did not come to its end",)
 
     @property
-    def done(self) -> str:
+    def closing(self) -> str:
         return f"{self.name}: {self.speed.size} speeds done"
 
     def blocks(self) -> tuple[Block, ...]:

@@ -145,7 +145,7 @@ class SpindleAnswer(Answer):
         return {name: getattr(self, name) for name in ("theory", "driven_at", "measured_at", "wanted_at")}
 
     @property
-    def done(self) -> str:
+    def closing(self) -> str:
         return f"{self.name}: {self.frequency.size} frequencies, {len(self.modes)} natural ones done"
 
     def blocks(self) -> tuple[Block, ...]:

@@ -12,12 +12,12 @@ import pytest
 
 import leblanc as lb
 from leblanc.cli import main
+from leblanc.core.blocks import Table, Words, flat
 from leblanc.core.units import LENGTH, RPM, with_unit
 from leblanc.figures.chambers import describe_state as chamber_state
 from leblanc.scene.examples import example_path
 from leblanc.studies.run import words as text
 from leblanc.studies.shapes.machine import machine_motion
-from leblanc.text.sweep import lines as sweep_lines
 from leblanc.view.scene import describe_state as view_state
 
 RAW = re.compile(r"[-+.\d]j\b|\bTrue\b|\bFalse\b|\bNone\b|\bnan\b|\binf\b|\[|array|e[+-]\d\d")
@@ -162,9 +162,10 @@ def test_the_plane_of_a_sweep_is_named(tmp_path: Path) -> None:
     )
     found = lb.sweep(tmp_path / "study.toml", out=tmp_path, workers=0)
     assert found.plane == "in the plane of chamber 1 at \N{MINUS SIGN}280 mm"
-    lines = sweep_lines(found)
-    assert f"Amplitudes are zero to peak, {found.plane}." in lines
-    (row,) = (line for line in lines if line.startswith("last amplitude  "))
-    assert row.endswith(("  mm", "  um"))
-    mean = float(row.split()[2]) / {"mm": 1e3, "um": 1e6}[row.split()[-1]]
-    assert math.isclose(mean, float(found.single["last_amplitude"].mean[0]), rel_tol=5.1e-4)
+    shown = list(flat(found.blocks(), "text"))
+    assert Words(f"Amplitudes are zero to peak, {found.plane}.") in shown
+    rows = {row[0]: row for block in shown if isinstance(block, Table) for row in block.rows}
+    _, mean, *_, unit = rows["last amplitude"]
+    assert unit in ("mm", "um")
+    said = float(str(mean)) / {"mm": 1e3, "um": 1e6}[str(unit)]
+    assert math.isclose(said, found.outputs["last_amplitude"].mean, rel_tol=5.1e-4)

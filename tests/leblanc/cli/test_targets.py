@@ -30,7 +30,7 @@ WORK = (
     "leblanc.studies.whirl_map.map_scene",
     "leblanc.studies.runup.study.runup_scene",
     "leblanc.studies.optimise.optimise.optimise_scene",
-    "leblanc.studies.sweep.summary.sweep_result",
+    "leblanc.studies.sweep.study.answer_sweep",
     "leblanc.studies.shapes.machine.machine_view",
     "leblanc.studies.shapes.machine.table_view",
     "leblanc.studies.shapes.machine.mode_view",

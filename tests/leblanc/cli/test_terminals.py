@@ -50,7 +50,7 @@ CHILD = """if True:
     import os, sys, traceback
     from leblanc.cli import main
     import leblanc.studies.run.figure, leblanc.studies.run.study, leblanc.report.run, leblanc.core.netcdf
-    import leblanc.studies.sweep.summary, leblanc.studies.explain, numpy.random, rich.table
+    import leblanc.studies.sweep.study, leblanc.studies.explain, numpy.random, rich.table
 
     commands, told = eval(sys.argv[1]), os.open("codes", os.O_WRONLY | os.O_CREAT)
     os.dup2(told, 100)  # above the streams, of which some are closed here

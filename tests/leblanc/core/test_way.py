@@ -42,7 +42,7 @@ class LiftAnswer(Answer):
     height: Annotated[float, Q("m", "height")]
 
     @property
-    def failed(self) -> tuple[str, ...]:
+    def faults(self) -> tuple[str, ...]:
         return ("higher than the room",) if self.height > 3.0 else ()
 
     def blocks(self) -> tuple[Block, ...]:
@@ -84,7 +84,7 @@ def test_a_call_takes_a_scene_or_its_file_and_quantities_with_units(rig: Path) -
         lift(4.0)  # type: ignore[arg-type]
 
 
-@kills("leblanc.cli.command:_of_option", "error.field not in asked", "True")
+@kills("leblanc.cli.command:_of_option", "if error.field not in named", "if True")
 def test_a_command_prints_words_or_json_and_writes_its_file(
     rig: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -100,7 +100,7 @@ def test_a_command_prints_words_or_json_and_writes_its_file(
         typed(scene=rig, height="-2 m", out=tmp_path / "out", json=True)
 
 
-@kills("leblanc.cli.command:finish", "if answer.failed", "if False")
+@kills("leblanc.cli.command:finish", "if fault is not None", "if False")
 def test_a_failed_answer_is_written_and_ends_as_one(
     rig: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

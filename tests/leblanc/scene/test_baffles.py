@@ -15,11 +15,11 @@ from leblanc.core.notes import percent
 from leblanc.results.notes.baffles import BaffleCode
 from leblanc.scene.scene import Scene, jeffcott, load_scene, scene_from_table
 from leblanc.scene.schema.load import SceneError, read_toml
-from leblanc.studies.batch import answer_scenes
 from leblanc.studies.explain import explain_scene
 from leblanc.studies.models.choose import choose
 from leblanc.studies.run.study import run_scene
 from leblanc.studies.runup.study import runup_scene
+from leblanc.studies.sweep.batch import answer_scenes
 from leblanc.studies.whirl_map import map_scene
 from meshes.baffles import Baffles
 from meshes.errors import InputError

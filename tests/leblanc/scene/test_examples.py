@@ -14,7 +14,7 @@ from leblanc.scene import scene as scene_module
 from leblanc.scene.examples import example, example_names, example_path, example_title
 from leblanc.scene.scene import Scene, jeffcott, load_scene
 from leblanc.scene.schema.load import read_toml
-from leblanc.studies.sweep.study import load_sweep
+from leblanc.studies.sweep.plan import load_sweep
 from meshes.errors import InputError
 
 RPM = math.pi / 30.0

@@ -34,7 +34,7 @@ from leblanc.core.units import (
 from leblanc.scene.scene import Scene
 from leblanc.scene.schema.part import Part, allowed_at, parts_of, rule_of
 from leblanc.scene.schema.rules import Quantity
-from leblanc.studies.sweep.study import Study
+from leblanc.studies.sweep.plan import Study
 
 # The bounds of what a scene may say, in SI.
 BOUNDS = {

@@ -14,11 +14,12 @@ from leblanc.cli import main
 from leblanc.results.races.numbers import BallExplanation
 from leblanc.scene.scene import Scene, dry_rotor
 from leblanc.studies.balls.answer import BallsAnswer
-from leblanc.studies.batch import answer_scenes
 from leblanc.studies.fit.measured import Measurement
 from leblanc.studies.fit.problem import answer as _answer
 from leblanc.studies.fit.study import fit_scene
-from leblanc.studies.sweep.block import outputs_of, scene_maker, values_of
+from leblanc.studies.sweep.batch import answer_scenes
+from leblanc.studies.sweep.block import scene_maker
+from leblanc.studies.sweep.outputs import outputs_of
 from leblanc.text.races.numbers import facts
 from meshes.errors import InputError
 from solvers.rotor.balls.stability import balanced_stability
@@ -116,18 +117,18 @@ def test_a_sweep_keeps_what_run_tells() -> None:
     table = EXAMPLE.replace({"speeds.count": 5}).table()
     make = scene_maker(table, [("chambers", 0, "count"), ("chambers", 0, "drag")])
     scenes = [make(values) for values in ((1, 0.1), (3, 0.4))]
-    kept = values_of(answer_scenes(scenes))
-    assert set(kept) == {output.name for output in outputs_of(balls=True)}
+    kept = answer_scenes(scenes)
+    assert set(vars(kept)) < set(outputs_of(balls=True))
     for k, scene in enumerate(scenes):
         result = lb.run(scene)
         assert isinstance(result, BallsAnswer)
-        np.testing.assert_array_equal(kept["amplitude"][k], result.amplitude)
-        np.testing.assert_array_equal(kept["growth"][k], result.growth)
-        assert kept["state"][k].tolist() == result.state.tolist()
-        assert kept["balanced"][k].tolist() == result.balanced.tolist()
-        np.testing.assert_equal(kept["balanced_from"][k], result.balanced_from)
-        assert kept["peak_amplitude"][k] == np.nanmax(result.amplitude)
-    assert not {"state", "balanced_from"} & {output.name for output in outputs_of(balls=False)}
+        np.testing.assert_array_equal(kept.amplitude[k], result.amplitude)
+        np.testing.assert_array_equal(kept.growth[k], result.growth)
+        assert kept.state[k].tolist() == result.state.tolist()
+        assert kept.balanced[k].tolist() == result.balanced.tolist()
+        np.testing.assert_equal(kept.balanced_from[k], result.balanced_from)
+        assert kept.peak_amplitude[k] == np.nanmax(result.amplitude)
+    assert not {"state", "balanced_from"} & set(outputs_of(balls=False))
 
 
 def test_a_sweep_of_balls_from_its_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

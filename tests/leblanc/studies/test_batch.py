@@ -10,9 +10,9 @@ import pytest
 
 from fluid.friction.laws import Friction
 from leblanc.scene.scene import Scene, load_scene
-from leblanc.studies.batch import Answers, answer_scenes
 from leblanc.studies.run.answer import RunAnswer, phase
 from leblanc.studies.run.study import run_scene
+from leblanc.studies.sweep.batch import Answers, answer_scenes
 from meshes.errors import InputError
 from tests.mutants import kills
 
@@ -77,16 +77,18 @@ def alone() -> list[dict[str, np.ndarray]]:
 
 
 @kills(
-    "leblanc.studies.batch:_planar",
+    "leblanc.studies.sweep.batch:_planar",
     "gravity = np.array([machine.axial_gravity for machine in prepared])",
     "gravity = np.zeros(len(prepared))",
 )
-@kills("leblanc.studies.batch:_planar", "(growth <= 0.0)", "(growth == growth)")
-@kills("leblanc.studies.batch:_planar", "phase(answer.deflection)", "-phase(answer.deflection)")
+@kills("leblanc.studies.sweep.batch:_planar", "(growth <= 0.0)", "(growth == growth)")
+@kills("leblanc.studies.sweep.batch:_planar", "phase(answer.deflection)", "-phase(answer.deflection)")
 @kills(
-    "leblanc.studies.batch:_peaks", "zip(answers, between, strict=True)", "zip(answers, answers, strict=True)"
+    "leblanc.studies.sweep.batch:_peaks",
+    "zip(answers, between, strict=True)",
+    "zip(answers, answers, strict=True)",
 )
-@kills("leblanc.studies.batch:_joined", "np.concatenate(each)[order]", "np.concatenate(each)")
+@kills("leblanc.studies.sweep.batch:_joined", "np.concatenate(each)[order]", "np.concatenate(each)")
 def test_each_is_what_run_gives(alone: list[dict[str, np.ndarray]]) -> None:
     """Field by field, to the rounding of sums whose terms are added in another order."""
     answers = answer_scenes(mixed())

@@ -13,11 +13,11 @@ from fluid.fill import Fill, Fills
 from leblanc.cli import main
 from leblanc.scene.examples import example
 from leblanc.scene.scene import Scene
-from leblanc.studies.batch import answer_scenes
 from leblanc.studies.explain import explain_scene
 from leblanc.studies.models.choose import prepare
 from leblanc.studies.run.notes import RunCode
 from leblanc.studies.run.study import run_scene
+from leblanc.studies.sweep.batch import answer_scenes
 from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.liquid_model import LiquidAnswer, LiquidModel, Whirls, added_mass_answer

@@ -15,7 +15,6 @@ import leblanc as lb
 from leblanc.core.units import RPM
 from leblanc.scene.scene import Scene, load_scene
 from leblanc.scene.tasks import Optimisation
-from leblanc.studies.batch import answer_scenes
 from leblanc.studies.compare import compare_models
 from leblanc.studies.models.choose import choose_all, liquid_models, prepare
 from leblanc.studies.optimise.answers import FilledMachine, with_volumes
@@ -26,6 +25,7 @@ from leblanc.studies.run.answer import RunAnswer
 from leblanc.studies.run.notes import RunCode
 from leblanc.studies.run.study import run_scene
 from leblanc.studies.run.words import alts, answer, remarks
+from leblanc.studies.sweep.batch import answer_scenes
 from meshes.arrays import Array
 from solvers.synchronous.response import Response, by_speed, response
 from tests.mutants import kills

@@ -15,11 +15,11 @@ from leblanc.cli.command import write
 from leblanc.core.page import About
 from leblanc.scene.inputs import about
 from leblanc.scene.scene import Scene, scene_from_table
-from leblanc.studies.batch import answer_scenes
 from leblanc.studies.run.answer import OF_LIQUID
 from leblanc.studies.run.study import run_scene
 from leblanc.studies.runup.answer import OF_LIQUID as OF_LIQUID_IN_TIME
 from leblanc.studies.runup.study import runup_scene
+from leblanc.studies.sweep.batch import answer_scenes
 from tests.oracles.pages import write_page_of
 
 ROUNDING = 1e-12

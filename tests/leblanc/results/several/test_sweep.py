@@ -13,11 +13,11 @@ import xarray as xr
 
 from leblanc.cli import main
 from leblanc.core.terminal import print_json
-from leblanc.figures.sweep import sweep_figure
-from leblanc.results.sweep import QUANTILES, SweepResult
 from leblanc.studies.run.study import run_scene
+from leblanc.studies.sweep.answer import QUANTILES, SweepAnswer
+from leblanc.studies.sweep.figure import sweep_figure
 from leblanc.studies.sweep.store import STORE
-from leblanc.studies.sweep.summary import sweep_result
+from leblanc.studies.sweep.study import answer_sweep
 from tests.oracles.data_files import assert_read_back
 from tests.oracles.records import RPM
 from tests.oracles.sweeps import SCENE, study_in, write_study
@@ -37,17 +37,17 @@ SHARES = (0.1 + np.array(QUANTILES)) / 0.6
 
 
 @pytest.fixture(scope="module")
-def found(tmp_path_factory: pytest.TempPathFactory) -> SweepResult:
+def found(tmp_path_factory: pytest.TempPathFactory) -> SweepAnswer:
     folder = tmp_path_factory.mktemp("sweep")
-    return sweep_result(study_in(folder, STUDY, LINEAR), folder / "out", workers=0)
+    return answer_sweep(study_in(folder, STUDY, LINEAR), folder / "out", workers=0)
 
 
-def test_quantiles_of_a_linear_machine(found: SweepResult, tmp_path: Path) -> None:
+def test_quantiles_of_a_linear_machine(found: SweepAnswer, tmp_path: Path) -> None:
     own = run_scene(study_in(tmp_path, STUDY, LINEAR).scene)
     quantiles = found.over_speed["amplitude"].quantiles
     # The amplitude is proportional to the unbalance, up to rounding.
     np.testing.assert_allclose(quantiles, own.amplitude[:, None] * SHARES, rtol=1e-10)
-    np.testing.assert_allclose(found.single["last_amplitude"].mean, own.amplitude[-1], rtol=1e-10)
+    np.testing.assert_allclose(found.outputs["last_amplitude"].mean, own.amplitude[-1], rtol=1e-10)
     assert (found.samples, found.done, found.fields) == (101, 101, ("rotor.unbalance",))
 
 
@@ -55,7 +55,7 @@ def test_json_is_that_of_the_command(tmp_path: Path, capsys: pytest.CaptureFixtu
     path, out = write_study(tmp_path, STUDY, LINEAR), tmp_path / "out"
     assert main(["sweep", str(path), "--workers", "0", "--netcdf", "--out", str(out), "--json"]) == 0
     printed = capsys.readouterr().out
-    result = sweep_result(study_in(tmp_path, STUDY, LINEAR), out)
+    result = answer_sweep(study_in(tmp_path, STUDY, LINEAR), out)
     assert all(hasattr(result, key) for key in result.to_json())
     print_json(result.to_json())
     assert capsys.readouterr().out == printed
@@ -79,7 +79,7 @@ def test_json_is_that_of_the_command(tmp_path: Path, capsys: pytest.CaptureFixtu
         np.testing.assert_array_equal(copy[name].values, values.values)
 
 
-def test_the_dataset_is_the_store_and_goes_with_the_result(found: SweepResult, tmp_path: Path) -> None:
+def test_the_dataset_is_the_store_and_goes_with_the_result(found: SweepAnswer, tmp_path: Path) -> None:
     assert_read_back(found.named_arrays(), tmp_path)
     again = pickle.loads(pickle.dumps(found)).to_dataset()
     store = xr.open_zarr(found.store, consolidated=False).load()
@@ -90,7 +90,7 @@ def test_the_dataset_is_the_store_and_goes_with_the_result(found: SweepResult, t
     np.testing.assert_allclose(found.over_speed["amplitude"].quantiles[:, [0, 4]].T, [low, high], rtol=1e-14)
 
 
-def test_bands_of_the_figure_are_the_quantiles(found: SweepResult) -> None:
+def test_bands_of_the_figure_are_the_quantiles(found: SweepAnswer) -> None:
     figure = found.plot()
     (axes,) = figure.axes
     quantiles = found.over_speed["amplitude"].quantiles * 1e3
@@ -110,25 +110,25 @@ def test_bands_of_the_figure_are_the_quantiles(found: SweepResult) -> None:
 
 
 def test_boxes_of_one_speed_are_the_quantiles(tmp_path: Path) -> None:
-    result = sweep_result(study_in(tmp_path, STUDY, ONE), tmp_path / "out", workers=0)
+    result = answer_sweep(study_in(tmp_path, STUDY, ONE), tmp_path / "out", workers=0)
     above, below = result.plot().axes
     assert (above.get_xlabel(), below.get_xlabel()) == ("Amplitude (mm 0-p)", "Growth (1/s)")
     assert len(above.patches) == 2  # with and without liquid
     for box, name in zip(above.patches, ("last_amplitude", "last_amplitude_dry"), strict=True):
-        low, high = result.single[name].quantiles[0, [1, 3]] * 1e3
+        low, high = result.outputs[name].quantiles[[1, 3]] * 1e3
         assert (box.get_x(), box.get_x() + box.get_width()) == pytest.approx((low, high), rel=1e-12)
     line = above.lines[0].get_xdata()
-    np.testing.assert_allclose(line, result.single["last_amplitude"].quantiles[0, [0, 4]] * 1e3, rtol=1e-12)
+    np.testing.assert_allclose(line, result.outputs["last_amplitude"].quantiles[[0, 4]] * 1e3, rtol=1e-12)
 
 
 def test_speeds_that_differ_give_boxes(tmp_path: Path) -> None:
     study = STUDY.replace(", 101]", ", 5]") + '"speeds.stop" = { linspace = ["1400 rpm", "1600 rpm", 2] }\n'
-    result = sweep_result(study_in(tmp_path, study, LINEAR), tmp_path / "out", workers=0)
+    result = answer_sweep(study_in(tmp_path, study, LINEAR), tmp_path / "out", workers=0)
     assert result.speed is None and result.samples == 10
     assert [len(axes.patches) for axes in result.plot().axes] == [4, 1]
 
 
-def test_narrow_resonances_of_a_sweep_are_drawn_wider_below(found: SweepResult) -> None:
+def test_narrow_resonances_of_a_sweep_are_drawn_wider_below(found: SweepAnswer) -> None:
     """Quantiles in proportion to one another, about a peak of a hundredth of the speeds."""
     rpm = np.linspace(100.0, 6000.0, 3000)
     peak = 1e-3 / np.abs(1.0 - (rpm / 1000.0) ** 2 + 0.02j)

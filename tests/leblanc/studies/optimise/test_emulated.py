@@ -13,11 +13,11 @@ from leblanc.cli import main
 from leblanc.results.optimum import emulated
 from leblanc.scene.scene import Scene, load_scene
 from leblanc.scene.tasks import Optimisation
-from leblanc.studies.batch import answer_scenes
 from leblanc.studies.optimise.answers import with_volumes
 from leblanc.studies.optimise.emulated import EmulatedVibration, emulated_vibration
 from leblanc.studies.optimise.optimise import optimise_scene
-from leblanc.studies.sweep.sweep import run_sweep
+from leblanc.studies.sweep.batch import answer_scenes
+from leblanc.studies.sweep.study import run_sweep
 from meshes.errors import InputError
 from tests.oracles.sweeps import SCENE, SMOOTH_FILLS, study_in
 

@@ -12,7 +12,7 @@ import pytest
 from leblanc.cli import main
 from leblanc.studies.optimise.emulated import read_store as store_for_an_emulator
 from leblanc.studies.sweep.store import STORE, read_arrays, read_store
-from leblanc.studies.sweep.sweep import run_sweep
+from leblanc.studies.sweep.study import run_sweep
 from meshes.errors import InputError
 from tests.oracles.sweeps import STUDY, study_in, tree
 

@@ -11,11 +11,11 @@ import pytest
 from leblanc.cli import main
 from leblanc.scene.scene import scene_from_table
 from leblanc.scene.schema.paths import keys_of, with_values
-from leblanc.studies.batch import answer_scenes
+from leblanc.studies.sweep.batch import answer_scenes
 from leblanc.studies.sweep.emulator import emulate_store, emulated_outputs, varied_fields
+from leblanc.studies.sweep.plan import Sweep
 from leblanc.studies.sweep.store import Store
-from leblanc.studies.sweep.study import Sweep
-from leblanc.studies.sweep.sweep import run_sweep
+from leblanc.studies.sweep.study import run_sweep
 from meshes.errors import InputError
 from tests.oracles.sweeps import STUDY, study_in
 

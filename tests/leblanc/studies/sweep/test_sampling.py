@@ -15,8 +15,7 @@ from hypothesis import strategies as st
 from scipy import stats
 
 from leblanc.scene.scene import load_scene
-from leblanc.studies.sweep.sampling import sample_rows, sampling_note
-from leblanc.studies.sweep.study import (
+from leblanc.studies.sweep.plan import (
     Choice,
     Distribution,
     Levels,
@@ -26,6 +25,7 @@ from leblanc.studies.sweep.study import (
     Uniform,
     VariedField,
 )
+from leblanc.studies.sweep.sampling import sample_rows, sampling_note
 from tests.mutants import kills
 
 EXAMPLE = Path(__file__).parents[4] / "examples" / "horizontal_rig.toml"
@@ -44,16 +44,16 @@ def sweep_of(method: str, points: int, *distributions: Distribution, seed: int =
     return replace(base(), method=method, points=points, seed=seed, fields=fields)
 
 
-@kills("leblanc.studies.sweep.study:Uniform.at", "(self.high - self.low) * u", "self.high * u")
+@kills("leblanc.studies.sweep.plan:Uniform.at", "(self.high - self.low) * u", "self.high * u")
 @kills(
-    "leblanc.studies.sweep.study:Normal.at",
+    "leblanc.studies.sweep.plan:Normal.at",
     "self.mean + self.deviation",
     "self.mean - self.deviation",
 )
-@kills("leblanc.studies.sweep.study:LogNormal.at", "math.log(self.factor)", "math.log10(self.factor)")
-@kills("leblanc.studies.sweep.study:LogNormal.at", "self.median * np.exp(", "np.exp(")
+@kills("leblanc.studies.sweep.plan:LogNormal.at", "math.log(self.factor)", "math.log10(self.factor)")
+@kills("leblanc.studies.sweep.plan:LogNormal.at", "self.median * np.exp(", "np.exp(")
 @kills(
-    "leblanc.studies.sweep.study:Choice.at",
+    "leblanc.studies.sweep.plan:Choice.at",
     "np.floor(u * len(self.options))",
     "np.rint(u * len(self.options))",
 )

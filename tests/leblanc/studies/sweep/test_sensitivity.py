@@ -7,10 +7,10 @@ import math
 import numpy as np
 import pytest
 
-from leblanc.results.sweep import Sensitivity
+from leblanc.studies.sweep.answer import Sensitivity
+from leblanc.studies.sweep.plan import Levels, Uniform
 from leblanc.studies.sweep.sampling import sample_rows
-from leblanc.studies.sweep.study import Levels, Uniform
-from leblanc.studies.sweep.summary import given_data, saltelli_indices, sensitivity, variance_shares
+from leblanc.studies.sweep.sensitivity import given_data, saltelli_indices, sensitivity, variance_shares
 from meshes.arrays import Array
 from tests.leblanc.studies.sweep.test_sampling import sweep_of
 from tests.mutants import kills
@@ -42,17 +42,17 @@ def within(found: Array, interval: Array | None, expected: Array) -> None:
 
 
 @kills(
-    "leblanc.studies.sweep.summary:saltelli_indices",
+    "leblanc.studies.sweep.sensitivity:saltelli_indices",
     "np.array([first_order(a, values, b) for values in swapped])",
     "np.array([first_order(b, values, a) for values in swapped])",
 )
 @kills(
-    "leblanc.studies.sweep.summary:saltelli_indices",
+    "leblanc.studies.sweep.sensitivity:saltelli_indices",
     "np.array([total_order(a, values, b) for values in swapped])",
     "np.array([total_order(b, values, a) for values in swapped])",
 )
 @kills(
-    "leblanc.studies.sweep.summary:saltelli_indices",
+    "leblanc.studies.sweep.sensitivity:saltelli_indices",
     "swapped = whole[:, 1:-1].T",
     "swapped = whole[:, -2:0:-1].T",
 )
@@ -70,7 +70,7 @@ def test_ishigami_saltelli() -> None:
 
 
 @kills(
-    "leblanc.studies.sweep.summary:given_data",
+    "leblanc.studies.sweep.sensitivity:given_data",
     "output / np.std(output)",
     "np.sort(output) / np.std(output)",
 )
@@ -83,17 +83,17 @@ def test_ishigami_given_data() -> None:
 
 
 @kills(
-    "leblanc.studies.sweep.summary:variance_shares",
+    "leblanc.studies.sweep.sensitivity:variance_shares",
     "/ count) / np.sum(centred**2)",
     ") / np.sum(centred**2)",
 )
 @kills(
-    "leblanc.studies.sweep.summary:variance_shares",
+    "leblanc.studies.sweep.sensitivity:variance_shares",
     "centred = output - output.mean()",
     "centred = output",
 )
 @kills(
-    "leblanc.studies.sweep.summary:variance_shares",
+    "leblanc.studies.sweep.sensitivity:variance_shares",
     "np.unique(column, return_inverse=True)",
     "np.unique(np.sign(column), return_inverse=True)",
 )
@@ -110,7 +110,7 @@ def test_linear_grid() -> None:
 
 
 @kills(
-    "leblanc.studies.sweep.summary:given_data",
+    "leblanc.studies.sweep.sensitivity:given_data",
     "place + rng.random(output.size)",
     "rng.random(output.size)",
 )

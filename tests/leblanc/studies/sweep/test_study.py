@@ -12,7 +12,7 @@ from leblanc.cli import main
 from leblanc.scene.scene import Scene, scene_from_table
 from leblanc.scene.schema.load import SceneError
 from leblanc.scene.schema.paths import keys_of, rule_at, with_values
-from leblanc.studies.sweep.study import load_sweep
+from leblanc.studies.sweep.plan import load_sweep
 from tests.oracles.sweeps import SCENE, STUDY, study_in, write_study
 
 FIELD = '"rotor.mass" = { uniform = ["3 kg", "12 kg"] }'

@@ -18,29 +18,27 @@ from hypothesis import strategies as st
 
 import leblanc as lb
 from leblanc.cli import main
-from leblanc.results.sweep import QUANTILES
 from leblanc.scene.examples import example
 from leblanc.scene.scene import Scene, scene_from_table
 from leblanc.scene.schema.load import read_toml
 from leblanc.scene.schema.paths import keys_of, with_values
-from leblanc.studies.batch import Answers, answer_scenes
 from leblanc.studies.run.study import run_scene
+from leblanc.studies.sweep.answer import QUANTILES
 from leblanc.studies.sweep.block import (
     DONE,
     FAILED,
     NOT_CONVERGED,
-    OVER_SPEED,
     PENDING,
     STATUS,
+    Block,
+    answer_block,
     make_scenes,
-    outputs_of,
     scene_maker,
-    values_of,
 )
+from leblanc.studies.sweep.outputs import Answers, outputs_of
 from leblanc.studies.sweep.sampling import sample_rows
 from leblanc.studies.sweep.store import STORE, block_size, locked, open_store, read_store
-from leblanc.studies.sweep.summary import statistics, summarise
-from leblanc.studies.sweep.sweep import run_sweep
+from leblanc.studies.sweep.study import run_sweep, statistics, summarise
 from meshes.errors import InputError
 from tests.mutants import kills
 from tests.oracles.sweeps import ROOT, STUDY, added_mass_answers, study_in, tree, write_study
@@ -92,19 +90,11 @@ def test_a_sample_fails_where_its_scene_does_and_in_the_same_words(mass: float, 
 # -- answers -------------------------------------------------------------------------------------------------
 
 
+@kills("leblanc.studies.sweep.block:answer_block", "getattr(found, name)", "getattr(found, name)[::-1]")
+@kills("leblanc.studies.sweep.outputs:Answers.peak_growth", "np.fmax.reduce", "np.fmin.reduce")
+@kills("leblanc.studies.sweep.outputs:Answers.last_amplitude", "[:, -1]", "[:, 0]")
 @kills(
-    "leblanc.studies.sweep.block:answer_block",
-    "values[name][places] = value",
-    "values[name][places] = value[::-1]",
-)
-@kills(
-    "leblanc.studies.sweep.block:values_of",
-    'np.fmax.reduce(values["growth"], axis=1)',
-    'np.fmin.reduce(values["growth"], axis=1)',
-)
-@kills("leblanc.studies.sweep.block:values_of", "values[name][:, -1]", "values[name][:, 0]")
-@kills(
-    "leblanc.studies.sweep.sweep:_write",
+    "leblanc.studies.sweep.study:_write",
     "field_values(field, drawn[:, j])",
     "field_values(field, drawn[::-1, j])",
 )
@@ -204,12 +194,12 @@ def test_a_sample_that_breaks_a_rule_is_recorded_and_the_rest_is_done(
         assert reason.startswith("chambers.0.volume = 0.000")
         assert "must be at most what the chamber holds" in reason
     assert (found.reason.values[~too_much] == "").all()
-    printed = capsys.readouterr()
-    said = json.loads(printed.out)
+    said = json.loads(capsys.readouterr().out)
     assert said["failed"] == too_much.sum()
     (one,) = said["reasons"]
     assert one["samples"] == too_much.sum()
-    assert f"{too_much.sum()} of 256 samples: chambers.0.volume" in printed.err
+    assert main(["sweep", str(path), "--out", str(tmp_path / "out")]) == 0
+    assert f"note: {too_much.sum()} of 256 samples: chambers.0.volume" in capsys.readouterr().out
 
 
 def failing(scenes: Sequence[Scene]) -> Answers:
@@ -233,7 +223,7 @@ CHOICE = ONE_FIELD.replace("samples = 256", "samples = 64") + '"rotor.mass" = { 
 def test_an_unexpected_error_fells_its_own_sample_only(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("leblanc.studies.batch.answer_scenes", failing)
+    monkeypatch.setattr("leblanc.studies.sweep.batch.answer_scenes", failing)
     found = xr.open_zarr(run_all(tmp_path, CHOICE), consolidated=False).load()
     struck = found["rotor.mass"].values == 7.0
     assert struck.sum() == 16  # a quarter of a power of two of Sobol points
@@ -244,7 +234,7 @@ def test_an_unexpected_error_fells_its_own_sample_only(
 
 
 def test_what_converged_of_a_sample_is_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("leblanc.studies.batch.answer_scenes", unsettled)
+    monkeypatch.setattr("leblanc.studies.sweep.batch.answer_scenes", unsettled)
     found = xr.open_zarr(run_all(tmp_path, CHOICE), consolidated=False).load()
     struck = found["rotor.mass"].values == 7.0
     np.testing.assert_array_equal(found.status.values == NOT_CONVERGED, struck)
@@ -264,7 +254,7 @@ def test_what_converged_of_a_sample_is_kept(tmp_path: Path, monkeypatch: pytest.
 def test_without_any_sample_done_the_sweep_failed(
     line: str, code: int, said: str, tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("leblanc.studies.batch.answer_scenes", unsettled)
+    monkeypatch.setattr("leblanc.studies.sweep.batch.answer_scenes", unsettled)
     path = write_study(tmp_path, ONE_FIELD + line)
     assert main(["sweep", str(path), "--workers", "0", "--out", str(tmp_path / "out")]) == code
     assert said in capsys.readouterr().err
@@ -321,7 +311,7 @@ class Killed(BaseException):
 @pytest.mark.usefixtures("quick")
 def test_a_stopped_sweep_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A sweep stopped anywhere ends the same, and no finished block is answered again."""
-    import leblanc.studies.sweep.sweep as sweeps
+    import leblanc.studies.sweep.study as sweeps
     from leblanc.studies.sweep.store import write_block
 
     (tmp_path / "whole").mkdir()
@@ -342,7 +332,7 @@ def test_a_stopped_sweep_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     def stop(_: Path) -> None:
         raise Killed
 
-    monkeypatch.setattr("leblanc.studies.batch.answer_scenes", counting)
+    monkeypatch.setattr("leblanc.studies.sweep.batch.answer_scenes", counting)
     with monkeypatch.context() as patch:
         patch.setattr(sweeps, "write_block", two_blocks)
         patch.setattr("leblanc.studies.sweep.store._to_disk", lambda _: None)
@@ -385,9 +375,7 @@ def test_an_interrupt_that_python_drops_ends_the_sweep(
     monkeypatch.setattr(sys, "unraisablehook", lambda one: dropped.append(one.exc_type))
     sweep, before = study_in(tmp_path), signal.getsignal(signal.SIGINT)
     with pytest.raises(KeyboardInterrupt):
-        run_sweep(
-            sweep, tmp_path / "out", 0, progress=lambda done, _: Unlucky() and None if done == 128 else None
-        )
+        lb.sweep(sweep, tmp_path / "out", workers=0, progress=lambda done, _: done == 128 and Unlucky())
     assert not dropped  # nor does anything else tell of it
     assert signal.getsignal(signal.SIGINT) is before
     assert np.count_nonzero(read_store(tmp_path / "out" / STORE).read("status") == DONE) == 128
@@ -443,19 +431,17 @@ def test_what_is_no_store_is_not_read(tmp_path: Path) -> None:
 # -- what comes out ------------------------------------------------------------------------------------------
 
 
-@kills("leblanc.studies.sweep.summary:statistics", "known.std(ddof=1)", "known.std()")
-@kills("leblanc.studies.sweep.summary:statistics", "column[np.isfinite(column)]", "column[~np.isnan(column)]")
+@kills("leblanc.studies.sweep.study:statistics", "known.std(ddof=1)", "known.std()")
+@kills("leblanc.studies.sweep.study:statistics", "values[np.isfinite(values)]", "values[~np.isnan(values)]")
 def test_statistics_of_known_numbers() -> None:
     """Of the numbers 1 to 101: mean 51, variance 101 * 102/12, quantiles evenly spaced."""
     values = np.random.default_rng(1).permutation(np.append(np.arange(1.0, 102.0), [np.nan, np.inf]))
-    found = statistics(np.stack([values, 2.0 * values, np.full(103, np.nan)], axis=1))
-    assert found.count.tolist() == [101, 101, 0]
-    np.testing.assert_allclose(found.mean[:2], [51.0, 102.0], rtol=1e-14)
-    spread = math.sqrt(101.0 * 102.0 / 12.0)
-    np.testing.assert_allclose(found.deviation[:2], [spread, 2.0 * spread], rtol=1e-14)
-    np.testing.assert_allclose(found.quantiles[0], 1.0 + 100.0 * np.array(QUANTILES), rtol=1e-14)
-    assert np.isnan(found.mean[2])
-    assert np.isnan(found.quantiles[2]).all()
+    found, none = statistics(values), statistics(np.full(103, np.nan))
+    assert (found.count, none.count) == (101, 0)
+    assert found.mean == pytest.approx(51.0, rel=1e-14)
+    assert found.deviation == pytest.approx(math.sqrt(101.0 * 102.0 / 12.0), rel=1e-14)
+    np.testing.assert_allclose(found.quantiles, 1.0 + 100.0 * np.array(QUANTILES), rtol=1e-14)
+    assert np.isnan([none.mean, *none.quantiles]).all()
 
 
 @pytest.mark.usefixtures("quick")
@@ -473,9 +459,9 @@ def test_uncertainty_of_a_linear_output(tmp_path: Path) -> None:
     np.testing.assert_allclose(found.deviation, 0.1 * own, rtol=5e-3)
     np.testing.assert_allclose(found.quantiles[:, 2], own, rtol=1e-3)
     np.testing.assert_allclose(found.quantiles[:, 4], own * (1.0 + 0.16448536), rtol=1e-3)
-    assert summary.single["last_amplitude"].mean[0] == found.mean[-1]
+    assert summary.outputs["last_amplitude"].mean == found.mean[-1]
     assert summary.speed is not None
-    shares = summary.sensitivities["last_amplitude"]
+    shares = summary.sensitivity["last_amplitude"]
     assert shares is not None
     # Sorted up and down, a normal output has its tails at the turning points: ten harmonics hold 98 % of it.
     assert shares.first[0] > 0.97
@@ -515,14 +501,15 @@ def test_the_copy_holds_what_the_store_holds(tmp_path: Path) -> None:
 
 
 @kills(
-    "leblanc.studies.sweep.block:values_of",
-    "getattr(answers, name)\n",
-    'values[name.removeprefix("peak_")].max(axis=1)\n',
+    "leblanc.studies.sweep.block:answer_block",
+    "getattr(found, name)",
+    'getattr(found, name) if name != "peak_amplitude" else found.amplitude.max(axis=1)',
 )
 def test_peaks_are_those_between_the_speeds() -> None:
     """Two speeds, one on either side of the resonance."""
     scene = example("horizontal_rig").replace({"speeds.count": 2})
-    kept, record = values_of(answer_scenes([scene])), run_scene(scene)
+    record = run_scene(scene)
+    kept = answer_block(Block(0, scene.table(), (), ((),))).values
     for name, found in (("amplitude", record.peak), ("amplitude_dry", record.peak_dry)):
         (peak,) = kept[f"peak_{name}"]
         # The same roots from arrays of another shape, found to a relative 1e-10 or so.
@@ -531,5 +518,4 @@ def test_peaks_are_those_between_the_speeds() -> None:
 
 
 def test_every_output_of_a_batch_is_kept() -> None:
-    assert {field.name for field in fields(Answers)} <= {output.name for output in outputs_of(balls=True)}
-    assert {field.name for field in fields(Answers)} >= {output.name for output in OVER_SPEED}
+    assert {field.name for field in fields(Answers)} <= set(outputs_of(balls=True))

@@ -19,10 +19,9 @@ from leblanc.figures.drawing.page import (
     number,
     style,
 )
-from leblanc.results.sweep import SweepResult
 from leblanc.studies.run.figure import DRY, SHARE, WET, value_axis, wider_words
 from leblanc.studies.run.notes import plane_label
-from leblanc.text.sweep import alt
+from leblanc.studies.sweep.answer import SweepAnswer
 from meshes.arrays import Array
 
 Axes = Any  # matplotlib's, which no module that only draws imports
@@ -34,44 +33,47 @@ WIDE, NARROW = "#BFDCEC", "#7FB9DA"  # tints of the colour with liquid, apart in
 BARE = {"color": DRY, "linewidth": 1.0, "markerfacecolor": "white"}
 
 
-def sweep_figure(result: SweepResult) -> Figure:
+def sweep_figure(answer: SweepAnswer) -> Figure:
     """Amplitude over speed with the ranges of the samples; of one speed, or of speeds that differ, boxes."""
     with style():
         figure = Figure()
-        figure.alt = alt(result)
-        if result.speed is not None and result.speed.size > 1:
-            _over_speed(figure, result, result.speed)
+        if answer.speed is not None and answer.speed.size > 1:
+            what = "Median and ranges of the amplitude over speed; largest amplitude"
+            figure.alt = f"{what}: {answer.spread('peak_amplitude')}."
+            _over_speed(figure, answer, answer.speed)
         else:
-            _boxes(figure, result)
+            what = "Boxes with the quantiles of the amplitudes and of the growth rate"
+            figure.alt = f"{what}; amplitude at the last speed: {answer.spread('last_amplitude')}."
+            _boxes(figure, answer)
     return figure
 
 
-def _over_speed(figure: Figure, result: SweepResult, speed: Array) -> None:
+def _over_speed(figure: Figure, answer: SweepAnswer, speed: Array) -> None:
     """Median and two ranges at each speed, and the median without liquid."""
     order = np.argsort(speed, kind="stable")
-    wet = result.over_speed["amplitude"].quantiles[order] * MM
-    dry = result.over_speed["amplitude_dry"].quantiles[order, 2] * MM
+    wet = answer.over_speed["amplitude"].quantiles[order] * MM
+    dry = answer.over_speed["amplitude_dry"].quantiles[order, 2] * MM
     drawn = thin(np.column_stack([wet, dry]), COLUMNS)
     rpm, wet, dry = speed[order][drawn] * RPM, wet[drawn], dry[drawn]
     limits = float(rpm[0]), float(rpm[-1])
     axes: Any = figure.add_axes((0, 0, 1, 1))
-    _draw(axes, result, (rpm, wet, dry), limits)
+    _draw(axes, answer, (rpm, wet, dry), limits)
     add_rate_axis(axes)
     text = "Amplitude of the deflection: median and ranges of the samples at each speed."
     spans = windows([(rpm, line) for line in (*wet.T, dry)], limits)
     if not spans:
         axes.set_xlabel("Speed (rpm)")
-        lay_out(figure, [[axes]], [PANEL], OVER_SPEED, _caption(result, text))
+        lay_out(figure, [[axes]], [PANEL], OVER_SPEED, _caption(answer, text))
         return
     wide = [figure.add_axes((0, 0, 1, 1), label=f"from {number(span[0])} rpm") for span in spans]
     for panel, span in zip(wide, spans, strict=True):
         inside = slice(max(int(np.searchsorted(rpm, span[0])) - 1, 0), int(np.searchsorted(rpm, span[1])) + 1)
-        _draw(panel, result, (rpm[inside], wet[inside], dry[inside]), span)
+        _draw(panel, answer, (rpm[inside], wet[inside], dry[inside]), span)
     heights = (SHARE * PANEL, SHARE * PANEL)
-    add_windows(figure, [axes], [wide], heights, _caption(result, f"{text} {wider_words()}"))
+    add_windows(figure, [axes], [wide], heights, _caption(answer, f"{text} {wider_words()}"))
 
 
-def _draw(axes: Axes, result: SweepResult, lines: tuple[Array, Array, Array], limits: Span) -> None:
+def _draw(axes: Axes, answer: SweepAnswer, lines: tuple[Array, Array, Array], limits: Span) -> None:
     """Ranges and medians over a span of speed: rpm, quantiles with liquid, median without."""
     rpm, wet, dry = lines
     bands = {"linewidth": 0, "zorder": 1.5}
@@ -82,16 +84,16 @@ def _draw(axes: Axes, result: SweepResult, lines: tuple[Array, Array, Array], li
     axes.plot(rpm, dry, label="median without liquid", marker="o", markevery=every, **BARE)
     value_axis(axes, 0.0, [(rpm, line) for line in (*wet.T, dry)])
     axes.set_xlim(*limits)
-    axes.set_ylabel(f"Amplitude{plane_label('chamber' in result.plane) if result.plane else ''} ({MM_PEAK})")
+    axes.set_ylabel(f"Amplitude{plane_label('chamber' in answer.plane) if answer.plane else ''} ({MM_PEAK})")
     axes.xaxis.set_major_formatter(number)
     axes.yaxis.set_major_formatter(number)
     axes.yaxis.set_minor_formatter("")
 
 
-def _boxes(figure: Figure, result: SweepResult) -> None:
+def _boxes(figure: Figure, answer: SweepAnswer) -> None:
     """A box for each amplitude, and one for the growth rate on an axis of its own."""
     last = [("last_amplitude", "with liquid"), ("last_amplitude_dry", "without liquid")]
-    if result.speeds > 1:
+    if answer.speeds > 1:
         last = [(name, f"at the last speed,\n{text}") for name, text in last]
         peaks = [("peak_amplitude", "with liquid"), ("peak_amplitude_dry", "without liquid")]
         last = [(name, f"largest,\n{text}") for name, text in peaks] + last
@@ -101,7 +103,7 @@ def _boxes(figure: Figure, result: SweepResult) -> None:
     for outputs, label, unit in panels:
         axes: Any = figure.add_axes((0, 0, 1, 1), label=label)
         for k, (name, _) in enumerate(outputs):
-            _box(axes, float(k), result.single[name].quantiles[0] * unit, dry=name.endswith("_dry"))
+            _box(axes, float(k), answer.outputs[name].quantiles * unit, dry=name.endswith("_dry"))
         axes.set_yticks(range(len(outputs)), [text for _, text in outputs])
         axes.set_ylim(len(outputs) - 0.5, -0.5)
         axes.grid(visible=False, axis="y")
@@ -110,7 +112,7 @@ def _boxes(figure: Figure, result: SweepResult) -> None:
         rows.append([axes])
         heights.append(ROW * (len(outputs) + 0.3))
     text = "Boxes: 25 to 75 % of the samples, with the median; lines: 5 to 95 %."
-    lay_out(figure, rows, heights, BOXES, _caption(result, text))
+    lay_out(figure, rows, heights, BOXES, _caption(answer, text))
 
 
 def _box(axes: Axes, row: float, quantiles: Array, dry: bool) -> None:
@@ -126,11 +128,11 @@ def _box(axes: Axes, row: float, quantiles: Array, dry: bool) -> None:
     axes.plot([middle, middle], [row - 0.25, row + 0.25], color=colour, linewidth=2.0, zorder=3)
 
 
-def _caption(result: SweepResult, text: str) -> Caption:
+def _caption(answer: SweepAnswer, text: str) -> Caption:
     """What is shown, the scene, the samples, what varies."""
-    varied = ", ".join(map(one_line, result.fields))
+    varied = ", ".join(map(one_line, answer.fields))
     return Caption(
-        f"{text} Amplitudes {result.plane}." if result.plane else text,
-        f"Scene: {one_line(result.scene)}. Samples: {result.done} of {result.samples} done, {result.method}, "
-        f"seed {result.seed}. Varied: {varied}.",
+        f"{text} Amplitudes {answer.plane}." if answer.plane else text,
+        f"Scene: {one_line(answer.scene)}. Samples: {answer.done} of {answer.samples} done, {answer.method}, "
+        f"seed {answer.seed}. Varied: {varied}.",
     )

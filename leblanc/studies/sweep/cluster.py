@@ -1,35 +1,19 @@
-"""A sweep from start to end: what is missing in the store is answered and written, block by block.
-
-Blocks are answered in this process, in local ones or on a cluster: the only door to dask.
-"""
+"""Blocks of a sweep answered in this process, in local ones or on a cluster: the only door to dask."""
 
 from __future__ import annotations
 
 import atexit
-import functools
 import logging
 import signal
-import sys
-import threading
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
-from dataclasses import replace
 from itertools import islice
-from pathlib import Path
 from tempfile import TemporaryDirectory
-from types import FrameType
 from typing import Any
-
-import numpy as np
 
 from leblanc.core.answer import NotConverged
 from leblanc.core.interrupts import held
-from leblanc.scene.schema.load import SceneError, SceneFault, shown
-from leblanc.studies.held.holding import cores
 from leblanc.studies.sweep.block import Block, BlockAnswer, answer_block, own_versions, reason_of
-from leblanc.studies.sweep.sampling import Rows, sample_rows
-from leblanc.studies.sweep.store import Store, field_values, locked, open_store, write_block
-from leblanc.studies.sweep.study import Sweep
 from meshes.errors import InputError
 
 _AHEAD = 2  # blocks in flight for each thread: one at work, one waiting
@@ -118,12 +102,12 @@ def _connected(address: str) -> Iterator[Any]:
         client = Client(address, timeout=_PATIENCE)
     except (OSError, ValueError) as error:
         allowed = "the address of a Dask scheduler that answers, such as tcp://host:8786"
-        raise InputError("--scheduler", address, allowed) from error
+        raise InputError("scheduler", address, allowed) from error
     with client:
         try:
             client.wait_for_workers(1, timeout=_PATIENCE)
         except TimeoutError as error:
-            raise InputError("--scheduler", address, "a cluster with at least one worker") from error
+            raise InputError("scheduler", address, "a cluster with at least one worker") from error
         yield client
 
 
@@ -200,115 +184,4 @@ def _checked(answer: BlockAnswer) -> BlockAnswer:
 
 def _other_version(found: str) -> InputError:
     needed = ", ".join(f"{package} {version}" for package, version in own_versions().items())
-    return InputError("--scheduler", found, f"a cluster whose workers have {needed}")
-
-
-Progress = Callable[[int, int], None]
-
-
-def run_sweep(
-    sweep: Sweep,
-    folder: Path,
-    workers: int | None = None,
-    scheduler: str | None = None,
-    fresh: bool = False,
-    progress: Progress | None = None,
-) -> Store:
-    """Answer every sample that the store does not hold yet.
-
-    It may be ended at any moment, in any way; the same call continues from the finished blocks, and the store
-    comes out the same, byte for byte, whatever the workers.
-    """
-    if fresh and scheduler is not None:
-        require_scheduler(scheduler)  # before the old store is gone
-    with locked(folder):
-        store = open_store(folder, sweep, fresh)
-        missing = store.pending
-        finished = sweep.samples - sum(stop - start for start, stop in map(store.bounds, missing))
-        if progress is not None:
-            progress(finished, sweep.samples)
-        if not missing:
-            return store
-        _probe(sweep)
-        rows = sample_rows(sweep)
-        blocks = (_block(sweep, store, rows, number) for number in missing)
-        with _interrupts() as interrupted:
-            for answer in answer_blocks(blocks, _workers(workers, len(missing)), scheduler):
-                _write(sweep, store, rows, answer)
-                start, stop = store.bounds(answer.number)
-                finished += stop - start
-                if progress is not None:
-                    progress(finished, sweep.samples)
-                if interrupted.is_set():
-                    raise KeyboardInterrupt
-    return replace(store, pending=())
-
-
-@contextmanager
-def _interrupts() -> Iterator[threading.Event]:
-    """Notices a Ctrl-C that was lost: Python drops one that comes while it destroys an object."""
-    seen = threading.Event()
-    if threading.current_thread() is not threading.main_thread():
-        yield seen  # only the main thread may set handlers
-        return
-    before, complain = signal.getsignal(signal.SIGINT), sys.unraisablehook
-
-    def note(number: int, frame: FrameType | None) -> None:
-        seen.set()
-        if callable(before):
-            before(number, frame)
-
-    if callable(before):
-        note = functools.wraps(before)(
-            note
-        )  # tells `leblanc.core.interrupts` that it passes on what it hears
-
-    def drop(what: sys.UnraisableHookArgs) -> None:
-        if what.exc_type is not KeyboardInterrupt:
-            complain(what)
-
-    if before is not signal.SIG_IGN:
-        signal.signal(signal.SIGINT, note)
-    sys.unraisablehook = drop
-    try:
-        yield seen
-    finally:
-        signal.signal(signal.SIGINT, before)
-        sys.unraisablehook = complain
-
-
-def _workers(wanted: int | None, blocks: int) -> int:
-    """As many as there are cores and work; a single block needs no process of its own."""
-    if wanted is not None:
-        return wanted
-    return 0 if blocks == 1 else min(cores(), blocks)
-
-
-def _probe(sweep: Sweep) -> None:
-    """Answer the scene itself: what no sample can answer is one fault then, not as many as samples."""
-    from leblanc.studies.batch import answer_scenes
-
-    if any(field.path == "model.liquid" for field in sweep.fields):
-        return
-    try:
-        answer_scenes([sweep.scene])
-    except InputError as error:
-        raise SceneError(
-            [SceneFault(sweep.scene_path, error.field, shown(error.value), error.allowed)]
-        ) from error
-
-
-def _block(sweep: Sweep, store: Store, rows: Rows, number: int) -> Block:
-    drawn = rows(*store.bounds(number))
-    values = tuple(
-        tuple(field.value(value) for field, value in zip(sweep.fields, row, strict=True)) for row in drawn
-    )
-    return Block(number, sweep.table, tuple(field.keys for field in sweep.fields), values)
-
-
-def _write(sweep: Sweep, store: Store, rows: Rows, answer: BlockAnswer) -> None:
-    drawn = rows(*store.bounds(answer.number))
-    variables = {field.path: field_values(field, drawn[:, j]) for j, field in enumerate(sweep.fields)}
-    variables |= answer.values
-    variables["reason"] = np.array(answer.reason, dtype=object)
-    write_block(store, answer.number, variables, answer.status)
+    return InputError("scheduler", found, f"a cluster whose workers have {needed}")

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from leblanc.scene.scene import JeffcottRotor, Scene
 from leblanc.studies.balls.study import run_balls
@@ -16,46 +15,12 @@ from leblanc.studies.models.liquid import synchronous_model
 from leblanc.studies.peaks import responses_between
 from leblanc.studies.run.answer import phase
 from leblanc.studies.run.study import run_scene
-from meshes.arrays import Array, Flags, Index
+from leblanc.studies.sweep.outputs import Answers, over_speed
+from meshes.arrays import Index
 from meshes.errors import InputError
 from solvers.synchronous.peaks import highest
 from solvers.synchronous.response import Response, joined, machine_responses
 from solvers.whirl.growth import machines_growth
-
-
-@dataclass(frozen=True)
-class Answers:
-    """Outputs of `run` of n scenes at s speeds each, SI; all shapes (n, s) but those of the peaks, (n,)."""
-
-    speed: Array  #: spin speed, rad/s
-    amplitude: Array  #: of the axis with and without liquid, m
-    amplitude_dry: Array
-    phase: Array  #: angle from the unbalance to the deflection, rad, negative where it lags
-    liquid_offset: Array  #: distance of the liquid's centre of mass from the rotation axis, m
-    liquid_angle: Array  #: angle from the unbalance to it, rad
-    growth: Array  #: of the whirl that grows most by itself, 1/s and rad/s
-    whirl_speed: Array
-    dry_patch: Flags  #: as in `solvers.synchronous.response.Response`; stable against whirls as well
-    stable: Flags
-    in_range: Flags
-    converged: Flags
-    model: NDArray[np.str_]  #: of the liquid, by name
-    #: of the model taken, relative, of amplitude and liquid the larger one; nan where unknown
-    error_estimate: Array
-    #: largest over the range of speeds at which the answer holds, found between them as well, m; with balls
-    #: at the speeds themselves
-    peak_amplitude: Array
-    peak_amplitude_dry: Array
-    #: with balls, else None: amplitude without them, m, how they rest, and whether the balanced state is
-    #: stable
-    amplitude_without: Array | None = None
-    state: NDArray[np.str_] | None = None
-    balanced: Flags | None = None
-    #: with balls, else None: speed from which on it is, rad/s, nan if at none, shape (n,)
-    balanced_from: Array | None = None
-
-
-_OF_BALLS = ("amplitude_without", "state", "balanced")  # and their first speed, which starts alike
 
 
 def answer_scenes(scenes: Sequence[Scene]) -> Answers:
@@ -98,8 +63,7 @@ def _bare(scene: Scene) -> Answers:
 def _with_balls(scene: Scene) -> Answers:
     """Answers of one scene with balls as `run` gives them: the state reported at each speed."""
     result = run_balls(scene, families=False)
-    over = [field.name for field in fields(Answers) if not field.name.startswith("peak_")]
-    known = {name: getattr(result, name, None) for name in over[:-1]}
+    known = {name: getattr(result, name, None) for name in over_speed(balls=True)}
     nothing, inside = np.full(result.speed.shape, np.nan), np.ones(result.speed.shape, dtype=bool)
     known |= {"in_range": inside} if known["in_range"] is None else {}
     found: dict[str, Any] = {
@@ -161,8 +125,7 @@ def _single(scene: Scene) -> Answers:
     """Answers of one scene as `run` gives them."""
     result = run_scene(scene)
     nothing = np.full(result.speed.shape, np.nan)
-    over = [field.name for field in fields(Answers) if not field.name.startswith(("peak_", *_OF_BALLS))]
-    found: dict[str, Any] = {name: getattr(result, name) for name in over}
+    found: dict[str, Any] = {name: getattr(result, name) for name in over_speed(balls=False)}
     found["peak_amplitude"] = np.array(result.peak["amplitude"])
     found["peak_amplitude_dry"] = np.array(result.peak_dry["amplitude"])
     return Answers(**{name: (nothing if value is None else value)[None] for name, value in found.items()})

@@ -1,0 +1,237 @@
+"""What `sweep` answers: counts of samples, statistics and sensitivities of their outputs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from leblanc.core.answer import Answer
+from leblanc.core.blocks import Block, Notes, Table, Words
+from leblanc.core.netcdf import NamedArrays
+from leblanc.core.notes import one_line
+from leblanc.core.quantities import plain
+from leblanc.core.question import called
+from leblanc.core.units import ANGULAR_SPEED, LENGTH, MASS, Unit, amplitude_sentence, amplitudes_are, unit_for
+from leblanc.scene.schema.load import SceneError, SceneFault
+from leblanc.studies.sweep.outputs import single_outputs
+from meshes.arrays import Array
+from meshes.quantity import Q
+
+QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
+_HEAD = ("Output", "mean", "deviation", "5 %", "50 %", "95 %", "unit")
+_SHARED = ("peak_amplitude", "last_amplitude", "peak_growth")  # whose sensitivities are shown
+_SHOWN = 10  # kinds of reasons
+
+
+@dataclass(frozen=True)
+class Statistics:
+    """Of an output over the samples that have it; of one over speed at each speed, in arrays."""
+
+    count: NDArray[np.int64] | int  #: samples
+    mean: Array | float  #: nan without samples; the deviation of a single sample is 0
+    deviation: Array | float
+    quantiles: Array  #: at the shares `QUANTILES`, the last axis
+
+    def to_json(self) -> dict[str, Any]:
+        """Each number by its name."""
+        shares = {f"quantile_{share:g}": self.quantiles[..., k] for k, share in enumerate(QUANTILES)}
+        return {"samples": self.count, "mean": self.mean, "deviation": self.deviation, **shares}
+
+
+@dataclass(frozen=True)
+class Sensitivity:
+    """Shares of an output's variance, one for each varied field."""
+
+    method: str  #: in words
+    used: int  #: samples that went in; for "saltelli" points of the design
+    first: Array  #: share that the field explains by itself, shape (fields,)
+    #: share that is gone once the field is known besides all others; None where the samples are too few
+    total: Array | None = None
+    #: half widths of the 95 % intervals; None where the design is complete
+    first_interval: Array | None = None
+    total_interval: Array | None = None
+
+
+@dataclass(frozen=True)
+class EmulatorError:
+    """Error of an emulator on samples that it was not shown [theory: emulator, eq. 4]."""
+
+    root_mean_square: float  #: relative to the output for positive outputs, otherwise to its spread
+    largest: float
+    spread: float  #: standard deviation of the output in the same measure, what knowing nothing leaves
+    #: share of the samples within two of the standard deviations that the emulator itself claims
+    within_two: float
+    samples: int  #: that were predicted
+
+
+@dataclass(frozen=True)
+class Emulated:
+    """An emulator of an output."""
+
+    settled: Annotated[bool, Q(text="the search for its correlation lengths has come to an end")]
+    error: Annotated[EmulatorError, Q(text="on samples that it was not shown")]
+    positive: bool  #: so is the output, of which the errors are then shares
+
+    def words(self) -> str:
+        """How far it is off."""
+        error, of = self.error, "" if self.positive else " of the spread"
+        return (
+            f"off by {error.root_mean_square:.2g}{of} on unseen samples (root mean square; "
+            f"largest {error.largest:.2g}, by the mean alone {error.spread:.2g}), "
+            f"{error.within_two:.0%} within twice what it claims"
+        )
+
+
+@dataclass(frozen=True)
+class NotEmulated:
+    """Why an output has no emulator."""
+
+    reason: str
+
+    def words(self) -> str:
+        """The same, in a row of many."""
+        return f"none; {self.reason}"
+
+
+@dataclass(frozen=True)
+class Reason:
+    """Why some samples are not done."""
+
+    reason: str  #: an example of all that differ in numbers only
+    samples: int  #: how many
+
+
+@dataclass(frozen=True)
+class SweepAnswer(Answer):
+    """What many scenes answered.
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> found = lb.sweep("study.toml", workers=0)  # doctest: +SKIP
+    >>> found.done, found.to_dataset()["last_amplitude"]  # doctest: +SKIP
+    """
+
+    command = "sweep"
+    figure = "leblanc.studies.sweep.figure:sweep_figure"
+
+    store: Annotated[Path, Q(text="folder of the samples")]
+    name: Annotated[str, Q(text="of the study")]
+    method: Annotated[str, Q(text="of sampling")]
+    seed: Annotated[int, Q(text="of the random numbers")]
+    fields: Annotated[tuple[str, ...], Q(text="paths of what varies")]
+    samples: Annotated[int, Q(text="how many scenes")]
+    done: Annotated[int, Q(text="samples answered")]
+    failed: Annotated[int, Q(text="samples without an answer")]
+    not_converged: Annotated[int, Q(text="samples not converged at every speed")]
+    reasons: Annotated[tuple[Reason, ...], Q(text="why samples are not done, the most frequent first")]
+    outputs: Annotated[Mapping[str, Statistics], Q(text="statistics of outputs that are one number a sample")]
+    over_speed: Annotated[Mapping[str, Statistics], Q(text="statistics of the others at each speed")]
+    #: of outputs that are one number a sample; None where the samples are too few
+    sensitivity: Annotated[
+        Mapping[str, Sensitivity | None], Q(text="shares of the variance by varied field, in their order")
+    ]
+    digest: Annotated[str, Q(text="fingerprint of the sweep")]
+    scene: str  #: name of the scene that the samples are made from
+    speeds: int  #: at which each sample is answered, how many
+    speed: Array | None  #: of all samples, rad/s; None where it differs between them
+    plane: str = ""  #: of the amplitudes, in words; empty for rotors that move in one plane
+    netcdf: bool = False  #: its file is written
+    emulators: Annotated[
+        Mapping[str, Emulated | NotEmulated] | None,
+        Q(text="errors of an emulator of each output, or why there is none", when="emulators"),
+    ] = None
+
+    @property
+    def data(self) -> str:  # type: ignore[override]
+        return "sweep.nc" if self.netcdf else ""
+
+    @property
+    def faults(self) -> tuple[str, ...]:
+        return ("no sample converged at every speed",) if self.not_converged == self.samples else ()
+
+    def fault(self, where: str) -> Exception | None:
+        if self.failed == self.samples:
+            return SceneError([SceneFault(where, "vary", None, "such that some sample is a scene")])
+        return super().fault(where)
+
+    @property
+    def closing(self) -> str:
+        return f"{self.name}: {self.done} of {self.samples} samples done"
+
+    def to_json(self) -> dict[str, Any]:
+        found = super().to_json()
+        return found | {"over_speed": {"speed": plain(self.speed)} | found["over_speed"]}
+
+    def named_arrays(self) -> NamedArrays:
+        """The store over the dimensions `sample` and `speed`; read whole, at each call."""
+        found: NamedArrays = called("leblanc.studies.sweep.store:read_arrays")(self.store)
+        return found
+
+    def blocks(self) -> tuple[Block, ...]:
+        emulators = (self.emulators or {}).items()
+        outputs = Table([self._row(name) for name in self.outputs], _HEAD, right=True)
+        counts = [f"{one.samples} of {self.samples} samples: {one.reason}" for one in self.reasons[:_SHOWN]]
+        return (
+            Table(self._facts(), shown="page"),
+            outputs,
+            Words(amplitude_sentence(self.plane)),
+            *self._shares(),
+            *(Words(f"emulator of {name.replace('_', ' ')}: {one.words()}") for name, one in emulators),
+            Notes(counts),
+            Words(f"The data are in {self.store}"),
+        )
+
+    def _facts(self) -> list[tuple[str, str]]:
+        rows = [
+            ("Scene", one_line(self.scene)),
+            ("Samples done", f"{self.done} of {self.samples}, {self.method}, seed {self.seed}"),
+            ("Varied", ", ".join(self.fields)),
+            amplitudes_are(self.plane),
+        ]
+        if self.speeds > 1:
+            rows.append(("Largest amplitude", self.spread("peak_amplitude")))
+            rows.append(("Largest amplitude without liquid", self.spread("peak_amplitude_dry")))
+        rows.append(("Amplitude at the last speed", self.spread("last_amplitude")))
+        return [*rows, ("The same without liquid", self.spread("last_amplitude_dry"))]
+
+    def spread(self, name: str) -> str:
+        """Median of an amplitude and the range of nine samples in ten."""
+        sizes = [float(size) for size in self.outputs[name].quantiles[[0, 2, 4]]]
+        unit = unit_for(LENGTH, *sizes)
+        low, middle, high = map(unit.number, sizes)
+        return f"{middle} {unit.name}, nine in ten from {low} to {high} {unit.name}"
+
+    def _row(self, name: str) -> tuple[str, ...]:
+        """Statistics of one output, as `_HEAD` heads them."""
+        values, written = self.outputs[name], single_outputs(balls=True)[name].unit
+        numbers = [float(one) for one in (values.mean, values.deviation, *values.quantiles[[0, 2, 4]])]
+        unit = Unit(written.replace("s-1", "1/s"), 1.0)
+        for dimension in (LENGTH, MASS, ANGULAR_SPEED):
+            if written == dimension.unit.replace("rad/s", "rad s-1"):
+                unit = unit_for(dimension, *numbers)
+        return (name.replace("_", " "), *map(unit.number, numbers), unit.name)
+
+    def _shares(self) -> list[Table]:
+        """Shares of the variance, a row for each field."""
+        found = []
+        for name in _SHARED:
+            indices = self.sensitivity[name]
+            if indices is None or (name == "peak_amplitude" and self.speeds == 1):
+                continue
+            rows = []
+            for j, field in enumerate(self.fields):
+                row = [field, f"{indices.first[j]:.3f}"]
+                if indices.first_interval is not None:
+                    row[-1] += f" +- {indices.first_interval[j]:.3f}"
+                if indices.total is not None and indices.total_interval is not None:
+                    row.append(f"{indices.total[j]:.3f} +- {indices.total_interval[j]:.3f}")
+                rows.append(row)
+            title = f"Share of the variance of {name.replace('_', ' ')} ({indices.method})"
+            found.append(Table(rows, ("Field", "first", "total")[: len(rows[0])], right=True, title=title))
+        return found

@@ -1,0 +1,416 @@
+"""A sweep: a scene, what varies in it by which distribution and how it is sampled, read from a study file."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import asdict, dataclass, replace
+from os import PathLike
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+from pydantic import Field, PlainValidator, ValidationError
+
+from leblanc.core import units
+from leblanc.core.files import native, path_text
+from leblanc.core.units import allowed_as_typed
+from leblanc.scene.scene import WITHOUT_CHAMBERS, Scene, scene_from_table
+from leblanc.scene.schema.load import (
+    SceneError,
+    SceneFault,
+    field_path,
+    read_scene,
+    read_toml,
+    shown,
+    with_lines,
+)
+from leblanc.scene.schema.part import Conflict, Part, allowed_at, faults_of
+from leblanc.scene.schema.paths import Keys, keys_of, rule_at
+from leblanc.scene.schema.rules import Entries, Quantity, Refused, Text, Whole, one_of, whole
+from meshes.arrays import Array
+from meshes.errors import InputError
+
+MAX_LEVELS = 1_000_000
+MAX_CHOICES = 1000
+
+_INSIDE = (2.0**-54, 1.0 - 2.0**-53)  # where every inverse distribution function is finite
+
+
+@dataclass(frozen=True)
+class Uniform:
+    """Evenly spread from `low` to `high`."""
+
+    low: float
+    high: float
+
+    def at(self, u: Array) -> Array:
+        """Value below which the share u lies [theory: sampling, eq. 1]."""
+        return np.asarray(self.low + (self.high - self.low) * u)
+
+
+@dataclass(frozen=True)
+class Normal:
+    """Gauss's bell around `mean` with a standard deviation."""
+
+    mean: float
+    deviation: float
+
+    def at(self, u: Array) -> Array:
+        """Value below which the share u lies [theory: sampling, eq. 2]."""
+        return np.asarray(self.mean + self.deviation * _standard_normal(u))
+
+
+@dataclass(frozen=True)
+class LogNormal:
+    """Its logarithm is normal: two thirds lie within `factor` of the `median`, up and down."""
+
+    median: float
+    factor: float
+
+    def at(self, u: Array) -> Array:
+        """Value below which the share u lies [theory: sampling, eq. 3]."""
+        return np.asarray(self.median * np.exp(math.log(self.factor) * _standard_normal(u)))
+
+
+@dataclass(frozen=True)
+class Choice:
+    """One of a few values, each as likely."""
+
+    options: tuple[Any, ...]  #: as a scene writes them; a quantity in SI
+
+    @property
+    def categorical(self) -> bool:
+        """Some option is no number."""
+        return not all(isinstance(option, float | int) for option in self.options)
+
+    def at(self, u: Array) -> Array:
+        """Number of the option at the share u [theory: sampling, eq. 4]."""
+        return np.minimum(np.floor(u * len(self.options)), len(self.options) - 1.0)
+
+    def levels(self) -> Array:
+        """Numbers of all options."""
+        return np.arange(len(self.options), dtype=np.float64)
+
+
+@dataclass(frozen=True)
+class Levels:
+    """Evenly spaced values of a grid, both ends among them."""
+
+    first: float
+    last: float
+    count: int
+
+    def levels(self) -> Array:
+        """All values."""
+        return np.linspace(self.first, self.last, self.count)
+
+
+Distribution = Uniform | Normal | LogNormal | Choice | Levels
+
+
+def _standard_normal(u: Array) -> Array:
+    """Quantiles of the standard normal distribution."""
+    from scipy.special import ndtri
+
+    return np.asarray(ndtri(np.clip(u, *_INSIDE)))
+
+
+def _quantity(rule: Any, kind: str) -> Quantity:
+    """The rule of a field that takes any number between bounds."""
+    if not isinstance(rule, Quantity):
+        raise Refused(f"choice, since the field must be {rule.allowed}: it has no {kind}")
+    return rule
+
+
+def _several(given: Any, count: int, what: str) -> list[Any]:
+    return list(Entries(count, count, what)(given))
+
+
+def _uniform(given: Any, rule: Any) -> Uniform:
+    rule = _quantity(rule, "uniform")
+    low, high = map(rule, _several(given, 2, f"values, lowest and highest, each {rule.allowed}"))
+    if low >= high:
+        raise Refused("a lowest value below the highest")
+    return Uniform(low, high)
+
+
+def _normal(given: Any, rule: Any) -> Normal:
+    rule = _quantity(rule, "normal")
+    mean, spread = _several(given, 2, f"values, mean and standard deviation, each {rule.allowed}")
+    deviation = units.parse(spread, rule.dimension)
+    if deviation <= 0.0:
+        raise Refused("a mean and a standard deviation above 0")
+    return Normal(rule(mean), deviation)
+
+
+def _lognormal(given: Any, rule: Any) -> LogNormal:
+    rule = _quantity(rule, "lognormal")
+    middle, spread = _several(given, 2, f"values, median and factor; the median {rule.allowed}")
+    median, factor = rule(middle), Quantity(units.NUMBER, 1.0, 1e6)(spread)
+    if median <= 0.0 or factor <= 1.0:
+        raise Refused("a median above 0 and a factor above 1")
+    return LogNormal(median, factor)
+
+
+def _choice(given: Any, rule: Any) -> Choice:
+    options = Entries(1, MAX_CHOICES, f"values, each {rule.allowed}")(given)
+    checked = [rule(option) for option in options]
+    return Choice(tuple(checked) if isinstance(rule, Quantity) else tuple(options))
+
+
+def _linspace(given: Any, rule: Any) -> Levels:
+    rule = _quantity(rule, "linspace")
+    first, last, count = _several(
+        given, 3, f"values, first, last and how many; first and last {rule.allowed}"
+    )
+    levels = Levels(rule(first), rule(last), Whole(2, MAX_LEVELS)(count))
+    if levels.first == levels.last:
+        raise Refused("two different ends")
+    return levels
+
+
+KINDS: dict[str, Callable[[Any, Any], Distribution]] = {
+    "uniform": _uniform,
+    "normal": _normal,
+    "lognormal": _lognormal,
+    "choice": _choice,
+    "linspace": _linspace,
+}
+
+# How a study file writes each, and what it means.
+FORMS: dict[str, tuple[str, str]] = {
+    "uniform": ("{ uniform = [low, high] }", "evenly spread between the two"),
+    "normal": ("{ normal = [mean, deviation] }", "Gauss's bell with that mean and standard deviation"),
+    "lognormal": (
+        "{ lognormal = [median, factor] }",
+        "two thirds within that factor of the median",
+    ),
+    "choice": ("{ choice = [a, b, ...] }", "each as likely; the only one for words; in a grid all of them"),
+    "linspace": (
+        "{ linspace = [first, last, count] }",
+        "evenly spaced, with both ends; only in a grid",
+    ),
+}
+
+METHODS = ("grid", "latin_hypercube", "sobol", "random", "saltelli")
+MAX_SAMPLES = 10_000_000
+MAX_VARIED = 1000  # fields
+MAX_SEED = 2**63 - 1  # the largest whole number of TOML
+
+_EXAMPLE = '"rotor.mass" = { uniform = ["3 kg", "12 kg"] }'
+
+
+class Varying:
+    """[vary]: fields of the scene by their paths, each with one distribution."""
+
+    allowed = f"a table of 1 to {MAX_VARIED} fields of the scene by their paths, such as {_EXAMPLE}"
+
+    def __call__(self, value: object) -> dict[str, Any]:
+        """The fields, each with what the file says about it."""
+        if isinstance(value, dict) and 1 <= len(value) <= MAX_VARIED:
+            return value
+        raise Refused(self.allowed)
+
+
+class Study(Part):
+    """The content of a study file: many scenes that differ in a few values."""
+
+    scene: Annotated[str, PlainValidator(Text(4000))] = Field(
+        description="file of the base, its path counts from the study's"
+    )
+    method: Annotated[str, one_of(*METHODS)] = Field(description="how the scenes are chosen")
+    samples: Annotated[int | None, whole(1, MAX_SAMPLES)] = Field(
+        None, description="how many scenes, points of the design for saltelli; left out for a grid"
+    )
+    seed: Annotated[int, whole(0, MAX_SEED)] = Field(0, description="of the random numbers")
+    vary: Annotated[dict[str, Any], PlainValidator(Varying())] = Field(
+        description="fields of the scene by their paths, each with one distribution"
+    )
+
+    @classmethod
+    def conflicts(cls, values: Mapping[str, Any], given: Mapping[str, Any]) -> Iterator[Conflict]:
+        """A grid has the number of its samples by its levels."""
+        method = values.get("method")
+        if method == "grid" and "samples" in given:
+            yield Conflict(("samples",), "left out where method is grid")
+        elif method not in (None, "grid") and "samples" not in given:
+            yield Conflict(("samples",), f"given: {allowed_at(cls.model_fields['samples'])}")
+
+
+_MOST_PERMUTED = 50_000_000  # numbers of a Latin hypercube, which is made as a whole
+
+
+@dataclass(frozen=True)
+class VariedField:
+    """A field of the scene and the values it takes."""
+
+    path: str  #: of the field, as in "chambers.0.volume"
+    unit: str  #: SI unit of its values; "1" where they have none
+    distribution: Distribution  #: of the values
+
+    @property
+    def keys(self) -> Keys:
+        """Keys along the path."""
+        return keys_of(self.path)
+
+    @property
+    def categorical(self) -> bool:
+        """The values are texts, and samples hold their indices."""
+        return isinstance(self.distribution, Choice) and self.distribution.categorical
+
+    def value(self, drawn: float) -> Any:
+        """What the scene gets for a sampled number."""
+        if isinstance(self.distribution, Choice):
+            return self.distribution.options[int(drawn)]
+        return float(drawn)
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """Many scenes that differ in a few values."""
+
+    name: str  #: of the study file, without its ending
+    scene_path: str  #: of the scene they are made from
+    table: Mapping[str, Any]  #: content of that file
+    scene: Scene  #: that scene
+    method: str  #: of sampling
+    points: int  #: of the design: samples, but for a "saltelli" design, which has some for each point
+    seed: int  #: of the samples
+    fields: tuple[VariedField, ...]  #: what varies
+
+    @property
+    def samples(self) -> int:
+        """How many scenes there are: of a "saltelli" design for each point both sets and each exchange."""
+        return self.points * (len(self.fields) + 2 if self.method == "saltelli" else 1)
+
+    @property
+    def digest(self) -> str:
+        """Fingerprint of all that the results depend on but the code (SHA-256)."""
+        content = {
+            "scene": self.scene.digest,
+            "method": self.method,
+            "points": self.points,
+            "seed": self.seed,
+            "fields": [
+                [field.path, type(field.distribution).__name__, asdict(field.distribution)]
+                for field in self.fields
+            ],
+        }
+        return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+
+
+def study_of(study: Sweep | str | PathLike[str], field: str = "study") -> Sweep:
+    """A sweep itself, or the one of that study file."""
+    if not isinstance(study, Sweep | str | PathLike):
+        raise InputError(field, type(study).__name__, "the path of a study file")
+    return study if isinstance(study, Sweep) else load_sweep(study)
+
+
+def load_sweep(path: str | PathLike[str]) -> Sweep:
+    """Sweep from a study file."""
+    given = read_toml(path)
+    with with_lines(path):
+        return _sweep_of(given, path)
+
+
+def _sweep_of(given: Mapping[str, Any], path: str | PathLike[str]) -> Sweep:
+    """Sweep from the content of a study file."""
+    file = str(path)
+    if "rotor" in given and "vary" not in given:
+        text = "a study with the keys scene, method and [vary]; this is a scene, which `leblanc run` answers"
+        raise SceneError([SceneFault(file, "", None, text)])
+    try:
+        table = Study.model_validate(given)
+    except ValidationError as error:
+        raise SceneError(faults_of(error, file, Study)) from error
+    scene_path = Path(path).parent / native(table.scene)
+    scene_table = read_scene(scene_path)
+    with with_lines(scene_path):
+        scene = scene_from_table(scene_table, str(scene_path))
+    if isinstance(scene.rotor, WITHOUT_CHAMBERS):
+        allowed = "a scene whose rotor answers at its speeds: jeffcott, two_plane or tub"
+        raise SceneError([SceneFault(file, "scene", shown(table.scene), allowed)])
+    fields = _fields(table.vary, scene_table, table.method, file)
+    points = table.samples
+    if points is None:
+        points = math.prod(int(field.distribution.levels().size) for field in fields)  # type: ignore[union-attr]
+    sweep = Sweep(
+        name=path_text(Path(path).stem),
+        scene_path=table.scene,
+        table=scene_table,
+        scene=scene,
+        method=table.method,
+        points=points,
+        seed=table.seed,
+        fields=fields,
+    )
+    _check_size(sweep, file)
+    return sweep
+
+
+def _fields(
+    vary: Mapping[str, Any], scene: Mapping[str, Any], method: str, file: str
+) -> tuple[VariedField, ...]:
+    """The varied fields, or all faults of them."""
+    faults: list[SceneFault] = []
+    fields = []
+    for path, given in vary.items():
+        where: tuple[str, ...] = ("vary", path)
+        value: object = None
+        try:
+            rule = rule_at(Scene, scene, path)
+            kind = _kind(given, method)
+            where, value = (*where, kind), given[kind]
+            distribution = KINDS[kind](value, rule)
+        except ValidationError as error:  # of a table that stands for the value, as a liquid's
+            own = faults_of(error, file, rule.table)
+            faults += [replace(one, field=f"{field_path(where)}.{one.field}") for one in own]
+            continue
+        except (Refused, InputError) as error:
+            said = None if value is None else shown(value)
+            if value is None and not isinstance(given, Mapping):
+                said = shown(given)
+            faults.append(SceneFault(file, field_path(where), said, allowed_as_typed(error.allowed, value)))
+            continue
+        unit = rule.dimension.unit if isinstance(rule, Quantity) else ""
+        fields.append(VariedField(path, unit or "1", distribution))
+    faults = faults or _nested(vary, file)
+    if faults:
+        raise SceneError(faults)
+    return tuple(fields)
+
+
+def _kind(given: object, method: str) -> str:
+    """Which distribution a field has."""
+    names = [kind for kind in KINDS if (kind in ("linspace", "choice")) or method != "grid"]
+    if method != "grid":
+        names.remove("linspace")
+    if not isinstance(given, Mapping) or len(given) != 1 or next(iter(given)) not in names:
+        raise Refused(f"a table of exactly one of {', '.join(names)} where method is {method}")
+    return str(next(iter(given)))
+
+
+def _nested(vary: Mapping[str, Any], file: str) -> list[SceneFault]:
+    """Fields that are part of another varied field."""
+    keys = {path: keys_of(path) for path in vary}
+    return [
+        SceneFault(file, field_path(("vary", path)), None, f"left out where {other} varies as a whole")
+        for path, own in keys.items()
+        for other, above in keys.items()
+        if len(above) < len(own) and own[: len(above)] == above
+    ]
+
+
+def _check_size(sweep: Sweep, file: str) -> None:
+    """Neither more samples than can be numbered nor a design that would not fit the memory."""
+    field = "vary" if sweep.method == "grid" else "samples"
+    allowed = ""
+    if sweep.samples > MAX_SAMPLES:
+        allowed = f"at most {MAX_SAMPLES} scenes in all"
+    elif sweep.method == "latin_hypercube" and sweep.points * len(sweep.fields) > _MOST_PERMUTED:
+        allowed = f"at most {_MOST_PERMUTED // len(sweep.fields)} with {len(sweep.fields)} varied fields"
+    if allowed:
+        raise SceneError([SceneFault(file, field, str(sweep.samples), allowed)])
