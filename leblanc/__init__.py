@@ -29,7 +29,8 @@ if TYPE_CHECKING:
     from leblanc.studies.layer import layer
     from leblanc.studies.modes import modes
     from leblanc.studies.run import run
-    from leblanc.studies.runup import run_up, runup
+    from leblanc.studies.runup import runup
+    from leblanc.studies.runup import runup as run_up
     from leblanc.studies.sweep import sweep
     from leblanc.studies.volume import volume
     from meshes.chamber import Chamber

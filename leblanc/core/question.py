@@ -1,8 +1,8 @@
 """A question is the signature of its call; quantities are read from texts with units, faults name keywords.
 
 A parameter says in its type what it is: `speed: Annotated[Quantity, ANGULAR_SPEED, "Speed of the shaft."]`.
-No options of its command are `folder`, or `out` as Python calls it, where a study keeps what another run takes
-up, and `progress`.
+No options of its command are `folder`, or `out` as Python calls it, where a study keeps what another run
+takes up, and `progress`.
 """
 
 from __future__ import annotations

@@ -161,18 +161,18 @@ class RunupAnswer(Answer):
         return cut or self.outcome is Outcome.INTERRUPTED
 
     @property
-    def faults(self) -> tuple[str, ...]:
+    def violations(self) -> tuple[str, ...]:
         """Violations term by term: energy balance, heat below zero, deflection beyond a chamber's radius."""
         return run_faults(self.history, self.chambers)
 
     @property
     def converged(self) -> Annotated[bool, Q(text="it came to its end and is physical")]:
         """Its energy closes as well, and no axis left its chamber."""
-        return self.history.converged and not self.faults
+        return self.history.converged and not self.violations
 
     @property
     def reason(self) -> Annotated[str, Q(text="why, when and where it stopped or is not physical")]:
-        return "; ".join((*filter(None, [self.history.reason]), *self.faults))
+        return "; ".join((*filter(None, [self.history.reason]), *self.violations))
 
     @property
     def faults(self) -> tuple[str, ...]:

@@ -334,7 +334,9 @@ def checks(answer: RunupAnswer) -> Iterator[Check]:
         return check(label.format(f"{number(100.0 * most)} %"), _share(value) if bad else "no", bad)
 
     yield check("Stopped before its end", history.reason or "no", not history.converged)
-    yield check("Energy or deflection not physical", "; ".join(answer.faults) or "no", bool(answer.faults))
+    yield check(
+        "Energy or deflection not physical", "; ".join(answer.violations) or "no", bool(answer.violations)
+    )
 
     if not answer.chamberless:
         yield at_times("Liquid model out of range", ~answer.in_range)

@@ -336,7 +336,8 @@ def _sweep_of(given: Mapping[str, Any], path: str | PathLike[str]) -> Sweep:
     fields = _fields(table.vary, scene_table, table.method, file)
     points = table.samples
     if points is None:
-        points = math.prod(int(field.distribution.levels().size) for field in fields)  # type: ignore[union-attr]
+        sizes = [int(field.distribution.levels().size) for field in fields]  # type: ignore[union-attr]
+        points = math.prod(sizes)
     sweep = Sweep(
         name=path_text(Path(path).stem),
         scene_path=table.scene,

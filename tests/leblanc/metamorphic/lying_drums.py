@@ -31,7 +31,7 @@ def outcome(result: RunupAnswer) -> str:
         return "energy: " + "; ".join(result.energy.faults)
     if result.outcome is Outcome.STOPPED:
         return "the drum stands"
-    return "beyond its wall" if result.faults else "sound"
+    return "beyond its wall" if result.violations else "sound"
 
 
 PHYSICAL_REASONS = ("sound", "beyond its wall", "the drum stands")
