@@ -30,7 +30,8 @@ if TYPE_CHECKING:
     from leblanc.studies.bearing import bearing
     from leblanc.studies.layer import layer
     from leblanc.studies.modes import modes
-    from leblanc.studies.runup import run_up, runup
+    from leblanc.studies.runup import run_up
+    from leblanc.studies.runup import runup as runup  # another name of it
     from leblanc.studies.volume import volume
     from meshes.chamber import Chamber
     from meshes.errors import InputError
@@ -61,7 +62,6 @@ __all__ = [
     "optimise",
     "run",
     "run_up",
-    "runup",
     "sweep",
     "volume",
 ]
