@@ -29,8 +29,8 @@ if TYPE_CHECKING:
     from leblanc.studies.layer import layer
     from leblanc.studies.modes import modes
     from leblanc.studies.run import run
-    from leblanc.studies.runup import runup
-    from leblanc.studies.runup import runup as run_up
+    from leblanc.studies.runup import run_up
+    from leblanc.studies.runup import runup as runup  # another name of it
     from leblanc.studies.sweep import sweep
     from leblanc.studies.volume import volume
     from meshes.chamber import Chamber
@@ -61,7 +61,7 @@ __all__ = [
     "modes",
     "optimise",
     "run",
-    "runup",
+    "run_up",
     "sweep",
     "volume",
 ]

@@ -54,6 +54,7 @@ def command(question: Callable[..., Any]) -> Callable[..., None]:
     options.append(_parameter("json", bool, typer.Option("--json", help=_JSON), False))
 
     def run(json: bool, out: Path | None = None, **given: Any) -> None:
+        given |= {name: not given[name] for name, one in asked.items() if _usual(one)}
         machine, folder, where = None, None, f"leblanc {question.__name__}"
         if subject is not None:
             source = Path(given[subject.name])
@@ -130,9 +131,23 @@ def _typed(one: Asked) -> Parameter:
         kind = str if one.default is Parameter.empty else str | None
     if one.option.argument:
         return _parameter(one.name, kind, typer.Argument(help=one.text), one.default)
+    if _usual(one):
+        return _parameter(one.name, bool, typer.Option(_option(one), help=one.text), False)
     if one.name == "workers":
         return _parameter(one.name, int | None, typer.Option(help=one.text), None)
     return _parameter(one.name, kind, typer.Option(*one.option.names, help=one.text), one.default)
+
+
+def _usual(one: Asked) -> bool:
+    """It is true unless --no-NAME is typed."""
+    return one.default is True and not one.option.names
+
+
+def _option(one: Asked) -> str:
+    """The option as it is typed."""
+    if one.option.names:
+        return one.option.names[-1].rpartition("/")[2]
+    return f"--{'no-' if _usual(one) else ''}{one.name.replace('_', '-')}"
 
 
 def _value(one: Asked, value: Any) -> Any:
@@ -150,10 +165,7 @@ def _command_line(name: str, asked: Sequence[Asked], given: Mapping[str, Any]) -
     """The command that makes the same answer again, wherever its files go."""
     parts = ["leblanc", name]
     for one in asked:
-        value = given[one.name]
-        option = (
-            one.option.names[-1].rpartition("/")[2] if one.option.names else f"--{one.name.replace('_', '-')}"
-        )
+        value, option = given[one.name], _option(one)
         if one.read is SCENE or one.option.argument:
             parts.append(path_text(value))
         elif one.option.same or value == one.default:

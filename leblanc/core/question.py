@@ -48,7 +48,7 @@ LIQUID = Reader("leblanc.scene.scene:liquid_of")  # a liquid, or a known name
 class Option:
     """How a parameter is typed where that is not --its-name."""
 
-    names: tuple[str, ...] = ()  #: as typer takes them: "--from", " /--no-check"
+    names: tuple[str, ...] = ()  #: as typer takes them, as "--from"; what is usually true is --no-NAME
     argument: bool = False  #: by its place, without a name
     same: bool = False  #: the answer does not depend on it
     film: int = 0  #: no option: so many where the command is asked for a film by --animate

@@ -20,9 +20,7 @@ def runup(
     *,
     cells: Annotated[int | None, "Cells round each wall [default: the scene's]."] = None,
     samples: Annotated[int | None, "How many times are recorded [default: the scene's]."] = None,
-    check: Annotated[
-        bool, Option((" /--no-check",)), "Do not run again with half the cells to estimate the error."
-    ] = True,
+    check: Annotated[bool, "Do not run again with half the cells to estimate the error."] = True,
     frames: Annotated[int | None, Option(film=180), "How many times the layers are kept for a film."] = None,
     ensemble: Annotated[int, "Repeat it so often with the unbalance changed in its last digits."] = 0,
     seed: Annotated[int, "Random seed of those changes."] = 0,
