@@ -17,7 +17,6 @@ if TYPE_CHECKING:
         fit,
         map_balls,
         map_whirl,
-        optimise,
         run,
         run_up,
         sweep,
@@ -31,6 +30,7 @@ if TYPE_CHECKING:
     from leblanc.studies.bearing import bearing
     from leblanc.studies.layer import layer
     from leblanc.studies.modes import modes
+    from leblanc.studies.optimise import optimise
     from leblanc.studies.volume import volume
     from meshes.chamber import Chamber
     from meshes.errors import InputError
@@ -66,7 +66,7 @@ __all__ = [
 ]
 
 _API = "leblanc.api"
-_QUESTIONS = ("bearing", "layer", "modes", "volume")  # each in a package of its name
+_QUESTIONS = ("bearing", "layer", "modes", "optimise", "volume")  # each in a package of its name
 # Where each public name lives: its module, and its name there.
 _HOMES = {
     "Chamber": ("meshes.chamber", "Chamber"),

@@ -47,6 +47,7 @@ def command(question: Callable[..., Any]) -> Callable[..., None]:
     options.append(_parameter("json", bool, typer.Option("--json", help=_JSON), False))
 
     def run(json: bool, out: Path | None = None, **given: Any) -> None:
+        given |= {name: not given[name] for name, one in asked.items() if _off(one)}
         source = given.get("scene")
         machine, folder, where = None, None, f"leblanc {question.__name__}"
         if source is not None:
@@ -103,6 +104,11 @@ def finish(
         say(answer.done)
 
 
+def _off(one: Asked) -> bool:
+    """Its option is a flag for False alone, as "/--no-check"."""
+    return any(name.startswith("/") for name in one.option.names)
+
+
 def _parameter(name: str, kind: Any, option: Any, default: Any) -> Parameter:
     return Parameter(name, Parameter.KEYWORD_ONLY, default=default, annotation=Annotated[kind, option])
 
@@ -116,7 +122,10 @@ def _typed(one: Asked) -> Parameter:
         kind = str if one.default is Parameter.empty else str | None
     if one.name == "workers":
         return _parameter(one.name, int | None, typer.Option(help=one.text), None)
-    return _parameter(one.name, kind, typer.Option(*one.option.names, help=one.text), one.default)
+    names = [name.removeprefix("/") for name in one.option.names]
+    return _parameter(
+        one.name, kind, typer.Option(*names, help=one.text), False if _off(one) else one.default
+    )
 
 
 def _value(one: Asked, value: Any) -> Any:

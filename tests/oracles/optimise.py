@@ -12,7 +12,7 @@ from leblanc.scene.chambers import Chamber
 from leblanc.scene.scene import JeffcottRotor, Model, Scene, Speeds
 from leblanc.scene.tasks import Optimisation
 from leblanc.studies.batch import answer_scenes
-from leblanc.studies.optimise.answers import FilledMachine, with_volumes
+from leblanc.studies.optimise.filled import FilledMachine, with_volumes
 from meshes.arrays import Array
 
 FREE: dict[str, Any] = {"stable": False, "least_film": 0.0, "spill": True}  # nothing but the objective

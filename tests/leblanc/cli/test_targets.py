@@ -29,7 +29,7 @@ WORK = (
     "leblanc.studies.modes.study.answer_modes",
     "leblanc.studies.whirl_map.map_scene",
     "leblanc.studies.runup.runup_scene",
-    "leblanc.studies.optimise.optimise.optimise_scene",
+    "leblanc.studies.optimise.study.optimise_scene",
     "leblanc.studies.sweep.summary.sweep_result",
     "leblanc.studies.shapes.machine.machine_view",
     "leblanc.studies.shapes.machine.table_view",
