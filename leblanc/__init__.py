@@ -16,7 +16,6 @@ if TYPE_CHECKING:
         explain,
         map_balls,
         map_whirl,
-        optimise,
     )
     from leblanc.scene.examples import example
     from leblanc.scene.magnetic import MagneticRotor
@@ -28,6 +27,7 @@ if TYPE_CHECKING:
     from leblanc.studies.fit import fit
     from leblanc.studies.layer import layer
     from leblanc.studies.modes import modes
+    from leblanc.studies.optimise import optimise
     from leblanc.studies.run import run
     from leblanc.studies.runup import run_up
     from leblanc.studies.runup import runup as runup  # another name of it
@@ -67,16 +67,8 @@ __all__ = [
 ]
 
 _API = "leblanc.api"
-_QUESTIONS = (
-    "bearing",
-    "fit",
-    "layer",
-    "modes",
-    "run",
-    "runup",
-    "sweep",
-    "volume",
-)  # each in a package of its name
+# Each in a package of its name.
+_QUESTIONS = ("bearing", "fit", "layer", "modes", "optimise", "run", "runup", "sweep", "volume")
 # Where each public name lives: its module, and its name there.
 _HOMES = {
     "Chamber": ("meshes.chamber", "Chamber"),

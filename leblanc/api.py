@@ -11,10 +11,9 @@ import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from os import PathLike
-from pathlib import Path
 from typing import TYPE_CHECKING
 
-from leblanc.core.question import called
+from leblanc.core.question import Quantity, called
 from leblanc.registry import answerer
 from leblanc.scene.scene import Scene, friction_of, scene_of
 from meshes.errors import InputError
@@ -22,13 +21,9 @@ from meshes.errors import InputError
 if TYPE_CHECKING:
     from fluid.friction.laws import Friction
     from leblanc.core.answer import Answer
-    from leblanc.questions import Quantity
     from leblanc.results.explanation import Explanation
-    from leblanc.results.machine.layout import LayoutResult
     from leblanc.results.models.comparison import Comparison
-    from leblanc.results.optimum import OptimumResult
     from leblanc.results.races.chart import BallChart
-    from leblanc.results.races.design import BallDesignResult
     from leblanc.results.races.numbers import BallExplanation
     from leblanc.results.whirl_map import WhirlMap
 
@@ -164,68 +159,6 @@ def map_balls(
             state=state,
             progress=progress,
         )
-
-
-def optimise(
-    scene: SceneOrPath,
-    objective: str | None = None,
-    *,
-    deflection: Quantity | None = None,
-    limit: Quantity | None = None,
-    steady: bool = False,
-    seed: int | None = None,
-    emulator: str | PathLike[str] | None = None,
-    front: bool = True,
-    progress: Callable[[int], None] | None = None,
-    workers: int = 1,
-) -> OptimumResult | LayoutResult | BallDesignResult:
-    """Best volume of liquid for each chamber, best balls, or best layout of a tub's springs and dampers.
-
-    Where the scene has balls these are chosen, and its liquid stays as it is filled.
-
-    Parameters
-    ----------
-    scene : the machine, or the path of its file, with or without a table [optimise]
-    objective : working_speed, peak, mean, least_mass, robust or layout; the scene's if None
-    deflection : given, m: the least liquid that covers the walls at it
-    limit : of the vibration, for least_mass, m
-    steady : the peak is that of the steady response even if the scene has a run-up
-    seed : of the random sample of robust
-    emulator : store of a sweep over the volumes, from which the search gets an emulator
-    front : find out as well what must be given up for what
-    progress : called with the number of sets of volumes, or designs of balls, judged
-    workers : processes that judge designs of balls where one takes its time; the answer is the same with any
-
-    Raises
-    ------
-    SceneError, InputError : as for `run`; a value that does not fit the scene
-
-    Examples
-    --------
-    >>> import leblanc as lb
-    >>> best = lb.optimise(lb.example("horizontal_rig"), front=False)
-    >>> bool(best.value < best.baseline)
-    True
-    """
-    machine = scene_of(scene)
-    from leblanc.questions import optimisation_of, require_no_emulator
-    from leblanc.studies.optimise.balls.search import optimise_balls
-    from leblanc.studies.optimise.emulated import emulated_vibration
-    from leblanc.studies.optimise.layout import optimise_layout
-    from leblanc.studies.optimise.optimise import optimise_scene
-
-    with _keywords():
-        task = optimisation_of(machine, objective, deflection, limit, steady, seed)
-        if task.objective == "layout":
-            return optimise_layout(
-                machine, task, None if progress is None else lambda count, _: progress(count)
-            )
-        told = None if progress is None else lambda count, _: progress(count)
-        if machine.balls:
-            require_no_emulator(emulator)
-            return optimise_balls(machine, task, told, workers)
-        surrogate = None if emulator is None else emulated_vibration(Path(emulator), machine, task)
-        return optimise_scene(machine, task=task, front=front, progress=told, emulator=surrogate)
 
 
 def compare(scene: SceneOrPath, models: Sequence[str]) -> Comparison:

@@ -548,3 +548,38 @@ def _least_on_axis(ask: Judge, point: Array, axis: int, low: float, plan: Search
             good = float(inner[k])
         bad = float(inner[k - 1]) if k > 0 else bad
     return good
+
+
+def evolve(
+    score: Callable[[Array], Array],
+    bounds: Sequence[tuple[float, float]],
+    start: Array,
+    seed: int,
+    members: int,
+    generations: int,
+    settled: float,
+    whole: NDArray[np.bool_] | None = None,
+) -> Array:
+    """The end of differential evolution [SP97], shape (v,); `start` is one of the first population.
+
+    `score`, to be least, of m members, shape (m, v); `members` a variable, `generations` at most; `settled`
+    the spread of a population that has come together; `whole` says which variables are whole numbers.
+    """
+    from scipy.optimize import differential_evolution
+
+    found = differential_evolution(
+        lambda columns: score(columns.T),
+        bounds,
+        integrality=whole,
+        x0=start,
+        rng=np.random.default_rng(seed),
+        popsize=members,
+        maxiter=generations,
+        init="sobol",
+        tol=settled,
+        atol=settled**2,
+        polish=False,
+        updating="deferred",
+        vectorized=True,
+    )
+    return np.asarray(found.x)

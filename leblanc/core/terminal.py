@@ -19,7 +19,7 @@ def show(blocks: Iterable[Block]) -> None:
     """Print blocks on stdout; pictures are no text."""
     for block in flat(blocks, "text"):
         if isinstance(block, Words | Headline):
-            print(block.text)
+            print(f"{block.name}: {block.text}" if isinstance(block, Words) and block.name else block.text)
         elif isinstance(block, Notes):
             for text in block.texts:
                 print(f"note: {text}")
@@ -80,8 +80,10 @@ def print_table(
     lines = [tuple(row) for row in rows]
     table = Table(box=None, show_header=bool(head), pad_edge=False, padding=(0, 2, 0, 0), header_style="")
     side: Literal["left", "right"] = "right" if right else "left"
+    short = max(len(line[0]) for line in lines) < _WIDTH // 2
     for k, name in enumerate(head or [""] * len(lines[0])):
-        table.add_column(Text(name), justify=side if k else "left", no_wrap=k == 0, overflow="fold")
+        whole = short and k == 0
+        table.add_column(Text(name), justify=side if k else "left", no_wrap=whole, overflow="fold")
     for row in lines:
         table.add_row(*map(Text, row))
     terminal = sys.stdout.isatty()

@@ -1,4 +1,4 @@
-"""Records that several answers have: a chamber with its liquid, a constraint at what was found best."""
+"""Records that several answers have: a chamber with its liquid."""
 
 from __future__ import annotations
 
@@ -7,17 +7,6 @@ from dataclasses import dataclass
 
 from meshes.baffles import Baffles
 from meshes.chamber_section import ChamberSection, layer_depth
-
-
-@dataclass(frozen=True)
-class ConstraintValue:
-    """A constraint at what was found best."""
-
-    limit: float  #: in the unit; the value must not be above the limit
-    value: float
-    satisfied: bool  #: it is not
-    unit: str  #: of both, and what they are
-    meaning: str
 
 
 @dataclass(frozen=True)

@@ -47,7 +47,7 @@ class GradeRule:
             raise Refused(self.allowed) from refused
 
 
-# Objectives that are loads of the machine, see `leblanc.studies.optimise.loads`.
+# Objectives that are loads of the machine, see `leblanc.studies.optimise.objectives`.
 LOADS = ("floor_force", "walking_margin", "point_clearance", "motor_torque")
 OBJECTIVES = ("working_speed", "peak", "mean", "least_mass", "robust", *LOADS, "layout")
 MEASURES = ("couplings", "separation")  # of a layout

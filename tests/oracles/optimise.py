@@ -11,7 +11,7 @@ from fluid.liquid import known_liquid
 from leblanc.scene.chambers import Chamber
 from leblanc.scene.scene import JeffcottRotor, Model, Scene, Speeds
 from leblanc.scene.tasks import Optimisation
-from leblanc.studies.optimise.answers import FilledMachine, with_volumes
+from leblanc.studies.optimise.filled import FilledMachine, with_volumes
 from leblanc.studies.sweep.batch import answer_scenes
 from meshes.arrays import Array
 

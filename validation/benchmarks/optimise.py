@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from leblanc.scene.examples import example
 from leblanc.scene.scene import Scene
 from leblanc.scene.tasks import DutyPoint, Optimisation
-from leblanc.studies.optimise.optimise import optimise_scene
+from leblanc.studies.optimise.study import optimise_scene
 
 SCENES = ("runup", "centrifuge", "washing_machine", "horizontal_rig", "vertical_rig")
 OBJECTIVES = ("working_speed", "peak", "mean", "least_mass")

@@ -38,8 +38,8 @@
 
 # %%
 import leblanc as lb
-from leblanc.figures.optimise import objective_figure
-from leblanc.studies.optimise.optimise import optimise_scene
+from leblanc.studies.optimise.figure import objective_figure
+from leblanc.studies.optimise.study import optimise_scene
 from validation.cases import fill_sweep
 from validation.cases.fill_sweep.judged import sweep_figure
 from validation.cases.liquid import fill_optimum

@@ -3,50 +3,37 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
 from leblanc.core.notes import Note
 from leblanc.core.units import LENGTH, in_rpm, over_rpm, with_unit
-from leblanc.results import optimum
 from leblanc.scene.scene import JeffcottRotor, Scene, Speeds
 from leblanc.scene.tasks import LOADS, OBJECTIVES, Optimisation
 from leblanc.scene.unbalances import unbalances_of
-from leblanc.studies.optimise.answers import FilledMachine
-from leblanc.studies.optimise.balance import QualityAtSpeed
+from leblanc.studies.optimise import notes as notes_of
 from leblanc.studies.optimise.constraints import (
+    UNITS,
     Constraint,
-    balanced,
-    clearance,
     dry_wall,
     growth,
-    limited,
-    room_when_warm,
+    limits_loads,
+    load_constraints,
+    load_place,
+    loads_in_time,
+    loads_of,
+    most_cells,
     spill,
     stability,
     wetting,
     whirl_friction,
     whirl_size,
 )
-from leblanc.studies.optimise.loads import (
-    UNITS,
-    Load,
-    LoadLimit,
-    limits_loads,
-    load_constraints,
-    load_meaning,
-    loads_in_time,
-    loads_of,
-)
-from leblanc.studies.optimise.objectives import (
-    AtSpeed,
-    PeakOver,
-    RunupPeak,
-    Vibration,
-)
-from leblanc.studies.optimise.passages import Passages
+from leblanc.studies.optimise.filled import FilledMachine, QualityAtSpeed
+from leblanc.studies.optimise.objectives import AtSpeed, Load, Passages, PeakOver, RunupPeak, Vibration
 from leblanc.studies.optimise.robust import (
     DOUBLE,
     Robust,
@@ -55,7 +42,6 @@ from leblanc.studies.optimise.robust import (
     operating_conditions,
     unbalance_range,
 )
-from leblanc.studies.optimise.walls import most_cells
 from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.search import Found, Judgement
@@ -66,17 +52,22 @@ _SLACK = 1.01  # default limit of the vibration over the least that is possible
 
 
 @dataclass(frozen=True)
-class Evaluator:
-    """Evaluates sets of volumes: a vibration, or their mass, and constraints."""
+class Problem:
+    """What an optimisation is after: a vibration, or a mass, and constraints at sets of volumes."""
 
     vibration: Vibration  #: to be small
     density: Array  #: of each chamber's liquid, kg/m^3, shape (c,)
     constraints: tuple[Constraint, ...]  #: to keep to
+    meaning: str  #: what the value is, in words
+    working_speed: float  #: rad/s
+    speeds: tuple[float, ...]  #: that matter most, rad/s
+    costly: bool  #: one answer takes tens of milliseconds and more
+    #: run-ups in time by which vibration, loads or both are judged; None where none are
+    runs: Passages | None = None
+    notes: tuple[Note, ...] = ()  #: what was assumed
     by_mass: bool = False  #: the liquid's mass is to be small; the vibration is then one of the constraints
     estimated: bool = False  #: the vibration is an estimate, by an emulator
     sized: Load | None = None  #: load that is to be small in place of the vibration
-    #: run-ups in time by which vibration, loads or both are judged; None where none are
-    runs: Passages | None = None
 
     @property
     def unit(self) -> str:
@@ -85,20 +76,18 @@ class Evaluator:
             return "kg"
         return "m" if self.sized is None else UNITS.get(self.sized.name, "1")
 
-    def on(self, scene: Scene, runs: Passages) -> Evaluator:
+    def on(self, scene: Scene, runs: Passages) -> Problem:
         """The same with other run-ups."""
         in_time = isinstance(self.vibration, RunupPeak)
         return replace(
             self,
             runs=runs,
             vibration=RunupPeak(scene, runs) if in_time else self.vibration,
-            constraints=tuple(
-                own.on(runs) if isinstance(own, LoadLimit) else own for own in self.constraints
-            ),
+            constraints=tuple(own.on(runs) for own in self.constraints),
             sized=None if self.sized is None else self.sized.on(runs),
         )
 
-    def __call__(self, volumes: Array) -> Judgement:
+    def evaluate(self, volumes: Array) -> Judgement:
         """Evaluate m sets of volumes, m^3, shape (m, c).
 
         The details are the values of the constraints, the mass, the vibration, and whether that is sure (1)
@@ -113,18 +102,6 @@ class Evaluator:
         details = found | {"mass": mass, "vibration": vibration, "sure": sure}
         value = vibration if self.sized is None else self.sized.exact(volumes)
         return Judgement(mass if self.by_mass else value, over, details)
-
-
-@dataclass(frozen=True)
-class Problem:
-    """What an optimisation is after."""
-
-    evaluate: Evaluator  #: objective and constraints at sets of volumes
-    meaning: str  #: what the value is, in words
-    working_speed: float  #: rad/s
-    speeds: tuple[float, ...]  #: that matter most, rad/s
-    costly: bool  #: one answer takes tens of milliseconds and more
-    notes: tuple[Note, ...] = ()  #: what was assumed
 
 
 def working_speed(scene: Scene, task: Optimisation) -> float:
@@ -150,65 +127,60 @@ def problem_of(
     scene: Scene, task: Optimisation, machine: FilledMachine, solve: Callable[[Problem], Found]
 ) -> Problem:
     """The problem that a scene poses."""
-    if task.objective not in OBJECTIVES:
-        raise InputError("--objective", task.objective, "one of " + ", ".join(OBJECTIVES))
+    if task.objective not in _MAKERS:
+        raise InputError("objective", task.objective, "one of " + ", ".join(OBJECTIVES))
     speed = working_speed(scene, task)
-    planar = isinstance(scene.rotor, JeffcottRotor)
-    density = np.array([fill.liquid.density for fill in scene.fills])
-    at_work = AtSpeed(machine, np.array([speed]), np.ones(1))
-    runs, few = _run_ups(scene, task)
-    constraints = _constraints(scene, task, machine, speed, runs)
-    rpm = in_rpm(speed)
+    notes = [notes_of.LAMINAR] if whirl_friction(scene) != scene.model.friction else []
+    runs, plan, loaded = None, scene.speed_plan, loads_in_time(task)
+    if plan is not None and (loaded or (task.objective == "peak" and not task.steady)):
+        few = min(max(_COARSE_CELLS, most_cells(scene)), plan.cells)
+        notes += [notes_of.few_cells(few, plan.cells)] if few < plan.cells else []
+        runs = Passages(scene, few, loaded)
     # Whirls of a ring with baffles take a second each.
     plates = any(fill.chamber.baffles is not None for fill in scene.fills)
     slow = plates or task.whirl_limit is not None or limits_loads(task) or runs is not None
-    costly = not planar or slow
-    evaluate = Evaluator(at_work, density, constraints, runs=runs)
-    laminar = (optimum.laminar(),) if whirl_friction(scene) != scene.model.friction else ()
-    notes: tuple[Note, ...] = (*laminar, *few)
-    problem = Problem(evaluate, f"amplitude at {rpm}", speed, (speed,), costly, notes)
-    return _MAKERS[task.objective](scene, task, machine, problem, solve)
-
-
-def _run_ups(scene: Scene, task: Optimisation) -> tuple[Passages | None, tuple[Note, ...]]:
-    """Run-ups in time that the task needs, on a few cells, and a note where the scene has more."""
-    plan, loaded = scene.speed_plan, loads_in_time(task)
-    if plan is None or not (loaded or (task.objective == "peak" and not task.steady)):
-        return None, ()
-    few = min(max(_COARSE_CELLS, most_cells(scene)), plan.cells)
-    notes = (optimum.few_cells(few, plan.cells),) if few < plan.cells else ()
-    return Passages(scene, few, loaded), notes
+    problem = Problem(
+        vibration=AtSpeed(machine, np.array([speed]), np.ones(1)),
+        density=np.array([fill.liquid.density for fill in scene.fills]),
+        constraints=tuple(_constraints(scene, task, machine, speed, runs)),
+        meaning=f"amplitude at {in_rpm(speed)}",
+        working_speed=speed,
+        speeds=(speed,),
+        costly=slow or not isinstance(scene.rotor, JeffcottRotor),
+        runs=runs,
+        notes=tuple(notes),
+    )
+    return _MAKERS[task.objective](_Scene(scene, task, machine, solve), problem)
 
 
 def _constraints(
     scene: Scene, task: Optimisation, machine: FilledMachine, speed: float, runs: Passages | None
-) -> tuple[Constraint, ...]:
+) -> Iterator[Constraint]:
     """The constraints of the task."""
-    found = [] if task.dry_patch else [dry_wall(machine, speed)]
+    used = operating_speeds(scene, task)
+    if not task.dry_patch:
+        yield dry_wall(machine, speed)
     if task.stable:
-        found.append(_stability(scene, task, speed))
+        speeds, where = _whirl_speeds(scene, task, speed)
+        yield stability(scene, speeds, task.stability_margin or 0.0, where)
     if task.least_film > 0.0:
-        found.append(wetting(scene, task.least_film))
+        yield wetting(scene, task.least_film)
     if not task.spill and any(fill.chamber.inner_radius > 0.0 for fill in scene.fills):
-        found.append(spill(machine, speed))
+        yield spill(machine, speed)
     if task.whirl_limit is not None:
-        found.append(whirl_size(scene, growth_speeds(scene, task), task.whirl_limit))
-    if task.clearance is not None:
-        found.append(clearance(PeakOver(machine, operating_speeds(scene, task)), task.clearance))
-    found += load_constraints(scene, task, machine, operating_speeds(scene, task), runs)
-    if task.balance_quality is not None:
-        found.append(balanced(QualityAtSpeed(machine, speed), task.balance_quality))
-    return tuple(found)
-
-
-def _stability(scene: Scene, task: Optimisation, speed: float) -> Constraint:
-    """Where the machine stays; with a margin, if one is given."""
-    speeds, where = _whirl_speeds(scene, task, speed)
-    return stability(scene, speeds, task.stability_margin or 0.0, where)
+        yield whirl_size(scene, growth_speeds(scene, task), task.whirl_limit)
+    if (most := task.clearance) is not None:
+        text = "largest amplitude at the operating speeds"
+        yield Constraint("clearance", text, "m", most, most, PeakOver(machine, used).exact)
+    yield from load_constraints(task, machine, used, runs)
+    if (grade := task.balance_quality) is not None:  # of ISO 21940-11
+        text = "unbalance of rotor and liquid over the rotor's mass, times the working speed"
+        quality = QualityAtSpeed(machine, speed)
+        yield Constraint("balance_quality", text, "m/s", grade, grade, quality.of)
 
 
 def _whirl_speeds(scene: Scene, task: Optimisation, speed: float) -> tuple[Array, str]:
-    """Speeds at which small whirls must die out, rad/s, and their name.
+    """Speeds at which small whirls must decay, rad/s, and their name.
 
     Those of operation where a margin or a range is given, else those at which the machine stays.
     """
@@ -228,23 +200,23 @@ def _duty(scene: Scene, task: Optimisation) -> tuple[Array, Array]:
     return speeds, np.ones(speeds.size)
 
 
-_Make = Callable[[Scene, Optimisation, FilledMachine, Problem, Callable[[Problem], Found]], Problem]
+class _Scene(NamedTuple):
+    """What poses a problem."""
+
+    scene: Scene
+    task: Optimisation
+    machine: FilledMachine
+    solve: Callable[[Problem], Found]
 
 
-def _working_speed(
-    scene: Scene, task: Optimisation, machine: FilledMachine, problem: Problem, _: object
-) -> Problem:
-    return problem
-
-
-def _peak(scene: Scene, task: Optimisation, machine: FilledMachine, problem: Problem, _: object) -> Problem:
-    if problem.evaluate.runs is not None and not task.steady:
-        evaluate = replace(problem.evaluate, vibration=RunupPeak(scene, problem.evaluate.runs))
-        return replace(problem, evaluate=evaluate, meaning="largest amplitude of the run-up in time")
-    speeds = scene.speeds
-    text = f"largest steady amplitude {over_rpm(machine.first_speed(speeds), speeds.stop)}"
-    evaluate = replace(problem.evaluate, vibration=PeakOver(machine, speeds))
-    return replace(problem, evaluate=evaluate, meaning=text, speeds=(speeds.stop, *_resonances(scene)))
+def _peak(of: _Scene, problem: Problem) -> Problem:
+    speeds = of.scene.speeds
+    if problem.runs is not None and not of.task.steady:
+        text = "largest amplitude of the run-up in time"
+        return replace(problem, vibration=RunupPeak(of.scene, problem.runs), meaning=text)
+    text = f"largest steady amplitude {over_rpm(of.machine.first_speed(speeds), speeds.stop)}"
+    near = (speeds.stop, *_resonances(of.scene))
+    return replace(problem, vibration=PeakOver(of.machine, speeds), meaning=text, speeds=near)
 
 
 def _resonances(scene: Scene) -> tuple[float, ...]:
@@ -256,42 +228,36 @@ def _resonances(scene: Scene) -> tuple[float, ...]:
     return math.sqrt(rotor.stiffness / (rotor.mass + added)), math.sqrt(rotor.stiffness / rotor.mass)
 
 
-def _mean(scene: Scene, task: Optimisation, machine: FilledMachine, problem: Problem, _: object) -> Problem:
-    speeds, weights = _duty(scene, task)
-    text, notes = f"mean amplitude over a duty cycle of {speeds.size} speeds", problem.notes
-    if not task.duty:
-        text = f"mean amplitude over {speeds.size} speeds, all alike"
-        notes = (*problem.notes, optimum.no_duty())
-    evaluate = replace(problem.evaluate, vibration=AtSpeed(machine, speeds, weights))
-    heaviest = speeds[np.argsort(-weights, kind="stable")][:3].tolist()
-    return replace(problem, evaluate=evaluate, meaning=text, speeds=tuple(heaviest), notes=notes)
+def _mean(of: _Scene, problem: Problem) -> Problem:
+    speeds, weights = _duty(of.scene, of.task)
+    given = bool(of.task.duty)
+    over = f"a duty cycle of {speeds.size} speeds" if given else f"{speeds.size} speeds, all alike"
+    return replace(
+        problem,
+        vibration=AtSpeed(of.machine, speeds, weights),
+        meaning=f"mean amplitude over {over}",
+        speeds=tuple(speeds[np.argsort(-weights, kind="stable")][:3].tolist()),
+        notes=problem.notes if given else (*problem.notes, notes_of.NO_DUTY),
+    )
 
 
-def _least_mass(
-    scene: Scene,
-    task: Optimisation,
-    machine: FilledMachine,
-    problem: Problem,
-    solve: Callable[[Problem], Found],
-) -> Problem:
-    vibration: Vibration = problem.evaluate.vibration
-    where = f"at {in_rpm(problem.working_speed)}"
+def _least_mass(of: _Scene, problem: Problem) -> Problem:
+    where, task = f"at {in_rpm(problem.working_speed)}", of.task
     if task.limit_at == "operating":
-        vibration, where = PeakOver(machine, operating_speeds(scene, task)), "at the operating speeds"
+        where, used = "at the operating speeds", operating_speeds(of.scene, task)
+        problem = replace(problem, vibration=PeakOver(of.machine, used))
     limit, notes = task.vibration_limit, problem.notes
     if limit is None:
-        least = solve(replace(problem, evaluate=replace(problem.evaluate, vibration=vibration))).objective
-        limit = _SLACK * least
-        notes = (*notes, optimum.no_limit(limit))
-    bound = limited("vibration", f"amplitude {where}", vibration, limit)
-    evaluate = replace(
-        problem.evaluate,
-        vibration=vibration,
-        constraints=(*problem.evaluate.constraints, bound),
+        limit = _SLACK * of.solve(problem).objective
+        notes = (*notes, notes_of.no_limit(limit, "one per cent above the least possible"))
+    bound = Constraint("vibration", f"amplitude {where}", "m", limit, limit, problem.vibration.exact)
+    return replace(
+        problem,
+        constraints=(*problem.constraints, bound),
+        meaning=f"liquid's mass for an amplitude of at most {with_unit(limit, LENGTH)} {where}",
         by_mass=True,
+        notes=notes,
     )
-    text = f"liquid's mass for an amplitude of at most {with_unit(limit, LENGTH)} {where}"
-    return replace(problem, evaluate=evaluate, meaning=text, notes=notes)
 
 
 def unbalances(scene: Scene, task: Optimisation) -> UnbalanceRange:
@@ -300,53 +266,57 @@ def unbalances(scene: Scene, task: Optimisation) -> UnbalanceRange:
     return unbalance_range(unbalances_of(scene.rotor), task.unbalance, default)
 
 
-def _robust(scene: Scene, task: Optimisation, machine: FilledMachine, problem: Problem, _: object) -> Problem:
-    notes, sizes = problem.notes, unbalances(scene, task)
-    if task.unbalance is None and task.temperature is None:
-        notes = (*notes, optimum.no_range())
+def _robust(of: _Scene, problem: Problem) -> Problem:
+    task, sizes = of.task, unbalances(of.scene, of.task)
     around = operating_conditions(sizes, task.temperature, task.samples, task.seed)
-    vibration = Robust(scene, problem.working_speed, around, task.quantile)
-    constraints = problem.evaluate.constraints
+    vibration = Robust(of.scene, problem.working_speed, around, task.quantile)
+    constraints, notes = problem.constraints, problem.notes
     if task.temperature is not None:
+        speeds, _ = _whirl_speeds(of.scene, task, problem.working_speed)
+
+        def grows(volumes: Array) -> Array:
+            rows = filled_scenes(vibration.around, volumes)
+            return np.asarray(np.max([growth(warm, held, speeds) for warm, held in rows], axis=0))
+
+        text = "share of a chamber that its liquid takes when warmest"
         constraints = (
-            *(_at_any_temperature(constraint, scene, task, vibration) for constraint in constraints),
+            # The viscosity damps whirls at every temperature.
+            *(
+                replace(own, meaning=f"{own.meaning}, at any temperature", found=grows)
+                if own.name == "stability"
+                else own
+                for own in constraints
+            ),
+            Constraint("room_when_warm", text, "1", 1.0, 1.0, vibration.around.fullest),
         )
-        constraints = (*constraints, room_when_warm(vibration))
     kind = "worst" if task.quantile == 1.0 else f"{task.quantile:.4g} quantile of the"
     given = ("unbalance", sizes.least != sizes.most), ("temperature", task.temperature is not None)
     ranges = [name for name, varies in given if varies]
     over = f" over {len(around)} conditions of {' and '.join(ranges)}" if ranges else ""
+    if task.unbalance is None and task.temperature is None:
+        notes = (*notes, notes_of.NO_RANGE)
     text = f"{kind} amplitude at {in_rpm(problem.working_speed)}{over}"
-    evaluate = replace(problem.evaluate, vibration=vibration, constraints=constraints)
-    return replace(problem, evaluate=evaluate, meaning=text, notes=notes)
+    return replace(problem, vibration=vibration, constraints=constraints, meaning=text, notes=notes)
 
 
-def _at_any_temperature(
-    constraint: Constraint, scene: Scene, task: Optimisation, robust: Robust
-) -> Constraint:
-    """The constraint on whirls, which the viscosity damps, at every temperature; any other as it is."""
-    if constraint.name != "stability":
-        return constraint
-    speeds, _ = _whirl_speeds(scene, task, robust.around.speed)
-
-    def value(volumes: Array) -> Array:
-        rows = filled_scenes(robust.around, volumes)
-        return np.asarray(np.max([growth(warm, held, speeds) for warm, held in rows], axis=0))
-
-    text = f"{constraint.meaning}, at any temperature"
-    return Constraint(constraint.name, text, constraint.unit, constraint.limit, constraint.scale, value)
+_MEANING = {
+    "floor_force": "largest force under a foot",
+    "walking_margin": "share of its hold on the floor that the machine uses, 1 less the walking margin,",
+    "point_clearance": "largest share that a point takes of its gap",
+    "motor_torque": "largest torque of the motor",
+}
 
 
-def _load(scene: Scene, task: Optimisation, machine: FilledMachine, problem: Problem, _: object) -> Problem:
-    speeds = operating_speeds(scene, task)
-    over = loads_of(task, machine, speeds, problem.evaluate.runs)
-    evaluate = replace(problem.evaluate, sized=Load(over, task.objective))
-    near = (speeds.stop, *_resonances(scene))
-    return replace(problem, evaluate=evaluate, meaning=load_meaning(task, speeds), speeds=near, costly=True)
+def _load(of: _Scene, problem: Problem) -> Problem:
+    speeds = operating_speeds(of.scene, of.task)
+    load = Load(loads_of(of.task, of.machine, speeds, problem.runs), of.task.objective)
+    text = f"{_MEANING[of.task.objective]} {load_place(of.task, speeds)}"
+    near = (speeds.stop, *_resonances(of.scene))
+    return replace(problem, sized=load, meaning=text, speeds=near, costly=True)
 
 
-_MAKERS: dict[str, _Make] = {
-    "working_speed": _working_speed,
+_MAKERS: dict[str, Callable[[_Scene, Problem], Problem]] = {
+    "working_speed": lambda _, problem: problem,
     "peak": _peak,
     "mean": _mean,
     "least_mass": _least_mass,

@@ -11,11 +11,11 @@ from functools import cached_property
 import numpy as np
 
 from fluid.liquid import expansion, liquid_at
-from leblanc.results.optimum import ConditionTable
 from leblanc.scene.scene import WITHOUT_CHAMBERS, Scene
 from leblanc.scene.tasks import Optimisation, pairs_of
 from leblanc.scene.unbalances import with_unbalances
-from leblanc.studies.optimise.answers import FilledMachine
+from leblanc.studies.optimise.answer import ConditionTable
+from leblanc.studies.optimise.filled import FilledMachine
 from meshes.arrays import Array
 from meshes.errors import InputError
 
@@ -123,11 +123,7 @@ class Conditions:
 
     def __init__(self, scene: Scene, speed: float, conditions: Sequence[OperatingCondition]) -> None:
         self.speed, self.conditions = speed, tuple(conditions)
-        self.scenes, growths = [], []
-        for condition in self.conditions:
-            changed, growth = in_condition(scene, condition)
-            self.scenes.append(changed)
-            growths.append(growth)
+        self.scenes, growths = zip(*(in_condition(scene, own) for own in self.conditions), strict=True)
         self.growths = np.array(growths)
         self.capacity = np.array([fill.chamber.capacity for fill in scene.fills])
 
@@ -176,7 +172,7 @@ class Robust:
         self.around, self.quantile = Conditions(scene, speed, conditions), quantile
 
     def exact(self, volumes: Array) -> Array:
-        """See `leblanc.studies.optimise.objectives.Vibration`."""
+        """As of a `Vibration`."""
         rows = self.around.amplitudes(volumes)
         return np.asarray(np.quantile(rows, self.quantile, axis=0, method="higher"))
 
@@ -208,17 +204,18 @@ def condition_table(
     over = Conditions(scene, around.speed, grid)
     whirls = [growth(over.scenes[k], over.held(volume, k)) for k in range(0, len(grid), len(sizes))]
     judged = around.amplitudes(own)[:, 0]
-    dry = {size: _dry(scene, around.speed, size, nothing) for size in _sizes((*grid, *around.conditions))}
+    # Without liquid no temperature changes the amplitude.
+    bare = [OperatingCondition(size, None) for size in {c.unbalance for c in (*grid, *around.conditions)}]
+    still = Conditions(scene, around.speed, bare).amplitudes(nothing)[:, 0].tolist()
+    dry = {condition.unbalance: size for condition, size in zip(bare, still, strict=True)}
     value = float(robust.exact(own)[0])
     return ConditionTable(
-        temperature=np.array([math.nan if heat is None else heat for heat in heats]),
+        temperature=_known(heats),
         unbalance=np.array(sizes),
         amplitude=over.amplitudes(own).reshape(shape),
         stability_margin=-np.array(whirls),
         amplitude_dry=np.array([dry[size] for size in sizes]),
-        condition_temperature=np.array(
-            [math.nan if heat is None else heat for heat in (c.temperature for c in around.conditions)]
-        ),
+        condition_temperature=_known([condition.temperature for condition in around.conditions]),
         condition_unbalance=np.array([condition.unbalance for condition in around.conditions]),
         condition_amplitude=judged,
         condition_amplitude_dry=np.array([dry[condition.unbalance] for condition in around.conditions]),
@@ -227,15 +224,8 @@ def condition_table(
     )
 
 
-def _sizes(conditions: Sequence[OperatingCondition]) -> tuple[tuple[float, ...], ...]:
-    """Unbalances that occur."""
-    return tuple(dict.fromkeys(condition.unbalance for condition in conditions))
-
-
-def _dry(scene: Scene, speed: float, size: tuple[float, ...], nothing: Array) -> float:
-    """Amplitude without liquid, which no temperature changes, m."""
-    around = Conditions(scene, speed, [OperatingCondition(size, None)])
-    return float(around.amplitudes(nothing)[0, 0])
+def _known(temperatures: Sequence[float | None]) -> Array:
+    return np.array([math.nan if heat is None else heat for heat in temperatures])
 
 
 def filled_scenes(around: Conditions, volumes: Array) -> list[tuple[Scene, Array]]:

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 
+from leblanc.core.progress import update
 from leblanc.scene.scene import JeffcottRotor, Scene, jeffcott
 from leblanc.scene.tasks import Optimisation
 from leblanc.studies.models.choose import axial_gravity
-from leblanc.studies.optimise.objectives import PeakOver
-from leblanc.studies.optimise.passages import Passages
+from leblanc.studies.optimise.objectives import Passages, PeakOver
 from leblanc.studies.optimise.problem import Problem
 from leblanc.studies.optimise.wetting import wetting_volumes
 from meshes.arrays import Array
@@ -57,23 +56,31 @@ def bounds_of(scene: Scene, task: Optimisation) -> tuple[Array, Array]:
     return low, np.minimum(high, capacity)
 
 
-# Called with the number of sets of volumes evaluated, and the share of the search that is done.
-Progress = Callable[[int, float], None]
+def best_volumes(scene: Scene, problem: Problem, low: Array, high: Array, part: float = 1.0) -> Found:
+    """Best volumes for a problem, a search that is a part of the whole work."""
+    costly = _AT_ONCE if problem.runs is None else _RUNUPS
+    count, done = 0, 0.0
 
+    def say(more: int) -> None:
+        nonlocal count
+        count += more
+        update(done, 1.0, f"{count} sets of volumes judged")
 
-def best_volumes(scene: Scene, problem: Problem, low: Array, high: Array, progress: Progress | None) -> Found:
-    """Best volumes for a problem."""
-    counter = _Counter(progress)
-    few = None
-    if problem.costly:
-        few = _AT_ONCE if problem.evaluate.runs is None else _RUNUPS
+    def stage(share: float) -> None:
+        nonlocal done
+        done = part * share
+        say(0)
 
     def judge(volumes: Array) -> Judgement:
-        return counter.judged(volumes, problem.evaluate, few)
+        few = costly if problem.costly else volumes.shape[0]
+        parts = []
+        for first in range(0, volumes.shape[0], few):
+            parts.append(problem.evaluate(volumes[first : first + few]))
+            say(parts[-1].objective.size)
+        return joined(parts)
 
-    plan = plan_of(problem)
     starts, alike = _starts(scene, problem, low.size), _alike(scene, low, high)
-    return search(judge, low, high, problem.evaluate.density, starts, alike, plan, counter.stage)
+    return search(judge, low, high, problem.density, starts, alike, plan_of(problem), stage)
 
 
 def plan_of(problem: Problem) -> SearchPlan:
@@ -83,33 +90,7 @@ def plan_of(problem: Problem) -> SearchPlan:
     """
     if problem.costly:
         return _SPARING
-    return _FEW if isinstance(problem.evaluate.vibration, PeakOver) else SearchPlan()
-
-
-class _Counter:
-    """Counts sets of volumes for those who wait."""
-
-    def __init__(self, progress: Progress | None) -> None:
-        self.progress, self.count, self.share = progress, 0, 0.0
-
-    def stage(self, share: float) -> None:
-        """So much of the search is done."""
-        self.share = share
-        self._tell(0)
-
-    def judged(self, volumes: Array, judge: Callable[[Array], Judgement], few: int | None) -> Judgement:
-        """Judgement of volumes, a few of them at once where each takes its time."""
-        parts = []
-        for first in range(0, volumes.shape[0], few or volumes.shape[0]):
-            rows = volumes[first : first + (few or volumes.shape[0])]
-            parts.append(judge(rows))
-            self._tell(rows.shape[0])
-        return joined(parts)
-
-    def _tell(self, more: int) -> None:
-        self.count += more
-        if self.progress is not None:
-            self.progress(self.count, self.share)
+    return _FEW if isinstance(problem.vibration, PeakOver) else SearchPlan()
 
 
 def _starts(scene: Scene, problem: Problem, count: int) -> Array:
@@ -151,10 +132,10 @@ def _alike(scene: Scene, low: Array, high: Array) -> list[list[int]]:
 
 def on_all_cells(scene: Scene, problem: Problem) -> Problem:
     """The problem with run-ups on all of the scene's cells; itself if it has no others."""
-    coarse, plan = problem.evaluate.runs, scene.speed_plan
+    coarse, plan = problem.runs, scene.speed_plan
     if plan is None or coarse is None or coarse.numerics.cells >= plan.cells:
         return problem
-    return replace(problem, evaluate=problem.evaluate.on(scene, Passages(scene, loaded=coarse.loaded)))
+    return problem.on(scene, Passages(scene, loaded=coarse.loaded))
 
 
 def evaluated_again(fine: Problem, found: Found) -> Found:
@@ -163,6 +144,6 @@ def evaluated_again(fine: Problem, found: Found) -> Found:
     order = np.flatnonzero(allowed)[np.argsort(found.judged.objective[allowed], kind="stable")]
     tried = np.unique(np.concatenate((found.point[None], found.points[order[:_CLOSER]])), axis=0)
     again = fine.evaluate(tried)
-    best = best_of(again, tried @ fine.evaluate.density, plan_of(fine).margin)
+    best = best_of(again, tried @ fine.density, plan_of(fine).margin)
     objective, excess = float(again.objective[best]), float(again.excess[best])
     return replace(found, point=tried[best], objective=objective, excess=excess)

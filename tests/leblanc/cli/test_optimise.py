@@ -13,14 +13,16 @@ import pytest
 
 from leblanc.cli import main
 from leblanc.core import units
-from leblanc.figures.optimise import write_figures
-from leblanc.results.optimum import OptimumResult
+from leblanc.core.blocks import Picture, flat
+from leblanc.core.question import called
+from leblanc.figures.drawing.page import save
 from leblanc.scene.scene import load_scene, scene_from_table
 from leblanc.scene.schema.load import SceneError
 from leblanc.scene.tasks import Optimisation
+from leblanc.studies.optimise.answer import OptimumAnswer
 from leblanc.studies.optimise.objectives import AtSpeed
-from leblanc.studies.optimise.optimise import optimise_scene
-from leblanc.text.optimum import describe_optimum
+from leblanc.studies.optimise.study import optimise_scene
+from tests.oracles.blocks import failed, on_terminal
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 
@@ -192,22 +194,27 @@ def test_wrong_options(
 def test_words_tell_what_is_not_feasible(scene_file: Path) -> None:
     scene = load_scene(scene_file)
     best = optimise_scene(scene, task=Optimisation(objective="least_mass", vibration_limit=1e-5), front=False)
-    text = "\n".join(describe_optimum(best))
-    assert "NOT FEASIBLE" in text and "EXCEEDED" in text
-    assert "Closed form, chamber 1" in text
+    text = on_terminal(best)
+    assert "no volumes meet every constraint" in text and "EXCEEDED" in text
+    assert "just covers" in text and failed(best)["Constraints exceeded"] == "vibration"
 
 
-def _optimum(name: str, **task: object) -> OptimumResult:
+def _optimum(name: str, **task: object) -> OptimumAnswer:
     scene = load_scene(EXAMPLES / f"{name}.toml")
     return optimise_scene(scene.altered(speeds=scene.speeds.altered(count=9)), task=Optimisation(**task))
+
+
+def _drawn(best: OptimumAnswer, folder: Path) -> list[bytes]:
+    folder.mkdir(exist_ok=True)
+    pictures = (block for block in flat(best.blocks(), "page") if isinstance(block, Picture))
+    return [save(called(one.draw)(best), folder, one.name, one.title).png.read_bytes() for one in pictures]
 
 
 @pytest.mark.parametrize("name", ["runup", "horizontal_rig"])
 def test_figures_hold_what_they_say(name: str, tmp_path: Path) -> None:
     """Curve and map; the same record gives the same bytes."""
     best = _optimum(name)
-    first = [file.png.read_bytes() for file in write_figures(best, tmp_path / "a")]
-    again = [file.png.read_bytes() for file in write_figures(best, tmp_path / "b")]
+    first, again = (_drawn(best, tmp_path / folder) for folder in "ab")
     assert len(first) == 2
     assert first == again
 
@@ -217,8 +224,8 @@ def test_figures_without_liquid_or_front(tmp_path: Path) -> None:
     best = _optimum("runup", working_speed=15.0)
     assert best.volume[0] == 0.0
     assert best.value == best.baseline
-    assert len(write_figures(best, tmp_path)) >= 1
-    assert len(write_figures(replace(best, front=None, sweep=None), tmp_path)) == 1
+    assert len(_drawn(best, tmp_path)) >= 1
+    assert len(_drawn(replace(best, front=None, sweep=None), tmp_path)) == 1
 
 
 def test_what_is_not_allowed_and_what_is_interrupted_have_their_codes(
@@ -230,7 +237,7 @@ def test_what_is_not_allowed_and_what_is_interrupted_have_their_codes(
     assert main(["optimise", rig, *limit]) == 3
     captured = capsys.readouterr()
     assert "no volumes meet every constraint" in captured.err and "vibration" in captured.err
-    assert "NOT FEASIBLE" in captured.out and (tmp_path / "a" / "optimum.nc").exists()
+    assert "these exceed them least" in captured.out and (tmp_path / "a" / "optimum.nc").exists()
     asked, whole = 0, AtSpeed.exact
 
     def exact(vibration: AtSpeed, volumes: np.ndarray) -> np.ndarray:

@@ -29,7 +29,7 @@ WORK = (
     "leblanc.studies.modes.study.answer_modes",
     "leblanc.studies.whirl_map.map_scene",
     "leblanc.studies.runup.study.runup_scene",
-    "leblanc.studies.optimise.optimise.optimise_scene",
+    "leblanc.studies.optimise.study.optimise_scene",
     "leblanc.studies.sweep.study.answer_sweep",
     "leblanc.studies.shapes.machine.machine_view",
     "leblanc.studies.shapes.machine.table_view",

@@ -12,14 +12,14 @@ from matplotlib.collections import PathCollection
 from matplotlib.contour import ContourSet
 
 import leblanc as lb
-from leblanc.figures.optimise import front_figure, objective_figure
-from leblanc.report.optimise import front as front_table
-from leblanc.results.optimum import OptimumResult, ParetoFront
-from leblanc.studies.optimise.optimise import optimise_scene
+from leblanc.studies.optimise.answer import OptimumAnswer, ParetoFront
+from leblanc.studies.optimise.figure import front_figure, objective_figure
+from leblanc.studies.optimise.study import optimise_scene
+from tests.oracles.blocks import table
 
 
 @cache
-def two_chambers() -> OptimumResult:
+def two_chambers() -> OptimumAnswer:
     return optimise_scene(lb.example("horizontal_rig"), "working_speed")
 
 
@@ -85,10 +85,11 @@ def test_rows_that_read_alike_are_merged() -> None:
         mass=0.01 * same,
         stability_margin=0.5 * same,
     )
-    rows = [tuple(cell.text for cell in row) for row in front_table(replace(found, front=front)).rows]
+    shown = table(replace(found, front=front), "Liquid (")
+    rows = shown.rows
     assert len(rows) == 2 == len({row[1:] for row in rows})
     assert rows[0][0].endswith("(chosen)") and not rows[1][0].endswith("(chosen)")
-    assert "2 of 2 points" in front_table(replace(found, front=front)).head[0]
+    assert "2 of 2 points" in shown.head[0]
 
 
 def test_the_plane_of_the_amplitude_is_named() -> None:

@@ -10,10 +10,9 @@ import leblanc as lb
 from leblanc.scene.schema.load import SceneError
 from leblanc.scene.tasks import LOADS
 from leblanc.studies.loads.answer import load_rows, verdict
-from leblanc.studies.optimise.answers import FilledMachine
-from leblanc.studies.optimise.loads import LoadsOver
-from leblanc.studies.optimise.optimise import optimise_scene
-from leblanc.studies.optimise.passages import Passages
+from leblanc.studies.optimise.filled import FilledMachine
+from leblanc.studies.optimise.objectives import LoadsOver, Passages
+from leblanc.studies.optimise.study import optimise_scene
 from meshes.errors import InputError
 from tests.mutants import kills
 
@@ -238,9 +237,9 @@ def test_words() -> None:
     assert sum(row.failed for row in load_rows(walks)) == 2
 
 
-@kills("leblanc.studies.optimise.loads:LoadsOver._sizes", "1.0 - loads.walking", "loads.walking")
-@kills("leblanc.studies.optimise.loads:LoadsOver._sizes", "1.0 - loads.slip", "loads.slip")
-@kills("leblanc.studies.optimise.loads:LoadsOver._sizes", "- self.least", "- 0.0")
+@kills("leblanc.studies.optimise.objectives:LoadsOver._sizes", "1.0 - loads.walking", "loads.walking")
+@kills("leblanc.studies.optimise.objectives:LoadsOver._sizes", "1.0 - loads.slip", "loads.slip")
+@kills("leblanc.studies.optimise.objectives:LoadsOver._sizes", "- self.least", "- 0.0")
 def test_search_and_run_agree() -> None:
     """Loads over the speeds are those of `run` with the same volumes."""
     scene = _rig(**{"model.liquid": "statics"})
@@ -269,13 +268,13 @@ def _passing(**changes: Any) -> lb.Scene:
     )
 
 
-@kills("leblanc.studies.optimise.loads:LoadsOver._one", "np.max([part[name]", "np.min([part[name]")
+@kills("leblanc.studies.optimise.objectives:LoadsOver._one", "np.max([part[name]", "np.min([part[name]")
 @kills(
-    "leblanc.studies.optimise.passages:Passages._one",
+    "leblanc.studies.optimise.objectives:Passages._one",
     "np.fmin.reduce(worst.slip)",
     "np.fmax.reduce(worst.slip)",
 )
-@kills("leblanc.studies.optimise.passages:Passages._one", "found.torque.max()", "found.torque.min()")
+@kills("leblanc.studies.optimise.objectives:Passages._one", "found.torque.max()", "found.torque.min()")
 def test_search_and_run_up_agree() -> None:
     """Loads over the run-up are those of `runup`, or the worse of them and those of `run`."""
     scene = _passing()

@@ -18,14 +18,12 @@ from leblanc.cli import main
 from leblanc.cli.command import write
 from leblanc.core.blocks import Table, flat
 from leblanc.core.quantities import quantities
-from leblanc.report import optimise as report_optimise
 from leblanc.report import run as report_map
-from leblanc.results.base import ConstraintValue
-from leblanc.results.optimum import Feasibility, OptimumResult
 from leblanc.results.whirl_map import WhirlMap
 from leblanc.scene.inputs import about
 from leblanc.scene.scene import scene_from_table
-from leblanc.studies.optimise.optimise import optimise_scene
+from leblanc.studies.optimise.answer import ConstraintValue, OptimumAnswer
+from leblanc.studies.optimise.study import optimise_scene
 from leblanc.studies.run.study import run_scene
 from leblanc.studies.run.words import MODELS
 from leblanc.studies.runup import words
@@ -40,6 +38,7 @@ from solvers.layer.records import Outcome
 from solvers.runup.runup import EnergyAudit
 from tests.leblanc.studies.test_runup import lying
 from tests.leblanc.studies.test_runup import table as machine
+from tests.oracles.blocks import cell_text, failed, labels, table
 from tests.oracles.pages import Page, printed, read_page
 
 ROOT = Path(__file__).parents[3]
@@ -193,36 +192,35 @@ def test_a_map_of_many_points_stays_light(tmp_path: Path) -> None:
 
 
 @cache
-def optimum() -> OptimumResult:
+def optimum() -> OptimumAnswer:
     return optimise_scene(scene_from_table(example("centrifuge", 9)), front=True)
 
 
 def test_optimum_numbers() -> None:
     record = optimum()
-    (row,) = report_optimise.volumes(record).rows
+    (row,) = table(record, "Chamber").rows
     (form,), (chamber,) = record.closed_form, record.chambers
     expected = [
         record.volume[0] * 1e6, 100.0 * record.volume[0] / chamber.capacity, form.deflection * 1e3,
         form.optimal_volume * 1e6, 100.0 * form.unbalance_share, form.full_volume * 1e6,
     ]  # fmt: skip
-    shown = [row[k].text for k in (1, 3, 4, 5, 6, 7)]
+    shown = [row[k] for k in (1, 3, 4, 5, 6, 7)]
     assert shown == ["never" if math.isinf(one) else printed(one) for one in expected]
-    (value,) = report_optimise.values(record).rows
-    assert [cell.text for cell in value[1:]] == [
+    (value,) = table(record, "", "best volumes").rows
+    assert value[1:] == (
         f"{printed(record.value * 1e3)} mm", f"{printed(record.baseline * 1e3)} mm",
         printed(record.value / record.baseline),
-    ]  # fmt: skip
-    found = dict(report_optimise.facts(record))
+    )  # fmt: skip
+    found = labels(record)
     assert found["Working speed"] == f"{printed(record.working_speed * RPM)} rpm"
     assert found["Mass of the liquid"] == f"{printed(record.mass * 1e3)} g"
     assert found["Stability margin at the operating speeds"] == f"{printed(-record.growth)} 1/s"
     edge = record.front
     assert edge is not None
-    (of, *_), rows = report_optimise.front(record).head, report_optimise.front(record).rows
-    assert of.startswith("Liquid (kg), ")
-    assert sum("(chosen)" in row[0].text for row in rows) == 1
+    rows = table(record, "Liquid (kg), ").rows
+    assert sum("(chosen)" in row[0] for row in rows) == 1
     for row in rows:
-        points = [k for k in range(edge.mass.size) if printed(edge.mass[k]) == row[0].text.split()[0]]
+        points = [k for k in range(edge.mass.size) if printed(edge.mass[k]) == row[0].split()[0]]
         mine = [
             (
                 printed(edge.volume[k, 0] * 1e6),
@@ -231,9 +229,9 @@ def test_optimum_numbers() -> None:
             )
             for k in points
         ]
-        assert tuple(cell.text for cell in row[1:]) in mine
-        if "(chosen)" in row[0].text:
-            assert row[1].text == printed(record.volume[0] * 1e6)
+        assert row[1:] in mine
+        if "(chosen)" in row[0]:
+            assert row[1] == printed(record.volume[0] * 1e6)
 
 
 def test_optimum_warnings() -> None:
@@ -242,22 +240,17 @@ def test_optimum_warnings() -> None:
     calm = replace(
         record,
         growth=-1.0,
-        feasibility=Feasibility.FEASIBLE,
         constraints={"capacity": ConstraintValue(1.0, 0.1, True, "1", "s")},
         response=None,
     )
-    assert not any(cell.warning for row in report_optimise.checks(calm).rows for cell in row)
-    assert not any(cell.warning for row in report_optimise.constraints(calm).rows for cell in row)
-    grows = report_optimise.checks(replace(calm, growth=0.5)).rows
-    assert [row[0].text for row in grows if row[1].warning] == ["A small whirl grows when operating"]
+    (kept,) = table(calm, "Constraint").rows
+    assert not failed(calm) and cell_text(kept[3]) == "kept" and not kept[3].warning
+    assert list(failed(replace(calm, growth=0.5))) == ["A small whirl grows when operating"]
     dry = {"dry_patch": ConstraintValue(0.0, 1.0, False, "1", "dry")}
-    over = replace(calm, feasibility=Feasibility.INFEASIBLE, constraints=dry)
-    rows = report_optimise.checks(over).rows
-    assert [(row[0].text, row[1].text) for row in rows if row[1].warning] == [
-        ("Constraints exceeded", "dry patch")
-    ]
-    (row,) = report_optimise.constraints(over).rows
-    assert row[3].warning and row[3].text == "exceeded" and [cell.text for cell in row[1:3]] == ["1", "0"]
+    over = replace(calm, constraints=dry)
+    assert failed(over) == {"Constraints exceeded": "dry patch"}
+    (row,) = table(over, "Constraint").rows
+    assert row[3].warning and row[3].text == "EXCEEDED" and row[1:3] == ("1", "0")
 
 
 def test_optimise_report_is_the_json() -> None:

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 import leblanc as lb
-from leblanc.api import optimise, run_up
+from leblanc.api import run_up
 from leblanc.cli import main
 from leblanc.core.answer import Result
 from leblanc.core.terminal import print_json
@@ -25,6 +25,7 @@ from leblanc.scene.tasks import Optimisation
 from leblanc.studies.compare import compare_models
 from leblanc.studies.explain import explain_scene
 from leblanc.studies.models.choose import choose_all, prepare
+from leblanc.studies.optimise import optimise
 from leblanc.studies.run.answer import RunAnswer
 from leblanc.studies.run.study import run_scene
 from leblanc.studies.volume import volume

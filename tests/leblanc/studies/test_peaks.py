@@ -17,9 +17,9 @@ from leblanc.scene.scene import Scene, load_scene
 from leblanc.scene.tasks import Optimisation
 from leblanc.studies.compare import compare_models
 from leblanc.studies.models.choose import choose_all, liquid_models, prepare
-from leblanc.studies.optimise.answers import FilledMachine, with_volumes
+from leblanc.studies.optimise.filled import FilledMachine, with_volumes
 from leblanc.studies.optimise.objectives import PeakOver
-from leblanc.studies.optimise.optimise import optimise_scene
+from leblanc.studies.optimise.study import optimise_scene
 from leblanc.studies.peaks import _distinct, responses_between
 from leblanc.studies.run.answer import RunAnswer
 from leblanc.studies.run.notes import RunCode
@@ -360,7 +360,7 @@ def test_the_optimiser_promises_what_run_finds(name: str, counts: tuple[int, ...
         )
 
 
-@kills("leblanc.studies.optimise.answers:FilledMachine._planar_peaks", "found[outside] = (", "outside = (")
+@kills("leblanc.studies.optimise.filled:FilledMachine._planar_peaks", "found[outside] = (", "outside = (")
 def test_peaks_over_a_range() -> None:
     """With many volumes at once, in ranges that hold the resonance and that do not, as `run` finds them."""
     for changes in ({}, {"speeds__stop": "900 rpm"}, {"speeds__start": "1300 rpm"}):

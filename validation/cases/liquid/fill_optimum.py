@@ -10,7 +10,7 @@ from leblanc.core.units import MM
 from leblanc.scene.examples import example
 from leblanc.scene.scene import Scene, jeffcott
 from leblanc.studies.models.choose import axial_gravity
-from leblanc.studies.optimise.optimise import optimise_scene
+from leblanc.studies.optimise.study import optimise_scene
 from leblanc.studies.optimise.wetting import wetting_volumes
 from validation.case import Case, Claims
 

@@ -1,4 +1,4 @@
-"""What a design of balls is judged by: an amplitude or the mass of all balls, and what it must keep to.
+"""What is searched of the balls of a scene, what a design is judged by, and what it must keep to.
 
 [theory: races, eq. 13-15]
 """
@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import NamedTuple
@@ -14,32 +15,30 @@ import numpy as np
 
 from leblanc.core.notes import Note
 from leblanc.core.units import in_rpm, rpm_range
-from leblanc.results.base import ConstraintValue
-from leblanc.results.notes import ball_design as notes
+from leblanc.scene.races import BallRace
 from leblanc.scene.scene import Runup, Scene, dry_rotor, require_clear, require_whirl
-from leblanc.scene.tasks import Optimisation
+from leblanc.scene.tasks import MAX_BALLS, Optimisation
 from leblanc.scene.unbalances import unbalances_of, with_unbalances
 from leblanc.studies.balls.states import WorstStates, planes_of, worst_states
 from leblanc.studies.drives import drive_of, numerics_of, planned, rotor_in_time
 from leblanc.studies.models.choose import across_gravity, axial_gravity
-from leblanc.studies.optimise.balls.design import (
-    Variable,
-    crowding,
-    floats,
-    total_mass,
-    variables_of,
-    with_balls,
-)
+from leblanc.studies.optimise import notes
+from leblanc.studies.optimise.balls.answer import DesignRange
+from leblanc.studies.optimise.constraints import Limit
 from leblanc.studies.optimise.problem import operating_speeds, working_speed
 from leblanc.studies.optimise.robust import DOUBLE, operating_conditions, unbalance_range
 from leblanc.studies.runup.study import chosen_run
-from meshes.arrays import Array
+from meshes.arrays import Array, Flags
 from meshes.errors import InputError
 from solvers.rotor.balance_quality import balance_quality
 from solvers.runup.long_wave import couple
 from solvers.runup.runup import run_up
 from solvers.synchronous.response import response
 
+_FEW, _MANY = 2, 8  # balls of a race where the scene gives no ranges
+_USUAL = {"mass": (0.25, 4.0), "diameter": (0.5, 2.0), "drag": (0.01, 100.0)}  # times the scene's
+_UNITS = {"count": "1", "mass": "kg", "diameter": "m", "drag": "N s/m", "radius": "m"}
+_LOGARITHMIC = ("mass", "diameter", "drag")
 OBJECTIVES = ("working_speed", "peak", "mean", "least_mass", "robust")
 # Fields of a task that say nothing of balls.
 _OF_LIQUID = ("deflection", "temperature", "dry_patch", "least_film", "whirl_limit", "spill", "loads_over")
@@ -52,36 +51,116 @@ _EQUAL = 1e-3  # of the amplitude without balls: what differs by less is equal
 WHOLE = 10.0  # objective of a design that breaks a constraint, above those of all that keep them
 
 
+class Variable(NamedTuple):
+    """One number of a race that is searched."""
+
+    race: int
+    name: str
+    low: float
+    high: float
+
+    @property
+    def logarithmic(self) -> bool:
+        """Its logarithm is searched."""
+        return self.name in _LOGARITHMIC and self.low > 0.0
+
+    @property
+    def bounds(self) -> tuple[float, float]:
+        """Of what is searched."""
+        return (math.log(self.low), math.log(self.high)) if self.logarithmic else (self.low, self.high)
+
+    def value(self, searched: float) -> float:
+        """The number itself, SI."""
+        found = math.exp(searched) if self.logarithmic else searched
+        return float(min(max(found, self.low), self.high))
+
+    def searched(self, value: float) -> float:
+        """What is searched at a value, within the bounds."""
+        held = min(max(value, self.low), self.high)
+        return math.log(held) if self.logarithmic else held
+
+
+def size_of(race: BallRace) -> str:
+    """The size of a ball that a scene gives: its mass, or the diameter beside a density."""
+    return "mass" if race.mass is not None else "diameter"
+
+
+def variables_of(scene: Scene, task: Optimisation) -> Iterator[Variable]:
+    """What is searched of the balls of every race: what the task gives, or around what the scene has."""
+    for k, race in enumerate(scene.balls):
+        own, ranges = size_of(race), task.balls
+        if ranges is None:
+            yield Variable(k, "count", min(_FEW, race.count), min(max(_MANY, race.count), MAX_BALLS))
+            for name in (own, "drag"):
+                value, (low, high) = getattr(race, name), _USUAL[name]
+                if value > 0.0:
+                    yield Variable(k, name, low * value, high * value)
+            continue
+        other, keeps = ("diameter", "mass") if own == "mass" else ("mass", "density")
+        if getattr(ranges, other) is not None:
+            text = f"left out where chambers.{len(scene.liquids) + k}.{keeps} is given; {own} in its place"
+            raise InputError(f"optimise.balls.{other}", list(getattr(ranges, other)), text)
+        for name in ("count", own, "drag", "radius"):
+            if (span := getattr(ranges, name)) is not None:
+                yield Variable(k, name, *span)
+
+
+def named_ranges(scene: Scene, variables: Sequence[Variable]) -> tuple[DesignRange, ...]:
+    """The variables as results keep them."""
+    first = len(scene.liquids)
+    return tuple(
+        DesignRange(f"chambers.{first + v.race}.{v.name}", v.low, v.high, _UNITS[v.name]) for v in variables
+    )
+
+
+def start_of(scene: Scene, variables: Sequence[Variable]) -> Array:
+    """The scene's own balls as a point of the search, moved into the ranges, shape (v,)."""
+    return np.array([v.searched(float(getattr(scene.balls[v.race], v.name))) for v in variables])
+
+
+def values_of(variables: Sequence[Variable], point: Array) -> Array:
+    """The numbers at a point of the search, SI, shape (v,)."""
+    pairs = zip(variables, point.tolist(), strict=True)
+    return np.array([round(v.value(x)) if v.name == "count" else v.value(x) for v, x in pairs])
+
+
+def with_balls(scene: Scene, variables: Sequence[Variable], point: Array) -> Scene:
+    """The scene with other balls, which are not checked: they may not fit."""
+    changes: list[dict[str, float | int]] = [{} for _ in scene.balls]
+    for variable, value in zip(variables, values_of(variables, point).tolist(), strict=True):
+        changes[variable.race][variable.name] = round(value) if variable.name == "count" else value
+    races = [race.altered(**own) for race, own in zip(scene.balls, changes, strict=True)]
+    return scene.altered(chambers=(*scene.liquids, *races))
+
+
+def crowding(race: BallRace) -> float:
+    """Share of the way round a race that its balls take side by side; 0 where their diameter is not known."""
+    if race.diameter is None:
+        return 0.0
+    share = race.diameter / (2.0 * race.radius)
+    return race.count * math.asin(share) / math.pi if share < 1.0 else math.inf
+
+
+def total_mass(scene: Scene) -> float:
+    """Of all balls, kg."""
+    return float(sum(race.count * race.each for race in scene.balls))
+
+
+def whole_numbers(variables: Sequence[Variable]) -> Flags:
+    """Which of the variables are whole numbers, shape (v,)."""
+    return np.array([v.name == "count" for v in variables])
+
+
 class Verdict(NamedTuple):
-    """What a design is worth.
+    """What a design is worth."""
 
-    `score` is to be made least: of the objective and, among equals, of the decay, above `WHOLE` where a
-    constraint is broken; `vibration` the amplitude, m, infinite without a stable state; `mass` of all balls;
-    `growth` of small motions at the working speed, the largest over the conditions, 1/s; `excess` relative, 0
-    or below if no constraint is exceeded.
-    """
-
-    score: float
+    score: float  #: to be made least; above `WHOLE` where a constraint is broken
     value: float
-    vibration: float
-    mass: float
-    growth: float
-    excess: float
+    vibration: float  #: amplitude, m, infinite without a stable state
+    mass: float  #: of all balls, kg
+    growth: float  #: of small motions where they must fade, the largest over the conditions, 1/s
+    excess: float  #: relative, 0 or below if no constraint is exceeded
     values: dict[str, float]
-
-
-class Limit(NamedTuple):
-    """A value that must not be above its limit; `scale` is what an excess is measured by."""
-
-    limit: float
-    unit: str
-    meaning: str
-    scale: float
-
-    def at(self, value: float) -> ConstraintValue:
-        """The constraint where it has a value."""
-        kept = bool(value <= self.limit + 1e-9 * self.scale)
-        return ConstraintValue(self.limit, value, kept, self.unit, self.meaning)
 
 
 @dataclass(frozen=True)
@@ -125,12 +204,14 @@ class BallProblem:
         scene = with_balls(self.scene, self.variables, point)
         mass = total_mass(scene)
         values = {"fits": max(crowding(race) for race in scene.balls)}
-        sunk = not any(floats(race) for race in scene.balls)
+        # Balls that are not heavier than the liquid that they displace float.
+        sunk = all(race.displaced < race.each for race in scene.balls)
         if not sunk or values["fits"] > 1.0:
             over = 1.0 if not sunk else min(values["fits"] - 1.0, 1e6)
             lost = dict.fromkeys(self.limits, math.inf) | values
             return Verdict(WHOLE + 10.0 + over, math.inf, math.inf, mass, math.inf, over, lost)
-        states = [self._states(scene, sizes) for sizes in self.unbalances]
+        rotors = (with_unbalances(scene.rotor, sizes) for sizes in self.unbalances)
+        states = [worst_states(scene.altered(rotor=rotor), self.asked) for rotor in rotors]
         growth = max(float(np.max(self._at(each, "growth", self.growth_at))) for each in states)
         values["stable"] = growth
         vibration = self._amplitude(scene, states)
@@ -140,12 +221,11 @@ class BallProblem:
         if "clearance" in self.limits:
             values["clearance"] = self._largest(states, self.clear_at)
         if "balance_quality" in self.limits:
-            values["balance_quality"] = max(self._quality(each) for each in states)
+            at = [self.working_speed]
+            rows = (each.coordinates[np.searchsorted(each.speed, at)] for each in states)
+            quality = [balance_quality(dry_rotor(self.scene), at, row) for row in rows]
+            values["balance_quality"] = float(np.max(quality))
         return self._weighed(vibration, mass, growth, values)
-
-    def _states(self, scene: Scene, sizes: tuple[float, ...]) -> WorstStates:
-        rotor = with_unbalances(scene.rotor, sizes)
-        return worst_states(scene.altered(rotor=rotor), self.asked)
 
     def _at(self, states: WorstStates, name: str, speeds: Array) -> Array:
         return np.asarray(getattr(states, name)[np.searchsorted(states.speed, speeds)])
@@ -164,20 +244,19 @@ class BallProblem:
         if self.task.objective in ("working_speed", "least_mass", "robust"):
             # Where no state is stable nobody knows how large the motion is.
             each = np.where([self._at(found, "stable", self.speeds) for found in states], each, np.inf)
-        over = each @ self.weights if self.weights.size else each.max(axis=1)
-        return (
-            float(np.quantile(over, self.task.quantile, method="higher")) if over.size > 1 else float(over[0])
-        )
+        return self.taken(each)
 
-    def _quality(self, states: WorstStates) -> float:
-        """Balance quality of rotor and balls together at the working speed, m/s."""
-        row = int(np.searchsorted(states.speed, self.working_speed))
-        coordinates = states.coordinates[row][None]
-        return float(balance_quality(dry_rotor(self.scene), [self.working_speed], coordinates)[0])
+    def taken(self, each: Array) -> float:
+        """Of amplitudes in each condition over the speeds the one that counts."""
+        over = each @ self.weights if self.weights.size else each.max(axis=1)
+        if over.size == 1:
+            return float(over[0])
+        return float(np.quantile(over, self.task.quantile, method="higher"))
 
     def _weighed(self, vibration: float, mass: float, growth: float, values: dict[str, float]) -> Verdict:
         """One number of all."""
-        excess = [_over(values[name], own) for name, own in self.limits.items()]
+        over = [own.excess(values[name]) for name, own in self.limits.items()]
+        excess = np.minimum(np.nan_to_num(over, nan=1e6), 1e6).tolist()
         if not self.by_mass and not math.isfinite(vibration):
             excess.append(1.0)
         worst = max(excess, default=-1.0)
@@ -189,16 +268,15 @@ class BallProblem:
         return Verdict(score, value, vibration, mass, growth, worst, values)
 
 
-def _over(value: float, own: Limit) -> float:
-    found = (value - own.limit) / own.scale
-    return 1e6 if math.isnan(found) else min(found, 1e6)
-
-
-def run_up_peak(scene: Scene) -> float:
+def run_up_peak(scene: Scene, balls: bool = True) -> float:
     """Largest amplitude of a scene's run-up in time, m; infinite where it did not come to its end."""
-    plan = planned(scene)
+    plan, gravity = planned(scene), across_gravity(scene)
     drive, numerics = drive_of(plan, scene.rotor), numerics_of(plan, check=False)
-    history = chosen_run(scene, drive, across_gravity(scene), numerics).history
+    if balls:
+        history = chosen_run(scene, drive, gravity, numerics).history
+    else:  # with the liquid of the scene
+        given = rotor_in_time(scene), scene.fills, drive, scene.model.friction, gravity, numerics
+        history = run_up(*given, None, partial(couple, position=scene.balls[0].plane))
     return float(history.amplitude.max()) if history.converged else math.inf
 
 
@@ -212,7 +290,6 @@ def _spread(speeds: Array) -> Array:
 def ball_problem(scene: Scene, task: Optimisation) -> BallProblem:
     """The search that a scene with balls poses."""
     _require(scene, task)
-    variables = variables_of(scene, task)
     speed, used = working_speed(scene, task), operating_speeds(scene, task)
     operating = _spread(np.linspace(used.start, used.stop, used.count))
     speeds, weights, meaning, found = _over_speeds(scene, task, speed)
@@ -226,13 +303,13 @@ def ball_problem(scene: Scene, task: Optimisation) -> BallProblem:
         around = unbalance_range(unbalances[0], task.unbalance, DOUBLE)
         conditions = operating_conditions(around, None, task.samples, task.seed)
         unbalances = tuple(condition.unbalance for condition in conditions)
-        found += () if task.unbalance is not None else (notes.no_range(),)
+        found += () if task.unbalance is not None else (notes.NO_RANGE,)
     # The states of a design are looked for where it works, and over a range only where one is given.
     growth_at = np.array([speed]) if task.operating is None else np.unique([*operating, speed])
     problem = BallProblem(
         scene=scene,
         task=task,
-        variables=variables,
+        variables=tuple(variables_of(scene, task)),
         meaning=meaning,
         working_speed=speed,
         speeds=speeds,
@@ -252,8 +329,9 @@ def ball_problem(scene: Scene, task: Optimisation) -> BallProblem:
         raise InputError("rotor", scene.rotor.kind, text)
     problem = replace(problem, bare=bare)
     if task.objective == "least_mass" and task.vibration_limit is None:
-        problem = replace(problem, notes=(*problem.notes, notes.no_limit(_SLACK * bare)))
-    return replace(problem, limits=_limits(problem))
+        note = notes.no_limit(_SLACK * bare, "a hundredth of the amplitude without balls")
+        problem = replace(problem, notes=(*found, note))
+    return replace(problem, limits={own.name: own for own in _limits(problem)})
 
 
 def _require(scene: Scene, task: Optimisation) -> None:
@@ -262,7 +340,7 @@ def _require(scene: Scene, task: Optimisation) -> None:
     if not scene.balls:
         raise InputError("chambers", len(scene.chambers), "with one of kind balls for this")
     if task.objective not in OBJECTIVES:
-        raise InputError("--objective", task.objective, "one of " + ", ".join(OBJECTIVES) + " with balls")
+        raise InputError("objective", task.objective, "one of " + ", ".join(OBJECTIVES) + " with balls")
     usual = Optimisation()
     for name in (*_OF_LIQUID, *_OF_LOADS):
         if (given := getattr(task, name)) != getattr(usual, name):
@@ -298,47 +376,33 @@ def bare_amplitude(problem: BallProblem) -> float:
     """The amplitude of the objective without balls, with the liquid of the scene, m."""
     scene = problem.scene
     if problem.in_time:
-        return _run_without(scene)
+        return run_up_peak(scene, balls=False)
     found = []
     for sizes in problem.unbalances:
         changed = scene.altered(rotor=with_unbalances(scene.rotor, sizes))
         given = dry_rotor(changed), scene.fills, problem.speeds, axial_gravity(scene)
         sizes_at = [response(*given, position=plane).amplitude for plane in planes_of(scene)]
         found.append(np.max(sizes_at, axis=0))
-    each = np.array(found)
-    over = each @ problem.weights if problem.weights.size else each.max(axis=1)
-    return float(np.quantile(over, problem.task.quantile, method="higher"))
+    return problem.taken(np.array(found))
 
 
-def _run_without(scene: Scene) -> float:
-    """Largest amplitude of the run-up without balls, with the liquid of the scene, m."""
-    plan = planned(scene)
-    drive, numerics = drive_of(plan, scene.rotor), numerics_of(plan, check=False)
-    given = rotor_in_time(scene), scene.fills, drive, scene.model.friction, across_gravity(scene), numerics
-    history = run_up(*given, None, partial(couple, position=scene.balls[0].plane))
-    return float(history.amplitude.max()) if history.converged else math.inf
-
-
-def _limits(problem: BallProblem) -> dict[str, Limit]:
-    """What a design must keep to, by name."""
-    task, speed, bare = problem.task, problem.working_speed, problem.bare
-    found = {"fits": Limit(1.0, "1", "share of the race that its balls take side by side", 1.0)}
+def _limits(problem: BallProblem) -> Iterator[Limit]:
+    """What a design must keep to."""
+    task, speed = problem.task, problem.working_speed
+    yield Limit("fits", "share of the race that its balls take side by side", "1", 1.0, 1.0)
     at = f"at {in_rpm(speed)}"
     if problem.growth_at.size > 1:
         at = f"from {rpm_range(float(problem.growth_at[0]), float(problem.growth_at[-1]))}"
     if task.stable:
         margin = task.stability_margin or 0.0
-        scale = max(margin, _FADES * speed)
         limit = -margin if margin > 0.0 else _NEUTRAL * speed
-        found["stable"] = Limit(limit, "1/s", f"growth of small motions {at}", scale)
+        yield Limit("stable", f"growth of small motions {at}", "1/s", limit, max(margin, _FADES * speed))
     used = rpm_range(float(problem.clear_at[0]), float(problem.clear_at[-1])) if problem.clear_at.size else ""
     if problem.by_mass:
-        limit = task.vibration_limit if task.vibration_limit is not None else _SLACK * bare
+        limit = task.vibration_limit if task.vibration_limit is not None else _SLACK * problem.bare
         where = f"largest amplitude from {used}" if task.limit_at == "operating" else problem.meaning
-        found["vibration"] = Limit(limit, "m", where, limit)
-    if task.clearance is not None:
-        found["clearance"] = Limit(task.clearance, "m", f"largest amplitude from {used}", task.clearance)
-    if task.balance_quality is not None:
-        text = f"balance quality of rotor and balls {at}"
-        found["balance_quality"] = Limit(task.balance_quality, "m/s", text, task.balance_quality)
-    return found
+        yield Limit("vibration", where, "m", limit, limit)
+    if (most := task.clearance) is not None:
+        yield Limit("clearance", f"largest amplitude from {used}", "m", most, most)
+    if (grade := task.balance_quality) is not None:
+        yield Limit("balance_quality", f"balance quality of rotor and balls {at}", "m/s", grade, grade)

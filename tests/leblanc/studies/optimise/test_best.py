@@ -11,19 +11,21 @@ import pytest
 
 from fluid.fill import Fill
 from fluid.friction.laws import Friction
-from leblanc.results.optimum import OptimumCode, OptimumResult
+from leblanc.core.progress import told
 from leblanc.scene.scene import Scene, Speeds, load_scene
 from leblanc.scene.tasks import Optimisation
-from leblanc.studies.optimise.answers import FilledMachine, with_volumes
+from leblanc.studies.optimise.answer import OptimumAnswer
 from leblanc.studies.optimise.constraints import Constraint, spill, wetting
+from leblanc.studies.optimise.filled import FilledMachine, with_volumes
+from leblanc.studies.optimise.notes import OptimumCode
 from leblanc.studies.optimise.objectives import AtSpeed
-from leblanc.studies.optimise.optimise import optimise_scene
+from leblanc.studies.optimise.study import optimise_scene
 from leblanc.studies.run.study import run_scene
-from leblanc.text.optimum import describe_optimum, nearest
 from meshes.arrays import Array
 from meshes.chamber import Chamber
 from solvers.statics.hydrostatics import equilibrium
 from tests.mutants import kills
+from tests.oracles.blocks import on_terminal
 from tests.oracles.optimise import FREE, random_scene
 
 EXAMPLES = Path(__file__).parents[4] / "examples"
@@ -45,7 +47,7 @@ def machines() -> dict[str, Scene]:
     return {name: scene.altered(speeds=scene.speeds.altered(count=15)) for name, scene in found.items()}
 
 
-def not_beaten(best: OptimumResult) -> None:
+def not_beaten(best: OptimumAnswer) -> None:
     """Nothing that was tried is better by more than counts as equal, and nothing as good has less liquid."""
     tried, over = best.candidates, np.maximum(best.candidates.excess, 0.0)
     assert tried.exact.all()
@@ -103,7 +105,7 @@ def test_a_limit_at_the_operating_speeds() -> None:
     assert best.vibration <= tried.vibration.min() * (1.0 + 2.0 * best.equal_within)
     free = optimise_scene(scene, task=Optimisation(objective="peak", steady=True), front=False)
     assert best.vibration == pytest.approx(free.value, rel=1e-4)
-    assert "vibration: amplitude at the operating speeds" in nearest(best)
+    assert "vibration: amplitude at the operating speeds" in best.failed[0]
 
 
 def excess(constraint: Constraint, volumes: Array) -> Array:
@@ -148,7 +150,7 @@ def test_how_far_the_liquid_reaches(gravity: float) -> None:
 
 
 @kills(
-    "leblanc.studies.optimise.answers:FilledMachine._reach",
+    "leblanc.studies.optimise.filled:FilledMachine._reach",
     "np.maximum(reach, own)",
     "np.minimum(reach, own)",
 )
@@ -205,7 +207,7 @@ def test_small_whirls_die_out_where_the_machine_stays() -> None:
 def test_no_liquid_is_said(task: dict[str, Any], said: str) -> None:
     best = optimise_scene(load_scene(EXAMPLES / "runup.toml"), task=Optimisation(**task), front=False)
     assert best.feasible and best.volume[0] == 0.0
-    assert any(said in line for line in describe_optimum(best))
+    assert said in on_terminal(best)
 
 
 def test_an_interrupt_keeps_the_best_so_far(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -225,7 +227,7 @@ def test_an_interrupt_keeps_the_best_so_far(monkeypatch: pytest.MonkeyPatch) -> 
     assert best.front is None and best.candidates.objective.size < full.candidates.objective.size
     not_beaten(best)
     assert best.to_json()["interrupted"] is True
-    assert any("INTERRUPTED" in line for line in describe_optimum(best))
+    assert "INTERRUPTED" in on_terminal(best)
     # Before there is anything to keep, there is nothing to tell.
     asked = 5
     with pytest.raises(KeyboardInterrupt):
@@ -236,11 +238,13 @@ def test_an_interrupt_after_the_search_keeps_the_answer() -> None:
     """The front is missing then, nothing else."""
     scene = load_scene(EXAMPLES / "horizontal_rig.toml")
 
-    def stop(_: int, share: float) -> None:
+    def stop(share: float, *_: object) -> None:
         if share > 0.8:
             raise KeyboardInterrupt
 
-    best, full = optimise_scene(scene, progress=stop), optimise_scene(scene)
+    full = optimise_scene(scene)
+    with told(stop):
+        best = optimise_scene(scene)
     assert best.interrupted and best.front is None and full.front is not None
     assert best.value == full.value and best.volume.tolist() == full.volume.tolist()
     (note,) = [note for note in best.notes if note.code is OptimumCode.INTERRUPTED]
@@ -249,13 +253,17 @@ def test_an_interrupt_after_the_search_keeps_the_answer() -> None:
 
 @pytest.mark.parametrize("front", [False, True])
 def test_progress_says_what_is_done(front: bool) -> None:
-    told: list[tuple[int, float]] = []
-    best = optimise_scene(
-        load_scene(EXAMPLES / "horizontal_rig.toml"),
-        front=front,
-        progress=lambda count, share: told.append((count, share)),
-    )
-    assert (told[-1][1] > 0.99) == front
-    counts, shares = np.array(told).T
-    assert np.all(np.diff(counts) >= 0.0) and np.all(np.diff(shares) >= 0.0)
-    assert counts[-1] >= best.evaluations and 0.0 < shares[-1] <= 1.0
+    done: list[float] = []
+    words: list[str] = []
+
+    def hear(share: float, total: float, what: str) -> None:
+        assert total == 1.0
+        done.append(share)
+        words.append(what)
+
+    with told(hear):
+        best = optimise_scene(load_scene(EXAMPLES / "horizontal_rig.toml"), front=front)
+    assert (done[-1] > 0.99) == front
+    assert np.all(np.diff(done) >= 0.0) and 0.0 < done[-1] <= 1.0
+    counts = [int(what.split()[0]) for what in words if what.endswith("sets of volumes judged")]
+    assert np.all(np.diff(counts) >= 0) and counts[-1] >= best.evaluations

@@ -10,12 +10,11 @@ import numpy as np
 import pytest
 
 from leblanc.cli import main
-from leblanc.results.optimum import emulated
 from leblanc.scene.scene import Scene, load_scene
 from leblanc.scene.tasks import Optimisation
-from leblanc.studies.optimise.answers import with_volumes
-from leblanc.studies.optimise.emulated import EmulatedVibration, emulated_vibration
-from leblanc.studies.optimise.optimise import optimise_scene
+from leblanc.studies.optimise.filled import with_volumes
+from leblanc.studies.optimise.notes import emulated
+from leblanc.studies.optimise.study import EmulatedVibration, emulated_vibration, optimise_scene
 from leblanc.studies.sweep.batch import answer_scenes
 from leblanc.studies.sweep.study import run_sweep
 from meshes.errors import InputError
@@ -71,7 +70,7 @@ def test_what_does_not_fit_is_said(tmp_path: Path) -> None:
     for task in (Optimisation(objective="mean"), Optimisation(working_speed=100.0)):
         with pytest.raises(InputError) as caught:
             emulated_vibration(store, scene, task)
-        assert caught.value.field == "--objective"
+        assert caught.value.field == "objective"
     emulated_vibration(store, scene, Optimisation(objective="peak"))
     more = SMOOTH_FILLS + '"rotor.mass" = { uniform = [3.9, 4.1] }\n'
     folder = tmp_path / "more"

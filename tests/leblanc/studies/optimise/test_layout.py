@@ -13,18 +13,21 @@ import pytest
 
 import leblanc as lb
 from leblanc.cli import main
-from leblanc.figures.machine import places_figure
-from leblanc.report.layout import write_layout_report
-from leblanc.results.machine.layout import LayoutResult, pair_names
+from leblanc.core.blocks import Picture
+from leblanc.core.page import write_page
 from leblanc.scene.inputs import about
 from leblanc.scene.schema.load import SceneError
-from leblanc.studies.optimise.layout import separation, suspension_of
-from leblanc.studies.optimise.optimise import optimise_scene
-from leblanc.text.layout import answer, coupling_rows, facts, mount_rows
+from leblanc.studies.optimise.layout.answer import LayoutAnswer, pair_names
+from leblanc.studies.optimise.layout.figure import places_figure
+from leblanc.studies.optimise.layout.study import separation, suspension_of
+from leblanc.studies.optimise.study import optimise_scene
 from meshes.errors import InputError
 from solvers.rotor.layout import Mounts, centre_of_mass, couplings, mass_matrix, natural_frequencies
 from tests.mutants import kills
+from tests.oracles.blocks import failed, labels, table
 from tests.oracles.pages import read_page
+
+ROOM = "leblanc.studies.optimise.layout.study"
 
 FOUR = [
     {"position": [x, y, z], "stiffness": [4e3, 3e3, 5e3]}
@@ -39,14 +42,16 @@ def tub(**changes: Any) -> lb.Scene:
     return lb.example("tub").replace(base | {name.replace("__", "."): v for name, v in changes.items()})
 
 
-def best(scene: lb.Scene, **layout: Any) -> LayoutResult:
+def best(scene: lb.Scene, **layout: Any) -> LayoutAnswer:
     found = lb.optimise(scene.replace({"optimise": {"objective": "layout", "layout": layout}}))
-    assert isinstance(found, LayoutResult)
+    assert isinstance(found, LayoutAnswer)
     return found
 
 
 @kills(
-    "leblanc.studies.optimise.layout:_judge", "np.square(couplings(stiffness))", "0.0 * couplings(stiffness)"
+    f"{ROOM}:_judge",
+    "np.square(couplings(stiffness))",
+    "0.0 * couplings(stiffness)",
 )
 def test_springs_go_into_the_plane_of_the_centre() -> None:
     """Alike springs along the axes couple nothing where they lie in z = 0, as far in front as behind."""
@@ -62,7 +67,7 @@ def test_springs_go_into_the_plane_of_the_centre() -> None:
     assert np.abs(found.couplings["stiffness"][1]).max() < 1e-6
 
 
-@kills("leblanc.studies.optimise.layout:_variables", "sign * lean * _MIRRORED", "sign * lean")
+@kills(f"{ROOM}:_variables", "sign * lean * _MIRRORED", "sign * lean")
 def test_inclined_springs_turn_until_their_lines_meet_in_the_centre() -> None:
     """A pair above the centre does not couple x and beta where it points at it, at whatever height."""
     pair = [
@@ -157,7 +162,7 @@ def test_the_answer_is_that_of_its_places() -> None:
     assert again.to_json() == found.to_json()
 
 
-@kills("leblanc.studies.optimise.layout:_penalised", "found.excess > 0.0", "found.excess > 1e9")
+@kills(f"{ROOM}:_penalised", "found.excess > 0.0", "found.excess > 1e9")
 def test_springs_keep_the_static_load() -> None:
     """Springs that want to lie down to uncouple may only do so as far as the tub's sag allows."""
     pair = [
@@ -175,10 +180,10 @@ def test_springs_keep_the_static_load() -> None:
     assert held.constraints["sag"].value <= limit * (1.0 + 1e-9)
     assert free.value < held.value < held.baseline
     lost = best(scene, reach=[0, 0, 0], turn="5 deg", sag="1 mm")
-    assert not lost.feasible and "no layout within the bounds" in answer(lost)
+    assert not lost.feasible and "no layout within the bounds" in lost.sentence()
 
 
-@kills("leblanc.studies.optimise.layout:separation", "(low - frequency) / low", "(frequency - low) / low")
+@kills(f"{ROOM}:separation", "(low - frequency) / low", "(frequency - low) / low")
 def test_separation() -> None:
     assert separation(np.array([5.0, 30.0]), (10.0, 20.0)) == pytest.approx(0.5)
     assert separation(np.array([5.0, 21.0]), (10.0, 20.0)) == pytest.approx(0.05)
@@ -230,9 +235,9 @@ def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
 
 def test_words() -> None:
     found = best(lb.example("tub"), reach=[0, 0.05, 0], turn=0)
-    assert len(mount_rows(found)) == 10
-    assert {row[0] for row in coupling_rows(found)} <= set(pair_names())
-    assert "none about the centre of mass" in dict(facts(found))["Couplings of the mass"]
+    assert len(table(found, "mount").rows) == 10
+    assert {row[0] for row in table(found, "coupling").rows} <= set(pair_names())
+    assert "none about the centre of mass" in labels(found)["Couplings of the mass"]
     figure = found.plot()
     assert len(figure.axes) == 3
 
@@ -255,7 +260,9 @@ def test_a_layout_that_sags_too_much_is_doubtful(tmp_path: Path) -> None:
     found = best(lb.example("tub"), reach=[0, 0.05, 0], turn=0)
     limits = {"sag": replace(found.constraints["sag"], limit=1e-3, satisfied=False)}
     sunk, what, path = replace(found, constraints=limits), about(lb.example("tub")), tmp_path / "layout.html"
-    write_layout_report(sunk, what, (), path)
+    assert list(failed(sunk)) == ["Sag under the weight"]
+    blocks = [block for block in sunk.blocks() if not isinstance(block, Picture)]
+    write_page(sunk.title, blocks, what, {}, path)
     text = path.read_text(encoding="utf-8")
     assert "Doubtful: sag under the weight" in text
     assert "exceeds it least" in text
@@ -264,7 +271,7 @@ def test_a_layout_that_sags_too_much_is_doubtful(tmp_path: Path) -> None:
 def test_other_rotors_have_no_mounts() -> None:
     with pytest.raises(InputError, match="tub for the objective layout"):
         lb.optimise(lb.example("two_plane_rig"), objective="layout")
-    with pytest.raises(InputError, match="optimise_layout"):
+    with pytest.raises(InputError, match="one of working_speed"):
         optimise_scene(lb.example("horizontal_rig"), objective="layout")
     with pytest.raises(InputError, match="some mount may move"):
         best(lb.example("tub"), reach=[0, 0, 0], turn=0)

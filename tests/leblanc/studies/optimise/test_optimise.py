@@ -15,12 +15,12 @@ from fluid.liquid import known_liquid
 from leblanc.scene.scene import Scene, Speeds, load_scene
 from leblanc.scene.tasks import Optimisation
 from leblanc.studies.models.choose import prepare
-from leblanc.studies.optimise.answers import FilledMachine
 from leblanc.studies.optimise.constraints import growth, stability
+from leblanc.studies.optimise.filled import FilledMachine
 from leblanc.studies.optimise.objectives import AtSpeed, PeakOver
-from leblanc.studies.optimise.optimise import not_dominated, optimise_scene
 from leblanc.studies.optimise.problem import Problem, problem_of
 from leblanc.studies.optimise.robust import operating_conditions, unbalance_range
+from leblanc.studies.optimise.study import not_dominated, optimise_scene
 from leblanc.studies.optimise.wetting import (
     full_volume,
     optimal_volume_by_search,
@@ -223,7 +223,7 @@ def test_growth() -> None:
 
 
 @kills(
-    "leblanc.studies.optimise.optimise:not_dominated",
+    "leblanc.studies.optimise.study:not_dominated",
     "~np.all(values[later] >= values[k], axis=1)",
     "~np.any(values[later] >= values[k], axis=1)",
 )

@@ -11,14 +11,14 @@ import numpy as np
 import pytest
 
 from fluid.liquid import known_liquid, liquid_at
-from leblanc.results.optimum import OptimumResult
+from leblanc.core.quantities import to_json
 from leblanc.scene.rotors import TwoPlaneRotor
 from leblanc.scene.scene import Scene, Speeds, load_scene
 from leblanc.scene.tasks import Optimisation
 from leblanc.scene.unbalances import unbalances_of
-from leblanc.studies.optimise.answers import FilledMachine
+from leblanc.studies.optimise.answer import OptimumAnswer
+from leblanc.studies.optimise.filled import FilledMachine
 from leblanc.studies.optimise.objectives import AtSpeed
-from leblanc.studies.optimise.optimise import optimise_scene
 from leblanc.studies.optimise.problem import growth, growth_speeds, problem_of
 from leblanc.studies.optimise.robust import (
     MOST_CONDITIONS,
@@ -28,6 +28,7 @@ from leblanc.studies.optimise.robust import (
     operating_conditions,
     unbalance_range,
 )
+from leblanc.studies.optimise.study import optimise_scene
 from leblanc.studies.run.study import run_scene
 from meshes.errors import InputError
 from tests.mutants import kills
@@ -184,12 +185,12 @@ def test_the_best_volumes_against_a_grid(name: str, levels: int) -> None:
 
 
 @pytest.fixture(scope="module")
-def best() -> OptimumResult:
+def best() -> OptimumAnswer:
     task = Optimisation(objective="robust", unbalance=(0.05, 0.2), temperature=(278.15, 333.15))
     return optimise_scene(scene("runup"), task=task, front=False, response=False)
 
 
-def test_table_of_the_answer(best: OptimumResult) -> None:
+def test_table_of_the_answer(best: OptimumAnswer) -> None:
     """Each entry is the machine's own amplitude; the worst one is the value; the dry ones stand beside."""
     table, machine = best.robust, scene("runup")
     assert table is not None
@@ -224,7 +225,7 @@ def test_quantile_names_its_condition() -> None:
     robust = Robust(machine, 100.0, operating_conditions(spread, None), 0.5)
     table = condition_table(machine, task, robust, np.array([2e-4]), spread, lambda warm, held: 0.0)
     assert table.condition_unbalance[table.decisive, 0] == pytest.approx(0.125)
-    assert not table.heated and table.to_json()["worst"]["temperature"] is None
+    assert not table.heated and to_json(table)["worst"]["temperature"] is None
     assert table.amplitude.shape == (1, 25)
 
 
@@ -241,7 +242,7 @@ def test_a_law_in_the_scene_is_taken() -> None:
     sampled = machine.replace({"chambers.0.liquid": table})
     volume = np.array([[4e-4]])
     first, other = (
-        problem_of(one, task, FilledMachine(one), lambda _: pytest.fail("no search")).evaluate.vibration
+        problem_of(one, task, FilledMachine(one), lambda _: pytest.fail("no search")).vibration
         for one in (machine, sampled)
     )
     assert other.exact(volume)[0] == pytest.approx(first.exact(volume)[0], rel=1e-6)
@@ -252,7 +253,7 @@ def test_stability_holds_at_every_temperature() -> None:
     machine = scene("washing_machine").replace({"chambers.0.liquid": "glycerol"})
     task = Optimisation(objective="robust", temperature=(278.15, 353.15), stability_margin=0.0)
     problem = problem_of(machine, task, FilledMachine(machine), lambda _: pytest.fail("no search"))
-    (limit,) = (c for c in problem.evaluate.constraints if c.name == "stability")
+    (limit,) = (c for c in problem.constraints if c.name == "stability")
     volume = np.array([[0.2 * machine.fills[0].chamber.capacity]])
     each = []
     for kelvin in (278.15, 315.65, 353.15):

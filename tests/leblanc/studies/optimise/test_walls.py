@@ -13,11 +13,10 @@ from leblanc.results.notes.baffles import BaffleCode
 from leblanc.scene.examples import example
 from leblanc.scene.scene import Scene, scene_from_table
 from leblanc.scene.tasks import Optimisation
-from leblanc.studies.optimise.answers import FilledMachine, model_name, with_volumes
-from leblanc.studies.optimise.balance import QualityAtSpeed
+from leblanc.studies.optimise.constraints import freeing_volumes, most_cells
+from leblanc.studies.optimise.filled import FilledMachine, QualityAtSpeed, model_name, with_volumes
 from leblanc.studies.optimise.objectives import RunupPeak
-from leblanc.studies.optimise.optimise import optimise_scene
-from leblanc.studies.optimise.walls import freeing_volumes, most_cells
+from leblanc.studies.optimise.study import optimise_scene
 from leblanc.studies.run.study import run_scene
 from meshes.arrays import Array
 from meshes.errors import InputError
@@ -25,6 +24,8 @@ from solvers.rotor.jeffcott import Jeffcott
 from tests.mutants import kills
 
 # Of a wall of 65 mm: plates of 5 mm, past which 39 ml and more flow.
+ROOM = "leblanc.studies.optimise.constraints"
+
 LOW = {"count": 8, "tip_radius": 0.06}
 FREED = math.pi * 0.02 * (0.065**2 - 0.06**2)
 
@@ -68,9 +69,9 @@ def amplitude(scene: Scene, volume: float, speed: float | Array) -> Array:
     return np.asarray(rotor.unbalance * np.square(speed) / np.abs(stiffness))
 
 
-@kills("leblanc.studies.optimise.answers:model_name", "is_cut(scene)", "False")
+@kills("leblanc.studies.optimise.filled:model_name", "is_cut(scene)", "False")
 @kills(
-    "leblanc.studies.optimise.answers:FilledMachine._planar",
+    "leblanc.studies.optimise.filled:FilledMachine._planar",
     "np.concatenate(places), kind",
     "0 * np.concatenate(places), kind",
 )
@@ -101,8 +102,8 @@ def test_the_peak_of_compartments_is_that_of_a_run() -> None:
     )
 
 
-@kills("leblanc.studies.optimise.balance:QualityAtSpeed._one", "model_name(filled)", "'statics'")
-@kills("leblanc.studies.optimise.answers:FilledMachine._others", "model_name(filled)", "'statics'")
+@kills("leblanc.studies.optimise.filled:QualityAtSpeed._one", "model_name(filled)", "'statics'")
+@kills("leblanc.studies.optimise.filled:FilledMachine._others", "model_name(filled)", "'statics'")
 def test_a_rotor_that_tilts_as_its_run() -> None:
     """Amplitude and balance quality of one chamber cut and one clear."""
     scene = example("two_plane_rig").replace(
@@ -119,8 +120,8 @@ def test_a_rotor_that_tilts_as_its_run() -> None:
     assert set(record.response.model) == {"fem"}
 
 
-@kills("leblanc.studies.optimise.walls:_freeing", "max(baffles.tip_radius, chamber.inner_radius)", "0.0")
-@kills("leblanc.studies.optimise.walls:_freeing", "< chamber.radius", "< 0.0")
+@kills(f"{ROOM}:_freeing", "max(baffles.tip_radius, chamber.inner_radius)", "0.0")
+@kills(f"{ROOM}:_freeing", "< chamber.radius", "< 0.0")
 def test_where_the_liquid_passes() -> None:
     """Just below the volume there are compartments, just above it none; behind a gap there never are."""
     scene = rig()

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from leblanc.cli import main
-from leblanc.studies.optimise.emulated import read_store as store_for_an_emulator
+from leblanc.studies.optimise.study import read_store as store_for_an_emulator
 from leblanc.studies.sweep.store import STORE, read_arrays, read_store
 from leblanc.studies.sweep.study import run_sweep
 from meshes.errors import InputError

@@ -3,34 +3,21 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from fluid.temperature import CELSIUS
 from leblanc.core.notes import one_line, texts
-from leblanc.core.units import DEGREE, LENGTH, MM, MM_PEAK, UNBALANCE, VOLUME, in_rpm, unit_for, with_unit
-from leblanc.figures.drawing.page import (
-    RIGHT,
-    WIDTH,
-    Caption,
-    Figure,
-    FigureFiles,
-    Frame,
-    lay_out,
-    number,
-    save,
-    style,
-)
-from leblanc.results.optimum import ConditionTable, OptimumResult
+from leblanc.core.units import DEGREE, LENGTH, ML, MM, MM_PEAK, UNBALANCE, VOLUME, in_rpm, unit_for, with_unit
+from leblanc.figures.drawing.page import RIGHT, WIDTH, Caption, Figure, Frame, lay_out, number, style
+from leblanc.studies.optimise.answer import ConditionTable, OptimumAnswer, load_words
 from leblanc.studies.run.notes import plane_label
-from leblanc.text.optimum import amplitude_plane, load_words, worst_condition
 from meshes.arrays import Array, Flags
 
 Axes = Any  # matplotlib's, which no module that only draws imports
 
-ML, GRAM = 1e6, 1e3  # millilitres in one cubic metre, grams in one kilogram
+GRAM = 1e3  # grams in one kilogram
 FRAME = Frame(left=0.72, top=0.14, between=0.55, below=0.42)
 LOW = 1.1  # inches: of a panel that stands below another
 HEIGHT, BAR, ROOM = 2.7, 0.13, 0.85  # inches: of a panel, width of a colour bar, room for it
@@ -44,22 +31,7 @@ DOT = 14.0  # of the marks over two volumes, points squared
 LEAST = 1e-4  # of what a chamber holds, below which a map is no longer logarithmic
 
 
-def write_figures(result: OptimumResult, directory: Path) -> tuple[FigureFiles, ...]:
-    """Draw what there is to draw and write each figure as PNG and SVG."""
-    files = []
-    if result.candidates.volume.shape[0] > 2:
-        title = "Objective over the volumes"
-        files.append(save(objective_figure(result), directory, "objective", title))
-    if result.front is not None and result.front.mass.size > 1:
-        title = "Vibration, liquid and stability"
-        files.append(save(front_figure(result), directory, "front", title))
-    if result.robust is not None and result.robust.amplitude.size > 1:
-        title = "Amplitude over the conditions"
-        files.append(save(conditions_figure(result), directory, "conditions", title))
-    return tuple(files)
-
-
-def conditions_figure(result: OptimumResult) -> Figure:
+def conditions_figure(result: OptimumAnswer) -> Figure:
     """Amplitude with the best volumes over temperature, or over the unbalance where no temperature varies."""
     table = result.robust
     assert table is not None
@@ -74,19 +46,18 @@ def conditions_figure(result: OptimumResult) -> Figure:
             panels, heights = [[axes], [below]], [HEIGHT, LOW]
         else:
             _draw_over_unbalance(axes, table)
-        axes.xaxis.set_major_formatter(number)
-        axes.yaxis.set_major_formatter(number)
+        _numbered(axes)
         axes.set_ylabel(_vibration_label(result))
         axes.set_ylim(0.0, 1.12 * MM * float(max(table.amplitude_dry.max(), table.amplitude.max())))
         text = (
             "Solid with marks: with the best volumes; dotted: without liquid, at the same unbalances. "
-            f"Star: the condition that decides. {worst_condition(table)}. "
+            f"Star: the condition that decides. {table.words()}. "
             f"{_MARGIN if len(panels) > 1 else ''}"
         )
         lay_out(figure, panels, heights, FRAME, _caption(result, text, False), LINES)
         figure.alt = (
             f"Vibration with the best volumes and without liquid over "
-            f"{'temperature' if table.temperature.size > 1 else 'unbalance'}. {worst_condition(table)}."
+            f"{'temperature' if table.temperature.size > 1 else 'unbalance'}. {table.words()}."
         )
     return figure
 
@@ -96,7 +67,16 @@ _MARGIN = (
     "below 0 one grows. "
 )
 _MARKS = ("o", "s", "^")  # of the least, middle and largest unbalance
-_STAR = {"color": BEST, "marker": "*", "markersize": 12.0, "linestyle": "none", "zorder": 4}
+
+
+def _numbered(axes: Axes) -> None:
+    for each in (axes.xaxis, axes.yaxis):
+        each.set_major_formatter(number)
+
+
+def _star(axes: Axes, x: float, y: float, label: str, size: float = 12.0) -> None:
+    look = {"color": BEST, "marker": "*", "linestyle": "none", "markeredgecolor": "black"}
+    axes.plot([x], [y], label=label, markersize=size, zorder=4, clip_on=False, **look)
 
 
 def _draw_over_temperature(axes: Axes, table: ConditionTable) -> None:
@@ -109,8 +89,8 @@ def _draw_over_temperature(axes: Axes, table: ConditionTable) -> None:
         dry = {"label": "without liquid"} if j == 0 else {}
         axes.plot(celsius[[0, -1]], [table.amplitude_dry[j] * MM] * 2, **BARE, **dry)
     k = table.decisive
-    at = [table.condition_temperature[k] - CELSIUS], [table.condition_amplitude[k] * MM]
-    axes.plot(*at, label="decides", markeredgecolor="black", clip_on=False, **_STAR)
+    at = table.condition_temperature[k] - CELSIUS, table.condition_amplitude[k] * MM
+    _star(axes, *at, "decides")
     axes.set_xlabel(f"Temperature ({DEGREE}C)")
 
 
@@ -118,8 +98,7 @@ def _draw_margin(axes: Axes, table: ConditionTable) -> None:
     """Stability margin over temperature; below 0 a whirl grows."""
     axes.plot(table.temperature - CELSIUS, table.stability_margin, color=LINE, linewidth=1.2, zorder=2)
     axes.axhline(0.0, color=FULL, linewidth=0.8, zorder=1)
-    axes.xaxis.set_major_formatter(number)
-    axes.yaxis.set_major_formatter(number)
+    _numbered(axes)
     axes.set_xlabel(f"Temperature ({DEGREE}C)")
     axes.set_ylabel("Margin (1/s)")
 
@@ -133,41 +112,33 @@ def _draw_over_unbalance(axes: Axes, table: ConditionTable) -> None:
     axes.plot(load * unit, table.amplitude[0] * MM, label="best volumes", linewidth=1.2, zorder=2, **look)
     axes.plot(load * unit, table.amplitude_dry * MM, **BARE, label="without liquid")
     k = table.decisive
-    at = [table.condition_unbalance[k].max() * unit], [table.condition_amplitude[k] * MM]
-    axes.plot(*at, label="decides", markeredgecolor="black", clip_on=False, **_STAR)
+    at = table.condition_unbalance[k].max() * unit, table.condition_amplitude[k] * MM
+    _star(axes, *at, "decides")
     several = table.unbalance.shape[1] > 1
     axes.set_xlabel(f"{'Largest unbalance' if several else 'Unbalance'} ({name})")
 
 
-def objective_figure(result: OptimumResult) -> Figure:
+def objective_figure(result: OptimumAnswer) -> Figure:
     """Vibration over the volume of one chamber; a map for two; sections through the best point for more."""
-    figure = _over_volumes(result)
-    best = ", ".join(with_unit(volume, VOLUME) for volume in result.volume.tolist())
-    figure.alt = (
-        f"Vibration over the volumes that were tried; the best, {best}, gives "
-        f"{with_unit(result.vibration, LENGTH)}, no liquid {with_unit(result.vibration_baseline, LENGTH)}."
-    )
-    return figure
-
-
-def _over_volumes(result: OptimumResult) -> Figure:
-    count = result.volume.size
+    figure, count = Figure(), result.volume.size
     with style():
-        figure = Figure()
         if count == 2:
             axes = figure.add_axes((0, 0, 1, 1))
             _draw_map(figure, axes, result)
             lay_out(figure, [[axes]], [HEIGHT], FRAME, _caption(result, _MAP), LINES)
             _make_room(figure, axes)
-            return figure
-        shown = min(count, MOST_SLICES)
-        panels = [figure.add_axes((0, 0, 1, 1), label=str(k)) for k in range(shown)]
-        for k, axes in enumerate(panels):
-            _draw_section(axes, result, k)
-        height = HEIGHT if shown == 1 else 1.5
-        text = _CURVE if count == 1 else _SECTIONS
-        rows = [[axes] for axes in panels]
-        lay_out(figure, rows, [height] * shown, FRAME, _caption(result, text), LINES)
+        else:
+            shown = min(count, MOST_SLICES)
+            rows = [[figure.add_axes((0, 0, 1, 1), label=str(k))] for k in range(shown)]
+            for k, (axes,) in enumerate(rows):
+                _draw_section(axes, result, k)
+            height, text = (HEIGHT, _CURVE) if count == 1 else (1.5, _SECTIONS)
+            lay_out(figure, rows, [height] * shown, FRAME, _caption(result, text), LINES)
+    best = ", ".join(with_unit(volume, VOLUME) for volume in result.volume.tolist())
+    figure.alt = (
+        f"Vibration over the volumes that were tried; the best, {best}, gives "
+        f"{with_unit(result.vibration, LENGTH)}, no liquid {with_unit(result.vibration_baseline, LENGTH)}."
+    )
     return figure
 
 
@@ -181,7 +152,7 @@ _MAP = (
 )
 
 
-def front_figure(result: OptimumResult) -> Figure:
+def front_figure(result: OptimumAnswer) -> Figure:
     """Vibration over the mass of liquid; the size of a mark shows the stability margin."""
     with style():
         figure = Figure()
@@ -200,7 +171,7 @@ def front_figure(result: OptimumResult) -> Figure:
     return figure
 
 
-def _known(result: OptimumResult) -> tuple[Array, Array, list[str]]:
+def _known(result: OptimumAnswer) -> tuple[Array, Array, list[str]]:
     """Volumes, vibrations and what is exceeded of the points that are sure, or by the emulator."""
     tried = result.candidates
     good = np.isfinite(tried.vibration)
@@ -232,7 +203,7 @@ def _groups(exceeded: list[str], marks: tuple[str, ...]) -> list[tuple[str, str,
     return [group for group in found if group[2].any()]
 
 
-def _draw_section(axes: Axes, result: OptimumResult, k: int) -> None:
+def _draw_section(axes: Axes, result: OptimumAnswer, k: int) -> None:
     """Vibration over the volume of one chamber."""
     points, vibration, exceeded = _known(result)
     alone = result.volume.size == 1
@@ -254,24 +225,18 @@ def _draw_section(axes: Axes, result: OptimumResult, k: int) -> None:
     room = 0.06 * max(high - low, 1e-3 * high)
     axes.set_ylim(low - room, high + room)
     if math.isfinite(least):
-        axes.set_xscale("symlog", linthresh=least, linscale=0.3)
-        axes.set_xlim(-0.15 * least, 1.15 * result.chambers[k].capacity * ML)
-        ticks = [0.0, *10.0 ** np.arange(math.ceil(math.log10(least)), 12)]
-        axes.set_xticks([tick for tick in ticks if tick <= axes.get_xlim()[1]])
+        _symlog(axes, "x", least, (-0.15 * least, 1.15 * result.chambers[k].capacity * ML))
     axes.minorticks_off()
-    axes.xaxis.set_major_formatter(number)
-    axes.yaxis.set_major_formatter(number)
+    _numbered(axes)
     axes.set_xlabel("Liquid (ml)" if alone else f"Liquid in chamber {k + 1} (ml)")
     axes.set_ylabel(_vibration_label(result))
 
 
-def _marks(axes: Axes, result: OptimumResult, k: int) -> None:
+def _marks(axes: Axes, result: OptimumAnswer, k: int) -> None:
     """The best point, the baseline and the closed forms of one chamber."""
     baseline = result.vibration_baseline * MM
     axes.axhline(baseline, **BARE, label="without liquid")
-    best = result.volume[k] * ML
-    star = {"color": BEST, "marker": "*", "markersize": 11.0, "linestyle": "none", "zorder": 4}
-    axes.plot([best], [result.vibration * MM], label="best", markeredgecolor="black", **star)
+    _star(axes, result.volume[k] * ML, result.vibration * MM, "best", 11.0)
     if k < len(result.closed_form):
         form = result.closed_form[k]
         dashes = {"color": FULL, "linewidth": 0.9, "zorder": 1.6}
@@ -283,7 +248,7 @@ def _marks(axes: Axes, result: OptimumResult, k: int) -> None:
             axes.axvline(form.full_volume * ML, linestyle=(0, (1, 1)), label=label, **dashes)
 
 
-def _draw_map(figure: Figure, axes: Axes, result: OptimumResult) -> None:
+def _draw_map(figure: Figure, axes: Axes, result: OptimumAnswer) -> None:
     """Vibration over the volumes of two chambers: a coloured mark for each pair tried."""
     points, vibration, exceeded = _known(result)
     points, first = np.unique(points, axis=0, return_index=True)
@@ -305,37 +270,39 @@ def _draw_map(figure: Figure, axes: Axes, result: OptimumResult) -> None:
         )
         look = {"color": "none", "markeredgecolor": "0.2", "markeredgewidth": 0.7, "markersize": 4.0}
         axes.plot([], [], marker=mark, linestyle="none", label=label, **look)
-    star = {"color": BEST, "marker": "*", "markersize": 12.0, "linestyle": "none", "zorder": 4}
-    axes.plot(*(result.volume[:, None] * ML), label="best", markeredgecolor="black", clip_on=False, **star)
+    first, second = (result.volume * ML).tolist()
+    _star(axes, first, second, "best")
     for form, line in zip(result.closed_form, (axes.axvline, axes.axhline), strict=False):
         dashes = {"color": FULL, "linewidth": 0.9, "linestyle": (0, (6, 2)), "zorder": 1.6}
         line(form.optimal_volume * ML, **dashes, label="closed form: wall just covered")
     for k, scale in enumerate(("x", "y")):
-        _symlog(axes, scale, least[k] * ML, capacity[k] * ML)
+        _symlog(axes, scale, least[k] * ML, (0.0, capacity[k] * ML))
     axes.set_xlabel("Liquid in chamber 1 (ml)")
     axes.set_ylabel("Liquid in chamber 2 (ml)")
     if drawn is not None:
         bar = figure.add_axes((0, 0, 1, 1), label="bar")
         more = "max" if value.max() > top else "neither"
-        figure.colorbar(drawn, cax=bar, label=_vibration_label(result), format=_three, extend=more)
+        figure.colorbar(
+            drawn,
+            cax=bar,
+            label=_vibration_label(result),
+            format=lambda value, _: number(_short(value)),
+            extend=more,
+        )
 
 
-def _vibration_label(result: OptimumResult) -> str:
+def _vibration_label(result: OptimumAnswer) -> str:
     """Of an axis of vibrations, with the plane where a rotor tilts."""
     tilts = result.response is not None and result.response.motion is not None
     return f"Vibration{plane_label(chambers=True) if tilts else ''} ({MM_PEAK})"
 
 
-def _three(value: float, _at: float | None = None) -> str:
-    return number(_short(value))
-
-
-def _symlog(axes: Axes, scale: str, least: float, capacity: float) -> None:
-    """Logarithmic volumes with 0 among them."""
+def _symlog(axes: Axes, scale: str, least: float, limits: tuple[float, float]) -> None:
+    """Logarithmic axis with 0 on it."""
     getattr(axes, f"set_{scale}scale")("symlog", linthresh=least, linscale=0.3)
-    getattr(axes, f"set_{scale}lim")(0.0, capacity)
+    getattr(axes, f"set_{scale}lim")(*limits)
     ticks = [0.0, *10.0 ** np.arange(math.ceil(math.log10(least)), 12)]
-    getattr(axes, f"set_{scale}ticks")([tick for tick in ticks if tick <= capacity])
+    getattr(axes, f"set_{scale}ticks")([tick for tick in ticks if tick <= limits[1]])
     axes.minorticks_off()
     getattr(axes, f"{scale}axis").set_major_formatter(number)
 
@@ -350,7 +317,7 @@ def _make_room(figure: Figure, axes: Axes) -> None:
             bar.set_position((box.x0 + width + 0.1 / WIDTH, box.y0, BAR / WIDTH, box.height))
 
 
-def _draw_front(axes: Axes, result: OptimumResult) -> None:
+def _draw_front(axes: Axes, result: OptimumAnswer) -> None:
     """The front, the point chosen, and the machine without liquid."""
     front = result.front
     assert front is not None
@@ -373,19 +340,12 @@ def _draw_front(axes: Axes, result: OptimumResult) -> None:
             mass[~calm], vibration[~calm], s=size[~calm], marker="x", color=DRY, label=worst, linewidths=1.0
         )
     axes.axhline(result.vibration_baseline * MM, **BARE, label="without liquid")
-    star = {"color": BEST, "marker": "*", "markersize": 12.0, "linestyle": "none", "zorder": 4}
-    best = [result.mass * GRAM], [result.vibration * MM]
-    axes.plot(*best, label=f"chosen: {result.objective}", markeredgecolor="black", **star)
+    _star(axes, result.mass * GRAM, result.vibration * MM, f"chosen: {result.objective}")
     wet = mass[mass > 0.0]
     if wet.size and wet.max() > 30.0 * wet.min():
         least = float(wet.min())
-        axes.set_xscale("symlog", linthresh=least, linscale=0.3)
-        axes.set_xlim(-0.5 * least, 1.3 * float(wet.max()))
-        ticks = [0.0, *10.0 ** np.arange(math.ceil(math.log10(least)), 12)]
-        axes.set_xticks([tick for tick in ticks if tick <= 1.3 * wet.max()])
-        axes.minorticks_off()
-    axes.xaxis.set_major_formatter(number)
-    axes.yaxis.set_major_formatter(number)
+        _symlog(axes, "x", least, (-0.5 * least, 1.3 * float(wet.max())))
+    _numbered(axes)
     axes.set_xlabel("Liquid (g)")
     axes.set_ylabel(_vibration_label(result))
 
@@ -394,7 +354,7 @@ def _short(value: float) -> float:
     return float(f"{value:.3g}")
 
 
-def _caption(result: OptimumResult, text: str, forms: bool = True) -> Caption:
+def _caption(result: OptimumAnswer, text: str, forms: bool = True) -> Caption:
     """What is shown, the scene, the objective."""
     assumed = ", ".join(map(one_line, result.assumed)) or "nothing"
     notes = " ".join(map(one_line, texts(result.notes)))
@@ -402,7 +362,7 @@ def _caption(result: OptimumResult, text: str, forms: bool = True) -> Caption:
     what = result.constraints["vibration"].meaning if "vibration" in result.constraints else vibration
     at = f"Closed forms at the deflection of the best point at {in_rpm(result.working_speed)}. "
     at = at if forms and result.closed_form else ""
-    place = f" {found}" if (found := amplitude_plane(result)) else ""
+    place = f" {result.place}" if result.place else ""
     shown = f"{text}Vibration: {what}{place}. Objective: {result.objective}. {at}"
     origin = (
         f"{notes} Scene: {one_line(result.name)}. Friction of the liquid: {result.friction.law}. "

@@ -4,21 +4,28 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import nullcontext
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from leblanc.core.notes import Note
-from leblanc.results.notes import ball_design as notes
-from leblanc.results.races.design import BallDesignResult, DesignedRace, TriedDesigns
+from leblanc.core.processes import processes
+from leblanc.core.progress import update
 from leblanc.scene.races import BallRace
 from leblanc.scene.scene import Scene
 from leblanc.scene.tasks import Optimisation
 from leblanc.studies.balls.states import worst_states
 from leblanc.studies.balls.study import run_balls
 from leblanc.studies.models.validity import doubts
-from leblanc.studies.optimise.balls.design import (
+from leblanc.studies.optimise import notes
+from leblanc.studies.optimise.answer import about
+from leblanc.studies.optimise.balls.answer import BallDesignAnswer, DesignedRace, TriedDesigns
+from leblanc.studies.optimise.balls.problem import (
+    WHOLE,
+    BallProblem,
+    Verdict,
+    ball_problem,
     named_ranges,
     size_of,
     start_of,
@@ -27,11 +34,9 @@ from leblanc.studies.optimise.balls.design import (
     whole_numbers,
     with_balls,
 )
-from leblanc.studies.optimise.balls.problem import WHOLE, BallProblem, Verdict, ball_problem
 from meshes.arrays import Array
 from meshes.errors import InputError
-
-Progress = Callable[[int, float], object]
+from solvers.search import evolve
 
 _MEMBERS, _GENERATIONS = 8, 40  # of the search: members a variable, generations at most
 _FEW_MEMBERS, _FEW_GENERATIONS = 5, 10  # where a design takes tenths of a second
@@ -59,8 +64,7 @@ class _Tried:
     problem: BallProblem  #: the search
     #: calls a function with every one of some points, as `map` does
     each: Callable[[Callable[[Array], Verdict], Iterable[Array]], Iterable[Verdict]]
-    progress: Progress | None = None  #: told of designs judged, and the share of the search done
-    share: float = 0.0
+    share: float = 0.0  #: of the search done
     known: dict[bytes, Verdict] = field(default_factory=dict)
     points: list[Array] = field(default_factory=list)
 
@@ -76,8 +80,8 @@ class _Tried:
         for row, verdict in zip(new, self.each(self.problem.judged, new), strict=True):
             self.known[row.tobytes()] = verdict
             self.points.append(row)
-        if self.progress is not None and new:
-            self.progress(len(self.points), self.share)
+        if new:
+            update(self.share, 1.0, f"{len(self.points)} designs judged")
         return [self.known[row.tobytes()] for row in rows]
 
     def one(self, point: Array) -> Verdict:
@@ -90,9 +94,7 @@ class _Tried:
         return self.points[int(np.argmin(scores))]
 
 
-def optimise_balls(
-    scene: Scene, task: Optimisation, progress: Progress | None = None, workers: int = 1
-) -> BallDesignResult:
+def optimise_balls(scene: Scene, task: Optimisation, workers: int = 1) -> BallDesignAnswer:
     """Best balls of a scene's races within ranges [theory: races, eq. 13-15] [SP97].
 
     The same seed gives the same balls with any number of workers.
@@ -102,8 +104,9 @@ def optimise_balls(
     problem = ball_problem(scene, task)
     if not problem.variables:
         raise InputError("optimise.balls", "nothing", "such that some value of the balls may change")
-    with _pool(workers if problem.costly else 1) as each:
-        tried = _Tried(problem, each, progress)
+    shared = processes(workers) if problem.costly and workers > 1 else nullcontext()
+    with shared as pool:
+        tried = _Tried(problem, map if pool is None else pool.map)
         start = tried.snapped(start_of(scene, problem.variables))
         interrupted = False
         try:
@@ -117,22 +120,8 @@ def optimise_balls(
     return _result(problem, tried, best, interrupted)
 
 
-@contextmanager
-def _pool(workers: int) -> Iterator[Callable[..., Iterable[Verdict]]]:
-    """What judges several designs: this process, or some at once."""
-    if workers == 1:
-        yield map
-        return
-    from leblanc.core.processes import processes
-
-    with processes(workers) as pool:
-        yield pool.map
-
-
 def _evolve(tried: _Tried, start: Array) -> None:
     """Differential evolution over all variables, counts as whole numbers."""
-    from scipy.optimize import differential_evolution
-
     problem, variables = tried.problem, tried.problem.variables
     members, generations = (_FEW_MEMBERS, _FEW_GENERATIONS) if problem.costly else (_MEMBERS, _GENERATIONS)
     spans = [variable.bounds for variable in variables]
@@ -142,31 +131,17 @@ def _evolve(tried: _Tried, start: Array) -> None:
     members = max(members, math.ceil(_LEAST_MEMBERS / len(moving)))
     done = 0
 
-    def score(columns: Array) -> Array:
-        """Of members as columns, as scipy hands them over."""
+    def score(members: Array) -> Array:
         nonlocal done
-        rows = np.repeat(start[None], columns.shape[1], axis=0)
-        rows[:, moving] = columns.T
+        rows = np.repeat(start[None], members.shape[0], axis=0)
+        rows[:, moving] = members
         found = np.array([verdict.score for verdict in tried.all(rows)])
         done += 1
         tried.share = 0.8 * min(done / (generations + 1), 1.0)
         return found
 
-    differential_evolution(
-        score,
-        [spans[k] for k in moving],
-        integrality=whole_numbers(variables)[moving],
-        x0=start[moving],
-        rng=np.random.default_rng(problem.task.seed),
-        popsize=members,
-        maxiter=generations,
-        init="sobol",
-        tol=_SETTLED,
-        atol=_SETTLED**2,
-        polish=False,
-        updating="deferred",
-        vectorized=True,
-    )
+    spans, whole = [spans[k] for k in moving], whole_numbers(variables)[moving]
+    evolve(score, spans, start[moving], problem.task.seed, members, generations, _SETTLED, whole)
 
 
 def _closer(tried: _Tried) -> Array:
@@ -189,7 +164,7 @@ def _closer(tried: _Tried) -> Array:
 
 def _ended(tried: _Tried, row: Array) -> Array:
     """The end of the way from a design with as many balls."""
-    return _lightest(tried, row) if tried.problem.by_mass else _downhill(tried, row)
+    return (_lightest if tried.problem.by_mass else _downhill)(tried, row)
 
 
 def _fewest(tried: _Tried, best: Array) -> Array:
@@ -271,28 +246,19 @@ def _lightest(tried: _Tried, start: Array) -> Array:
             best = _quickest(tried, best, k) if variable.name == "drag" else best
         if tried.one(best).excess > _KEPT:
             return start
+    drags = {variable.race: k for k, variable in enumerate(variables) if variable.name == "drag"}
     for _ in range(_ROUNDS):
         before = tried.one(best).mass
         for k, variable in enumerate(variables):
             if variable.name == "radius":
-                best = _moved(best, k, variable.bounds[1]) if _kept(tried, best, k) else best
+                wide = _moved(best, k, variable.bounds[1])
+                best = wide if tried.one(wide).excess <= _KEPT else best
         for k, variable in enumerate(variables):
             if variable.name in ("mass", "diameter"):
-                best = _smallest(tried, best, k, _drag_of(tried, variable.race))
+                best = _smallest(tried, best, k, drags.get(variable.race))
         if before - tried.one(best).mass <= _SAME * before:
             break
     return best
-
-
-def _kept(tried: _Tried, row: Array, k: int) -> bool:
-    """The constraints are kept with the most of one variable."""
-    return tried.one(_moved(row, k, tried.problem.variables[k].bounds[1])).excess <= _KEPT
-
-
-def _drag_of(tried: _Tried, race: int) -> int | None:
-    """Which variable is the drag of a race; None where it stays."""
-    found = [k for k, v in enumerate(tried.problem.variables) if (v.race, v.name) == (race, "drag")]
-    return found[0] if found else None
 
 
 def _moved(row: Array, k: int, value: float) -> Array:
@@ -348,32 +314,25 @@ def _quickest(tried: _Tried, row: Array, k: int, beside: float | None = None) ->
 
 
 def _designed(race: BallRace) -> DesignedRace:
-    """A race as results keep it."""
+    """A race as answers keep it."""
+    names = "count", "diameter", "drag", "radius", "plane", "capacity"
     return DesignedRace(
-        count=race.count,
-        mass=race.each,
-        diameter=race.diameter,
-        drag=race.drag,
-        radius=race.radius,
-        plane=race.plane,
-        capacity=race.capacity,
-        sized_by=size_of(race),
+        mass=race.each, sized_by=size_of(race), **{name: getattr(race, name) for name in names}
     )
 
 
-def _result(problem: BallProblem, tried: _Tried, best: Array, interrupted: bool) -> BallDesignResult:
+def _result(problem: BallProblem, tried: _Tried, best: Array, interrupted: bool) -> BallDesignAnswer:
     """The best balls with all that belongs to them."""
     scene, variables = problem.scene, problem.variables
     chosen, verdict = with_balls(scene, variables, best), tried.one(best)
-    own = _of_scene(problem)
+    # The scene's own balls, whatever the ranges.
+    own = replace(problem, variables=()).judged(np.empty(0))
     verdicts = [tried.known[row.tobytes()] for row in tried.points]
     values = np.array([values_of(variables, row) for row in tried.points])
     designs = [with_balls(scene, variables, row) for row in tried.points]
-    return BallDesignResult(
-        name=scene.name,
-        source=scene.source,
-        assumed=scene.assumed,
-        digest=scene.digest,
+    return BallDesignAnswer(
+        **about(scene, problem.task),
+        unused=("runup",) if problem.task.objective != "peak" else (),
         objective=problem.task.objective,
         meaning=problem.meaning,
         working_speed=problem.working_speed,
@@ -387,16 +346,16 @@ def _result(problem: BallProblem, tried: _Tried, best: Array, interrupted: bool)
         mass_before=total_mass(scene),
         growth=verdict.growth,
         growth_before=own.growth,
-        constraints={name: limit.at(verdict.values[name]) for name, limit in problem.limits.items()},
+        constraints={name: limit.at(verdict.values[name], 1e-9) for name, limit in problem.limits.items()},
         unbalances=np.array(problem.unbalances),
         evaluations=len(tried.points),
         tried=TriedDesigns(
             values=values,
             count=np.array([sum(race.count for race in each.balls) for each in designs]),
-            mass=np.array([each.mass for each in verdicts]),
-            vibration=np.array([each.vibration for each in verdicts]),
-            growth=np.array([each.growth for each in verdicts]),
-            excess=np.array([each.excess for each in verdicts]),
+            **{
+                name: np.array([getattr(each, name) for each in verdicts])
+                for name in ("mass", "vibration", "growth", "excess")
+            },
         ),
         volume=np.array([fill.volume for fill in scene.fills]),
         response=run_balls(chosen),
@@ -409,17 +368,12 @@ def _result(problem: BallProblem, tried: _Tried, best: Array, interrupted: bool)
     )
 
 
-def _of_scene(problem: BallProblem) -> Verdict:
-    """Verdict on the scene's own balls, whatever the ranges."""
-    return replace(problem, variables=()).judged(np.empty(0))
-
-
 def _findings(
     problem: BallProblem, best: Array, verdict: Verdict, interrupted: bool, count: int
 ) -> Iterator[Note]:
     """What must be known of the answer."""
     if interrupted:
-        yield notes.interrupted(count)
+        yield notes.interrupted(count, "designs")
     ends = []
     for variable, place, named in zip(
         problem.variables, best.tolist(), named_ranges(problem.scene, problem.variables), strict=True

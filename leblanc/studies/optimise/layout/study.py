@@ -6,16 +6,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
-from leblanc.results.base import ConstraintValue
-from leblanc.results.machine.layout import LayoutResult, MountPlace
+from leblanc.core.progress import update
 from leblanc.scene.scene import Scene, TubRotor
 from leblanc.scene.tasks import Layout, Optimisation
+from leblanc.studies.optimise.answer import ConstraintValue, about
+from leblanc.studies.optimise.layout.answer import LayoutAnswer, MountPlace
 from meshes.arrays import Array, Flags, Index
 from meshes.errors import InputError
 from solvers.rotor.layout import (
@@ -27,6 +28,7 @@ from solvers.rotor.layout import (
     sag,
 )
 from solvers.rotor.tub import Tub
+from solvers.search import evolve
 
 _MIRRORED = np.array([-1.0, 1.0, 1.0])
 _SAME = 1e-9  # m or relative, of places and directions that are one
@@ -203,15 +205,11 @@ def separation(frequency: Array, band: tuple[float, float]) -> Array:
     return np.asarray(np.maximum((low - frequency) / low, (frequency - high) / high).min(axis=-1))
 
 
-def optimise_layout(
-    scene: Scene, task: Optimisation, progress: Callable[[int, float], object] | None = None
-) -> LayoutResult:
+def optimise_layout(scene: Scene, task: Optimisation) -> LayoutAnswer:
     """Best places and directions of a tub's mounts within bounds, by differential evolution [SP97].
 
     The same seed gives the same layout.
     """
-    from scipy.optimize import differential_evolution
-
     wanted = task.layout or Layout()
     if wanted.band is None:
         wanted = wanted.altered(band=(scene.speeds.start, scene.speeds.stop))
@@ -229,30 +227,39 @@ def optimise_layout(
     count = 0
 
     def objective(change: Array) -> Array:
-        """Of members as columns, as scipy hands them over."""
         nonlocal count
-        found = judge(change.T)
-        count += change.shape[1]
-        if progress is not None:
-            progress(count, min(count / (_POPULATION * most.size * _GENERATIONS), 1.0))
-        return _penalised(found)
+        count += change.shape[0]
+        share = min(count / (_POPULATION * most.size * _GENERATIONS), 1.0)
+        update(share, 1.0, f"{count} layouts judged")
+        return _penalised(judge(change))
 
-    found = differential_evolution(
-        objective,
-        list(zip(-most, most, strict=True)),
-        x0=nothing[0],
-        rng=np.random.default_rng(task.seed),
-        popsize=_POPULATION,
-        maxiter=_GENERATIONS,
-        init="sobol",
-        tol=_SETTLED,
-        atol=_SETTLED**2,
-        polish=False,
-        updating="deferred",
-        vectorized=True,
+    bounds = list(zip(-most, most, strict=True))
+    end = evolve(objective, bounds, nothing[0], task.seed, _POPULATION, _GENERATIONS, _SETTLED)
+    best = _polished(judge, end, most)[None]
+    judged = judge(nothing), judge(best)
+    stiffness, damping = (
+        np.concatenate([getattr(each, name) for each in judged]) for name in ("stiffness", "damping")
     )
-    best = _polished(judge, np.asarray(found.x), most)
-    return _result(scene, wanted, held, (judge(nothing), judge(best[None])), best, limit, count)
+    before, after = sag(stiffness, held.weight)[0].tolist()
+    feasible = after <= limit * (1.0 + 1e-9)
+    meaning = "how far tub and drum sink under their weight"
+    return LayoutAnswer(
+        **about(scene, task),
+        measure=wanted.measure,
+        band=wanted.band,
+        value=float(judged[1].value[0]),
+        baseline=float(judged[0].value[0]),
+        constraints={"sag": ConstraintValue(limit, after, feasible, "m", meaning)},
+        sag_before=before,
+        mounts=tuple(_places(held, best)),
+        stiffness_coupling=couplings(stiffness),
+        damping_coupling=couplings(damping),
+        mass_coupling=couplings(held.mass),
+        frequency=natural_frequencies(stiffness, held.mass),
+        origin=held.origin,
+        mirrored=held.mirrored,
+        evaluations=count,
+    )
 
 
 def _penalised(found: _Judged) -> Array:
@@ -278,56 +285,18 @@ def _polished(judge: Callable[[Array], _Judged], start: Array, most: Array) -> A
     return np.asarray(ends[int(np.argmin(_penalised(judge(ends))))])
 
 
-def _result(
-    scene: Scene,
-    wanted: Layout,
-    held: Suspension,
-    judged: tuple[_Judged, _Judged],
-    best: Array,
-    limit: float,
-    count: int,
-) -> LayoutResult:
-    """The scene's own layout and the best one, side by side."""
-    before, after = judged
-    sizes = [float(sag(each.stiffness, held.weight)[0, 0]) for each in judged]
-    places = []
-    was, now = held.every, held.moved(best[None])
-    position = np.concatenate([mounts.position[0] for mounts in now])
-    direction = np.concatenate([mounts.direction[0] for mounts in now])
-    for k in range(position.shape[0]):
-        spring = k < held.springs
-        acts = was.coefficient[k] > 0.0
-        places.append(
-            MountPlace(
-                name=f"spring {k + 1}" if spring else f"damper {k - held.springs + 1}",
-                position=tuple(position[k].tolist()),
-                position_before=tuple(was.position[0, k].tolist()),
-                direction=tuple(direction[k].tolist()) if acts else None,
-                direction_before=tuple(was.direction[0, k].tolist()) if acts else None,
-            )
-        )
-    tables = {
-        "stiffness": np.stack([couplings(each.stiffness[0]) for each in judged]),
-        "damping": np.stack([couplings(each.damping[0]) for each in judged]),
-    }
-    feasible = sizes[1] <= limit * (1.0 + 1e-9)
-    meaning = "how far tub and drum sink under their weight"
-    return LayoutResult(
-        name=scene.name,
-        source=scene.source,
-        assumed=scene.assumed,
-        digest=scene.digest,
-        measure=wanted.measure,
-        band=wanted.band,
-        value=float(after.value[0]),
-        baseline=float(before.value[0]),
-        constraints={"sag": ConstraintValue(limit, sizes[1], feasible, "m", meaning)},
-        sag_before=sizes[0],
-        mounts=tuple(places),
-        couplings=tables,
-        mass_couplings=couplings(held.mass),
-        frequency=natural_frequencies(np.stack([each.stiffness[0] for each in judged]), held.mass),
-        origin=held.origin,
-        mirrored=held.mirrored,
-        evaluations=count,
+def _places(held: Suspension, best: Array) -> Iterator[MountPlace]:
+    """Each mount where it is and where the best layout has it."""
+    was, now = held.every, held.moved(best)
+    position, direction = (
+        np.concatenate([getattr(mounts, name)[0] for mounts in now]) for name in ("position", "direction")
     )
+    for k in range(position.shape[0]):
+        spring, acts = k < held.springs, was.coefficient[k] > 0.0
+        yield MountPlace(
+            name=f"spring {k + 1}" if spring else f"damper {k - held.springs + 1}",
+            position=tuple(position[k].tolist()),
+            position_before=tuple(was.position[0, k].tolist()),
+            direction=tuple(direction[k].tolist()) if acts else None,
+            direction_before=tuple(was.direction[0, k].tolist()) if acts else None,
+        )

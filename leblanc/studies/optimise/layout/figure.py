@@ -1,4 +1,4 @@
-"""Clearances, forces under the feet, the margin against walking; the layout of a tub's mounts."""
+"""Where the mounts of a tub sit before and after, their couplings and natural frequencies."""
 
 from __future__ import annotations
 
@@ -9,8 +9,7 @@ import numpy as np
 
 from leblanc.core.units import MM
 from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, style
-from leblanc.results.machine.layout import LayoutResult, MountPlace, pair_names
-from leblanc.text.layout import answer
+from leblanc.studies.optimise.layout.answer import LayoutAnswer, MountPlace, pair_names
 from meshes.arrays import Array
 
 Axes = Any  # matplotlib's, which no module that only draws imports
@@ -19,10 +18,10 @@ LAYOUT = Frame(left=0.72, top=0.15, between=0.75, below=0.42)
 _NOTHING = 1e-6  # a coupling below is none
 # Of a layout: what it is, colour and hatching.
 _LAYOUTS = (("before", "#D55E00", "////"), ("after", "#0072B2", ""))
-PLACES_HIGH = 2.7  # of the views of a layout, inches
+PLACES_HIGH = 2.7  # inches
 
 
-def places_figure(result: LayoutResult) -> Figure:
+def places_figure(result: LayoutAnswer) -> Figure:
     """Where the mounts of a tub sit before and after, seen along the axis of the drum and from the side."""
     everywhere = np.array([[mount.position_before, mount.position] for mount in result.mounts]) * MM
     size = float(np.abs(everywhere).max()) or 1.0
@@ -51,7 +50,7 @@ def places_figure(result: LayoutResult) -> Figure:
         moved = np.linalg.norm(everywhere[:, 1] - everywhere[:, 0], axis=1)
         figure.alt = (
             f"Places of {len(result.mounts)} springs and dampers before and after; the farthest moves by "
-            f"{moved.max():.0f} mm. {answer(result)}"
+            f"{moved.max():.0f} mm. {result.sentence()}"
         )
     return figure
 
@@ -75,7 +74,7 @@ def _draw_mount(axes: Axes, mount: MountPlace, places: Array, across: int, size:
         axes.annotate("", xy=tuple(end), xytext=tuple(begin), arrowprops=arrow, zorder=2.5)
 
 
-def layout_figure(result: LayoutResult) -> Figure:
+def layout_figure(result: LayoutAnswer) -> Figure:
     """Couplings of stiffness and damping, and natural frequencies, before and after."""
     names = pair_names()
     largest = np.max([np.abs(table).max(axis=0) for table in result.couplings.values()], axis=0)
@@ -111,5 +110,5 @@ def layout_figure(result: LayoutResult) -> Figure:
             "where they are and where the search puts them."
         )
         lay_out(figure, [[axes] for axes in panels], [1.3, 1.3, 0.7], LAYOUT, text)
-        figure.alt = f"Bars of the couplings and points of the natural frequencies. {answer(result)}"
+        figure.alt = f"Bars of the couplings and points of the natural frequencies. {result.sentence()}"
     return figure

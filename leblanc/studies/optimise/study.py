@@ -7,39 +7,39 @@ met by the way.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+import re
+from collections.abc import Callable, Iterator
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fluid.whirl import is_full
+from leblanc.core.answer import Answer
 from leblanc.core.notes import Note
+from leblanc.core.progress import update
 from leblanc.core.units import in_rpm
-from leblanc.results import optimum
-from leblanc.results.base import ConstraintValue
-from leblanc.results.choice import ModelSpan
 from leblanc.results.notes.baffles import compartment_notes
-from leblanc.results.optimum import (
-    CandidateChamber,
-    Candidates,
-    Feasibility,
-    OptimumResult,
-    ParetoFront,
-    WettingVolumes,
-)
 from leblanc.scene.scene import Scene, Speeds, require_clear, require_no_balls, require_whirl
-from leblanc.scene.tasks import Optimisation
+from leblanc.scene.tasks import OBJECTIVES, Optimisation
 from leblanc.studies.models.choose import axial_gravity
 from leblanc.studies.models.liquid import SYNCHRONOUS_MODELS
 from leblanc.studies.models.validity import doubts
-from leblanc.studies.optimise.answers import FilledMachine, model_name, with_volumes
-from leblanc.studies.optimise.balance import QualityAtSpeed
-from leblanc.studies.optimise.constraints import growth
-from leblanc.studies.optimise.emulated import EmulatedVibration
-from leblanc.studies.optimise.loads import require_loads
+from leblanc.studies.optimise import notes as notes_of
+from leblanc.studies.optimise.answer import (
+    CandidateChamber,
+    Candidates,
+    ConstraintValue,
+    EmulatedAnswer,
+    OptimumAnswer,
+    ParetoFront,
+    WettingVolumes,
+    about,
+)
+from leblanc.studies.optimise.constraints import freeing_volumes, growth, require_known_walls, require_loads
+from leblanc.studies.optimise.filled import FilledMachine, QualityAtSpeed, model_name, with_volumes
 from leblanc.studies.optimise.problem import (
-    Evaluator,
     Problem,
     growth_speeds,
     problem_of,
@@ -47,23 +47,58 @@ from leblanc.studies.optimise.problem import (
     working_speed,
 )
 from leblanc.studies.optimise.robust import Robust, condition_table
-from leblanc.studies.optimise.search import (
-    Progress,
-    best_volumes,
-    bounds_of,
-    evaluated_again,
-    on_all_cells,
-    plan_of,
-)
-from leblanc.studies.optimise.walls import freeing_volumes, require_known_walls
-from leblanc.studies.optimise.wetting import WettedWalls, wet_walls, wetting_volumes
+from leblanc.studies.optimise.search import best_volumes, bounds_of, evaluated_again, on_all_cells, plan_of
+from leblanc.studies.optimise.wetting import optimal_volume_by_search, wetting_volumes
 from leblanc.studies.run.study import run_scene
+from leblanc.studies.sweep.emulator import Emulator, emulate_store, varied_fields
+from leblanc.studies.sweep.store import read_store
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
 from solvers.liquid_model import LONG
 from solvers.search import Found, Judgement, SearchPlan
+from solvers.statics.hydrostatics import equilibrium
 
 _ASKED = "the scene asks for it; "
+
+
+_VOLUME = re.compile(r"chambers\.(\d+)\.volume")
+
+
+def answer(
+    scene: Scene,
+    objective: str | None,
+    deflection: float | None,
+    limit: float | None,
+    steady: bool,
+    seed: int | None,
+    emulator: Path | None,
+    workers: int,
+    front: bool,
+) -> Answer:
+    """Best volumes, balls where the scene has them, or layout of mounts, for its task with what is given."""
+    if objective is not None and objective not in OBJECTIVES:
+        raise InputError("objective", objective, "one of " + ", ".join(OBJECTIVES))
+    for name, length in (("deflection", deflection), ("limit", limit)):
+        if length is not None and not 1e-12 <= length <= 1e3:
+            raise InputError(name, length, "from 1e-12 to 1000 m")
+    if seed is not None and seed < 0:
+        raise InputError("seed", seed, "a whole number, 0 or above")
+    given = {"objective": objective, "deflection": deflection, "vibration_limit": limit, "seed": seed}
+    task = scene.optimise or Optimisation()
+    task = task.altered(**{name: value for name, value in given.items() if value is not None})
+    task = task.altered(steady=task.steady or steady)
+    if task.objective == "layout":
+        from leblanc.studies.optimise.layout.study import optimise_layout
+
+        return optimise_layout(scene, task)
+    if scene.balls:
+        from leblanc.studies.optimise.balls.study import optimise_balls
+
+        if emulator is not None:
+            raise InputError("emulator", str(emulator), "left out with balls, whose designs it does not know")
+        return optimise_balls(scene, task, workers)
+    surrogate = None if emulator is None else emulated_vibration(emulator, scene, task)
+    return optimise_scene(scene, task=task, front=front, emulator=surrogate)
 
 
 def optimise_scene(
@@ -71,10 +106,9 @@ def optimise_scene(
     objective: str | None = None,
     task: Optimisation | None = None,
     front: bool = True,
-    progress: Progress | None = None,
     emulator: EmulatedVibration | None = None,
     response: bool = True,
-) -> OptimumResult:
+) -> OptimumAnswer:
     """Best volume for each chamber of a scene; its own volumes do not matter.
 
     Not feasible where no volumes meet the constraints: those that exceed them least are given then; the best
@@ -83,8 +117,6 @@ def optimise_scene(
     """
     task = task or scene.optimise or Optimisation()
     task = task if objective is None else task.altered(objective=objective)
-    if task.objective == "layout":
-        raise InputError("--objective", "layout", "one of the liquid here; optimise_layout answers this one")
     require_whirl(scene)
     require_no_balls(scene, "a search over volumes alone; optimise_balls answers this one")
     if task.balls is not None:
@@ -97,13 +129,13 @@ def optimise_scene(
     machine = FilledMachine(scene)
     require_loads(scene, task)
     if task.deflection is not None:
-        result = _at_deflection(scene, task, wet_walls(scene, task.deflection, working_speed(scene, task)))
+        result = _at_deflection(scene, task, task.deflection)
         return _with_response(result, scene, machine) if response else result
 
     stopped: list[Found] = []
 
     def solve(problem: Problem) -> Found:
-        found = best_volumes(scene, problem, low, high, progress)
+        found = best_volumes(scene, problem, low, high)
         stopped.extend([found] if found.interrupted else [])
         return found
 
@@ -111,79 +143,62 @@ def optimise_scene(
     exact, quick = on_all_cells(scene, problem), problem
     if emulator is not None:
         low, high = emulator.inside(low, high, np.array([fill.volume for fill in scene.fills]))
-        quick = replace(
-            problem, evaluate=replace(problem.evaluate, vibration=emulator, estimated=True), costly=False
-        )
-    told = _first_part(progress) if front else progress
-    chosen = stopped[0] if stopped else best_volumes(scene, quick, low, high, told)
+        quick = replace(problem, vibration=emulator, estimated=True, costly=False)
+    chosen = stopped[0] if stopped else best_volumes(scene, quick, low, high, _SEARCH if front else 1.0)
     if quick is not exact or stopped:
         chosen = evaluated_again(exact, chosen)
     result = _result(scene, task, exact, machine, chosen)
     if emulator is not None:
-        answer = emulator.answer(chosen.point)
-        result = replace(result, emulator=answer, notes=(optimum.emulated(answer), *result.notes))
+        said = emulator.answer(chosen.point)
+        result = replace(result, emulator=said, notes=(notes_of.emulated(said), *result.notes))
+    speeds = growth_speeds(scene, task)
     if front and not result.interrupted:
-        result = _with_front(result, scene, problem, chosen, growth_speeds(scene, task), progress)
-    if isinstance(exact.evaluate.vibration, Robust):
-        speeds, around = growth_speeds(scene, task), unbalances(scene, task)
+        try:
+            edge, sweep = front_around(scene, problem, chosen, result.vibration, speeds)
+            result = replace(result, front=edge, sweep=sweep)
+        except KeyboardInterrupt:
+            note = notes_of.interrupted(result.evaluations, searched=True)
+            result = replace(result, interrupted=True, notes=(note, *result.notes))
+    if isinstance(robust := exact.vibration, Robust):
+        around = unbalances(scene, task)
         table = condition_table(
-            scene,
-            task,
-            exact.evaluate.vibration,
-            result.volume,
-            around,
+            *(scene, task, robust, result.volume, around),
             lambda warm, held: float(growth(warm, held[None], speeds)[0]),
         )
         result = replace(result, robust=table)
     return _with_response(result, scene, machine) if response else result
 
 
-def _with_front(
-    result: OptimumResult,
-    scene: Scene,
-    problem: Problem,
-    found: Found,
-    speeds: Array,
-    progress: Progress | None,
-) -> OptimumResult:
-    """The best volumes with the front around them; without it where it is interrupted from the keyboard."""
-    try:
-        edge, sweep = front_around(scene, problem, found, result.vibration, speeds, progress)
-    except KeyboardInterrupt:
-        note = optimum.interrupted(result.evaluations, searched=True)
-        return replace(result, interrupted=True, notes=(note, *result.notes))
-    return replace(result, front=edge, sweep=sweep)
-
-
 def _result(
     scene: Scene, task: Optimisation, problem: Problem, machine: FilledMachine, found: Found
-) -> OptimumResult:
+) -> OptimumAnswer:
     """The best volumes with all that belongs to them."""
-    evaluate, volume = problem.evaluate, found.point
+    volume = found.point
     nothing = np.zeros((1, volume.size))
-    vibration, dry = (float(evaluate.vibration.exact(row)[0]) for row in (volume[None], nothing))
+    vibration, dry = (float(problem.vibration.exact(row)[0]) for row in (volume[None], nothing))
     value, bare = vibration, dry
-    if evaluate.sized is not None:
-        value, bare = (float(evaluate.sized.exact(row)[0]) for row in (volume[None], nothing))
+    if problem.sized is not None:
+        value, bare = (float(problem.sized.exact(row)[0]) for row in (volume[None], nothing))
     constraints = {
         "capacity": _capacity(scene, volume),
         **{
             constraint.name: constraint.at(float(constraint.value(volume[None])[0]))
-            for constraint in evaluate.constraints
+            for constraint in problem.constraints
         },
     }
-    mass = float(volume @ evaluate.density)
+    mass = float(volume @ problem.density)
     said = found.judged
     return _of_scene(
         scene,
-        in_time=evaluate.runs is not None,
+        task,
+        in_time=problem.runs is not None,
         objective=task.objective,
         meaning=problem.meaning,
-        unit=evaluate.unit,
+        unit=problem.unit,
         working_speed=problem.working_speed,
         volume=volume,
-        value=mass if evaluate.by_mass else value,
-        baseline=0.0 if evaluate.by_mass else bare,
+        value=mass if problem.by_mass else value,
+        baseline=0.0 if problem.by_mass else bare,
         vibration=vibration,
         vibration_baseline=dry,
         constraints=constraints,
@@ -200,92 +215,105 @@ def _result(
             vibration=said.details["vibration"],
             mass=said.details["mass"],
             exact=said.details["sure"] == 1.0,
-            exceeded=_exceeded(evaluate, said),
+            exceeded=_exceeded(problem, said),
         ),
         notes=(*_findings(problem, found), *problem.notes, *_limits(scene, problem, volume), *doubts(scene)),
         interrupted=found.interrupted,
     )
 
 
-def _exceeded(evaluate: Evaluator, said: Judgement) -> tuple[str, ...]:
+def _exceeded(problem: Problem, said: Judgement) -> tuple[str, ...]:
     """Name of the constraint that each set of volumes exceeds most, empty where it keeps to all."""
-    if not evaluate.constraints:
+    if not problem.constraints:
         return ("",) * said.excess.size
-    worst = np.argmax([own.excess(said.details[own.name]) for own in evaluate.constraints], axis=0)
+    worst = np.argmax([own.excess(said.details[own.name]) for own in problem.constraints], axis=0)
     pairs = zip(worst.tolist(), said.excess.tolist(), strict=True)
-    return tuple(evaluate.constraints[k].name if excess > 0.0 else "" for k, excess in pairs)
+    return tuple(problem.constraints[k].name if excess > 0.0 else "" for k, excess in pairs)
 
 
-def _findings(problem: Problem, found: Found) -> tuple[Note, ...]:
+def _findings(problem: Problem, found: Found) -> Iterator[Note]:
     """What must be known of the answer: it was interrupted, or it is no liquid."""
-    evaluate, said = problem.evaluate, found.judged
-    notes = [optimum.interrupted(found.points.shape[0])] if found.interrupted else []
+    said = found.judged
+    if found.interrupted:
+        yield notes_of.interrupted(found.points.shape[0])
     if found.point.max() > 0.0 or not found.feasible:
-        return tuple(notes)
+        return
     better = said.details["vibration"] < found.objective * (1.0 - plan_of(problem).margin)
     forbidden = [
         own.name
-        for own in evaluate.constraints
+        for own in problem.constraints
         if np.any(own.excess(said.details[own.name])[better & (said.excess > 0.0)] > 0.0)
     ]
-    notes.append(optimum.no_liquid(evaluate.by_mass, tuple(forbidden)))
-    return tuple(notes)
+    yield notes_of.no_liquid(problem.by_mass, tuple(forbidden))
 
 
-def _at_deflection(scene: Scene, task: Optimisation, found: WettedWalls) -> OptimumResult:
-    """The least volumes that leave no wall dry over its whole height at a given deflection."""
-    volume = np.array(found.volumes)
-    single = np.ones(1)
+def _at_deflection(scene: Scene, task: Optimisation, deflection: float) -> OptimumAnswer:
+    """The least volumes that leave no wall dry over its whole height at a given deflection, m."""
+    speed, gravity, single = working_speed(scene, task), axial_gravity(scene), np.ones(1)
+    found = [optimal_volume_by_search(fill, deflection, speed, gravity) for fill in scene.fills]
+    volume = np.array([best.point[0] for best in found])
+    forms = tuple(wetting_volumes(fill.chamber, deflection, speed, gravity) for fill in scene.fills)
+    gap = max(
+        abs(own / form.optimal_volume - 1.0) if form.optimal_volume > 0.0 else abs(own)
+        for own, form in zip(volume.tolist(), forms, strict=True)
+    )
+    unbalance, mass, dry = 0.0, 0.0, 0.0
+    for fill in with_volumes(scene, volume).fills:
+        state = equilibrium(fill.chamber, fill.volume, deflection, speed, gravity)
+        unbalance += fill.liquid.density * float(state.unbalance()[0])
+        mass += fill.mass
+        # A little above the volume that just wets it.
+        above = min(fill.volume * (1.0 + 1e-9), fill.chamber.capacity)
+        dry = max(dry, float(equilibrium(fill.chamber, above, deflection, speed, gravity).dry_patch))
+    meaning = "wall dry somewhere at the deflection given (1) or nowhere (0)"
     return _of_scene(
         scene,
+        task,
         in_time=False,
         objective="working_speed",
-        meaning=f"liquid's unbalance at the deflection given, at {in_rpm(found.speed)}",
+        meaning=f"liquid's unbalance at the deflection given, at {in_rpm(speed)}",
         unit="kg m",
-        working_speed=found.speed,
+        working_speed=speed,
         volume=volume,
-        value=found.unbalance,
+        value=unbalance,
         baseline=0.0,
-        vibration=found.deflection,
-        vibration_baseline=found.deflection,
-        constraints={"capacity": _capacity(scene, volume), "dry_patch": found.dry_wall},
-        mass=found.mass,
+        vibration=deflection,
+        vibration_baseline=deflection,
+        constraints={
+            "capacity": _capacity(scene, volume),
+            "dry_patch": ConstraintValue(0.0, dry, dry == 0.0, "1", meaning),
+        },
+        mass=mass,
         growth=float(growth(scene, volume[None], growth_speeds(scene, task))[0]),
-        closed_form=found.closed_form,
+        closed_form=forms,
         equal_within=SearchPlan().margin,
-        evaluations=found.evaluations,
+        evaluations=sum(best.points.shape[0] for best in found),
         candidates=Candidates(
             volume=volume[None],
-            objective=found.unbalance * single,
+            objective=unbalance * single,
             excess=-single,
-            vibration=found.unbalance * single,
-            mass=found.mass * single,
+            vibration=unbalance * single,
+            mass=mass * single,
             exact=single > 0.0,
         ),
-        notes=(*found.notes, *doubts(scene)),
+        notes=(notes_of.given_deflection(deflection, speed, gap), *doubts(scene)),
     )
 
 
-def _of_scene(scene: Scene, constraints: dict[str, ConstraintValue], **found: object) -> OptimumResult:
-    """A result with what it says of its scene."""
-    kept = all(constraint.satisfied for constraint in constraints.values())
-    return OptimumResult(
-        name=scene.name,
-        source=scene.source,
-        assumed=scene.assumed,
-        digest=scene.digest,
+def _of_scene(scene: Scene, task: Optimisation, in_time: bool, **found: object) -> OptimumAnswer:
+    """An answer with what it says of its scene."""
+    return OptimumAnswer(
+        **about(scene, task),
+        unused=() if in_time else ("runup",),
         chambers=tuple(CandidateChamber(fill.chamber.capacity, fill.liquid.name) for fill in scene.fills),
         friction=scene.model.friction,
         tolerance=scene.model.tolerance,
-        feasibility=Feasibility.FEASIBLE if kept else Feasibility.INFEASIBLE,
-        constraints=constraints,
-        front=None,
-        sweep=None,
+        in_time=in_time,
         **found,  # type: ignore[arg-type]
     )
 
 
-def _with_response(result: OptimumResult, scene: Scene, machine: FilledMachine) -> OptimumResult:
+def _with_response(result: OptimumAnswer, scene: Scene, machine: FilledMachine) -> OptimumAnswer:
     """The machine with the best volumes over the scene's speeds, by the model of the search."""
     if machine.scene.model.liquid not in SYNCHRONOUS_MODELS:
         return result
@@ -293,13 +321,10 @@ def _with_response(result: OptimumResult, scene: Scene, machine: FilledMachine) 
     filled = filled.altered(model=filled.model.altered(liquid=model_name(filled)))
     response = run_scene(filled)
     if scene.model.liquid == "auto":
-        response = replace(response, models=tuple(_of_search(span) for span in response.models))
+        # The scene leaves the model to the search, which names one.
+        spans = (replace(span, reason=span.reason.removeprefix(_ASKED)) for span in response.models)
+        response = replace(response, models=tuple(spans))
     return replace(result, response=response)
-
-
-def _of_search(span: ModelSpan) -> ModelSpan:
-    """The scene leaves the model to the search, which names one."""
-    return replace(span, reason=span.reason.removeprefix(_ASKED))
 
 
 def _capacity(scene: Scene, volume: Array) -> ConstraintValue:
@@ -313,16 +338,16 @@ def _limits(scene: Scene, problem: Problem, volume: Array) -> tuple[Note, ...]:
     """What the models do not hold for."""
     deepest = LONG[1]
     parted = tuple(
-        optimum.parted(k, fill.chamber.baffles.count, freed)
+        notes_of.parted(k, fill.chamber.baffles.count, freed)
         for k, (fill, freed) in enumerate(zip(scene.fills, freeing_volumes(scene), strict=True))
         if fill.chamber.baffles is not None and freed > 0.0
     )
     fills = with_volumes(scene, volume).fills
     parted += tuple(compartment_notes(fills))
-    if problem.evaluate.runs is None:
+    if problem.runs is None:
         return parted
     return parted + tuple(
-        optimum.too_deep(k, deepest)
+        notes_of.too_deep(k, deepest)
         for k, fill in enumerate(fills)
         if fill.depth > deepest * fill.chamber.radius and not is_full(fill)
     )
@@ -376,36 +401,17 @@ def not_dominated(values: Array) -> Flags:
     return kept
 
 
-def front_of(volume: Array, vibration: Array, mass: Array, margin: Array) -> ParetoFront:
-    """The points that are not dominated, by rising mass."""
-    kept = np.flatnonzero(not_dominated(np.stack((vibration, mass, -margin), axis=1)))
-    kept = kept[np.lexsort((vibration[kept], mass[kept]))]
-    return ParetoFront(volume[kept], vibration[kept], mass[kept], margin[kept])
-
-
 _SEARCH = 0.7  # share of the work that a search is where the front follows, as it comes on average
 _AT_ONCE = 8  # volumes of the front at once, where an answer costs much
-
-
-def _first_part(progress: Progress | None) -> Progress | None:
-    """The search is the first part of the work."""
-    return None if progress is None else lambda count, share: progress(count, _SEARCH * share)
-
-
 _SWEEP, _SPARING = 40, 12  # volumes of the dedicated sweep; where an answer costs much
 _MOST_IN_FRONT = 60  # of the points evaluated by the way
 
 
 def front_around(
-    scene: Scene,
-    problem: Problem,
-    found: Found,
-    vibration: float,
-    speeds: Array,
-    progress: Progress | None = None,
+    scene: Scene, problem: Problem, found: Found, vibration: float, speeds: Array
 ) -> tuple[ParetoFront, ParetoFront]:
-    """What must be given up for what: the front, and the sweep from no liquid to the fullest chamber."""
-    evaluate, known = problem.evaluate, found.judged.details
+    """The trade-off (Pareto front) by rising mass, and the sweep from no liquid to the fullest chamber."""
+    known = found.judged.details
     count = _SPARING if problem.costly else _SWEEP
     high = np.array([fill.chamber.capacity for fill in scene.fills])
     share = np.concatenate(([0.0], np.geomspace(1e-3, 1.0, count)))
@@ -424,17 +430,18 @@ def front_around(
         for first in range(0, rows.shape[0], few):
             values.append(value(rows[first : first + few]))
             done += values[-1].size
-            if progress is not None:
-                progress(found.points.shape[0], _SEARCH + (1.0 - _SEARCH) * done / total)
+            update(_SEARCH + (1.0 - _SEARCH) * done / total, 1.0, "trade-off")
         return np.concatenate(values)
 
-    size = np.concatenate((each(evaluate.vibration.exact, swept), known["vibration"][by_the_way]))
+    size = np.concatenate((each(problem.vibration.exact, swept), known["vibration"][by_the_way]))
     size[np.all(volume == found.point, axis=1)] = vibration
     margin = -each(lambda rows: growth(scene, rows, speeds), volume)
-    mass = volume @ evaluate.density
+    mass = volume @ problem.density
     part = slice(0, swept.shape[0])
-    whole = ParetoFront(volume[part], size[part], mass[part], margin[part])
-    return front_of(volume, size, mass, margin), whole
+    kept = np.flatnonzero(not_dominated(np.stack((size, mass, -margin), axis=1)))
+    kept = kept[np.lexsort((size[kept], mass[kept]))]
+    edge, whole = (ParetoFront(volume[k], size[k], mass[k], margin[k]) for k in (kept, part))
+    return edge, whole
 
 
 def _thin(vibration: Array, mass: Array) -> NDArray[np.intp]:
@@ -446,3 +453,53 @@ def _thin(vibration: Array, mass: Array) -> NDArray[np.intp]:
         if kept.size
         else kept
     )
+
+
+class EmulatedVibration:
+    """Vibration of a machine by an emulator over the volumes of some of its chambers."""
+
+    def __init__(self, emulator: Emulator, chambers: tuple[int, ...]) -> None:
+        self.emulator, self.chambers = emulator, chambers
+
+    def exact(self, volumes: Array) -> Array:
+        """Vibration with m sets of volumes, m, as exact as the emulator is."""
+        return self.emulator.output(volumes[:, self.chambers])
+
+    def answer(self, volume: Array) -> EmulatedAnswer:
+        """What it says of one set of volumes, shape (c,)."""
+        value, deviation = self.emulator.predict(volume[None, self.chambers])
+        return EmulatedAnswer(float(value[0]), float(deviation[0]), self.emulator.error)
+
+    def inside(self, low: Array, high: Array, own: Array) -> tuple[Array, Array]:
+        """Bounds of the volumes cut to what the emulator knows; other chambers keep their own volume."""
+        least, most = own.copy(), own.copy()
+        for k, chamber in enumerate(self.chambers):
+            least[chamber] = max(low[chamber], self.emulator.low[k])
+            most[chamber] = min(high[chamber], self.emulator.high[k])
+            if not least[chamber] <= most[chamber]:
+                span = f"{self.emulator.low[k]:g} to {self.emulator.high[k]:g} m^3"
+                allowed = f"such that they meet the samples of the sweep, {span}"
+                raise InputError(f"optimise.volumes.{chamber}", (low[chamber], high[chamber]), allowed)
+        return least, most
+
+
+def emulated_vibration(store: Path, scene: Scene, task: Optimisation, seed: int = 0) -> EmulatedVibration:
+    """Emulator of the vibration that an optimisation is after, from a sweep over the volumes."""
+    found = read_store(store)
+    if found.attributes()["scene_digest"] != scene.digest:
+        raise InputError("emulator", str(store), "the store of a sweep of this very scene")
+    matches = [_VOLUME.fullmatch(name) for name in varied_fields(found)]
+    chambers = tuple(int(match[1]) for match in matches if match is not None)
+    if len(chambers) != len(matches):
+        raise InputError("emulator", str(store), "a sweep that varies volumes and nothing else")
+    return EmulatedVibration(emulate_store(found, _output(scene, task), seed), chambers)
+
+
+def _output(scene: Scene, task: Optimisation) -> str:
+    """Output of a sweep that is the vibration of the objective."""
+    if task.objective == "working_speed" and task.working_speed in (None, scene.speeds.stop):
+        return "last_amplitude"
+    if task.objective == "peak" and (task.steady or scene.speed_plan is None):
+        return "peak_amplitude"
+    allowed = "working_speed at the last speed, or peak of the steady response, with an emulator"
+    raise InputError("objective", task.objective, allowed)

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Generic, TypeVar
 
 import numpy as np
 
 from fluid.waves import capture_speed
 from leblanc.scene.scene import JeffcottRotor, Scene, Speeds, dry_rotor, jeffcott
-from leblanc.studies.models.choose import axial_gravity, is_cut, models_at, prepare
+from leblanc.studies.models.choose import Prepared, axial_gravity, is_cut, models_at, prepare
 from leblanc.studies.models.liquid import synchronous_model
 from leblanc.studies.models.validity import require_supported
 from leblanc.studies.peaks import responses_between, wet_resonances
 from meshes.arrays import Array, Flags
+from solvers.rotor.balance_quality import balance_quality
 from solvers.rotor.vibration import orbit
 from solvers.statics.hydrostatics import equilibrium
 from solvers.synchronous.peaks import highest, seeds
@@ -29,6 +32,23 @@ from solvers.synchronous.response import (
 
 AT_ONCE = 4000  # pairs; more at once would only take memory
 FEW = 24  # speeds from which the peak of a rotor that tilts is refined
+V = TypeVar("V")
+
+
+class Once(Generic[V]):
+    """Values of a function of one set of volumes, shape (c,), none of which is computed twice."""
+
+    def __init__(self, function: Callable[[Array], V]) -> None:
+        self.function = function
+        self._known: dict[bytes, V] = {}
+
+    def __call__(self, volumes: Array) -> list[V]:
+        """Values of m sets, shape (m, c)."""
+        rows = np.ascontiguousarray(volumes)
+        for row in rows:
+            if row.tobytes() not in self._known:
+                self._known[row.tobytes()] = self.function(row)
+        return [self._known[row.tobytes()] for row in rows]
 
 
 @dataclass(frozen=True)
@@ -134,13 +154,7 @@ class FilledMachine:
 
     def _other_peaks(self, volumes: Array, start: float, stop: float) -> Array:
         """The same of rotors that tilt, each refined from a few speeds and those of its resonances."""
-        few = np.linspace(start, stop, FEW) if stop > start else np.array([start])
-        machines = []
-        for row in volumes:
-            machine = prepare(with_volumes(self.scene, row))
-            near = wet_resonances(machine)
-            own = seeds(near.speed, near.half_width, start, stop, few, whole=False)
-            machines.append(replace(machine, speed=np.union1d(few, own)))
+        machines = [self._near_peaks(row, start, stop) for row in volumes]
         names = np.concatenate([names for names, _ in models_at(machines)])
         models = [synchronous_model(name) for name in names.tolist()]
         owner = np.repeat(np.arange(len(machines)), [machine.speed.size for machine in machines])
@@ -154,18 +168,22 @@ class FilledMachine:
 
     def answer_over(self, volumes: Array, speeds: Speeds) -> Response:
         """Response with one set of volumes over a range of speeds, its peaks among them."""
-        start, stop = speeds.start, speeds.stop
-        few = np.linspace(start, stop, FEW) if stop > start else np.array([start])
-        machine = replace(prepare(with_volumes(self.scene, volumes)), speed=few)
-        if not self.planar:
-            near = wet_resonances(machine)
-            own = seeds(near.speed, near.half_width, start, stop, few, whole=False)
-            machine = replace(machine, speed=np.union1d(few, own))
+        machine = self._near_peaks(volumes, speeds.start, speeds.stop)
         models = [synchronous_model(name) for name in models_at([machine])[0][0].tolist()]
         fills, gravity = machine.scene.fills, machine.axial_gravity
         answer = response(machine.rotor, fills, machine.speed, gravity, models)
         (between,) = responses_between([machine], [answer], dry=False)
         return by_speed([answer, between])
+
+    def _near_peaks(self, volumes: Array, start: float, stop: float) -> Prepared:
+        """The machine at a few speeds of a range, and at the resonances where a rotor tilts."""
+        few = np.linspace(start, stop, FEW) if stop > start else np.array([start])
+        machine = replace(prepare(with_volumes(self.scene, volumes)), speed=few)
+        if self.planar:
+            return machine
+        near = wet_resonances(machine)
+        own = seeds(near.speed, near.half_width, start, stop, few, whole=False)
+        return replace(machine, speed=np.union1d(few, own))
 
     def _reach(self, volumes: Array, speed: Array, moved: Array) -> Array:
         """See `FillAnswers`, at deflections of the chambers, m, shape (m, c)."""
@@ -213,6 +231,34 @@ class FilledMachine:
         system = self._rotor.system()
         moved = [np.abs(orbit(system, found.coordinates, fill.chamber.plane).forward) for fill in sets[0]]
         return found.amplitude, found.dry_patch, np.stack(moved, axis=1)
+
+
+class QualityAtSpeed:
+    """Total unbalance over the rotor's mass, times the speed [theory: balance_quality, eq. 1-3]."""
+
+    def __init__(self, machine: FilledMachine, speed: float) -> None:
+        self.machine, self.speed, self._each = machine, speed, Once(self._one)
+
+    def of(self, volumes: Array) -> Array:
+        """With m sets of volumes, m/s; infinite where the motion is, shape (m,)."""
+        if not self.machine.planar:
+            return np.array(self._each(volumes))
+        rotor, omega = jeffcott(self.machine.scene), np.array([self.speed])
+        held = float(np.abs(rotor.dynamic_stiffness(omega))[0])
+        amplitude = self.machine.at(volumes, np.full(volumes.shape[0], self.speed)).amplitude
+        return np.asarray(held * amplitude / (rotor.mass * self.speed))
+
+    def dry(self) -> float:
+        """The same without liquid, m/s."""
+        return float(balance_quality(dry_rotor(self.machine.scene), [self.speed])[0])
+
+    def _one(self, volumes: Array) -> float:
+        """Of a rotor that tilts."""
+        scene = self.machine.scene
+        rotor, filled = dry_rotor(scene), with_volumes(scene, volumes)
+        model = synchronous_model(model_name(filled))
+        found = response(rotor, filled.fills, [self.speed], axial_gravity(scene), model)
+        return float(balance_quality(rotor, [self.speed], found.coordinates)[0])
 
 
 def with_volumes(scene: Scene, volumes: Array) -> Scene:

@@ -1,0 +1,42 @@
+"""What an answer shows: a table by its head, its checks that fail, its text on a terminal."""
+
+from __future__ import annotations
+
+import io
+from contextlib import redirect_stdout
+
+from leblanc.core.answer import Answer
+from leblanc.core.blocks import Cell, Checks, Table, flat
+from leblanc.core.terminal import show
+
+
+def table(answer: Answer, *head: str) -> Table:
+    """The one table whose head begins so."""
+    tables = [block for block in flat(answer.blocks(), "page") if isinstance(block, Table)]
+    (found,) = (one for one in tables if all(map(str.startswith, one.head[: len(head)], head)) and one.head)
+    return found
+
+
+def labels(answer: Answer) -> dict[str, str]:
+    """Texts by label, of all tables without a head."""
+    tables = (block for block in flat(answer.blocks(), "page") if isinstance(block, Table) and not block.head)
+    return {cell_text(row[0]): cell_text(row[1]) for one in tables for row in one.rows}
+
+
+def failed(answer: Answer) -> dict[str, str]:
+    """Where each check fails, by its label."""
+    checks = (block for block in flat(answer.blocks(), "page") if isinstance(block, Checks))
+    return {one.label: one.where for block in checks for one in block.rows if one.grade}
+
+
+def cell_text(cell: str | Cell) -> str:
+    """Of a cell."""
+    return cell if isinstance(cell, str) else cell.text
+
+
+def on_terminal(answer: Answer) -> str:
+    """All that is printed."""
+    printed = io.StringIO()
+    with redirect_stdout(printed):
+        show(answer.blocks())
+    return printed.getvalue()
