@@ -515,7 +515,7 @@ class OptimumAnswer(Best):
             found.append(check("Interrupted", "see the notes", True))
         found.append(check("A small whirl grows when operating", grows, lost or self.growth > 0.0))
         machine = [] if self.response is None else checks(self.response)
-        return [*found, *(check(one.label, one.where, one.failed) for one in machine)]
+        return [*found, *machine]
 
     def _trade_off(self, edge: ParetoFront) -> Table:
         """A few points of which none is better than another in everything, by rising mass."""
