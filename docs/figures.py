@@ -194,7 +194,7 @@ RECIPES = (
     Recipe(("validation.models.figure",), ("models",)),
     Recipe(("validation.breaking.figure",), ("breaking", "breaking_crest")),
     Recipe(("validation.exact.figure",), ("wave_errors", "wave_ends")),
-    Recipe(("validation.exact_whirl.figure",), ("exact_whirl",)),
+    Recipe(("tests.exact_whirl.figure",), ("exact_whirl",)),
     Recipe(("validation.cases.baffles.whirl",), ("whirl_baffles",)),
     Recipe(("validation.cases.baffles.flow",), ("baffles_decay",)),
     Recipe(("validation.cases.claims.chambers",), ("claims_rings",)),

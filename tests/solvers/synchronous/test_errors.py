@@ -32,8 +32,6 @@ from solvers.synchronous.errors import (
 from solvers.synchronous.models import LINEAR, STATICS, Statics
 from solvers.synchronous.pairs import pair_machines
 from solvers.synchronous.response import machine_responses, response
-from tests.leblanc.studies.test_runup import history_of
-from tests.mutants import kills
 from tests.extremes.model_error import (
     gravity_sample,
     held_sample,
@@ -41,6 +39,8 @@ from tests.extremes.model_error import (
     random_machines,
     run_up_sample,
 )
+from tests.leblanc.studies.test_runup import history_of
+from tests.mutants import kills
 
 WATER = KNOWN_LIQUIDS["water"]
 G = 9.81
