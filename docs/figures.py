@@ -191,7 +191,7 @@ RECIPES = (
         {"layer_limiting_wave": "wave"},
     ),
     Recipe(("validation.cases.rotors.whirl_passage",), ("whirl_passage",), minutes=True),
-    Recipe(("validation.models.figure",), ("models",)),
+    Recipe(("tests.models.figure",), ("models",)),
     Recipe(("validation.breaking.figure",), ("breaking", "breaking_crest")),
     Recipe(("validation.exact.figure",), ("wave_errors", "wave_ends")),
     Recipe(("tests.exact_whirl.figure",), ("exact_whirl",)),

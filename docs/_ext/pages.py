@@ -182,7 +182,7 @@ class ModelsTable(SphinxDirective):
 
     def run(self) -> list[nodes.Node]:
         """A table with one row for each model."""
-        from validation.models import kept, words
+        from tests.models import kept, words
 
         head = ["model"]
         for found in kept():

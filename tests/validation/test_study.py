@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 
 from meshes.arrays import Array, Flags
-from tests import exact_whirl
+from tests import exact_whirl, models
 from tests.exact_whirl import held
 from tests.mutants import kills
-from validation import breaking, exact, models
+from validation import breaking, exact
 from validation.study import launch, read, write
 
 
