@@ -10,7 +10,7 @@ from importlib import metadata
 from pathlib import Path
 
 _HERE = Path(__file__).parent
-sys.path.insert(0, str(_HERE / "_ext"))
+sys.path[:0] = [str(_HERE / "_ext"), str(_HERE.parent)]
 
 project = "leblanc"
 author = "The leblanc developers"

@@ -167,7 +167,8 @@ class Claims:
     """What the sources of a group say, one entry of `data/cases/<group>.toml` a case or family of cases.
 
     An entry has the fields of `Case`, or `tolerance` and `otherwise` as of `compare`. Its verdict is `holds`,
-    by default `agrees`, where a statement agrees, else `otherwise`. Words in braces are computed.
+    by default `agrees`, where a statement agrees, else `otherwise`; so of two words for its `difference` the
+    first and the second. Words in braces are computed.
     """
 
     def __init__(self, group: str) -> None:
@@ -192,6 +193,8 @@ class Claims:
         if agrees is not None:
             same = agrees if holds != "trend" else shape_verdict(bool(agrees), row.get("effect")) == "trend"
             row["verdict"] = holds if same else otherwise
+        if isinstance(row["difference"], list):
+            row["difference"] = row["difference"][0 if agrees else 1]
         return Case(**row)
 
 

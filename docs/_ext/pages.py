@@ -161,7 +161,7 @@ class ColdStarts(SphinxDirective):
 
     def run(self) -> list[nodes.Node]:
         """A table with one row for each command."""
-        from validation.benchmarks.cold.start import kept
+        from tests.cold_start.start import kept
 
         found = kept()
         head = ("command", "CPU time", "its libraries alone", "ratio", "without physics", *found[0].parts())
@@ -182,7 +182,7 @@ class ModelsTable(SphinxDirective):
 
     def run(self) -> list[nodes.Node]:
         """A table with one row for each model."""
-        from validation.models import kept, words
+        from tests.models import kept, words
 
         head = ["model"]
         for found in kept():

@@ -24,7 +24,7 @@ from solvers.runup.linear import couple_linear
 from solvers.runup.long_wave import couple
 from solvers.runup.machine import Motor, Ramp
 from solvers.runup.runup import RunupNumerics, run_up
-from validation.benchmarks.road import BareLayer
+from tests.oracles.bare_layer import BareLayer
 
 WATER = Liquid("water", 1000.0, 1e-6)
 STOKES = Friction(FrictionLaw.STOKES)

@@ -13,9 +13,10 @@ import numpy as np
 import pytest
 
 from meshes.arrays import Array, Flags
+from tests import exact_whirl, models
+from tests.exact_whirl import held
 from tests.mutants import kills
-from validation import breaking, exact, exact_whirl, models
-from validation.exact_whirl import held
+from validation import breaking, exact
 from validation.study import launch, read, write
 
 

@@ -1,6 +1,6 @@
 """When the exact wave breaks, how high free waves are at most, and how far long waves go with it until then.
 
-`python -m validation.breaking` computes it again; `kept` reads what it left.
+`python -m tests.breaking` computes it again; `kept` reads what it left.
 """
 
 from __future__ import annotations

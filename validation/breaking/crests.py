@@ -1,6 +1,6 @@
 """The crest of a wave at its resonance until it breaks and a little beyond: its shape, kept as JSON.
 
-`python -m validation.breaking` computes it again; `kept` reads what it left. Lengths are over R, times in
+`python -m tests.breaking` computes it again; `kept` reads what it left. Lengths are over R, times in
 1/Omega.
 """
 

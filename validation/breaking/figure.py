@@ -1,6 +1,6 @@
 """The kept endings of the exact wave, the highest free waves, long waves beside them and a crest, drawn.
 
-`python -m validation.breaking.figure --out docs/images`; `python -m validation.breaking` computes them anew.
+`python -m validation.breaking.figure --out docs/images`; `python -m tests.breaking` computes them anew.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """The exact wave as the measure of the other models of a layer: their errors, kept as JSON.
 
-`python -m validation.exact` measures again; `kept` reads what it left. Depths are over R, whirls over h_0,
+`python -m tests.exact` measures again; `kept` reads what it left. Depths are over R, whirls over h_0,
 detunings are ratios p/p_1 to that of small free waves.
 """
 

@@ -1,6 +1,6 @@
 """The kept errors of the models beside the exact wave, drawn: maps, and where smooth waves end.
 
-`python -m validation.exact.figure --out docs/images`; `python -m validation.exact` measures them anew.
+`python -m validation.exact.figure --out docs/images`; `python -m tests.exact` measures them anew.
 """
 
 from __future__ import annotations

@@ -20,8 +20,8 @@ from solvers.held.state import HoldNumerics
 from solvers.held.turns import Watch
 from solvers.layer.records import Outcome
 from solvers.synchronous.response import response
-from validation.exact_whirl.held import CASES, pair
-from validation.exact_whirl.lagging import circles
+from tests.exact_whirl.held import CASES, pair
+from tests.exact_whirl.lagging import circles
 
 
 def test_upright_it_is_answered_at_once() -> None:

@@ -37,7 +37,7 @@ from solvers.pypde.grid import circle
 from solvers.pypde.long_wave import AnnularLongWavePDE, FiniteVolumeSolver
 from solvers.pypde.settle import simulate
 from tests.mutants import kills
-from validation.benchmarks.road import BareLayer
+from tests.oracles.bare_layer import BareLayer
 
 SPIN, R, H = 40.0, 0.15, 0.01
 OIL = Liquid("oil", 900.0, 1e-3)

@@ -109,7 +109,6 @@ def _rule(name: str, meaning: str, kept: dict[str, float], broken: dict[str, flo
         holds,
         name=f"layout-{name}",
         quantity=meaning,
-        difference="the same" if holds else "another",
         broken_by=broken_by,
     )
 
@@ -125,13 +124,7 @@ def _dynamic_unbalance(plain: Tub) -> Case:
     couple = replace(plain, loads=(PlaneUnbalance(0.06, size), PlaneUnbalance(-0.06, size, np.pi)))
     kept, broken = _turns(plain), _turns(couple)
     holds = kept < _NONE < broken
-    return CLAIMS.case(
-        "layout-2-inertia",
-        agrees=holds,
-        kept=kept,
-        broken=broken,
-        difference="the same" if holds else "another",
-    )
+    return CLAIMS.case("layout-2-inertia", agrees=holds, kept=kept, broken=broken)
 
 
 def _separate(plain: Tub) -> Case:
@@ -141,8 +134,5 @@ def _separate(plain: Tub) -> Case:
     turning = [f"{NAMES[i]}-{NAMES[j]}" for i, j in PAIRS if abs(system.gyroscopic[i, j]) > 0.0]
     holds = not rest and turning == ["alpha-gamma"]
     return CLAIMS.case(
-        "layout-separate",
-        f"none at rest; {', '.join(turning)} by J_b omega while it turns",
-        holds,
-        difference="the same" if holds else "another",
+        "layout-separate", f"none at rest; {', '.join(turning)} by J_b omega while it turns", holds
     )

@@ -64,7 +64,6 @@ def cases() -> list[Case]:
             "35-g-range",
             f"{least * 1e3:.1f} to {most * 1e3:.0f} mm",
             least <= SWING <= most,
-            difference="inside" if least <= SWING <= most else "outside",
             product=ratio * usual.mass,
             left=peak(rig(usual.mass, PLACE, ratio, 30e-3)) * 1e3,
         ),

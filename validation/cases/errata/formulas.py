@@ -117,9 +117,7 @@ def _oblate() -> Case:
         ((r * sp.cos(phi)) ** 2 - z**2) * r, (r, 0, 1), (phi, 0, 2 * sp.pi), (z, -height / 2, height / 2)
     )
     (limit,) = (root for root in sp.solve(difference, height) if root.is_positive)
-    return CLAIMS.case(
-        "dr-oblate", float(limit), limit >= 10, difference="the opposite" if limit < 10 else "the same"
-    )
+    return CLAIMS.case("dr-oblate", float(limit), limit >= 10)
 
 
 def _liquid_angle(name: str, source: str) -> Case:

@@ -279,5 +279,4 @@ def _groups(matrices: TubMatrices) -> Case:
         "dr-third-group",
         f"i <= 3 < j: {len(static) - inside} of them, and {inside} with i, j <= 3",
         inside >= len(static),
-        difference="another block" if inside < len(static) else "none",
     )

@@ -124,12 +124,7 @@ def _stuck(sweeps: list[dict[str, Any]]) -> list[Case]:
             note="at n2 the balls part, at n3 the motion ends in a fold; no oscillation starts before "
             f"({_growing_roots()} of 196 machines); a slow run-up in time loses it at {typical['lost']:.2f}",
         ),
-        CLAIMS.case(
-            "third-together",
-            parting,
-            parting <= 0.0,
-            difference="they part" if parting > 0.0 else "some stay",
-        ),
+        CLAIMS.case("third-together", parting, parting <= 0.0),
     ]
 
 
@@ -173,7 +168,6 @@ def _regimes(kept: dict[str, Any]) -> list[Case]:
             number,
             name=f"beyond-{name}",
             quantity=f"of {len(runs)} runs at 1.25 times the critical speed: {quantity}",
-            difference="none" if number else "never",
             note=more,
         )
 

@@ -168,7 +168,6 @@ def _trends(panels: list[dict[str, Any]]) -> list[Case]:
                 figure=figure,
                 quantity=f"critical speed over {along}, {len(steps)} curves",
                 shape=shape,
-                difference="none" if same else "in places",
             )
         )
     return found

@@ -119,13 +119,7 @@ def _order(added: Array, seen: tuple[Array, Array], own: tuple[Array, Array]) ->
     """Which quantity wants more liquid."""
     best, found = ([_least(added, curve) for curve in pair] for pair in (seen, own))
     same = best == found
-    return CLAIMS.case(
-        "order",
-        ", ".join(map(_volume, found)),
-        same,
-        printed=", ".join(map(_volume, best)),
-        difference="the same" if same else "not the same",
-    )
+    return CLAIMS.case("order", ", ".join(map(_volume, found)), same, printed=", ".join(map(_volume, best)))
 
 
 def _volume(best: float | None) -> str:

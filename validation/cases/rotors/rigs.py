@@ -163,7 +163,6 @@ def vertical_cases() -> list[Case]:
                 f"{lag:.0f} deg behind the unbalance, amplitude times {gain[k]:.2f}",
                 helps,
                 spin=spin,
-                difference="the same" if helps else "the liquid adds to the vibration here",
                 wet=wet,
             )
         )

@@ -206,7 +206,6 @@ def _weak() -> Case:
         "damping-alone",
         float(np.mean(alone > 0.0)),
         np.all(alone > 0.0),
-        difference="none" if np.all(alone > 0.0) else "some are stable",
         note=f"smallest growth {alone.min():.2g} of the natural frequency; with the laminar friction of "
         f"water on a wall of 0.1 m at 100 rad/s unstable from {unstable[0]:.3f} to {unstable[-1]:.3f}",
     )

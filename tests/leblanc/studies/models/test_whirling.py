@@ -29,9 +29,9 @@ from solvers.liquid_model import Whirl
 from solvers.potential.steady import linear_detuning
 from solvers.pypde.models import LongWave, OneFamily
 from solvers.wave_error import largest_whirl
+from tests.exact.answers import layer_fill
 from tests.mutants import kills
 from validation.exact import kept
-from validation.exact.answers import layer_fill
 from validation.exact.branch import detuning, whirl_speeds
 
 

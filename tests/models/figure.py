@@ -1,6 +1,6 @@
 """The kept errors of all models over their times, drawn.
 
-`python -m validation.models.figure --out docs/images`; `python -m validation.models` measures them anew.
+`python -m tests.models.figure --out docs/images`; `python -m tests.models` measures them anew.
 """
 
 from __future__ import annotations
@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from validation.models import ModelRow, ModelTable, kept
+from tests.models import ModelRow, ModelTable, kept
 from validation.page import Figure, number, page
 from validation.study import launch, shown
 

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tests.breaking.__main__ import CREST_DEPTHS, DEPTHS, WHIRLS, ending, highest
 from validation.breaking import crests, kept
-from validation.breaking.__main__ import CREST_DEPTHS, DEPTHS, WHIRLS, ending, highest
 from validation.breaking.figure import alternative, breaking_figure, crest_figure, crest_words, pair_shown
 
 ROOT = Path(__file__).parents[2]

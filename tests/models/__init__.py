@@ -1,6 +1,6 @@
 """Every liquid model on two example scenes: its error against its time, kept for the front page of the docs.
 
-`python -m validation.models` measures again; `kept` reads what it left.
+`python -m tests.models` measures again; `kept` reads what it left.
 """
 
 from __future__ import annotations

@@ -14,10 +14,10 @@ import pytest
 from leblanc.scene.examples import example
 from leblanc.scene.scene import LIQUID_MODELS
 from leblanc.studies.compare import compare_models
-from validation import models
-from validation.models import ModelRow, error_words, kept, time_words, words
-from validation.models.__main__ import SCENES, row_of
-from validation.models.figure import alternative, models_figure
+from tests import models
+from tests.models import ModelRow, error_words, kept, time_words, words
+from tests.models.__main__ import SCENES, row_of
+from tests.models.figure import alternative, models_figure
 
 ROOT = Path(__file__).parents[2]
 

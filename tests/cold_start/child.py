@@ -1,4 +1,4 @@
-"""`python -m validation.benchmarks.cold.child FILE COMMAND ...`: one command of `leblanc`, watched.
+"""`python -m tests.cold_start.child FILE COMMAND ...`: one command of `leblanc`, watched.
 
 A timer interrupts the command every few milliseconds of its processor time and notes which library is at
 work, whether that is an import or done for the physics, and which call of the command function it belongs to.
@@ -18,9 +18,8 @@ from contextlib import redirect_stdout
 from pathlib import Path
 from types import FrameType
 
-_ROOT = Path(__file__).resolve().parents[3]
-# The package of the command line that lies beside this one.
-FRONT = next((name for name in ("leblanc", "study") if (_ROOT / name / "cli").is_dir()), "leblanc")
+_ROOT = Path(__file__).resolve().parents[2]
+FRONT = "leblanc"  # the package of the command line
 OURS = frozenset({"meshes", "fluid", "solvers", FRONT, "validation"})
 # What these have done is physics, whoever does it; numba's getting ready of a kernel is not.
 PHYSICS = frozenset({"meshes", "fluid", "solvers"})

@@ -1,4 +1,4 @@
-"""`python -m validation.models`: measure every liquid model on two example scenes and keep the results."""
+"""`python -m tests.models`: measure every liquid model on two example scenes and keep the results."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from leblanc.studies.compare import compare_models
 from leblanc.studies.held.holding import Holding, cores
 from leblanc.studies.run.answer import RunAnswer
 from solvers.synchronous.response import distance
-from validation.models import ModelRow, ModelTable, keep
+from tests.models import ModelRow, ModelTable, keep
 from validation.study import launch
 
 STEADY = ("linear", "kdv", "fem", "statics")

@@ -1,6 +1,6 @@
 """Where a whirl with an exact layer begins softly, and circles that it settles at, drawn.
 
-`python -m validation.exact_whirl.figure --out docs/images`; `python -m validation.exact_whirl` computes anew.
+`python -m tests.exact_whirl.figure --out docs/images`; `python -m tests.exact_whirl` computes anew.
 """
 
 from __future__ import annotations
@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from validation.exact_whirl import Kept, Way, kept
-from validation.exact_whirl.edges import soft_mass_ratio
+from tests.exact_whirl import Kept, Way, kept
+from tests.exact_whirl.edges import soft_mass_ratio
 from validation.page import Figure, page
 from validation.study import launch, shown
 

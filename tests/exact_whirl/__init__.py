@@ -1,6 +1,6 @@
 """Whirl of a rotor with an exact layer: where it begins softly, the circle it comes to, where it breaks.
 
-`python -m validation.exact_whirl` computes it again; `kept` reads what it left. Closed forms are in `edges`.
+`python -m tests.exact_whirl` computes it again; `kept` reads what it left. Closed forms are in `edges`.
 """
 
 from __future__ import annotations
@@ -8,8 +8,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from validation.exact_whirl.in_time import Grown
-from validation.exact_whirl.lagging import Circle
+from tests.exact_whirl.in_time import Grown
+from tests.exact_whirl.lagging import Circle
 from validation.study import stored
 
 KEPT = Path(__file__).parent / "results.json"

@@ -1,8 +1,8 @@
 """What a command costs from a cold start, and what takes the time.
 
-    python -m validation.benchmarks.cold.start                          # the usual commands on shipped scenes
-    python -m validation.benchmarks.cold.start run examples/tub.toml    # any command
-    python -m validation.benchmarks.cold.start --json validation/benchmarks/cold/cold_start.json  # as kept
+    python -m tests.cold_start.start                          # the usual commands on shipped scenes
+    python -m tests.cold_start.start run examples/tub.toml    # any command
+    python -m tests.cold_start.start --json tests/cold_start/cold_start.json  # as kept
 
 All times are processor time, user and system, of a process of its own with its threads: medians of runs in
 turn with those of what they are compared with, so that other work on the machine acts on both alike. The
@@ -24,11 +24,11 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from validation.benchmarks.cold.child import FRONT, OURS
+from tests.cold_start.child import FRONT, OURS
 from validation.study import launch, write
 
 KEPT = Path(__file__).with_name("cold_start.json")
-ROOT = Path(__file__).resolve().parents[3]
+ROOT = Path(__file__).resolve().parents[2]
 RIG, RUNUP = "examples/horizontal_rig.toml", "examples/runup.toml"
 COMMANDS = (
     *(("--help",), ("explain", RIG), ("run", RIG), ("map", RIG), ("optimise", RIG)),
@@ -139,7 +139,7 @@ def cold_start(arguments: Sequence[str], repeats: int = 5) -> ColdStart:
         writes = arguments[0] in {"run", "map", "runup", "optimise"} and "--out" not in arguments
         whole = [*arguments, *(("--out", scratch) if writes else ())]
         file = Path(scratch) / "watched.json"
-        watched = [sys.executable, "-m", "validation.benchmarks.cold.child", str(file), *whole]
+        watched = [sys.executable, "-m", "tests.cold_start.child", str(file), *whole]
         processor_time(watched)  # fills the caches of Python and numba
         notes: Counter[tuple[str, str, str]] = Counter()
         for _ in range(repeats):

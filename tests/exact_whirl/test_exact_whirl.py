@@ -11,11 +11,9 @@ import pytest
 from solvers.potential.coupled import advance
 from solvers.potential.steady import forced
 from solvers.wave_error import force_change, layer_tanh
-from tests.mutants import kills
-from tests.oracles.exact import force_with_friction
-from validation.exact_whirl import kept
-from validation.exact_whirl.__main__ import GROWING, LAYERS, MASS_RATIOS, SETTLING, WAYS, onset_of
-from validation.exact_whirl.edges import (
+from tests.exact_whirl import kept
+from tests.exact_whirl.__main__ import GROWING, LAYERS, MASS_RATIOS, SETTLING, WAYS, onset_of
+from tests.exact_whirl.edges import (
     crest_detuning,
     edge_detunings,
     edge_mass_ratio,
@@ -23,11 +21,13 @@ from validation.exact_whirl.edges import (
     edge_speed,
     soft_mass_ratio,
 )
-from validation.exact_whirl.figure import alternative, whirl_figure
-from validation.exact_whirl.held import CASES
-from validation.exact_whirl.held import kept as kept_held
-from validation.exact_whirl.in_time import NATURAL, RADIUS, Setting, standing
-from validation.exact_whirl.lagging import circles, lagging_wave, onset, small_whirl
+from tests.exact_whirl.figure import alternative, whirl_figure
+from tests.exact_whirl.held import CASES
+from tests.exact_whirl.held import kept as kept_held
+from tests.exact_whirl.in_time import NATURAL, RADIUS, Setting, standing
+from tests.exact_whirl.lagging import circles, lagging_wave, onset, small_whirl
+from tests.mutants import kills
+from tests.oracles.exact import force_with_friction
 
 ROOT = Path(__file__).parents[2]
 
@@ -42,8 +42,8 @@ def _exact_edge(layer: float, mass_ratio: float, whirl: float, detuning: float) 
     return float(np.polyval(cubic, turns[np.argmin(np.abs(turns))].real))
 
 
-@kills("validation.exact_whirl.edges:edge_shift", "-0.5 *", "0.5 *")
-@kills("validation.exact_whirl.edges:edge_mass_ratio", "-2.0 * slip", "-1.9 * slip")
+@kills("tests.exact_whirl.edges:edge_shift", "-0.5 *", "0.5 *")
+@kills("tests.exact_whirl.edges:edge_mass_ratio", "-2.0 * slip", "-1.9 * slip")
 @pytest.mark.parametrize(
     ("layer", "mass_ratio", "whirl"),
     [(0.1, 0.1, 2e-3), (0.3, 0.1, 1e-3), (0.5, 0.05, 2e-4), (0.7, 0.1, 1e-4)],
@@ -86,8 +86,8 @@ def test_the_upper_edge_never_gives_way_and_the_lower_one_where_it_is_told() -> 
     assert edge_mass_ratio(0.3, edge_detunings(0.3, 0.2)[0]) == pytest.approx(0.2, rel=1e-9)
 
 
-@kills("validation.exact_whirl.lagging:_residual", "friction * slip * potential", "friction * potential")
-@kills("validation.exact_whirl.lagging:_residual", "-0.5 * lag", "0.5 * lag")
+@kills("tests.exact_whirl.lagging:_residual", "friction * slip * potential", "friction * potential")
+@kills("tests.exact_whirl.lagging:_residual", "-0.5 * lag", "0.5 * lag")
 def test_lagging_waves_have_both_limits() -> None:
     """Small ones that of linear theory, to the square of the whirl; without friction the steady wave."""
     for friction, layer in ((0.03, 0.3), (0.3, 0.1), (0.1, 0.8)):
@@ -110,7 +110,7 @@ def test_an_onset_is_that_of_linear_theory() -> None:
 
 
 @kills(
-    "validation.exact_whirl.in_time:standing",
+    "tests.exact_whirl.in_time:standing",
     "lagging_wave(setting.layer, slip",
     "lagging_wave(setting.layer, 0.99 * slip",
 )

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from leblanc.studies.models.whirling import AutoWave, choose_wave
 from meshes.arrays import Array
 from solvers.liquid_model import Whirl
+from tests.exact.answers import layer_fill
 from validation.exact import Cases
-from validation.exact.answers import layer_fill
 from validation.exact.branch import whirl_speeds
 
 # Kept waves have a spectrum that falls to a millionth: no smaller error is told from theirs.

@@ -1,4 +1,4 @@
-"""`python -m validation.exact`: the exact wave beside the models over depth, detuning and whirl; kept."""
+"""`python -m tests.exact`: the exact wave beside the models over depth, detuning and whirl; kept."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from meshes.arrays import Array
 from solvers.layer.state import Numerics
 from solvers.liquid_model import Whirl
 from solvers.pypde.settle import settle
+from tests.exact.answers import beside, layer_fill
+from tests.exact.choice import choices, words
 from validation.exact import Cases, Ends, Marched, Measured, keep, kept
-from validation.exact.answers import beside, layer_fill
 from validation.exact.branch import WIDEST, End, Held, detuning, end, held_waves
-from validation.exact.choice import choices, words
 from validation.exact.long_wave import choking, steady_long_wave
 from validation.study import launch
 

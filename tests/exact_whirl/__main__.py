@@ -1,4 +1,4 @@
-"""`python -m validation.exact_whirl`: onsets, circles and ends of a whirl with an exact layer; kept."""
+"""`python -m tests.exact_whirl`: onsets, circles and ends of a whirl with an exact layer; kept."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any, Literal, get_args
 
-from validation.exact_whirl import Kept, Onset, Way, keep, kept
-from validation.exact_whirl.in_time import Grown, Setting, grown
-from validation.exact_whirl.lagging import circles
+from tests.exact_whirl import Kept, Onset, Way, keep, kept
+from tests.exact_whirl.in_time import Grown, Setting, grown
+from tests.exact_whirl.lagging import circles
 from validation.study import launch
 
 Part = Literal["onsets", "ways", "settled", "grown"]

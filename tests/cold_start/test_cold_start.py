@@ -11,9 +11,9 @@ from typing import Any
 
 import pytest
 
-from validation.benchmarks.cold import child as cold_child
-from validation.benchmarks.cold import start as cold_start
-from validation.benchmarks.cold.start import ColdStart
+from tests.cold_start import child as cold_child
+from tests.cold_start import start as cold_start
+from tests.cold_start.start import ColdStart
 
 SITE = sysconfig.get_paths()["purelib"]
 OURS = f"{cold_start.ROOT}/{cold_child.FRONT}"

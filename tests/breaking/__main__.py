@@ -1,4 +1,4 @@
-"""`python -m validation.breaking`: endings, highest waves, a crest, long waves beside the exact one."""
+"""`python -m tests.breaking`: endings, highest waves, a crest, long waves beside the exact one."""
 
 from __future__ import annotations
 

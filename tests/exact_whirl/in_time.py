@@ -13,7 +13,7 @@ from meshes.arrays import Array
 from meshes.chamber import Chamber
 from solvers.potential.coupled import Ended, ExactMachine, advance, coupled, finer, ramp, rough, shapes
 from solvers.rotor.jeffcott import Jeffcott
-from validation.exact_whirl.lagging import Circle, lagging_wave
+from tests.exact_whirl.lagging import Circle, lagging_wave
 
 # The machine: radius and height of the drum, m; natural frequency, rad/s. Nothing below depends on them.
 RADIUS, HEIGHT, NATURAL = 0.1, 0.02, 100.0

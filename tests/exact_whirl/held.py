@@ -1,4 +1,4 @@
-"""`python -m validation.exact_whirl.held`: exact waves held beside long ones, on the examples; kept."""
+"""`python -m tests.exact_whirl.held`: exact waves held beside long ones, on the examples; kept."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """What it costs to go by py-pde: a layer driven by its `solve`, against the compiled kernel called directly.
 
-`python -m validation.benchmarks.road` runs both in turn and prints the processor time of each and the ratio.
+`python -m tests.oracles.bare_layer` runs both in turn and prints the processor time of each and the ratio.
 """
 
 from __future__ import annotations

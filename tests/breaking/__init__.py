@@ -1,0 +1,1 @@
+"""`python -m tests.breaking` computes what `validation.breaking` keeps."""

@@ -1,0 +1,1 @@
+"""What `validation.exact` keeps, measured: `python -m tests.exact`."""
