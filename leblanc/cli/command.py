@@ -16,7 +16,7 @@ from leblanc.core.answer import Answer, NotConverged
 from leblanc.core.contents import results_dir
 from leblanc.core.files import out_dir, path_text
 from leblanc.core.progress import working
-from leblanc.core.question import SCENE, Asked, called, parameters, read
+from leblanc.core.question import SCENE, Asked, Quantity, Texts, called, parameters, read
 from leblanc.core.terminal import print_json, say, show
 from meshes.errors import InputError
 
@@ -63,7 +63,7 @@ def command(question: Callable[..., Any]) -> Callable[..., None]:
                 answer: Answer = question(**values | ({} if machine is None else {"scene": machine}))
                 answer = present(answer, **shown) if present else answer
             except InputError as error:
-                raise _of_option(error, given) from error
+                raise _of_option(error, asked) from error
         line = _command_line(question.__name__, list(own.values()), given)
         finish(answer, where, json, folder, machine, line)
 
@@ -112,7 +112,9 @@ def _typed(one: Asked) -> Parameter:
     if one.read is SCENE:
         return _parameter(one.name, Path, typer.Argument(help="Scene file (TOML)."), Parameter.empty)
     kind = one.kind
-    if one.read is not None:
+    if kind == Texts:
+        return _parameter(one.name, list[str] | None, typer.Option(*one.option.names, help=one.text), None)
+    if one.read is not None or kind == Quantity | None:  # of the latter the study knows the unit
         kind = str if one.default is Parameter.empty else str | None
     if one.name == "workers":
         return _parameter(one.name, int | None, typer.Option(help=one.text), None)
@@ -123,11 +125,17 @@ def _value(one: Asked, value: Any) -> Any:
     return processes(value) if one.name == "workers" else value
 
 
-def _of_option(error: InputError, given: Mapping[str, Any]) -> InputError:
+def _option(one: Asked, value: Any = None) -> str:
+    """Its option as typed; of a pair, as "--log/--linear", the second one for False."""
+    names = one.option.names[-1] if one.option.names else f"--{one.name.replace('_', '-')}"
+    first, _, second = names.partition("/")
+    return second if value is False or not first else first
+
+
+def _of_option(error: InputError, asked: Mapping[str, Asked]) -> InputError:
     """A fault that names the option in place of the keyword."""
-    if error.field not in given:
-        return error
-    return InputError(f"--{error.field.replace('_', '-')}", error.value, error.allowed)
+    one = asked.get(error.field)
+    return error if one is None else InputError(_option(one), error.value, error.allowed)
 
 
 def _command_line(name: str, asked: Sequence[Asked], given: Mapping[str, Any]) -> str:
@@ -135,9 +143,7 @@ def _command_line(name: str, asked: Sequence[Asked], given: Mapping[str, Any]) -
     parts = ["leblanc", name]
     for one in asked:
         value = given[one.name]
-        option = (
-            one.option.names[-1].rpartition("/")[2] if one.option.names else f"--{one.name.replace('_', '-')}"
-        )
+        option = _option(one, value)
         if one.read is SCENE:
             parts.append(path_text(value))
         elif one.option.same or value == one.default:

@@ -67,11 +67,11 @@ def _declared(kind: type) -> dict[str, _Declared]:
     return found
 
 
-def _of(record: Any) -> Iterator[tuple[str, Q, Any]]:
-    """Public name, declaration and value of each quantity that a record has."""
+def _of(record: Any) -> Iterator[tuple[str, Q, Any, tuple[type, ...]]]:
+    """Public name, declaration, value and classes of each quantity that a record has."""
     for key, each in _declared(type(record)).items():
         if not each.q.when or getattr(record, each.q.when) is not None:
-            yield key, each.q, getattr(record, each.attribute)
+            yield key, each.q, getattr(record, each.attribute), each.types
 
 
 def reached(record: Any, key: str) -> Any:
@@ -137,7 +137,7 @@ def to_json(record: Any, only: Collection[str] = ()) -> dict[str, Any]:
     if not _declared(type(record)):
         return {field.name: plain(getattr(record, field.name)) for field in fields(record)}
     found: dict[str, Any] = {}
-    for key, q, value in _of(record):
+    for key, q, value, _ in _of(record):
         if not q.json or (only and key not in only):
             continue
         if q.part:
@@ -165,7 +165,7 @@ def named_arrays(record: Any, attrs: Mapping[str, Any] = MappingProxyType({})) -
 
 def _with_parts(record: Any, only: Collection[str] = ()) -> Iterator[tuple[str, Q, Any]]:
     """Variables of a record, of its parts, of records in rows; a part may bring its own `variables`."""
-    for key, q, value in _of(record):
+    for key, q, value, types in _of(record):
         if not q.data or (only and key not in only) or (value is None and (q.part or q.prefix or q.rows)):
             continue
         if q.part and hasattr(value, "variables"):
@@ -179,13 +179,14 @@ def _with_parts(record: Any, only: Collection[str] = ()) -> Iterator[tuple[str, 
                 text = ", ".join(part for part in (q.text, inner.text) if part)
                 yield f"{q.prefix}_{name}", replace(inner, over=over, text=text), each
         elif q.rows:
-            for name, each in _declared(type(value[0])).items() if value else ():
+            for name, each in _declared(type(value[0]) if value else types[-1]).items():
                 if each.q.data:
                     column = np.array([getattr(row, each.attribute) for row in value])
                     over = (q.rows, *each.q.over)
                     yield each.q.variable or f"{q.rows}_{name}", replace(each.q, over=over), column
         else:
-            yield q.variable or key, q, value
+            said = {part: getattr(q, part).format(record) for part in ("unit", "name", "text")}
+            yield q.variable or key, replace(q, **said), value
 
 
 def _variables(name: str, q: Q, value: Any) -> dict[str, Variable]:

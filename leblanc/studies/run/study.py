@@ -42,7 +42,7 @@ from leblanc.studies.models.validity import doubts
 from leblanc.studies.peaks import responses_between
 from leblanc.studies.run import notes as notes
 from leblanc.studies.run.answer import RunResult
-from leblanc.studies.whirl_map import large_whirl
+from leblanc.studies.cycles import large_whirl
 from meshes.arrays import Array, Complex
 from meshes.chamber_section import liquid_of
 from meshes.errors import InputError
