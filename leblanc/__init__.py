@@ -15,8 +15,6 @@ if TYPE_CHECKING:
         compare,
         explain,
         fit,
-        map_balls,
-        map_whirl,
         optimise,
         run,
         run_up,
@@ -30,6 +28,7 @@ if TYPE_CHECKING:
     from leblanc.scene.spindle import Spindle
     from leblanc.studies.bearing import bearing
     from leblanc.studies.layer import layer
+    from leblanc.studies.map import map_balls, map_whirl
     from leblanc.studies.modes import modes
     from leblanc.studies.volume import volume
     from meshes.chamber import Chamber
@@ -84,12 +83,10 @@ _HOMES = {
     **{name: (f"leblanc.studies.{name}", name) for name in _QUESTIONS},
     "example": ("leblanc.scene.examples", "example"),
     "load_scene": ("leblanc.scene.scene", "load_scene"),
-    **{
-        name: (_API, name)
-        for name in __all__
-        if name.islower() and name not in (*_QUESTIONS, "example", "load_scene")
-    },
+    "map_balls": ("leblanc.studies.map", "map_balls"),
+    "map_whirl": ("leblanc.studies.map", "map_whirl"),
 }
+_HOMES |= {name: (_API, name) for name in __all__ if name not in _HOMES}
 
 
 def __getattr__(name: str) -> Any:

@@ -23,7 +23,6 @@ from leblanc.cli import (
     compare,
     explain,
     fit,
-    map,
     new,
     optimise,
     run,
@@ -41,8 +40,14 @@ from meshes.errors import InputError
 DONE, UNREAD, WRONG_INPUT, NOT_CONVERGED = 0, 1, 2, 3
 
 # Modules with one command each, a function of the module's name, in the order of the help.
-COMMANDS = (new, explain, run, compare, fit, map, runup, optimise, sweep, view)
-QUESTIONS = ("layer", "modes", "bearing", "volume")  # whose command is made from the signature of their call
+COMMANDS = (new, explain, run, compare, fit, runup, optimise, sweep, view)
+QUESTIONS = (
+    "map",
+    "layer",
+    "modes",
+    "bearing",
+    "volume",
+)  # whose command is made from the signature of their call
 
 # The current folder may hold a stranger's files: a pickle.py is not for the processes that are started from
 # here, nor is the .numba_config.yaml to say where compiled code is kept, which numba would unpickle.

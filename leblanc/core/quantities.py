@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import builtins
 import cmath
 import math
 import sys
@@ -16,14 +15,8 @@ import numpy as np
 
 from leblanc.core.netcdf import NamedArrays, Variable, finite, flags, variable
 from leblanc.core.notes import Note
+from leblanc.core.question import Names
 from meshes.quantity import Q
-
-
-class _Names(dict[str, Any]):
-    """Names of a module; one that only a type checker imports stands for any type."""
-
-    def __missing__(self, name: str) -> Any:
-        return getattr(builtins, name, Any)
 
 
 @dataclass(frozen=True)
@@ -54,7 +47,7 @@ def _declared(kind: type) -> dict[str, _Declared]:
             if isinstance(value, property) and value.fget is not None:
                 said_of = getattr(value.fget, "__annotations__", {})  # none of what `carried` makes
                 written[name] = said_of.get("return", "")
-        names = _Names(vars(sys.modules[base.__module__]))
+        names = Names(vars(sys.modules[base.__module__]))
         for name, hint in written.items():
             said: Any = eval(hint, {}, names) if isinstance(hint, str) and "Q(" in hint else hint
             if get_origin(said) is Annotated:

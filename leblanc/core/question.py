@@ -6,6 +6,7 @@ Two are no options of its command: `folder`, where a study keeps what another ru
 
 from __future__ import annotations
 
+import builtins
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
@@ -19,6 +20,13 @@ from leblanc.core.units import Dimension, parse_option
 Quantity = str | float  # a number in SI units, or a text with its unit
 Texts = str | Sequence[str]  # one text or several; the option is typed anew for each
 A = TypeVar("A")
+
+
+class Names(dict[str, Any]):
+    """Names of a module; one that only a type checker imports stands for any type."""
+
+    def __missing__(self, name: str) -> Any:
+        return getattr(builtins, name, Any)
 
 
 @dataclass(frozen=True)
@@ -59,7 +67,7 @@ def parameters(question: Callable[..., Any]) -> Iterator[Asked]:
     for each in signature(question).parameters.values():
         kind = each.annotation
         if isinstance(kind, str):
-            kind = eval(kind, question.__globals__)
+            kind = eval(kind, {}, Names(question.__globals__))
         said = get_args(kind) if get_origin(kind) is Annotated else (kind,)
         yield Asked(
             *(each.name, said[0], each.default),
@@ -77,7 +85,9 @@ def together(*questions: Callable[..., Any]) -> Signature:
             found.setdefault(name, each)
     return Signature(
         [
-            each if each.default is Parameter.empty else each.replace(default=None, kind=Parameter.KEYWORD_ONLY)
+            each
+            if each.default is Parameter.empty
+            else each.replace(default=None, kind=Parameter.KEYWORD_ONLY)
             for each in found.values()
         ]
     )

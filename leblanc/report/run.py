@@ -1,4 +1,4 @@
-"""The reports of `run` (rotors of every kind) and `map`: answer, where it holds, figures, models and why."""
+"""The reports of `run`: answer, where it holds, figures, models and why."""
 
 from __future__ import annotations
 
@@ -11,15 +11,13 @@ from numpy.typing import NDArray
 
 from leblanc.core.blocks import Cell
 from leblanc.core.page import About, picture, render
-from leblanc.core.units import LENGTH, NOT_FOUND, RPM, VOLUME, in_peak, number, ranges, unit_for
+from leblanc.core.units import LENGTH, NOT_FOUND, RPM, in_peak, number, ranges, unit_for
 from leblanc.report.page import models, notes, why
 from leblanc.report.parts import Table, doubt, load_part, table
 from leblanc.results.races.states import STATE_NAMES, BallsResult
-from leblanc.results.whirl_map import WhirlMap
 from leblanc.studies.run.answer import RunResult
 from leblanc.studies.run.notes import OF_MODELS, RunCode
 from leblanc.studies.run.words import (
-    WHIRL,
     Limit,
     answer,
     comparison_table,
@@ -34,9 +32,6 @@ from leblanc.text.closed_forms import closed_form_rows, vector_rows
 from leblanc.text.races.balls import answer as balls_answer
 from leblanc.text.races.balls import facts as balls_facts
 from leblanc.text.races.balls import limits as balls_limits
-from leblanc.text.whirl_map import answer as whirl_map_answer
-from leblanc.text.whirl_map import band_words
-from leblanc.text.whirl_map import facts as whirl_map_facts
 from meshes.arrays import Array, Flags, Index
 
 if TYPE_CHECKING:
@@ -44,12 +39,6 @@ if TYPE_CHECKING:
 
 
 SHOWN = 4  # figures, of which the phase stands in its own file only; with more, all
-
-CYCLES = (
-    "Nonlinear long waves that stand in the whirl's frame, rotor and every cell of every layer solved at "
-    "once; stability by Floquet multipliers."
-)
-LISTED = 11  # volumes of the table of bands
 
 
 def response_checks(result: RunResult) -> Table:
@@ -220,72 +209,3 @@ def write_balls_report(result: BallsResult, what: About, figures: Sequence[Figur
         "remarks": [note.text for note in result.notes],
     }
     render("balls", what, parts, path, "leblanc.report")
-
-
-def bands(result: WhirlMap) -> Table:
-    """Bands of speed in which a whirl grows, for a few volumes spread over the map."""
-    rows, unit = [], unit_for(VOLUME, *result.volume.tolist())
-    for k in np.unique(np.linspace(0, result.volume.size - 1, LISTED).round().astype(int)).tolist():
-        growth = result.growth[k]
-        lost = bool(np.isnan(growth).any())
-        most = float(np.nanmax(growth)) if not np.isnan(growth).all() else np.nan
-        rows.append(
-            (
-                unit.number(float(result.volume[k])),
-                Cell(band_words(result.edges[k]), warning=lost),
-                number(most),
-            )
-        )
-    head = (f"Liquid ({unit.name})", "a whirl grows between (rpm)", "largest growth (1/s)")
-    return table("", head, rows)
-
-
-def map_checks(result: WhirlMap) -> Table:
-    """Where the map is not what it seems, in shares of its points."""
-    lost, out = np.isnan(result.growth), ~result.in_range
-    rows = [
-        (label, Cell(_share(mask), warning=bool(mask.any())))
-        for label, mask in (
-            ("Growth not known", lost),
-            ("Model out of range", out),
-            ("Grows where out of range", out & (result.growth > 0.0)),
-        )
-    ]
-    own = band_words(result.scene_edges)
-    rows.append(("Unstable with the scene's volume (rpm)", Cell(own, warning=bool(result.scene_edges))))
-    return table("", ("Limits of the answer", "at"), rows)
-
-
-def _share(mask: np.ndarray) -> str:
-    """How many of the points."""
-    count = int(np.count_nonzero(mask))
-    return f"{count} of {mask.size} points ({number(100.0 * count / mask.size)} %)" if count else "none"
-
-
-def write_map_report(result: WhirlMap, what: About, figures: Sequence[FigureFiles], path: Path) -> None:
-    """Write the report.
-
-    Parameters
-    ----------
-    result : the map
-    what : it is about
-    figures : of it
-    path : the file to write or replace
-    """
-    values = dict(whirl_map_facts(result))
-    low, high = (number(float(speed) * RPM) for speed in (result.speed[0], result.speed[-1]))
-    parts = {
-        "title": "Self-excited whirl over speed and volume",
-        "machine": f"Whirls that grow by themselves from {low} to {high} rpm, from no liquid to "
-        f"{values['Most liquid, all chambers']}.",
-        "answer": whirl_map_answer(result),
-        "doubt": doubt(map_checks(result)),
-        "facts": table("", (), whirl_map_facts(result)),
-        "checks": map_checks(result),
-        "bands": bands(result),
-        "pictures": [picture(figure) for figure in figures],
-        "models": [("linear", " ".join(WHIRL)), *([("long_wave", CYCLES)] if result.branches else [])],
-        "reason": "No other model answers this for any growth and any whirl speed.",
-        "remarks": notes(result.notes),
-    }
-    render("map", what, parts, path, "leblanc.report")

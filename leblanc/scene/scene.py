@@ -282,7 +282,7 @@ class Scene(Part):
 
     @property
     def kind(self) -> str:
-        """Kind of machine, by which a question finds who answers: "balls" with races, else that of the rotor."""
+        """Kind of machine, by which a question finds who answers: "balls", or that of the rotor."""
         return "balls" if self.balls else self.rotor.kind
 
     def without_balls(self) -> Scene:
@@ -397,6 +397,9 @@ def _holds(table: object, path: str) -> bool:
         else:
             return False
     return True
+
+
+SceneOrPath = Scene | str | PathLike[str]
 
 
 def scene_of(scene: Scene | str | PathLike[str], field: str = "scene") -> Scene:

@@ -37,9 +37,10 @@
 #   linear one, or that of a laminar layer on the wall.
 
 # %%
-import leblanc as lb
 from leblanc.figures.whirl_map import map_figure
 from leblanc.studies.whirl_map import map_scene
+
+import leblanc as lb
 from validation.cases.rotors import whirl
 from validation.cases.rotors.whirl import growth_figure, in_time
 from validation.page import case_table, picture, verdicts

@@ -41,9 +41,7 @@ class Cycle(_Row):
     torque: Annotated[float, Q("N m", "torque", "that the drive has to supply on top")]
     power: Annotated[float, Q("W", "power", "that the drive has to supply on top")]
     thinnest: Annotated[float, Q("1", "least depth", "over the mean depth")]
-    in_range: Annotated[
-        bool, Q(name="in range", text="the liquid lags by a third at most", flags="no yes")
-    ]
+    in_range: Annotated[bool, Q(name="in range", text="the liquid lags by a third at most", flags="no yes")]
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""The map of self-excited whirl over speed and volume."""
+"""Figures of a map: self-excited whirl over speed and volume, and how large it grows."""
 
 from __future__ import annotations
 
@@ -20,9 +20,7 @@ from leblanc.figures.drawing.page import (
     part_of,
     style,
 )
-from leblanc.figures.drawing.page import save as save  # a figure is drawn and written together
-from leblanc.results.whirl_map import WhirlMap
-from leblanc.text.whirl_map import alt, cycles_alt
+from leblanc.studies.map.answer import WhirlMap, alt, cycles_alt
 from meshes.arrays import Array
 
 Axes = Any  # matplotlib's, which no module that only draws imports
@@ -239,7 +237,7 @@ def cycles_figure(result: WhirlMap) -> Figure:
 
 def _dress_cycles(top: Axes, below: Axes, result: WhirlMap) -> None:
     """Folds, key and axes of the figure of limit cycles."""
-    folds = np.array([(fold["speed"] * RPM, fold["amplitude"] * MM) for fold in result.folds])
+    folds = np.array([(fold.speed * RPM, fold.amplitude * MM) for fold in result.folds])
     if folds.size:
         top.plot(*folds.T, label="fold", **FOLD)
     for label, look in (("stable", STABLE), ("unstable", LEFT), ("the liquid lags by over a third", FAR)):

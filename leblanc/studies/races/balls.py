@@ -19,9 +19,8 @@ from leblanc.studies.closed_forms.told import closed_forms
 from leblanc.studies.machine import loaded_machine, loads_over_speed
 from leblanc.studies.models.choose import Prepared, axial_gravity, carried_from, choose_all, prepare
 from leblanc.studies.models.validity import doubts
-from leblanc.studies.races.chart import own_family
 from leblanc.studies.races.estimates import carried_balls, gravity_on_balls, liquid_errors
-from leblanc.studies.races.states import liquid_beside
+from leblanc.studies.races.states import liquid_beside, own_family
 from leblanc.studies.run import notes as response_notes
 from meshes.arrays import Array
 from meshes.errors import InputError

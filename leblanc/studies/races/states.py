@@ -3,21 +3,26 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from fluid.fill import Fill
 from leblanc.results.races.states import reported_state
 from leblanc.scene.scene import Scene, dry_rotor, require_clear
 from leblanc.studies.models.choose import axial_gravity
 from leblanc.studies.models.liquid import synchronous_model
 from meshes.arrays import Array, Complex, Flags
-from meshes.errors import InputError
+from meshes.errors import InputError, require_positive
 from solvers.liquid_model import LiquidModel
+from solvers.rotor.balls.balancers import BallRace
+from solvers.rotor.balls.charts import Family, Machine
 from solvers.rotor.balls.states import RotorWithBalls
 from solvers.rotor.balls.steady import BallKind
+from solvers.rotor.system import RotorSystem
 from solvers.rotor.vibration import orbit
-from solvers.synchronous.balls import wet_states
+from solvers.synchronous.balls import in_step, wet_states
 from solvers.synchronous.models import STATICS
 
 MODELS = ("statics", "linear")  # of liquid at rest in the drum, with which states of balls are found
@@ -101,3 +106,31 @@ def gathered_amplitude(scene: Scene, speed: Array) -> Array:
         ways = [orbit(system, coordinates, plane) for coordinates in each]
         found.append(np.sum([np.abs(way.forward) + np.abs(way.backward) for way in ways], axis=0))
     return np.asarray(np.max(found, axis=0))
+
+
+class Parts(NamedTuple):
+    """Dry rotor, races, liquid, gravity along the axis and the model of the liquid."""
+
+    system: RotorSystem
+    races: tuple[BallRace, ...]
+    fills: tuple[Fill, ...]
+    gravity: float
+    model: LiquidModel
+
+    def at(self, speed: float) -> Machine:
+        """The machine at a speed, with the liquid in step [theory: races, eq. 8]."""
+        require_positive("speed", speed)  # a curve that is followed may lead out of the chart
+        system = in_step(self.system, self.fills, speed, self.gravity, self.model)
+        return Machine(system, self.races, speed)
+
+
+def parts_of(scene: Scene) -> Parts:
+    """What a scene's machine is made of at every speed."""
+    races = tuple(race.race() for race in scene.balls)
+    return Parts(dry_rotor(scene).system(), races, scene.fills, axial_gravity(scene), liquid_beside(scene)[1])
+
+
+def own_family(scene: Scene) -> Family:
+    """The scene's machine at each speed, as it stands."""
+    own = parts_of(scene)
+    return lambda speed, _: own.at(speed)

@@ -23,6 +23,7 @@ from leblanc.scene.inputs import input_rows
 from leblanc.scene.scene import Scene, TubRotor
 from leblanc.scene.unbalances import left_in_the_end, sheds_of
 from leblanc.studies.closed_forms.told import closed_forms
+from leblanc.studies.cycles import large_whirl
 from leblanc.studies.held.holding import HERE, Began, Holding
 from leblanc.studies.machine import loaded_machine, loads_over_speed
 from leblanc.studies.models.choose import (
@@ -42,7 +43,6 @@ from leblanc.studies.models.validity import doubts
 from leblanc.studies.peaks import responses_between
 from leblanc.studies.run import notes as notes
 from leblanc.studies.run.answer import RunResult
-from leblanc.studies.cycles import large_whirl
 from meshes.arrays import Array, Complex
 from meshes.chamber_section import liquid_of
 from meshes.errors import InputError

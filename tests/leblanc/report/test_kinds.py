@@ -13,6 +13,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from leblanc.results.whirl_map import WhirlMap
+from leblanc.studies.whirl_map import map_scene
 
 from leblanc.cli import main
 from leblanc.cli.command import write
@@ -24,14 +26,12 @@ from leblanc.results.base import ConstraintValue
 from leblanc.results.notes.runup import IN_TABLES
 from leblanc.results.optimum import Feasibility, OptimumResult
 from leblanc.results.runup import RunupResult
-from leblanc.results.whirl_map import WhirlMap
 from leblanc.scene.inputs import about
 from leblanc.scene.scene import scene_from_table
 from leblanc.studies.optimise.optimise import optimise_scene
 from leblanc.studies.run.study import run_scene
 from leblanc.studies.run.words import MODELS
 from leblanc.studies.runup import runup_scene
-from leblanc.studies.whirl_map import map_scene
 from leblanc.text import whirl_map as text_map
 from leblanc.wings.exciter.answer import NUMBERS, ExciterAnswer, facts, limits
 from leblanc.wings.exciter.study import run_exciter

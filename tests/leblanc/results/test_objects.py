@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from leblanc.studies.whirl_map import map_scene
 
 import leblanc as lb
 from leblanc.api import optimise, run_up
@@ -30,7 +31,6 @@ from leblanc.studies.run.study import run_scene
 from leblanc.studies.volume import volume
 from leblanc.studies.volume.answer import Coverage
 from leblanc.studies.volume.figure import surface_figure
-from leblanc.studies.whirl_map import map_scene
 from leblanc.wings.exciter.study import explain_exciter, run_exciter
 from leblanc.wings.magnetic.study import explain_magnetic, run_magnetic
 from tests.oracles.data_files import assert_read_back

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from leblanc.studies.whirl_map import map_scene
 
 from fluid.fill import Fills
 from leblanc.core.notes import percent
@@ -20,7 +21,6 @@ from leblanc.studies.explain import explain_scene
 from leblanc.studies.models.choose import choose
 from leblanc.studies.run.study import run_scene
 from leblanc.studies.runup import runup_scene
-from leblanc.studies.whirl_map import map_scene
 from meshes.baffles import Baffles
 from meshes.errors import InputError
 from meshes.files.exchange import write_section

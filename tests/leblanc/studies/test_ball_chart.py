@@ -9,13 +9,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from leblanc.figures.races.chart import chart_figure, regions
+from leblanc.results.races.chart import BallChart
+from leblanc.text.races.chart import answer, curves, facts, limits
 
 import leblanc as lb
 from leblanc.cli import main
-from leblanc.figures.races.chart import chart_figure, regions
-from leblanc.results.races.chart import BallChart
 from leblanc.results.races.states import BallsResult
-from leblanc.text.races.chart import answer, curves, facts, limits
 from meshes.errors import InputError
 from solvers.rotor.balls.steady import BallKind
 from tests.mutants import kills

@@ -7,19 +7,19 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from leblanc.figures.whirl_map import cycles_figure
+from leblanc.results.whirl_map import WhirlMap
+from leblanc.studies.whirl_map import map_scene
+from leblanc.text.whirl_map import answer, facts
 from pytest import approx
 
 from leblanc.cli import main
-from leblanc.figures.whirl_map import cycles_figure
-from leblanc.results.whirl_map import WhirlMap
 from leblanc.scene.scene import Scene, load_scene
 from leblanc.scene.tasks import Optimisation
 from leblanc.studies.explain import explain_scene
 from leblanc.studies.optimise.constraints import whirl_size
 from leblanc.studies.runup import runup_scene, whirl_on_the_way
-from leblanc.studies.whirl_map import map_scene
 from leblanc.text.explanation import facts as explained
-from leblanc.text.whirl_map import answer, facts
 from meshes.errors import InputError
 from tests.mutants import kills
 

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-
 from leblanc.results.notes.whirl_map import MapCode
+
 from leblanc.scene.scene import Scene, load_scene
 from leblanc.studies.models.choose import prepare
 from leblanc.studies.run.answer import RunResult

@@ -11,21 +11,21 @@ from pathlib import Path
 import h5netcdf
 import numpy as np
 import pytest
+from leblanc.cli.map import map as map_command
+from leblanc.figures.whirl_map import map_figure, signed_distance
+from leblanc.results.notes.whirl_map import MapCode
+from leblanc.results.whirl_map import WhirlMap
+from leblanc.studies.whirl_map import SPEEDS, VOLUMES, fills_over_volume, map_scene
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 import leblanc as lb
 from fluid.friction.laws import Friction
 from fluid.whirl import covering_speed
 from leblanc.cli import main
-from leblanc.cli.map import map as map_command
 from leblanc.core.netcdf import write_netcdf
-from leblanc.figures.whirl_map import map_figure, signed_distance
-from leblanc.results.notes.whirl_map import MapCode
-from leblanc.results.whirl_map import WhirlMap
 from leblanc.scene.scene import Scene, dry_rotor, load_scene
 from leblanc.studies import whirl_map as whirl_map_study
 from leblanc.studies.run.study import run_scene
-from leblanc.studies.whirl_map import SPEEDS, VOLUMES, fills_over_volume, map_scene
 from meshes.errors import InputError
 from solvers.whirl.growth import asynchronous_growth, growth_map
 from tests.mutants import kills
