@@ -8,10 +8,10 @@ import json
 from typing import Any
 
 import numpy as np
-from leblanc.studies.whirl_map import map_scene
 
 from leblanc.cli import main
 from leblanc.scene.scene import scene_from_table
+from leblanc.studies.map.study import map_scene
 from leblanc.studies.optimise.optimise import optimise_scene
 from leblanc.studies.run.study import run_scene
 from leblanc.studies.runup import runup_scene

@@ -13,7 +13,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from leblanc.studies.whirl_map import map_scene
 
 import leblanc as lb
 from leblanc.api import optimise, run_up
@@ -65,7 +64,7 @@ RESULTS = {
     "run with cycles": lambda: run_scene(
         load_scene(ROOT / "docs/examples/self_excited.toml").replace(SELF_EXCITED), cycles=True
     ),
-    "map": lambda: map_scene(scene("horizontal_rig"), 5, 21),
+    "map": lambda: lb.map_whirl(scene("horizontal_rig"), volumes=5, speeds=21),
     "compare": lambda: compare_models(scene("horizontal_rig"), ["kdv", "linear", "statics"]),
     "explain": lambda: explain_scene(scene("runup")),
     "explain an exciter": lambda: explain_exciter(scene("vibratory_table")),

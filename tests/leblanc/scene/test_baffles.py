@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from leblanc.studies.whirl_map import map_scene
 
+import leblanc as lb
 from fluid.fill import Fills
 from leblanc.core.notes import percent
 from leblanc.results.notes.baffles import BaffleCode
@@ -155,7 +155,7 @@ def test_many_scenes_at_once_are_those_alone() -> None:
 
 
 def test_the_map_runs_from_empty_to_full() -> None:
-    record = map_scene(scene(LOW), 4, 5)
+    record = lb.map_whirl(scene(LOW), volumes=4, speeds=5)
     assert np.isfinite(record.growth).all()
     # Empty and full there is nothing that could slosh.
     assert np.all(record.growth[[0, -1]] <= 0.0)
