@@ -146,7 +146,9 @@ class WhirlMap(Answer):
             draw = "leblanc.studies.map.figure:cycles_figure"
             pictures.append(Picture("cycles", "How large the whirl grows, over speed", draw))
             models.append(Words(CYCLES, "long_wave", small=True))
-        tables = Columns((Table(facts(self), indent=2), Checks(checks(self))), (bands_table(self),))
+        tables = Columns(
+            (Table(facts(self), indent=2), Checks(checks(self), shown="page")), (bands_table(self),)
+        )
         return (
             Headline(sentence(self), about, shown="both"),
             Section("Results", (*pictures, tables), width="120mm"),
@@ -175,10 +177,6 @@ def sentence(found: WhirlMap) -> str:
     )
 
 
-def _stable(found: WhirlMap) -> list[Cycle]:
-    return [row for row in _within(found) if row.stable]
-
-
 def _within(found: WhirlMap) -> list[Cycle]:
     """Limit cycles at the speeds of the map, without those on the way to them."""
     # The whirl at the end of the range is there up to rounding.
@@ -188,15 +186,17 @@ def _within(found: WhirlMap) -> list[Cycle]:
 
 def _largest(found: WhirlMap) -> str:
     """Amplitude of the largest stable whirl, and its speed; empty where there is none."""
-    row = max(_stable(found), key=lambda row: row.amplitude, default=None)
+    stable = [row for row in _within(found) if row.stable]
+    row = max(stable, key=lambda row: row.amplitude, default=None)
     return "" if row is None else f"{with_unit(row.amplitude, LENGTH)} at {in_rpm(row.speed)}"
 
 
 def cycle_facts(found: WhirlMap) -> list[tuple[str, str]]:
     """What the limit cycles say in numbers: label and value; nothing where there are none."""
-    rows, stable = _within(found), _stable(found)
+    rows = _within(found)
     if found.large is None or not rows:
         return []
+    stable = [row for row in rows if row.stable]
     folds = [f"{in_rpm(fold.speed)} at {with_unit(fold.amplitude, LENGTH)}" for fold in found.large.folds]
     said = [
         ("Whirls of finite size", f"{len(rows)} on {len(found.large.branches)} branches"),

@@ -58,8 +58,8 @@ def map_figure(result: WhirlMap) -> Figure:
             axes.set_xlim(result.speed[0] * RPM, result.speed[-1] * RPM)
             axes.set_ylim(0.0, result.volume[-1] * ML)
             axes.grid(visible=False)
-            axes.xaxis.set_major_formatter(_label)
-            axes.yaxis.set_major_formatter(_label)
+            axes.xaxis.set_major_formatter(number)
+            axes.yaxis.set_major_formatter(number)
             axes.set_xlabel("Speed (rpm)")
             _add_ratios(axes, result)
         lay_out(figure, [[axes] for axes in panels], [PANEL] * 2, FRAME, _caption(result), LINES)
@@ -68,17 +68,13 @@ def map_figure(result: WhirlMap) -> Figure:
     return figure
 
 
-def _label(value: float, _at: float) -> str:
-    return number(value)
-
-
 def _add_ratios(axes: Axes, result: WhirlMap) -> None:
     """Speed over the critical one above, share of what the chambers hold on the right."""
     critical, whole = result.critical_speed_dry * RPM, result.capacity * ML
     if critical > 0.0:
         above = axes.secondary_xaxis("top", functions=(lambda x: x / critical, lambda x: x * critical))
         above.set_xlabel("Speed/critical speed without liquid (\N{EN DASH})")
-        above.xaxis.set_major_formatter(_label)
+        above.xaxis.set_major_formatter(number)
     else:
         add_rate_axis(axes)
     if whole > 0.0:
@@ -86,7 +82,7 @@ def _add_ratios(axes: Axes, result: WhirlMap) -> None:
             "right", functions=(lambda y: 100.0 * y / whole, lambda y: y * whole / 100.0)
         )
         share.set_ylabel("Fill (% of the chambers)")
-        share.yaxis.set_major_formatter(_label)
+        share.yaxis.set_major_formatter(number)
 
 
 def _place_bar(axes: Axes, bar: Axes | None) -> None:
@@ -104,7 +100,7 @@ def _colours(figure: Figure, axes: Axes, result: WhirlMap, values: Array, label:
     drawn = axes.pcolormesh(x, y, values, shading="nearest", rasterized=True, **look)
     bar = figure.add_axes((0, 0, 1, 1), label=label)
     short = bool(np.nanmin(values) < drawn.get_clim()[0])
-    figure.colorbar(drawn, cax=bar, label=label, format=_label, extend="min" if short else "neither")
+    figure.colorbar(drawn, cax=bar, label=label, format=number, extend="min" if short else "neither")
     return bar
 
 
@@ -219,8 +215,8 @@ def cycles_figure(result: WhirlMap) -> Figure:
                     axes, {key: value[shown["branch"] == branch] for key, value in shown.items()}, name, scale
                 )
             axes.set_xlim(ends[0], ends[1])
-            axes.xaxis.set_major_formatter(_label)
-            axes.yaxis.set_major_formatter(_label)
+            axes.xaxis.set_major_formatter(number)
+            axes.yaxis.set_major_formatter(number)
         _dress_cycles(panels[0], panels[1], result)
         caption = Caption(
             "Self-excited whirls of finite size over speed: amplitude of the first chamber's axis, and "
@@ -249,7 +245,7 @@ def _dress_cycles(top: Axes, below: Axes, result: WhirlMap) -> None:
         depth = result.depth * MM
         share = top.secondary_yaxis("right", functions=(lambda y: y / depth, lambda y: y * depth))
         share.set_ylabel("Amplitude/depth (\N{EN DASH})")
-        share.yaxis.set_major_formatter(_label)
+        share.yaxis.set_major_formatter(number)
     add_rate_axis(top)
     if result.critical_speed_dry > 0.0:
         critical = result.critical_speed_dry * RPM

@@ -207,7 +207,7 @@ class BallChart(Answer):
         low, high = (number(float(self.speed[k]) * RPM) for k in (0, -1))
         about = f"Stability of {STATES[self.state]} from {low} to {high} rpm over {self.varied}."
         picture = Picture("map", "Where the balls are stable", self.figure)
-        tables = Columns((Table(facts(self), indent=2),), (Checks(checks(self)),))
+        tables = Columns((Table(facts(self), indent=2),), (Checks(checks(self), shown="page"),))
         return (
             Headline(sentence(self), about, shown="both"),
             Section("Results", (picture, tables, Words("", shown="text"), curves(self)), width="120mm"),
