@@ -5,7 +5,7 @@ from __future__ import annotations
 import cmath
 import math
 import sys
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, is_dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
@@ -60,11 +60,11 @@ def _declared(kind: type) -> dict[str, _Declared]:
     return found
 
 
-def _of(record: Any) -> Iterator[tuple[str, Q, Any, tuple[type, ...]]]:
-    """Public name, declaration, value and classes of each quantity that a record has."""
+def _of(record: Any) -> Iterator[tuple[str, Q, Any]]:
+    """Public name, declaration and value of each quantity that a record has."""
     for key, each in _declared(type(record)).items():
         if not each.q.when or getattr(record, each.q.when) is not None:
-            yield key, each.q, getattr(record, each.attribute), each.types
+            yield key, each.q, getattr(record, each.attribute)
 
 
 def reached(record: Any, key: str) -> Any:
@@ -130,7 +130,7 @@ def to_json(record: Any, only: Collection[str] = ()) -> dict[str, Any]:
     if not _declared(type(record)):
         return {field.name: plain(getattr(record, field.name)) for field in fields(record)}
     found: dict[str, Any] = {}
-    for key, q, value, _ in _of(record):
+    for key, q, value in _of(record):
         if not q.json or (only and key not in only):
             continue
         if q.part:
@@ -158,7 +158,7 @@ def named_arrays(record: Any, attrs: Mapping[str, Any] = MappingProxyType({})) -
 
 def _with_parts(record: Any, only: Collection[str] = ()) -> Iterator[tuple[str, Q, Any]]:
     """Variables of a record, of its parts, of records in rows; a part may bring its own `variables`."""
-    for key, q, value, types in _of(record):
+    for key, q, value in _of(record):
         if not q.data or (only and key not in only) or (value is None and (q.part or q.prefix or q.rows)):
             continue
         if q.part and hasattr(value, "variables"):
@@ -171,15 +171,24 @@ def _with_parts(record: Any, only: Collection[str] = ()) -> Iterator[tuple[str, 
                 over = tuple(f"{q.prefix}_{dim}" if dim in own else dim for dim in inner.over)
                 text = ", ".join(part for part in (q.text, inner.text) if part)
                 yield f"{q.prefix}_{name}", replace(inner, over=over, text=text), each
-        elif q.rows:
-            for name, each in _declared(type(value[0]) if value else types[-1]).items():
-                if each.q.data:
-                    column = np.array([getattr(row, each.attribute) for row in value])
-                    over = (q.rows, *each.q.over)
-                    yield each.q.variable or f"{q.rows}_{name}", replace(each.q, over=over), column
-        else:
+        elif q.rows and value:
+            yield from _columns(type(value[0]), value, q.rows)
+        elif not q.rows:
             said = {part: getattr(q, part).format(record) for part in ("unit", "name", "text")}
             yield q.variable or key, replace(q, **said), value
+
+
+def row_variables(kind: type, rows: Sequence[Any], dim: str) -> dict[str, Variable]:
+    """Quantities of records of a kind along a dimension; none of them gives variables of length 0."""
+    made = (_variables(name, q, column) for name, q, column in _columns(kind, rows, dim))
+    return {name: variable for each in made for name, variable in each.items()}
+
+
+def _columns(kind: type, rows: Sequence[Any], dim: str) -> Iterator[tuple[str, Q, Any]]:
+    for name, each in _declared(kind).items():
+        if each.q.data:
+            column = np.array([getattr(row, each.attribute) for row in rows])
+            yield each.q.variable or f"{dim}_{name}", replace(each.q, over=(dim, *each.q.over)), column
 
 
 def _variables(name: str, q: Q, value: Any) -> dict[str, Variable]:

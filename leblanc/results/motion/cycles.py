@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import numpy as np
 
 from leblanc.core.netcdf import Variable
-from leblanc.core.quantities import named_arrays, to_json
+from leblanc.core.quantities import named_arrays, row_variables, to_json
 from meshes.arrays import Array, Flags
 from meshes.quantity import Q
 
@@ -60,7 +60,7 @@ class Cycles:
     branches: tuple[Branch, ...]  #: without unbalance
 
     @property
-    def cycles(self) -> Annotated[list[Cycle], Q(text="limit cycles along their branches", rows="cycle")]:
+    def cycles(self) -> Annotated[list[Cycle], Q(text="limit cycles along their branches")]:
         """Of all branches."""
         found = []
         for number, branch in enumerate(self.branches):
@@ -74,13 +74,22 @@ class Cycles:
         return found
 
     @property
-    def folds(self) -> Annotated[list[Fold], Q(text="where branches turn back in speed", rows="fold")]:
+    def folds(self) -> Annotated[list[Fold], Q(text="where branches turn back in speed")]:
         """Of all branches."""
         return [
             Fold(number, speed, amplitude)
             for number, branch in enumerate(self.branches)
             for speed, amplitude in zip(branch.fold_speed, branch.fold_amplitude, strict=True)
         ]
+
+    def to_json(self) -> dict[str, Any]:
+        """The branches, and of a subclass all else."""
+        return to_json(self)
+
+    def variables(self) -> dict[str, Variable]:
+        """Arrays over `cycle` and `fold`, and of a subclass all else."""
+        rows = row_variables(Cycle, self.cycles, "cycle") | row_variables(Fold, self.folds, "fold")
+        return dict(named_arrays(self).variables) | rows
 
 
 @dataclass(frozen=True)
@@ -105,11 +114,3 @@ class LargeWhirl(Cycles):
     #: a small whirl does not grow there: a kick starts this one or a run-up carries it, shape (n,)
     kicked: Flags
     reason: str = ""  #: why there are none, or what is not among them; empty if nothing is to be said
-
-    def to_json(self) -> dict[str, Any]:
-        """The largest whirl at each speed, and the branches."""
-        return to_json(self)
-
-    def variables(self) -> dict[str, Variable]:
-        """Arrays over `speed`, `cycle` and `fold`."""
-        return dict(named_arrays(self).variables)
