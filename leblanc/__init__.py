@@ -14,8 +14,6 @@ if TYPE_CHECKING:
     from leblanc.api import (
         compare,
         explain,
-        map_balls,
-        map_whirl,
     )
     from leblanc.scene.examples import example
     from leblanc.scene.magnetic import MagneticRotor
@@ -26,6 +24,7 @@ if TYPE_CHECKING:
     from leblanc.studies.bearing import bearing
     from leblanc.studies.fit import fit
     from leblanc.studies.layer import layer
+    from leblanc.studies.map import map_balls, map_whirl
     from leblanc.studies.modes import modes
     from leblanc.studies.optimise import optimise
     from leblanc.studies.run import run
@@ -87,12 +86,12 @@ _HOMES = {
     "run_up": ("leblanc.studies.runup", "runup"),
     "example": ("leblanc.scene.examples", "example"),
     "load_scene": ("leblanc.scene.scene", "load_scene"),
-    **{
-        name: (_API, name)
-        for name in __all__
-        if name.islower() and name not in (*_QUESTIONS, "run_up", "example", "load_scene")
-    },
+    "map_balls": ("leblanc.studies.map", "map_balls"),
+    "map_whirl": ("leblanc.studies.map", "map_whirl"),
+    "compare": (_API, "compare"),
+    "explain": (_API, "explain"),
 }
+_HOMES |= {name: (_API, name) for name in __all__ if name not in _HOMES}
 
 
 def __getattr__(name: str) -> Any:

@@ -10,7 +10,7 @@ class Q:
     """A quantity of an answer: `amplitude: Annotated[Array, Q("m", "amplitude", over=("speed",))]`.
 
     It stands at a field of a dataclass or at what a property returns; JSON, data files, tables and the page
-    of outputs are made from it.
+    of outputs are made from it. In its unit, name and text "{0.paths}" stands for an attribute of the answer.
     """
 
     unit: str = ""  #: as CF writes it ("rad s-1", "1"); empty for texts, truth values and records

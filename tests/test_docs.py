@@ -217,7 +217,7 @@ def test_public_names_and_results_are_described_once_with_an_example(tmp_path: P
     assert len(described) == len(set(described))
     results = [member.full for member in pages.results()]
     assert {"leblanc.core.answer.Answer", "leblanc.studies.run.answer.RunAnswer"} < set(results)
-    assert {"leblanc.wings.exciter.answer.ExciterAnswer", "leblanc.results.races.chart.BallChart"} < set(
+    assert {"leblanc.wings.exciter.answer.ExciterAnswer", "leblanc.studies.map.balls.answer.BallChart"} < set(
         results
     )
     public = {f"leblanc.{name}" for name in leblanc.__all__} | set(results)

@@ -19,7 +19,7 @@ from typing import Annotated, Any
 import typer
 from typer.main import get_command
 
-from leblanc.cli import compare, explain, map, new, view
+from leblanc.cli import compare, explain, new, view
 from leblanc.core.answer import NotConverged
 from leblanc.core.contents import recording
 from leblanc.core.interrupts import INTERRUPTED, TERMINATED, Terminated, behind, heard, leave, said
@@ -35,7 +35,7 @@ NAMES = (
     *("new", "explain", "run", "compare", "fit", "map", "runup", "optimise", "sweep", "view"),
     *("layer", "modes", "bearing", "volume"),
 )
-MODULES = {each.__name__.rpartition(".")[2]: each for each in (new, explain, compare, map, view)}
+MODULES = {each.__name__.rpartition(".")[2]: each for each in (new, explain, compare, view)}
 ALIASES = {"run_up": "runup", "run-up": "runup"}  # names that are read as well
 
 # The current folder may hold a stranger's files: a pickle.py is not for the processes that are started from

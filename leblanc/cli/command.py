@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shlex
 import sys
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from inspect import Parameter, signature
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, get_origin
@@ -16,7 +16,7 @@ from leblanc.core.answer import Answer
 from leblanc.core.contents import results_dir
 from leblanc.core.files import out_dir, path_text
 from leblanc.core.progress import working
-from leblanc.core.question import SCENE, STUDY, Asked, Reader, called, parameters, read
+from leblanc.core.question import SCENE, STUDY, Asked, Quantity, Reader, Texts, called, parameters, read
 from leblanc.core.terminal import print_json, say, show
 from meshes.errors import InputError
 
@@ -44,7 +44,6 @@ def command(question: Callable[..., Any]) -> Callable[..., None]:
     present: Callable[..., Any] | None = getattr(sys.modules[question.__module__], "present", None)
     more = {one.name: one for one in list(parameters(present))[1:]} if present else {}
     asked = own | more
-    named = {"out", *(name for name, one in asked.items() if not one.option.argument)}
     files: tuple[str, ...] = getattr(sys.modules[question.__module__], "FILES", ())
     subject = next((one for one in own.values() if one.read in _LOADED), None)
     options = [_typed(one) for one in asked.values()]
@@ -74,7 +73,7 @@ def command(question: Callable[..., Any]) -> Callable[..., None]:
                 answer: Answer = question(**values)
                 answer = present(answer, **shown) if present else answer
             except InputError as error:
-                raise _of_option(error, named) from error
+                raise _of_option(error, asked) from error
         line = _command_line(question.__name__, list(own.values()), given)
         finish(answer, where, json, folder, machine, line)
 
@@ -125,9 +124,11 @@ def _typed(one: Asked) -> Parameter:
     if one.read is SCENE:
         return _parameter(one.name, Path, typer.Argument(help="Scene file (TOML)."), Parameter.empty)
     kind: Any = one.kind
+    if kind == Texts:
+        return _parameter(one.name, list[str] | None, typer.Option(*one.option.names, help=one.text), None)
     if get_origin(kind) is Sequence or (isinstance(one.read, Reader) and one.read.many):
         kind = list[str] if one.default is Parameter.empty else list[str] | None
-    elif one.read is not None:
+    elif one.read is not None or kind == Quantity | None:  # of the latter the study knows the unit
         kind = str if one.default is Parameter.empty else str | None
     if one.option.argument:
         return _parameter(one.name, kind, typer.Argument(help=one.text), one.default)
@@ -143,29 +144,32 @@ def _usual(one: Asked) -> bool:
     return one.default is True and not one.option.names
 
 
-def _option(one: Asked) -> str:
-    """The option as it is typed."""
-    if one.option.names:
-        return one.option.names[-1].rpartition("/")[2]
-    return f"--{'no-' if _usual(one) else ''}{one.name.replace('_', '-')}"
+def _option(one: Asked, value: Any = None) -> str:
+    """The option as it is typed; of a pair, as "--log/--linear", the second one for False."""
+    if not one.option.names:
+        return f"--{'no-' if _usual(one) else ''}{one.name.replace('_', '-')}"
+    first, _, second = one.option.names[-1].partition("/")
+    return second if second and value is False else first
 
 
 def _value(one: Asked, value: Any) -> Any:
     return processes(value) if one.name == "workers" and one.default is not None else value
 
 
-def _of_option(error: InputError, named: Collection[str]) -> InputError:
+def _of_option(error: InputError, asked: Mapping[str, Asked]) -> InputError:
     """A fault that names the option in place of the keyword."""
-    if error.field not in named:
+    one = asked.get(error.field)
+    if error.field != "out" and (one is None or one.option.argument):
         return error
-    return InputError(f"--{error.field.replace('_', '-')}", error.value, error.allowed)
+    return InputError("--out" if one is None else _option(one), error.value, error.allowed)
 
 
 def _command_line(name: str, asked: Sequence[Asked], given: Mapping[str, Any]) -> str:
     """The command that makes the same answer again, wherever its files go."""
     parts = ["leblanc", name]
     for one in asked:
-        value, option = given[one.name], _option(one)
+        value = given[one.name]
+        option = _option(one, value)
         if one.read is SCENE or one.option.argument:
             parts.append(path_text(value))
         elif one.option.same or value == one.default:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import cmath
 import math
 import sys
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, is_dataclass, replace
 from itertools import pairwise
 from pathlib import Path
@@ -178,14 +178,24 @@ def _with_parts(record: Any, only: Collection[str] = ()) -> Iterator[tuple[str, 
                 text = ", ".join(part for part in (q.text, inner.text) if part)
                 found = name if inner.variable else f"{q.prefix}_{name}"
                 yield found, replace(inner, over=over, text=text), each
-        elif q.rows:
-            for name, each in _declared(type(value[0])).items() if value else ():
-                if each.q.data:
-                    column = np.array([getattr(row, each.attribute) for row in value])
-                    over = (q.rows, *each.q.over)
-                    yield each.q.variable or f"{q.rows}_{name}", replace(each.q, over=over), column
-        else:
-            yield q.variable or key, q, value
+        elif q.rows and value:
+            yield from _columns(type(value[0]), value, q.rows)
+        elif not q.rows:
+            said = {part: getattr(q, part).format(record) for part in ("unit", "name", "text")}
+            yield q.variable or key, replace(q, **said), value
+
+
+def row_variables(kind: type, rows: Sequence[Any], dim: str) -> dict[str, Variable]:
+    """Quantities of records of a kind along a dimension; none of them gives variables of length 0."""
+    made = (_variables(name, q, column) for name, q, column in _columns(kind, rows, dim))
+    return {name: variable for each in made for name, variable in each.items()}
+
+
+def _columns(kind: type, rows: Sequence[Any], dim: str) -> Iterator[tuple[str, Q, Any]]:
+    for name, each in _declared(kind).items():
+        if each.q.data:
+            column = np.array([getattr(row, each.attribute) for row in rows])
+            yield each.q.variable or f"{dim}_{name}", replace(each.q, over=(dim, *each.q.over)), column
 
 
 def _variables(name: str, q: Q, value: Any) -> dict[str, Variable]:

@@ -8,17 +8,18 @@ takes up, and `progress`.
 from __future__ import annotations
 
 import builtins
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
 from importlib import import_module
-from inspect import signature
+from inspect import Parameter, Signature, signature
 from typing import Annotated, Any, TypeVar, get_args, get_origin
 
 from leblanc.core.progress import heard, told
 from leblanc.core.units import Dimension, parse_option
 
 Quantity = str | float  # a number in SI units, or a text with its unit
+Texts = str | Sequence[str]  # one text or several; the option is typed anew for each
 A = TypeVar("A")
 
 
@@ -81,6 +82,22 @@ def parameters(question: Callable[..., Any]) -> Iterator[Asked]:
         )
 
 
+def together(*questions: Callable[..., Any]) -> Signature:
+    """Parameters of several questions behind one command; options are None where they are not given."""
+    found: dict[str, Parameter] = {}
+    for question in questions:
+        for name, each in signature(question).parameters.items():
+            found.setdefault(name, each)
+    return Signature(
+        [
+            each
+            if each.default is Parameter.empty
+            else each.replace(default=None, kind=Parameter.KEYWORD_ONLY)
+            for each in found.values()
+        ]
+    )
+
+
 def called(address: str) -> Callable[..., Any]:
     """The function at "module:function", loaded when it is first used."""
     module, _, name = address.partition(":")
@@ -108,10 +125,11 @@ def read(question: Callable[..., Any], given: Mapping[str, Any]) -> dict[str, An
     """Values by the names of a question's parameters, each read as its type says."""
     values = dict(given)
     for one in parameters(question):
-        if one.name not in given:
+        value = given.get(one.name)
+        if one.name not in given or (value is None and one.default is None):
             continue
         if isinstance(one.read, Reader):
-            values[one.name] = called(one.read.address)(values[one.name], one.name)
-        elif one.read is not None and values[one.name] is not None:
-            values[one.name] = parse_option(values[one.name], one.read, one.name)
+            values[one.name] = called(one.read.address)(value, one.name)
+        elif one.read is not None and value is not None:
+            values[one.name] = parse_option(value, one.read, one.name)
     return values

@@ -11,10 +11,10 @@ import numpy as np
 
 from leblanc.cli import main
 from leblanc.scene.scene import scene_from_table
+from leblanc.studies.map.study import map_scene
 from leblanc.studies.optimise.study import optimise_scene
 from leblanc.studies.run.study import run_scene
 from leblanc.studies.runup.study import runup_scene
-from leblanc.studies.whirl_map import map_scene
 
 Answer = dict[str, Any]
 

@@ -38,8 +38,6 @@
 
 # %%
 import leblanc as lb
-from leblanc.figures.whirl_map import map_figure
-from leblanc.studies.whirl_map import map_scene
 from validation.cases.rotors import whirl
 from validation.cases.rotors.whirl import growth_figure, in_time
 from validation.page import case_table, picture, verdicts
@@ -71,7 +69,7 @@ case_table(cases)
 # grows.
 
 # %%
-picture(map_figure(map_scene(lb.example("horizontal_rig"), volumes=61, speeds=151)))
+picture(lb.map_whirl(lb.example("horizontal_rig"), volumes=61, speeds=151).plot())
 
 # %% [markdown]
 # ## What does not agree

@@ -117,20 +117,20 @@ class Parts(NamedTuple):
     gravity: float
     model: LiquidModel
 
+    def at(self, speed: float) -> Machine:
+        """The machine at a speed, with the liquid in step [theory: races, eq. 8]."""
+        require_positive("speed", speed)  # a curve that is followed may lead out of the chart
+        system = in_step(self.system, self.fills, speed, self.gravity, self.model)
+        return Machine(system, self.races, speed)
+
 
 def parts_of(scene: Scene) -> Parts:
-    """The same of a scene."""
+    """What a scene's machine is made of at every speed."""
     races = tuple(race.race() for race in scene.balls)
     return Parts(dry_rotor(scene).system(), races, scene.fills, axial_gravity(scene), liquid_beside(scene)[1])
-
-
-def machine_at(parts: Parts, speed: float) -> Machine:
-    """At a speed, with the liquid in step [theory: races, eq. 8]."""
-    require_positive("speed", speed)  # a curve that is followed may lead out of the chart
-    return Machine(in_step(parts.system, parts.fills, speed, parts.gravity, parts.model), parts.races, speed)
 
 
 def own_family(scene: Scene) -> Family:
     """The scene's machine at each speed, as it stands."""
     own = parts_of(scene)
-    return lambda speed, _: machine_at(own, speed)
+    return lambda speed, _: own.at(speed)

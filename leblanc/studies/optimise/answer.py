@@ -413,11 +413,11 @@ class OptimumAnswer(Best):
         return found | flags
 
     @property
-    def failed(self) -> tuple[str, ...]:
+    def faults(self) -> tuple[str, ...]:
         return () if self.feasible else (f"{INFEASIBLE} ({self.exceeded_words()})",)
 
     @property
-    def done(self) -> str:
+    def closing(self) -> str:
         return f"{self.name}: {self.evaluations} sets of volumes judged"
 
     @property

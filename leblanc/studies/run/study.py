@@ -23,6 +23,7 @@ from leblanc.scene.inputs import input_rows
 from leblanc.scene.scene import Scene, TubRotor
 from leblanc.scene.unbalances import left_in_the_end, sheds_of
 from leblanc.studies.closed_forms.study import closed_forms
+from leblanc.studies.cycles import large_whirl
 from leblanc.studies.held.answer import Held
 from leblanc.studies.held.holding import HERE, Began, Holding
 from leblanc.studies.loads.answer import MachineLoads
@@ -45,7 +46,6 @@ from leblanc.studies.peaks import responses_between
 from leblanc.studies.run import notes as notes
 from leblanc.studies.run.answer import RunAnswer
 from leblanc.studies.run.motion import Motion, RestMode, SelfExcited
-from leblanc.studies.whirl_map import large_whirl
 from meshes.arrays import Array, Complex
 from meshes.chamber_section import liquid_of
 from meshes.errors import InputError

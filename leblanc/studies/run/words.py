@@ -547,12 +547,6 @@ HELD = (
     "turn or stays within bounds; amplitudes and centres of mass are means over time."
 )
 
-WHIRL = (
-    "Free whirls of rotor and liquid together, by the exact linear theory of the plane layer with laminar or "
-    "linear friction at its wall; shown is the whirl that grows most.",
-    "Taken for granted: small whirls, a wet wall all round, one depth along the axis.",
-)
-
 BALLS = (
     "Stuck speeds and vibration are those of the lowest order in the balls' share of the moving mass; the "
     "critical speed and the integrated speeds come from the full equations in time.",

@@ -27,7 +27,7 @@ WORK = (
     "leblanc.studies.layer.study.layer_history",
     "leblanc.studies.layer.study.layer_film",
     "leblanc.studies.modes.study.answer_modes",
-    "leblanc.studies.whirl_map.map_scene",
+    "leblanc.studies.map.study.map_scene",
     "leblanc.studies.runup.study.runup_scene",
     "leblanc.studies.optimise.study.optimise_scene",
     "leblanc.studies.sweep.study.answer_sweep",

@@ -132,8 +132,8 @@ def test_json_has_each_quantity_once_under_its_public_name() -> None:
 
 
 @kills(f"{AT}:_with_parts", 'f"{q.prefix}_{dim}" if dim in own', "dim if dim in own")
-@kills(f"{AT}:_with_parts", "each.q.variable or ", "")
-@kills(f"{AT}:_with_parts", "(q.rows, *each.q.over)", "(*each.q.over, q.rows)")
+@kills(f"{AT}:_columns", "each.q.variable or ", "")
+@kills(f"{AT}:_columns", "(dim, *each.q.over)", "(*each.q.over, dim)")
 @kills(f"{AT}:_variables", "complex(math.nan, math.nan), values)", "values, values)")
 @kills(f"{AT}:_variables", "+ 2 - len(meanings)", "+ 0")
 def test_variables_have_names_units_and_dimensions() -> None:

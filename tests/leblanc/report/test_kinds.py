@@ -14,14 +14,14 @@ from typing import Any
 import numpy as np
 import pytest
 
+import leblanc as lb
 from leblanc.cli import main
 from leblanc.cli.command import write
 from leblanc.core.blocks import Table, flat
 from leblanc.core.quantities import quantities
-from leblanc.report import run as report_map
-from leblanc.results.whirl_map import WhirlMap
-from leblanc.scene.inputs import about
 from leblanc.scene.scene import scene_from_table
+from leblanc.studies.map import answer as whirl_map
+from leblanc.studies.map.answer import WhirlMap
 from leblanc.studies.optimise.answer import ConstraintValue, OptimumAnswer
 from leblanc.studies.optimise.study import optimise_scene
 from leblanc.studies.run.study import run_scene
@@ -30,8 +30,6 @@ from leblanc.studies.runup import words
 from leblanc.studies.runup.answer import RunupAnswer
 from leblanc.studies.runup.notes import RunupCode
 from leblanc.studies.runup.study import runup_scene
-from leblanc.studies.whirl_map import map_scene
-from leblanc.text import whirl_map as text_map
 from leblanc.wings.exciter.answer import NUMBERS, ExciterAnswer, facts, limits
 from leblanc.wings.exciter.study import run_exciter
 from solvers.layer.records import Outcome
@@ -98,12 +96,12 @@ def check_command(page: Page, command: str, data: str) -> None:
 
 @cache
 def small_map() -> WhirlMap:
-    return map_scene(scene_from_table(example("horizontal_rig", 9)), 7, 40)
+    return lb.map_whirl(scene_from_table(example("horizontal_rig", 9)), volumes=7, speeds=40)
 
 
-def test_map_numbers(record: WhirlMap | None = None) -> None:
-    record = small_map() if record is None else record
-    found = dict(text_map.facts(record))
+def test_map_numbers() -> None:
+    record = small_map()
+    found = dict(whirl_map.facts(record))
     k, j = np.unravel_index(np.argmax(record.growth), record.growth.shape)
     speed, volume = record.speed[j] * RPM, record.volume[k] * 1e6
     growth = printed(record.growth[k, j])
@@ -113,13 +111,11 @@ def test_map_numbers(record: WhirlMap | None = None) -> None:
     share = 100.0 * (record.growth > 0.0).mean()
     assert found["A whirl grows at"] == f"{printed(share)} % of the points"
     assert found["Most liquid, all chambers"] == f"{printed(record.volume[-1] * 1e6)} ml"
-    for row in report_map.bands(record).rows:
-        lines = [i for i in range(record.volume.size) if printed(record.volume[i] * 1e6) == row[0].text]
-        assert len(lines) == 1
-        line = lines[0]
-        assert row[2].text == printed(record.growth[line].max())
+    for volume, bands, most in whirl_map.bands_table(record).rows:
+        (line,) = (i for i in range(record.volume.size) if printed(record.volume[i] * 1e6) == volume)
+        assert most == printed(record.growth[line].max())
         edges = [f"{printed(low * RPM)} to {printed(high * RPM)}" for low, high in record.edges[line]]
-        assert row[1].text == ("; ".join(edges) or "none")
+        assert bands.text == ("; ".join(edges) or "none")
 
 
 def test_map_warnings() -> None:
@@ -127,7 +123,7 @@ def test_map_warnings() -> None:
     calm = replace(
         record, growth=-np.ones_like(record.growth), scene_edges=(), in_range=np.ones_like(record.in_range)
     )
-    assert not any(cell.warning for row in report_map.map_checks(calm).rows for cell in row)
+    assert not any(check.grade for check in whirl_map.checks(calm))
     some = np.zeros_like(record.in_range)
     some[1, :7] = True
     lost = np.where(some, np.nan, -1.0)
@@ -141,10 +137,10 @@ def test_map_warnings() -> None:
             replace(calm, scene_edges=((600 / RPM, 900 / RPM),)),
         ),
     ):
-        rows = report_map.map_checks(troubled).rows
-        assert [(row[0].text, row[1].text) for row in rows if row[1].warning] == [(heading, text)]
+        found = whirl_map.checks(troubled)
+        assert [(check.label, check.where) for check in found if check.grade] == [(heading, text)]
     both = replace(calm, in_range=~some, growth=np.where(some, 1.0, -1.0))
-    marked = {row[0].text for row in report_map.map_checks(both).rows if row[1].warning}
+    marked = {check.label for check in whirl_map.checks(both) if check.grade}
     assert marked == {"Model out of range", "Grows where out of range"}
 
 
@@ -170,10 +166,8 @@ def test_map_report_is_the_json() -> None:
 
 def test_a_map_of_many_points_stays_light(tmp_path: Path) -> None:
     """Many points: the picture takes the place of the drawing, or the drawing holds a picture."""
-    from leblanc.figures.whirl_map import map_figure, save
-
     scene = scene_from_table(example("horizontal_rig", 9))
-    record = map_scene(scene, 3, 3)
+    record = lb.map_whirl(scene, volumes=3, speeds=3)
     speed = np.linspace(10.0, 200.0, 500)
     volume = np.linspace(0.0, 3e-4, 300)
     growth = np.sin(speed / 20.0) * np.cos(volume[:, None] * 4e4)
@@ -182,10 +176,9 @@ def test_a_map_of_many_points_stays_light(tmp_path: Path) -> None:
         record, speed=speed, volume=volume, growth=growth, whirl_speed=0.7 * speed + 0.0 * growth,
         in_range=growth < 0.9, edges=(edge,) * volume.size,
     )  # fmt: skip
-    files = save(map_figure(many), tmp_path, "map", "Map")
-    report_map.write_map_report(many, about(scene), [files], tmp_path / "map.html")
+    write(many, tmp_path, scene)
     assert (tmp_path / "map.html").stat().st_size < 3_000_000
-    assert len(read_page(tmp_path / "map.html").table("Liquid (ml)")) == report_map.LISTED
+    assert len(read_page(tmp_path / "map.html").table("Liquid (ml)")) == whirl_map.LISTED
 
 
 # --- optimise --------------------------------------------------------------------------------------------

@@ -31,7 +31,6 @@ from leblanc.studies.run.study import run_scene
 from leblanc.studies.volume import volume
 from leblanc.studies.volume.answer import Coverage
 from leblanc.studies.volume.figure import surface_figure
-from leblanc.studies.whirl_map import map_scene
 from leblanc.wings.exciter.study import explain_exciter, run_exciter
 from leblanc.wings.magnetic.study import explain_magnetic, run_magnetic
 from tests.oracles.data_files import assert_read_back
@@ -66,7 +65,7 @@ RESULTS = {
     "run with cycles": lambda: run_scene(
         load_scene(ROOT / "docs/examples/self_excited.toml").replace(SELF_EXCITED), cycles=True
     ),
-    "map": lambda: map_scene(scene("horizontal_rig"), 5, 21),
+    "map": lambda: lb.map_whirl(scene("horizontal_rig"), volumes=5, speeds=21),
     "compare": lambda: compare_models(scene("horizontal_rig"), ["kdv", "linear", "statics"]),
     "explain": lambda: explain_scene(scene("runup")),
     "explain an exciter": lambda: explain_exciter(scene("vibratory_table")),

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+import leblanc as lb
 from fluid.fill import Fills
 from leblanc.core.notes import percent
 from leblanc.results.notes.baffles import BaffleCode
@@ -20,7 +21,6 @@ from leblanc.studies.models.choose import choose
 from leblanc.studies.run.study import run_scene
 from leblanc.studies.runup.study import runup_scene
 from leblanc.studies.sweep.batch import answer_scenes
-from leblanc.studies.whirl_map import map_scene
 from meshes.baffles import Baffles
 from meshes.errors import InputError
 from meshes.files.exchange import write_section
@@ -155,7 +155,7 @@ def test_many_scenes_at_once_are_those_alone() -> None:
 
 
 def test_the_map_runs_from_empty_to_full() -> None:
-    record = map_scene(scene(LOW), 4, 5)
+    record = lb.map_whirl(scene(LOW), volumes=4, speeds=5)
     assert np.isfinite(record.growth).all()
     # Empty and full there is nothing that could slosh.
     assert np.all(record.growth[[0, -1]] <= 0.0)

@@ -12,16 +12,15 @@ import pytest
 
 import leblanc as lb
 from leblanc.cli import main
-from leblanc.figures.races.chart import chart_figure, regions
-from leblanc.results.races.chart import BallChart
 from leblanc.studies.balls.answer import BallsAnswer
-from leblanc.text.races.chart import answer, curves, facts, limits
+from leblanc.studies.map.balls.answer import BallChart, checks, curves, facts, sentence
+from leblanc.studies.map.balls.figure import chart_figure, regions
 from meshes.errors import InputError
 from solvers.rotor.balls.steady import BallKind
 from tests.mutants import kills
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
-STUDY = "leblanc.studies.races.chart"
+STUDY, FIGURE = (f"leblanc.studies.map.balls.{part}" for part in ("study", "figure"))
 CHARTS = "solvers.rotor.balls.charts"
 # Of each support, N s/m, and the least speed above which the long rotor stays balanced, rad/s: motions in
 # time confirm both sides (`validation.cases.two_plane.damping`).
@@ -187,8 +186,8 @@ def test_several_numbers_keep_their_ratio() -> None:
     np.testing.assert_allclose(chart.growth[1], beside.scene_growth, rtol=1e-9)
 
 
-@kills("leblanc.figures.races.chart:_lines", "(edge.speed - first)", "(edge.speed - last)")
-@kills("leblanc.figures.races.chart:regions", "label(~wall)", "label(~wall | wall)")
+@kills(f"{FIGURE}:_lines", "(edge.speed - first)", "(edge.speed - last)")
+@kills(f"{FIGURE}:regions", "label(~wall)", "label(~wall | wall)")
 def test_regions_reach_up_to_the_curves() -> None:
     """Between the points of a coarse grid they say what a fine one finds."""
     coarse, fine = coarse_and_fine()  # the mutants are in what is drawn of them
@@ -202,19 +201,19 @@ def test_regions_reach_up_to_the_curves() -> None:
 
 def test_texts_and_arrays_of_a_chart() -> None:
     chart = lb.map_balls(scene("balls"), "rotor.unbalance", start=1e-5, stop="1.2 kg*mm", values=7, speeds=9)
-    assert "stable from" in answer(chart) and "rotor.unbalance being 600 g mm" in answer(chart)
+    assert "stable from" in sentence(chart) and "rotor.unbalance being 600 g mm" in sentence(chart)
     told = dict(facts(chart))
     assert told["It begins or ends at"] == told["Unbalance that the balls of each race hold"]
-    assert [row[0] for row in curves(chart)] == ["a pair of roots crosses (Hopf)"]
-    assert [limit.failed for limit in limits(chart)] == [True, False, False]
+    assert [row[0] for row in curves(chart).rows] == ["a pair of roots crosses (Hopf)"]
+    assert [check.grade > 0 for check in checks(chart)] == [True, False, False]
     data = chart.to_dataset()
     assert data.growth.dims == ("value", "speed") and data.value.attrs["units"] == "kg*m"
     assert data.edge_speed.size == sum(edge.speed.size for edge in chart.edges)
     assert chart_figure(chart).alt
     low = lb.map_balls(scene("balls", speeds__stop="800 rpm"), values=2, speeds=3)
-    assert "stable at none of these speeds" in answer(low) and limits(low)[2].failed
+    assert "stable at none of these speeds" in sentence(low) and checks(low)[2].grade
     none = lb.map_balls(scene("balls", rotor__unbalance=2e-3), values=2, speeds=3)
-    assert "not possible" in answer(none) and np.isnan(none.stable_from)
+    assert "not possible" in sentence(none) and np.isnan(none.stable_from)
 
 
 @pytest.mark.parametrize(
@@ -226,12 +225,12 @@ def test_texts_and_arrays_of_a_chart() -> None:
         ({"over": "speeds.start"}, "over"),
         ({"over": ["chambers.0.drag", "rotor.mass"]}, "over"),
         ({"over": ["rotor.mass", "rotor.mass"]}, "over"),
-        ({"over": "chambers.0.plane"}, "from"),
+        ({"over": "chambers.0.plane"}, "start"),
         ({"over": "chambers.0.diameter", "stop": 1.0}, "over"),
-        ({"start": "3 m"}, "from"),
-        ({"start": 2.0, "stop": 1.0}, "to"),
-        ({"stop": -1.0}, "to"),
-        ({"start": 0.0, "log": True}, "from"),
+        ({"start": "3 m"}, "start"),
+        ({"start": 2.0, "stop": 1.0}, "stop"),
+        ({"stop": -1.0}, "stop"),
+        ({"start": 0.0, "log": True}, "start"),
         ({"values": 1}, "values"),
         ({"speeds": 1_000_000}, "speeds"),
         ({"state": "together"}, "state"),

@@ -9,17 +9,16 @@ import numpy as np
 import pytest
 from pytest import approx
 
+import leblanc as lb
 from leblanc.cli import main
-from leblanc.figures.whirl_map import cycles_figure
-from leblanc.results.whirl_map import WhirlMap
 from leblanc.scene.scene import Scene, load_scene
 from leblanc.scene.tasks import Optimisation
 from leblanc.studies.explain import explain_scene
+from leblanc.studies.map.answer import WhirlMap, facts, sentence
+from leblanc.studies.map.figure import cycles_figure
 from leblanc.studies.optimise.constraints import whirl_size
 from leblanc.studies.runup.study import runup_scene, whirl_on_the_way
-from leblanc.studies.whirl_map import map_scene
 from leblanc.text.explanation import facts as explained
-from leblanc.text.whirl_map import answer, facts
 from meshes.errors import InputError
 from tests.mutants import kills
 
@@ -59,7 +58,7 @@ def machine(tmp_path_factory: pytest.TempPathFactory) -> Scene:
 
 @pytest.fixture(scope="module")
 def found(machine: Scene) -> WhirlMap:
-    return map_scene(machine, 3, 21, cycles=True)
+    return lb.map_whirl(machine, volumes=3, speeds=21, cycles=True)
 
 
 def test_the_map_tells_how_large_the_whirl_grows(found: WhirlMap) -> None:
@@ -74,12 +73,12 @@ def test_the_map_tells_how_large_the_whirl_grows(found: WhirlMap) -> None:
     assert fold["speed"] == approx(111.86, rel=1e-3)
     values = dict(facts(found))
     assert values["Folds"].startswith("1068 rpm")
-    assert "up to 6.78" in answer(found) and values["Largest stable whirl"] in answer(found)
+    assert "up to 6.78" in sentence(found) and values["Largest stable whirl"] in sentence(found)
 
 
 def test_a_map_that_was_not_asked_has_no_cycles(machine: Scene) -> None:
-    plain = map_scene(machine, 3, 5)
-    assert plain.branches is None and "cycles" not in plain.to_json()
+    plain = lb.map_whirl(machine, volumes=3, speeds=5)
+    assert plain.large is None and plain.cycles is None and "cycles" not in plain.to_json()
     assert not any(name.startswith("cycle") for name in plain.named_arrays().variables)
 
 
@@ -101,10 +100,11 @@ def test_the_figure_tells_stable_from_unstable_without_colour(found: WhirlMap) -
 
 
 def test_gravity_across_is_told_and_nothing_bounds_a_whirl(tmp_path: Path) -> None:
-    lying = map_scene(load_scene(scene(tmp_path, "horizontal")), 2, 5, cycles=True)
+    few = {"volumes": 2, "speeds": 5, "cycles": True}
+    lying = lb.map_whirl(scene(tmp_path, "horizontal"), **few)
     assert any(note.code == "no_circle" for note in lying.notes)
     free = load_scene(scene(tmp_path)).replace({"rotor.damping_ratio": 0.0})
-    (note,) = (note for note in map_scene(free, 2, 5, cycles=True).notes if note.code == "no_cycles")
+    (note,) = (note for note in lb.map_whirl(free, **few).notes if note.code == "no_cycles")
     assert "nothing bounds" in note.text
 
 

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from leblanc.results.notes.whirl_map import MapCode
 from leblanc.scene.scene import Scene, load_scene
+from leblanc.studies.cycles import CycleCode
 from leblanc.studies.models.choose import prepare
 from leblanc.studies.run.answer import RunAnswer
 from leblanc.studies.run.figure import amplitude_figure
@@ -77,7 +77,7 @@ def test_only_if_asked() -> None:
 def test_why_there_is_none() -> None:
     scene = machine().replace({"speeds.count": 3, "model.friction": "none"})
     found = run_scene(scene, cycles=True)
-    (said,) = (note for note in found.notes if note.code == MapCode.NO_CYCLES)
+    (said,) = (note for note in found.notes if note.code == CycleCode.NO_CYCLES)
     assert "without friction" in said.text
     # Small whirls grow everywhere, for damping of the supports alone feeds the wave: not known, not 0.
     assert found.to_json()["self_excited_amplitude"] == [None, None, None]

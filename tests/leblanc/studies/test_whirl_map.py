@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import inspect
 import json
 import math
 from dataclasses import replace
@@ -17,21 +16,21 @@ import leblanc as lb
 from fluid.friction.laws import Friction
 from fluid.whirl import covering_speed
 from leblanc.cli import main
-from leblanc.cli.map import map as map_command
 from leblanc.core.netcdf import write_netcdf
-from leblanc.figures.whirl_map import map_figure, signed_distance
-from leblanc.results.notes.whirl_map import MapCode
-from leblanc.results.whirl_map import WhirlMap
+from leblanc.core.question import parameters
 from leblanc.scene.scene import Scene, dry_rotor, load_scene
-from leblanc.studies import whirl_map as whirl_map_study
+from leblanc.studies import map as questions
+from leblanc.studies.map.answer import WhirlMap
+from leblanc.studies.map.figure import map_figure, signed_distance
+from leblanc.studies.map.study import MapCode, fills_over_volume
 from leblanc.studies.run.study import run_scene
-from leblanc.studies.whirl_map import SPEEDS, VOLUMES, fills_over_volume, map_scene
 from meshes.errors import InputError
 from solvers.whirl.growth import asynchronous_growth, growth_map
 from tests.mutants import kills
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 RPM = 60.0 / (2.0 * math.pi)
+STUDY = "leblanc.studies.map.study"
 
 
 def scene(name: str = "washing_machine") -> Scene:
@@ -39,15 +38,15 @@ def scene(name: str = "washing_machine") -> Scene:
 
 
 def small(name: str = "washing_machine", **changes: object) -> WhirlMap:
-    return map_scene(scene(name), **({"volumes": 9, "speeds": 40} | changes))  # type: ignore[arg-type]
+    return lb.map_whirl(scene(name), **({"volumes": 9, "speeds": 40} | changes))  # type: ignore[arg-type]
 
 
 @kills(
-    "leblanc.studies.whirl_map:fills_over_volume",
+    f"{STUDY}:fills_over_volume",
     "share = parts / parts.sum()",
     "share = parts / parts.max()",
 )
-@kills("leblanc.studies.whirl_map:fills_over_volume", "np.min(capacity[wet]", "np.max(capacity[wet]")
+@kills(f"{STUDY}:fills_over_volume", "np.min(capacity[wet]", "np.max(capacity[wet]")
 def test_fills() -> None:
     """The volumes keep their ratios, add up, and end where the first chamber is full."""
     for name in ("horizontal_rig", "vertical_rig"):
@@ -85,7 +84,7 @@ def test_record() -> None:
         assert np.array_equal(record.growth > 0.0, signed_distance(record) > 0.0)
 
 
-@kills("leblanc.studies.whirl_map:_held", "speed > max(needed", "speed > 2.0 * max(needed")
+@kills(f"{STUDY}:_held", "speed > max(needed", "speed > 2.0 * max(needed")
 def test_range() -> None:
     """Held by the centrifugal field: a level axis from the capture speed, an upright one from covering."""
     record, machine = small(friction=Friction("none", 0.0)), scene()
@@ -99,8 +98,8 @@ def test_range() -> None:
         assert np.array_equal(record.in_range[k], record.speed > covered)
 
 
-@kills("leblanc.studies.whirl_map:map_scene", "zip(rows, whirl_speed - speed", "zip(rows, whirl_speed")
-@kills("leblanc.studies.whirl_map:_thin_layers", "2.0 * fill.liquid.viscosity", "fill.liquid.viscosity")
+@kills(f"{STUDY}:map_scene", "zip(rows, whirl_speed - speed", "zip(rows, whirl_speed")
+@kills(f"{STUDY}:_thin_layers", "2.0 * fill.liquid.viscosity", "fill.liquid.viscosity")
 def test_thin_layers() -> None:
     """With laminar friction a film thinner than five thicknesses of the wall layer is out of range."""
     record, machine = small(), scene()
@@ -125,7 +124,7 @@ def test_notes_say_which_dampings_there_are() -> None:
 
 def test_other_rotors() -> None:
     """The tub with its six degrees of freedom: bands separate signs there too."""
-    record = map_scene(scene("tub"), 3, 12, friction=Friction("linear", 0.5))
+    record = lb.map_whirl(scene("tub"), volumes=3, speeds=12, friction=Friction("linear", 0.5))
     assert np.isfinite(record.growth).all()
     assert np.array_equal(record.growth > 0.0, signed_distance(record) > 0.0)
     assert record.damping == "damping as in the scene"
@@ -169,9 +168,9 @@ def test_words(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
 
 
 @pytest.mark.parametrize("lost", [1, 3])
-@kills("leblanc.results.whirl_map:WhirlMap.not_known", "np.isnan(self.growth)", "np.isinf(self.growth)")
+@kills("leblanc.studies.map.answer:WhirlMap.not_known", "np.isnan(self.growth)", "np.isinf(self.growth)")
 @kills(
-    "leblanc.studies.whirl_map:map_scene",
+    f"{STUDY}:map_scene",
     "bands_not_known(speed, found)",
     "bands_not_known(speed, 0 * speed)",
 )
@@ -190,7 +189,7 @@ def test_points_not_known(
         done += len(growth)
         return growth, whirl
 
-    monkeypatch.setattr(whirl_map_study, "growth_map", losing)
+    monkeypatch.setattr(f"{STUDY}.growth_map", losing)
     command = ["map", str(EXAMPLES / "washing_machine.toml"), "--volumes", "10", "--speeds", "20"]
     code = main([*command, "--out", str(tmp_path), "--json"])
     said = capsys.readouterr()
@@ -226,17 +225,19 @@ def test_wrong_options_are_named(
     assert capsys.readouterr().err.startswith(f"leblanc: {options[0]} = ")
 
 
-def test_defaults_are_the_study_s() -> None:
-    told = inspect.signature(map_command, eval_str=True).parameters
-    volumes, speeds = (told[name].annotation.__metadata__[0].help for name in ("volumes", "speeds"))
-    assert f"[default: {VOLUMES}]" in volumes and f"[default: {SPEEDS};" in speeds
+def test_the_help_has_the_defaults_of_both_calls() -> None:
+    told = {one.name: one.text for one in parameters(questions.map)}
+    for call in (lb.map_whirl, lb.map_balls):
+        given = {one.name: one.default for one in parameters(call) if isinstance(one.default, int | str)}
+        del given["cycles" if call is lb.map_whirl else "state"]
+        assert all(f" {value}]" in told[name] or f" {value};" in told[name] for name, value in given.items())
 
 
 def test_a_range_of_one_speed_is_refused() -> None:
     machine = scene()
     still = machine.altered(speeds=machine.speeds.altered(stop=machine.speeds.start, count=1))
     with pytest.raises(InputError, match=r"speeds\.stop"):
-        map_scene(still)
+        lb.map_whirl(still)
 
 
 def test_outline() -> None:
@@ -282,7 +283,7 @@ def test_ratios_are_those_of_the_machine() -> None:
     assert record.volume[-1] == pytest.approx(record.capacity, rel=1e-12)
     assert record.critical_speed_dry == run_scene(machine).critical_speed_dry
     tilting = lb.example("tub").replace({"speeds.count": 9})
-    found = map_scene(tilting, volumes=2, speeds=3)
+    found = lb.map_whirl(tilting, volumes=2, speeds=3)
     assert found.critical_speed_dry == pytest.approx(run_scene(tilting).critical_speed_dry, rel=1e-12)
 
 

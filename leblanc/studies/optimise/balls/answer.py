@@ -212,11 +212,11 @@ class BallDesignAnswer(Best):
         return self.response.growth
 
     @property
-    def failed(self) -> tuple[str, ...]:
+    def faults(self) -> tuple[str, ...]:
         return () if self.feasible else (f"no balls meet every constraint: {self._nearest()}",)
 
     @property
-    def done(self) -> str:
+    def closing(self) -> str:
         return f"{self.name}: {self.evaluations} designs judged"
 
     def blocks(self) -> tuple[Block, ...]:

@@ -130,11 +130,11 @@ class LayoutAnswer(Best):
         return variable(_BOTH, both, "1", self.measure, "what is made least")
 
     @property
-    def failed(self) -> tuple[str, ...]:
+    def faults(self) -> tuple[str, ...]:
         return () if self.feasible else (self.sentence(),)
 
     @property
-    def done(self) -> str:
+    def closing(self) -> str:
         return f"{self.name}: {self.evaluations} layouts judged"
 
     def blocks(self) -> tuple[Block, ...]:

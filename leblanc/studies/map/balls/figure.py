@@ -4,32 +4,27 @@ from __future__ import annotations
 
 import math
 from itertools import pairwise
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from leblanc.core.notes import one_line
-from leblanc.core.units import RPM, unit_for
+from leblanc.core.units import RPM
 from leblanc.figures.drawing.page import (
     Caption,
     Figure,
-    FigureFiles,
     Frame,
     add_rate_axis,
     lay_out,
     number,
-    save,
     style,
 )
-from leblanc.results.races.chart import BallChart
-from leblanc.text.races.chart import CURVES, STATES, alt, answer, what
+from leblanc.studies.map.balls.answer import CURVES, STATES, BallChart, sentence
 from meshes.arrays import Array, Flags, Indices
 
 Axes = Any  # matplotlib's
 
 FRAME = Frame(left=0.8, top=0.46, between=0.14, below=0.42)
-TITLE = "Where the balls are stable"
 PANEL = 3.2  # inches
 STABLE = {"facecolor": "#CFE6F5", "hatch": "//", "edgecolor": "#7FB2D5", "linewidth": 0.0}
 MISSING = {"facecolor": "0.94", "hatch": "xx", "edgecolor": "0.72", "linewidth": 0.0}
@@ -46,10 +41,14 @@ OWN = {"color": "black", "linewidth": 1.1, "linestyle": (0, (1, 1.5)), "zorder":
 
 def chart_figure(result: BallChart) -> Figure:
     """Regions over speed and the number that is varied."""
-    unit = unit_for(result.dimension, *result.value[[0, -1]].tolist())
+    unit = result.shown_unit
     with style():
         figure = Figure()
-        figure.alt = alt(result)
+        figure.alt = (
+            f"Chart of stability over speed and {result.varied}: regions that are stable, unstable by the "
+            "number of growing roots, or without such a state, and the curves between them. "
+            f"{sentence(result)}"
+        )
         axes: Axes = figure.add_axes((0, 0, 1, 1))
         axes.set_yscale("log" if result.log else "linear")
         _draw_regions(axes, result, unit.count)
@@ -69,15 +68,10 @@ def chart_figure(result: BallChart) -> Figure:
         axes.xaxis.set_major_formatter(number)
         axes.yaxis.set_major_formatter(number)
         axes.set_xlabel("Speed (rpm)")
-        axes.set_ylabel(f"{what(result)} ({unit.name or chr(0x2013)})")
+        axes.set_ylabel(f"{result.varied} ({unit.name or chr(0x2013)})")
         add_rate_axis(axes)
         lay_out(figure, [[axes]], [PANEL], FRAME, _caption(result), most_lines=6)
     return figure
-
-
-def write_chart_figure(result: BallChart, directory: Path) -> FigureFiles:
-    """Draw the figure and write it as PNG and SVG."""
-    return save(chart_figure(result), directory, "map", TITLE)
 
 
 def _draw_regions(axes: Axes, result: BallChart, count: float) -> None:
@@ -177,6 +171,6 @@ def _caption(result: BallChart) -> Caption:
     varied = ", ".join(result.paths)
     return Caption(
         f"Stability of {STATES[result.state]} by the roots of small motions, over speed and {varied}. "
-        f"{answer(result)}",
+        f"{sentence(result)}",
         f"Scene: {one_line(result.name)}, {result.axis} axis. Assumed: {assumed}.",
     )

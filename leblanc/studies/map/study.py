@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,12 +10,13 @@ from fluid.fill import Fill
 from fluid.friction.laws import Friction
 from fluid.waves import capture_speed
 from fluid.whirl import covering_speed, is_full
-from leblanc.core.notes import Note
-from leblanc.core.units import small_whirl_friction
-from leblanc.results.motion.cycles import DEEP, FAST_LAG, LargeWhirl
-from leblanc.results.notes import whirl_map as notes
-from leblanc.results.whirl_map import WhirlMap
+from leblanc.core.notes import Note, NoteCode
+from leblanc.core.progress import update
+from leblanc.core.units import VOLUME, rpm_bands, small_whirl_friction, with_unit
+from leblanc.results.motion.cycles import Cycles
 from leblanc.scene.scene import Scene, require_no_balls, require_whirl
+from leblanc.studies.cycles import scene_cycles
+from leblanc.studies.map.answer import WhirlMap
 from leblanc.studies.models.choose import Prepared, prepare
 from leblanc.studies.models.validity import doubts
 from meshes.arrays import Array, Flags
@@ -29,26 +28,30 @@ from solvers.synchronous.response import main_critical_speeds
 from solvers.whirl.edges import Bands, bands_not_known, unstable_bands
 from solvers.whirl.growth import growth_map
 
-if TYPE_CHECKING:
-    from solvers.cycles.cycles import HeldWhirl, LimitCycles
-
-
-VOLUMES, SPEEDS = 101, 201
 FEWEST, MOST = 2, 4000  # volumes or speeds of a map
 _AT_ONCE = 20  # volumes between reports of progress
 _THIN = THIN_LAYERS[1]
-_WAY = 1e-3  # relative width of the range of a single speed
+
+
+class MapCode(NoteCode):
+    """What the notes of a map say."""
+
+    OWN_VOLUME = "own_volume"
+    QUADRATIC = "quadratic"
+    WITHOUT_FRICTION = "without_friction"
+    COMMON_FACTOR = "common_factor"
+    NOT_HELD = "not_held"
+    THICK_WALL_LAYER = "thick_wall_layer"
+    NOT_KNOWN = "not_known"
 
 
 def map_scene(
     scene: Scene,
-    volumes: int = VOLUMES,
-    speeds: int = SPEEDS,
+    volumes: int,
+    speeds: int,
     max_volume: float | None = None,
     friction: Friction | None = None,
-    progress: Callable[[int, int], None] | None = None,
     cycles: bool = False,
-    found: Callable[[int, float], None] | None = None,
 ) -> WhirlMap:
     """Growth rate and whirl speed of self-excited whirl over the scene's speeds and over volume.
 
@@ -65,13 +68,13 @@ def map_scene(
     together = _AT_ONCE if isinstance(rotor, Jeffcott) else 1
     for first in range(0, volumes, together):
         parts.append(growth_map(rotor, rows[first : first + together], speed, law))
-        if progress is not None:
-            progress(min(first + together, volumes), volumes)
+        done = min(first + together, volumes)
+        update(done, volumes, "volumes" if done < volumes else "edges of the bands")
     growth, whirl_speed = (np.concatenate([part[k] for part in parts]) for k in (0, 1))
     edges = unstable_bands(rotor, rows, speed, law, growth)
     (own,) = unstable_bands(rotor, [scene.fills], speed, law)
     carried = np.array([_held(scene, fills, speed) for fills in rows])
-    large = _limit_cycles(machine, law, found) if cycles else None
+    large, said = scene_cycles(machine, law) if cycles else (None, ())
     pairs = zip(rows, whirl_speed - speed, strict=True)
     thin = np.array([_thin_layers(fills, slip) for fills, slip in pairs]) | (not law.law.laminar)
     return WhirlMap(
@@ -86,71 +89,18 @@ def map_scene(
         in_range=carried & thin,
         edges=edges,
         friction=small_whirl_friction(law),
-        damping=_damping(machine),
+        damping=f"damping ratio {rotor.damping_ratio:.3g}"
+        if isinstance(rotor, Jeffcott)
+        else "damping as in the scene",
         scene_volume=sum(fill.volume for fill in scene.fills),
         scene_edges=own,
-        notes=(
-            *_notes(machine, law, own, carried, thin, int(np.count_nonzero(np.isnan(growth)))),
-            *(() if large is None else _cycle_notes(machine, large)),
-            *doubts(scene),
-        ),
+        notes=(*_notes(machine, law, own, carried, thin, growth), *said, *doubts(scene)),
         edges_not_known=tuple(bands_not_known(speed, found) for found in growth),
         capacity=sum(fill.chamber.capacity for fill in rows[-1] if fill.volume > 0.0),
         critical_speed_dry=_critical_speed(machine),
-        branches=None if large is None else large.branches,
+        large=None if large is None else Cycles(large.branches),
         depth=max((fill.depth for fill in scene.fills), default=0.0),
     )
-
-
-def _limit_cycles(
-    machine: Prepared, friction: Friction, progress: Callable[[int, float], None] | None
-) -> LimitCycles:
-    """Limit cycles of the scene as it stands, over its speeds."""
-    from solvers.cycles.cycles import limit_cycles
-
-    speeds = machine.scene.speeds
-    # A single speed still needs a way to it.
-    range_ = speeds.start, max(speeds.stop, speeds.start * (1.0 + _WAY))
-    return limit_cycles(machine.rotor, machine.scene.fills, range_, friction, progress=progress)
-
-
-def large_whirl(machine: Prepared, growth: Array) -> tuple[LargeWhirl, tuple[Note, ...]]:
-    """How large the self-excited whirl becomes at each speed of a machine, and what is to be said of it."""
-    found = _limit_cycles(machine, machine.scene.model.friction, None)
-    largest = [_largest_stable(found, speed) for speed in machine.speed.tolist()]
-    size = np.array([0.0 if whirl is None else whirl.amplitude for whirl in largest])
-    turning = np.array([np.nan if whirl is None else whirl.whirl_speed for whirl in largest])
-    lost = (size == 0.0) & ~(growth <= 0.0)
-    large = LargeWhirl(
-        branches=found.branches,
-        amplitude=np.where(lost, np.nan, size),
-        whirl_speed=turning,
-        kicked=(size > 0.0) & (growth <= 0.0),
-        reason=found.reason,
-    )
-    return large, tuple(_cycle_notes(machine, found))
-
-
-def _largest_stable(found: LimitCycles, speed: float) -> HeldWhirl | None:
-    whirls = [whirl for branch in found.branches for whirl in branch.at(speed) if whirl.stable]
-    return max(whirls, key=lambda whirl: whirl.amplitude, default=None)
-
-
-def _cycle_notes(machine: Prepared, found: LimitCycles) -> list[Note]:
-    """What the limit cycles leave out, and why there are none."""
-    if not found.branches:
-        return [notes.no_cycles(found.reason)]
-    said = [notes.cycles_missing(found.reason)] if found.reason else []
-    if machine.scene.rotor.axis == "horizontal" and machine.scene.gravity > 0.0:
-        said.append(notes.no_circle())
-    lagging = max(float(np.nanmax(branch.lag / branch.speed[:, None])) for branch in found.branches)
-    if lagging > FAST_LAG:
-        said.append(notes.lagging(lagging, FAST_LAG))
-    largest = max(float(np.abs(branch.deflection).max()) for branch in found.branches)
-    depth = max(fill.depth for fill in machine.scene.fills)
-    if largest > DEEP * depth:
-        said.append(notes.deep_whirl(largest / depth))
-    return said
 
 
 def _critical_speed(machine: Prepared) -> float:
@@ -163,7 +113,7 @@ def _critical_speed(machine: Prepared) -> float:
 
 
 def _check(scene: Scene, volumes: int, speeds: int) -> None:
-    for field, count in (("--volumes", volumes), ("--speeds", speeds)):
+    for field, count in (("volumes", volumes), ("speeds", speeds)):
         if not FEWEST <= count <= MOST:
             raise InputError(field, count, f"a whole number from {FEWEST} to {MOST}")
     if scene.speeds.stop <= scene.speeds.start:
@@ -188,7 +138,7 @@ def fills_over_volume(
     room = float(parts.sum() * np.min(capacity[wet] / parts[wet]))
     most = room if max_volume is None else max_volume
     if not 0.0 < most <= room * (1.0 + 1e-9):
-        raise InputError("--max-volume", max_volume, f"above 0 and at most {room:.6g} m^3, what fits")
+        raise InputError("max_volume", max_volume, f"above 0 and at most {room:.6g} m^3, what fits")
     share = parts / parts.sum()
     totals = np.linspace(0.0, min(most, room), count)
     return [
@@ -220,29 +170,57 @@ def _thin_layers(fills: tuple[Fill, ...], slip: Array) -> Flags:
     return thin
 
 
-def _damping(machine: Prepared) -> str:
-    """Damping of the support, in words."""
-    if isinstance(machine.rotor, Jeffcott):
-        return f"damping ratio {machine.rotor.damping_ratio:.3g}"
-    return "damping as in the scene"
-
-
 def _notes(
-    machine: Prepared, law: Friction, own: Bands, carried: Flags, thin: Flags, lost: int
+    machine: Prepared, law: Friction, own: Bands, carried: Flags, thin: Flags, growth: Array
 ) -> tuple[Note, ...]:
     """Limits of validity and findings."""
-    scene = machine.scene
-    found = [notes.own_volume(sum(fill.volume for fill in scene.liquids), own)]
-    if lost:
-        found.append(notes.growth_not_known(lost, thin.size))
+    scene, found = machine.scene, []
+
+    def note(code: MapCode, text: str, **data: object) -> None:
+        found.append(Note(code, data, text))
+
+    with_it = f"With the scene's {with_unit(volume := sum(fill.volume for fill in scene.liquids), VOLUME)}"
+    text = f"{with_it} no whirl grows by itself at these speeds."
+    if own:
+        text = f"{with_it} a whirl grows by itself from {rpm_bands(own)}."
+    note(MapCode.OWN_VOLUME, text, volume=volume, bands=tuple(own))
+    if lost := int(np.count_nonzero(np.isnan(growth))):
+        points = f"At {lost} of {thin.size} points the growth is not known"
+        note(
+            MapCode.NOT_KNOWN,
+            f"{points}: crosses; do not take them for stable.",
+            lost=lost,
+            points=thin.size,
+        )
     if law.law == "quadratic":
-        found.append(notes.quadratic())
+        note(
+            MapCode.QUADRATIC,
+            "Quadratic friction vanishes for small motions: the map is that without it. It bounds what "
+            "grows.",
+        )
     if law.law in ("none", "quadratic") and np.any(machine.system.damping):
-        found.append(notes.without_friction())
+        note(
+            MapCode.WITHOUT_FRICTION,
+            "Without liquid friction the support's damping feeds the wave against the spin, whose energy is "
+            "negative: a weak growth remains at almost every speed.",
+        )
     if len(scene.fills) > 1:
-        found.append(notes.common_factor())
+        note(
+            MapCode.COMMON_FACTOR,
+            "The volumes of the chambers grow by a common factor until the first is full.",
+        )
     if not carried.all():
-        found.append(notes.not_held(float(np.mean(~carried)), scene.rotor.axis == "horizontal"))
+        share, why = float(np.mean(~carried)), "gravity across the axis outweighs the spin"
+        if scene.rotor.axis == "vertical":
+            why = "a paraboloid leaves part of a wall dry or reaches an inner wall"
+        note(MapCode.NOT_HELD, f"At {100.0 * share:.2g} % of the points {why}: out of range.", share=share)
     if not thin.all():
-        found.append(notes.thick_wall_layer(float(np.mean(~thin)), _THIN))
+        share = float(np.mean(~thin))
+        layer = f"the laminar layer at the wall is thicker than {_THIN:g} of the liquid's depth"
+        note(
+            MapCode.THICK_WALL_LAYER,
+            f"At {100.0 * share:.2g} % of the points {layer}: out of range.",
+            share=share,
+            limit=_THIN,
+        )
     return tuple(found)

@@ -3,23 +3,23 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
 
 from leblanc.core.notes import Note
+from leblanc.core.progress import update
 from leblanc.core.units import parse_option
-from leblanc.results.races.chart import BallChart, Curve
 from leblanc.scene.scene import Scene, dry_rotor
 from leblanc.scene.schema.load import SceneError
 from leblanc.scene.schema.paths import keys_of, rule_at
 from leblanc.scene.schema.rules import Quantity, Refused
 from leblanc.studies.balls import notes
-from leblanc.studies.balls.states import Parts, liquid_beside, machine_at, own_family, parts_of
+from leblanc.studies.balls.states import Parts, liquid_beside, own_family, parts_of
+from leblanc.studies.map.balls.answer import STATES, BallChart, Curve
 from leblanc.studies.models.validity import doubts
-from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.rotor.balls.charts import (
     Edge,
@@ -33,9 +33,7 @@ from solvers.rotor.balls.charts import (
 )
 from solvers.rotor.balls.states import turning
 
-VALUES, SPEEDS = 31, 61
 FEWEST, MOST = 2, 1000  # values or speeds of a chart
-STATES = ("balanced", "heavy", "light")
 _WIDE, _USUAL = 100.0, 10.0  # factors on both sides of the scene's drag, of any other number
 _DECADE = 10.0  # a range as wide as this is spaced by logarithms
 _ROOTS = ("rotor", "chambers", "gravity")
@@ -54,15 +52,13 @@ class _Varied:
 
 def chart_scene(
     scene: Scene,
-    over: Sequence[str] = (),
-    start: str | float | None = None,
-    stop: str | float | None = None,
-    *,
-    values: int = VALUES,
-    speeds: int = SPEEDS,
-    log: bool | None = None,
-    state: str = STATES[0],
-    progress: Callable[[int, int], None] | None = None,
+    over: str | Sequence[str],
+    start: str | float | None,
+    stop: str | float | None,
+    values: int,
+    speeds: int,
+    log: bool | None,
+    state: str,
 ) -> BallChart:
     """Stability of a state of the balls over speed and another number of the scene, or the drag.
 
@@ -71,20 +67,23 @@ def chart_scene(
     light: the balls of each race together on that side of its plane.
     """
     _check(scene, values, speeds, state)
-    varied = _varied(scene, tuple(over))
+    varied = _varied(scene, (over,) if isinstance(over, str) else tuple(over))
     low, high = _ends(varied, start, stop, not over)
     log = low > 0.0 and high >= _DECADE * low if log is None else log
     if log and low <= 0.0:
-        raise InputError("--from", low, "above 0 for values spaced by their logarithm")
+        raise InputError("start", low, "above 0 for values spaced by their logarithm")
     speed = np.linspace(scene.speeds.start, scene.speeds.stop, speeds)
     first, last = (math.log(low), math.log(high)) if log else (low, high)
     second = np.linspace(first, last, values)
     family = _family(scene, varied, log)
     rotor, races = dry_rotor(scene).system(), [race.race() for race in scene.balls]
     chosen = State() if state == "balanced" else gathered(rotor, races, state == "light")
-    chart = stability_chart(_told(family, speeds * values, progress), speed, second, chosen)
+    chart = stability_chart(_told(family, speeds * values), speed, second, chosen)
     bounds = existence_bounds(family, float(speed[0]), second) if state == "balanced" else []
     growth, bands = stable_bands(own_family(scene), speed, 0.0, chosen)
+    # Ends as they were asked for, without the rounding of a logarithm.
+    value = np.exp(second) if log else second.copy()
+    value[0], value[-1] = low, high
     answer = BallChart(
         name=scene.name,
         source=scene.source,
@@ -96,8 +95,8 @@ def chart_scene(
         dimension=varied.rule.dimension,
         log=log,
         speed=speed,
-        value=_values(second, low, high, log),
-        growing=chart.growing.T,
+        value=value,
+        growing=chart.growing.T.astype(np.int32),
         growth=chart.growth.T,
         edges=tuple(_curve(edge, log) for edge in chart.edges),
         bounds=tuple(np.exp(bounds).tolist() if log else bounds),
@@ -113,11 +112,11 @@ def chart_scene(
 def _check(scene: Scene, values: int, speeds: int, state: str) -> None:
     if not scene.balls:
         raise InputError("chambers", len(scene.chambers), "with one of kind balls for this")
-    for field, count in (("--values", values), ("--speeds", speeds)):
+    for field, count in (("values", values), ("speeds", speeds)):
         if not FEWEST <= count <= MOST:
             raise InputError(field, count, f"a whole number from {FEWEST} to {MOST}")
     if state not in STATES:
-        raise InputError("--state", state, f"one of {', '.join(STATES)}")
+        raise InputError("state", state, f"one of {', '.join(STATES)}")
     if scene.speeds.stop <= scene.speeds.start:
         raise InputError("speeds.stop", scene.speeds.stop, "above speeds.start for a map")
     liquid_beside(scene)
@@ -128,10 +127,10 @@ def _varied(scene: Scene, over: tuple[str, ...]) -> _Varied:
     first = len(scene.liquids)
     paths = over or tuple(f"chambers.{first + k}.drag" for k in range(len(scene.balls)))
     if len(set(paths)) < len(paths):
-        raise InputError("--over", ", ".join(paths), "paths that differ")
+        raise InputError("over", ", ".join(paths), "paths that differ")
     rules = [_rule(scene, path) for path in paths]
     if len({rule.dimension for rule in rules}) > 1:
-        raise InputError("--over", ", ".join(paths), "paths of quantities of one kind")
+        raise InputError("over", ", ".join(paths), "paths of quantities of one kind")
     own = [_own(scene, path) for path in paths]
     together = all(math.isfinite(value) for value in own) and own[0] != 0.0
     # Numbers that have no ratio take the same value.
@@ -142,13 +141,13 @@ def _varied(scene: Scene, over: tuple[str, ...]) -> _Varied:
 def _rule(scene: Scene, path: str) -> Quantity:
     """Rule of a number that may take any value in between."""
     if keys_of(path)[0] not in _ROOTS:
-        raise InputError("--over", path, f"the path of a number under {', '.join(_ROOTS)}")
+        raise InputError("over", path, f"the path of a number under {', '.join(_ROOTS)}")
     try:
         rule = rule_at(Scene, scene.table(), path)
     except Refused as refused:
-        raise InputError("--over", path, refused.allowed) from None
+        raise InputError("over", path, refused.allowed) from None
     if not isinstance(rule, Quantity):
-        raise InputError("--over", path, "the path of a number that may take any value in between")
+        raise InputError("over", path, "the path of a number that may take any value in between")
     return rule
 
 
@@ -165,7 +164,7 @@ def _ends(
 ) -> tuple[float, float]:
     """First and last value, SI."""
     factor, own, ends = _WIDE if drag else _USUAL, varied.own, []
-    for option, given, chosen in (("--from", start, own / factor), ("--to", stop, own * factor)):
+    for option, given, chosen in (("start", start, own / factor), ("stop", stop, own * factor)):
         if given is None and not own > 0.0:
             raise InputError(option, given, f"given where the scene has no {varied.paths[0]} above 0")
         value = chosen if given is None else parse_option(given, varied.rule.dimension, option)
@@ -174,15 +173,8 @@ def _ends(
         except Refused as refused:
             raise InputError(option, value, refused.allowed) from None
     if not ends[0] < ends[1]:
-        raise InputError("--to", ends[1], f"above the first value, {ends[0]:g}")
+        raise InputError("stop", ends[1], f"above the first value, {ends[0]:g}")
     return ends[0], ends[1]
-
-
-def _values(second: Array, low: float, high: float, log: bool) -> Array:
-    """Values of the grid; their ends as they were asked for, without the rounding of a logarithm."""
-    value = np.exp(second) if log else second.copy()
-    value[0], value[-1] = low, high
-    return value
 
 
 def _curve(edge: Edge, log: bool) -> Curve:
@@ -205,21 +197,19 @@ def _family(scene: Scene, varied: _Varied, log: bool) -> Family:
             fault = error.faults[0]
             where = f"{varied.paths[0]} at {value:g}"
             allowed = f"such that {fault.field} is {fault.allowed}"
-            raise InputError("--over", where, allowed) from None
+            raise InputError("over", where, allowed) from None
 
-    return lambda speed, at: machine_at(parts(at), speed)
+    return lambda speed, at: parts(at).at(speed)
 
 
-def _told(family: Family, total: int, progress: Callable[[int, int], None] | None) -> Family:
+def _told(family: Family, total: int) -> Family:
     """The same, telling how many points of the grid are done."""
-    if progress is None:
-        return family
     done = 0
 
     def told(speed: float, at: float) -> Machine:
         nonlocal done
         done += 1
-        progress(min(done, total), total)
+        update(min(done, total), total, "points" if done < total else "curves")
         return family(speed, at)
 
     return told

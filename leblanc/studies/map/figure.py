@@ -1,4 +1,4 @@
-"""The map of self-excited whirl over speed and volume."""
+"""Figures of a map: self-excited whirl over speed and volume, and how large it grows."""
 
 from __future__ import annotations
 
@@ -20,9 +20,7 @@ from leblanc.figures.drawing.page import (
     part_of,
     style,
 )
-from leblanc.figures.drawing.page import save as save  # a figure is drawn and written together
-from leblanc.results.whirl_map import WhirlMap
-from leblanc.text.whirl_map import alt, cycles_alt
+from leblanc.studies.map.answer import WhirlMap, alt, cycles_alt
 from meshes.arrays import Array
 
 Axes = Any  # matplotlib's, which no module that only draws imports
@@ -60,8 +58,8 @@ def map_figure(result: WhirlMap) -> Figure:
             axes.set_xlim(result.speed[0] * RPM, result.speed[-1] * RPM)
             axes.set_ylim(0.0, result.volume[-1] * ML)
             axes.grid(visible=False)
-            axes.xaxis.set_major_formatter(_label)
-            axes.yaxis.set_major_formatter(_label)
+            axes.xaxis.set_major_formatter(number)
+            axes.yaxis.set_major_formatter(number)
             axes.set_xlabel("Speed (rpm)")
             _add_ratios(axes, result)
         lay_out(figure, [[axes] for axes in panels], [PANEL] * 2, FRAME, _caption(result), LINES)
@@ -70,17 +68,13 @@ def map_figure(result: WhirlMap) -> Figure:
     return figure
 
 
-def _label(value: float, _at: float) -> str:
-    return number(value)
-
-
 def _add_ratios(axes: Axes, result: WhirlMap) -> None:
     """Speed over the critical one above, share of what the chambers hold on the right."""
     critical, whole = result.critical_speed_dry * RPM, result.capacity * ML
     if critical > 0.0:
         above = axes.secondary_xaxis("top", functions=(lambda x: x / critical, lambda x: x * critical))
         above.set_xlabel("Speed/critical speed without liquid (\N{EN DASH})")
-        above.xaxis.set_major_formatter(_label)
+        above.xaxis.set_major_formatter(number)
     else:
         add_rate_axis(axes)
     if whole > 0.0:
@@ -88,7 +82,7 @@ def _add_ratios(axes: Axes, result: WhirlMap) -> None:
             "right", functions=(lambda y: 100.0 * y / whole, lambda y: y * whole / 100.0)
         )
         share.set_ylabel("Fill (% of the chambers)")
-        share.yaxis.set_major_formatter(_label)
+        share.yaxis.set_major_formatter(number)
 
 
 def _place_bar(axes: Axes, bar: Axes | None) -> None:
@@ -106,7 +100,7 @@ def _colours(figure: Figure, axes: Axes, result: WhirlMap, values: Array, label:
     drawn = axes.pcolormesh(x, y, values, shading="nearest", rasterized=True, **look)
     bar = figure.add_axes((0, 0, 1, 1), label=label)
     short = bool(np.nanmin(values) < drawn.get_clim()[0])
-    figure.colorbar(drawn, cax=bar, label=label, format=_label, extend="min" if short else "neither")
+    figure.colorbar(drawn, cax=bar, label=label, format=number, extend="min" if short else "neither")
     return bar
 
 
@@ -221,8 +215,8 @@ def cycles_figure(result: WhirlMap) -> Figure:
                     axes, {key: value[shown["branch"] == branch] for key, value in shown.items()}, name, scale
                 )
             axes.set_xlim(ends[0], ends[1])
-            axes.xaxis.set_major_formatter(_label)
-            axes.yaxis.set_major_formatter(_label)
+            axes.xaxis.set_major_formatter(number)
+            axes.yaxis.set_major_formatter(number)
         _dress_cycles(panels[0], panels[1], result)
         caption = Caption(
             "Self-excited whirls of finite size over speed: amplitude of the first chamber's axis, and "
@@ -239,7 +233,7 @@ def cycles_figure(result: WhirlMap) -> Figure:
 
 def _dress_cycles(top: Axes, below: Axes, result: WhirlMap) -> None:
     """Folds, key and axes of the figure of limit cycles."""
-    folds = np.array([(fold["speed"] * RPM, fold["amplitude"] * MM) for fold in result.folds])
+    folds = np.array([(fold.speed * RPM, fold.amplitude * MM) for fold in result.folds])
     if folds.size:
         top.plot(*folds.T, label="fold", **FOLD)
     for label, look in (("stable", STABLE), ("unstable", LEFT), ("the liquid lags by over a third", FAR)):
@@ -251,7 +245,7 @@ def _dress_cycles(top: Axes, below: Axes, result: WhirlMap) -> None:
         depth = result.depth * MM
         share = top.secondary_yaxis("right", functions=(lambda y: y / depth, lambda y: y * depth))
         share.set_ylabel("Amplitude/depth (\N{EN DASH})")
-        share.yaxis.set_major_formatter(_label)
+        share.yaxis.set_major_formatter(number)
     add_rate_axis(top)
     if result.critical_speed_dry > 0.0:
         critical = result.critical_speed_dry * RPM

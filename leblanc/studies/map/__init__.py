@@ -1,0 +1,117 @@
+"""Self-excited whirl over speed and fill; of a machine with balls where they balance, over another number."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Annotated, Any
+
+from leblanc.core.question import FRICTION, SCENE, Option, Quantity, Texts, ask, together
+from leblanc.core.units import VOLUME
+from meshes.errors import InputError
+
+if TYPE_CHECKING:
+    from leblanc.scene.scene import Scene, SceneOrPath
+    from leblanc.studies.map.answer import WhirlMap
+    from leblanc.studies.map.balls.answer import BallChart
+
+FILES = ("map.html", "map.nc")
+
+
+def map_whirl(
+    scene: Annotated[SceneOrPath, SCENE, "The machine, or the path of its file."],
+    *,
+    volumes: Annotated[int, "How many volumes [default: 101]."] = 101,
+    speeds: Annotated[int, "How many speeds, over the scene's range [default: 201; with balls 61]."] = 201,
+    max_volume: Annotated[
+        Quantity | None, VOLUME, "Most liquid in all chambers together [default: what fits]."
+    ] = None,
+    friction: Annotated[
+        Any,
+        FRICTION,
+        "none, stokes, wall[:ROUGHNESS], linear:RATE or quadratic:NUMBER [default: the scene's].",
+    ] = None,
+    cycles: Annotated[
+        bool,
+        Option(("--cycles",)),
+        "Find how large the whirls of the scene as it stands grow: amplitude, frequency, folds, stability.",
+    ] = False,
+    progress: Annotated[
+        Callable[[float, float], None] | None, "Called with the number of volumes done and of all."
+    ] = None,
+) -> WhirlMap:
+    """Growth rate of self-excited whirl over speed and fill, with the edges of its bands.
+
+    Friction may be a table as in a machine file as well, or a `Friction`.
+
+    Raises
+    ------
+    SceneError, InputError : as for `run`
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> lb.map_whirl(lb.example("horizontal_rig"), volumes=3, speeds=5).growth.shape
+    (3, 5)
+    """
+    return ask(map_whirl, "leblanc.studies.map.study:map_scene", locals())
+
+
+def map_balls(
+    scene: Annotated[SceneOrPath, SCENE, "The machine with its races, or its file."],
+    over: Annotated[
+        Texts,
+        'With balls: path of the number on the second axis, as "chambers.0.drag"; several, each behind its '
+        "own --over, keep their ratios [default: the drag in all races].",
+    ] = (),
+    *,
+    start: Annotated[
+        Quantity | None, Option(("--from",)), "Its first value [default: a tenth of the scene's]."
+    ] = None,
+    stop: Annotated[
+        Quantity | None, Option(("--to",)), "Its last value [default: ten times the scene's]."
+    ] = None,
+    values: Annotated[int, "How many values of it [default: 31]."] = 31,
+    speeds: Annotated[int, "How many speeds, over the scene's range."] = 61,
+    log: Annotated[
+        bool | None,
+        Option(("--log/--linear",)),
+        "How it is spaced [default: log where it spans a decade].",
+    ] = None,
+    state: Annotated[
+        str, "Of the balls: balanced, heavy or light, together on that side [default: balanced]."
+    ] = "balanced",
+    progress: Annotated[
+        Callable[[float, float], None] | None, "Called with the number of points done and of all."
+    ] = None,
+) -> BallChart:
+    """Where the balls of a scene keep the rotor balanced, over its speeds and another of its numbers.
+
+    Raises
+    ------
+    SceneError, InputError : as for `run`; no race, a path that leads to no number
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> chart = lb.map_balls(lb.example("balls"), "rotor.unbalance", values=5, speeds=9)
+    >>> chart.growing[-1].tolist()  # beyond what two balls hold
+    [-1, -1, -1, -1, -1, -1, -1, -1, -1]
+    """
+    return ask(map_balls, "leblanc.studies.map.balls.study:chart_scene", locals())
+
+
+def map(scene: Scene, **options: Any) -> WhirlMap | BallChart:
+    """Growth of self-excited whirl over speed and fill; with balls in races where they balance the rotor.
+
+    Options of the other kind of machine are refused.
+    """
+    own, kind = (map_balls, "balls") if scene.kind == "balls" else (map_whirl, "no balls")
+    given = {name: value for name, value in options.items() if value is not None}
+    for name, value in given.items():
+        if name not in own.__annotations__:
+            raise InputError(name, value, f"left out for a scene with {kind}")
+    found: WhirlMap | BallChart = own(scene, **given)
+    return found
+
+
+map.__signature__ = together(map_whirl, map_balls)  # type: ignore[attr-defined]  # of the command
