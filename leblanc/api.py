@@ -63,10 +63,6 @@ def explain(
     return explain_scene(machine)
 
 
-
-
-
-
 def compare(scene: SceneOrPath, models: Sequence[str]) -> Comparison:
     """The same scene answered by several liquid models, side by side, with what each takes.
 

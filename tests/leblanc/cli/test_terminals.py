@@ -49,7 +49,7 @@ MORE = {"ascii": ("explain", "run in JSON", "volume", "sweep"), "all closed": ("
 CHILD = """if True:
     import os, sys, traceback
     from leblanc.cli import main
-    import leblanc.studies.run.figure, leblanc.studies.run.study, leblanc.report.run, leblanc.core.netcdf
+    import leblanc.studies.run.figure, leblanc.studies.run.study, leblanc.core.page, leblanc.core.netcdf
     import leblanc.studies.sweep.study, leblanc.studies.explain, numpy.random, rich.table
 
     commands, told = eval(sys.argv[1]), os.open("codes", os.O_WRONLY | os.O_CREAT)

@@ -20,7 +20,6 @@ from leblanc.core.notes import Note
 from leblanc.core.page import LIGHT, all_versions, citation, picture
 from leblanc.core.units import number, ranges
 from leblanc.figures.drawing.page import FigureFiles
-from leblanc.report.page import command_line
 from leblanc.results.base import FilledChamber
 from leblanc.scene.scene import load_scene
 from leblanc.studies.run import words as words
@@ -458,13 +457,6 @@ def test_same_record_same_page(tmp_path: Path, drawing: FigureFiles) -> None:
         page_of(folded(), tmp_path / name, [drawing])
         texts.append((tmp_path / name / "summary.html").read_bytes())
     assert texts[0] == texts[1]
-
-
-def test_command_that_makes_it_again() -> None:
-    line = command_line("map", Path("my scene.toml"), ("--volumes", 5, 101), ("--speeds", 9, 9))
-    assert line == "leblanc map 'my scene.toml' --volumes 5"
-    line = command_line("optimise", Path("s.toml"), ("--steady", True, False), ("--limit", "1 mm", None))
-    assert line == "leblanc optimise s.toml --steady --limit '1 mm'"
 
 
 def test_the_citation_is_that_of_the_file() -> None:

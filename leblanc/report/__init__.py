@@ -1,1 +1,0 @@
-"""Reports: one HTML file each that needs nothing else."""

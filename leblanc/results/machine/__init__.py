@@ -1,1 +1,0 @@
-"""Layout of a tub and the names of loads."""
