@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 import leblanc as lb
-from leblanc.api import run_up
+from leblanc import run_up
 from leblanc.cli import main
 from leblanc.core.answer import Result
 from leblanc.core.terminal import print_json
