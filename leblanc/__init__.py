@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from leblanc.studies.volume import volume
     from meshes.chamber import Chamber
     from meshes.errors import InputError
+    from solvers.liquid_model import LiquidModel
 
 __all__ = [
     "Chamber",
@@ -42,6 +43,7 @@ __all__ = [
     "InputError",
     "JeffcottRotor",
     "Liquid",
+    "LiquidModel",
     "MagneticRotor",
     "Scene",
     "SceneError",
@@ -75,6 +77,7 @@ _HOMES = {
     "InputError": ("meshes.errors", "InputError"),
     "JeffcottRotor": ("leblanc.scene.rotors", "JeffcottRotor"),
     "Liquid": ("fluid.liquid", "Liquid"),
+    "LiquidModel": ("solvers.liquid_model", "LiquidModel"),
     "MagneticRotor": ("leblanc.scene.magnetic", "MagneticRotor"),
     "Scene": ("leblanc.scene.scene", "Scene"),
     "SceneError": ("leblanc.scene.schema.load", "SceneError"),

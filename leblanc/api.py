@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from leblanc.results.sweep import SweepResult
     from leblanc.results.whirl_map import WhirlMap
     from leblanc.studies.run.answer import RunResult
+    from solvers.liquid_model import LiquidModel
 
 SceneOrPath = Scene | str | PathLike[str]
 
@@ -43,7 +44,12 @@ _OPTION = re.compile(r"--([a-z][a-z-]*)")
 
 
 def run(
-    scene: SceneOrPath, *, workers: int = 1, solver: str | None = None, cycles: bool = False
+    scene: SceneOrPath,
+    *,
+    workers: int = 1,
+    solver: str | None = None,
+    cycles: bool = False,
+    model: LiquidModel | str | None = None,
 ) -> RunResult | Answer | BallsResult:
     """Response and the liquid's centre of mass at each speed of a scene.
 
@@ -56,6 +62,8 @@ def run(
         steps if None
     cycles : find how large whirls that grow by themselves become, in `self_excited_amplitude`, `cycles` and
         `folds`; it takes some seconds
+    model : of the liquid in place of the scene's: an object with the two names of `leblanc.LiquidModel`, or a
+        name as in `[model] liquid`
 
     Returns
     -------
@@ -78,6 +86,11 @@ def run(
     if workers < 1:
         raise InputError("workers", workers, "1 or more")
     machine = scene_of(scene)
+    if model is not None:
+        from leblanc.studies.models.liquid import asked_with
+
+        with asked_with(machine, model) as other:
+            return run(other, workers=workers, solver=solver, cycles=cycles)
     if (address := answerer("run", machine.rotor.kind)) is not None:
         answer: Answer = called(address)(machine)
         return answer
@@ -180,6 +193,7 @@ def map_whirl(
     friction: str | Mapping[str, object] | Friction | None = None,
     cycles: bool = False,
     progress: Callable[[int, int], None] | None = None,
+    model: LiquidModel | str | None = None,
 ) -> WhirlMap:
     """Growth rate of self-excited whirl over speed and fill, with the edges of its bands.
 
@@ -192,6 +206,7 @@ def map_whirl(
         or a `Friction`; the scene's if None
     cycles : find how large the whirls of the scene as it stands grow as well, in `cycles` and `folds`
     progress : called with the number of volumes done and of all
+    model : of the liquid, as for `run`
 
     Raises
     ------
@@ -205,9 +220,10 @@ def map_whirl(
     """
     machine = scene_of(scene)
     from leblanc.core.units import VOLUME, parse_option
+    from leblanc.studies.models.liquid import asked_with
     from leblanc.studies.whirl_map import map_scene
 
-    with _keywords():
+    with _keywords(), asked_with(machine, model) as machine:
         most = None if max_volume is None else parse_option(max_volume, VOLUME, "--max-volume")
         law = None if friction is None else friction_of(friction, "friction")
         return map_scene(machine, volumes, speeds, most, law, progress, cycles)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from functools import cached_property
 from os import PathLike
 from typing import TYPE_CHECKING, Annotated, Any
@@ -16,6 +16,7 @@ from fluid.fill import Fill
 from fluid.friction.laws import Friction, FrictionLaw
 from fluid.liquid import Liquid, known_liquid
 from leblanc.core import units
+from leblanc.core.announced import LIQUIDS, announced
 from leblanc.core.units import allowed_as_typed
 from leblanc.scene.cabinet import MAX_POINTS, Cabinet, Point, cabinet_conflicts
 from leblanc.scene.chambers import Chamber
@@ -31,7 +32,7 @@ from leblanc.scene.rotors import TwoPlaneRotor as TwoPlaneRotor
 from leblanc.scene.schema.load import SceneError, SceneFault, given_at, meant, read_scene, shown, with_lines
 from leblanc.scene.schema.part import Conflict, Part, faults_of
 from leblanc.scene.schema.paths import keys_of, require_field, with_values
-from leblanc.scene.schema.rules import Refused, Speed, Text, entries, one_of, quantity, whole
+from leblanc.scene.schema.rules import OneOf, Refused, Speed, Text, entries, one_of, quantity, whole
 from leblanc.scene.spindle import Spindle as Spindle
 from leblanc.scene.spindle import without_liquid
 from leblanc.scene.tasks import Optimisation
@@ -56,6 +57,18 @@ HELD = ("auto", "never", "always")
 MAX_CELLS = 4096
 LIQUID_MODELS = ("auto", "statics", "linear", "long_wave", "potential", "kdv", "fem")
 _LAWS = ("none", "stokes", "wall")
+
+
+@dataclass(frozen=True)
+class LiquidName(OneOf):
+    """A built-in liquid model, or one that an installed package announces under `leblanc.liquids`."""
+
+    def __call__(self, value: object) -> str:
+        """The name."""
+        if isinstance(value, str) and value not in self.names and value in announced(LIQUIDS):
+            return value
+        return super().__call__(value)
+
 
 _Path = Annotated[str, PlainValidator(Text(200))]
 
@@ -178,7 +191,9 @@ def liquid_of(value: str | Liquid, name: str) -> Liquid:
 class Model(Part):
     """How the liquid is modelled."""
 
-    liquid: Annotated[str, one_of(*LIQUID_MODELS)] = Field("auto", description="model of the liquid")
+    liquid: Annotated[str, PlainValidator(LiquidName(LIQUID_MODELS))] = Field(
+        "auto", description="model of the liquid; a package may bring others"
+    )
     friction: Annotated[Friction, PlainValidator(FrictionRule())] = Field(
         Friction(FrictionLaw.WALL), description="of the liquid on the wall"
     )
@@ -282,7 +297,7 @@ class Scene(Part):
 
     @property
     def kind(self) -> str:
-        """Kind of machine, by which a question finds who answers: "balls" with races, else that of the rotor."""
+        """Kind of machine, by which a question finds who answers: "balls" with races, or of the rotor."""
         return "balls" if self.balls else self.rotor.kind
 
     def without_balls(self) -> Scene:

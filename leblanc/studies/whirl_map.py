@@ -13,7 +13,6 @@ from fluid.friction.laws import Friction
 from fluid.waves import capture_speed
 from fluid.whirl import covering_speed, is_full
 from leblanc.core.notes import Note
-from leblanc.core.units import small_whirl_friction
 from leblanc.results.motion.cycles import DEEP, FAST_LAG, LargeWhirl
 from leblanc.results.notes import whirl_map as notes
 from leblanc.results.whirl_map import WhirlMap
@@ -22,12 +21,13 @@ from leblanc.studies.models.choose import Prepared, prepare
 from leblanc.studies.models.validity import doubts
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
+from solvers.checked_model import CheckedModel
 from solvers.liquid_model import THIN_LAYERS
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.vibration import critical_speeds
 from solvers.synchronous.response import main_critical_speeds
 from solvers.whirl.edges import Bands, bands_not_known, unstable_bands
-from solvers.whirl.growth import growth_map
+from solvers.whirl.growth import Waves, growth_map
 
 if TYPE_CHECKING:
     from solvers.cycles.cycles import HeldWhirl, LimitCycles
@@ -56,8 +56,13 @@ def map_scene(
     given. `cycles`: find how large the whirls of the scene as it stands grow.
     """
     _check(scene, volumes, speeds)
-    law = scene.model.friction if friction is None else friction
     machine = prepare(scene, free=True)
+    law, own = machine.waves, isinstance(machine.waves, CheckedModel)
+    if own and (friction is not None or cycles):
+        field, given = ("friction", friction) if friction is not None else ("cycles", cycles)
+        raise InputError(field, given, "left out with a liquid model of one's own")
+    law = law if friction is None else friction
+    drag = replace(machine, waves=law).drag
     rotor, speed = machine.rotor, np.linspace(scene.speeds.start, scene.speeds.stop, speeds)
     rows = fills_over_volume(scene.fills, volumes, max_volume)
     parts = []
@@ -71,9 +76,11 @@ def map_scene(
     edges = unstable_bands(rotor, rows, speed, law, growth)
     (own,) = unstable_bands(rotor, [scene.fills], speed, law)
     carried = np.array([_held(scene, fills, speed) for fills in rows])
-    large = _limit_cycles(machine, law, found) if cycles else None
+    large = _limit_cycles(machine, law, found) if cycles and isinstance(law, Friction) else None
     pairs = zip(rows, whirl_speed - speed, strict=True)
-    thin = np.array([_thin_layers(fills, slip) for fills, slip in pairs]) | (not law.law.laminar)
+    thin = np.ones(growth.shape, dtype=bool)
+    if isinstance(law, Friction) and law.law.laminar:
+        thin = np.array([_thin_layers(fills, slip) for fills, slip in pairs])
     return WhirlMap(
         name=scene.name,
         source=scene.source,
@@ -85,7 +92,7 @@ def map_scene(
         whirl_speed=whirl_speed,
         in_range=carried & thin,
         edges=edges,
-        friction=small_whirl_friction(law),
+        friction=drag,
         damping=_damping(machine),
         scene_volume=sum(fill.volume for fill in scene.fills),
         scene_edges=own,
@@ -228,16 +235,17 @@ def _damping(machine: Prepared) -> str:
 
 
 def _notes(
-    machine: Prepared, law: Friction, own: Bands, carried: Flags, thin: Flags, lost: int
+    machine: Prepared, law: Waves, own: Bands, carried: Flags, thin: Flags, lost: int
 ) -> tuple[Note, ...]:
     """Limits of validity and findings."""
     scene = machine.scene
     found = [notes.own_volume(sum(fill.volume for fill in scene.liquids), own)]
     if lost:
         found.append(notes.growth_not_known(lost, thin.size))
-    if law.law == "quadratic":
+    friction = law.law if isinstance(law, Friction) else ""
+    if friction == "quadratic":
         found.append(notes.quadratic())
-    if law.law in ("none", "quadratic") and np.any(machine.system.damping):
+    if friction in ("none", "quadratic") and np.any(machine.system.damping):
         found.append(notes.without_friction())
     if len(scene.fills) > 1:
         found.append(notes.common_factor())

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from fluid.fill import Fill
 from fluid.whirl import plane_layer, slower_slip
 from leblanc.core.notes import Note
-from leblanc.core.units import small_whirl_friction
 from leblanc.results.base import FilledChamber
 from leblanc.results.choice import Choice, model_spans
 from leblanc.results.machine.loads import MachineLoads
@@ -88,15 +87,14 @@ _COORDINATES = {
 def self_excited(machine: Prepared) -> SelfExcited:
     """Growth of small whirls of a machine at its speeds [theory: whirl, eq. 7]."""
     scene, speed = machine.scene, machine.speed
-    growth, whirl_speed = asynchronous_growth(machine.rotor, scene.fills, speed, machine.friction)
+    growth, whirl_speed = asynchronous_growth(machine.rotor, scene.fills, speed, machine.waves)
     bands: tuple[tuple[float, float], ...] = ()
     if speed[-1] > speed[0]:
         filled, known = [scene.fills], growth[None]
-        bands = unstable_bands(machine.rotor, filled, speed, machine.friction, known)[0]
+        bands = unstable_bands(machine.rotor, filled, speed, machine.waves, known)[0]
     elif growth[0] > 0.0:
         bands = ((float(speed[0]), float(speed[0])),)
-    friction = small_whirl_friction(scene.model.friction)
-    return SelfExcited(growth, whirl_speed, bands, friction, bands_not_known(speed, growth))
+    return SelfExcited(growth, whirl_speed, bands, machine.drag, bands_not_known(speed, growth))
 
 
 def _grown_whirl(
@@ -364,6 +362,8 @@ def _against_spin(answer: Response, motion: Motion, held: Held | None) -> Note |
 
 def _thick_layers(machine: Prepared) -> Note | None:
     """Where laminar layers of the slower waves are not as thin as friction of small whirls takes them."""
+    if machine.waves is not machine.friction:
+        return None
     layers = [(fill, plane_layer(fill, machine.friction)) for fill in machine.scene.fills]
     # delta = sqrt(2 nu/|s|) at the slower wave, whose frequency goes with the spin: thick below one speed.
     limit, least = THIN_LAYERS[1], 0.0
