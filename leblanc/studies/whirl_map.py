@@ -57,8 +57,8 @@ def map_scene(
     """
     _check(scene, volumes, speeds)
     machine = prepare(scene, free=True)
-    law, own = machine.waves, isinstance(machine.waves, CheckedModel)
-    if own and (friction is not None or cycles):
+    law = machine.waves
+    if isinstance(law, CheckedModel) and (friction is not None or cycles):
         field, given = ("friction", friction) if friction is not None else ("cycles", cycles)
         raise InputError(field, given, "left out with a liquid model of one's own")
     law = law if friction is None else friction

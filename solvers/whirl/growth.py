@@ -149,7 +149,8 @@ def _planar_parts(
     In the frame of the drum where baffles stand in the liquid [theory: sections, eq. 3].
     """
     laws = [_waves_of(fills, law) for (_, fills), law in zip(machines, frictions, strict=True)]
-    apart, tables = np.zeros(len(machines), dtype=bool), []
+    apart = np.zeros(len(machines), dtype=bool)
+    tables: list[tuple[float, list[Layer]]] = []
     for i, ((rotor, fills), law) in enumerate(zip(machines, laws, strict=True)):
         apart[i] = isinstance(law, CheckedModel) or any(fill.uneven for fill in fills)
         here = np.flatnonzero(owner == i) if apart[i] else np.zeros(0, dtype=np.intp)
@@ -217,8 +218,8 @@ def modes_at(
 
 
 def _waves_of(fills: Sequence[Fill], waves: Waves) -> Waves:
-    """What small waves do; without any liquid there are none."""
-    return waves if any(fill.volume > 0.0 for fill in fills) else NO_FRICTION
+    """What small waves do; without any free surface there are none."""
+    return waves if any(fill.volume > 0.0 and not is_full(fill) for fill in fills) else NO_FRICTION
 
 
 def planar_layers(mass: float, fills: Sequence[Fill], friction: Friction) -> tuple[float, list[Layer]]:

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from fluid.fill import Fill, Fills
+from fluid.whirl import is_full
 from meshes.arrays import Array, Complex, Flags, Index
 from solvers.checked_model import CheckedModel
 from solvers.liquid_model import Whirls
@@ -257,30 +258,36 @@ def _modes(
 def transfer_modes(
     rotor: Rotor, fills: Sequence[Fill], speed: Array, model: CheckedModel
 ) -> SystemModes | Modes:
-    """All whirl modes of a rotor with liquid of any model: planar ones of a Jeffcott rotor.
+    """All whirl modes of a rotor with liquid of any model that has a surface: planar of a Jeffcott rotor.
 
     Growth is not known where no rational function stands for the model's answers. Of a function that has no
     rational form, as with laminar layers, only modes count that half of the samples give as well.
     """
-    wet = [fill for fill in fills if fill.volume > 0.0]
+    wet = [fill for fill in fills if fill.volume > 0.0 and not is_full(fill)]
+    full = [fill for fill in fills if is_full(fill)]
     system, planar = rotor.system(), isinstance(rotor, Jeffcott)
-    matrices = [system.mass, system.damping, system.gyroscopic, system.stiffness]
+    heavy = system.mass.copy()
+    for fill in full:
+        at = system.at(fill.chamber.plane)
+        heavy += fill.mass * at.T @ at
+    matrices = [heavy, system.damping, system.gyroscopic, system.stiffness]
     along = [system.at(fill.chamber.plane).T @ np.array([1.0, -1j]) for fill in wet]
     ways = [_Way(b, 0.5, 1, j) for j, b in enumerate(along)]
     ways += [_Way(np.conj(b), 0.5, -1, j) for j, b in enumerate(along)]
     if isinstance(rotor, Jeffcott):
-        matrices = [np.array([[value]]) for value in (rotor.mass, rotor.damping, 0.0, rotor.stiffness)]
-        ways = [_Way(np.ones(1), 1.0, 1, j) for j in range(len(wet))]
+        mass = rotor.mass + sum(fill.mass for fill in full)
+        matrices = [np.array([[value]]) for value in (mass, rotor.damping, 0.0, rotor.stiffness)]
+        ways = [_Way(np.ones(1, dtype=complex), 1.0, 1, j) for j in range(len(wet))]
     masses = np.array([fill.mass for fill in wet])
     highest = np.sqrt(np.max(np.abs(np.linalg.eigvals(np.linalg.solve(matrices[0], matrices[3])))))
     parts = []
     for first in range(0, speed.size, _AT_ONCE):
         spin = speed[first : first + _AT_ONCE]
         slip = _slips(float(np.clip(1.5 * highest / spin.min(), 3.0, 100.0)))
-        mass, known = _sampled(wet, spin, slip, model)
+        asked, known = _sampled(wet, spin, slip, model)
 
         def found(at: Index, part: slice) -> _Found:
-            pairs = zip(mass[:, at, part], known[:, at, part], strict=True)  # noqa: B023
+            pairs = zip(asked[:, at, part], known[:, at, part], strict=True)  # noqa: B023
             fits = _groups([_fitted(slip[part], *pair) for pair in pairs], at.size)  # noqa: B023
             return _modes(matrices, ways, masses, fits, spin[at])  # noqa: B023
 
