@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from leblanc.core.question import called
 from leblanc.registry import answerer
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from leblanc.studies.run.answer import RunResult
     from solvers.liquid_model import LiquidModel
 
-SceneOrPath = Scene | str | PathLike[str]
+SceneOrPath = Scene | Mapping[str, Any] | str | PathLike[str]
 
 _OPTION = re.compile(r"--([a-z][a-z-]*)")
 
