@@ -5,11 +5,11 @@
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from fluid.fill import Fill
+    from fluid.friction.laws import Friction
     from fluid.liquid import Liquid
     from leblanc.api import (
         compare,
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
         run,
         run_up,
         sweep,
+        validate,
     )
     from leblanc.scene.examples import example
     from leblanc.scene.magnetic import MagneticRotor
@@ -40,6 +41,7 @@ __all__ = [
     "Chamber",
     "Exciter",
     "Fill",
+    "Friction",
     "InputError",
     "JeffcottRotor",
     "Liquid",
@@ -50,6 +52,7 @@ __all__ = [
     "Spindle",
     "TubRotor",
     "TwoPlaneRotor",
+    "__version__",
     "bearing",
     "compare",
     "example",
@@ -64,6 +67,7 @@ __all__ = [
     "run",
     "run_up",
     "sweep",
+    "validate",
     "volume",
 ]
 
@@ -74,6 +78,7 @@ _HOMES = {
     "Chamber": ("meshes.chamber", "Chamber"),
     "Exciter": ("leblanc.scene.rotors", "Exciter"),
     "Fill": ("fluid.fill", "Fill"),
+    "Friction": ("fluid.friction.laws", "Friction"),
     "InputError": ("meshes.errors", "InputError"),
     "JeffcottRotor": ("leblanc.scene.rotors", "JeffcottRotor"),
     "Liquid": ("fluid.liquid", "Liquid"),
@@ -95,15 +100,25 @@ _HOMES = {
 }
 
 
-def __getattr__(name: str) -> Any:
+def __getattr__(name: str) -> object:
     """Load a public name at its first use."""
+    from importlib import import_module
+
+    if name == "__version__":
+        from leblanc.core.answer import versions
+
+        return versions()["leblanc"]
     if name not in _HOMES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     module, attribute = _HOMES[name]
     found = globals()[name] = getattr(import_module(module), attribute)
+    if name in _QUESTIONS:
+        from leblanc.core.signatures import readable
+
+        readable(found)
     return found
 
 
 def __dir__() -> list[str]:
     """The public names, loaded or not."""
-    return sorted({*globals(), *__all__})
+    return sorted(__all__)

@@ -105,6 +105,27 @@ def run(
     return run_scene(machine, holding=Holding(workers, solver=solver or COUPLED), cycles=cycles)
 
 
+def validate(group: str | None = None) -> Sequence[Any]:
+    """Published cases beside what the package computes: printed, computed, difference and verdict of each.
+
+    Parameters
+    ----------
+    group : of cases, as `leblanc validate --help` lists them; all if None
+
+    Raises
+    ------
+    InputError : no such group
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> {case.verdict for case in lb.validate("turning")} <= {"agrees", "erratum", "trend"}
+    True
+    """
+    found: Sequence[Any] = called("validation.command:all_cases")(group)
+    return found
+
+
 def explain(
     scene: SceneOrPath,
 ) -> Explanation | Answer | BallExplanation:

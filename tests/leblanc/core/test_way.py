@@ -75,7 +75,7 @@ def rig(tmp_path: Path) -> Path:
     return file
 
 
-@kills("leblanc.core.question:read", "parse_option(values[one.name], one.read, one.name)", "2.0")
+@kills("leblanc.core.question:read", "parse_option(value, one.read, one.name)", "2.0")
 def test_a_call_takes_a_scene_or_its_file_and_quantities_with_units(rig: Path) -> None:
     for scene in (rig, str(rig), lb.load_scene(rig)):
         assert lift(scene, height="50 cm").work[0] == pytest.approx(4.0 * 9.81 * 0.5, rel=1e-12)  # type: ignore[arg-type]
