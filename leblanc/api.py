@@ -119,7 +119,7 @@ def validate(group: str | None = None) -> Sequence[Any]:
     Examples
     --------
     >>> import leblanc as lb
-    >>> {case.verdict for case in lb.validate("turning")} <= {"agrees", "erratum", "trend"}
+    >>> {case.verdict for case in lb.validate("turning")} <= {"agrees", "erratum", "trend", "differs"}
     True
     """
     found: Sequence[Any] = called("validation.command:all_cases")(group)

@@ -96,7 +96,7 @@ def test_what_is_shown_is_for_readers() -> None:
 def test_published_cases_are_computed() -> None:
     cases = lb.validate("turning")
     assert cases
-    assert {case.verdict for case in cases} <= {"agrees", "erratum", "trend"}
+    assert {case.verdict for case in cases} <= {"agrees", "erratum", "trend", "differs"}
     with pytest.raises(lb.InputError, match="case = 'turnin'"):
         lb.validate("turnin")
 
