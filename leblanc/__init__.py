@@ -5,15 +5,16 @@
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from fluid.fill import Fill
+    from fluid.friction.laws import Friction
     from fluid.liquid import Liquid
     from leblanc.api import (
         compare,
         explain,
+        validate,
     )
     from leblanc.scene.examples import example
     from leblanc.scene.magnetic import MagneticRotor
@@ -34,20 +35,24 @@ if TYPE_CHECKING:
     from leblanc.studies.volume import volume
     from meshes.chamber import Chamber
     from meshes.errors import InputError
+    from solvers.liquid_model import LiquidModel
 
 __all__ = [
     "Chamber",
     "Exciter",
     "Fill",
+    "Friction",
     "InputError",
     "JeffcottRotor",
     "Liquid",
+    "LiquidModel",
     "MagneticRotor",
     "Scene",
     "SceneError",
     "Spindle",
     "TubRotor",
     "TwoPlaneRotor",
+    "__version__",
     "bearing",
     "compare",
     "example",
@@ -62,6 +67,7 @@ __all__ = [
     "run",
     "run_up",
     "sweep",
+    "validate",
     "volume",
 ]
 
@@ -73,9 +79,11 @@ _HOMES = {
     "Chamber": ("meshes.chamber", "Chamber"),
     "Exciter": ("leblanc.scene.rotors", "Exciter"),
     "Fill": ("fluid.fill", "Fill"),
+    "Friction": ("fluid.friction.laws", "Friction"),
     "InputError": ("meshes.errors", "InputError"),
     "JeffcottRotor": ("leblanc.scene.rotors", "JeffcottRotor"),
     "Liquid": ("fluid.liquid", "Liquid"),
+    "LiquidModel": ("solvers.liquid_model", "LiquidModel"),
     "MagneticRotor": ("leblanc.scene.magnetic", "MagneticRotor"),
     "Scene": ("leblanc.scene.scene", "Scene"),
     "SceneError": ("leblanc.scene.schema.load", "SceneError"),
@@ -94,15 +102,25 @@ _HOMES = {
 _HOMES |= {name: (_API, name) for name in __all__ if name not in _HOMES}
 
 
-def __getattr__(name: str) -> Any:
+def __getattr__(name: str) -> object:
     """Load a public name at its first use."""
+    from importlib import import_module
+
+    if name == "__version__":
+        from leblanc.core.answer import versions
+
+        return versions()["leblanc"]
     if name not in _HOMES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     module, attribute = _HOMES[name]
     found = globals()[name] = getattr(import_module(module), attribute)
+    if name in _QUESTIONS or name.startswith("map_"):
+        from leblanc.core.signatures import readable
+
+        readable(found)
     return found
 
 
 def __dir__() -> list[str]:
     """The public names, loaded or not."""
-    return sorted({*globals(), *__all__})
+    return sorted(__all__)

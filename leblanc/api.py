@@ -10,12 +10,11 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from os import PathLike
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from leblanc.core.question import called
 from leblanc.registry import answerer
-from leblanc.scene.scene import Scene, scene_of
+from leblanc.scene.scene import SceneOrPath, scene_of
 from meshes.errors import InputError
 
 if TYPE_CHECKING:
@@ -24,9 +23,29 @@ if TYPE_CHECKING:
     from leblanc.results.models.comparison import Comparison
     from leblanc.results.races.numbers import BallExplanation
 
-SceneOrPath = Scene | str | PathLike[str]
 
 _OPTION = re.compile(r"--([a-z][a-z-]*)")
+
+
+def validate(group: str | None = None) -> Sequence[Any]:
+    """Published cases beside what the package computes: printed, computed, difference and verdict of each.
+
+    Parameters
+    ----------
+    group : of cases, as `leblanc validate --help` lists them; all if None
+
+    Raises
+    ------
+    InputError : no such group
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> {case.verdict for case in lb.validate("turning")} <= {"agrees", "erratum", "trend", "differs"}
+    True
+    """
+    found: Sequence[Any] = called("validation.command:all_cases")(group)
+    return found
 
 
 def explain(

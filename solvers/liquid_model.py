@@ -147,8 +147,8 @@ class LiquidAnswer:
     #: U, the force over the whirl speed squared, kg m: where the liquid stands still in the whirl's frame its
     #: first moment about the rotation axis
     unbalance: Complex
-    #: derivative of |U| with respect to the deflection at fixed volume, kg; nan where it is not known
-    slope: Array
+    #: derivative of U with respect to the deflection at fixed volume, kg; nan where it is not known
+    slope: Array | Complex
     offset: Complex  #: liquid's centre of mass from the chamber's axis, m
     dry_patch: Flags  #: the wall is dry over its whole height somewhere
     converged: Flags  #: the answer was found
@@ -235,11 +235,39 @@ class LiquidAnswer:
 class LiquidModel(Protocol):
     """Model of the liquid in chambers that spin and whirl.
 
-    Solvers take it as an object. A class that inherits from it needs a name and `answer`.
+    Solvers take it as an object. A class that inherits from it needs a name and `answer`; any object that has
+    them is a model of one's own for `lb.run(scene, model=...)` and `lb.map_whirl`. Its forces may be complex:
+    what pulls across the deflection drives or brakes the whirl. Its answers to small whirls of many
+    frequencies, as seen from the drum, are the transfer function from which growth rates come.
 
-    The synchronous response finds every branch only of a model that is at rest in a synchronous whirl: its
-    unbalance is then real, and less the liquid's mass times the deflection it never falls as that grows.
+    The synchronous response finds every branch only of a built-in model, which is at rest in a synchronous
+    whirl: its unbalance is then real, and less the liquid's mass times the deflection it never falls as that
+    grows. Of a model of one's own branches are followed from speed to speed.
+
+    Examples
+    --------
+    >>> class Frozen(LiquidModel):
+    ...     name = "frozen"  # the liquid moves with the drum like a solid ring
+    ...
+    ...     def answer(self, fills, whirls):
+    ...         yes = np.ones(len(fills), dtype=bool)
+    ...         return LiquidAnswer(
+    ...             unbalance=fills.mass * whirls.amplitude + 0j,
+    ...             slope=fills.mass,
+    ...             offset=0j * fills.mass,
+    ...             dry_patch=~yes,
+    ...             converged=yes,
+    ...             limits={},
+    ...             error=np.full(len(fills), np.nan),
+    ...         )
+    >>> import leblanc as lb
+    >>> answer = lb.run(lb.example("horizontal_rig"), model=Frozen())
+    >>> set(answer.model.tolist())
+    {'frozen'}
     """
+
+    #: Its liquid may pull across the deflection in a synchronous whirl, its law bend as it likes.
+    across: ClassVar[bool] = False
 
     @property
     def name(self) -> str:

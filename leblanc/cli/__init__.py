@@ -12,7 +12,7 @@ import sys
 from collections.abc import Callable, Sequence
 from functools import wraps
 from importlib import import_module
-from importlib.metadata import EntryPoint, PackageNotFoundError, distributions, version
+from importlib.metadata import EntryPoint, PackageNotFoundError, version
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -20,6 +20,8 @@ import typer
 from typer.main import get_command
 
 from leblanc.cli import compare, explain, new, view
+from leblanc.core.announced import COMMANDS as ANNOUNCED
+from leblanc.core.announced import announced
 from leblanc.core.answer import NotConverged
 from leblanc.core.contents import recording
 from leblanc.core.interrupts import INTERRUPTED, TERMINATED, Terminated, behind, heard, leave, said
@@ -183,7 +185,7 @@ def application(wanted: str = "") -> typer.Typer:
         own = getattr(MODULES[name], name) if name in MODULES else _asked(name)
         found.command(name)(_as_typed(own))
     if wanted not in NAMES:
-        others = {name: entry for name, entry in _announcements().items() if name not in NAMES}
+        others = {name: each for name, each in announced(ANNOUNCED, _unread).items() if name not in NAMES}
         for name in [wanted] if wanted in others else sorted(others):
             _add_announced(found, others[name])
     return found
@@ -218,18 +220,8 @@ def _as_typed(command: Callable[..., object]) -> Callable[..., object]:
     return asked
 
 
-def _announcements() -> dict[str, EntryPoint]:
-    """Commands that installed packages announce, by name; a package that cannot be read announces none."""
-    found: dict[str, EntryPoint] = {}
-    for package in distributions():
-        try:
-            entries = [entry for entry in package.entry_points if entry.group == "leblanc.commands"]
-        except Exception as error:
-            say(escaped(f"leblanc: the entry points of a package cannot be read: {_words(error)}"))
-            continue
-        for entry in entries:
-            found.setdefault(entry.name, entry)  # of two versions on the path the first is the one imported
-    return found
+def _unread(why: str) -> None:
+    say(escaped(f"leblanc: the entry points of a package cannot be read: {why}"))
 
 
 def _words(error: BaseException) -> str:

@@ -39,7 +39,7 @@ def command(question: Callable[..., Any]) -> Callable[..., None]:
     """
     everything = {one.name: one for one in parameters(question)}
     films = {name: one.option.film for name, one in everything.items() if one.option.film}
-    apart = (*_FOLDER, "progress", *films)
+    apart = {*_FOLDER, "progress", *films, *(name for name, one in everything.items() if one.option.alone)}
     own = {name: one for name, one in everything.items() if name not in apart}
     present: Callable[..., Any] | None = getattr(sys.modules[question.__module__], "present", None)
     more = {one.name: one for one in list(parameters(present))[1:]} if present else {}

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from leblanc.core.blocks import Block, Headline, Table, flat
 from leblanc.core.notes import Note, one_line
 from leblanc.core.question import called
+from leblanc.core.records import alike
 
 if TYPE_CHECKING:
     from leblanc.core.netcdf import Dataset, NamedArrays
@@ -81,6 +82,28 @@ class Result(ABC):
     figure: ClassVar[str]
     summary: ClassVar[str]
 
+    def __init_subclass__(cls) -> None:
+        super().__init_subclass__()
+        # In place of what a dataclass would make of fields that are arrays.
+        for name in ("__eq__", "__hash__", "__repr__"):
+            if name not in vars(cls) or (name == "__hash__" and cls.__hash__ is None):
+                setattr(cls, name, getattr(Result, name))
+
+    def __eq__(self, other: object) -> bool:
+        """Of the same kind with the same values, arrays element by element, nan equal to nan."""
+        return alike(self, other) if type(self) is type(other) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash((type(self), getattr(self, "digest", None)))
+
+    def __repr__(self) -> str:
+        """What it is, of which machine, and how much of it."""
+        sizes = ", ".join(f"{name} {size}" for name, size in self.named_arrays().sizes.items())
+        of = getattr(self, "name", None)
+        return (
+            f"<{type(self).__name__}{f' of {one_line(of)!r}' if of else ''}{f': {sizes}' if sizes else ''}>"
+        )
+
     @abstractmethod
     def to_json(self) -> dict[str, Any]:
         """What the command prints with --json: SI, radians, complex numbers as [re, im]."""
@@ -93,9 +116,14 @@ class Result(ABC):
         """The same as an xarray dataset."""
         return self.named_arrays().to_dataset()
 
-    def plot(self) -> Any:
-        """The main figure, a `matplotlib.figure.Figure`."""
-        return called(self.figure)(self)
+    def plot(self, ax: Any = None) -> Any:
+        """The main figure, a `matplotlib.figure.Figure`; one of a single axes on somebody else's `ax`.
+
+        An `InputError` refuses `ax` where the figure has several.
+        """
+        if ax is None:
+            return called(self.figure)(self)
+        return called("leblanc.figures.drawing.page:drawn_on")(called(self.figure), self, ax)
 
     def _repr_html_(self) -> str:
         """The main numbers and the main figure, for a notebook."""

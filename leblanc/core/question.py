@@ -13,10 +13,14 @@ from contextlib import nullcontext
 from dataclasses import dataclass
 from importlib import import_module
 from inspect import Parameter, Signature, signature
-from typing import Annotated, Any, TypeVar, get_args, get_origin
+from numbers import Integral, Real
+from os import PathLike
+from types import NoneType, UnionType
+from typing import Annotated, Any, TypeVar, Union, get_args, get_origin
 
 from leblanc.core.progress import heard, told
 from leblanc.core.units import Dimension, parse_option
+from meshes.errors import InputError
 
 Quantity = str | float  # a number in SI units, or a text with its unit
 Texts = str | Sequence[str]  # one text or several; the option is typed anew for each
@@ -51,6 +55,7 @@ class Option:
 
     names: tuple[str, ...] = ()  #: as typer takes them, as "--from"; what is usually true is --no-NAME
     argument: bool = False  #: by its place, without a name
+    alone: bool = False  #: no option of a command: Python alone has it
     same: bool = False  #: the answer does not depend on it
     film: int = 0  #: no option: so many where the command is asked for a film by --animate
 
@@ -69,7 +74,8 @@ class Asked:
 
 def parameters(question: Callable[..., Any]) -> Iterator[Asked]:
     """What a question asks for, in the order of its signature."""
-    for each in signature(question).parameters.values():
+    written: Signature = getattr(question, "__asked__", None) or signature(question)
+    for each in written.parameters.values():
         kind = each.annotation
         if isinstance(kind, str):
             kind = eval(kind, {}, Names(question.__globals__))
@@ -118,6 +124,7 @@ def ask(question: Callable[..., A], study: str, given: Mapping[str, Any]) -> A:
     progress = values.pop("progress", None)
     with nullcontext() if progress is None else told(heard(progress)):
         answer: A = called(study)(**values)
+    called("leblanc.core.records:seal")(answer)
     return answer
 
 
@@ -128,8 +135,54 @@ def read(question: Callable[..., Any], given: Mapping[str, Any]) -> dict[str, An
         value = given.get(one.name)
         if one.name not in given or (value is None and one.default is None):
             continue
+        value = values[one.name]
         if isinstance(one.read, Reader):
             values[one.name] = called(one.read.address)(value, one.name)
-        elif one.read is not None and value is not None:
+        elif one.read is None:
+            values[one.name] = _typed(value, one.kind, one.name)
+        elif value is not None:
             values[one.name] = parse_option(value, one.read, one.name)
+        elif one.default is not None and NoneType not in _kinds(one.kind):
+            raise InputError(one.name, None, one.read.allowed)
     return values
+
+
+# What a value may be by its type: who tells, what it becomes, and how a message says it.
+_PLAIN: dict[Any, tuple[Callable[[Any], bool], Callable[[Any], Any], str]] = {
+    bool: (lambda value: type(value).__name__ in ("bool", "bool_"), bool, "True or False"),
+    int: (lambda value: isinstance(value, Integral) and not isinstance(value, bool), int, "a whole number"),
+    float: (lambda value: isinstance(value, Real) and not isinstance(value, bool), float, "a number"),
+    str: (lambda value: isinstance(value, str), str, "a text"),
+    PathLike: (lambda value: isinstance(value, PathLike), lambda value: value, "the path of a file"),
+    Sequence: (
+        lambda value: isinstance(value, list | tuple) or (hasattr(value, "tolist") and value.ndim > 0),
+        lambda value: value,
+        "a list",
+    ),
+    Mapping: (lambda value: isinstance(value, Mapping), lambda value: value, "a table"),
+    Callable: (callable, lambda value: value, "a function"),
+}
+
+
+def _kinds(kind: Any) -> tuple[Any, ...]:
+    """The types of which a value may be one; of a generic one what it is made from."""
+    parts = get_args(kind) if get_origin(kind) in (Union, UnionType) else (kind,)
+    names = {"Sequence": Sequence, "Mapping": Mapping, "Callable": Callable, "PathLike": PathLike}
+    origins = ((get_origin(part) or part) for part in parts)
+    found = (names.get(getattr(part, "__name__", ""), part) for part in origins)
+    return tuple(Sequence if part in (list, tuple) else part for part in found)
+
+
+def _typed(value: Any, kind: Any, name: str) -> Any:
+    """A value that is of one of its types; types of our own are for their study to tell."""
+    kinds = _kinds(kind)
+    if kind is Parameter.empty or not all(one in _PLAIN or one is NoneType for one in kinds):
+        return value
+    if value is None and NoneType in kinds:
+        return None
+    for one in kinds:
+        if one is not NoneType and _PLAIN[one][0](value):
+            return _PLAIN[one][1](value)
+    said = dict.fromkeys(_PLAIN[one][2] for one in kinds if one is not NoneType)
+    given = value if isinstance(value, str | int | float | None) else type(value).__name__
+    raise InputError(name, given, " or ".join(said))

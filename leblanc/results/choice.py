@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 HELD_MODELS = {"long_wave": ("long waves", "cells"), "potential": ("exact waves", "nodes")}
 
 
+_KNOWN = ("linear", "statics", "kdv", "fem", *HELD_MODELS)
+
+
 @dataclass(frozen=True)
 class HeldCost:
     """What it takes to hold in time the motions that no steady model answers well enough."""
@@ -172,6 +175,8 @@ def _reason(choice: Choice, model: str, part: Index) -> str:
         return _held_reason(choice, part)
     if model == "kdv":
         return _family_reason(choice, part)
+    if model not in _KNOWN:
+        return "a model of one's own, which the question was asked with"
     if model == "fem" and not choice.cut:
         return "the scene asks for it; finite elements integrate the paraboloid and miss it by their mesh"
     why = _statics_reason(choice, part) if model == "statics" else _linear_reason(choice, part)
@@ -242,6 +247,8 @@ def _better(choice: Choice, model: str, part: Index) -> str:
     """What the next better model is, costs and gives."""
     if choice.cut:
         return "none: no other model knows such chambers"
+    if model not in _KNOWN:
+        return "unknown: it is compared with no other"
     if not choice.in_range[part[0]]:
         return "none that is steady: `leblanc runup` carries the liquid until it is caught"
     if model in HELD_MODELS:

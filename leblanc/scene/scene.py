@@ -5,8 +5,9 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from functools import cached_property
+from itertools import pairwise
 from os import PathLike
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -16,6 +17,7 @@ from fluid.fill import Fill
 from fluid.friction.laws import Friction, FrictionLaw
 from fluid.liquid import Liquid, known_liquid
 from leblanc.core import units
+from leblanc.core.announced import LIQUIDS, announced
 from leblanc.core.units import allowed_as_typed
 from leblanc.scene.cabinet import MAX_POINTS, Cabinet, Point, cabinet_conflicts
 from leblanc.scene.chambers import Chamber
@@ -31,7 +33,7 @@ from leblanc.scene.rotors import TwoPlaneRotor as TwoPlaneRotor
 from leblanc.scene.schema.load import SceneError, SceneFault, given_at, meant, read_scene, shown, with_lines
 from leblanc.scene.schema.part import Conflict, Part, faults_of
 from leblanc.scene.schema.paths import keys_of, require_field, with_values
-from leblanc.scene.schema.rules import Refused, Speed, Text, entries, one_of, quantity, whole
+from leblanc.scene.schema.rules import OneOf, Refused, Speed, Text, entries, one_of, quantity, whole
 from leblanc.scene.spindle import Spindle as Spindle
 from leblanc.scene.spindle import without_liquid
 from leblanc.scene.tasks import Optimisation
@@ -57,6 +59,18 @@ MAX_CELLS = 4096
 LIQUID_MODELS = ("auto", "statics", "linear", "long_wave", "potential", "kdv", "fem")
 _LAWS = ("none", "stokes", "wall")
 
+
+@dataclass(frozen=True)
+class LiquidName(OneOf):
+    """A built-in liquid model, or one that an installed package announces under `leblanc.liquids`."""
+
+    def __call__(self, value: object) -> str:
+        """The name."""
+        if isinstance(value, str) and value not in self.names and value in announced(LIQUIDS):
+            return value
+        return super().__call__(value)
+
+
 _Path = Annotated[str, PlainValidator(Text(200))]
 
 
@@ -72,11 +86,30 @@ AnyChamber = Annotated[
 
 
 class Speeds(Part):
-    """Evenly spaced spin speeds."""
+    """Spin speeds: evenly spaced, or each of them."""
 
     start: Speed = Field(description="first spin speed")
     stop: Speed = Field(description="last spin speed")
     count: Annotated[int, whole(1, MAX_SPEEDS)] = Field(description="how many, evenly spaced")
+    values: Annotated[tuple[Speed, ...], entries(0, MAX_SPEEDS, "rising spin speeds")] = Field(
+        (), description="each of them, in place of the three others"
+    )
+
+    @classmethod
+    def as_table(cls, given: Any) -> Any:
+        """A list or an array is that of the values; they say the first, the last and how many as well."""
+        if hasattr(given, "tolist"):
+            given = given.tolist()
+        values = given if isinstance(given, list | tuple) else None
+        if isinstance(given, Mapping) and set(given) == {"values"}:
+            values = given["values"].tolist() if hasattr(given["values"], "tolist") else given["values"]
+        if not isinstance(values, list | tuple) or not values:
+            return given
+        return {"start": values[0], "stop": values[-1], "count": len(values), "values": list(values)}
+
+    def table(self) -> dict[str, Any]:
+        """See `Part`."""
+        return {"values": list(self.values)} if self.values else super().table()
 
     @classmethod
     def at(cls, speed: float) -> Speeds:
@@ -86,9 +119,16 @@ class Speeds(Part):
     @classmethod
     def conflicts(cls, values: Mapping[str, Any], given: Mapping[str, Any]) -> Iterator[Conflict]:
         """The last is not before the first, and one speed is one."""
+        each = values.get("values", ())
+        for k, (low, high) in enumerate(pairwise(each), 1):
+            if not high > low:
+                yield Conflict(("values", k), f"above the speed before it, {low:g} rad/s")
         if not {"start", "stop"} <= values.keys():
             return
         start, stop = values["start"], values["stop"]
+        if each and (start, stop, values.get("count")) != (each[0], each[-1], len(each)):
+            yield Conflict(("values",), "given alone, in place of start, stop and count")
+            return
         if stop < start:
             yield Conflict(("stop",), f"at least speeds.start, {start:g} rad/s")
         elif values.get("count") == 1 and start != stop:
@@ -178,7 +218,9 @@ def liquid_of(value: str | Liquid, name: str) -> Liquid:
 class Model(Part):
     """How the liquid is modelled."""
 
-    liquid: Annotated[str, one_of(*LIQUID_MODELS)] = Field("auto", description="model of the liquid")
+    liquid: Annotated[str, PlainValidator(LiquidName(LIQUID_MODELS))] = Field(
+        "auto", description="model of the liquid; a package may bring others"
+    )
     friction: Annotated[Friction, PlainValidator(FrictionRule())] = Field(
         Friction(FrictionLaw.WALL), description="of the liquid on the wall"
     )
@@ -314,6 +356,8 @@ class Scene(Part):
         """Spin speeds, rad/s, shape (count,)."""
         import numpy as np
 
+        if self.speeds.values:
+            return np.array(self.speeds.values)
         return np.linspace(self.speeds.start, self.speeds.stop, self.speeds.count)
 
     def replace(self, changes: Mapping[str, Any]) -> Scene:
@@ -346,6 +390,29 @@ class Scene(Part):
             table["assumed"] = [path for path in self.assumed if _holds(table, path)]
         return scene_from_table(table)
 
+    def to_toml(self) -> str:
+        """The scene as a file says it: what was given, quantities in SI units.
+
+        Examples
+        --------
+        >>> from leblanc.scene.examples import example
+        >>> print(example("runup").to_toml().splitlines()[0])
+        name = "Run-up through resonance"
+        """
+        import tomli_w
+
+        return tomli_w.dumps(self.table())
+
+    def __repr__(self) -> str:
+        chambers, speeds = len(self.chambers), self.speeds
+        at = units.rpm_range(speeds.start, speeds.stop) if speeds.count > 1 else units.in_rpm(speeds.start)
+        return (
+            f"<Scene {self.name!r}: {self.rotor.kind}, {chambers} chamber{'' if chambers == 1 else 's'}, "
+            f"{speeds.count} speed{'' if speeds.count == 1 else 's'} at {at}>"
+        )
+
+    __str__ = __repr__
+
     @property
     def digest(self) -> str:
         """Fingerprint of the content (SHA-256): the same however units, keys and blanks are written."""
@@ -357,7 +424,7 @@ class Scene(Part):
             "gravity": self.gravity,
             "rotor": rotor_content(self.rotor) | _leaving(self.rotor),
             "chambers": [chamber_content(fill) for fill in self.fills],
-            "speeds": self.speeds.model_dump(),
+            "speeds": self.speeds.model_dump(exclude=None if self.speeds.values else {"values"}),
             "model": {
                 "liquid": model.liquid,
                 "friction": _friction_content(model.friction),
@@ -411,13 +478,15 @@ def _holds(table: object, path: str) -> bool:
     return True
 
 
-SceneOrPath = Scene | str | PathLike[str]
+SceneOrPath = Scene | Mapping[str, Any] | str | PathLike[str]
 
 
-def scene_of(scene: Scene | str | PathLike[str], field: str = "scene") -> Scene:
-    """A scene itself, or the one in that file; an `InputError` names the field of anything else."""
+def scene_of(scene: SceneOrPath, field: str = "scene") -> Scene:
+    """A scene itself, that of a table, or the one in that file; an `InputError` names what is none."""
+    if isinstance(scene, Mapping):
+        return scene_from_table(scene)
     if not isinstance(scene, Scene | str | PathLike):
-        raise InputError(field, type(scene).__name__, "a Scene or the path of its file")
+        raise InputError(field, type(scene).__name__, "a Scene, its table, or the path of its file")
     return scene if isinstance(scene, Scene) else load_scene(scene)
 
 

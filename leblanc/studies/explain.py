@@ -54,7 +54,7 @@ def explain_scene(scene: Scene) -> Explanation:
     scene = scene.as_read()
     machine = prepare(scene, free=True)
     gravity, (choice,) = machine.axial_gravity, choose_all([machine])
-    growth = asynchronous_growth(machine.rotor, scene.fills, machine.speed, machine.friction)[0]
+    growth = asynchronous_growth(machine.rotor, scene.fills, machine.speed, machine.waves)[0]
     choice = costed(machine, choice, growth)
     ends = np.array([scene.speeds.start, scene.speeds.stop])
     bare = _bare(machine, choice.model)

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from leblanc.studies.models.choose import Prepared, models_at, models_of
 from leblanc.studies.models.liquid import synchronous_model
 from meshes.arrays import Array, Complex, Flags, Index
+from solvers.checked_model import CheckedModel
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.vibration import orbit, unbalance_response
 from solvers.synchronous.coupled import Near
@@ -79,7 +80,11 @@ def responses_between(
     nowhere = np.zeros(0, dtype=np.intp)
     if all(machine.speed[-1] <= machine.speed[0] for machine in machines):
         return [answer.at(nowhere) for answer in answers]
-    planar = isinstance(machines[0].rotor, Jeffcott)
+    own = any(isinstance(machine.waves, CheckedModel) for machine in machines)
+    if own and len(machines) > 1:
+        pairs = zip(machines, answers, strict=True)
+        return [responses_between([one], [known], dry, drawn)[0] for one, known in pairs]
+    planar = isinstance(machines[0].rotor, Jeffcott) and not own
     asked: Asked = _Planar(machines) if planar else _Other(machines, answers)
     ends = [(float(machine.speed[0]), float(machine.speed[-1])) for machine in machines]
 

@@ -128,7 +128,7 @@ class Potential(WaveModel):
             fills,
             whirls,
             unbalance=answer.unbalance.real,
-            slope=answer.slope,
+            slope=answer.slope.real,
             dry_patch=answer.dry_patch,
             limits={**answer.limits, "upright": covered},
             error=np.where(answer.dry_patch, math.nan, ROUNDING),

@@ -44,8 +44,9 @@ def backward_mass(fill: Fill) -> float:
 class Liquid:
     """The liquid of c chambers at k states."""
 
-    unbalance: Array  #: first moments about the rotation axis U_liq, kg m, shape (k, c)
-    slope: Array  #: their derivatives with respect to the deflection, kg, shape (k, c)
+    #: first moments about the rotation axis U_liq, kg m, complex where liquid pulls across, shape (k, c)
+    unbalance: Array | Complex
+    slope: Array | Complex  #: their derivatives with respect to the deflection, kg, shape (k, c)
     dry_patch: Flags  #: shape (k, c)
     in_range: Flags
     converged: Flags
@@ -93,7 +94,8 @@ class Balance:
     def liquid(self, which: Index, deflection: Array) -> Liquid:
         """Law of each chamber at forward deflections."""
         shape = deflection.shape
-        slope = self.added_mass[which]
+        across = self.model.across
+        slope = self.added_mass[which].astype(complex if across else float)
         unbalance = slope * deflection
         flags = np.zeros(shape, dtype=bool), np.ones(shape, dtype=bool), np.ones(shape, dtype=bool)
         bent = ~(deflection <= self.limit[which])
@@ -104,7 +106,8 @@ class Balance:
                 own, gravity = which[rows], np.full(rows.size, self.gravity)
                 whirls = Whirls.synchronous(self.speed[own], deflection[rows, j], gravity)
                 law = self.model.answer(fills.at(own), whirls)
-                unbalance[rows, j], slope[rows, j] = law.real_unbalance(), law.slope
+                slope[rows, j] = law.slope
+                unbalance[rows, j] = law.unbalance if across else law.real_unbalance()
                 for flag, found in zip(flags, (law.dry_patch, law.in_range, law.converged), strict=True):
                     flag[rows, j] = found
         return Liquid(unbalance, slope, *flags)

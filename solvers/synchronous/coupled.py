@@ -62,7 +62,8 @@ def solutions(balance: Balance, near: Near | None = None) -> Solutions:
     if balance.fills:
         apart = np.abs(balance.plane - balance.plane[0])
         alike = bool(np.all(apart <= 1e-12 * np.abs(balance.plane).max()))
-        return one_plane(balance) if alike else several_planes(balance, near)
+        whole = alike and not balance.model.across  # a law of one unknown, and real
+        return one_plane(balance) if whole else several_planes(balance, near)
     answer = solve_each(balance.stiffness, balance.force)
     bounded = np.asarray(np.isfinite(answer).all(axis=1))
     which = np.flatnonzero(bounded)

@@ -80,7 +80,7 @@ class Pairs:
         np.logical_or.at(dry, rows, law.dry_patch)
         np.logical_and.at(in_range, rows, law.in_range)
         np.logical_and.at(converged, rows, law.converged)
-        unbalance, slope = (_summed(rows, x, size) for x in (law.real_unbalance(), law.slope))
+        unbalance, slope = (_summed(rows, x, size) for x in (law.real_unbalance(), law.slope.real))
         return LiquidState(unbalance, slope, dry, in_range, converged)
 
     def pull(self, deflection: Array, which: Index) -> Array:

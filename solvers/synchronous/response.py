@@ -40,6 +40,8 @@ def critical_speed(
     rad/s, between sqrt(K/(M + m_f)) and sqrt(K/M).
     """
     wet, along = [fill for fill in fills if fill.volume > 0.0], np.array([gravity])
+    if model.across:
+        return _fixed_speed(rotor, wet, gravity, model)
 
     def stiffness(speed: Array, _: Index) -> Array:
         pairs = pair_machines([(rotor, wet)], np.zeros(speed.size, dtype=np.intp), speed, along, model)
@@ -53,6 +55,21 @@ def critical_speed(
     return float(root[0])
 
 
+def _fixed_speed(rotor: Jeffcott, wet: Sequence[Fill], gravity: float, model: LiquidModel) -> float:
+    """`critical_speed` with a model of one's own, whose slope may be anything; nan where none is found."""
+    speed = math.sqrt(rotor.stiffness / rotor.mass)
+    for _ in range(_ROUNDS):
+        before, still = speed, np.zeros(len(wet))
+        whirls = Whirls.synchronous(still + speed, still, still + gravity)
+        mass = rotor.mass + (float(model.answer(Fills.of(wet), whirls).slope.real.sum()) if wet else 0.0)
+        if not mass > 0.0:
+            return math.nan
+        speed = math.sqrt(rotor.stiffness / mass)
+        if abs(speed - before) <= ROUNDING * speed:
+            return speed
+    return math.nan
+
+
 def wet_critical_speeds(
     rotor: Rotor, fills: Sequence[Fill], gravity: float = 9.81, model: LiquidModel = STATICS
 ) -> tuple[Array, Complex]:
@@ -63,9 +80,9 @@ def wet_critical_speeds(
     system = rotor.system()
     wet = [fill for fill in fills if fill.volume > 0.0]
     speed, shape = critical_speeds(system, _added_mass(system, wet, None, gravity, model))
-    if gravity == 0.0 or not wet:
+    if (gravity == 0.0 and not model.across) or not wet:
         return speed, shape
-    # Upright, the liquid's share in the mass depends a little on the speed itself.
+    # Upright, or by a model of one's own, the liquid's share in the mass depends on the speed itself.
     for k in range(speed.size):
         for _ in range(30):
             again, shapes = critical_speeds(system, _added_mass(system, wet, float(speed[k]), gravity, model))
@@ -75,6 +92,7 @@ def wet_critical_speeds(
     return speed, shape
 
 
+_ROUNDS = 60  # in which a critical speed settles
 _ALIKE = 1e-6  # relative; amplitudes nearer than that are equally large
 _TRACE = 1e-6  # of the added mass, which parts equal modes and moves no other
 _FREE = 1e-9  # loss factor below which a mode counts as undamped, share below which it counts as not driven
@@ -161,7 +179,7 @@ def _added_mass(
         full = float(model.added_mass(Fills.of([fill]))[0])
         if speed is not None:
             whirl = Whirls.synchronous(np.array([speed]), np.zeros(1), np.array([gravity]))
-            full = float(model.answer(Fills.of([fill]), whirl).slope[0])
+            full = float(model.answer(Fills.of([fill]), whirl).slope[0].real)
         total += 0.5 * full * np.outer(p, np.conj(p)) + 0.5 * backward_mass(fill) * np.outer(np.conj(p), p)
     return total
 
@@ -392,7 +410,7 @@ def fill_responses(
     place = position if position is not None else (sets[0][0].chamber.plane if sets and sets[0] else 0.0)
 
     def solve(law: LiquidModel, at: Index) -> Response:
-        if isinstance(rotor, Jeffcott):
+        if isinstance(rotor, Jeffcott) and not law.across:
             machines = [(rotor, fills) for fills in sets]
             return machine_responses(machines, owner[at], speed[at], np.full(len(sets), gravity), law)
         present, own = np.unique(owner[at], return_inverse=True)
@@ -436,6 +454,14 @@ def machine_responses(
     InputError : a speed that is not positive and finite
     """
     _require_speeds(speed)
+    if model.across:
+        rows = [np.flatnonzero(owner == k) for k in range(len(machines))]
+        parts = [
+            (at, response(rotor, fills, speed[at], along, model))
+            for at, (rotor, fills), along in zip(rows, machines, gravity.tolist(), strict=True)
+            if at.size
+        ]
+        return _merged(parts)
     pairs = pair_machines(machines, owner, speed, gravity, model)
     size, which, converged = all_deflections(pairs)
     bounded = np.isfinite(size)

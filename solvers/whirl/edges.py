@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fluid.fill import Fill
-from fluid.friction.laws import NO_FRICTION, Friction
+from fluid.friction.laws import NO_FRICTION
 from meshes.arrays import Array, Flags, Index
 from solvers.rotor.system import Rotor
-from solvers.whirl.growth import growth_at
+from solvers.whirl.growth import Waves, growth_at
 from solvers.whirl.looks import looks
 
 Bands = tuple[tuple[float, float], ...]
@@ -26,7 +26,7 @@ def unstable_bands(
     rotor: Rotor,
     rows: Sequence[Sequence[Fill]],
     speed: ArrayLike,
-    friction: Friction = NO_FRICTION,
+    friction: Waves = NO_FRICTION,
     growth: Array | None = None,
 ) -> tuple[Bands, ...]:
     """Bands (low, high) of speed in which some whirl grows, rad/s, of each row of fills, edges refined.
@@ -65,7 +65,7 @@ def _contradicts(bands: Bands, speed: Array, growth: Array) -> Flags:
 
 
 def _bands(
-    rotor: Rotor, rows: Sequence[Sequence[Fill]], row: Index, points: Array, rate: Array, friction: Friction
+    rotor: Rotor, rows: Sequence[Sequence[Fill]], row: Index, points: Array, rate: Array, friction: Waves
 ) -> tuple[Bands, ...]:
     """Bands between points by rising row and speed at which the growth is known, their edges refined."""
     grows, known_there = rate > 0.0, ~np.isnan(rate)
@@ -106,7 +106,7 @@ def _refine(
     row: Index,
     low: Array,
     high: Array,
-    friction: Friction,
+    friction: Waves,
 ) -> Array:
     """Speeds at which the whirl begins or ceases to grow, between those of `low` and `high`.
 

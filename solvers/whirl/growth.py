@@ -13,6 +13,7 @@ from fluid.friction.laws import NO_FRICTION, Friction
 from fluid.whirl import Layer, is_full, plane_layer
 from meshes.arrays import Array, Complex, Index
 from meshes.errors import InputError
+from solvers.checked_model import CheckedModel
 from solvers.rotor.jeffcott import Jeffcott, PlanarMachine
 from solvers.rotor.system import Rotor
 from solvers.sloshing.reduced import section_layer, section_layers
@@ -20,14 +21,18 @@ from solvers.whirl.laminar import laminar_modes
 from solvers.whirl.planar import Modes, PlanarProblem, planar_modes
 from solvers.whirl.sections import drum_modes, standing_modes
 from solvers.whirl.system import SystemModes, circles_of, coupled_matrices, linear_modes
+from solvers.whirl.transfer import transfer_modes
 
 MOST_LAYERS = 50
 _ALIKE = 1e-9  # relative; layers that differ by less are one
 _EQUAL = 1e-9  # of a mode's own speed: difference in growth of two modes that counts as none
 
+# What small waves do: those of a ring under friction, or whatever a model of one's own answers.
+Waves = Friction | CheckedModel
+
 
 def asynchronous_growth(
-    rotor: Rotor, fills: Sequence[Fill], speed: ArrayLike, friction: Friction = NO_FRICTION
+    rotor: Rotor, fills: Sequence[Fill], speed: ArrayLike, friction: Waves = NO_FRICTION
 ) -> tuple[Array, Array]:
     """Growth rate and whirl speed of the whirl that grows most [theory: whirl, eq. 7], shape (n,).
 
@@ -40,7 +45,7 @@ def asynchronous_growth(
 
 
 def growth_map(
-    rotor: Rotor, rows: Sequence[Sequence[Fill]], speed: ArrayLike, friction: Friction = NO_FRICTION
+    rotor: Rotor, rows: Sequence[Sequence[Fill]], speed: ArrayLike, friction: Waves = NO_FRICTION
 ) -> tuple[Array, Array]:
     """Growth rate and whirl speed over speed for each of several sets of fills, shape (rows, n)."""
     spin = np.array(speed, dtype=float).reshape(-1)
@@ -55,7 +60,7 @@ def growth_at(
     rows: Sequence[Sequence[Fill]],
     row: Index,
     speed: Array,
-    friction: Friction = NO_FRICTION,
+    friction: Waves = NO_FRICTION,
 ) -> tuple[Array, Array]:
     """Growth rate and whirl speed at points (row, speed), as `growth_map`."""
     if not np.all(np.isfinite(speed) & (speed > 0.0)):
@@ -71,19 +76,23 @@ def growth_at(
 
 
 def system_modes(
-    rotor: Rotor, fills: Sequence[Fill], speed: Array, friction: Friction = NO_FRICTION
+    rotor: Rotor, fills: Sequence[Fill], speed: Array, friction: Waves = NO_FRICTION
 ) -> SystemModes:
     """All whirl modes of any rotor with its fills [theory: whirl, eq. 7]."""
-    heavy = rotor.system()
+    heavy, law = rotor.system(), _waves_of(fills, friction)
+    if isinstance(law, CheckedModel):
+        found = transfer_modes(heavy, fills, speed, law)
+        assert isinstance(found, SystemModes)
+        return found
     for fill in fills:
         if is_full(fill):
             at = heavy.at(fill.chamber.plane)
             heavy = replace(heavy, mass=heavy.mass + fill.mass * at.T @ at)
     if any(fill.uneven for fill in fills):
-        cut = [(fill.chamber.plane, section_layer(fill, friction)) for fill in fills]
+        cut = [(fill.chamber.plane, section_layer(fill, law)) for fill in fills]
         return standing_modes(heavy, [(plane, layer) for plane, layer in cut if layer is not None], speed)
-    found = [(fill.chamber.plane, plane_layer(fill, friction)) for fill in fills]
-    layers = [(plane, layer) for plane, layer in found if layer is not None]
+    rings = [(fill.chamber.plane, plane_layer(fill, law)) for fill in fills]
+    layers = [(plane, layer) for plane, layer in rings if layer is not None]
     _require_few(len(layers))
     if any(layer.stokes > 0.0 for _, layer in layers):
         return laminar_modes(heavy, layers, speed)
@@ -117,7 +126,7 @@ def dominant(omega: Complex, rounding: Array, spin: Array) -> tuple[Array, Array
 
 
 def machines_growth(
-    machines: Sequence[PlanarMachine], frictions: Sequence[Friction], owner: Index, speed: Array
+    machines: Sequence[PlanarMachine], frictions: Sequence[Waves], owner: Index, speed: Array
 ) -> tuple[Array, Array]:
     """Growth rate and whirl speed of many planar machines at once [theory: whirl, eq. 8]."""
     growth, whirl_speed = np.full((2, speed.size), np.nan)
@@ -133,28 +142,33 @@ def machines_growth(
 
 
 def _planar_parts(
-    machines: Sequence[PlanarMachine], frictions: Sequence[Friction], owner: Index, speed: Array
+    machines: Sequence[PlanarMachine], frictions: Sequence[Waves], owner: Index, speed: Array
 ) -> Iterator[tuple[Index, SystemModes | Modes]]:
     """Points of planar machines with as many modes each, and those modes; arguments of `machines_growth`.
 
     In the frame of the drum where baffles stand in the liquid [theory: sections, eq. 3].
     """
-    uneven = np.array([any(fill.uneven for fill in fills) for _, fills in machines], dtype=bool)
-    for i in np.intersect1d(np.flatnonzero(uneven), owner).tolist():
-        here = np.flatnonzero(owner == i)
-        rotor, fills = machines[i]
-        solid, parted = section_layers(fills, frictions[i])
-        yield here, drum_modes(replace(rotor, mass=rotor.mass + solid), parted, speed[here])
-    tables = [
-        planar_layers(rotor.mass, fills, friction)
-        for (rotor, fills), friction in zip(machines, frictions, strict=True)
-    ]
+    laws = [_waves_of(fills, law) for (_, fills), law in zip(machines, frictions, strict=True)]
+    apart = np.zeros(len(machines), dtype=bool)
+    tables: list[tuple[float, list[Layer]]] = []
+    for i, ((rotor, fills), law) in enumerate(zip(machines, laws, strict=True)):
+        apart[i] = isinstance(law, CheckedModel) or any(fill.uneven for fill in fills)
+        here = np.flatnonzero(owner == i) if apart[i] else np.zeros(0, dtype=np.intp)
+        if isinstance(law, CheckedModel):
+            tables.append((rotor.mass, []))
+            if here.size:
+                yield here, transfer_modes(rotor, fills, speed[here], law)
+            continue
+        tables.append(planar_layers(rotor.mass, fills, law))
+        if here.size:
+            solid, parted = section_layers(fills, law)
+            yield here, drum_modes(replace(rotor, mass=rotor.mass + solid), parted, speed[here])
     support = np.array([(rotor.stiffness, rotor.damping) for rotor, _ in machines]).reshape(-1, 2)
     # The number of modes depends on that of the layers and on whether their drag depends on the mode.
     kinds = [(len(layers), any(layer.stokes > 0.0 for layer in layers)) for _, layers in tables]
     for kind in sorted(set(kinds)):
         _require_few(kind[0])
-        own = np.array([i for i, other in enumerate(kinds) if other == kind and not uneven[i]], dtype=np.intp)
+        own = np.array([i for i, other in enumerate(kinds) if other == kind and not apart[i]], dtype=np.intp)
         index = np.full(len(machines), -1, dtype=np.intp)
         index[own] = np.arange(own.size)
         here = np.flatnonzero(index[owner] >= 0)
@@ -171,7 +185,7 @@ def _planar_parts(
 
 
 def modes_at(
-    rotor: Rotor, rows: Sequence[Sequence[Fill]], row: Index, speed: Array, friction: Friction
+    rotor: Rotor, rows: Sequence[Sequence[Fill]], row: Index, speed: Array, friction: Waves
 ) -> tuple[Complex, Array, Array]:
     """Modes of small whirls at points (row, speed), their rounding, and the largest growth rate.
 
@@ -201,6 +215,11 @@ def modes_at(
     for here, part, unsure in seen:
         roots[here, : part.shape[1]], noise[here, : part.shape[1]] = part, unsure
     return roots, noise, growth
+
+
+def _waves_of(fills: Sequence[Fill], waves: Waves) -> Waves:
+    """What small waves do; without any free surface there are none."""
+    return waves if any(fill.volume > 0.0 and not is_full(fill) for fill in fills) else NO_FRICTION
 
 
 def planar_layers(mass: float, fills: Sequence[Fill], friction: Friction) -> tuple[float, list[Layer]]:

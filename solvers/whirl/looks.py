@@ -15,12 +15,12 @@ from typing import Any
 import numpy as np
 
 from fluid.fill import Fill
-from fluid.friction.laws import NO_FRICTION, Friction
+from fluid.friction.laws import NO_FRICTION
 from fluid.whirl import plane_layer
 from meshes.arrays import Array, Complex, Flags, Index
 from solvers.rotor.system import Rotor, RotorSystem
 from solvers.rotor.vibration import critical_speeds
-from solvers.whirl.growth import modes_at
+from solvers.whirl.growth import Waves, modes_at
 
 _APART = 0.08  # first distance of speeds, relative
 _FEWEST = 9
@@ -55,7 +55,7 @@ class Looks:
 
 
 def looks(
-    rotor: Rotor, rows: Sequence[Sequence[Fill]], first: float, last: float, friction: Friction
+    rotor: Rotor, rows: Sequence[Sequence[Fill]], first: float, last: float, friction: Waves
 ) -> tuple[Index, Array, Array]:
     """Points by rising row and speed from which every change of the sign of the growth is seen.
 
@@ -116,9 +116,7 @@ def _first_speeds(system: RotorSystem, fills: Sequence[Fill], first: float, last
     return every[(every >= first) & (every <= last)]
 
 
-def _looked(
-    rotor: Rotor, rows: Sequence[Sequence[Fill]], row: Index, speed: Array, friction: Friction
-) -> Looks:
+def _looked(rotor: Rotor, rows: Sequence[Sequence[Fill]], row: Index, speed: Array, friction: Waves) -> Looks:
     """Modes and growth at points, and slopes by a second speed close by."""
     size = speed.size
     both, spins = np.concatenate([row, row]), np.concatenate([speed, speed * (1.0 + _BESIDE)])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import json
 import subprocess
 import sys
@@ -13,6 +14,7 @@ import pytest
 
 import leblanc as lb
 from leblanc.cli import main
+from leblanc.core.answer import versions
 
 ROOT = Path(__file__).parents[2]
 RIG = ROOT / "examples" / "horizontal_rig.toml"
@@ -71,6 +73,32 @@ def same(result: Any, printed: dict[str, Any]) -> None:
 def test_every_public_name_is_documented_and_found(name: str) -> None:
     found = getattr(lb, name)
     assert found.__doc__ and name in dir(lb)
+
+
+def test_what_is_shown_is_for_readers() -> None:
+    assert dir(lb) == sorted(lb.__all__)
+    assert lb.__version__ == versions()["leblanc"]
+    for name in lb.__all__:
+        found = getattr(lb, name)
+        if callable(found) and getattr(found, "__signature__", None) is not None:
+            said = str(inspect.signature(found))
+            assert not any(word in said for word in ("Annotated", "Validator", "Discriminator", "'float")), (
+                name
+            )
+    shown = inspect.signature(lb.layer).parameters
+    assert str(shown["speed"]) == "speed: float | str"
+    assert str(shown["friction"]) == "friction: Friction | str | dict = 'none'"
+    assert "ramp : time over which the whirl grows" in str(inspect.getdoc(lb.layer))
+    mass = inspect.signature(lb.JeffcottRotor).parameters["mass"]
+    assert str(mass) == "mass: float"
+
+
+def test_published_cases_are_computed() -> None:
+    cases = lb.validate("turning")
+    assert cases
+    assert {case.verdict for case in cases} <= {"agrees", "erratum", "trend", "differs"}
+    with pytest.raises(lb.InputError, match="case = 'turnin'"):
+        lb.validate("turnin")
 
 
 def test_a_name_that_is_not_there() -> None:

@@ -7,6 +7,7 @@ import re
 import shutil
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass, field
 from functools import cache
 from importlib import resources
@@ -70,6 +71,29 @@ class Figure(matplotlib.figure.Figure):
     caption: Caption = Caption("")
     alt: str = ""
     drawn: tuple[float, float] | None = None
+
+    def add_axes(self, *args: Any, **kwargs: Any) -> Any:
+        """See matplotlib; somebody else's axes where a figure is drawn on them."""
+        given = _GIVEN.get()
+        return super().add_axes(*args, **kwargs) if given is None else given
+
+
+_GIVEN: ContextVar[Axes | None] = ContextVar("given", default=None)  # axes that a figure is drawn on
+
+
+def drawn_on(draw: Callable[[Any], Figure], answer: Any, axes: Any) -> Any:
+    """The figure of somebody else's axes, on which the one axes of a figure is drawn."""
+    if not isinstance(axes, matplotlib.axes.Axes):
+        raise InputError("ax", type(axes).__name__, "axes of matplotlib")
+    count = len(draw(answer).axes)
+    if count != 1:
+        raise InputError("ax", "axes", f"left out: this figure has {count} axes, not one")
+    token = _GIVEN.set(axes)
+    try:
+        draw(answer)
+    finally:
+        _GIVEN.reset(token)
+    return axes.figure
 
 
 @dataclass(frozen=True)
@@ -200,6 +224,12 @@ def lay_out(
 
     Rows stand below one another, heights in inches; of the caption `most_lines` are drawn.
     """
+    if (given := _GIVEN.get()) is not None:
+        readable(given.xaxis)
+        readable(given.yaxis)
+        if given.get_legend_handles_labels()[1]:
+            given.legend()
+        return
     figure.caption = Caption(caption) if isinstance(caption, str) else caption
     entries: dict[str, Any] = {}
     for axes in [axes for row in rows for axes in row]:

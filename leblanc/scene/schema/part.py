@@ -63,6 +63,12 @@ class Part(BaseModel):
     # Tables within tables are made by the validator, which collects the faults of all.
     __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
 
+    @classmethod
+    def __pydantic_init_subclass__(cls, **kwargs: Any) -> None:
+        """Show types in the signature, not what checks them."""
+        super().__pydantic_init_subclass__(**kwargs)
+        cls.__signature__ = _Signed()  # type: ignore[assignment]
+
     def __copy__(self) -> Self:
         """The same values without what was worked out from them, which is another's after a change."""
         copied, fields = super().__copy__(), type(self).model_fields
@@ -123,6 +129,15 @@ class Part(BaseModel):
                 cls.__name__, [_line(conflict, given) for conflict in found]
             )
         return made
+
+
+class _Signed:
+    """The signature of a table, made when somebody asks for it."""
+
+    def __get__(self, _: object, owner: type[BaseModel]) -> Any:
+        from leblanc.core.signatures import of_fields
+
+        return of_fields(owner.model_fields)
 
 
 def _written(value: Any) -> Any:

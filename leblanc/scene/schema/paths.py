@@ -163,7 +163,7 @@ def with_values(table: Mapping[str, Any], changes: Iterable[tuple[Keys, Any]]) -
     """
     changed, pairs = dict(table), list(changes)
     ends = [(keys, value) for keys, value in pairs if keys in (("speeds", "start"), ("speeds", "stop"))]
-    if len(ends) == 1 and table["speeds"]["count"] == 1:
+    if len(ends) == 1 and table["speeds"].get("count") == 1:
         pairs += [(("speeds", end), ends[0][1]) for end in ("start", "stop")]
     for keys, value in pairs:
         node: Any = changed

@@ -35,6 +35,11 @@ def map_whirl(
         Option(("--cycles",)),
         "Find how large the whirls of the scene as it stands grow: amplitude, frequency, folds, stability.",
     ] = False,
+    model: Annotated[
+        Any,
+        Option(alone=True),
+        "Liquid in place of the scene's: an object as `leblanc.LiquidModel` says, or a name.",
+    ] = None,
     progress: Annotated[
         Callable[[float, float], None] | None, "Called with the number of volumes done and of all."
     ] = None,
@@ -53,7 +58,7 @@ def map_whirl(
     >>> lb.map_whirl(lb.example("horizontal_rig"), volumes=3, speeds=5).growth.shape
     (3, 5)
     """
-    return ask(map_whirl, "leblanc.studies.map.study:map_scene", locals())
+    return ask(map_whirl, "leblanc.studies.map.study:answer", locals())
 
 
 def map_balls(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -12,21 +13,23 @@ from fluid.waves import capture_speed
 from fluid.whirl import covering_speed, is_full
 from leblanc.core.notes import Note, NoteCode
 from leblanc.core.progress import update
-from leblanc.core.units import VOLUME, rpm_bands, small_whirl_friction, with_unit
+from leblanc.core.units import VOLUME, rpm_bands, with_unit
 from leblanc.results.motion.cycles import Cycles
 from leblanc.scene.scene import Scene, require_no_balls, require_whirl
 from leblanc.studies.cycles import scene_cycles
 from leblanc.studies.map.answer import WhirlMap
 from leblanc.studies.models.choose import Prepared, prepare
+from leblanc.studies.models.liquid import asked_with
 from leblanc.studies.models.validity import doubts
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
+from solvers.checked_model import CheckedModel
 from solvers.liquid_model import THIN_LAYERS
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.vibration import critical_speeds
 from solvers.synchronous.response import main_critical_speeds
 from solvers.whirl.edges import Bands, bands_not_known, unstable_bands
-from solvers.whirl.growth import growth_map
+from solvers.whirl.growth import Waves, growth_map
 
 FEWEST, MOST = 2, 4000  # volumes or speeds of a map
 _AT_ONCE = 20  # volumes between reports of progress
@@ -45,6 +48,12 @@ class MapCode(NoteCode):
     NOT_KNOWN = "not_known"
 
 
+def answer(scene: Scene, model: object, **given: Any) -> WhirlMap:
+    """The map of a scene, its liquid as a model of one's own has it where one is given."""
+    with asked_with(scene, model) as own:
+        return map_scene(own, **given)
+
+
 def map_scene(
     scene: Scene,
     volumes: int,
@@ -59,8 +68,13 @@ def map_scene(
     given. `cycles`: find how large the whirls of the scene as it stands grow.
     """
     _check(scene, volumes, speeds)
-    law = scene.model.friction if friction is None else friction
     machine = prepare(scene, free=True)
+    law = machine.waves
+    if isinstance(law, CheckedModel) and (friction is not None or cycles):
+        field, given = ("friction", friction) if friction is not None else ("cycles", cycles)
+        raise InputError(field, given, "left out with a liquid model of one's own")
+    law = law if friction is None else friction
+    drag = replace(machine, waves=law).drag
     rotor, speed = machine.rotor, np.linspace(scene.speeds.start, scene.speeds.stop, speeds)
     rows = fills_over_volume(scene.fills, volumes, max_volume)
     parts = []
@@ -74,9 +88,11 @@ def map_scene(
     edges = unstable_bands(rotor, rows, speed, law, growth)
     (own,) = unstable_bands(rotor, [scene.fills], speed, law)
     carried = np.array([_held(scene, fills, speed) for fills in rows])
-    large, said = scene_cycles(machine, law) if cycles else (None, ())
+    large, said = scene_cycles(machine, law) if cycles and isinstance(law, Friction) else (None, ())
     pairs = zip(rows, whirl_speed - speed, strict=True)
-    thin = np.array([_thin_layers(fills, slip) for fills, slip in pairs]) | (not law.law.laminar)
+    thin = np.ones(growth.shape, dtype=bool)
+    if isinstance(law, Friction) and law.law.laminar:
+        thin = np.array([_thin_layers(fills, slip) for fills, slip in pairs])
     return WhirlMap(
         name=scene.name,
         source=scene.source,
@@ -88,7 +104,7 @@ def map_scene(
         whirl_speed=whirl_speed,
         in_range=carried & thin,
         edges=edges,
-        friction=small_whirl_friction(law),
+        friction=drag,
         damping=f"damping ratio {rotor.damping_ratio:.3g}"
         if isinstance(rotor, Jeffcott)
         else "damping as in the scene",
@@ -171,7 +187,7 @@ def _thin_layers(fills: tuple[Fill, ...], slip: Array) -> Flags:
 
 
 def _notes(
-    machine: Prepared, law: Friction, own: Bands, carried: Flags, thin: Flags, growth: Array
+    machine: Prepared, law: Waves, own: Bands, carried: Flags, thin: Flags, growth: Array
 ) -> tuple[Note, ...]:
     """Limits of validity and findings."""
     scene, found = machine.scene, []
@@ -192,13 +208,14 @@ def _notes(
             lost=lost,
             points=thin.size,
         )
-    if law.law == "quadratic":
+    friction = law.law if isinstance(law, Friction) else ""
+    if friction == "quadratic":
         note(
             MapCode.QUADRATIC,
             "Quadratic friction vanishes for small motions: the map is that without it. It bounds what "
             "grows.",
         )
-    if law.law in ("none", "quadratic") and np.any(machine.system.damping):
+    if friction in ("none", "quadratic") and np.any(machine.system.damping):
         note(
             MapCode.WITHOUT_FRICTION,
             "Without liquid friction the support's damping feeds the wave against the spin, whose energy is "

@@ -10,26 +10,29 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from fluid.fill import Fill
+from fluid.fill import Fill, Fills
 from fluid.friction.laws import Friction, FrictionLaw
 from fluid.pool import balance_speed, pool_of
 from fluid.waves import capture_speed
 from fluid.whirl import covering_speed
 from leblanc.core.notes import percent
+from leblanc.core.units import small_whirl_friction
 from leblanc.results.choice import HELD_MODELS, Choice, HeldCost
-from leblanc.scene.scene import Scene, dry_rotor, require_no_balls
-from leblanc.studies.models.liquid import RUNUP_MODELS, synchronous_model
+from leblanc.scene.scene import LIQUID_MODELS, Scene, dry_rotor, require_no_balls
+from leblanc.studies.models.liquid import RUNUP_MODELS, own_model, synchronous_model
 from leblanc.studies.models.validity import require_supported
 from meshes.arrays import Array, Flags
 from meshes.chamber_section import rest_offset, surface_is_whole
 from meshes.errors import InputError
+from solvers.checked_model import CheckedModel, require_outwards
 from solvers.held.cost import hold_seconds
 from solvers.held.state import HoldNumerics
-from solvers.liquid_model import ROUNDING, LiquidModel
+from solvers.liquid_model import ROUNDING, LiquidModel, Whirls
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.sloshing.model import REST_ERROR
 from solvers.synchronous.errors import GravityError, LinearError, error_estimate, machine_errors
 from solvers.synchronous.response import distance, response
+from solvers.whirl.growth import Waves
 
 if TYPE_CHECKING:
     from solvers.rotor.system import RotorSystem
@@ -48,6 +51,14 @@ class Prepared:
     axial_gravity: float  #: along and across the axis, m/s^2
     across_gravity: float
     friction: Friction  #: of the liquid
+    waves: Waves  #: small ones: those of a ring under that friction, or of a model of one's own
+
+    @property
+    def drag(self) -> str:
+        """Friction of small whirls, in words."""
+        if isinstance(self.waves, CheckedModel):
+            return f"as the model {self.waves.name} has it"
+        return small_whirl_friction(self.waves)
 
     @property
     def planar(self) -> Jeffcott:
@@ -63,7 +74,9 @@ def prepare(scene: Scene, free: bool = False) -> Prepared:
     if not free:
         require_supported(scene)
     scene = scene.as_read()
-    rotor = dry_rotor(scene)
+    rotor, waves = dry_rotor(scene), _own(scene)
+    if waves is not None:
+        _try(waves, scene)
     return Prepared(
         scene=scene,
         rotor=rotor,
@@ -72,7 +85,21 @@ def prepare(scene: Scene, free: bool = False) -> Prepared:
         axial_gravity=axial_gravity(scene),
         across_gravity=across_gravity(scene),
         friction=scene.model.friction,
+        waves=scene.model.friction if waves is None else waves,
     )
+
+
+def _own(scene: Scene) -> CheckedModel | None:
+    """The model of one's own that a scene names; None where it is a built-in one."""
+    return own_model(scene.model.liquid) if scene.model.liquid not in LIQUID_MODELS else None
+
+
+def _try(model: CheckedModel, scene: Scene) -> None:
+    """Ask a model of one's own for small whirls at the ends of the speeds, once before the work."""
+    wet = [fill for fill in scene.fills if fill.volume > 0.0] * 2
+    spin = np.repeat([scene.speeds.start, scene.speeds.stop], len(wet) // 2)
+    along = np.full(spin.size, axial_gravity(scene))
+    require_outwards(model, Fills.of(wet), Whirls.synchronous(spin, np.zeros(spin.size), along))
 
 
 def axial_gravity(scene: Scene) -> float:
@@ -116,6 +143,8 @@ def models_of(scene: Scene) -> tuple[str, ...]:
 
 def _beginning(scene: Scene) -> str:
     """The model that answers first: dearer ones begin with the exact equilibrium, or with compartments."""
+    if scene.model.liquid not in LIQUID_MODELS:
+        return scene.model.liquid
     if is_cut(scene):
         return "fem"
     if scene.model.liquid == "potential":  # a circle with the spin is one of small waves too, at any height
@@ -300,7 +329,10 @@ def _choice(machine: Prepared, linear: LinearError, gravity: GravityError) -> Ch
     # exact equilibrium says where.
     enough = linear.wet & (linear.worst <= tolerance)
     cut = is_cut(scene)
-    small = "fem" if cut or liquid == "fem" else "kdv" if liquid == "kdv" else "linear"
+    own = machine.waves if isinstance(machine.waves, CheckedModel) else None
+    small = (
+        "fem" if cut or liquid == "fem" else "kdv" if liquid == "kdv" else "linear" if own is None else liquid
+    )
     if cut or liquid != "auto":
         enough = np.full(speed.shape, liquid != "statics")
     models = np.where(enough, small, "statics")
@@ -309,6 +341,8 @@ def _choice(machine: Prepared, linear: LinearError, gravity: GravityError) -> Ch
         error = error + np.where(enough, REST_ERROR, 0.0)
     if liquid == "kdv" and not cut:
         error = gravity.amplitude + _family_error(machine)
+    if own is not None:
+        error = gravity.amplitude + _own_error(own, machine)
     if cut:
         # The exact equilibrium of compartments, which would judge small disturbances, is not computed.
         error = np.full(speed.shape, np.nan)
@@ -326,6 +360,16 @@ def _choice(machine: Prepared, linear: LinearError, gravity: GravityError) -> Ch
         cut=cut,
         held_model=held_model(scene),
     )
+
+
+def _own_error(model: CheckedModel, machine: Prepared) -> Array:
+    """What a model of one's own says of its error for small whirls, the largest of the chambers, (n,)."""
+    size, wet = machine.speed.size, [fill for fill in machine.scene.fills if fill.volume > 0.0]
+    fills = Fills.of(wet).at(np.repeat(np.arange(len(wet)), size))
+    whirls = Whirls.synchronous(
+        np.tile(machine.speed, len(wet)), 1e-6 * fills.depth, np.full(len(fills), machine.axial_gravity)
+    )
+    return np.asarray(model.answer(fills, whirls).error.reshape(len(wet), size).max(axis=0, initial=0.0))
 
 
 def _family_error(machine: Prepared) -> Array:

@@ -1,16 +1,23 @@
 """Liquid models by the names that scenes and commands give them; here alone a name becomes an object.
 
-A room of solvers is imported where one of its models is made: the response needs no waves, no run-up.
+A room of solvers is imported where one of its models is made: the response needs no waves, no run-up. A model
+of one's own is known by its name while a question is asked with it, or for good where an installed package
+announces it under `leblanc.liquids`, as "module:object" of a model or of a class that makes one.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from fluid.friction.laws import NO_FRICTION, Friction, FrictionLaw
+from leblanc.core.announced import LIQUIDS, announced
+from leblanc.scene.scene import LIQUID_MODELS, Scene
 from meshes.errors import InputError
+from solvers.checked_model import CheckedModel
 from solvers.liquid_model import LiquidModel, WaveModel
 from solvers.synchronous.models import LINEAR, STATICS
 
@@ -99,6 +106,8 @@ def wave_model(
 
 def synchronous_model(name: str) -> LiquidModel:
     """The liquid model that a scene names; `auto` is the cheapest that is exact for synchronous whirl."""
+    if name not in LIQUID_MODELS:
+        return own_model(name)
     if name not in ("auto", *SYNCHRONOUS_MODELS):
         raise InputError("model.liquid", name, "one of auto, " + ", ".join(SYNCHRONOUS_MODELS))
     return wave_model("statics" if name == "auto" else name)
@@ -119,3 +128,48 @@ def runup_model(name: str) -> RunupModel:
     if name not in RUNUP_MODELS:
         raise InputError("model.liquid", name, " or ".join(RUNUP_MODELS) + " for a run-up")
     return couple if name == "long_wave" else couple_linear
+
+
+_GIVEN: ContextVar[tuple[CheckedModel, ...]] = ContextVar("given", default=())
+
+
+def own_model(name: str) -> CheckedModel:
+    """A model of one's own by its name: the one that is asked with, or an announced one."""
+    for model in _GIVEN.get():
+        if model.name == name:
+            return model
+    entry = announced(LIQUIDS).get(name)
+    if entry is None:
+        raise InputError(
+            "model.liquid", name, "one of " + ", ".join(LIQUID_MODELS) + ", or an announced name"
+        )
+    try:
+        found = entry.load()
+        return CheckedModel(found() if isinstance(found, type) else found, name)
+    except Exception as error:
+        said = f"one that is installed; {entry.value} cannot be loaded: {str(error) or type(error).__name__}"
+        raise InputError("model.liquid", name, said) from error
+
+
+@contextmanager
+def asked_with(scene: Scene, model: object | None) -> Iterator[Scene]:
+    """The scene with its liquid as a model of one's own has it, which is known within the block.
+
+    An `InputError` where it is no such model, or has the name of a built-in one.
+    """
+    if model is None:
+        yield scene
+        return
+    if isinstance(model, str):
+        yield scene.replace({"model.liquid": model})
+        return
+    own = CheckedModel(model)
+    if own.name in LIQUID_MODELS:
+        raise InputError("model.name", own.name, "a name of its own, none of " + ", ".join(LIQUID_MODELS))
+    if not scene.liquids:
+        raise InputError("model", own.name, "left out where no chamber holds liquid")
+    token = _GIVEN.set((own, *_GIVEN.get()))
+    try:
+        yield scene.altered(model=scene.model.altered(liquid=own.name))
+    finally:
+        _GIVEN.reset(token)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 from leblanc.core.question import SCENE, Option, ask
 
@@ -26,6 +26,11 @@ def run(
     cycles: Annotated[
         bool, Option(("--cycles",)), "Find how large whirls that grow by themselves become."
     ] = False,
+    model: Annotated[
+        Any,
+        Option(alone=True),
+        "Liquid in place of the scene's: an object as `leblanc.LiquidModel` says, or a name.",
+    ] = None,
     folder: Path | None = None,
 ) -> RunAnswer | Answer:
     """Answer of the machine at each speed. Figures, data file, report.

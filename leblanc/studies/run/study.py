@@ -14,7 +14,6 @@ from leblanc.core.answer import Answer
 from leblanc.core.notes import Note
 from leblanc.core.progress import update
 from leblanc.core.question import called
-from leblanc.core.units import small_whirl_friction
 from leblanc.registry import answerer
 from leblanc.results.base import FilledChamber
 from leblanc.results.choice import HELD_MODELS, Choice, model_spans
@@ -40,7 +39,7 @@ from leblanc.studies.models.choose import (
     may_hold,
     prepare,
 )
-from leblanc.studies.models.liquid import element_model, synchronous_model
+from leblanc.studies.models.liquid import asked_with, element_model, synchronous_model
 from leblanc.studies.models.validity import doubts
 from leblanc.studies.peaks import responses_between
 from leblanc.studies.run import notes as notes
@@ -91,15 +90,14 @@ _COORDINATES = {
 def self_excited(machine: Prepared) -> SelfExcited:
     """Growth of small whirls of a machine at its speeds [theory: whirl, eq. 7]."""
     scene, speed = machine.scene, machine.speed
-    growth, whirl_speed = asynchronous_growth(machine.rotor, scene.fills, speed, machine.friction)
+    growth, whirl_speed = asynchronous_growth(machine.rotor, scene.fills, speed, machine.waves)
     bands: tuple[tuple[float, float], ...] = ()
     if speed[-1] > speed[0]:
         filled, known = [scene.fills], growth[None]
-        bands = unstable_bands(machine.rotor, filled, speed, machine.friction, known)[0]
+        bands = unstable_bands(machine.rotor, filled, speed, machine.waves, known)[0]
     elif growth[0] > 0.0:
         bands = ((float(speed[0]), float(speed[0])),)
-    friction = small_whirl_friction(scene.model.friction)
-    return SelfExcited(growth, whirl_speed, bands, friction, bands_not_known(speed, growth))
+    return SelfExcited(growth, whirl_speed, bands, machine.drag, bands_not_known(speed, growth))
 
 
 def _grown_whirl(machine: Prepared) -> tuple[SelfExcited, tuple[Note, ...]]:
@@ -175,15 +173,23 @@ def _directed(
 
 
 def answer(
-    scene: Scene, *, workers: int, fresh: bool, solver: str | None, cycles: bool, folder: Path | None
+    scene: Scene,
+    *,
+    workers: int,
+    fresh: bool,
+    solver: str | None,
+    cycles: bool,
+    model: object,
+    folder: Path | None,
 ) -> Answer:
     """The answer of the kind of machine, as `leblanc.run` takes its parameters."""
     if workers < 1:
         raise InputError("workers", workers, "1 or more")
-    if (address := answerer("run", scene.kind)) is not None:
-        found: Answer = called(address)(scene)
-        return found
-    return run_scene(scene, Holding(workers, folder, fresh, solver or COUPLED), cycles)
+    with asked_with(scene, model) as own:
+        if (address := answerer("run", own.kind)) is not None:
+            found: Answer = called(address)(own)
+            return found
+        return run_scene(own, Holding(workers, folder, fresh, solver or COUPLED), cycles)
 
 
 def run_scene(scene: Scene, holding: Holding = HERE, cycles: bool = False) -> RunAnswer:
@@ -372,6 +378,8 @@ def _against_spin(answer: Response, motion: Motion, held: Held | None) -> Note |
 
 def _thick_layers(machine: Prepared) -> Note | None:
     """Where laminar layers of the slower waves are not as thin as friction of small whirls takes them."""
+    if machine.waves is not machine.friction:
+        return None
     layers = [(fill, plane_layer(fill, machine.friction)) for fill in machine.scene.fills]
     # delta = sqrt(2 nu/|s|) at the slower wave, whose frequency goes with the spin: thick below one speed.
     limit, least = THIN_LAYERS[1], 0.0

@@ -84,7 +84,7 @@ def _planar(scenes: Sequence[Scene]) -> Answers:
     choices = choose_all(prepared)
     speed = np.stack([machine.speed for machine in prepared]).ravel()
     owner = np.repeat(np.arange(len(scenes)), shape[1])
-    frictions = [machine.friction for machine in prepared]
+    frictions = [machine.waves for machine in prepared]
     growth, whirl_speed = machines_growth(machines, frictions, owner, speed)
     model = np.concatenate([choice.models for choice in choices])
     found: dict[str, Any] = {
