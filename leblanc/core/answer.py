@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from leblanc.core.blocks import Block, Headline, Table, flat
 from leblanc.core.notes import Note, one_line
 from leblanc.core.question import called
-from leblanc.core.records import alike
 
 if TYPE_CHECKING:
     from leblanc.core.netcdf import Dataset, NamedArrays
@@ -91,6 +90,8 @@ class Result(ABC):
 
     def __eq__(self, other: object) -> bool:
         """Of the same kind with the same values, arrays element by element, nan equal to nan."""
+        from leblanc.core.records import alike
+
         return alike(self, other) if type(self) is type(other) else NotImplemented
 
     def __hash__(self) -> int:
