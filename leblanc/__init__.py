@@ -115,7 +115,7 @@ def __getattr__(name: str) -> object:
     module, attribute = _HOMES[name]
     found = globals()[name] = getattr(import_module(module), attribute)
     if name in _QUESTIONS or name.startswith("map_"):
-        from leblanc.core.signatures import readable
+        from leblanc.core.question import readable
 
         readable(found)
     return found

@@ -1,6 +1,14 @@
-"""Which wing answers a question about a kind of machine: the one place that names wings."""
+"""Which module answers a question about a kind of machine, and what installed packages announce.
+
+The one place that names wings.
+"""
 
 from __future__ import annotations
+
+from collections.abc import Callable
+from importlib.metadata import EntryPoint, distributions
+
+COMMANDS, LIQUIDS = "leblanc.commands", "leblanc.liquids"  # groups of entry points
 
 # "module:function" of a scene, by kind of machine and by question.
 WINGS: dict[str, dict[str, str]] = {
@@ -24,3 +32,17 @@ WINGS: dict[str, dict[str, str]] = {
 def answerer(question: str, kind: str) -> str | None:
     """What answers a question about a kind of machine; None where the core does."""
     return WINGS.get(kind, {}).get(question)
+
+
+def announced(group: str, failed: Callable[[str], object] = lambda _: None) -> dict[str, EntryPoint]:
+    """Entry points of a group by name; one that cannot be read announces none, `failed` says why."""
+    found: dict[str, EntryPoint] = {}
+    for package in distributions():
+        try:
+            entries = [entry for entry in package.entry_points if entry.group == group]
+        except Exception as error:
+            failed(str(error) or type(error).__name__)
+            continue
+        for entry in entries:
+            found.setdefault(entry.name, entry)  # of two versions on the path the first is the one imported
+    return found

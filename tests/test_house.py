@@ -110,7 +110,7 @@ def test_every_public_function_is_documented() -> None:
     bare = []
     for path in _sources():
         tree = ast.parse(path.read_text(encoding="utf-8"))
-        told = path.name == "answer.py" and path.parent.parent.name in ("studies", "wings")
+        told = path.name == "answer.py" and bool({"studies", "wings"} & set(path.parts))
         every = _public(tree.body)
         public = [n for n in every if not (isinstance(n, ast.FunctionDef) and (told or _says(n)))]
         bare += [f"{path.name}:{n.name}" for n in public if not ast.get_docstring(n)]

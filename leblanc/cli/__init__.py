@@ -20,12 +20,12 @@ import typer
 from typer.main import get_command
 
 from leblanc.cli import compare, explain, new, view
-from leblanc.core.announced import COMMANDS as ANNOUNCED
-from leblanc.core.announced import announced
 from leblanc.core.answer import NotConverged
 from leblanc.core.contents import recording
 from leblanc.core.interrupts import INTERRUPTED, TERMINATED, Terminated, behind, heard, leave, said
 from leblanc.core.terminal import drop, ready_streams, say
+from leblanc.registry import COMMANDS as ANNOUNCED
+from leblanc.registry import announced
 from leblanc.scene.schema.load import SceneError, escaped
 from meshes.errors import InputError
 

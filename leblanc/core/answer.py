@@ -90,7 +90,7 @@ class Result(ABC):
 
     def __eq__(self, other: object) -> bool:
         """Of the same kind with the same values, arrays element by element, nan equal to nan."""
-        from leblanc.core.records import alike
+        from leblanc.core.quantities import alike
 
         return alike(self, other) if type(self) is type(other) else NotImplemented
 

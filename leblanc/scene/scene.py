@@ -17,8 +17,8 @@ from fluid.fill import Fill
 from fluid.friction.laws import Friction, FrictionLaw
 from fluid.liquid import Liquid, known_liquid
 from leblanc.core import units
-from leblanc.core.announced import LIQUIDS, announced
 from leblanc.core.units import allowed_as_typed
+from leblanc.registry import LIQUIDS, announced
 from leblanc.scene.cabinet import MAX_POINTS, Cabinet, Point, cabinet_conflicts
 from leblanc.scene.chambers import Chamber
 from leblanc.scene.magnetic import MagneticRotor as MagneticRotor

@@ -135,7 +135,7 @@ class _Signed:
     """The signature of a table, made when somebody asks for it."""
 
     def __get__(self, _: object, owner: type[BaseModel]) -> Any:
-        from leblanc.core.signatures import of_fields
+        from leblanc.core.question import of_fields
 
         return of_fields(owner.model_fields)
 

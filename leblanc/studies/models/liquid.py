@@ -14,7 +14,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from fluid.friction.laws import NO_FRICTION, Friction, FrictionLaw
-from leblanc.core.announced import LIQUIDS, announced
+from leblanc.registry import LIQUIDS, announced
 from leblanc.scene.scene import LIQUID_MODELS, Scene
 from meshes.errors import InputError
 from solvers.checked_model import CheckedModel

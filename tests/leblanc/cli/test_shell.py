@@ -196,9 +196,7 @@ class Package:
 
 def announce(monkeypatch: pytest.MonkeyPatch, *packages: list[EntryPoint] | None) -> None:
     """Let these be the installed packages."""
-    monkeypatch.setattr(
-        "leblanc.core.announced.distributions", lambda: [Package(entries) for entries in packages]
-    )
+    monkeypatch.setattr("leblanc.registry.distributions", lambda: [Package(entries) for entries in packages])
 
 
 def test_broken_packages_do_not_end_the_others(

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import leblanc as lb
-from leblanc.core.records import alike, seal
+from leblanc.core.quantities import alike, seal
 from meshes.errors import InputError
 from tests.leblanc.core.answers import ASKED, answer
 

@@ -84,7 +84,7 @@ def test_a_call_takes_a_scene_or_its_file_and_quantities_with_units(rig: Path) -
         lift(4.0)  # type: ignore[arg-type]
 
 
-@kills("leblanc.cli.command:_of_option", 'error.field != "out"', "True")
+@kills("leblanc.cli.command:_of_option", "one is None or one.option.argument", "True")
 def test_a_command_prints_words_or_json_and_writes_its_file(
     rig: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

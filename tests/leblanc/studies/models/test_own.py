@@ -206,7 +206,7 @@ def test_an_announced_model_is_named_in_a_machine_file(
     names = {"thin ring": "my_liquids:ring", "broken": "my_liquids:broken", "gone": "no_such_module:it"}
     entries = [EntryPoint(name, place, "leblanc.liquids") for name, place in names.items()]
     package = type("Package", (), {"entry_points": entries})
-    monkeypatch.setattr("leblanc.core.announced.distributions", lambda: [package])
+    monkeypatch.setattr("leblanc.registry.distributions", lambda: [package])
 
     rig = scene("horizontal_rig", **{"model.liquid": "thin ring"})
     own, ours = lb.run(rig), lb.run(scene("horizontal_rig"))
