@@ -114,6 +114,7 @@ def test_the_leading_root_is_the_margin(monkeypatch: pytest.MonkeyPatch) -> None
     monkeypatch.setattr(search, "_ROUNDS", 1)  # enough for a single race
     monkeypatch.setattr(search, "_FOUND", 1e-4)
     monkeypatch.setattr(search, "_DRAG_FOUND", 1e-3)
+    monkeypatch.setattr(search, "_LEAST_MEMBERS", 16)
     task = Optimisation(
         objective="least_mass",
         stability_margin=margin,
