@@ -10,7 +10,7 @@ from validation.cases.baffles.flow import lagging
 
 
 def test_decays_and_losses() -> None:
-    """The lag of each decay within 0.03 of the spin, the driven losses within a quarter, by both ways; kept."""
+    """The lag of each decay within 0.03 of the spin, the driven losses within a quarter, both ways; kept."""
     found = {case["name"].partition("/")[2]: case for case in kept_cases("baffles")}
     sinks = {f"{name}_sink" for name in ("w6", "w6n4", "w9", "d3", "d6", "d9")}
     struck = {f"{name}_start" for name in ("w6", "w9", "d3")}

@@ -255,8 +255,7 @@ def test_texts_stay_on_the_page_and_apart(name: str):
     record = narrow() if name == "narrow" else EXTREMES[name]()
     for draw in DRAW:
         figure = draw(record)
-        FigureCanvasAgg(figure)
-        figure.draw_without_rendering()
+        FigureCanvasAgg(figure).draw()
         # All that is drawn, tick labels included, inches.
         drawn, (width, height) = figure.get_tightbbox(), figure.get_size_inches()
         assert drawn.x0 >= 0.0, draw.__name__

@@ -173,7 +173,7 @@ def test_unbalance_may_hold_what_would_whirl() -> None:
     critical = 1051.0 * math.pi / 30.0
     rotor = Jeffcott(40.0, 40.0 * critical**2, 2.0 * 0.1 * 40.0 * critical, 6e-3)
     fills = tuple(Fill(Chamber(radius, 0.2), WATER, 1e-4) for radius in (0.065, 0.05))
-    friction, spin, numerics = Friction("stokes"), 1031.0 * math.pi / 30.0, HoldNumerics(cells=32, turns=256)
+    friction, spin, numerics = Friction("stokes"), 1031.0 * math.pi / 30.0, HoldNumerics(cells=32)
     growth = float(asynchronous_growth(rotor, list(fills), np.array([spin]), friction)[0][0])
     assert growth > 0.0
     machine = HeldMachine(rotor.system(), fills, friction, 9.81)
@@ -190,7 +190,7 @@ def test_the_way_down_is_another_one() -> None:
     rotor, fill = whirler(0.02)
     friction, numerics = Friction("linear", LAG * SCALE), HoldNumerics(cells=32)
     machine = HeldMachine(rotor.system(), (fill,), friction)
-    spins = SCALE * np.array([1.3, 1.45, 1.55])
+    spins = SCALE * np.array([1.3, 1.4, 1.47, 1.55])
     growth = asynchronous_growth(rotor, [fill], spins, friction)[0]
     tasks = [
         HeldTask(start(machine, spin, numerics, kick=0.1 if grows > 0.0 else 0.0), float(grows))
@@ -202,7 +202,7 @@ def test_the_way_down_is_another_one() -> None:
             yield k, hold_with_error(machine, task.begin, numerics, task.slowest)
 
     found = held_branches(tasks, one_by_one)
-    assert found.hysteresis.tolist() == [False, False, True]
+    assert found.hysteresis.tolist() == [False, False, False, True]
     # W/h0 carried up is 0.8126 at 128 cells.
     assert found.up[-1].amplitude / fill.depth == pytest.approx(0.8126, rel=0.02)
     assert found.down[-1].amplitude < 1e-6 * fill.depth
