@@ -14,7 +14,6 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 _HERE = Path(__file__).resolve().parent
@@ -80,9 +79,8 @@ def _notebooks(target: Path, quick: bool) -> None:
         if any(_older(executed / f"{text.stem}.ipynb", path) for path in (text, *called))
     ]
     if stale and not quick:
-        command = [sys.executable, "-m", "leblanc", "notebooks", "--out", str(executed)]
-        with ThreadPoolExecutor(os.cpu_count()) as pool:  # each notebook keeps one core busy
-            list(pool.map(lambda text: subprocess.run([*command, text.stem], cwd=ROOT, check=True), stale))
+        command = [sys.executable, "-m", "leblanc", "notebooks", *(text.stem for text in stale)]
+        subprocess.run([*command, "--out", str(executed)], cwd=ROOT, check=True)
     target.mkdir(parents=True, exist_ok=True)
     for text in texts:
         book = executed / f"{text.stem}.ipynb"
@@ -136,10 +134,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     out = chosen.out.resolve()
     source = out.parent / (out.name + ".source") / "docs"
     timed("pages, pictures, notebooks", lambda: gather(source, chosen.quick))
-    with ThreadPoolExecutor(1) as beside:  # Sphinx keeps one core busy
-        ran = beside.submit(lambda: 0 if chosen.quick else timed("commands of the pages", commands))
-        wrong = timed("site", lambda: sphinx(source, out))
-        wrong = ran.result() or wrong
+    wrong = 0 if chosen.quick else timed("commands of the pages", commands)
+    wrong = timed("site", lambda: sphinx(source, out)) or wrong
     return timed("proofreading", lambda: proofread.main([str(out)])) or wrong
 
 

@@ -1,15 +1,14 @@
 """Compiled functions of numba, imported here alone, their machine code kept where nobody else can write.
 
 numba keys its cache by the file of a function, not by what that calls, and raises where neither the package
-nor HOME can be written. Here each state of the sources that are compiled has a folder of its own below the
-user's caches; without one each process compiles for itself.
+nor HOME can be written. Here each state of the sources has a folder of its own below the user's caches;
+without one each process compiles for itself.
 """
 
 from __future__ import annotations
 
 import hashlib
 import os
-import re
 import shutil
 import stat
 import threading
@@ -25,7 +24,6 @@ import platformdirs
 # Options of what only compiled code calls: it needs no wrappers.
 BARE: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 _UNUSED = 30.0 * 86400.0  # s, after which the folder of other sources is removed
-_IMPORT = re.compile(r"^\s*from (\S+) import (\([^)]*\)|.*)", re.MULTILINE)
 _choosing = threading.Lock()
 _config: Any = numba.config
 
@@ -61,22 +59,10 @@ def cache_folder() -> Path | None:
     if _config.CACHE_DIR:
         folder = Path(_config.CACHE_DIR)
         return folder if _writable(folder) else None
-    digest = hashlib.sha256(b"".join(path.read_bytes() for path in compiled_sources())).hexdigest()[:16]
-    return private_folder(f"machine-code-{digest}")
-
-
-def compiled_sources() -> list[Path]:
-    """Files of this package that compile functions, and all that they import from it and its neighbours."""
     root = Path(__file__).parent.parent
-    waiting = [path for path in root.glob("solvers/**/*.py") if " machine_code\n" in path.read_text("utf-8")]
-    found: set[Path] = set()
-    while waiting:
-        if (path := waiting.pop()) not in found:
-            found.add(path)
-            for module, names in _IMPORT.findall(path.read_text("utf-8")):
-                places = module, *(f"{module}.{name}" for name in re.findall(r"\w+", names))
-                waiting += [f for p in places if (f := root / f"{p.replace('.', '/')}.py").is_file()]
-    return sorted(found)
+    sources = sorted(path for name in ("fluid", "solvers") for path in (root / name).rglob("*.py"))
+    digest = hashlib.sha256(b"".join(path.read_bytes() for path in sources)).hexdigest()[:16]
+    return private_folder(f"machine-code-{digest}")
 
 
 def private_folder(name: str) -> Path | None:

@@ -12,12 +12,11 @@ import ast
 import importlib
 import inspect
 import types
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache, cached_property
 from pathlib import Path
-from typing import ParamSpec, TypeVar
 
 import pytest
 
@@ -25,16 +24,6 @@ from meshes.errors import InputError
 
 # What tells that an oracle, or the package itself, noticed.
 CAUGHT = (AssertionError, ArithmeticError, InputError)
-_in_place: list[Mutant] = []
-
-
-P, R = ParamSpec("P"), TypeVar("R")
-
-
-def shared(make: Callable[P, R]) -> Callable[P, R]:
-    """Decorator: an answer that several tests look at is made once, and once for each mutant in place."""
-    made = cache(lambda mutants, *given, **named: make(*given, **named))
-    return lambda *given, **named: made(tuple(_in_place), *given, **named)
 
 
 @dataclass(frozen=True)
@@ -75,11 +64,9 @@ def seeded(mutant: Mutant) -> Iterator[None]:
     forget = getattr(found, "cache_clear", lambda: None)
     forget()
     function.__code__ = wrong
-    _in_place.append(mutant)
     try:
         yield
     finally:
-        _in_place.pop()
         function.__code__ = right
         forget()
 

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import importlib
-import inspect
 import os
 import re
 import stat
-import sys
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -16,7 +13,7 @@ import numba
 import pytest
 
 from leblanc.cli import main
-from solvers.machine_code import cache_folder, compiled_sources, machine_code, private_folder
+from solvers.machine_code import cache_folder, machine_code, private_folder
 
 posix = pytest.mark.skipif(os.name != "posix", reason="needs modes of folders")
 
@@ -89,24 +86,6 @@ def test_each_state_of_the_sources_has_its_own_and_old_ones_go(caches: Path) -> 
     made = machine_code(error_model="numpy")(twice)
     assert made(4.0) == 8.0 and list(folder.rglob("*.nbc"))
     assert numba.config.CACHE_DIR == ""  # for nobody else's functions
-
-
-def test_the_sources_are_those_of_all_that_is_compiled() -> None:
-    """Every compiled function stands in one of them, in whatever module it is found."""
-    sources = {str(path) for path in compiled_sources()}
-    for module in ("cycles.stretch", "rotor.balls.motion", "rotor.exciter.tangent", "runup.linear_kernel"):
-        importlib.import_module(f"solvers.{module}")
-    compiled = {
-        inspect.getfile(value.py_func)
-        for name, module in list(sys.modules.items())
-        if name.startswith(("meshes", "fluid", "solvers"))
-        for value in vars(module).values()
-        if isinstance(value, numba.core.registry.CPUDispatcher)
-    }
-    assert len(compiled) > 5 and compiled <= sources
-    # What they take constants from is among them, what merely calls them is not.
-    names = {Path(one).name for one in sources}
-    assert "errors.py" in names and not names & {"response.py", "growth.py"}
 
 
 def test_the_users_own_choice_comes_first(

@@ -63,8 +63,8 @@ def test_the_steps_and_the_rates_agree() -> None:
         dt = TURN / (2 * cells)
         other = machine.solve(begin, stretch, dt=dt, tracker=None, solver="runge-kutta")
         left.append(abs(machine.deflection(ours) - machine.deflection(other))[0] / 2e-3)
-        assert left[0] < 0.02
     # Second order; the limiters cost some of it where the slopes change sign.
+    assert left[0] < 0.02
     assert left[1] < 0.4 * left[0]
 
 
@@ -172,7 +172,7 @@ def test_turns_of_another_solver() -> None:
             return len(kept) == 2
 
         tracker = TurnTracker(machine, TURN, enough, 8 if own else 64)
-        options = {"follow": True} if own else {"dt": TURN / 64}
+        options = {"follow": True} if own else {"dt": TURN / 128}
         run(machine, machine.start(32), (0.0, 4.0 * TURN), [tracker], solver=solver, **options)
     ours, other = (np.array(kept) for kept in sizes.values())
     assert ours.shape == other.shape == (2, 6)

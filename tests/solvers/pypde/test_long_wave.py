@@ -119,24 +119,18 @@ def check_manufactured(law: str = "linear", cells: tuple[int, ...] = (64, 128)) 
         final = eq.solve(state, MADE_STOP, solver="scipy", method="RK45", rtol=1e-7, atol=1e-11, tracker=None)
         exact = [eq.exact[k](theta, MADE_STOP) for k in (0, 1)]
         errors.append([np.abs(final.data[k] - e).mean() / np.abs(e).mean() for k, e in enumerate(exact)])
-        # Curvature of the modes 1 and 2 over 128 cells: (2 2 pi/128)^2/4 = 2.4e-3 of their share, 0.1 in A.
-        most = np.array([2.4e-4, 2.4e-3]) * (128 / n) ** (2 if n == cells[-1] else 1.7)
-        assert np.all(errors[-1] < most), errors
     orders = -np.diff(np.log2(errors), axis=0)
     # Seen: 2.05 ... 2.45, from above as the limiter's clipping at the extrema fades.
     # A little below two where the limiter clips extrema of one of the waves.
     assert np.all(orders > 1.9) and np.all(orders < 2.6), orders
+    # Curvature of the modes 1 and 2 over 128 cells: (2 2 pi/128)^2/4 = 2.4e-3 of their share, 0.1 in A.
+    assert errors[-1][0] < 2.4e-4 * (128 / cells[-1]) ** 2
+    assert errors[-1][1] < 2.4e-3 * (128 / cells[-1]) ** 2
 
 
-@pytest.mark.parametrize(
-    ("law", "cells"),
-    [
-        *((law, (64, 128)) for law in LAWS if law != "linear"),
-        *(pytest.param(law, (128, 256), marks=pytest.mark.slow) for law in LAWS),
-    ],
-)
-def test_manufactured_solution_is_met_with_second_order(law: str, cells: tuple[int, ...]) -> None:
-    check_manufactured(law, cells)
+@pytest.mark.parametrize("law", LAWS)
+def test_manufactured_solution_is_met_with_second_order(law: str) -> None:
+    check_manufactured(law, (64, 128, 256))
 
 
 # The layer's own history.
@@ -242,9 +236,9 @@ def test_steps_are_of_second_order() -> None:
     fill = layer()
     eq = AnnularLongWavePDE(fill, Whirl(SPIN, 20.0, 1e-4), friction=Friction("linear", 2.0), dispersion=True)
     state = eq.start(circle(32))
-    exact = eq.solve(state, 0.1, solver="scipy", method="DOP853", rtol=1e-10, atol=1e-14, tracker=None).data
+    exact = eq.solve(state, 0.3, solver="scipy", method="DOP853", rtol=1e-10, atol=1e-14, tracker=None).data
     gaps = [
-        np.abs(eq.solve(state, 0.1, courant=c, tracker=None).data[0] - exact[0]).mean()
+        np.abs(eq.solve(state, 0.3, courant=c, tracker=None).data[0] - exact[0]).mean()
         for c in (0.4, 0.2, 0.1)
     ]
     orders = -np.diff(np.log2(gaps))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from functools import cache
 
 import numpy as np
 import pytest
@@ -121,18 +120,13 @@ def test_history() -> None:
     assert answer.depth_max.max() > 1.2 * 0.1 * R > answer.depth_min.min()
 
 
-@cache  # by another solver, the same with any mutant of the layer's
-def exact_first_whirls(whirl: Whirl) -> np.ndarray:
-    return histories.simulate(layer(0.1), whirl, 2 * whirl.period, Steps(nodes=64)).periods.force_ratio
-
-
 @kills("solvers.layer.state:means", "drift - gain)", "drift)")
 @kills("solvers.layer.state:means", "drift - gain)", "drift + gain)")
 def test_first_whirls_are_those_of_the_exact_wave() -> None:
     """The force of a wave that begins counts what the liquid's velocity has gained over a period."""
     fill = layer(0.1)
     whirl = Whirl(SPIN, 0.7643970164 * SPIN, 0.02 * 0.1 * R, ramp=0.3)
-    exact = exact_first_whirls(whirl)
+    exact = histories.simulate(fill, whirl, 2 * whirl.period, Steps(nodes=64)).periods.force_ratio
     coarse, fine = (
         simulate(fill, whirl, 2 * whirl.period, numerics=Numerics(cells, dispersion=True)).force_ratio
         for cells in (128, 256)

@@ -106,7 +106,7 @@ def test_dry_motion_gives_back_the_unbalance(name: str) -> None:
 @pytest.mark.parametrize("name", ["horizontal_rig", "tub"])
 def test_total_is_rotor_and_liquid(name: str) -> None:
     """The rotor's unbalance and the liquid's mass times the place of its centre of mass."""
-    scene = example(name).replace({"speeds.count": 9})
+    scene = example(name)
     result = run_scene(scene)
     (plane,) = tolerance_planes(dry_rotor(scene))
     liquid = result.liquid_mass * result.liquid_offset * np.exp(1j * result.liquid_angle)

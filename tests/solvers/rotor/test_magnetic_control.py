@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from functools import cache
 
 import numpy as np
 import pytest
@@ -16,7 +15,7 @@ from meshes.errors import InputError
 from solvers.rotor.magnetic.control import Controller, Pid, Uncontrolled, source_times
 from solvers.rotor.magnetic.linear import Loop, closed_loop, margins, orbit_size
 from solvers.rotor.magnetic.machine import MagneticRotor
-from solvers.rotor.magnetic.motion import Ending, Load, Motion, SpeedLaw, _Equations, integrate, settling_time
+from solvers.rotor.magnetic.motion import Ending, Load, SpeedLaw, _Equations, integrate, settling_time
 from tests.mutants import kills
 from tests.oracles.blood_pump import MAGNETS, ROTOR, SPEED, pid, synergetic
 
@@ -221,15 +220,6 @@ def test_small_motions_in_time_are_the_linear_loop() -> None:
         np.testing.assert_allclose(found * weights, expected * weights, atol=1e-7)
 
 
-UNEVEN = replace(ROTOR, eccentricity=2e-5, inertia_tilt=2e-3, drag=1e-4)
-SWINGING = Load((0.01, -0.004), (2e-5, 1e-5), frequency=2.0 * math.pi * 50.0)
-
-
-@cache  # of the equations in time alone, the same with any mutant of the linear loop
-def settled_motion() -> Motion:
-    return integrate(UNEVEN, synergetic(UNEVEN), SpeedLaw(SPEED), 0.4, [SWINGING], samples=4001)
-
-
 @kills(LINEAR + "Loop.unbalance", "-1j * force, couple", "1j * force, couple")
 @kills(LINEAR + "Loop.answer", "right[4:8]", "right[:4]")
 def test_unbalance_and_harmonic_load_in_time() -> None:
@@ -238,8 +228,11 @@ def test_unbalance_and_harmonic_load_in_time() -> None:
     The magnets' forces are straight to (x/delta)^2: 1e-8 here. Of the transient e^-6.9 of some of the answer
     is left after 0.35 s with the synergetic control.
     """
-    load, motion = SWINGING, settled_motion()
-    loop = closed_loop(UNEVEN, synergetic(UNEVEN), SPEED)
+    rotor = replace(ROTOR, eccentricity=2e-5, inertia_tilt=2e-3, drag=1e-4)
+    control = synergetic(rotor)
+    load = Load((0.01, -0.004), (2e-5, 1e-5), frequency=2.0 * math.pi * 50.0)
+    motion = integrate(rotor, control, SpeedLaw(SPEED), 0.4, [load], samples=4001)
+    loop = closed_loop(rotor, control, SPEED)
     turning = loop.unbalance()[0]
     swinging = loop.answer(-1j * load.size, load.frequency or 0.0)[0]
     late = motion.time > 0.35

@@ -117,7 +117,7 @@ def test_range_on_every_rotor(model: LiquidModel) -> None:
     Linear theory leaves its range where the deflection is the depth of the layer.
     """
     rng, seen = np.random.default_rng(5), np.zeros(2, dtype=int)
-    for _ in range(16):
+    for _ in range(30):
         mass, k = rng.uniform(4.0, 12.0), rng.uniform(1e4, 5e4)
         rotor = Jeffcott(
             mass, k, rng.uniform(0.05, 0.5) * math.sqrt(k * mass), 10.0 ** rng.uniform(-4.0, -2.0)
@@ -135,7 +135,7 @@ def test_range_on_every_rotor(model: LiquidModel) -> None:
         np.testing.assert_array_equal(one.dry_patch, beyond)
         np.testing.assert_array_equal(one.in_range, ~beyond)
         seen += np.array([beyond.sum(), (~beyond).sum()])
-    assert np.all(seen > 10)
+    assert np.all(seen > 20)
 
 
 @kills("solvers.synchronous.balance:Balance.told", "_backward_displacement(own) * backward", "0.0 * backward")
@@ -197,7 +197,7 @@ def with_discs(system: RotorSystem, discs: list[tuple[float, float]]) -> RotorSy
 )
 def test_added_mass() -> None:
     """Walls wet all over in isotropic supports: the mass of full chambers, at each plane its own."""
-    system, speed = two_plane().system(), np.linspace(10.0, 300.0, 7)
+    system, speed = two_plane().system(), np.linspace(10.0, 300.0, 15)
     wet = [at_plane(-0.25, 1.2e-4), at_plane(0.2, 1e-4, radius=0.08)]
     found = response(system, wet, speed, 0.0)
     assert not found.dry_patch.any() and found.converged.all()
@@ -391,7 +391,7 @@ def test_volumes_in_several_planes_at_once() -> None:
     first, second = rig(0.001, 1e-4), Jeffcott(4.0, 3.6e4, 40.0, 3e-3)
     volumes = [(1.2e-5, 1e-5), (0.0, 2e-5), (4e-5, 1e-6), (0.0, 0.0), (1.5e-5, 1e-5), (3e-5, 0.0)]
     sets = [[at_plane(z, v) for z, v in zip((-0.4, 0.4), row, strict=True)] for row in volumes]
-    assert_each_as_if_alone(dumbbell(((-1.0, first), (1.0, second))), sets, np.linspace(94.0, 102.0, 9))
+    assert_each_as_if_alone(dumbbell(((-1.0, first), (1.0, second))), sets, np.linspace(94.0, 102.0, 17))
 
 
 @kills(
@@ -468,7 +468,7 @@ def _without_first(right: np.ndarray, matrix: np.ndarray) -> np.ndarray:
 )
 def test_balance() -> None:
     """Chambers in three planes of an anisotropic rotor, walls partly dry: the forces balance one by one."""
-    system, speed = tub().system(), np.linspace(5.0, 40.0, 12)
+    system, speed = tub().system(), np.linspace(5.0, 40.0, 24)
     wet = [at_plane(z, v, 0.18, 0.12) for z, v in ((0.12, 2e-5), (0.0, 5e-5), (-0.1, 1e-4))]
     for gravity in (0.0, 9.81):
         found = response(system, wet, speed, gravity)
@@ -563,11 +563,11 @@ def rigid() -> TwoPlane:
 
 
 EXTREMES = {
-    "16 planes": (two_plane, np.linspace(-0.3, 0.3, 16), 3e-5, np.linspace(20.0, 300.0, 8)),
-    "rigid supports": (rigid, (-0.2, 0.2), 3e-6, np.linspace(20.0, 300.0, 8)),
-    "no damping": (lambda: two_plane(0.0), (-0.2, 0.2), 3e-6, np.linspace(21.0, 300.0, 8)),
-    "a trace of liquid": (two_plane, (-0.2, 0.2), 1e-12, np.linspace(20.0, 300.0, 8)),
-    "any speed": (two_plane, (-0.2, 0.2), 3e-6, np.geomspace(1e-3, 1e5, 9)),
+    "16 planes": (two_plane, np.linspace(-0.3, 0.3, 16), 3e-5, np.linspace(20.0, 300.0, 20)),
+    "rigid supports": (rigid, (-0.2, 0.2), 3e-6, np.linspace(20.0, 300.0, 20)),
+    "no damping": (lambda: two_plane(0.0), (-0.2, 0.2), 3e-6, np.linspace(21.0, 300.0, 20)),
+    "a trace of liquid": (two_plane, (-0.2, 0.2), 1e-12, np.linspace(20.0, 300.0, 20)),
+    "any speed": (two_plane, (-0.2, 0.2), 3e-6, np.geomspace(1e-3, 1e5, 20)),
 }
 
 

@@ -292,9 +292,9 @@ def test_the_peak_under_noise(noise: float) -> None:
 @kills("solvers.synchronous.peaks:_around_maxima", "[:_AT_A_TIME]", "")
 @kills("solvers.synchronous.peaks:refine", "fine[k] += not coarse", "fine[k] += 0")
 def test_maxima_of_noise_are_not_refined() -> None:
-    """A hundred on a flat top, and each would have others beside it: eight at a time, eight times."""
+    """Three hundred on a flat top, and each would have others beside it: eight at a time, eight times."""
     answer, calls, top = noisy(1e-6)
-    speed = top.speed + np.linspace(-0.01, 0.01, 401)
+    speed = top.speed + np.linspace(-0.01, 0.01, 1001)
     (samples,) = refine(answer, [Samples(speed, answer(NOBODY, speed))], [math.inf])
     assert highest(samples.speed, samples.amplitude).amplitude == pytest.approx(top.amplitude, rel=2e-6)
     assert len(calls) <= 1 + 8 and max(calls[1:]) <= 3 * 8

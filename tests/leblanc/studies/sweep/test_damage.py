@@ -41,34 +41,36 @@ def files(store: Path) -> list[Path]:
 
 
 def test_no_flipped_byte_changes_a_number(store: Path) -> None:
-    """Every file of the store, at an end or a place between, in turn: refused, or of no consequence."""
+    """Every file of the store, at its ends and at many places between: refused, or of no consequence."""
     whole, values = tree(store), {name: a.values for name, a in read_arrays(store).arrays.items()}
     refused = 0
-    for k, path in enumerate(files(store)):
+    for path in files(store):
         content = path.read_bytes()
-        place = (0, len(content) // 3, 2 * len(content) // 3, len(content) - 1)[k % 4]
-        changed = bytearray(content)
-        changed[place] ^= 1 << place % 8
-        path.write_bytes(changed)
-        try:
-            found = read_arrays(store)
-        except InputError as error:
-            assert "\n" not in str(error)
-            refused += 1
-        else:  # as a blank in place of another one
-            for name, array in found.arrays.items():
-                assert np.array_equal(array.values, values[name], equal_nan=array.values.dtype.kind == "f")
+        for place in {0, len(content) // 3, 2 * len(content) // 3, len(content) - 1}:
+            changed = bytearray(content)
+            changed[place] ^= 1 << place % 8
+            path.write_bytes(changed)
+            try:
+                found = read_arrays(store)
+            except InputError as error:
+                assert "\n" not in str(error)
+                refused += 1
+            else:  # as a blank in place of another one
+                for name, array in found.arrays.items():
+                    assert np.array_equal(
+                        array.values, values[name], equal_nan=array.values.dtype.kind == "f"
+                    )
         path.write_bytes(content)
-    assert refused > 50
+    assert refused > 200
     assert tree(store) == whole
 
 
 def test_what_is_missing_is_answered_again(store: Path) -> None:
-    """One chunk after the other, of every tenth variable; metadata are not made up."""
+    """One chunk after the other, of every fifth variable; metadata are not made up."""
     whole = tree(store)
     metadata = [path for path in files(store) if path.name == "zarr.json"]
     chunks = [path for path in files(store) if path.name != "zarr.json"]
-    for path in metadata[::3] + chunks[::10]:
+    for path in metadata + chunks[::5]:
         content = path.read_bytes()
         path.unlink()
         if path.name == "zarr.json":
@@ -84,11 +86,12 @@ def test_what_is_missing_is_answered_again(store: Path) -> None:
 
 
 def test_a_cut_file_is_refused(store: Path) -> None:
-    for k, path in enumerate(files(store)):
+    for path in files(store):
         content = path.read_bytes()
-        path.write_bytes(content[: (0, len(content) - 1)[k % 2]])
-        with pytest.raises(InputError):
-            read_store(store)
+        for length in (0, len(content) - 1):
+            path.write_bytes(content[:length])
+            with pytest.raises(InputError):
+                read_store(store)
         path.write_bytes(content)
     read_store(store)
 

@@ -30,6 +30,14 @@ def inside(emulator: Emulator, values: np.ndarray) -> np.ndarray:
 
 
 @kills(
+    "leblanc.studies.sweep.emulator:Emulator.predict",
+    "(np.exp(mean), np.exp(mean) * deviation)",
+    "(mean, deviation)",
+)
+@kills(
+    "leblanc.studies.sweep.emulator:Emulator.predict", "self.centre + self.scale * mean", "self.centre + mean"
+)
+@kills(
     "leblanc.studies.sweep.emulator:_on_unseen",
     "missed[fold == k] = mean - standard",
     "missed[fold == k] = 0.1 * mean - 0.1 * standard",
@@ -40,6 +48,11 @@ def inside(emulator: Emulator, values: np.ndarray) -> np.ndarray:
 @kills("leblanc.studies.sweep.emulator:emulate", "size = scale if positive else 1.0", "size = 1.0")
 @kills(
     "leblanc.studies.sweep.emulator:_unit", "np.log(np.maximum(values[:, wide], 1e-300))", "values[:, wide]"
+)
+@kills(
+    "leblanc.studies.sweep.emulator:emulate",
+    "np.log(output[taken]) if positive else",
+    "output[taken] if positive else",
 )
 def test_error_is_that_of_unseen_samples() -> None:
     """On fresh samples the error is what cross-validation says, and the claimed deviation covers it."""
@@ -61,19 +74,6 @@ def test_error_is_that_of_unseen_samples() -> None:
     assert emulator.positive and emulator.wide.tolist() == [False, True]
 
 
-@kills(
-    "leblanc.studies.sweep.emulator:Emulator.predict",
-    "(np.exp(mean), np.exp(mean) * deviation)",
-    "(mean, deviation)",
-)
-@kills(
-    "leblanc.studies.sweep.emulator:Emulator.predict", "self.centre + self.scale * mean", "self.centre + mean"
-)
-@kills(
-    "leblanc.studies.sweep.emulator:emulate",
-    "np.log(output[taken]) if positive else",
-    "output[taken] if positive else",
-)
 def test_samples_are_met() -> None:
     """At a sample the process gives the sample, to the noise it allows itself."""
     values = drawn(60, 4)

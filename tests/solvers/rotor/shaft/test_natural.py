@@ -154,7 +154,7 @@ def chain(stiffness: list[float]) -> Structure:
     return Structure(tuple((section,) for _ in stiffness), joints=(ground, *joints))
 
 
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=20, deadline=None)
 @given(stiffness=st.lists(st.floats(1e4, 1e9), min_size=2, max_size=4), split=st.floats(0.1, 0.9))
 def test_every_frequency_of_a_band_is_found(stiffness: list[float], split: float) -> None:
     """A band cut in two has the frequencies of the whole; each takes the count up by one."""
