@@ -69,7 +69,7 @@ def answer_fit(
     seed: int,
     scale: str,
     noise: str,
-    column: Mapping[str, str],
+    column: Mapping[str, str] | None,
 ) -> FitAnswer:
     """What `fit` answers of a table of measured values."""
     if not 1 <= starts <= _MOST_STARTS:
@@ -77,7 +77,7 @@ def answer_fit(
     if seed < 0:
         raise InputError("seed", seed, "a whole number, 0 or above")
     free = require_scale(scale) != "given"
-    table = read_measured(measured, dry_rotor(scene).system().coordinates, free, column)
+    table = read_measured(measured, dry_rotor(scene).system().coordinates, free, column or {})
     return fit_scene(scene, table, unknown, starts, seed, scale, noise)
 
 

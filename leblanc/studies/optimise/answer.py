@@ -174,7 +174,7 @@ class ParetoFront:
     mass: Annotated[Array, Q("kg", "mass of liquid on the front", over=_FRONT)]
     #: decay of the small whirl that decays slowest at the operating speeds; below 0 it grows
     stability_margin: Annotated[
-        Array, Q("s-1", "stability margin on the front", over=_FRONT, variable="margin")
+        Array, Q("s-1", "stability margin on the front", over=_FRONT, variable="front_margin")
     ]
 
 
