@@ -52,7 +52,6 @@ __all__ = [
     "Spindle",
     "TubRotor",
     "TwoPlaneRotor",
-    "__version__",
     "bearing",
     "compare",
     "example",

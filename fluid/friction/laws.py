@@ -49,7 +49,13 @@ _SLOWEST = 1e-9
 
 @dataclass(frozen=True)
 class Friction:
-    """Friction of the liquid on its chamber: a law and what it takes."""
+    """Friction of the liquid on its chamber: a law and what it takes.
+
+    Examples
+    --------
+    >>> Friction("linear", 0.5).law.laminar
+    False
+    """
 
     law: FrictionLaw = FrictionLaw.NONE  #: a `FrictionLaw` or its name
     #: k for the linear law, 1/s; c_f for the quadratic one, a number; 0 for the others. Stokes' (laminar) law

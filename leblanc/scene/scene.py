@@ -108,7 +108,7 @@ class Speeds(Part):
         return {"start": values[0], "stop": values[-1], "count": len(values), "values": list(values)}
 
     def table(self) -> dict[str, Any]:
-        """See `Part`."""
+        """Values as typed, by key."""
         return {"values": list(self.values)} if self.values else super().table()
 
     @classmethod
