@@ -573,6 +573,6 @@ def test_reports_of_one_scene_do_not_overwrite_one_another() -> None:
         "runup.nc",
     ]
     assert len(set(names)) == len(names)
-    places = ("studies/run/answer", "cli/map", "cli/optimise", "studies/runup/answer")
+    places = tuple(f"studies/{name}/answer" for name in ("run", "map", "optimise", "runup"))
     source = "".join((ROOT / f"leblanc/{name}.py").read_text(encoding="utf-8") for name in places)
     assert all(f'"{name}"' in source for name in names)

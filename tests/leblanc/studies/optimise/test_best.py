@@ -105,7 +105,7 @@ def test_a_limit_at_the_operating_speeds() -> None:
     assert best.vibration <= tried.vibration.min() * (1.0 + 2.0 * best.equal_within)
     free = optimise_scene(scene, task=Optimisation(objective="peak", steady=True), front=False)
     assert best.vibration == pytest.approx(free.value, rel=1e-4)
-    assert "vibration: amplitude at the operating speeds" in best.failed[0]
+    assert "vibration: amplitude at the operating speeds" in best.faults[0]
 
 
 def excess(constraint: Constraint, volumes: Array) -> Array:
