@@ -397,7 +397,7 @@ class Scene(Part):
         --------
         >>> from leblanc.scene.examples import example
         >>> print(example("runup").to_toml().splitlines()[0])
-        name = "Run-up through resonance"
+        name = "Run-up"
         """
         import tomli_w
 

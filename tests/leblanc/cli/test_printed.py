@@ -44,7 +44,7 @@ def test_run_prints_every_limit_below_its_table(tmp_path: Path, capsys: pytest.C
     result = lb.run(tmp_path / "scene.toml")
     below = words.partition("Limits of the answer\n")[2].splitlines()
     rows = {row[0]: row[1] for line in below if len(row := re.split(r"  +", line.strip())) == 2}
-    found = {limit.label: limit.where for limit in text.limits(result)}
+    found = {limit.label: limit.where for limit in text.checks(result)}
     assert found.items() <= rows.items()
     slow = result.speed[~result.in_range] * RPM
     assert rows["Liquid model out of range"] == f"{slow[0]:.0f} to {slow[-1]:.4g} rpm" or slow.size == 1
@@ -80,7 +80,7 @@ def test_console_chamber_figure_and_view_show_one_amplitude(name: str) -> None:
     assert chamber_state(result, result.curve.speed.size - 1).startswith(f"amplitude {size} at chamber 1,")
     assert view_state(motion, last, [False] * len(scene.chambers))[0] == f"amplitude {place}: {size}"
     assert place in text.answer(result) and place in text.alts(result)["amplitude"]
-    assert dict(text.summary(result))["Amplitudes"] == f"zero to peak, {place}"
+    assert text.amplitude_place(result) == place
     figure = result.plot()
     assert figure.axes[0].get_ylabel() == "Amplitude at chamber 1 (mm 0-p)"
     assert place in figure.caption.shown

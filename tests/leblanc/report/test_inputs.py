@@ -156,7 +156,7 @@ OTHERS = {
     *(f"chambers.*.liquid.{part}.{key}" for part, law in LAWS.items() for key in law.model_fields),
 }  # fmt: skip
 # What stands above the inputs, is their mark, or is told by the cell of another path.
-ELSEWHERE = {"name", "source", "assumed"}
+ELSEWHERE = {"name", "source", "assumed", "speeds.values"}  # of the latter the first, the last and how many
 TOLD_BY = {
     "rotor.kind": "rotor.axis",
     "runup.motor.speeds": "runup.motor.torques",

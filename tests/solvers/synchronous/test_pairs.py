@@ -71,8 +71,8 @@ def test_each_as_if_alone() -> None:
 @kills("solvers.synchronous.pairs:Pairs.pull", "moment - fills.mass * e", "moment")
 @kills(
     "solvers.synchronous.pairs:Pairs.liquid",
-    "(law.real_unbalance(), law.slope))",
-    "(law.slope, law.real_unbalance()))",
+    "(law.real_unbalance(), law.slope.real))",
+    "(law.slope.real, law.real_unbalance()))",
 )
 @kills("solvers.synchronous.pairs:Pairs.pull", "self.model.added_mass(fills) * e", "fills.mass * e")
 @kills(
