@@ -80,7 +80,7 @@ def print_table(
     lines = [tuple(row) for row in rows]
     table = Table(box=None, show_header=bool(head), pad_edge=False, padding=(0, 2, 0, 0), header_style="")
     side: Literal["left", "right"] = "right" if right else "left"
-    short = max(len(line[0]) for line in lines) < _WIDTH // 2
+    short = max(len(line[0]) for line in lines) < 2 * _WIDTH // 3
     for k, name in enumerate(head or [""] * len(lines[0])):
         whole = short and k == 0
         table.add_column(Text(name), justify=side if k else "left", no_wrap=whole, overflow="fold")
