@@ -103,8 +103,8 @@ class Speeds(Part):
         values = given if isinstance(given, list | tuple) else None
         if isinstance(given, Mapping) and set(given) == {"values"}:
             values = given["values"].tolist() if hasattr(given["values"], "tolist") else given["values"]
-        if not isinstance(values, list | tuple) or not values:
-            return given
+        if not isinstance(values, list | tuple) or not values or isinstance(values[0], Mapping):
+            return given  # tables among them: no list of speeds
         return {"start": values[0], "stop": values[-1], "count": len(values), "values": list(values)}
 
     def table(self) -> dict[str, Any]:
