@@ -191,14 +191,7 @@ class ModelsTable(SphinxDirective):
 
 
 def table(head: Sequence[str], rows: Sequence[Sequence[str]], code: Sequence[int] = ()) -> nodes.table:
-    """A table of text.
-
-    Parameters
-    ----------
-    head : of the columns
-    rows : their cells
-    code : columns that are names in the code
-    """
+    """A table of text; the columns `code` are names in the code."""
     group = nodes.tgroup(cols=len(head))
     group += [nodes.colspec(colwidth=1) for _ in head]
     group += nodes.thead("", _row(head, ()))

@@ -118,16 +118,6 @@ def finite(values: NDArray[Any]) -> list[Any]:
     return found
 
 
-def pair(name: str, dims: tuple[str, ...], values: NDArray[Any], long_name: str) -> dict[str, Variable]:
-    """Real and imaginary part of a deflection, both nan where one is."""
-    values = np.where(np.isnan(values), complex(np.nan, np.nan), values)
-    real, imag = f"{long_name}, real part", f"{long_name}, imaginary part"
-    return {
-        f"{name}_real": variable(dims, values.real, "m", real, "along the unbalance"),
-        f"{name}_imag": variable(dims, values.imag, "m", imag, "90 deg ahead of it"),
-    }
-
-
 def write_netcdf(found: NamedArrays, path: Path) -> None:
     """Write named arrays as netCDF 4, the file that xarray would write of their dataset.
 

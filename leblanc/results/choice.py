@@ -39,11 +39,7 @@ class HeldCost:
 
 
 def seconds_words(seconds: float) -> str:
-    """A processor time that is known to a factor of two, for print.
-
-    Parameters
-    ----------
-    seconds : s
+    """A processor time in s that is known to a factor of two, for print.
 
     Examples
     --------

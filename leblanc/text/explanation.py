@@ -196,10 +196,6 @@ def _ends(values: Array) -> str:
     return f"{number(float(values[0]))} to {number(float(values[1]))}"
 
 
-def _rpm(speed: float) -> str:
-    return in_rpm(speed, "none")
-
-
 def comparison_head(found: Comparison) -> tuple[str, ...]:
     """Headings of the table of models."""
     place = next((amplitude_place(result) for result in found.results.values()), "")
