@@ -41,6 +41,11 @@ def _version(package: str) -> str:
         return "not installed"
 
 
+def input_lines(inputs: Iterable[tuple[str, str, str]]) -> str:
+    """What a machine file says, a line each, from label, value with its unit and path."""
+    return "\n".join(one_line("{}: {} [{}]".format(*entry)) for entry in inputs)
+
+
 def attributes(
     result: Any, command: str, own: Mapping[str, Any], notes: Iterable[Note | str]
 ) -> dict[str, Any]:

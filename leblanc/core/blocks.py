@@ -72,6 +72,11 @@ class Check:
     grade: Grade = Grade.NOTHING
 
 
+def check(label: str, where: str, failed: object) -> Check:
+    """A check that is a warning where it fails."""
+    return Check(label, where, Grade.WARNING if failed else Grade.NOTHING)
+
+
 @dataclass(frozen=True)
 class Checks:
     """Where the answer is not what it seems."""

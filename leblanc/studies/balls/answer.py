@@ -10,9 +10,9 @@ from typing import Annotated, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.core.answer import Answer
+from leblanc.core.answer import Answer, input_lines
 from leblanc.core.blocks import Block, Check, Checks, Columns, Headline, Notes, Picture, Section, Table, Words
-from leblanc.core.notes import Note, one_line
+from leblanc.core.notes import Note
 from leblanc.core.units import (
     LENGTH,
     MOST_RANGES,
@@ -338,7 +338,7 @@ class BallsAnswer(Answer):
 
     @property
     def own(self) -> dict[str, str]:
-        return {"inputs": "\n".join(one_line("{}: {} [{}]".format(*entry)) for entry in self.inputs)}
+        return {"inputs": input_lines(self.inputs)}
 
     @property
     def faults(self) -> tuple[str, ...]:

@@ -16,13 +16,13 @@ from leblanc.core.blocks import (
     Check,
     Checks,
     Columns,
-    Grade,
     Headline,
     Notes,
     Picture,
     Section,
     Table,
     Words,
+    check,
 )
 from leblanc.core.notes import Note, texts
 from leblanc.core.units import LENGTH, RPM, VOLUME, in_rpm, number, unit_for, with_unit
@@ -254,15 +254,15 @@ def checks(found: WhirlMap) -> list[Check]:
     """Where the map is not what it seems, in shares of its points."""
     lost, out = np.isnan(found.growth), ~found.in_range
     rows = [
-        Check(label, _share(mask), Grade.WARNING if mask.any() else Grade.NOTHING)
+        check(label, _share(mask), mask.any())
         for label, mask in (
             ("Growth not known", lost),
             ("Model out of range", out),
             ("Grows where out of range", out & (found.growth > 0.0)),
         )
     ]
-    own = Grade.WARNING if found.scene_edges else Grade.NOTHING
-    return [*rows, Check("Unstable with the scene's volume (rpm)", band_words(found.scene_edges), own)]
+    own = found.scene_edges
+    return [*rows, check("Unstable with the scene's volume (rpm)", band_words(own), own)]
 
 
 def _share(mask: Flags) -> str:

@@ -17,13 +17,13 @@ from leblanc.core.blocks import (
     Check,
     Checks,
     Columns,
-    Grade,
     Headline,
     Notes,
     Picture,
     Section,
     Table,
     Words,
+    check,
 )
 from leblanc.core.netcdf import Variable, variable
 from leblanc.core.notes import Note, texts
@@ -134,11 +134,6 @@ def about(scene: Scene, task: Optimisation) -> dict[str, Any]:
 def _constraint_words(name: str, own: ConstraintValue) -> tuple[str, str, str]:
     value = shown(own.value, own.unit) if math.isfinite(own.value) else NOT_FOUND
     return f"{name.replace('_', ' ')}: {own.meaning}", value, shown(own.limit, own.unit)
-
-
-def check(label: str, where: str, failed: bool) -> Check:
-    """A check that is a warning where it fails."""
-    return Check(label, where, Grade.WARNING if failed else Grade.NOTHING)
 
 
 def shown(value: float, unit: str) -> str:

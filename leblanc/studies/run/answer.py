@@ -10,10 +10,10 @@ from typing import Annotated, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.core.answer import Answer
+from leblanc.core.answer import Answer, input_lines
 from leblanc.core.blocks import Block, Checks, Columns, Headline, Notes, Picture, Section, Table, Words
 from leblanc.core.netcdf import NamedArrays
-from leblanc.core.notes import Note, one_line
+from leblanc.core.notes import Note
 from leblanc.core.units import amplitude_sentence
 from leblanc.results.base import FilledChamber
 from leblanc.results.choice import HELD_MODELS, ModelSpan
@@ -272,9 +272,8 @@ class RunAnswer(Answer):
 
     @property
     def own(self) -> Mapping[str, Any]:
-        rows = "\n".join(one_line("{}: {} [{}]".format(*entry)) for entry in self.inputs)
         model = {} if self.chamberless else {"model": ", ".join(self.models_used)}
-        return {"inputs": rows, **model, "axis": self.axis}
+        return {"inputs": input_lines(self.inputs), **model, "axis": self.axis}
 
     @property
     def faults(self) -> tuple[str, ...]:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.core.blocks import Check, Grade, Section, Table, Words
+from leblanc.core.blocks import Check, Section, Table, Words, check
 from leblanc.core.notes import one_line, percent
 from leblanc.core.units import (
     LENGTH,
@@ -325,15 +325,13 @@ def checks(result: RunAnswer) -> list[Check]:
     if result.capture_speed is not None:
         loose = r.speed <= result.capture_speed
         edge = f" (below {in_rpm(result.capture_speed)})" if loose.any() else ""
-        found.append(Check("No ring of liquid stands", f"{ranges(r.speed, loose)}{edge}", grade(loose.any())))
+        found.append(check("No ring of liquid stands", f"{ranges(r.speed, loose)}{edge}", loose.any()))
     if result.carried_from is not None:
         loose, where = r.speed < result.carried_from, "by nothing: without friction"
         if math.isfinite(result.carried_from):
             where = f"below {in_rpm(result.carried_from)}"
         edge = f" ({where})" if loose.any() else ""
-        found.append(
-            Check("Not carried round from rest", f"{ranges(r.speed, loose)}{edge}", grade(loose.any()))
-        )
+        found.append(check("Not carried round from rest", f"{ranges(r.speed, loose)}{edge}", loose.any()))
     if tolerance is not None and result.error_estimate is not None and not result.chamberless:
         missed = ~(result.error_estimate <= tolerance)
         found.append(failing(f"Error above {number(100.0 * tolerance)} % or unknown", r.speed, missed))
@@ -352,7 +350,7 @@ def checks(result: RunAnswer) -> list[Check]:
         parts = [rpm_bands(result.whirl.bands)] if result.whirl.bands else []
         lost = np.isnan(result.whirl.growth)
         parts += [f"not known at {ranges(r.speed, lost)}"] if lost.any() else []
-        found.append(Check("Self-excited whirl", ", ".join(parts) or "none", grade(bool(parts))))
+        found.append(check("Self-excited whirl", ", ".join(parts) or "none", parts))
     infinite = np.isinf(result.curve.amplitude)
     if infinite.any():
         found.append(failing("Amplitude infinite", result.curve.speed, infinite))
@@ -360,14 +358,9 @@ def checks(result: RunAnswer) -> list[Check]:
     return [*found, Check("Estimated error of the liquid model", error)] if error else found
 
 
-def grade(failed: bool | np.bool_) -> Grade:
-    """Of a check that fails, or passes."""
-    return Grade.WARNING if failed else Grade.NOTHING
-
-
 def failing(label: str, speed: Array, fails: Flags) -> Check:
     """A check with the speeds that fail it."""
-    return Check(label, ranges(speed, fails), grade(fails.any()))
+    return check(label, ranges(speed, fails), fails.any())
 
 
 def _held_limits(result: RunAnswer, held: Held) -> list[Check]:
@@ -565,6 +558,9 @@ def models_section(result: RunAnswer) -> Iterator[Section]:
         yield of_models(result.models_used, Table(rows, ("Model", "Speeds"), sentences=True), held)
 
 
+WHY = ("Speeds (rpm)", "Model", "Estimated error", "Why")
+
+
 def of_models(
     names: Iterable[str],
     reasons: Table | None = None,
@@ -596,7 +592,7 @@ def why(spans: Iterable[ModelSpan]) -> Table:
         )
         for span in spans
     ]
-    return Table(rows, ("Speeds (rpm)", "Model", "Estimated error", "Why"), sentences=True)
+    return Table(rows, WHY, sentences=True)
 
 
 def speeds_words(span: ModelSpan) -> str:

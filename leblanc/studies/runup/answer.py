@@ -12,7 +12,7 @@ from typing import Annotated, Any
 import numpy as np
 
 from fluid.friction.laws import Friction
-from leblanc.core.answer import Answer
+from leblanc.core.answer import Answer, input_lines
 from leblanc.core.blocks import Block
 from leblanc.core.netcdf import NamedArrays
 from leblanc.core.notes import Note, one_line
@@ -469,7 +469,7 @@ class RunupAnswer(Answer):
     def own(self) -> dict[str, Any]:
         single = ("model_error", "mass_error", "energy_error", "error_estimate", "handover_estimate")
         found = {
-            "inputs": "\n".join(one_line("{}: {} [{}]".format(*entry)) for entry in self.inputs),
+            "inputs": input_lines(self.inputs),
             "rotor": self.kind,
             "axis": self.axis,
             "friction": friction_words(self.friction),

@@ -12,13 +12,13 @@ from leblanc.core.blocks import (
     Check,
     Checks,
     Columns,
-    Grade,
     Headline,
     Notes,
     Picture,
     Section,
     Table,
     Words,
+    check,
 )
 from leblanc.core.notes import one_line, percent, texts
 from leblanc.core.quantities import quantities
@@ -41,7 +41,7 @@ from leblanc.core.units import (
 from leblanc.studies.loads.answer import load_table
 from leblanc.studies.run.answer import peak
 from leblanc.studies.run.notes import CLOSURE
-from leblanc.studies.run.words import described
+from leblanc.studies.run.words import WHY, of_models
 from leblanc.studies.runup.answer import Moment, RunupAnswer
 from leblanc.studies.runup.notes import ERROR, SETTLED, RunupCode
 from meshes.arrays import Flags
@@ -323,9 +323,6 @@ def checks(answer: RunupAnswer) -> Iterator[Check]:
     """Where the run is not what it seems, each with the times or the size."""
     history = answer.history
 
-    def check(label: str, where: str, bad: bool) -> Check:
-        return Check(label, where, Grade.WARNING if bad else Grade.NOTHING)
-
     def at_times(label: str, mask: Flags) -> Check:
         return check(label, ranges(history.time, mask, "s"), bool(mask.any()))
 
@@ -362,10 +359,4 @@ def liquid_model(answer: RunupAnswer) -> Section:
     error = "not known" if math.isnan(answer.model_error) else percent(answer.model_error)
     text = one_line(answer.model_reason)
     reason = f"{text[:1].upper()}{text[1:]} Taken as {describe_model(answer)}."
-    why = Table(
-        [(span, answer.model, error, reason)],
-        ("Speeds (rpm)", "Model", "Estimated error", "Why"),
-        sentences=True,
-    )
-    told = (Words(text, name=name, small=True) for name, text in described((answer.model,)))
-    return Section("Liquid model, and why", (why, *told), shown="page")
+    return of_models((answer.model,), Table([(span, answer.model, error, reason)], WHY, sentences=True))

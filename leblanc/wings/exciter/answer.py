@@ -16,13 +16,13 @@ from leblanc.core.blocks import (
     Check,
     Checks,
     Columns,
-    Grade,
     Headline,
     Notes,
     Picture,
     Section,
     Table,
     Words,
+    check,
 )
 from leblanc.core.units import LENGTH, RPM, in_rpm, number, over_rpm, ranges, unit_for, with_unit
 from leblanc.wings.dry import DryAnswer
@@ -274,17 +274,13 @@ def facts(answer: ExciterAnswer) -> list[tuple[str, str]]:
 
 def limits(answer: ExciterAnswer) -> list[Check]:
     """Where the answer is not what it seems: each check with what fails it."""
-    lost = [check.speed for check in answer.checks if not check.converged]
+    lost = [one.speed for one in answer.checks if not one.converged]
     beyond, outside = ~answer.dual_frequency, not math.isfinite(answer.critical_speed_printed)
     return [
-        Check("Time integration not finite", ", ".join(map(in_rpm, lost)) or "none", _grade(bool(lost))),
-        Check("Balls do not stick", ranges(answer.speed, beyond), _grade(bool(beyond.any()))),
-        Check("Regression of the source", "outside its ranges" if outside else "inside", _grade(outside)),
+        check("Time integration not finite", ", ".join(map(in_rpm, lost)) or "none", lost),
+        check("Balls do not stick", ranges(answer.speed, beyond), beyond.any()),
+        check("Regression of the source", "outside its ranges" if outside else "inside", outside),
     ]
-
-
-def _grade(failed: bool) -> Grade:
-    return Grade.WARNING if failed else Grade.NOTHING
 
 
 def _lines(answer: ExciterAnswer) -> list[str]:
@@ -298,25 +294,25 @@ def _lines(answer: ExciterAnswer) -> list[str]:
         ]
     else:
         lines.append("One stuck speed of the balls at every speed of the shaft")
-    for check in answer.checks:
-        began, both = f"Integrated at {in_rpm(check.speed)}: balls", ""
-        if math.isfinite(check.slow):
-            slow, fast = with_unit(check.slow, LENGTH), with_unit(check.fast, LENGTH)
+    for one in answer.checks:
+        began, both = f"Integrated at {in_rpm(one.speed)}: balls", ""
+        if math.isfinite(one.slow):
+            slow, fast = with_unit(one.slow, LENGTH), with_unit(one.fast, LENGTH)
             both = f", platform {slow} with them and {fast} with the shaft"
-        stay = f"stay at {in_rpm(check.stuck_speed)}{both}"
-        lines.append(f"{began} {stay if check.holds else 'leave'}")
+        stay = f"stay at {in_rpm(one.stuck_speed)}{both}"
+        lines.append(f"{began} {stay if one.holds else 'leave'}")
     return lines
 
 
 def _integrations(answer: ExciterAnswer) -> Table:
     """Time integrations beside the formulas."""
-    unit = unit_for(LENGTH, *(size for check in answer.checks for size in (check.slow, check.fast)))
+    unit = unit_for(LENGTH, *(size for one in answer.checks for size in (one.slow, one.fast)))
     rows: list[tuple[str | Cell, ...]] = []
-    for check in answer.checks:
-        stay = Cell("stay" if check.holds else "leave", warning=not check.converged)
-        stuck = number(check.stuck_speed * RPM) if check.holds else ""
-        both = [unit.number(x) if check.holds and math.isfinite(x) else "" for x in (check.slow, check.fast)]
-        rows.append((number(check.speed * RPM), stay, stuck, *both))
+    for one in answer.checks:
+        stay = Cell("stay" if one.holds else "leave", warning=not one.converged)
+        stuck = number(one.stuck_speed * RPM) if one.holds else ""
+        both = [unit.number(x) if one.holds and math.isfinite(x) else "" for x in (one.slow, one.fast)]
+        rows.append((number(one.speed * RPM), stay, stuck, *both))
     platform = f"platform with them ({unit.name})", f"with the shaft ({unit.name})"
     return Table(rows, ("Shaft (rpm)", "balls", "at (rpm)", *platform), title="Integrated in time")
 

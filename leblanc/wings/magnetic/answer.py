@@ -16,13 +16,13 @@ from leblanc.core.blocks import (
     Check,
     Checks,
     Columns,
-    Grade,
     Headline,
     Notes,
     Picture,
     Section,
     Table,
     Words,
+    check,
 )
 from leblanc.core.units import CURRENT, LENGTH, NOT_FOUND, RPM, TIME, in_rpm, number, ranges, with_unit
 from leblanc.wings.dry import DryAnswer
@@ -410,10 +410,6 @@ def rows(answer: MagneticAnswer) -> list[tuple[str, ...]]:
 def limits(answer: MagneticAnswer) -> list[Check]:
     """Where the answer is not what it seems: each check with what fails it."""
     found = []
-
-    def check(label: str, where: str, failed: bool) -> None:
-        found.append(Check(label, where, Grade.WARNING if failed else Grade.NOTHING))
-
     for control in answer.controllers:
         name = NAMES[control.name]
         for label, fails in (
@@ -421,10 +417,10 @@ def limits(answer: MagneticAnswer) -> list[Check]:
             ("Sensitivity above 3", np.nan_to_num(control.sensitivity, nan=0.0) > SENSITIVE),
             ("Faster than coils are", -control.poles.real.min(axis=-1) > FASTEST),
         ):
-            check(f"{label}, {name}", ranges(answer.speed, fails), bool(fails.any()))
+            found.append(check(f"{label}, {name}", ranges(answer.speed, fails), fails.any()))
         if control.trial is not None:
             ending, end = control.trial.motion.ending.value, float(control.trial.motion.time[-1])
-            check(f"Trial in time, {name}", f"{ending} at {_time(end)}", ending != "done")
+            found.append(check(f"Trial in time, {name}", f"{ending} at {_time(end)}", ending != "done"))
     return found
 
 

@@ -11,7 +11,7 @@ from typing import Annotated, Any
 import numpy as np
 
 from leblanc.core.answer import Answer
-from leblanc.core.blocks import Block, Check, Checks, Grade, Headline, Notes, Picture, Table
+from leblanc.core.blocks import Block, Check, Checks, Headline, Notes, Picture, Table, check
 from leblanc.core.units import LENGTH, in_rpm, number, with_unit
 from meshes.arrays import Array, Complex
 from meshes.quantity import Q
@@ -217,9 +217,6 @@ def _compliances(answer: SpindleAnswer) -> list[tuple[str, ...]]:
 def _limits(answer: SpindleAnswer) -> list[Check]:
     """Whether the answer holds what it must: each check with its number."""
     ways, least = answer.ways_apart, answer.least_dissipation
-
-    def check(label: str, where: str, failed: bool) -> Check:
-        return Check(label, where, Grade.WARNING if failed else Grade.NOTHING)
 
     return [
         check(

@@ -16,13 +16,13 @@ from leblanc.core.blocks import (
     Check,
     Checks,
     Columns,
-    Grade,
     Headline,
     Notes,
     Picture,
     Section,
     Table,
     Words,
+    check,
 )
 from leblanc.core.notes import Note, texts
 from leblanc.core.units import (
@@ -286,12 +286,11 @@ def checks(found: BallChart) -> list[Check]:
     """Where the chart is not what it seems: each check with what fails it."""
     cut = sum("long" in edge.ends for edge in found.edges)
     stands, lost = math.isfinite(found.stable_from), bool(found.missing.any())
-    rows = (
-        ("No such state", f"{_share(found.missing)} of the points" if lost else "none", lost),
-        ("Curves not followed to their end", str(cut) if cut else "none", cut > 0),
-        ("Unstable at the last speed in the scene as it stands", "no" if stands else "yes", not stands),
-    )
-    return [Check(label, where, Grade.WARNING if bad else Grade.NOTHING) for label, where, bad in rows]
+    return [
+        check("No such state", f"{_share(found.missing)} of the points" if lost else "none", lost),
+        check("Curves not followed to their end", str(cut) if cut else "none", cut > 0),
+        check("Unstable at the last speed in the scene as it stands", "no" if stands else "yes", not stands),
+    ]
 
 
 def _share(mask: Flags) -> str:

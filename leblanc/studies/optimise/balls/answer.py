@@ -9,12 +9,12 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from leblanc.core.blocks import Block, Checks, Columns, Headline, Notes, Picture, Section, Table, Words
+from leblanc.core.blocks import Block, Checks, Columns, Headline, Notes, Picture, Section, Table, Words, check
 from leblanc.core.netcdf import Variable, variable
 from leblanc.core.notes import Note, texts
 from leblanc.core.units import LENGTH, MASS, MM, NOT_FOUND, UNBALANCE, in_rpm, number, with_unit
 from leblanc.studies.balls.answer import BallsAnswer
-from leblanc.studies.optimise.answer import Best, check
+from leblanc.studies.optimise.answer import Best
 from meshes.arrays import Array
 from meshes.quantity import Q
 

@@ -8,10 +8,10 @@ from typing import Annotated
 
 import numpy as np
 
-from leblanc.core.blocks import Block, Checks, Columns, Headline, Notes, Picture, Table
+from leblanc.core.blocks import Block, Checks, Columns, Headline, Notes, Picture, Table, check
 from leblanc.core.netcdf import Variable, variable
 from leblanc.core.units import LENGTH, MM, number, with_unit
-from leblanc.studies.optimise.answer import Best, check
+from leblanc.studies.optimise.answer import Best
 from meshes.arrays import Array
 from meshes.quantity import Q
 from solvers.rotor.layout import COORDINATES, PAIRS
