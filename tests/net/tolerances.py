@@ -54,6 +54,10 @@ TABLE: tuple[tuple[str, str, Tolerance, str], ...] = (
         *("run-exact", "*ripple*", Tolerance(relative=1e-2)),
         "short waves that the jump of a guess leaves behind, 3 % of the offset: 7e-4",
     ),
+    (
+        *("run-exact", "*energy_error*", Tolerance(absolute=1e-3)),
+        "what turns leave that have settled to 1e-3: 2.8e-4 on another processor",
+    ),
     ("run-exact", "*error*", Tolerance(absolute=1e-5), "of two such runs; see the next"),
     ("run-exact", "*", Tolerance(relative=1e-3), "held until it has settled, not to rounding: 5e-5 shaken"),
     ("layer-*", "*error_estimate", Tolerance(absolute=1e-10), "rounding of two waves: 1e-12"),
@@ -153,6 +157,7 @@ TABLE: tuple[tuple[str, str, Tolerance, str], ...] = (
     ("optimise-*", "*margin*", Tolerance(relative=1e-11), "eigenvalue: 2.4e-13"),
     ("optimise-*", "*evaluations", Tolerance(relative=0.02), "a search stops a step sooner or later: 1e-3"),
     ("volume-*", "*surface_constant", Tolerance(relative=1e-11), "root of an equation: 1.5e-13"),
+    ("fit*", "*evaluations", Tolerance(relative=0.5), "a way downhill ends a few steps sooner: 10 %"),
     ("fit*", "*", Tolerance(relative=1e-8), "least squares with slopes by differences: 7e-10"),
     # Compiled finite volumes: the compiler fuses multiplications and additions as the code around them
     # allows, and what bores make of it grows in time.

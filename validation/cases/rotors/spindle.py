@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 
+from leblanc.core.notes import percent
 from leblanc.core.units import ANGULAR_SPEED, parse
 from leblanc.scene.examples import example
 from leblanc.scene.spindle import Spindle
@@ -101,12 +102,12 @@ def _equations() -> list[Case]:
     exact = complex(direct[0] / direct[1])
     printed = complex(found.motions[0][0, 0, 0]) / printed_housing(machine, rate)
     order = found.matrix.shape[-1]
-    apart = abs(by_reactions / exact - 1.0)
+    apart = percent(abs(by_reactions / exact - 1.0))
     return [
         CLAIMS.case(
             "matrix",
-            f"{order} by {order}, {len(connections(machine, omega))} reactions, {apart:.0e} apart",
-            order == 8 and apart < 1e-9,
+            f"{order} by {order}, {len(connections(machine, omega))} reactions, apart by {apart}",
+            order == 8 and apart == "rounding",
             apart=apart,
         ),
         CLAIMS.case(
