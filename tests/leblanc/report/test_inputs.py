@@ -142,6 +142,7 @@ ROTORS: dict[str, dict[str, Any]] = {
 BARE = ("exciter", "magnetic")  # neither a cabinet nor points
 # One of two keys: the report shows both ways of saying the same.
 OTHER_WAY = {
+    "speeds.values": "speeds.start",
     "rotor.stiffness": "rotor.critical_speed",
     "rotor.damping": "rotor.damping_ratio",
     "rotor.balls.pendulum_inertia": "rotor.balls.kind",
@@ -156,7 +157,7 @@ OTHERS = {
     *(f"chambers.*.liquid.{part}.{key}" for part, law in LAWS.items() for key in law.model_fields),
 }  # fmt: skip
 # What stands above the inputs, is their mark, or is told by the cell of another path.
-ELSEWHERE = {"name", "source", "assumed", "speeds.values"}  # of the latter the first, the last and how many
+ELSEWHERE = {"name", "source", "assumed"}
 TOLD_BY = {
     "rotor.kind": "rotor.axis",
     "runup.motor.speeds": "runup.motor.torques",
