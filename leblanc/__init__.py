@@ -5,7 +5,10 @@
 
 from __future__ import annotations
 
+import sys
 from typing import TYPE_CHECKING
+
+from leblanc.moved import Finder
 
 if TYPE_CHECKING:
     from fluid.fill import Fill
@@ -69,6 +72,8 @@ __all__ = [
     "validate",
     "volume",
 ]
+
+sys.meta_path.append(Finder)
 
 _API = "leblanc.api"
 # Each in a package of its name.

@@ -199,7 +199,10 @@ class Answer(Result):
 
         if name.startswith("__"):
             raise AttributeError(name)
-        return reached(self, name)
+        try:
+            return reached(self, name)
+        except AttributeError:
+            return called("leblanc.moved:attribute")(self, name)
 
     def __dir__(self) -> list[str]:
         from leblanc.core.quantities import names
