@@ -1,4 +1,4 @@
-"""Old names of what a script may hold: each warns and leads to the new one, for one version."""
+"""Other names of what a script may hold: old ones warn and lead to the new ones, for one version."""
 
 from __future__ import annotations
 
@@ -53,16 +53,20 @@ ATTRIBUTES = {
     "SweepAnswer": {"sensitivities": "sensitivity", "single": "outputs"},
     "WhirlMap": {"branches": "large.branches"},
 }
+# The field's terms for names of answers that scripts know.
+ALIASES = {"annulus_speed": "carried_from", "time_domain_at": "held_at"}
 _MODULES = {name.partition(":")[0] for name in NAMES}
 
 
 def attribute(answer: Any, name: str) -> Any:
-    """What an answer has under another name now.
+    """What an answer has under another name.
 
     Raises
     ------
     AttributeError : it never had that name
     """
+    if name in ALIASES:
+        return getattr(answer, ALIASES[name])
     path = ATTRIBUTES.get(type(answer).__name__, {}).get(name)
     if path is None:
         raise AttributeError(f"{type(answer).__name__!r} object has no attribute {name!r}")

@@ -1,6 +1,7 @@
 """Old names lead to the new ones, with a warning; our own code knows none of them."""
 
 import re
+import tomllib
 from importlib import import_module
 from pathlib import Path
 
@@ -9,7 +10,7 @@ import pytest
 
 import leblanc as lb
 from leblanc.core.quantities import names
-from leblanc.moved import ATTRIBUTES, NAMES
+from leblanc.moved import _GONE, ALIASES, ATTRIBUTES, NAMES
 
 
 @pytest.mark.parametrize("old", NAMES)
@@ -37,6 +38,9 @@ def test_old_attributes_are_the_new_ones():
         found = answer.branch_amplitude
     np.testing.assert_array_equal(found, np.abs(answer.response.branch_deflection))
     assert [each.filename for each in told] == [__file__]
+    assert answer.annulus_speed == answer.carried_from
+    assert answer.time_domain_at is answer.held_at
+    assert not set(ALIASES) & set(answer.to_json())
     chart = lb.map_whirl(lb.example("horizontal_rig"), volumes=2, speeds=2)
     with pytest.warns(DeprecationWarning):
         assert chart.branches is None
@@ -63,3 +67,12 @@ def test_our_own_code_and_pages_know_no_old_path():
     known = {"leblanc/moved.py"}
     assert len(places) > 400
     assert {str(path.relative_to(root)) for path in places if old.search(path.read_text("utf-8"))} <= known
+
+
+def test_one_version_everywhere():
+    root = Path(lb.__file__).parents[1]
+    version = tomllib.loads((root / "pyproject.toml").read_text())["project"]["version"]
+    assert f"version: {version}\n" in (root / "CITATION.cff").read_text()
+    assert f"leblanc-{version}-py3" in (root / "README.md").read_text()
+    assert re.search(r"^## (\S+)", (root / "CHANGELOG.md").read_text(), re.M)[1] == version
+    assert int(_GONE.split(".")[1]) > int(version.split(".")[1])
