@@ -16,7 +16,18 @@ from leblanc.core.answer import Answer
 from leblanc.core.contents import results_dir
 from leblanc.core.files import out_dir, path_text
 from leblanc.core.progress import working
-from leblanc.core.question import SCENE, STUDY, Asked, Quantity, Reader, Texts, called, parameters, read
+from leblanc.core.question import (
+    SCENE,
+    STUDY,
+    Asked,
+    Points,
+    Quantity,
+    Reader,
+    Texts,
+    called,
+    parameters,
+    read,
+)
 from leblanc.core.terminal import print_json, say, show
 from meshes.errors import InputError
 
@@ -126,7 +137,9 @@ def _typed(one: Asked) -> Parameter:
     kind: Any = one.kind
     if kind == Texts:
         return _parameter(one.name, list[str] | None, typer.Option(*one.option.names, help=one.text), None)
-    if get_origin(kind) is Sequence or (isinstance(one.read, Reader) and one.read.many):
+    if kind == Points:
+        kind = int
+    elif get_origin(kind) is Sequence or (isinstance(one.read, Reader) and one.read.many):
         kind = list[str] if one.default is Parameter.empty else list[str] | None
     elif one.read is not None or kind == Quantity | None:  # of the latter the study knows the unit
         kind = str if one.default is Parameter.empty else str | None

@@ -24,6 +24,7 @@ from meshes.errors import InputError
 
 Quantity = str | float  # a number in SI units, or a text with its unit
 Texts = str | Sequence[str]  # one text or several; the option is typed anew for each
+Points = int | Sequence[Quantity]  # how many, evenly spaced, or each of them; a command takes how many
 A = TypeVar("A")
 
 
@@ -140,11 +141,22 @@ def read(question: Callable[..., Any], given: Mapping[str, Any]) -> dict[str, An
             values[one.name] = called(one.read.address)(value, one.name)
         elif one.read is None:
             values[one.name] = _typed(value, one.kind, one.name)
+        elif one.kind == Points:
+            values[one.name] = _points(value, one.read, one.name)
         elif value is not None:
             values[one.name] = parse_option(value, one.read, one.name)
         elif one.default is not None and NoneType not in _kinds(one.kind):
             raise InputError(one.name, None, one.read.allowed)
     return values
+
+
+def _points(value: Any, dimension: Dimension, name: str) -> int | tuple[float, ...]:
+    """How many, or each of them in SI units."""
+    points = _typed(value, Points, name)
+    if isinstance(points, int):
+        return points
+    each = points.tolist() if hasattr(points, "tolist") else points
+    return tuple(parse_option(one, dimension, f"{name}.{k}") for k, one in enumerate(each))
 
 
 # What a value may be by its type: who tells, what it becomes, and how a message says it.
@@ -190,6 +202,7 @@ def _typed(value: Any, kind: Any, name: str) -> Any:
 
 _READ = {
     SCENE: "Scene | dict | str | PathLike",
+    STUDY: "dict | str | PathLike",
     FILE: "str | PathLike",
     FRICTION: "Friction | str | dict",
     LIQUID: "Liquid | str",
@@ -227,7 +240,7 @@ def readable(question: Callable[..., Any]) -> None:
     asked, own = list(parameters(question)), signature(question)
     made, lines = [], []
     for one in asked:
-        said = "float | str" if one.read is not None else shown(one.kind)
+        said = "float | str" if one.read is not None and one.kind != Points else shown(one.kind)
         said = _READ.get(one.read, said) if one.read in _READ else said
         if one.default is None and "None" not in said:
             said += " | None"

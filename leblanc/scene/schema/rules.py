@@ -157,7 +157,8 @@ class Entries:
         return f"a list of {size} {self.what}"
 
     def __call__(self, value: object) -> list[object] | tuple[object, ...]:
-        """The list."""
+        """The list; an array stands for one in Python."""
+        value = value.tolist() if hasattr(value, "tolist") else value
         if isinstance(value, list | tuple) and self.low <= len(value) <= self.high:
             return value
         raise Refused(self.allowed)

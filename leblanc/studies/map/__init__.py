@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Annotated, Any
 
-from leblanc.core.question import FRICTION, SCENE, Option, Quantity, Texts, ask, together
-from leblanc.core.units import VOLUME
+from leblanc.core.question import FRICTION, SCENE, Option, Points, Quantity, Texts, ask, together
+from leblanc.core.units import ANGULAR_SPEED, VOLUME
 from meshes.errors import InputError
 
 if TYPE_CHECKING:
@@ -20,8 +20,10 @@ FILES = ("map.html", "map.nc")
 def map_whirl(
     scene: Annotated[SceneOrPath, SCENE, "The machine, or the path of its file."],
     *,
-    volumes: Annotated[int, "How many volumes [default: 101]."] = 101,
-    speeds: Annotated[int, "How many speeds, over the scene's range [default: 201; with balls 61]."] = 201,
+    volumes: Annotated[Points, VOLUME, "How many volumes [default: 101]."] = 101,
+    speeds: Annotated[
+        Points, ANGULAR_SPEED, "How many speeds, over the scene's range [default: 201; with balls 61]."
+    ] = 201,
     max_volume: Annotated[
         Quantity | None, VOLUME, "Most liquid in all chambers together [default: what fits]."
     ] = None,
@@ -46,7 +48,8 @@ def map_whirl(
 ) -> WhirlMap:
     """Growth rate of self-excited whirl over speed and fill, with the edges of its bands.
 
-    Friction may be a table as in a machine file as well, or a `Friction`.
+    Rising arrays say each of the `volumes`, of all liquid together, and of the `speeds`. Friction may be a
+    table as in a machine file as well, or a `Friction`.
 
     Raises
     ------
@@ -57,6 +60,8 @@ def map_whirl(
     >>> import leblanc as lb
     >>> lb.map_whirl(lb.example("horizontal_rig"), volumes=3, speeds=5).growth.shape
     (3, 5)
+    >>> lb.map_whirl(lb.example("horizontal_rig"), volumes=["5 ml", "8 ml"], speeds=[100, 150, 210]).speed
+    array([100., 150., 210.])
     """
     return ask(map_whirl, "leblanc.studies.map.study:answer", locals())
 
@@ -75,8 +80,8 @@ def map_balls(
     stop: Annotated[
         Quantity | None, Option(("--to",)), "Its last value [default: ten times the scene's]."
     ] = None,
-    values: Annotated[int, "How many values of it [default: 31]."] = 31,
-    speeds: Annotated[int, "How many speeds, over the scene's range."] = 61,
+    values: Annotated[Points, "How many values of it [default: 31]."] = 31,
+    speeds: Annotated[Points, ANGULAR_SPEED, "How many speeds, over the scene's range."] = 61,
     log: Annotated[
         bool | None,
         Option(("--log/--linear",)),
@@ -90,6 +95,8 @@ def map_balls(
     ] = None,
 ) -> BallChart:
     """Where the balls of a scene keep the rotor balanced, over its speeds and another of its numbers.
+
+    Rising arrays say each of the `values` and `speeds`.
 
     Raises
     ------

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -18,6 +19,7 @@ from leblanc.results.motion.cycles import Cycles
 from leblanc.scene.scene import Scene, require_no_balls, require_whirl
 from leblanc.studies.cycles import scene_cycles
 from leblanc.studies.map.answer import WhirlMap
+from leblanc.studies.map.axes import few_points, speeds_of
 from leblanc.studies.models.choose import Prepared, prepare
 from leblanc.studies.models.liquid import asked_with
 from leblanc.studies.models.validity import doubts
@@ -31,7 +33,7 @@ from solvers.synchronous.response import main_critical_speeds
 from solvers.whirl.edges import Bands, bands_not_known, unstable_bands
 from solvers.whirl.growth import Waves, growth_map
 
-FEWEST, MOST = 2, 4000  # volumes or speeds of a map
+MOST = 4000  # volumes or speeds of a map
 _AT_ONCE = 20  # volumes between reports of progress
 _THIN = THIN_LAYERS[1]
 
@@ -56,8 +58,8 @@ def answer(scene: Scene, model: object, **given: Any) -> WhirlMap:
 
 def map_scene(
     scene: Scene,
-    volumes: int,
-    speeds: int,
+    volumes: int | Sequence[float],
+    speeds: int | Sequence[float],
     max_volume: float | None = None,
     friction: Friction | None = None,
     cycles: bool = False,
@@ -67,7 +69,12 @@ def map_scene(
     With several chambers their volumes grow by a common factor; up to what fits where no largest volume is
     given. `cycles`: find how large the whirls of the scene as it stands grow.
     """
-    _check(scene, volumes, speeds)
+    few_points("volumes", volumes, MOST)
+    scene, speed = speeds_of(scene, speeds, MOST)
+    require_whirl(scene)
+    require_no_balls(scene, "a map over liquid; `lb.map_balls` charts balls")
+    if not scene.fills:
+        raise InputError("chambers", "none", "at least one for a map over volume")
     machine = prepare(scene, free=True)
     law = machine.waves
     if isinstance(law, CheckedModel) and (friction is not None or cycles):
@@ -75,15 +82,15 @@ def map_scene(
         raise InputError(field, given, "left out with a liquid model of one's own")
     law = law if friction is None else friction
     drag = replace(machine, waves=law).drag
-    rotor, speed = machine.rotor, np.linspace(scene.speeds.start, scene.speeds.stop, speeds)
+    rotor = machine.rotor
     rows = fills_over_volume(scene.fills, volumes, max_volume)
     parts = []
     # In the plane all are solved together; a rotor that tilts takes them one by one, each for a while.
     together = _AT_ONCE if isinstance(rotor, Jeffcott) else 1
-    for first in range(0, volumes, together):
+    for first in range(0, len(rows), together):
         parts.append(growth_map(rotor, rows[first : first + together], speed, law))
-        done = min(first + together, volumes)
-        update(done, volumes, "volumes" if done < volumes else "edges of the bands")
+        done = min(first + together, len(rows))
+        update(done, len(rows), "volumes" if done < len(rows) else "edges of the bands")
     growth, whirl_speed = (np.concatenate([part[k] for part in parts]) for k in (0, 1))
     edges = unstable_bands(rotor, rows, speed, law, growth)
     (own,) = unstable_bands(rotor, [scene.fills], speed, law)
@@ -128,22 +135,10 @@ def _critical_speed(machine: Prepared) -> float:
     return main_critical_speeds(system, machine.scene.fills, dry, none)[0]
 
 
-def _check(scene: Scene, volumes: int, speeds: int) -> None:
-    for field, count in (("volumes", volumes), ("speeds", speeds)):
-        if not FEWEST <= count <= MOST:
-            raise InputError(field, count, f"a whole number from {FEWEST} to {MOST}")
-    if scene.speeds.stop <= scene.speeds.start:
-        raise InputError("speeds.stop", scene.speeds.stop, "above speeds.start for a map")
-    require_whirl(scene)
-    require_no_balls(scene, "a map over liquid; `lb.map_balls` charts balls")
-    if not scene.fills:
-        raise InputError("chambers", "none", "at least one for a map over volume")
-
-
 def fills_over_volume(
-    fills: tuple[Fill, ...], count: int, max_volume: float | None = None
+    fills: tuple[Fill, ...], volumes: int | Sequence[float], max_volume: float | None = None
 ) -> list[tuple[Fill, ...]]:
-    """The chambers with rising volumes, from none to the most; their ratios stay.
+    """The chambers with rising volumes, so many from none to the most or those given; their ratios stay.
 
     Chambers without any liquid all the same share it by what they hold.
     """
@@ -156,7 +151,15 @@ def fills_over_volume(
     if not 0.0 < most <= room * (1.0 + 1e-9):
         raise InputError("max_volume", max_volume, f"above 0 and at most {room:.6g} m^3, what fits")
     share = parts / parts.sum()
-    totals = np.linspace(0.0, min(most, room), count)
+    if isinstance(volumes, int):
+        totals = np.linspace(0.0, min(most, room), volumes)
+    else:
+        totals = np.array(volumes)
+        for k, given in enumerate(volumes):
+            if not 0.0 <= given <= room * (1.0 + 1e-9):
+                raise InputError(f"volumes.{k}", given, f"0 or above and at most {room:.6g} m^3, what fits")
+        if max_volume is not None:
+            raise InputError("max_volume", max_volume, "left out where each of the volumes is given")
     return [
         tuple(
             replace(fill, volume=min(float(total * part), fill.chamber.capacity))

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-from leblanc.core.question import SCENE, Option, ask
+from leblanc.core.question import SCENE, Option, Quantity, ask
 
 if TYPE_CHECKING:
     from leblanc.core.answer import Answer
@@ -31,6 +32,9 @@ def run(
         Option(alone=True),
         "Liquid in place of the scene's: an object as `leblanc.LiquidModel` says, or a name.",
     ] = None,
+    speeds: Annotated[
+        Sequence[Quantity] | None, Option(alone=True), "Rising spin speeds in place of the scene's."
+    ] = None,
     folder: Path | None = None,
 ) -> RunAnswer | Answer:
     """Answer of the machine at each speed. Figures, data file, report.
@@ -50,5 +54,7 @@ def run(
     >>> answer = lb.run(lb.example("horizontal_rig"))
     >>> answer.speed.shape == answer.amplitude.shape == (201,)
     True
+    >>> lb.run(lb.example("horizontal_rig"), speeds=["900 rpm", "1100 rpm"]).stable
+    array([ True, False])
     """
     return ask(run, "leblanc.studies.run.study:answer", locals())

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -180,11 +181,13 @@ def answer(
     solver: str | None,
     cycles: bool,
     model: object,
+    speeds: Sequence[str | float] | None,
     folder: Path | None,
 ) -> Answer:
     """The answer of the kind of machine, as `leblanc.run` takes its parameters."""
     if workers < 1:
         raise InputError("workers", workers, "1 or more")
+    scene = scene if speeds is None else scene.replace({"speeds": speeds})
     with asked_with(scene, model) as own:
         if (address := answerer("run", own.kind)) is not None:
             found: Answer = called(address)(own)

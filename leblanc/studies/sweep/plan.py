@@ -302,10 +302,12 @@ class Sweep:
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
 
-def study_of(study: Sweep | str | PathLike[str], field: str = "study") -> Sweep:
-    """A sweep itself, or the one of that study file."""
+def study_of(study: Sweep | Mapping[str, Any] | str | PathLike[str], field: str = "study") -> Sweep:
+    """A sweep itself, that of a table, or the one of that study file."""
+    if isinstance(study, Mapping):
+        return _sweep_of(study, "")
     if not isinstance(study, Sweep | str | PathLike):
-        raise InputError(field, type(study).__name__, "the path of a study file")
+        raise InputError(field, type(study).__name__, "the path of a study file, or its table")
     return study if isinstance(study, Sweep) else load_sweep(study)
 
 
@@ -317,8 +319,12 @@ def load_sweep(path: str | PathLike[str]) -> Sweep:
 
 
 def _sweep_of(given: Mapping[str, Any], path: str | PathLike[str]) -> Sweep:
-    """Sweep from the content of a study file."""
-    file = str(path)
+    """Sweep from the content of a study file; without a path the scene may be a table or a `Scene`."""
+    file = str(path) or "study"
+    base = given.get("scene")
+    base = base.table() if isinstance(base, Scene) else base
+    if not path and isinstance(base, Mapping):
+        given = {**given, "scene": "scene"}
     if "rotor" in given and "vary" not in given:
         text = "a study with the keys scene, method and [vary]; this is a scene, which `leblanc run` answers"
         raise SceneError([SceneFault(file, "", None, text)])
@@ -326,10 +332,13 @@ def _sweep_of(given: Mapping[str, Any], path: str | PathLike[str]) -> Sweep:
         table = Study.model_validate(given)
     except ValidationError as error:
         raise SceneError(faults_of(error, file, Study)) from error
-    scene_path = Path(path).parent / native(table.scene)
-    scene_table = read_scene(scene_path)
-    with with_lines(scene_path):
-        scene = scene_from_table(scene_table, str(scene_path))
+    if not path and isinstance(base, Mapping):
+        scene_table, scene = base, scene_from_table(base)
+    else:
+        scene_path = Path(path).parent / native(table.scene)
+        scene_table = read_scene(scene_path)
+        with with_lines(scene_path):
+            scene = scene_from_table(scene_table, str(scene_path))
     if isinstance(scene.rotor, WITHOUT_CHAMBERS):
         allowed = "a scene whose rotor answers at its speeds: jeffcott, two_plane or tub"
         raise SceneError([SceneFault(file, "scene", shown(table.scene), allowed)])
@@ -339,7 +348,7 @@ def _sweep_of(given: Mapping[str, Any], path: str | PathLike[str]) -> Sweep:
         sizes = [int(field.distribution.levels().size) for field in fields]  # type: ignore[union-attr]
         points = math.prod(sizes)
     sweep = Sweep(
-        name=path_text(Path(path).stem),
+        name=path_text(Path(path).stem) if path else scene.name,
         scene_path=table.scene,
         table=scene_table,
         scene=scene,

@@ -18,6 +18,7 @@ from leblanc.scene.schema.paths import keys_of, rule_at
 from leblanc.scene.schema.rules import Quantity, Refused
 from leblanc.studies.balls import notes
 from leblanc.studies.balls.states import Parts, liquid_beside, own_family, parts_of
+from leblanc.studies.map.axes import few_points, speeds_of
 from leblanc.studies.map.balls.answer import STATES, BallChart, Curve
 from leblanc.studies.models.validity import doubts
 from meshes.errors import InputError
@@ -33,7 +34,7 @@ from solvers.rotor.balls.charts import (
 )
 from solvers.rotor.balls.states import turning
 
-FEWEST, MOST = 2, 1000  # values or speeds of a chart
+MOST = 1000  # values or speeds of a chart
 _WIDE, _USUAL = 100.0, 10.0  # factors on both sides of the scene's drag, of any other number
 _DECADE = 10.0  # a range as wide as this is spaced by logarithms
 _ROOTS = ("rotor", "chambers", "gravity")
@@ -55,8 +56,8 @@ def chart_scene(
     over: str | Sequence[str],
     start: str | float | None,
     stop: str | float | None,
-    values: int,
-    speeds: int,
+    values: int | Sequence[str | float],
+    speeds: int | Sequence[float],
     log: bool | None,
     state: str,
 ) -> BallChart:
@@ -66,24 +67,31 @@ def chart_scene(
     hundredth to a hundred times) unless given, by their logarithm where they span a decade. State heavy or
     light: the balls of each race together on that side of its plane.
     """
-    _check(scene, values, speeds, state)
+    _check(scene, state)
+    scene, speed = speeds_of(scene, speeds, MOST)
+    liquid_beside(scene)
     varied = _varied(scene, (over,) if isinstance(over, str) else tuple(over))
-    low, high = _ends(varied, start, stop, not over)
+    points = values if isinstance(values, int) else _given(varied, values, start, stop)
+    few_points("values", points, MOST)
+    low, high = _ends(varied, start, stop, not over) if isinstance(points, int) else (points[0], points[-1])
     log = low > 0.0 and high >= _DECADE * low if log is None else log
     if log and low <= 0.0:
         raise InputError("start", low, "above 0 for values spaced by their logarithm")
-    speed = np.linspace(scene.speeds.start, scene.speeds.stop, speeds)
-    first, last = (math.log(low), math.log(high)) if log else (low, high)
-    second = np.linspace(first, last, values)
+    if isinstance(points, int):
+        first, last = (math.log(low), math.log(high)) if log else (low, high)
+        second = np.linspace(first, last, points)
+    else:
+        second = np.log(points) if log else np.array(points)
     family = _family(scene, varied, log)
     rotor, races = dry_rotor(scene).system(), [race.race() for race in scene.balls]
     chosen = State() if state == "balanced" else gathered(rotor, races, state == "light")
-    chart = stability_chart(_told(family, speeds * values), speed, second, chosen)
+    chart = stability_chart(_told(family, speed.size * second.size), speed, second, chosen)
     bounds = existence_bounds(family, float(speed[0]), second) if state == "balanced" else []
     growth, bands = stable_bands(own_family(scene), speed, 0.0, chosen)
     # Ends as they were asked for, without the rounding of a logarithm.
     value = np.exp(second) if log else second.copy()
     value[0], value[-1] = low, high
+    value = value if isinstance(points, int) else np.array(points)
     answer = BallChart(
         name=scene.name,
         source=scene.source,
@@ -109,17 +117,28 @@ def chart_scene(
     return replace(answer, notes=_notes(scene, answer, turning(rotor) is not None))
 
 
-def _check(scene: Scene, values: int, speeds: int, state: str) -> None:
+def _check(scene: Scene, state: str) -> None:
     if not scene.balls:
         raise InputError("chambers", len(scene.chambers), "with one of kind balls for this")
-    for field, count in (("values", values), ("speeds", speeds)):
-        if not FEWEST <= count <= MOST:
-            raise InputError(field, count, f"a whole number from {FEWEST} to {MOST}")
     if state not in STATES:
         raise InputError("state", state, f"one of {', '.join(STATES)}")
-    if scene.speeds.stop <= scene.speeds.start:
-        raise InputError("speeds.stop", scene.speeds.stop, "above speeds.start for a map")
-    liquid_beside(scene)
+
+
+def _given(
+    varied: _Varied, values: Sequence[str | float], start: str | float | None, stop: str | float | None
+) -> list[float]:
+    """Values one by one, SI, each as the scene allows it."""
+    for field, end in (("start", start), ("stop", stop)):
+        if end is not None:
+            raise InputError(field, end, "left out where each of the values is given")
+    found = []
+    for k, one in enumerate(np.asarray(values).tolist()):
+        value = parse_option(one, varied.rule.dimension, f"values.{k}")
+        try:
+            found.append(varied.rule(value))
+        except Refused as refused:
+            raise InputError(f"values.{k}", one, refused.allowed) from None
+    return found
 
 
 def _varied(scene: Scene, over: tuple[str, ...]) -> _Varied:
