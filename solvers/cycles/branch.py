@@ -100,6 +100,11 @@ class Follower:
         speeds = (whirl_speed / (_SPREAD * self.speed), spin / (_RANGE * self.speed))
         return np.concatenate([part.real, part.imag, speeds])
 
+    @property
+    def scales(self) -> tuple[float, float, float]:
+        """Changes of spin, whirl speed and amplitude that count alike along a branch."""
+        return _RANGE * self.speed, _SPREAD * self.speed, self.unit
+
     def parts(self, vector: Array) -> tuple[Complex, float, float]:
         """Coordinates, whirl speed and spin of unknowns of the rotor."""
         p = self._coordinates

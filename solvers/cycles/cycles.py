@@ -218,6 +218,7 @@ class _Finder:
         self.machine, self.friction, self.cells, self.range = machine, friction, cells, range_
         self.progress, self.count = progress, 0
         self.branches: list[Branch] = []
+        self.rows: list[list[_Row]] = []  # of each branch
         self.missed: list[tuple[float, float, float]] = []
         self.lost: list[float] = []
         self.tried = 0
@@ -274,7 +275,7 @@ class _Finder:
         if self._inside(start.spin):
             found = [self._row(follower, start), *found]
         if found:
-            self.branches.append(_branch(found, ("edge of the band", why)))
+            self._add(follower, found, ("edge of the band", why))
 
     def _from_inside(self, lower: float, upper: float, near: float) -> None:
         """The branch of a large whirl inside a band, where none of the others leads to it."""
@@ -289,38 +290,44 @@ class _Finder:
             start = follower.start(guess.moved, guess.whirl_speed, spin, size, guess.lag)
             if start is not None and 1.0 - follower.thinnest(start) > _SMALL:
                 if not self._known(follower, start):
-                    self.branches.append(self._both_ways(follower, start))
+                    self._add(follower, *self._both_ways(follower, start))
                 return
         if not any(branch.at(0.5 * (lower + upper)) for branch in self.branches):
             self.missed.append((lower, upper, near))
 
     def _known(self, follower: Follower, cycle: Cycle) -> bool:
         """Whether a limit cycle lies on a branch that has been found."""
-        unit, thick = follower.speed, _THICK / follower.depth
         size = float(np.abs(self.machine.rows @ cycle.moved)[0])
-        point = np.array([cycle.spin / unit, cycle.whirl_speed / unit, thick * size])
-        for branch in self.branches:
-            rows = np.column_stack([branch.speed / unit, branch.whirl_speed / unit, thick * branch.amplitude])
-            if len(rows) < 2:
-                continue
-            way = np.diff(rows, axis=0)
-            part = ((point - rows[:-1]) * way).sum(axis=1) / np.maximum(np.square(way).sum(axis=1), 1e-300)
-            # The branch goes on a little beyond its last whirl, towards the edge.
-            least, most = np.zeros(len(way)), np.ones(len(way))
-            least[0], most[-1] = -_BEYOND, 1.0 + _BEYOND
-            gap = rows[:-1] + np.clip(part, least, most)[:, None] * way - point
-            if np.sqrt(np.square(gap).sum(axis=1)).min() < _SAME:
-                return True
-        return False
+        return any(
+            _lies_on(branch, follower, (cycle.spin, cycle.whirl_speed, size)) for branch in self.branches
+        )
 
-    def _both_ways(self, follower: Follower, start: Cycle) -> Branch:
+    def _add(self, follower: Follower, rows: list[_Row], reason: tuple[str, str]) -> None:
+        """Take in a branch; one with which it shares an end that could not be followed is the same one.
+
+        There both come to a kink of the limiter, where rounding decides whether Newton's steps pass it.
+        """
+        for k, branch in enumerate(self.branches):
+            if reason[1] == _BROKEN == branch.reason[1] and _lies_on(branch, follower, rows[-1].place):
+                first = self.rows.pop(k)
+                while len(rows) > 1 and _lies_on(branch, follower, rows[-1].place, beyond=0.0):
+                    rows.pop()
+                gap = np.subtract(first[-1].place, rows[-1].place) / follower.scales
+                end = first[-1].arc + float(np.linalg.norm(gap))
+                back = [replace(row, arc=end + rows[-1].arc - row.arc) for row in reversed(rows)]
+                rows, reason = first + back, (self.branches.pop(k).reason[0], reason[0])
+                break
+        self.rows.append(rows)
+        self.branches.append(_branch(rows, reason))
+
+    def _both_ways(self, follower: Follower, start: Cycle) -> tuple[list[_Row], tuple[str, str]]:
         parts, reasons = [], []
         for way in (-1.0, 1.0):
             found, why = self._follow(follower, replace(start, tangent=way * start.tangent))
             parts.append([replace(row, arc=way * row.arc) for row in found])
             reasons.append(why)
         rows = [*reversed(parts[0]), self._row(follower, start), *parts[1]]
-        return _branch(rows, (reasons[0], reasons[1]))
+        return rows, (reasons[0], reasons[1])
 
     def _follow(self, follower: Follower, start: Cycle) -> tuple[list[_Row], str]:
         """Whirls on from one, and why the last one is the last; those out of the range are left out."""
@@ -398,6 +405,28 @@ class _Row:
     torque: float
     thinnest: float
     arc: float
+
+    @property
+    def place(self) -> tuple[float, float, float]:
+        """Spin and whirl speed, rad/s, and amplitude, m."""
+        return self.speed, self.whirl_speed, float(np.abs(self.deflection[0]))
+
+
+def _lies_on(
+    branch: Branch, follower: Follower, place: tuple[float, float, float], beyond: float = _BEYOND
+) -> bool:
+    """Whether a whirl lies on a branch, which goes on beyond its ends by so much of its last steps."""
+    weights = np.array([1.0 / follower.speed, 1.0 / follower.speed, _THICK / follower.depth])
+    rows = weights * np.column_stack([branch.speed, branch.whirl_speed, branch.amplitude])
+    if len(rows) < 2:
+        return False
+    point = weights * np.array(place)
+    way = np.diff(rows, axis=0)
+    part = ((point - rows[:-1]) * way).sum(axis=1) / np.maximum(np.square(way).sum(axis=1), 1e-300)
+    least, most = np.zeros(len(way)), np.ones(len(way))
+    least[0], most[-1] = -beyond, 1.0 + beyond
+    gap = rows[:-1] + np.clip(part, least, most)[:, None] * way - point
+    return bool(np.sqrt(np.square(gap).sum(axis=1)).min() < _SAME)
 
 
 def _branch(rows: list[_Row], reason: tuple[str, str]) -> Branch:

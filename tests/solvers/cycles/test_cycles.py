@@ -15,7 +15,8 @@ from fluid.whirl import layer_rate, plane_layer
 from meshes.chamber import Chamber
 from meshes.errors import InputError
 from solvers.cycles.balance import circular
-from solvers.cycles.cycles import Branch, LimitCycles, limit_cycles
+from solvers.cycles.branch import Follower
+from solvers.cycles.cycles import _BROKEN, CELLS, Branch, LimitCycles, _Finder, _Row, limit_cycles
 from solvers.cycles.edges import small_whirl_edges
 from solvers.cycles.estimate import Estimate, _by_rule, _settling, undamped_bands
 from solvers.cycles.wave import StandingWave, Whirling
@@ -316,6 +317,34 @@ def test_every_mode_has_its_edges() -> None:
             p.full_mass * abs(f) for p, f in zip(pair.places, forces, strict=True)
         )
         assert np.abs(left).max() < 2e-3 * push * np.abs(edge.moved).max()
+
+
+@pytest.mark.parametrize("overlap", [0, 2])
+def test_two_parts_of_a_branch_are_one(branches: tuple[LimitCycles, Fill], overlap: int) -> None:
+    # Cut past its fold, and followed from both ends up to the cut or beyond it: the same whirls, each once.
+    whole = next(branch for branch in branches[0].branches if branch.folds)
+    fill = branches[1]
+    pair = circular(machine(MU, 0.1, 0.02)[0].system(), [fill], FRICTION)
+    follower = Follower(pair, FRICTION, CELLS, NATURAL)
+    size = np.array([whole.speed, whole.whirl_speed, whole.amplitude]).T / follower.scales
+    arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(size, axis=0), axis=1))])
+    names = ("speed", "whirl_speed", "deflection", "lag", "growth", "torque", "thinnest")
+    rows = [_Row(**{name: getattr(whole, name)[k] for name in names}, arc=arc[k]) for k in range(len(arc))]
+    cut, finder = whole.folds[0] + 2, _Finder(pair, FRICTION, CELLS, (0.0, np.inf), None)
+    back = [replace(row, arc=arc[-1] - row.arc) for row in reversed(rows[cut - overlap :])]
+    for part in (rows[:cut], back):
+        finder._add(follower, part, ("edge of the band", _BROKEN))
+    (joined,) = finder.branches
+    assert joined.reason == ("edge of the band", "edge of the band")
+    assert joined.speed == pytest.approx(whole.speed, rel=1e-12)
+    assert joined.folds == whole.folds
+    assert joined.fold_speed == pytest.approx(whole.fold_speed, rel=1e-4)
+    # Where they do not meet, or did not break, they stay two.
+    apart = _Finder(pair, FRICTION, CELLS, (0.0, np.inf), None)
+    apart._add(follower, rows[:cut], ("edge of the band", _BROKEN))
+    apart._add(follower, back[: len(back) // 2], ("edge of the band", _BROKEN))
+    apart._add(follower, back, ("edge of the band", "end of the range of speeds"))
+    assert len(apart.branches) == 3
 
 
 def test_weak_friction_beside_damping() -> None:
