@@ -155,6 +155,16 @@ def _table(rows: Sequence[Sequence[Any]], head: Sequence[str] = ()) -> str:
     return f"<table>{''.join(lines)}</table>"
 
 
+def _read_only(value: Any) -> Any:
+    """An array, a tuple or a table of them, made read-only: what is written into one would be lost."""
+    if type(value) in (tuple, dict):
+        for each in value.values() if isinstance(value, dict) else value:
+            _read_only(each)
+    elif type(value).__name__ == "ndarray":
+        value.flags.writeable = False
+    return value
+
+
 class Answer(Result):
     """Base of a frozen dataclass whose fields and properties are declared by `Q`."""
 
@@ -193,6 +203,10 @@ class Answer(Result):
     def after(self) -> None:
         """What the command does once its files are written."""
 
+    def __getattribute__(self, name: str) -> Any:
+        """As of any object; an array that is computed anew is read-only as well."""
+        return _read_only(object.__getattribute__(self, name))
+
     def __getattr__(self, name: str) -> Any:
         """A quantity of one of its parts; None where it has no such part."""
         from leblanc.core.quantities import reached
@@ -200,9 +214,9 @@ class Answer(Result):
         if name.startswith("__"):
             raise AttributeError(name)
         try:
-            return reached(self, name)
+            return _read_only(reached(self, name))
         except AttributeError:
-            return called("leblanc.moved:attribute")(self, name)
+            return _read_only(called("leblanc.moved:attribute")(self, name))
 
     def __dir__(self) -> list[str]:
         from leblanc.core.quantities import names

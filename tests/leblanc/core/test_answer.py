@@ -47,6 +47,23 @@ def test_its_arrays_are_not_changed(kind: str) -> None:
             assert found != replace(found, **{name: array + 1.0}), name  # type: ignore[type-var]
 
 
+@pytest.mark.parametrize("kind", ASKED)
+def test_what_is_computed_is_not_changed(kind: str) -> None:
+    """An array that a property computes is written into in vain: it says so."""
+    found = answer(kind)
+    read = [getattr(found, name) for name in dir(found) if not name.startswith("_")]
+    tables = [[one] if isinstance(one, np.ndarray) else one for one in read]
+    arrays = [
+        array
+        for table in tables
+        for array in (
+            table.values() if isinstance(table, dict) else table if isinstance(table, list | tuple) else ()
+        )
+        if isinstance(array, np.ndarray)
+    ]
+    assert not any(array.flags.writeable for array in arrays)
+
+
 def test_values_alike() -> None:
     nan = float("nan")
     assert alike((nan, [1, {"a": np.array([nan, 1.0])}]), (nan, [1, {"a": np.array([nan, 1.0])}]))
