@@ -19,6 +19,7 @@ if TYPE_CHECKING:
         explain,
         validate,
     )
+    from leblanc.core.disk import opened as open
     from leblanc.scene.examples import example
     from leblanc.scene.magnetic import MagneticRotor
     from leblanc.scene.rotors import Exciter, JeffcottRotor, TubRotor, TwoPlaneRotor
@@ -65,6 +66,7 @@ __all__ = [
     "map_balls",
     "map_whirl",
     "modes",
+    "open",
     "optimise",
     "run",
     "run_up",
@@ -97,6 +99,7 @@ _HOMES = {
     **{name: (f"leblanc.studies.{name}", name) for name in _QUESTIONS},
     "run_up": ("leblanc.studies.runup", "runup"),
     "example": ("leblanc.scene.examples", "example"),
+    "open": ("leblanc.core.disk", "opened"),
     "load_scene": ("leblanc.scene.scene", "load_scene"),
     "map_balls": ("leblanc.studies.map", "map_balls"),
     "map_whirl": ("leblanc.studies.map", "map_whirl"),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import shlex
 import sys
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from inspect import Parameter, signature
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, get_origin
@@ -32,7 +33,6 @@ from leblanc.core.terminal import print_json, say, show
 from meshes.errors import InputError
 
 if TYPE_CHECKING:
-    from leblanc.core.blocks import Picture
     from leblanc.scene.scene import Scene
 
 _OUT = "Folder for the files [default: out/<{} name>]."
@@ -82,11 +82,13 @@ def command(question: Callable[..., Any]) -> Callable[..., None]:
             try:
                 shown = read(present, {name: given[name] for name in more}) if present else {}
                 answer: Answer = question(**values)
+                typed = answer.typed
                 answer = present(answer, **shown) if present else answer
             except InputError as error:
                 raise _of_option(error, asked) from error
         line = _command_line(question.__name__, list(own.values()), given)
-        finish(answer, where, json, folder, machine, line)
+        object.__setattr__(answer, "typed", replace(typed, command=line))
+        finish(answer, where, json, folder, machine)
 
     run.__doc__ = (question.__doc__ or "").partition("\n")[0]
     made = signature(question).replace(parameters=options, return_annotation=None)
@@ -100,13 +102,9 @@ def finish(
     json: bool,
     folder: Path | None = None,
     machine: Scene | None = None,
-    line: str = "",
 ) -> None:
-    """Write the files of an answer into a folder, show it, and end as it asks for.
-
-    Faults name `where` they are; `line` is the command that makes the answer again.
-    """
-    drawn = [] if folder is None else write(answer, folder, machine, line)
+    """Write the files of an answer into a folder, show it, and end as it asks for; faults name `where`."""
+    drawn = [] if folder is None else called("leblanc.core.disk:write")(answer, folder, machine)
     answer.after()
     if json:
         print_json(answer.to_json())
@@ -193,32 +191,6 @@ def _command_line(name: str, asked: Sequence[Asked], given: Mapping[str, Any]) -
             for each in value if isinstance(value, list | tuple) else (value,):
                 parts += [option, str(each)]
     return " ".join(map(shlex.quote, parts))
-
-
-def write(answer: Answer, folder: Path, machine: Scene | None = None, line: str = "") -> list[Any]:
-    """All files of an answer: data, pictures, report; those of the pictures."""
-    from leblanc.core.blocks import Picture, flat
-    from leblanc.core.netcdf import write_netcdf
-    from leblanc.core.page import write_page
-
-    if answer.data:
-        write_netcdf(answer.named_arrays(), folder / answer.data)
-    pictures = (block for block in flat(answer.blocks(), "page") if isinstance(block, Picture))
-    figures = {one.name: drawing(answer, one, folder) for one in pictures}
-    if answer.page:
-        assert machine is not None
-        from leblanc.scene.inputs import about
-
-        what = about(machine, line, answer.data, answer.task, answer.unused)
-        write_page(answer.title, answer.blocks(), what, figures, folder / answer.page)
-    return list(figures.values())
-
-
-def drawing(answer: Answer, picture: Picture, folder: Path) -> Any:
-    """Files of a picture of an answer, drawn."""
-    from leblanc.figures.drawing.page import save
-
-    return save(called(picture.draw)(answer), folder, picture.name, picture.title)
 
 
 def _closing(answer: Answer, folder: Path, drawn: Sequence[Any]) -> str:

@@ -7,9 +7,12 @@ import io
 from abc import ABC, abstractmethod
 from base64 import b64encode
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from functools import cache
 from importlib import metadata
 from operator import attrgetter
+from os import PathLike
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from leblanc.core.blocks import Block, Headline, Table, flat
@@ -26,6 +29,24 @@ class NotConverged(RuntimeError):  # noqa: N818 - it names a state, not a mistak
     def __init__(self, failed: Sequence[str]) -> None:
         super().__init__("\n".join(failed))
         self.failed = tuple(failed)
+
+
+@dataclass(frozen=True)
+class Typed:
+    """What was asked, as it was typed."""
+
+    machine_file: str = ""  #: text of the scene; what its file would say where it was made in Python
+    study_file: str = ""  #: text of a sweep
+    command: str = ""  #: that was typed; empty where it was asked in Python
+    path: str = ""  #: of the machine file, beside which its sections are
+
+
+def as_typed(answer: Answer, scene: Any = None, study: Any = None, **_: Any) -> None:
+    """Let an answer know what was asked, from the values of its question."""
+    scene = scene if study is None else study.scene
+    if scene is not None:
+        typed = Typed(scene.text, "" if study is None else study.text, path=scene.file)
+        object.__setattr__(answer, "typed", typed)
 
 
 def versions(packages: Iterable[str] = ("leblanc", "numpy", "scipy")) -> dict[str, str]:
@@ -172,6 +193,7 @@ class Answer(Result):
     title: ClassVar[str] = ""  #: of its report
     data: ClassVar[str] = ""  #: file of its numbers; empty where there is none
     page: ClassVar[str] = ""  #: file of its report
+    typed: Typed = Typed()  #: what was asked
     unused: tuple[str, ...] = ()  #: tables of the scene on which its numbers do not depend
     task: Any = None  #: of an optimisation, in place of the scene's
     interrupted = False  #: it was ended before its time; what is there is whole
@@ -238,6 +260,14 @@ class Answer(Result):
         from leblanc.core.quantities import named_arrays
 
         return named_arrays(self, self.attributes)
+
+    def save(self, path: str | PathLike[str]) -> None:
+        """Write it as a netCDF file, from which `leblanc.open` makes it again."""
+        called("leblanc.core.disk:save")(self, Path(path))
+
+    def write(self, folder: str | PathLike[str]) -> None:
+        """Write the files of its command into a folder: data, pictures, report."""
+        called("leblanc.core.disk:write")(self, Path(folder))
 
     def _tables(self) -> str:
         shown = list(flat(self.blocks(), "page"))

@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
     Dataset = xr.Dataset
 
+ASIDE = "answer"  # group of what a file holds besides its arrays
+
 
 @dataclass(frozen=True)
 class Variable:
@@ -118,17 +120,18 @@ def finite(values: NDArray[Any]) -> list[Any]:
     return found
 
 
-def write_netcdf(found: NamedArrays, path: Path) -> None:
+def write_netcdf(found: NamedArrays, path: Path, aside: bytes = b"") -> None:
     """Write named arrays as netCDF 4, the file that xarray would write of their dataset.
 
-    An interrupted run and a full disk leave the old file whole; the OSError carries the path.
+    What stands `aside` is in a group of its own, which a reader of the arrays does not meet. An interrupted
+    run and a full disk leave the old file whole; the OSError carries the path.
     """
-    content = _content(found)
+    content = _content(found, aside)
     with writing(path) as temporary:
         temporary.write_bytes(content)
 
 
-def _content(found: NamedArrays) -> bytes:
+def _content(found: NamedArrays, aside: bytes) -> bytes:
     """The file, in memory: on a full disk HDF5 does not come back from closing a file."""
     import h5netcdf
     import h5py
@@ -147,6 +150,10 @@ def _content(found: NamedArrays) -> bytes:
                 fillvalue=np.nan if missing else None,
             )
             stored.attrs.update({**entry.attrs, **held.get(name, {})})
+        if aside:
+            group, content = file.create_group(ASIDE), np.frombuffer(aside, np.uint8)
+            group.dimensions = {"byte": content.size}
+            group.create_variable("content", ("byte",), np.uint8, data=content)
     return memory.getvalue()
 
 
@@ -161,6 +168,17 @@ def read_values(path: Path) -> dict[str, NDArray[Any]]:
         with h5netcdf.File(path, "r") as file:
             return {name: np.asarray(entry[...]) for name, entry in file.variables.items()}
     except Exception as error:  # whatever HDF5 and h5netcdf make of other bytes than were written
+        raise InputError("file", str(path), "a netCDF 4 file, undamaged") from error
+
+
+def read_aside(path: Path) -> bytes | None:
+    """What stands aside in a file, None where nothing does; an `InputError` as of `read_values`."""
+    import h5netcdf
+
+    try:
+        with h5netcdf.File(path, "r") as file:
+            return np.asarray(file[ASIDE]["content"][...]).tobytes() if ASIDE in file.groups else None
+    except Exception as error:
         raise InputError("file", str(path), "a netCDF 4 file, undamaged") from error
 
 

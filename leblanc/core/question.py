@@ -126,6 +126,7 @@ def ask(question: Callable[..., A], study: str, given: Mapping[str, Any]) -> A:
     with nullcontext() if progress is None else told(heard(progress)):
         answer: A = called(study)(**values)
     called("leblanc.core.quantities:seal")(answer)
+    called("leblanc.core.answer:as_typed")(answer, **values)
     return answer
 
 

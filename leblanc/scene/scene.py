@@ -30,7 +30,16 @@ from leblanc.scene.rotors import Exciter as Exciter  # what a scene's rotor may 
 from leblanc.scene.rotors import JeffcottRotor as JeffcottRotor
 from leblanc.scene.rotors import TubRotor as TubRotor
 from leblanc.scene.rotors import TwoPlaneRotor as TwoPlaneRotor
-from leblanc.scene.schema.load import SceneError, SceneFault, given_at, meant, read_scene, shown, with_lines
+from leblanc.scene.schema.load import (
+    SceneError,
+    SceneFault,
+    given_at,
+    meant,
+    read_text,
+    scene_table,
+    shown,
+    with_lines,
+)
 from leblanc.scene.schema.part import Conflict, Part, faults_of
 from leblanc.scene.schema.paths import keys_of, require_field, with_values
 from leblanc.scene.schema.rules import OneOf, Refused, Speed, Text, entries, one_of, quantity, whole
@@ -320,6 +329,11 @@ class Scene(Part):
         return ""
 
     @cached_property
+    def text(self) -> str:
+        """Of its file, as it was typed; what a file would say where it was made, or changed, in Python."""
+        return self.to_toml()
+
+    @cached_property
     def fills(self) -> tuple[Fill, ...]:
         """The chambers with their liquids, as the solvers take them."""
         return tuple(chamber.fill() for chamber in self.liquids)
@@ -402,6 +416,27 @@ class Scene(Part):
         import tomli_w
 
         return tomli_w.dumps(self.table())
+
+    @classmethod
+    def from_toml(cls, text: str, file: str = "") -> Scene:
+        """Scene from the text of a machine file.
+
+        Parameters
+        ----------
+        text : its content
+        file : its path, which faults name and beside which sections of chambers are looked for
+
+        Raises
+        ------
+        SceneError : with everything that is wrong, not just the first
+
+        Examples
+        --------
+        >>> from leblanc.scene.examples import example
+        >>> Scene.from_toml(example("runup").to_toml()) == example("runup")
+        True
+        """
+        return scene_from_table(scene_table(text, file or "scene"), file, text)
 
     def __repr__(self) -> str:
         chambers, speeds = len(self.chambers), self.speeds
@@ -507,9 +542,8 @@ def load_scene(path: str | PathLike[str]) -> Scene:
     >>> lb.load_scene("examples/horizontal_rig.toml").speeds.count
     201
     """
-    table = read_scene(path)
     with with_lines(path):
-        return scene_from_table(table, str(path))
+        return Scene.from_toml(read_text(path), str(path))
 
 
 def fault_in(path: str | PathLike[str], error: InputError) -> SceneError | None:
@@ -525,8 +559,8 @@ def fault_in(path: str | PathLike[str], error: InputError) -> SceneError | None:
     return SceneError([SceneFault(str(path), error.field, shown(given), allowed, line)])
 
 
-def scene_from_table(table: Mapping[str, Any], file: str = "") -> Scene:
-    """Scene from the content of a TOML file, which is named in the faults of the `SceneError`."""
+def scene_from_table(table: Mapping[str, Any], file: str = "", text: str = "") -> Scene:
+    """Scene from the content of a TOML file, which is named in the faults of the `SceneError`; its text."""
     if "vary" in table and "rotor" not in table:
         text = "a scene; this is a study of many scenes, which `leblanc sweep` answers"
         raise SceneError([SceneFault(file or "scene", "", None, text)])
@@ -535,6 +569,8 @@ def scene_from_table(table: Mapping[str, Any], file: str = "") -> Scene:
     except ValidationError as error:
         raise SceneError(faults_of(error, file or "scene", Scene)) from error
     vars(scene)["file"] = file
+    if text:
+        vars(scene)["text"] = text
     return scene
 
 

@@ -16,12 +16,13 @@ def load(path: Path) -> Scene:
     """Scene from a file, SceneError with all that is wrong; doubts go to stderr, one line each."""
     from leblanc.results.notes.doubts import DoubtCode
     from leblanc.scene.scene import scene_from_table
-    from leblanc.scene.schema.load import escaped, given_at, read_scene, with_lines
+    from leblanc.scene.schema.load import escaped, given_at, read_text, scene_table, with_lines
     from leblanc.studies.models.validity import doubts, moves_freely
 
-    table = read_scene(path)
+    text = read_text(path)
+    table = scene_table(text, path)
     with with_lines(path):
-        scene = scene_from_table(table, str(path))
+        scene = scene_from_table(table, str(path), text)
     for note in doubts(scene, table):
         if note.code is DoubtCode.FREE and moves_freely(scene):
             continue  # what refuses such a machine says so, and `explain` lists its free motions

@@ -9,6 +9,7 @@ import tomllib
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from functools import partial
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -118,12 +119,13 @@ _SLIPS = (
 )
 
 
-def read_toml(path: str | PathLike[str]) -> dict[str, Any]:
-    """Tables of a TOML file of at most `MAX_BYTES`; else a `SceneError`."""
+def _fault(path: str | PathLike[str], allowed: str) -> SceneError:
+    return SceneError([SceneFault(str(path), "", None, allowed)])
 
-    def fault(allowed: str) -> SceneError:
-        return SceneError([SceneFault(str(path), "", None, allowed)])
 
+def read_text(path: str | PathLike[str]) -> str:
+    """Text of a file of at most `MAX_BYTES`; else a `SceneError`."""
+    fault = partial(_fault, path)
     try:
         with open_regular(path) as stream:
             content = stream.read(MAX_BYTES + 1)
@@ -134,12 +136,18 @@ def read_toml(path: str | PathLike[str]) -> dict[str, Any]:
     if len(content) > MAX_BYTES:
         raise fault(f"at most {MAX_BYTES // 1_000_000} MB long")
     try:
-        text = content.decode("utf-8-sig")
-        deep = _DEEP.search(text)
-        found = {} if deep else tomllib.loads(text)
+        return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = content.count(b"\n", 0, error.start) + 1
         raise fault(f"UTF-8 text: byte {error.start + 1}, at line {line}, is not") from error
+
+
+def toml_of(text: str, path: str | PathLike[str]) -> dict[str, Any]:
+    """Tables of a text in TOML, that of a file; else a `SceneError`."""
+    fault = partial(_fault, path)
+    try:
+        deep = _DEEP.search(text)
+        found = {} if deep else tomllib.loads(text)
     except RecursionError as error:
         raise fault("TOML with less deeply nested lists and tables") from error
     except tomllib.TOMLDecodeError as error:
@@ -150,6 +158,11 @@ def read_toml(path: str | PathLike[str]) -> dict[str, Any]:
         line = text.count("\n", 0, deep.start()) + 1
         raise fault(f"TOML whose keys have at most {_DEEPEST} parts; one at line {line} has more")
     return found
+
+
+def read_toml(path: str | PathLike[str]) -> dict[str, Any]:
+    """Tables of a TOML file; else a `SceneError`."""
+    return toml_of(read_text(path), path)
 
 
 @contextmanager
@@ -205,9 +218,9 @@ def _toml_fault(text: str, said: str) -> str:
     return "; ".join((f"{said}: {line[:_LONGEST_LINE]}" if line else said, *hints))
 
 
-def read_scene(path: str | PathLike[str]) -> dict[str, Any]:
+def scene_table(text: str, path: str | PathLike[str]) -> dict[str, Any]:
     """Content of a scene file; the files that it names are looked for beside it."""
-    table = read_toml(path)
+    table = toml_of(text, path)
     chambers = table.get("chambers")
     for chamber in chambers if isinstance(chambers, list) else ():
         if isinstance(chamber, dict) and isinstance(chamber.get("section"), str) and chamber["section"]:

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
 
-from leblanc.core.processes import processes
+from leblanc.studies.processes import processes
 from solvers.held.branch import HeldTask, Runner
 from solvers.held.hold import compile_kernels, hold_with_error
 from solvers.held.state import HeldMachine, HeldState, HoldNumerics

@@ -411,7 +411,7 @@ def _each(tasks: list[EnsembleTask], workers: int) -> Iterator[Member]:
     if workers <= 1:
         yield from map(run_member, tasks)
         return
-    from leblanc.core.processes import processes
+    from leblanc.studies.processes import processes
 
     with processes(min(workers, len(tasks))) as pool:
         yield from pool.map(run_member, tasks)

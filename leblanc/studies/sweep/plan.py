@@ -22,9 +22,10 @@ from leblanc.scene.schema.load import (
     SceneError,
     SceneFault,
     field_path,
-    read_scene,
-    read_toml,
+    read_text,
+    scene_table,
     shown,
+    toml_of,
     with_lines,
 )
 from leblanc.scene.schema.part import Conflict, Part, allowed_at, faults_of
@@ -280,6 +281,7 @@ class Sweep:
     points: int  #: of the design: samples, but for a "saltelli" design, which has some for each point
     seed: int  #: of the samples
     fields: tuple[VariedField, ...]  #: what varies
+    text: str = ""  #: of its file, as it was typed
 
     @property
     def samples(self) -> int:
@@ -313,9 +315,9 @@ def study_of(study: Sweep | Mapping[str, Any] | str | PathLike[str], field: str 
 
 def load_sweep(path: str | PathLike[str]) -> Sweep:
     """Sweep from a study file."""
-    given = read_toml(path)
+    text = read_text(path)
     with with_lines(path):
-        return _sweep_of(given, path)
+        return replace(_sweep_of(toml_of(text, path), path), text=text)
 
 
 def _sweep_of(given: Mapping[str, Any], path: str | PathLike[str]) -> Sweep:
@@ -326,23 +328,26 @@ def _sweep_of(given: Mapping[str, Any], path: str | PathLike[str]) -> Sweep:
     if not path and isinstance(base, Mapping):
         given = {**given, "scene": "scene"}
     if "rotor" in given and "vary" not in given:
-        text = "a study with the keys scene, method and [vary]; this is a scene, which `leblanc run` answers"
-        raise SceneError([SceneFault(file, "", None, text)])
+        allowed = (
+            "a study with the keys scene, method and [vary]; this is a scene, which `leblanc run` answers"
+        )
+        raise SceneError([SceneFault(file, "", None, allowed)])
     try:
         table = Study.model_validate(given)
     except ValidationError as error:
         raise SceneError(faults_of(error, file, Study)) from error
     if not path and isinstance(base, Mapping):
-        scene_table, scene = base, scene_from_table(base)
+        content, scene = base, scene_from_table(base)
     else:
         scene_path = Path(path).parent / native(table.scene)
-        scene_table = read_scene(scene_path)
+        scene_text = read_text(scene_path)
+        content = scene_table(scene_text, scene_path)
         with with_lines(scene_path):
-            scene = scene_from_table(scene_table, str(scene_path))
+            scene = scene_from_table(content, str(scene_path), scene_text)
     if isinstance(scene.rotor, WITHOUT_CHAMBERS):
         allowed = "a scene whose rotor answers at its speeds: jeffcott, two_plane or tub"
         raise SceneError([SceneFault(file, "scene", shown(table.scene), allowed)])
-    fields = _fields(table.vary, scene_table, table.method, file)
+    fields = _fields(table.vary, content, table.method, file)
     points = table.samples
     if points is None:
         sizes = [int(field.distribution.levels().size) for field in fields]  # type: ignore[union-attr]
@@ -350,7 +355,7 @@ def _sweep_of(given: Mapping[str, Any], path: str | PathLike[str]) -> Sweep:
     sweep = Sweep(
         name=path_text(Path(path).stem) if path else scene.name,
         scene_path=table.scene,
-        table=scene_table,
+        table=content,
         scene=scene,
         method=table.method,
         points=points,

@@ -7,8 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from leblanc.cli.command import drawing, write
+from leblanc.core.answer import Typed
 from leblanc.core.blocks import Picture, flat
+from leblanc.core.disk import drawing, write
 from leblanc.core.page import write_page
 from leblanc.scene.scene import load_scene
 from leblanc.studies.run.study import run_scene
@@ -34,7 +35,9 @@ def pages(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     folder, files = tmp_path_factory.mktemp("pages"), {}
     for name in ("centrifuge", "horizontal_rig", "tub"):
         scene = load_scene(ROOT / f"examples/{name}.toml")
-        write(run_scene(scene), folder / name, scene, f"leblanc run {name}.toml")
+        found = run_scene(scene)
+        object.__setattr__(found, "typed", Typed(command=f"leblanc run {name}.toml"))
+        write(found, folder / name, scene)
         files[name] = folder / name / "summary.html"
     for name, record in (
         ("many", many_chambers()),

@@ -16,8 +16,9 @@ import pytest
 
 import leblanc as lb
 from leblanc.cli import main
-from leblanc.cli.command import write
+from leblanc.core.answer import Typed
 from leblanc.core.blocks import Table, flat
+from leblanc.core.disk import write
 from leblanc.core.quantities import quantities
 from leblanc.scene.scene import scene_from_table
 from leblanc.studies.map import answer as whirl_map
@@ -547,7 +548,8 @@ def test_exciter_warnings() -> None:
 def test_exciter_report_is_the_json(tmp_path: Path) -> None:
     record = exciter()
     answer = json.loads(json.dumps(record.to_json()))
-    write(record, tmp_path, scene_from_table(example("vibratory_table", 6)), "leblanc run table.toml")
+    object.__setattr__(record, "typed", Typed(command="leblanc run table.toml"))
+    write(record, tmp_path, scene_from_table(example("vibratory_table", 6)))
     page = read_page(tmp_path / "summary.html")
     printed_critical, critical = answer["critical_speed_printed"] * RPM, answer["critical_speed"] * RPM
     assert page.row("The same by the source's regression") == [f"{printed(printed_critical)} rpm"]

@@ -11,7 +11,7 @@ import pytest
 
 import leblanc as lb
 from leblanc.cli import main
-from leblanc.cli.command import write
+from leblanc.core.disk import write
 from leblanc.core.page import About
 from leblanc.scene.inputs import about
 from leblanc.scene.scene import Scene, scene_from_table

@@ -10,7 +10,6 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from leblanc.core.notes import Note
-from leblanc.core.processes import processes
 from leblanc.core.progress import update
 from leblanc.scene.races import BallRace
 from leblanc.scene.scene import Scene
@@ -34,6 +33,7 @@ from leblanc.studies.optimise.balls.problem import (
     whole_numbers,
     with_balls,
 )
+from leblanc.studies.processes import processes
 from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.search import evolve
