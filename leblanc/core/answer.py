@@ -42,9 +42,9 @@ class Typed:
 
 
 def as_typed(answer: Answer, scene: Any = None, study: Any = None, **_: Any) -> None:
-    """Let an answer know what was asked, from the values of its question."""
+    """Let an answer know what was asked, by its question; a study that changes the scene says so before."""
     scene = scene if study is None else study.scene
-    if scene is not None:
+    if scene is not None and "typed" not in vars(answer):
         typed = Typed(scene.text, "" if study is None else study.text, path=scene.file)
         object.__setattr__(answer, "typed", typed)
 

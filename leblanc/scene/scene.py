@@ -330,8 +330,14 @@ class Scene(Part):
 
     @cached_property
     def text(self) -> str:
-        """Of its file, as it was typed; what a file would say where it was made, or changed, in Python."""
-        return self.to_toml()
+        """Of its file, as it was typed; what a file would say where it was made, or changed, in Python.
+
+        Empty where no file can say it, as of a section that is no file.
+        """
+        try:
+            return self.to_toml()
+        except TypeError:
+            return ""
 
     @cached_property
     def fills(self) -> tuple[Fill, ...]:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from fluid.fill import Fill
 from fluid.whirl import plane_layer, slower_slip
-from leblanc.core.answer import Answer
+from leblanc.core.answer import Answer, as_typed
 from leblanc.core.notes import Note
 from leblanc.core.progress import update
 from leblanc.core.question import called
@@ -191,8 +191,10 @@ def answer(
     with asked_with(scene, model) as own:
         if (address := answerer("run", own.kind)) is not None:
             found: Answer = called(address)(own)
-            return found
-        return run_scene(own, Holding(workers, folder, fresh, solver or COUPLED), cycles)
+        else:
+            found = run_scene(own, Holding(workers, folder, fresh, solver or COUPLED), cycles)
+    as_typed(found, scene)
+    return found
 
 
 def run_scene(scene: Scene, holding: Holding = HERE, cycles: bool = False) -> RunAnswer:

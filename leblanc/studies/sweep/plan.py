@@ -328,10 +328,8 @@ def _sweep_of(given: Mapping[str, Any], path: str | PathLike[str]) -> Sweep:
     if not path and isinstance(base, Mapping):
         given = {**given, "scene": "scene"}
     if "rotor" in given and "vary" not in given:
-        allowed = (
-            "a study with the keys scene, method and [vary]; this is a scene, which `leblanc run` answers"
-        )
-        raise SceneError([SceneFault(file, "", None, allowed)])
+        text = "a study with the keys scene, method and [vary]; this is a scene, which `leblanc run` answers"
+        raise SceneError([SceneFault(file, "", None, text)])
     try:
         table = Study.model_validate(given)
     except ValidationError as error:
