@@ -23,6 +23,7 @@ sys.path[:0] = [str(_HERE), str(_HERE / "_ext")]
 import api_pages  # noqa: E402 - beside this file
 import console  # noqa: E402
 import figures  # noqa: E402
+import output_pages  # noqa: E402
 import proofread  # noqa: E402
 import scene_keys  # noqa: E402
 
@@ -51,6 +52,7 @@ def gather(source: Path, quick: bool) -> None:
         shutil.copyfile(ROOT / name, source.parent / name)
     api_pages.write(source / "api")
     scene_keys.write(source)
+    output_pages.write(source)
     drawn = ROOT / "out" / "figures"
     if not quick:
         if figures.draw_all(figures.RECIPES, drawn, check=True):

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from leblanc.studies.map import map_balls, map_whirl
     from leblanc.studies.modes import modes
     from leblanc.studies.optimise import optimise
+    from leblanc.studies.outputs import outputs
     from leblanc.studies.run import run
     from leblanc.studies.runup import run_up
     from leblanc.studies.runup import runup as runup  # another name of it
@@ -68,6 +69,7 @@ __all__ = [
     "modes",
     "open",
     "optimise",
+    "outputs",
     "run",
     "run_up",
     "sweep",
@@ -79,7 +81,7 @@ sys.meta_path.append(Finder)
 
 _API = "leblanc.api"
 # Each in a package of its name.
-_QUESTIONS = ("bearing", "fit", "layer", "modes", "optimise", "run", "runup", "sweep", "volume")
+_QUESTIONS = ("bearing", "fit", "layer", "modes", "optimise", "outputs", "run", "runup", "sweep", "volume")
 # Where each public name lives: its module, and its name there.
 _HOMES = {
     "Chamber": ("meshes.chamber", "Chamber"),

@@ -257,6 +257,12 @@ def test_the_page_of_keys_is_up_to_date() -> None:
     assert (DOCS / keys.NAME).read_text(encoding="utf-8") == keys.page()
 
 
+def test_the_page_of_outputs_is_up_to_date() -> None:
+    """`python docs/_ext/output_pages.py` writes it."""
+    outputs = _module("output_pages", "docs/_ext")
+    assert (DOCS / outputs.NAME).read_text(encoding="utf-8") == outputs.page()
+
+
 def test_products_of_units_are_no_emphasis() -> None:
     cells = re.sub(r"`[^`\n]*`", "", _module("scene_keys", "docs/_ext").page())
     assert "kg\\*mm" in cells and not re.search(r"(?<!\\)\*", cells)

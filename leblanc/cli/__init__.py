@@ -35,7 +35,7 @@ DONE, UNREAD, WRONG_INPUT, NOT_CONVERGED = 0, 1, 2, 3
 # made from the signature of their call.
 NAMES = (
     *("new", "explain", "run", "compare", "fit", "map", "runup", "optimise", "sweep", "view"),
-    *("layer", "modes", "bearing", "volume"),
+    *("layer", "modes", "bearing", "volume", "outputs"),
 )
 MODULES = {each.__name__.rpartition(".")[2]: each for each in (new, explain, compare, view)}
 ALIASES = {"run_up": "runup", "run-up": "runup"}  # names that are read as well

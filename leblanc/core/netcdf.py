@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from leblanc.core.files import writing
-from leblanc.core.units import ZERO_TO_PEAK
+from leblanc.core.units import with_peak
 from meshes.errors import InputError
 
 if TYPE_CHECKING:
@@ -95,8 +95,7 @@ class NamedArrays:
 
 def variable(dims: tuple[str, ...], values: Any, units: str, long_name: str, text: str = "") -> Variable:
     """Variable with what a reader needs to use it: units and long name as CF asks, a description."""
-    if units == "m" and "amplitude" in long_name + text and ZERO_TO_PEAK not in text:
-        text = f"{ZERO_TO_PEAK}, {text}" if text else ZERO_TO_PEAK
+    text = with_peak(units, long_name, text)
     said = {"description": text} if text else {}
     return Variable(dims, np.asarray(values), {"units": units, "long_name": long_name} | said)
 

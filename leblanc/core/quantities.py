@@ -53,12 +53,25 @@ def _declared(kind: type) -> dict[str, _Declared]:
             said: Any = eval(hint, {}, names) if isinstance(hint, str) and "Q(" in hint else hint
             if get_origin(said) is Annotated:
                 what, *beside = get_args(said)
-                types = tuple(one for one in (what, *get_args(what)) if isinstance(one, type))
+                types = tuple(_types(what))
                 found |= [
                     (each.key or name, _Declared(name, each, types)) for each in beside if isinstance(each, Q)
                 ]
     _FOUND[kind] = found
     return found
+
+
+def _types(hint: Any) -> Iterator[type]:
+    """Classes in a type: its own, those of which it is made."""
+    if isinstance(hint, type) and not get_args(hint):
+        yield hint
+    for part in get_args(hint):
+        yield from _types(part)
+
+
+def types_of(kind: type, key: str) -> tuple[type, ...]:
+    """Classes of which the values of a quantity are, or are made."""
+    return _declared(kind)[key].types
 
 
 def _of(record: Any) -> Iterator[tuple[str, Q, Any]]:

@@ -583,6 +583,13 @@ def amplitudes_are(place: str = "") -> tuple[str, str]:
     return "Amplitudes", f"{ZERO_TO_PEAK}{', ' if place else ''}{place}"
 
 
+def with_peak(unit: str, name: str, text: str) -> str:
+    """What a reader needs to know of a quantity; of an amplitude that it is zero to peak."""
+    if unit == "m" and "amplitude" in name + text and ZERO_TO_PEAK not in name + text:
+        return f"{ZERO_TO_PEAK}, {text}" if text else ZERO_TO_PEAK
+    return text
+
+
 def amplitude_sentence(place: str = "") -> str:
     """The same as a sentence."""
     return f"{' are '.join(amplitudes_are(place))}."

@@ -52,11 +52,11 @@ class Member:
 class Spread:
     """The range of an ensemble over k times."""
 
-    asked: Annotated[int, Q(text="runs that were wanted, the unchanged one among them")]
-    members: Annotated[int, Q(text="those of them that were made")]
-    lost: Annotated[int, Q(text="how many of those did not come to their end")]
+    asked: Annotated[int, Q("1", text="runs that were wanted, the unchanged one among them", data=False)]
+    members: Annotated[int, Q("1", text="those of them that were made", data=False)]
+    lost: Annotated[int, Q("1", text="how many of those did not come to their end", data=False)]
     change: Annotated[float, Q("1", "largest relative change of the unbalance", data=False)]
-    seed: Annotated[int, Q(text="random seed of the changes")]
+    seed: Annotated[int, Q("1", text="random seed of the changes", data=False)]
     #: of the modulus of the first deflection, nan where no member came so far
     amplitude_min: Annotated[
         Array, Q("m", "amplitude, min over runs that rounding tells apart", over=("time",))

@@ -89,14 +89,16 @@ class Handover(StrEnum):
 class Transfer:
     """Liquid that became a layer, or fell to the bottom; what was handed over."""
 
-    chamber: Annotated[int, Q(text="its number, from 0")]
+    chamber: Annotated[int, Q("1", text="its number, from 0", data=False)]
     captured: Annotated[bool, Q(text="it became a layer")]
     time: Annotated[float, Q("s", "time")]
     speed: Annotated[float, Q("rad s-1", "spin speed")]
     #: about its chamber's axis, N m s
-    angular_momentum: Annotated[tuple[float, float], Q(text="of the liquid before and after")]
+    angular_momentum: Annotated[
+        tuple[float, float], Q("kg m2 s-1", text="of the liquid before and after", data=False)
+    ]
     #: kinetic and elastic, J
-    energy: Annotated[tuple[float, float], Q(text="of rotor and liquid before and after")]
+    energy: Annotated[tuple[float, float], Q("J", text="of rotor and liquid before and after", data=False)]
     lifted: Annotated[float, Q("J", "change of the liquid's potential energy")]
 
     @property

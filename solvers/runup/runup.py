@@ -174,7 +174,7 @@ class RunupHistory:
     #: steps; nan without that run
     error_estimate: Annotated[float, Q("1", "relative error by half the cells", data=False)]
     audit: EnergyAudit  #: of the energy
-    steps: Annotated[int, Q(text="steps of time")]
+    steps: Annotated[int, Q("1", text="steps of time", data=False)]
     layer_steps: int  #: of single layers within them
     disagreement: float  #: largest relative difference left between the accelerations of rotor and layers
     outcome: Outcome  #: how it ended
@@ -214,7 +214,14 @@ class RunupHistory:
     def amplitude(
         self,
     ) -> Annotated[
-        Array, Q("m", "deflection of the first chamber's axis, modulus", "zero to peak", over=_OVER)
+        Array,
+        Q(
+            "m",
+            "deflection of the first chamber's axis, modulus",
+            "zero to peak",
+            over=_OVER,
+            error="amplitude_error",
+        ),
     ]:
         """Modulus of the first deflection, shape (k,)."""
         first = self.deflection[:, 0]

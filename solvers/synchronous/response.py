@@ -284,7 +284,11 @@ class Response:
     def amplitude(
         self,
     ) -> Annotated[
-        Array, Q("m", "amplitude", "of the axis about where it rests; its mean if held in time", _OVER)
+        Array,
+        Q(
+            *("m", "amplitude", "of the axis about where it rests; its mean if held in time", _OVER),
+            error="error_estimate",
+        ),
     ]:
         size = np.abs(self.parts).sum(axis=1)
         if self.over_time.size == 0:

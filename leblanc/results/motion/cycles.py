@@ -48,7 +48,7 @@ class Cycle(_Row):
 class Fold(_Row):
     """Where a branch turns back in speed."""
 
-    branch: Annotated[int, Q(text="branch", data=False)]
+    branch: Annotated[int, Q("1", text="number of its branch", data=False)]
     speed: Annotated[float, Q(_RATE, "spin speed of the fold")]
     amplitude: Annotated[float, Q("m", "amplitude of the fold")]
 

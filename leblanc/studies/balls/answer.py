@@ -175,7 +175,10 @@ class BallsAnswer(Answer):
     @property
     def amplitude(
         self,
-    ) -> Annotated[Array, Q("m", "amplitude", "of the axis from where it rests, state reported", _OVER)]:
+    ) -> Annotated[
+        Array,
+        Q("m", "amplitude", "of the axis from where it rests, state reported", _OVER, error="error_estimate"),
+    ]:
         return self._of_chosen(self.sizes, np.nan)
 
     @property
@@ -286,7 +289,9 @@ class BallsAnswer(Answer):
     @property
     def family_dimensions(
         self,
-    ) -> Annotated[list[int | None], Q(text="dimension of the state's family", key="family_dimension")]:
+    ) -> Annotated[
+        list[int | None], Q("1", text="dimension of the state's family", key="family_dimension", data=False)
+    ]:
         return [None if size < 0 else size for size in self.family_dimension.tolist()]
 
     @property

@@ -51,7 +51,8 @@ class GravityOnBalls:
         ),
     ]
     amplitude: Annotated[
-        Array, Q("m", "shake by the balls' swing", "twice a turn", _OVER, variable="swing_amplitude")
+        Array,
+        Q("m", "shake by the balls' swing", "zero to peak, twice a turn", _OVER, variable="swing_amplitude"),
     ]
     power: Annotated[
         Array, Q("W", "power that the swing of the balls takes", over=_OVER, variable="swing_power")

@@ -39,8 +39,8 @@ class BearingAnswer(Answer):
 
     bearing: Bearing  #: number of balls, ratio of diameters, contact angle
     speed: Annotated[float, Q("rad s-1", "speed of the shaft", coordinate=True)]
-    orders: Annotated[dict[str, float], Q(text="frequencies over the shaft's, by name")]
-    given: Annotated[dict[str, float], Q(text="those to which the bearing was fitted")]
+    orders: Annotated[dict[str, float], Q("1", text="frequencies over the shaft's, by name", data=False)]
+    given: Annotated[dict[str, float], Q("1", text="those to which the bearing was fitted", data=False)]
     fit: Annotated[BearingFit | None, Q(text="how it was fitted; None where its dimensions were given")]
     cage_measured: Annotated[float | None, Q("rad s-1", "measured speed of the cage", data=False)]
     slip: Annotated[float | None, Q("1", "slip of the cage", by="spindle, eq. 19")]

@@ -34,10 +34,13 @@ class Upright:
     dry: Annotated[Array, Q("N m", "second variation of the energy", "no liquid", _OVER, data=False)]
     frozen: Annotated[Array, Q("N m", "the same with the liquid frozen", over=_OVER, data=False)]
     surface: Annotated[Array, Q("N m", "what the free surfaces take from it", over=_OVER)]
-    limits: Annotated[tuple[float, ...], Q(text="speeds at which it turns stable or unstable, rad/s")]
+    limits: Annotated[
+        tuple[float, ...], Q("rad s-1", text="speeds at which it turns stable or unstable", data=False)
+    ]
     #: from the least film up to where the first chamber is full
     fill_limits: Annotated[
-        tuple[float, ...], Q(text="shares of all volumes at which it does at the last speed; 1 is the scene")
+        tuple[float, ...],
+        Q("1", text="shares of all volumes at which it does at the last speed; 1 is the scene", data=False),
     ]
 
     @property
@@ -104,7 +107,7 @@ class ClosedForms:
         self,
     ) -> Annotated[
         dict[str, list[float]] | None,
-        Q(text="of each cage, rad/s, by its bearing", when="cage_speed", data=False),
+        Q("rad s-1", text="of each cage, by its bearing", when="cage_speed", data=False),
     ]:
         return {cage.name: cage.speed.tolist() for cage in self.cages} or None
 

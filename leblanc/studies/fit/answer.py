@@ -51,7 +51,7 @@ class Noise:
     @property
     def sizes(
         self,
-    ) -> Annotated[dict[str, float], Q(text="standard deviation by quantity", key="noise_size")]:
+    ) -> Annotated[dict[str, float], Q(text="standard deviation by quantity, SI", key="noise_size")]:
         return dict(zip(self.names, self.size, strict=True))
 
 
@@ -94,10 +94,12 @@ class FitAnswer(Answer):
     at: Array  #: those speeds, times or volumes, rad/s, s or m^3, rising, shape (n,)
     measured: tuple[Measured, ...]  #: the quantities
     #: of the first of them where each has its own; 1 where it is given
-    scale: Annotated[float, Q(text="factor of the measured lengths over the scene's")]
-    residual_rms: Annotated[float, Q(text="root mean square of the residuals over that of the readings")]
+    scale: Annotated[float, Q("1", text="factor of the measured lengths over the scene's", data=False)]
+    residual_rms: Annotated[
+        float, Q("1", text="root mean square of the residuals over that of the readings", data=False)
+    ]
     converged: Annotated[bool, Q(text="the best search came to its end")]
-    evaluations: Annotated[int, Q(text="answers of the scene that were computed")]
+    evaluations: Annotated[int, Q("1", text="answers of the scene that were computed", data=False)]
     notes: Annotated[tuple[Note, ...], Q(text="what the data cannot tell")]
     signed: tuple[str, ...] = ()  #: unknowns that may have either sign
     #: degrees of freedom, measured values less those that were found; 0 where they are not known

@@ -50,7 +50,7 @@ class LayerCase:
     mean_depth: Annotated[float, Q("m", "depth of the layer undisturbed", json=False)]
     speed: Annotated[float, Q(_RATE, "spin speed", json=False)]
     whirl_speed: float  #: in space, negative against the spin, rad/s
-    whirl_amplitude: Annotated[float, Q("m", "radius of the whirl", json=False)]
+    whirl_amplitude: Annotated[float, Q("m", "radius of the whirl", "zero to peak", json=False)]
     solver: str = ""  #: of the model's equations, by its name in py-pde; empty where that does not solve them
     dispersion: Annotated[bool, Q(text="dispersion of the finite depth, in a model that may have it")] = False
     reason: str = ""  #: why that model was taken, where the question left it open
@@ -197,7 +197,8 @@ class LayerAnswer(_Layered):
     """
 
     force_ratio: Annotated[
-        complex, Q("1", "force ratio", "on the drum, over that of a full drum", axes=_AXES)
+        complex,
+        Q("1", "force ratio", "on the drum, over that of a full drum", axes=_AXES, error="error_estimate"),
     ]
     offset: Annotated[complex, Q("m", "centre of mass", "from the drum's axis", axes=_AXES)]
     #: nan where the model has none

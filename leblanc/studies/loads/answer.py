@@ -120,15 +120,21 @@ class MachineLoads:
         return {name: values[self.asked, k] for k, name in enumerate(names)}
 
     @property
-    def displacement(self) -> Annotated[dict[str, Array], Q(text="of each point, largest over a turn, m")]:
+    def displacement(
+        self,
+    ) -> Annotated[dict[str, Array], Q("m", text="of each point, largest over a turn", data=False)]:
         return self._named(self.points, self.worst.moved)
 
     @property
-    def mount_force(self) -> Annotated[dict[str, Array], Q(text="in each mount, largest over a turn, N")]:
+    def mount_force(
+        self,
+    ) -> Annotated[dict[str, Array], Q("N", text="in each mount, largest over a turn", data=False)]:
         return self._named(self.holders, self.worst.holder)
 
     @property
-    def bearing_force(self) -> Annotated[dict[str, Array], Q(text="in each bearing, largest over a turn, N")]:
+    def bearing_force(
+        self,
+    ) -> Annotated[dict[str, Array], Q("N", text="in each bearing, largest over a turn", data=False)]:
         return self._named(self.bearings, self.worst.bearing)
 
     @property
@@ -143,7 +149,8 @@ class MachineLoads:
     def clearance_over_time(
         self,
     ) -> Annotated[
-        dict[str, Array] | None, Q(text="of each point with a gap, m", when="clearance_over_time")
+        dict[str, Array] | None,
+        Q("m", text="of each point with a gap", when="clearance_over_time", data=False),
     ]:
         return self._least_clearance() if self.in_time else None
 
@@ -152,7 +159,9 @@ class MachineLoads:
         return self._named(tuple(self.points[k] for k in known), self.worst.clearance[:, known])
 
     @property
-    def clearance(self) -> Annotated[dict[str, Any], Q(text="least of each point with a gap, m")]:
+    def clearance(
+        self,
+    ) -> Annotated[dict[str, Any], Q("m", text="least of each point with a gap", data=False)]:
         if not self.in_time:
             return self._least_clearance()
         return {name: worst.value for name, worst in self.clearances.items()}
@@ -160,7 +169,9 @@ class MachineLoads:
     @property
     def bearing_impulse(
         self,
-    ) -> Annotated[dict[str, Array] | None, Q(text="of a hand-over of liquid, N s", when="bearing_impulse")]:
+    ) -> Annotated[
+        dict[str, Array] | None, Q("N s", text="of a hand-over of liquid", when="bearing_impulse", data=False)
+    ]:
         if not self.in_time:
             return None
         return {name: self.impulse[:, k] for k, name in enumerate(self.bearings)}
@@ -174,7 +185,9 @@ class MachineLoads:
     @property
     def orbit(
         self,
-    ) -> Annotated[dict[str, dict[str, Array]] | None, Q(text="semi-axes at each point, m", when="orbit")]:
+    ) -> Annotated[
+        dict[str, dict[str, Array]] | None, Q("m", text="semi-axes at each point", when="orbit", data=False)
+    ]:
         if self.in_time:
             return None
         large, small = (self._named(self.points, values) for values in self.semi_axes)

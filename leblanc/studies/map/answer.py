@@ -85,16 +85,24 @@ class WhirlMap(Answer):
     ]
     edges: Annotated[
         tuple[Bands, ...],
-        Q(text="for each volume the bands of speed in which a whirl grows, or which the range cuts, rad/s"),
+        Q(
+            "rad s-1",
+            text="for each volume the bands of speed in which a whirl grows, or which the range cuts",
+            data=False,
+        ),
     ]
     friction: Annotated[str, Q(text="of the liquid")]
     damping: Annotated[str, Q(text="of the support")]
     scene_volume: Annotated[float, Q("m3", "volume of the scene as it stands", data=False)]
-    scene_edges: Annotated[Bands, Q(text="bands with that volume, rad/s")]
+    scene_edges: Annotated[Bands, Q("rad s-1", text="bands with that volume", data=False)]
     notes: Annotated[tuple[Note, ...], Q(text="limits of validity and findings")]
     edges_not_known: Annotated[
         tuple[Bands, ...],
-        Q(text="for each volume the bands between the nearest speeds at which the growth is known, rad/s"),
+        Q(
+            "rad s-1",
+            text="for each volume the bands between the nearest speeds at which the growth is known",
+            data=False,
+        ),
     ] = ()
     capacity: Annotated[float, Q("m3", "what the chambers that take liquid hold together", data=False)] = (
         math.nan

@@ -89,9 +89,9 @@ class Best(Answer):
     digest: Annotated[str, Q(text="of the scene")]
     task: Optimisation
     unused: tuple[str, ...] = ()
-    value: Annotated[float, Q(name="value of the objective")]
+    value: Annotated[float, Q(name="value of the objective, SI")]
     constraints: Annotated[dict[str, ConstraintValue], Q(text="what it must keep to, by name")]
-    evaluations: Annotated[int, Q(name="volumes, balls or layouts evaluated")]
+    evaluations: Annotated[int, Q("1", "volumes, balls or layouts evaluated", data=False)]
 
     @property
     def feasible(self) -> Annotated[bool, Q(name="every constraint is met")]:
@@ -165,7 +165,7 @@ class ParetoFront:
     """Points of which none is better than another in everything; m points of c chambers."""
 
     volume: Annotated[Array, Q("m3", "volume on the front", over=("front", "chamber"))]
-    vibration: Annotated[Array, Q("m", "vibration on the front", over=_FRONT)]
+    vibration: Annotated[Array, Q("m", "vibration on the front", "zero to peak", over=_FRONT)]
     mass: Annotated[Array, Q("kg", "mass of liquid on the front", over=_FRONT)]
     #: decay of the small whirl that decays slowest at the operating speeds; below 0 it grows
     stability_margin: Annotated[
@@ -183,7 +183,7 @@ class Candidates:
         Array,
         Q("1", "excess", "of the constraint exceeded most; 0 or below: none is", over=_TRIED),
     ]
-    vibration: Annotated[Array, Q("m", "vibration", over=_TRIED)]
+    vibration: Annotated[Array, Q("m", "vibration", "zero to peak", over=_TRIED)]
     mass: Annotated[Array, Q("kg", "mass", over=_TRIED)]
     exact: Annotated[
         Flags,
@@ -240,7 +240,9 @@ class ConditionTable:
     ]
     condition_amplitude: Annotated[Array, Q("m", "amplitude", "in a condition", over=_CONDITION)]
     condition_amplitude_dry: Annotated[Array, Q("m", "amplitude", "without liquid", over=_CONDITION)]
-    quantile: Annotated[float, Q(name="quantile of the amplitudes that was to be small", text="1: the worst")]
+    quantile: Annotated[
+        float, Q("1", name="quantile of the amplitudes that was to be small", text="1: the worst", data=False)
+    ]
     decisive: int  #: the condition that has this amplitude
 
     @property
@@ -328,16 +330,18 @@ class OptimumAnswer(Best):
     unit: Annotated[str, Q(text="of its value")]
     working_speed: Annotated[float, Q("rad s-1", "working speed", data=False)]
     volume: Annotated[Array, Q("m3", "best volume", over=("chamber",), variable="best_volume")]
-    baseline: Annotated[float, Q(name="value without liquid")]
+    baseline: Annotated[float, Q(name="value without liquid, SI")]
     #: the value itself unless that is a mass
-    vibration: Annotated[float, Q("m", "vibration", data=False)]
-    vibration_baseline: Annotated[float, Q("m", "vibration without liquid", data=False)]
+    vibration: Annotated[float, Q("m", "vibration", "zero to peak", data=False)]
+    vibration_baseline: Annotated[float, Q("m", "vibration without liquid", "zero to peak", data=False)]
     mass: Annotated[float, Q("kg", "mass of the liquid", data=False)]
     growth: float  #: of the small whirl that grows most at the operating speeds, 1/s
     #: for each chamber, at the deflection that the answer itself has; empty where it has none
     closed_form: Annotated[tuple[WettingVolumes, ...], Q(text="volumes that wet the walls, in closed form")]
     #: of such volumes those with the least liquid are the answer
-    equal_within: Annotated[float, Q(name="relative difference below which values count as equal")]
+    equal_within: Annotated[
+        float, Q("1", name="relative difference below which values count as equal", data=False)
+    ]
     candidates: Annotated[Candidates, Q(part=True, json=False)]  #: all sets of volumes evaluated
     #: None if it was not computed
     front: Annotated[ParetoFront | None, Q(prefix="front", json=False)] = None

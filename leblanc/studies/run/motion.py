@@ -56,8 +56,8 @@ class Motion:
     ]
     modes: tuple[RestMode, ...]  #: of the dry rotor at rest, by rising frequency
     campbell: Annotated[Campbell, Q(part=True)]  #: natural frequencies of the dry rotor over its speed
-    critical_speeds_dry: Annotated[Bands, Q(text=f"undamped, rad/s, {_SENSE}")]
-    critical_speeds_wet: Annotated[Bands, Q(text=f"the same with liquid, rad/s, {_SENSE}")]
+    critical_speeds_dry: Annotated[Bands, Q("rad s-1", text=f"undamped, {_SENSE}", data=False)]
+    critical_speeds_wet: Annotated[Bands, Q("rad s-1", text=f"the same with liquid, {_SENSE}", data=False)]
     zero: str  #: what angles count from, in words
     #: as chamber_forward, at the refined speeds; none if empty, shape (r, c)
     refined_forward: Complex = field(default_factory=lambda: np.zeros((0, 0), dtype=complex))
@@ -83,11 +83,14 @@ class SelfExcited:
     growth: Annotated[Array, Q("s-1", "growth rate", "of the whirl that grows most; above 0 unstable", _OVER)]
     whirl_speed: Annotated[Array, Q(_RATE, "whirl speed", "of the whirl that grows most, in space", _OVER)]
     #: the ends of the range of speeds count as edges
-    bands: Annotated[Bands, Q(text="bands of speed in which some whirl grows, rad/s", key="whirl_bands")]
+    bands: Annotated[
+        Bands, Q("rad s-1", text="bands of speed in which some whirl grows", key="whirl_bands", data=False)
+    ]
     friction: str  #: of the liquid, in words
     #: between the nearest speeds where they were
     not_known: Annotated[
-        Bands, Q(text="bands in which the modes were not found, rad/s", key="whirl_bands_not_known")
+        Bands,
+        Q("rad s-1", text="bands in which the modes were not found", key="whirl_bands_not_known", data=False),
     ] = ()
     #: how large the whirl becomes; None where that was not asked for
     large: Annotated[LargeWhirl | None, Q(part=True)] = None

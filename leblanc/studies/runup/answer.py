@@ -116,7 +116,7 @@ class RunupAnswer(Answer):
     model_reason: Annotated[str, Q(text="why that one")]
     #: by the model and by its steps, over the largest amplitude; nan where one of them is not known
     model_error: Annotated[float, Q("1", "relative error of the amplitude, by model and steps", data=False)]
-    cells: Annotated[int, Q(text="cells of each layer")]
+    cells: Annotated[int, Q("1", text="cells of each layer", data=False)]
     dispersion: bool  #: the layers' waves have the dispersion of the finite depth
     history: Annotated[RunupHistory, Q(part=True)]
     turning: int  #: index of the last time before the speed falls again; the last one of all if it never does
@@ -127,7 +127,7 @@ class RunupAnswer(Answer):
     #: synchronous response at the speeds passed, of a Jeffcott rotor; None for others
     steady: Response | None
     #: an end of the range counting as an edge; None where they were not looked for
-    bands: Annotated[Bands | None, Q(text="bands of speed with self-excited whirl, rad/s")]
+    bands: Annotated[Bands | None, Q("rad s-1", text="bands of speed with self-excited whirl", data=False)]
     chambers: tuple[FilledChamber, ...]
     planes: tuple[float, ...]  #: position of each chamber along the axis, m
     notes: Annotated[tuple[Note, ...], Q(text="limits of validity and findings")]
@@ -359,16 +359,22 @@ class RunupAnswer(Answer):
         return bool(self.falling.any()) and not bool(self.falling[1:].all())
 
     @property
-    def peak(self) -> Annotated[dict[str, float], Q(text="largest amplitude on the way up, its speed, time")]:
+    def peak(
+        self,
+    ) -> Annotated[
+        dict[str, float], Q(text="largest amplitude on the way up, its speed, time; SI, zero to peak")
+    ]:
         return asdict(self.crest())
 
     @property
-    def peak_error(self) -> Annotated[dict[str, float], Q(text="error of the largest amplitude, m")]:
+    def peak_error(
+        self,
+    ) -> Annotated[dict[str, float], Q("m", text="error of the largest amplitude", data=False)]:
         """By `cells` (and steps) and by `handover`; nan if not estimated."""
         return dict(zip(("cells", "handover"), self.history.peak_gaps, strict=True))
 
     @property
-    def peak_dry(self) -> Annotated[dict[str, float], Q(text="the peak without liquid, nan if not run")]:
+    def peak_dry(self) -> Annotated[dict[str, float], Q(text="the peak without liquid, SI, nan if not run")]:
         if self.history_dry is None:
             return asdict(Moment(math.nan, math.nan, math.nan))
         return asdict(_crest(self.history_dry, self._way(self.history_dry, False)))
@@ -376,12 +382,12 @@ class RunupAnswer(Answer):
     @property
     def peak_back(
         self,
-    ) -> Annotated[dict[str, float] | None, Q(text="the peak on the way back", when="peak_back")]:
+    ) -> Annotated[dict[str, float] | None, Q(text="the peak on the way back, SI", when="peak_back")]:
         """None where it never turns back."""
         return asdict(self.crest(back=True)) if self.turns_back else None
 
     @property
-    def end(self) -> Annotated[dict[str, float], Q(text="amplitude, speed, time and angles at the end")]:
+    def end(self) -> Annotated[dict[str, float], Q(text="amplitude, speed, time and angles at the end, SI")]:
         angles = ("phase", "liquid_offset", "liquid_angle")
         return asdict(self.moment(-1)) | {name: float(getattr(self, name)[-1]) for name in angles}
 

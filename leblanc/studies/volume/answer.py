@@ -68,7 +68,9 @@ class VolumeAnswer(Answer):
     speed: Annotated[float, Q("rad s-1", "spin speed", json=False)]
     gravity: Annotated[float, Q("m s-2", "gravity", "along the axis", json=False)]
     optimal_volume: Annotated[float, Q("m3", "optimal volume", by="statics, eq. 8")]
-    optimal_volume_fem: Annotated[float, Q("m3", "optimal volume fem", "by finite elements")]
+    optimal_volume_fem: Annotated[
+        float, Q("m3", "optimal volume fem", "by finite elements", error="fem_error")
+    ]
     fem_error: Annotated[float, Q("1", "fem error", "of the latter, relative")]
     #: None where the formula has no value, of the next as well
     printed_eq18: Annotated[float | None, Q("m3", "printed eq18", "as the source prints it")]

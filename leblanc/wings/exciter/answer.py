@@ -28,9 +28,10 @@ from leblanc.core.units import LENGTH, RPM, in_rpm, number, over_rpm, ranges, un
 from leblanc.wings.dry import DryAnswer
 from meshes.arrays import Array, Flags
 from meshes.quantity import Q
+from solvers.rotor.exciter.machine import Dimensionless
 
 if TYPE_CHECKING:
-    from solvers.rotor.exciter.machine import Dimensionless, Exciter
+    from solvers.rotor.exciter.machine import Exciter
     from solvers.rotor.exciter.motion import Start
 
 NUMBERS = {
@@ -80,7 +81,9 @@ class _Known(Answer):
     @property
     def characteristic_speeds(
         self,
-    ) -> Annotated[dict[str, float], Q(text="shaft speeds where the stuck speeds change, rad/s, by name")]:
+    ) -> Annotated[
+        dict[str, float], Q("rad s-1", text="shaft speeds where the stuck speeds change, by name", data=False)
+    ]:
         return dict(zip(("second_pair", "through_resonance", "merger"), self.characteristic, strict=True))
 
     @property
@@ -116,7 +119,9 @@ class ExciterExplanation(_Known):
     figure = "leblanc.wings.exciter.figure:stuck_range_figure"
 
     #: first and last shaft speed
-    speed_ratio: Annotated[tuple[float, float], Q(text="speeds of the scene over the natural frequency")]
+    speed_ratio: Annotated[
+        tuple[float, float], Q("1", text="speeds of the scene over the natural frequency", data=False)
+    ]
 
     @property
     def numbers(self) -> Annotated[Dimensionless, Q(part=True, json=False)]:
@@ -160,9 +165,17 @@ class ExciterAnswer(_Known, DryAnswer):
     machine: Exciter  #: the exciter
     speed: Annotated[Array, Q(_RATE, "shaft speed", "of the exciter", over=_OVER)]
     amplitude_slow: Annotated[
-        Array, Q("m", "slow vibration of the platform", "with the balls, slowest stuck speed", over=_OVER)
+        Array,
+        Q(
+            "m",
+            "slow vibration of the platform",
+            "zero to peak, with the balls, slowest stuck speed",
+            over=_OVER,
+        ),
     ]
-    amplitude_fast: Annotated[Array, Q("m", "fast vibration of the platform", "with the shaft", over=_OVER)]
+    amplitude_fast: Annotated[
+        Array, Q("m", "fast vibration of the platform", "zero to peak, with the shaft", over=_OVER)
+    ]
     #: by size, nan where there are fewer, shape (n, 3)
     stuck_speeds: Annotated[
         Array, Q(_RATE, "stuck speed of the balls", over=("speed", "pair"), variable="stuck_speed")

@@ -28,10 +28,11 @@ from leblanc.core.units import CURRENT, LENGTH, NOT_FOUND, RPM, TIME, in_rpm, nu
 from leblanc.wings.dry import DryAnswer
 from meshes.arrays import Array, Complex, Flags
 from meshes.quantity import Q
+from solvers.rotor.magnetic.motion import Motion
 
 if TYPE_CHECKING:
     from solvers.rotor.magnetic.machine import Dimensionless, MagneticRotor
-    from solvers.rotor.magnetic.motion import Load, Motion
+    from solvers.rotor.magnetic.motion import Load
 
 SENSITIVE = 3.0  # largest sensitivity of a new machine by ISO 14839-3
 FASTEST = 1e5  # poles beyond it ask for more than coils and amplifiers give, 1/s
@@ -101,7 +102,14 @@ class Controlled:
     #: complex deflection along x of the first bearing, of the unbalances alone, m, shape (n,)
     unbalance: Complex
     amplitude: Annotated[
-        Array, Q("m", "deflection in a bearing", "of the unbalances", over=_OVER, variable="amplitude")
+        Array,
+        Q(
+            "m",
+            "deflection in a bearing",
+            "zero to peak, of the unbalances",
+            over=_OVER,
+            variable="amplitude",
+        ),
     ]
     current: Annotated[Array, Q("A", "control current", "of the unbalances", over=_OVER, variable="current")]
     loads: Annotated[tuple[LoadAnswer, ...], Q(text="what each load does", data=False)]
@@ -146,7 +154,8 @@ class MagneticExplanation(Answer):
     holds: Annotated[float, Q("N", "largest constant force", "along one axis")]
     reach: Annotated[float, Q("m", "largest deflection", "from which it comes home")]
     fastest: Annotated[
-        dict[str, float], Q(text="decay of the fastest pole at the last speed, 1/s, by controller")
+        dict[str, float],
+        Q("s-1", text="decay of the fastest pole at the last speed, by controller", data=False),
     ]
     place: Annotated[Array, Q("m", "deflection", "along an axis", over=("place",), json=False)]
     #: of both bearings and the motor, at the largest current home, none, out, shape (3, n)

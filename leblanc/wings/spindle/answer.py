@@ -40,7 +40,7 @@ class NaturalMode:
     frequency: Annotated[float, Q("rad s-1", "natural frequency")]
     #: of each beam places from its first station, m, and deflections, the largest of all being 1
     along: tuple[tuple[Array, Array], ...]
-    stations: Annotated[dict[str, float], Q(text="deflection by station")]
+    stations: Annotated[dict[str, float], Q("1", text="deflection by station", data=False)]
     measured: Annotated[complex, Q("m N-1", "compliance", "of what is measured, at this frequency")]
     wanted: Annotated[complex, Q("m N-1", "compliance", "of what is asked for, at this frequency")]
 
@@ -50,7 +50,9 @@ class Turning:
     """What is known of a spindle whose spin speed the scene says."""
 
     rotation: Annotated[float, Q("rad s-1", "spin speed of the spindle", data=False)]
-    cage_speed: Annotated[dict[str, float], Q(text="speed of each cage without slip, rad/s, by its joint")]
+    cage_speed: Annotated[
+        dict[str, float], Q("rad s-1", text="speed of each cage without slip, by its joint", data=False)
+    ]
 
 
 @dataclass(frozen=True)
@@ -133,11 +135,13 @@ class SpindleAnswer(Answer):
     @property
     def compliance(
         self,
-    ) -> Annotated[dict[str, Complex], Q(text="displacement over the force, m/N, by part in the answer")]:
+    ) -> Annotated[
+        dict[str, Complex], Q("m N-1", text="displacement over the force, by part in the answer", data=False)
+    ]:
         return {"driven": self.driven, "measured": self.measured, "wanted": self.wanted}
 
     @property
-    def checks(self) -> Annotated[dict[str, float], Q(text="whether two ways to one answer agree")]:
+    def checks(self) -> Annotated[dict[str, float], Q(text="whether two ways to one answer agree, SI")]:
         return {name: getattr(self, name) for name in ("reciprocity", "ways_apart", "least_dissipation")}
 
     @property

@@ -59,7 +59,7 @@ class Condition:
     """One condition for balancing, over speed."""
 
     name: Annotated[str, Q(text="as written")]
-    value: Annotated[Array, Q(text="must be above 0", over=("speed",))]
+    value: Annotated[Array, Q(text="must be above 0, SI", over=("speed",))]
     satisfied: Annotated[Flags, Q(text="it is", over=("speed",))]
     #: infinite if at none
     above: Annotated[float, Q("rad s-1", "speed above which it holds")]
@@ -74,7 +74,9 @@ class Balancing:
     conditions: Annotated[tuple[Condition, ...], Q(text="each of them, in the order of the source")]
     #: infinite if at none
     above: Annotated[float, Q("rad s-1", "speed above which all hold", data=False)]
-    resonances: Annotated[tuple[float, ...], Q(text="speeds of the rotor without damping, ascending, rad/s")]
+    resonances: Annotated[
+        tuple[float, ...], Q("rad s-1", text="speeds of the rotor without damping, ascending", data=False)
+    ]
     long: Annotated[bool, Q(text="both transverse inertias exceed the polar one")]
     #: largest real part of the roots of rotor and balls about the balanced state, 1/s, shape (n,); None where
     #: no balls were given

@@ -125,10 +125,12 @@ class BallChart(Answer):
     scene_growth: Annotated[Array, Q("s-1", "growth with the scene's value", over=("speed",))]
     #: an end that is the first or the last speed is where the range ends
     scene_bands: Annotated[
-        tuple[tuple[float, float], ...], Q(text="speeds between which the state is stable then, rad/s")
+        tuple[tuple[float, float], ...],
+        Q("rad s-1", text="speeds between which the state is stable then", data=False),
     ]
     capacity: Annotated[
-        tuple[float, ...], Q(text="largest unbalance that the balls of each race hold in the scene, kg m")
+        tuple[float, ...],
+        Q("kg m", text="largest unbalance that the balls of each race hold in the scene", data=False),
     ]
     notes: Annotated[tuple[Note, ...], Q(text="limits of validity and findings")]
 
@@ -139,7 +141,10 @@ class BallChart(Answer):
     @property
     def stable_from(
         self,
-    ) -> Annotated[float, Q(text="speed from which on the scene's state is stable to the last one, rad/s")]:
+    ) -> Annotated[
+        float,
+        Q("rad s-1", text="speed from which on the scene's state is stable to the last one", data=False),
+    ]:
         last = self.scene_bands[-1] if self.scene_bands else (np.nan, np.nan)
         return last[0] if last[1] == self.speed[-1] else math.nan
 

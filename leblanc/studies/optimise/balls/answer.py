@@ -105,7 +105,7 @@ class BallDesignAnswer(Best):
     races: tuple[DesignedRace, ...]  #: with the best balls, and with those of the scene
     races_before: tuple[DesignedRace, ...]
     #: infinite where no state is stable
-    vibration: Annotated[float, Q("m", "amplitude", "with the best balls", data=False)]
+    vibration: Annotated[float, Q("m", "amplitude", "zero to peak, with the best balls", data=False)]
     vibration_before: Annotated[float, Q("m", "amplitude", "with the scene's balls", data=False)]
     vibration_without: Annotated[float, Q("m", "amplitude", "without balls", data=False)]
     mass_before: Annotated[float, Q("kg", "mass of the scene's balls", data=False)]
@@ -125,7 +125,7 @@ class BallDesignAnswer(Best):
         return "kg" if self.objective == "least_mass" else "m"
 
     @property
-    def baseline(self) -> Annotated[float, Q(name="value without balls")]:
+    def baseline(self) -> Annotated[float, Q(name="value without balls, SI")]:
         return 0.0 if self.objective == "least_mass" else self.vibration_without
 
     @property
@@ -188,7 +188,12 @@ class BallDesignAnswer(Best):
         return variable((), self.value, self.unit, "objective", self.meaning)
 
     @property
-    def amplitude_tried(self) -> Annotated[Variable, Q(variable="tried_vibration", json=False)]:
+    def amplitude_tried(
+        self,
+    ) -> Annotated[
+        Variable,
+        Q(text="amplitude of every design tried, zero to peak", variable="tried_vibration", json=False),
+    ]:
         return variable(_TRIED, self.tried.vibration, "m", "amplitude", self.meaning)
 
     @property

@@ -62,8 +62,8 @@ class LayoutAnswer(Best):
 
     unused: tuple[str, ...] = ("runup", "model")
     measure: Annotated[str, Q(text="what is made least: couplings or separation")]
-    band: Annotated[tuple[float, float] | None, Q(name="running speeds")]
-    baseline: Annotated[float, Q(name="value of the scene's own layout")]
+    band: Annotated[tuple[float, float] | None, Q("rad s-1", name="running speeds", data=False)]
+    baseline: Annotated[float, Q(name="value of the scene's own layout, SI")]
     sag_before: Annotated[float, Q("m", "sag of the scene's own layout", data=False)]
     mounts: Annotated[tuple[MountPlace, ...], Q(text="springs, then dampers")]
     #: about the centre of mass, each -1 to 1, shape (2, 15)
@@ -89,13 +89,15 @@ class LayoutAnswer(Best):
         return {"stiffness": self.stiffness_coupling, "damping": self.damping_coupling}
 
     @property
-    def natural_frequency(self) -> Annotated[dict[str, Array], Q(text="at rest without damping, rad/s")]:
+    def natural_frequency(
+        self,
+    ) -> Annotated[dict[str, Array], Q("rad s-1", text="at rest without damping", data=False)]:
         return {"before": self.frequency[0], "after": self.frequency[1]}
 
     @property
     def coupling_terms(
         self,
-    ) -> Annotated[dict[str, dict[str, Array]], Q(text="before and after, by matrix and coordinates")]:
+    ) -> Annotated[dict[str, dict[str, Array]], Q(text="before and after, by matrix and coordinates, SI")]:
         tables = {**self.couplings, "mass": np.stack([self.mass_coupling] * 2)}
         return {name: dict(zip(pair_names(), table.T, strict=True)) for name, table in tables.items()}
 

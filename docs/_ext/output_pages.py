@@ -1,0 +1,57 @@
+"""The page of every output, from the declarations of the answers."""
+
+from __future__ import annotations
+
+from itertools import groupby
+from pathlib import Path
+
+import leblanc as lb
+from leblanc.studies.outputs.answer import HEAD
+
+NAME = "outputs.md"
+
+_HEAD = """# Outputs of the commands
+
+Every quantity that a command computes, with the names of its JSON, of its data file and of its answer in
+Python. This page is made from the declarations of the answers (`docs/_ext/output_pages.py`);
+`leblanc outputs [QUESTION]` prints the same, with `--json` for programs; in Python it is `lb.outputs("run")`.
+
+Units are SI, as data files write them; a quantity without one is a text, a truth value or a record. `a.b` is
+the quantity b of the record a, `a[].b` that of each record in the list a. "Over" names the dimensions,
+"error" the quantity that is the error of this one, "equation" where it stands on the pages of theory. "(data file)"
+stands behind a name that the data file alone has.
+"""
+
+
+def page() -> str:
+    """The page in Markdown."""
+    found = lb.outputs()
+    parts, command = [_HEAD], ""
+    for kind, each in groupby(found.quantities, lambda one: one.answer):
+        rows = list(each)
+        if rows[0].question != command:
+            command = rows[0].question
+            parts.append(f"## {command}\n")
+        parts.append(f"### {kind}\n\n{found.titles[kind]}\n")
+        lines = [HEAD, tuple("---" for _ in HEAD), *(_cells(one.row) for one in rows)]
+        parts.append("".join("| " + " | ".join(cells) + " |\n" for cells in lines))
+    return "\n".join(parts)
+
+
+def write(folder: Path) -> Path:
+    """Write the page of outputs into a folder; its path."""
+    path = folder / NAME
+    path.write_text(page(), encoding="utf-8")
+    return path
+
+
+def _cells(row: tuple[str, ...]) -> tuple[str, ...]:
+    name, unit, meaning, over, error, by = row
+    name, _, aside = name.partition(" ")
+    shown = [f"`{text}`" if text else "" for text in (name, over, error)]
+    meaning = meaning.replace("|", "\\|").replace("*", "\\*").replace("<", "\\<")
+    return f"{shown[0]} {aside}".rstrip(), unit, meaning, shown[1], shown[2], by
+
+
+if __name__ == "__main__":
+    write(Path(__file__).resolve().parents[1])
