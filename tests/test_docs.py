@@ -675,7 +675,7 @@ class TestExamples:
         blocks = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
         for block in blocks:
             exec(compile(block, "python.md", "exec"), {})
-        assert len(capsys.readouterr().out.splitlines()) == len(blocks) == 6
+        assert len(capsys.readouterr().out.splitlines()) == len(blocks) == 7
 
 
 def test_kept_measurements_are_those_that_the_page_tables(tmp_path: Path) -> None:

@@ -18,8 +18,8 @@ Python. This page is made from the declarations of the answers (`docs/_ext/outpu
 
 Units are SI, as data files write them; a quantity without one is a text, a truth value or a record. `a.b` is
 the quantity b of the record a, `a[].b` that of each record in the list a. "Over" names the dimensions,
-"error" the quantity that is the error of this one, "equation" where it stands on the pages of theory. "(data file)"
-stands behind a name that the data file alone has.
+"error" the quantity that is the error of this one, "equation" where it stands on the pages of theory.
+"(data file)" stands behind a name that the data file alone has.
 """
 
 
