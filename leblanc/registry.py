@@ -8,7 +8,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from importlib.metadata import EntryPoint, distributions
 
-COMMANDS, LIQUIDS = "leblanc.commands", "leblanc.liquids"  # groups of entry points
+# Groups of entry points.
+COMMANDS, LIQUIDS, MACHINES = "leblanc.commands", "leblanc.liquids", "leblanc.machines"
+CORE = ("jeffcott", "two_plane", "tub")  # kinds that the core's own studies answer
 
 # "module:function" of a scene, by kind of machine and by question.
 WINGS: dict[str, dict[str, str]] = {
@@ -31,7 +33,10 @@ WINGS: dict[str, dict[str, str]] = {
 
 def answerer(question: str, kind: str) -> str | None:
     """What answers a question about a kind of machine; None where the core does."""
-    return WINGS.get(kind, {}).get(question)
+    if kind in CORE or kind in WINGS:
+        return WINGS.get(kind, {}).get(question)
+    entry = announced(MACHINES).get(kind)
+    return None if entry is None else entry.load().ANSWERS.get(question)
 
 
 def announced(group: str, failed: Callable[[str], object] = lambda _: None) -> dict[str, EntryPoint]:

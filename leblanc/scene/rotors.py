@@ -8,12 +8,21 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
 
-from pydantic import Field, PlainValidator
+from pydantic import (
+    Field,
+    ModelWrapValidatorHandler,
+    PlainValidator,
+    SerializeAsAny,
+    Tag,
+    ValidationError,
+    model_validator,
+)
 
 from leblanc.core import units
 from leblanc.core.units import MASS, MM, in_rpm, number, with_unit
+from leblanc.registry import CORE, MACHINES, WINGS, announced
 from leblanc.scene.bearings import (
     BallDiameter,
     CagedBearing,
@@ -26,7 +35,7 @@ from leblanc.scene.bearings import (
 from leblanc.scene.loads import Load, PlaneUnbalance, Sheds, unbalance_table
 from leblanc.scene.magnetic import MagneticRotor
 from leblanc.scene.rows import Row, RowTable, Value, mm, row, three, unbalance
-from leblanc.scene.schema.part import Conflict, Part
+from leblanc.scene.schema.part import ANNOUNCED, Conflict, Part, placed
 from leblanc.scene.schema.rules import (
     DAMPING,
     POSITION,
@@ -49,6 +58,7 @@ from leblanc.scene.schema.rules import (
     whole,
 )
 from leblanc.scene.spindle import Spindle
+from meshes.errors import InputError
 
 if TYPE_CHECKING:
     from solvers.rotor.exciter.machine import Exciter as ExciterMachine
@@ -596,6 +606,80 @@ class Exciter(Part):
         return []
 
 
-AnyRotor = JeffcottRotor | TwoPlaneRotor | TubRotor | Exciter | MagneticRotor | Spindle
+class Machine(Part):
+    """A kind of machine of another package, which announces it by its kind under `leblanc.machines`.
+
+    A subclass has a `kind`, a Literal with that text for its default, and the fields of its table. Where it
+    has a `machine()`, the rotor without liquid as an object with `system()`, and an `unbalance`, kg m, the
+    studies of rotors with liquid answer; `ANSWERS` names what answers in their place.
+    """
+
+    #: question, as "run", to "module:function" of a scene, which returns an `Answer`
+    ANSWERS: ClassVar[Mapping[str, str]] = {}
+
+    kind: str = Field(description="the kind of rotor")
+    axis: Axis = Field("horizontal", description=_AXIS)
+
+    def machine(self) -> Any:
+        """The rotor without liquid; an `InputError` where the kind has none."""
+        raise InputError("rotor.kind", self.kind, "jeffcott, two_plane or tub for this")
+
+    def rows(self) -> list[Row]:
+        """Kind and axis, and each value in SI units; a subclass may say it better."""
+        found = [_kind(self)]
+        for name in type(self).model_fields:
+            if name in ("kind", "axis"):
+                continue
+            value = getattr(self, name)
+            said = number(value) if isinstance(value, float) else str(value)
+            found.append(row(name.replace("_", " ").capitalize(), said, f"rotor.{name}"))
+        return found
+
+    def tables(self) -> list[RowTable]:
+        """No tables: a subclass may have parts."""
+        return []
+
+    @classmethod
+    def alternatives(cls) -> tuple[type[Part], ...]:
+        """In place of all kinds, each one that an installed package announces."""
+        return tuple(map(announced_machine, announced(MACHINES))) if cls is Machine else (cls,)
+
+    @model_validator(mode="wrap")
+    @classmethod
+    def _of_its_kind(cls, given: Any, handler: ModelWrapValidatorHandler[Self]) -> Any:
+        """A table becomes what its kind says, which stands in the places of its faults."""
+        if cls is not Machine or isinstance(given, Machine):
+            return handler(given)
+        try:
+            return announced_machine(given["kind"]).model_validate(given)
+        except ValidationError as error:
+            raise placed(error, given["kind"]) from None
+
+
+def announced_machine(kind: str) -> type[Machine]:
+    """The class that an installed package announces for a kind of machine."""
+    entry = announced(MACHINES)[kind]
+    found = entry.load()
+    if isinstance(found, type) and issubclass(found, Machine) and found.model_fields["kind"].default == kind:
+        return found
+    raise InputError(MACHINES, f"{kind} = {entry.value}", f'a subclass of Machine with kind = "{kind}"')
+
+
+def rotor_tag(given: Any) -> Any:
+    """Tag of a rotor in `AnyRotor`: its kind, or `ANNOUNCED` for a kind of another package."""
+    kind = given.get("kind") if isinstance(given, Mapping) else getattr(given, "kind", None)
+    own = isinstance(kind, str) and kind not in CORE and kind not in WINGS and kind in announced(MACHINES)
+    return ANNOUNCED if own else kind
+
+
+AnyRotor = (
+    Annotated[JeffcottRotor, Tag("jeffcott")]
+    | Annotated[TwoPlaneRotor, Tag("two_plane")]
+    | Annotated[TubRotor, Tag("tub")]
+    | Annotated[Exciter, Tag("exciter")]
+    | Annotated[MagneticRotor, Tag("magnetic")]
+    | Annotated[Spindle, Tag("spindle")]
+    | Annotated[SerializeAsAny[Machine], Tag(ANNOUNCED)]
+)
 # Kinds that carry no liquid and have an answer of their own.
 WITHOUT_CHAMBERS = (Exciter, MagneticRotor, Spindle)

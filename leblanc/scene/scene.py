@@ -25,7 +25,7 @@ from leblanc.scene.magnetic import MagneticRotor as MagneticRotor
 from leblanc.scene.programme.table import Programme as Programme
 from leblanc.scene.races import BallRace as BallRace  # what a scene's chamber may be
 from leblanc.scene.rotors import WITHOUT_CHAMBERS as WITHOUT_CHAMBERS
-from leblanc.scene.rotors import AnyRotor
+from leblanc.scene.rotors import AnyRotor, Machine, rotor_tag
 from leblanc.scene.rotors import Exciter as Exciter  # what a scene's rotor may be
 from leblanc.scene.rotors import JeffcottRotor as JeffcottRotor
 from leblanc.scene.rotors import TubRotor as TubRotor
@@ -276,7 +276,9 @@ class Scene(Part):
     gravity: Annotated[float, quantity(units.ACCELERATION, 1e-6, 1e6, or_zero=True)] = Field(
         9.81, description="acceleration of gravity"
     )
-    rotor: AnyRotor = Field(discriminator="kind", description="the machine without its liquid")
+    rotor: AnyRotor = Field(
+        discriminator=Discriminator(rotor_tag), description="the machine without its liquid"
+    )
     chambers: Annotated[tuple[AnyChamber, ...], entries(0, MAX_CHAMBERS, "tables headed [[chambers]]")] = (
         Field((), description="each with its liquid or its balls; without chambers [model] has no effect")
     )
@@ -601,9 +603,12 @@ def require_clear(scene: Scene, what: str, baffles: bool = False) -> None:
             )
 
 
-def require_whirl(scene: Scene) -> None:
-    """Refuse a spindle and a rotor in magnetic bearings where one that whirls with liquid is asked for."""
-    if isinstance(scene.rotor, MagneticRotor | Spindle):
+def require_whirl(scene: Scene, known: bool = False) -> None:
+    """Refuse a spindle and a rotor in magnetic bearings where one that whirls with liquid is asked for.
+
+    `known`: machines of other packages as well, of which the parts and masses are not known.
+    """
+    if isinstance(scene.rotor, (MagneticRotor, Spindle, *((Machine,) if known else ()))):
         raise InputError("rotor.kind", scene.rotor.kind, "jeffcott, two_plane or tub for this")
 
 
@@ -647,7 +652,7 @@ def rotor_content(rotor: AnyRotor) -> dict[str, Any]:
         return rotor.model_dump(exclude={"balls"}) | {"balls": balls}
     if isinstance(rotor, Spindle):
         return rotor.content()
-    if isinstance(rotor, MagneticRotor):
+    if isinstance(rotor, MagneticRotor | Machine):
         return rotor.model_dump()
     machine = asdict(rotor.machine())
     if not machine.get("loads", True):

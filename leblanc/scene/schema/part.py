@@ -24,6 +24,8 @@ from meshes.errors import InputError
 
 MAX_FAULTS = 100  # that are told; a file of another kind has millions
 _TOGETHER, _ABSENT = "together", "absent"  # names of faults that no single value has
+# Tag of tables of other packages; in the place of a fault the kind of the table follows it.
+ANNOUNCED = "announced"
 
 
 class Conflict(NamedTuple):
@@ -53,6 +55,11 @@ class Part(BaseModel):
     ALTERNATIVES: ClassVar[tuple[tuple[str, str], ...]] = ()
     # The kind is what a table without one has: a file does not say it.
     USUAL_KIND: ClassVar[bool] = False
+
+    @classmethod
+    def alternatives(cls) -> tuple[type[Part], ...]:
+        """Tables that may stand where this one is asked for: itself, or what other packages announce."""
+        return (cls,)
 
     def __init__(self, /, **values: Any) -> None:
         try:
@@ -176,6 +183,14 @@ def _line(conflict: Conflict, given: Mapping[str, Any]) -> InitErrorDetails:
     return InitErrorDetails(type=custom, loc=conflict.keys, input=value)
 
 
+def placed(error: ValidationError, *place: str) -> ValidationError:
+    """The same faults at a place further in."""
+    lines = [_again(item) for item in error.errors(include_url=False)]
+    for line in lines:
+        line["loc"] = (*place, *line.get("loc", ()))
+    return ValidationError.from_exception_data(error.title, lines)
+
+
 def _again(item: ErrorDetails) -> InitErrorDetails:
     """A fault that pydantic found, to be raised once more."""
     kind: Any = item["type"]
@@ -212,7 +227,7 @@ def parts_of(field: FieldInfo) -> dict[str, type[Part]]:
 
 def _parts_in(annotation: Any) -> Iterator[type[Part]]:
     if isinstance(annotation, type) and issubclass(annotation, Part):
-        yield annotation
+        yield from annotation.alternatives()
     elif get_origin(annotation) is Annotated:
         yield from _parts_in(get_args(annotation)[0])
     else:
@@ -285,6 +300,8 @@ def _way(
     owner, field = root, None
     kinds: dict[str, type[Part]] = {}
     for key in loc:
+        if key == ANNOUNCED and field is not None:
+            continue
         if key in kinds and "" not in kinds and field is not None:
             owner, kinds, field = kinds[str(key)], {}, None  # the kind, which is no key of its own
             continue

@@ -117,7 +117,7 @@ def optimise_scene(
     """
     task = task or scene.optimise or Optimisation()
     task = task if objective is None else task.altered(objective=objective)
-    require_whirl(scene)
+    require_whirl(scene, known=True)
     require_no_balls(scene, "a search over volumes alone; optimise_balls answers this one")
     if task.balls is not None:
         raise InputError("optimise.balls", "given", "left out where no chamber is of kind balls")

@@ -55,6 +55,8 @@ from solvers.rotor.balance_quality import balance_quality, tolerance_planes
 from solvers.rotor.campbell import campbell
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import RotorSystem
+from solvers.rotor.tub import Tub
+from solvers.rotor.two_plane import TwoPlane
 from solvers.rotor.vibration import (
     critical_speeds,
     modes,
@@ -297,8 +299,8 @@ def _loads(
 
 
 def _balance(machine: Prepared, answer: Response) -> dict[str, Array]:
-    """Balance quality with the liquid and without; nothing where no mass spins."""
-    if not tolerance_planes(machine.rotor):
+    """Balance quality with the liquid and without; nothing where no mass spins or its planes are unknown."""
+    if not isinstance(machine.rotor, Jeffcott | TwoPlane | Tub) or not tolerance_planes(machine.rotor):
         return {}
     wet = balance_quality(machine.rotor, answer.speed, answer.coordinates)
     dry = balance_quality(machine.rotor, answer.speed)

@@ -20,7 +20,8 @@ from leblanc.results.drawn.machine import (
     film_factor,
     rounded_down,
 )
-from leblanc.scene.scene import Exciter, JeffcottRotor, Scene, Speeds, dry_rotor
+from leblanc.scene.rotors import Machine
+from leblanc.scene.scene import Exciter, JeffcottRotor, Scene, Speeds, Spindle, dry_rotor
 from leblanc.studies.models.choose import across_gravity, axial_gravity, choose, liquid_models
 from leblanc.studies.run.answer import RunAnswer
 from leblanc.studies.run.study import run_scene
@@ -80,8 +81,8 @@ def machine_motion(scene: Scene, speed: float | None = None) -> MachineMotion:
 
 def require_rotor(scene: Scene) -> None:
     """The scene has a rotor that whirls, and not a table with balls."""
-    if scene.rotor.kind == "spindle":
-        raise InputError("rotor.kind", "spindle", "jeffcott, two_plane or tub for this")
+    if isinstance(scene.rotor, Spindle | Machine):
+        raise InputError("rotor.kind", scene.rotor.kind, "jeffcott, two_plane or tub for this")
     if scene.rotor.kind == "exciter":
         allowed = "jeffcott, two_plane or tub for this; of an exciter only --screenshot shows a picture"
         raise InputError("rotor.kind", "exciter", allowed)

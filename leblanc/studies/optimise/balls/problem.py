@@ -336,7 +336,7 @@ def ball_problem(scene: Scene, task: Optimisation) -> BallProblem:
 
 def _require(scene: Scene, task: Optimisation) -> None:
     """What a search for balls does not know."""
-    require_whirl(scene)
+    require_whirl(scene, known=True)
     if not scene.balls:
         raise InputError("chambers", len(scene.chambers), "with one of kind balls for this")
     if task.objective not in OBJECTIVES:
