@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from leblanc.scene.loads import Sheds
-from leblanc.scene.rotors import AnyRotor, JeffcottRotor, TubRotor, TwoPlaneRotor
+from leblanc.scene.rotors import AnyRotor, JeffcottRotor, Machine, TubRotor, TwoPlaneRotor
 from leblanc.scene.spindle import Spindle
 
 
@@ -20,8 +20,8 @@ def unbalances_of(rotor: AnyRotor) -> tuple[float, ...]:
     """Size of each unbalance of a rotor, kg m."""
     if isinstance(rotor, TwoPlaneRotor):
         return tuple(part.size for part in rotor.unbalances)
-    if isinstance(rotor, Spindle):
-        return ()
+    if isinstance(rotor, Spindle | Machine):
+        return tuple(value for value in [getattr(rotor, "unbalance", None)] if value is not None)
     own = (rotor.unbalance,)
     if isinstance(rotor, TubRotor):
         return own * rotor.has_own_unbalance + tuple(load.size for load in rotor.loads)
@@ -35,7 +35,7 @@ def unbalance_places_of(rotor: AnyRotor) -> tuple[float, ...]:
     if isinstance(rotor, TubRotor):
         own = rotor.drum_position[1] if rotor.unbalance_position is None else rotor.unbalance_position
         return (own,) * rotor.has_own_unbalance + tuple(load.position for load in rotor.loads)
-    return () if isinstance(rotor, Spindle) else (0.0,)
+    return (0.0,) * len(unbalances_of(rotor))
 
 
 def sheds_of(rotor: AnyRotor) -> tuple[Sheds | None, ...]:
@@ -44,7 +44,7 @@ def sheds_of(rotor: AnyRotor) -> tuple[Sheds | None, ...]:
         return tuple(part.sheds for part in rotor.unbalances)
     if isinstance(rotor, TubRotor):
         return (rotor.sheds,) * rotor.has_own_unbalance + tuple(load.sheds for load in rotor.loads)
-    if isinstance(rotor, Spindle):
+    if not unbalances_of(rotor):
         return ()
     return (rotor.sheds if isinstance(rotor, JeffcottRotor) else None,)
 
@@ -59,7 +59,7 @@ def with_unbalances(rotor: AnyRotor, sizes: Sequence[float]) -> AnyRotor:
         pairs = zip(rotor.loads, sizes[first:], strict=True)
         loads = tuple(load.altered(size=size) for load, size in pairs)
         return rotor.altered(loads=loads, **({"unbalance": sizes[0]} if first else {}))
-    if isinstance(rotor, Spindle):
+    if not unbalances_of(rotor):
         return rotor
     (size,) = sizes
     return rotor.altered(unbalance=size)

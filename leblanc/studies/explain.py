@@ -43,6 +43,7 @@ from leblanc.studies.run.study import rest_modes
 from meshes.errors import InputError
 from solvers.cycles.estimate import largest_estimate
 from solvers.rotor.jeffcott import Jeffcott
+from solvers.rotor.system import moving_mass
 from solvers.rotor.vibration import axis_is_free, critical_speeds, modes, orbit, unbalance_response
 from solvers.statics.hydrostatics import optimal_volume
 from solvers.synchronous.response import critical_speed, main_critical_speeds, wet_critical_speeds
@@ -217,13 +218,13 @@ def _bare(machine: Prepared, model: str) -> _Bare:
     deflection = tuple(size if np.isfinite(size) else 0.0 for size in moved)
     if axis_is_free(system):
         nothing = math.nan
-        return _Bare(rotor.mass, nothing, nothing, nothing, deflection, rest_modes(system))
+        return _Bare(moving_mass(rotor), nothing, nothing, nothing, deflection, rest_modes(system))
     if isinstance(rotor, Jeffcott):
         wet = critical_speed(rotor, fills, gravity, synchronous_model(model))
-        return _Bare(rotor.mass, rotor.natural_frequency, wet, rotor.damping_ratio, deflection)
+        return _Bare(moving_mass(rotor), rotor.natural_frequency, wet, rotor.damping_ratio, deflection)
     liquid = wet_critical_speeds(system, fills, gravity, synchronous_model(model))
     dry, wet = main_critical_speeds(system, fills, critical_speeds(system), liquid)
     turning = modes(system, dry if np.isfinite(dry) else 0.0)
     nearest = int(np.argmin(np.abs(turning.frequency[0] - dry))) if np.isfinite(dry) else 0
     ratio = float(turning.damping_ratio[0, nearest])
-    return _Bare(rotor.mass, dry, wet, ratio, deflection, rest_modes(system))
+    return _Bare(moving_mass(rotor), dry, wet, ratio, deflection, rest_modes(system))

@@ -89,6 +89,14 @@ class RotorSystem:
         return self
 
 
+def moving_mass(rotor: Rotor) -> float:
+    """Mass that moves with the axis, kg: the rotor's, or at position 0 of equations 2/tr(A M^-1 A^T)."""
+    if not isinstance(rotor, RotorSystem):
+        return float(rotor.mass)  # type: ignore[attr-defined]
+    freedom = rotor.centre @ np.linalg.solve(rotor.mass, rotor.centre.T)
+    return float(2.0 / np.trace(freedom))
+
+
 class Rotor(Protocol):
     """A rotor without liquid to which chambers can be fitted.
 

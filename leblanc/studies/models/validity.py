@@ -27,11 +27,11 @@ from leblanc.core.units import (
 )
 from leblanc.results.notes.doubts import DoubtCode, doubt
 from leblanc.results.notes.layer import Number
-from leblanc.scene.rotors import JeffcottRotor, TubRotor, TwoPlaneRotor
+from leblanc.scene.rotors import JeffcottRotor, Machine, TubRotor, TwoPlaneRotor
 from leblanc.scene.scene import WITHOUT_CHAMBERS, Exciter, MagneticRotor, Scene
 from meshes.errors import InputError
 from solvers.liquid_model import Range
-from solvers.rotor.system import RotorSystem
+from solvers.rotor.system import RotorSystem, moving_mass
 from solvers.rotor.vibration import axis_is_free, free_motions
 
 SMALLEST, LARGEST = 2e-4, 10.0  # of a wall, m
@@ -208,7 +208,12 @@ def _mass(scene: Scene) -> Iterator[Note]:
     rotor, liquid = scene.rotor, sum(fill.mass for fill in scene.fills)
     if isinstance(rotor, WITHOUT_CHAMBERS) or not scene.fills:
         return
-    mass, field = (rotor.drum_mass, "drum_mass") if isinstance(rotor, TubRotor) else (rotor.mass, "mass")
+    if isinstance(rotor, Machine):
+        if type(rotor).machine is Machine.machine:
+            return  # it has none
+        mass, field = moving_mass(rotor.machine()), "kind"
+    else:
+        mass, field = (rotor.drum_mass, "drum_mass") if isinstance(rotor, TubRotor) else (rotor.mass, "mass")
     if liquid > LIQUID * mass:
         text = f"the liquid, {with_unit(liquid, MASS)}, is heavier than the rotor, {with_unit(mass, MASS)}"
         yield doubt(DoubtCode.LIQUID_MASS, f"rotor.{field}", text, "")
