@@ -1,7 +1,7 @@
 """An answer on disk: its data file, which gives it back, beside the pictures and the report.
 
 A data file may be a stranger's: `opened` makes plain values, and frozen records and states of leblanc and of
-the packages that announce commands or liquids to it, whose fields it sets without a call.
+the packages that announce something to it, whose fields it sets without a call.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from meshes.errors import InputError
 
 FORMAT = 1  # of what stands aside in a data file: JSON, compressed by xz
 _PACKAGES = ("meshes", "fluid", "solvers", "leblanc")
-_GROUPS = ("leblanc.commands", "leblanc.liquids")  # entry points of other packages
+_GROUPS = ("leblanc.commands", "leblanc.liquids", "leblanc.machines")  # entry points of other packages
 _MOST = 1 << 30  # bytes of that text
 _PLAIN = {each.__name__: each for each in (tuple, list, frozenset, set)}
 
