@@ -2,7 +2,7 @@
 
     python docs/house.py                                  # the table
     python docs/house.py --flows                          # and the modules that three commands pass through
-    python docs/house.py --picture docs/images/rooms.png  # and the rooms with the imports between them
+    python docs/house.py --picture docs/images/rooms.png  # and the parts on their floors
 
 The sources are read, not imported. An import is a statement in a source, for a type checker alone as well;
 modules that a name in a string brings in are not seen.
@@ -169,7 +169,7 @@ def _row(package: str, modules: Sequence[Module], importers: Mapping[str, int]) 
         sum(importers[module.name] == 1 for module in modules),
         _sum(module.inside for module in modules),
         _sum(module.inside for module in elsewhere),
-        rooms.circles(graph(modules, depth=99).imports),  # depth: every folder by itself
+        rooms.circles(between(modules)),
     )
 
 
@@ -178,19 +178,13 @@ def _sum(pairs: Iterable[tuple[int, int]]) -> tuple[int, int]:
     return sum(ours), sum(others)
 
 
-def graph(modules: Sequence[Module], depth: int = 2) -> rooms.Rooms:
-    """Rooms and the imports between them.
+def between(modules: Sequence[Module]) -> dict[tuple[str, str], int]:
+    """Imports between folders: importing and imported folder, and how many.
 
-    A module beside the rooms of its package that imports one of them stands above them: it is a room of its
-    own, named with its ending. Names that a folder's `__init__` hands on from within, and what a `__main__`
-    starts, are no imports of the room that these files lie in.
-
-    Parameters
-    ----------
-    modules : from `read`
-    depth : folders below count as part of the room at this depth
+    A module beside the folders of its package that imports one of them stands above them and counts alone.
+    Names that a folder's `__init__` hands on from within, and what a `__main__` starts, are no imports of it.
     """
-    home = {module.name: "/".join(module.room.split("/")[:depth]) for module in modules}
+    home = {module.name: module.room for module in modules}
     imports = {module.name: _own(module) & home.keys() for module in modules}
     loose = {module.name for module in modules if module.room == module.package != module.name}
     while above := {
@@ -198,10 +192,10 @@ def graph(modules: Sequence[Module], depth: int = 2) -> rooms.Rooms:
     }:
         home |= {name: f"{name.replace('.', '/')}.py" for name in above}
         loose -= above
-    between: Counter[tuple[str, str]] = Counter()
+    found: Counter[tuple[str, str]] = Counter()
     for name, targets in imports.items():
-        between.update((home[name], home[target]) for target in targets if home[target] != home[name])
-    return rooms.Rooms(dict(Counter(home.values())), dict(between))
+        found.update((home[name], home[target]) for target in targets if home[target] != home[name])
+    return dict(found)
 
 
 def _beside(name: str, other: str) -> bool:
@@ -253,7 +247,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--root", type=Path, default=ROOT, help="folder of the packages [this tree]")
     parser.add_argument("--flows", action="store_true", help="trace three commands, half a minute")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the numbers")
-    parser.add_argument("--picture", type=Path, metavar="FILE", help="draw the rooms, as PNG and as SVG")
+    parser.add_argument("--picture", type=Path, metavar="FILE", help="draw the parts, as PNG and as SVG")
     parser.add_argument("--out", type=Path, default=Path(), help="folder that these names start from [here]")
     chosen = parser.parse_args(arguments)
     modules = read(chosen.root)
@@ -266,7 +260,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         kept = {"packages": [asdict(row) for row in rows], "flows": [asdict(flow) for flow in traced]}
         (chosen.out / chosen.json).write_text(json.dumps(kept, indent=1) + "\n", encoding="utf-8")
     if chosen.picture is not None:
-        rooms.draw_rooms(graph(modules), chosen.out / chosen.picture)
+        rooms.draw_rooms([module.name for module in modules], chosen.out / chosen.picture)
     return 0
 
 

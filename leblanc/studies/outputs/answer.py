@@ -36,7 +36,14 @@ class Output:
 
 @dataclass(frozen=True)
 class OutputsAnswer(Answer):
-    """Every quantity of the answers of one command, or of all."""
+    """Every quantity of the answers of one command, or of all.
+
+    Examples
+    --------
+    >>> import leblanc as lb
+    >>> {one.question for one in lb.outputs("runup").quantities}
+    {'runup'}
+    """
 
     command = "outputs"
     title = "Outputs"
