@@ -19,7 +19,7 @@ from leblanc.studies.run.study import run_scene
 from solvers.pypde import family_law
 from tests.leblanc.studies.test_compare import by
 
-PAGE = Path(__file__).parents[3] / "docs" / "architecture.md"
+PAGES = [Path(__file__).parents[3] / "docs" / name for name in ("architecture.md", "held.md")]
 Seen = list[tuple[str, str, list[str]]]
 
 
@@ -92,8 +92,9 @@ def test_without_the_controller_there_is_no_answer(way: Any, monkeypatch: pytest
 
 def test_the_page_names_the_classes_on_the_way(way: Any) -> None:
     _, equation, solver, tracker, title = way
-    section = re.split(r"^## ", PAGE.read_text(encoding="utf-8"), flags=re.M)
-    (text,) = [part for part in section if part.startswith(f"The way of {title}")]
+    pages = "\n".join(page.read_text(encoding="utf-8") for page in PAGES)
+    heads = (f"The way of {title}", f"How {title} is solved")
+    (text,) = [part for part in re.split(r"^## ", pages, flags=re.M) if part.startswith(heads)]
     names = {"SteadyNewtonSolver": "steady_newton"}
     for name in (equation, names.get(solver, solver), tracker):
         assert name in text
