@@ -130,6 +130,24 @@ def held() -> Iterator[None]:
             signal.raise_signal(number)
 
 
+@contextmanager
+def given_back() -> Iterator[None]:
+    """Hear signals after it as before, though a library has put its own handlers in and left them there."""
+    if threading.current_thread() is not threading.main_thread() or os.name != "posix":
+        yield
+        return
+    before = {number: signal.getsignal(number) for number in _SAID}
+    waker = signal.set_wakeup_fd(-1)
+    signal.set_wakeup_fd(waker, warn_on_full_buffer=False)
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            if handler is not None:  # it was not put in by Python
+                signal.signal(number, handler)
+        signal.set_wakeup_fd(waker, warn_on_full_buffer=False)
+
+
 def behind(error: BaseException) -> KeyboardInterrupt | Terminated | None:
     """The interrupt that compiled code has made another error of, if there is one."""
     found: BaseException | None = error

@@ -23,6 +23,7 @@ from typing import Any
 import numpy as np
 
 from leblanc.core.files import writing
+from leblanc.core.interrupts import given_back
 from leblanc.results.drawn.machine import DrawnLiquid, MachineMotion, Scale
 from leblanc.view.gate import address_of, gate
 from leblanc.view.parts import Picture
@@ -103,7 +104,8 @@ def write_html(plot: Plotter, picture: Picture, path: Path) -> None:
         allowed = "a .png without the extra: pip install leblanc[browser]"
         raise InputError("--screenshot", str(path), allowed)
     _in_perspective(plot)
-    page = plot.trame.export_html(filename=None).read()
+    with given_back():  # its server hears Ctrl-C and SIGTERM in its own way, and goes on doing so
+        page = plot.trame.export_html(filename=None).read()
     lines = [f"<b>{escape(picture.title)}</b>", *map(escape, picture.state.split("\n"))]
     lines += [escape(picture.caption), escape(_key(picture))]
     style = "position:absolute;left:1em;top:1em;font:14px sans-serif;pointer-events:none;z-index:9"

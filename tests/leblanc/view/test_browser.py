@@ -162,8 +162,10 @@ def test_a_page_without_a_server(tmp_path: Path) -> None:
         prepare_off_screen()
     except InputError as error:
         pytest.skip(str(error))
-    page = tmp_path / "page.html"
+    page, heard = tmp_path / "page.html", [signal.getsignal(one) for one in (signal.SIGINT, signal.SIGTERM)]
     assert main(["view", RUNUP, "--speed", "24 rad/s", "--screenshot", str(page)]) == 0
+    assert [signal.getsignal(one) for one in (signal.SIGINT, signal.SIGTERM)] == heard
+    assert signal.set_wakeup_fd(-1) == -1  # of nobody who is gone
     with browser(path) as tab:
         tab.open(page.as_uri())
 
