@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from itertools import pairwise
 
 from mpmath import mp, mpf
@@ -31,11 +32,24 @@ def liquid_reference(
     """
     R, h, e = mpf(radius), mpf(height), mpf(eccentricity)
 
-    def phi(r: mpf) -> mpf:
-        if r <= R - e:
-            return mp.pi
-        return mp.acos(max(mpf(-1), min(mpf(1), (r * r + e * e - R * R) / (2 * e * r))))
+    # All integrals ask at the same places.
+    @cache
+    def arc(r: mpf) -> tuple[mpf, mpf, mpf]:
+        phi = +mp.pi
+        if r > R - e:
+            phi = mp.acos(max(mpf(-1), min(mpf(1), (r * r + e * e - R * R) / (2 * e * r))))
+        return phi, mp.sin(phi), mp.sin(2 * phi)
 
+    def phi(r: mpf) -> mpf:
+        return arc(r)[0]
+
+    def sine(r: mpf) -> mpf:
+        return arc(r)[1]
+
+    def double(r: mpf) -> mpf:
+        return arc(r)[2]
+
+    @cache
     def depth(r: mpf) -> mpf:
         return max(mpf(0), min(h, beta * r * r + constant))
 
@@ -61,10 +75,10 @@ def liquid_reference(
 
     return LiquidReference(
         volume=integral(lambda r: 2 * phi(r) * r * depth(r)),
-        x=integral(lambda r: 2 * mp.sin(phi(r)) * r * r * depth(r)),
+        x=integral(lambda r: 2 * sine(r) * r * r * depth(r)),
         z=integral(lambda r: phi(r) * r * depth(r) ** 2),
-        xx=integral(lambda r: (phi(r) + mp.sin(2 * phi(r)) / 2) * r**3 * depth(r)),
-        yy=integral(lambda r: (phi(r) - mp.sin(2 * phi(r)) / 2) * r**3 * depth(r)),
+        xx=integral(lambda r: (phi(r) + double(r) / 2) * r**3 * depth(r)),
+        yy=integral(lambda r: (phi(r) - double(r) / 2) * r**3 * depth(r)),
         zz=integral(lambda r: 2 * phi(r) * r * depth(r) ** 3 / 3),
-        xz=integral(lambda r: mp.sin(phi(r)) * r * r * depth(r) ** 2),
+        xz=integral(lambda r: sine(r) * r * r * depth(r) ** 2),
     )

@@ -258,14 +258,14 @@ RACE = BallRace(0.0, 0.2, (0.1, 0.15), 2.0, carried=0.43, driven=0.46)
 def test_balls_energy() -> None:
     """The balance of rotor, layer and balls closes with the square of the step."""
     left = []
-    for cells in (64, 128):
+    for cells in (32, 64):
         balls = Balls((RACE,), (0.4, 2.0), (1.0, 0.5))
         made = couple_linear(
             ROTOR.system(), [FILL], 30.0, Friction("linear", 2.0), 3.0, cells, False, balls=balls
         )
         made.machine.rate[:2] = 0.05, -0.02
         before = made.energy()
-        assert made.advance(0.5, 20.0, 0.8, 10**6) == Outcome.DONE
+        assert made.advance(0.25, 20.0, 0.8, 10**6) == Outcome.DONE
         s = made.sums
         gained = s.unbalance + s.drive + s.gravity - s.support - s.friction
         left.append(abs(gained - (made.energy() - before)) / s.drive)
