@@ -13,46 +13,40 @@ from solvers.rotor.exciter.machine import Dimensionless
 from solvers.rotor.exciter.motion import RANGES, critical_speed
 from solvers.rotor.exciter.regimes import Kind
 from solvers.rotor.exciter.stability import capture_unbalance, third_speed
-from validation.cases import exciter, two_plane
+from tests.oracles.cases import come_out_again, kept_group, verdicts
 from validation.cases.exciter import beyond as exciter_beyond
 from validation.cases.exciter import traces as exciter_more
 from validation.cases.exciter.speeds import Comparison, regression, regression_table, sample
-from validation.cases.two_plane import conditions
+from validation.cases.two_plane import conditions, layers
 from validation.cases.two_plane import damping as two_plane_damping
 
 
 def test_cases_of_the_exciter() -> None:
-    found = {case.name: case for case in exciter.cases()}
-    assert all(case.group == "exciter" for case in found.values())
-    errata = {name for name, case in found.items() if case.verdict == "erratum"}
-    assert errata == {"exciter/n1", "exciter/table-drag-empty", "exciter/table-drag-loaded"}
+    found = kept_group("exciter")
+    assert verdicts(found, "erratum") == {"n1", "table-drag-empty", "table-drag-loaded"}
     # Started in the motion itself it is kept to three times the printed speed, which is no trend any more.
-    assert {name for name, case in found.items() if case.verdict == "differs"} == {
-        "exciter/critical-speed-by-start",
+    assert verdicts(found, "differs") == {
+        "critical-speed-by-start",
         # The motion is lost by its start, not by its stability, which ends at n2.
-        "exciter/stuck-stable-up-to",
+        "stuck-stable-up-to",
         # Together above the natural frequency balls part; one of two does stay at the third speed.
-        "exciter/third-together",
+        "third-together",
     }
+    come_out_again(exciter_more.cases())
 
 
 def test_cases_of_two_planes() -> None:
-    found = {case.name: case for case in two_plane.cases()}
-    assert all(case.group == "two_plane" for case in found.values())
+    found = kept_group("two_plane")
     # Weak damping moves the edge; strong damping is stable and yet not reached from scattered places.
-    assert {name for name, case in found.items() if case.verdict == "erratum"} == {
-        "two_plane/damping-0.5",
-        "two_plane/damping-5",
-        "two_plane/long-run-0.5-60",
-    }
-    assert {name for name, case in found.items() if case.verdict == "differs"} == {
-        "two_plane/long-run-8000-120"
-    }
-    # Balanced: one of the four demonstrations with balls; the kept runs are all said to be.
-    balls = [case for case in found.values() if case.name.startswith("two_plane/balls")]
-    assert sum(case.printed == "balanced" for case in balls) == 1
+    assert verdicts(found, "erratum") == {"damping-0.5", "damping-5", "long-run-0.5-60"}
+    assert verdicts(found, "differs") == {"long-run-8000-120"}
     # The kept run at weak damping ends at some 180 times the bare deflection.
-    assert 150.0 < float(found["two_plane/long-run-0.5-60"].computed) < 220.0  # type: ignore[arg-type]
+    assert 150.0 < found["long-run-0.5-60"]["computed"] < 220.0
+    come_out_again([conditions._hessian(), conditions._special(), *two_plane_damping.cases()])
+    # Layers gain in both planes of the long rotor beyond its speeds, in neither of the short one.
+    for rotor, better in ((layers.LONG, True), (layers.SHORT, False)):
+        run = layers.layers_in_time(rotor, layers.SPEEDS[-1], cells=16)
+        assert bool(np.all(run.left < 1.0)) == run.possible == better
 
 
 @pytest.mark.parametrize("damping", two_plane_damping.DAMPINGS)
