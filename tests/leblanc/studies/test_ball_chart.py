@@ -37,14 +37,16 @@ def scene(name: str, **changes: Any) -> lb.Scene:
 @pytest.fixture
 def no_curves(monkeypatch: pytest.MonkeyPatch) -> None:
     """Follow no curve, most of a small chart's work, where the growth or the band is judged alone."""
-    monkeypatch.setattr(f"{CHARTS}.follow_edge", lambda *_, **__: None)
+    monkeypatch.setattr(f"{CHARTS}._neighbours", lambda *_: ())
 
 
 @cache
 def coarse_and_fine() -> tuple[BallChart, BallChart]:
-    """Charts of one machine."""
-    coarse, fine = (lb.map_balls(scene("balls"), values=v, speeds=s) for v, s in ((5, 6), (17, 21)))
-    return coarse, fine
+    """Charts of one machine, the fine one without its curves."""
+    coarse = lb.map_balls(scene("balls"), values=5, speeds=6)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(f"{CHARTS}._neighbours", lambda *_: ())
+        return coarse, lb.map_balls(scene("balls"), values=17, speeds=21)
 
 
 def beside_liquid(**changes: Any) -> lb.Scene:
@@ -147,7 +149,9 @@ def test_the_long_rotor_comes_out_of_the_command(tmp_path: Path, capsys: pytest.
 def test_the_command_says_what_the_function_returns(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    path = str(EXAMPLES / "balls.toml")
+    path = str(tmp_path / "slow.toml")
+    text = (EXAMPLES / "balls.toml").read_text(encoding="utf-8")
+    Path(path).write_text(text.replace("3000 rpm", "400 rpm"), encoding="utf-8")
     words = ["--values", "4", "--speeds", "5", "--state", "heavy", "--linear"]
     assert main(["map", path, *words, "--out", str(tmp_path), "--json"]) == 0
     printed = json.loads(capsys.readouterr().out)
@@ -200,7 +204,7 @@ def test_regions_reach_up_to_the_curves() -> None:
 
 
 def test_texts_and_arrays_of_a_chart() -> None:
-    chart = lb.map_balls(scene("balls"), "rotor.unbalance", start=1e-5, stop="1.2 kg*mm", values=7, speeds=9)
+    chart = lb.map_balls(scene("balls"), "rotor.unbalance", start=1e-5, stop="1.2 kg*mm", values=4, speeds=5)
     assert "stable from" in sentence(chart) and "rotor.unbalance being 600 g mm" in sentence(chart)
     told = dict(facts(chart))
     assert told["It begins or ends at"] == told["Unbalance that the balls of each race hold"]
@@ -242,6 +246,7 @@ def test_what_is_refused(given: dict[str, Any], field: str) -> None:
     assert refused.value.field == field
 
 
+@pytest.mark.usefixtures("no_curves")
 def test_each_kind_of_map_refuses_the_options_of_the_other(capsys: pytest.CaptureFixture[str]) -> None:
     for name, option in (("balls", "--volumes"), ("horizontal_rig", "--values")):
         assert main(["map", str(EXAMPLES / f"{name}.toml"), option, "3"]) == 2

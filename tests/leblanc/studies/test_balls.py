@@ -47,8 +47,7 @@ def test_races_fit_rotors_that_tilt(name: str) -> None:
     table["chambers"] = [*table["chambers"], race]
     table["runup"] = {"start": 5.0, "stop": 20.0, "rate": 10.0, "duration": 2.0, "cells": 16}
     both = lb.Scene(**table).replace({"speeds.count": 5})
-    result = lb.run(both)
-    assert isinstance(result, BallsAnswer)
+    result = run_balls(both, edges=False)
     assert result.converged.all()
     run = lb.run_up(both, samples=40, check=False)
     assert run.converged
@@ -133,8 +132,7 @@ def error_beside_held(model: str) -> None:
     """As `run` has it of a rotor whose mass and unbalance are those of rotor and balls together."""
     # So large that the surface touches the wall's end somewhere, which linear theory does not know.
     scene = lying(**{"model.liquid": model, "rotor.unbalance": "4 kg*mm", "speeds.start": "900 rpm"})
-    result = lb.run(scene)
-    assert isinstance(result, BallsAnswer)
+    result = run_balls(scene, edges=False)
     assert result.error_estimate is not None
     assert (np.nanmax(result.error_estimate[result.stable]) > 0.1) == (model == "linear")
     assert set(result.model) == {f"balls and {model}"}
@@ -166,10 +164,10 @@ def test_the_error_is_that_of_the_rotor_with_its_balls_held() -> None:
 
 def test_models_of_the_liquid_agree_where_the_surface_clears_the_wall() -> None:
     """With a small deflection linear theory is exact; with a large one a wall runs dry and it is not."""
-    found = [lb.run(lying(**{"model.liquid": name})) for name in ("statics", "linear")]
+    found = [run_balls(lying(**{"model.liquid": name}), edges=False) for name in ("statics", "linear")]
     np.testing.assert_allclose(found[0].amplitude, found[1].amplitude, rtol=1e-8)
     far = {"rotor.unbalance": "40 kg*mm", "speeds.start": "1500 rpm", "speeds.stop": "1600 rpm"}
-    found = [lb.run(lying(**far, **{"model.liquid": name})) for name in ("statics", "linear")]
+    found = [run_balls(lying(**far, **{"model.liquid": name}), edges=False) for name in ("statics", "linear")]
     assert np.abs(found[0].amplitude / found[1].amplitude - 1.0).max() > 0.01
     with pytest.raises(InputError, match="auto, statics or linear"):
         lb.run(lying(**{"model.liquid": "long_wave"}))
@@ -178,8 +176,7 @@ def test_models_of_the_liquid_agree_where_the_surface_clears_the_wall() -> None:
 def test_gravity_is_told_with_its_size() -> None:
     """On a lying drum: its share, swings as of a ball alone on a stiff rotor, what leaves the walls."""
     scene = lying()
-    result = lb.run(scene)
-    assert isinstance(result, BallsAnswer)
+    result = run_balls(scene, edges=False)
     assert result.gravity is not None
     assert result.in_range is not None
     np.testing.assert_allclose(result.gravity.share, 9.81 / (0.05 * result.speed**2))
@@ -191,8 +188,7 @@ def test_gravity_is_told_with_its_size() -> None:
     told = json.loads(json.dumps(result.to_json(), default=lambda value: value.tolist()))
     assert set(told["gravity"]) == {"share", "ball_swing", "amplitude", "power"}
     assert told["in_range"] == [True] * 7
-    slow = lb.run(lying(**{"speeds.start": "60 rpm", "speeds.stop": "160 rpm"}))
-    assert isinstance(slow, BallsAnswer)
+    slow = run_balls(lying(**{"speeds.start": "60 rpm", "speeds.stop": "160 rpm"}), edges=False)
     assert slow.in_range is not None
     # Of the layer of the rig, whose surface is farther out than the balls, and of the balls.
     np.testing.assert_array_equal(slow.in_range, 0.05 * slow.speed**2 > 9.81)

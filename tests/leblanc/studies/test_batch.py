@@ -17,7 +17,7 @@ from meshes.errors import InputError
 from tests.mutants import kills
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
-COUNT = 23
+COUNT = 7
 # Baffles that cut the liquid into compartments, which have waves of their own.
 CUT = {"model.liquid": "kdv", "chambers.0.baffles": {"count": 4}}
 

@@ -112,13 +112,13 @@ def test_words(capsys: pytest.CaptureFixture[str]) -> None:
 def test_in_time(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     """Grown slowly off the resonance, its means come near the steady wave; at the resonance it breaks."""
     slow = ["--whirl-speed", "34", "--whirl-amplitude", "0.1 mm", "--model", "potential"]
-    found = printed(capsys, *slow, "--duration", "8 s", "--ramp", "4 s", "--cells", "128")
-    assert found["state"] == "resolved" and found["converged"] and found["nodes"] == 128
+    found = printed(capsys, *slow, "--duration", "8 s", "--ramp", "4 s", "--cells", "64")
+    assert found["state"] == "resolved" and found["converged"] and found["nodes"] == 64
     steady = printed(capsys, *slow)
     last = complex(*found["force_ratio"][-1])  # type: ignore[index]
     assert last == pytest.approx(complex(*steady["force_ratio"]), abs=0.05)  # type: ignore[misc]
     assert found["force_gap"] < 1e-8 and found["mass_error"] < 1e-9  # type: ignore[operator]
-    hard = ["--whirl-speed", "30.6", "--whirl-amplitude", "3 mm", "--model", "potential", "--cells", "128"]
+    hard = ["--whirl-speed", "30.6", "--whirl-amplitude", "3 mm", "--model", "potential", "--cells", "64"]
     assert main([*LAYER, *hard, "--duration", "3 s", "--out", str(tmp_path)]) == 3
     assert "broken" in capsys.readouterr().out
 

@@ -63,8 +63,8 @@ def sampled(own: Scene, count: int) -> Response:
 
 @pytest.mark.parametrize("name", ["tub", "centrifuge", "two_plane_rig"])
 def test_peak_does_not_depend_on_the_speeds(name: str) -> None:
-    """One machine at 30, 60, 241 and 4001 speeds has one peak, with liquid and without, to 1e-9."""
-    found = [both(scene(name, count)) for count in (30, 60, 241, 4001)]
+    """One machine at 30, 60 and 601 speeds has one peak, with liquid and without, to 1e-9."""
+    found = [both(scene(name, count)) for count in (30, 60, 601)]
     for size in ("amplitude", "amplitude_dry"):
         largest = [float(getattr(each, size).max()) for each in found]
         np.testing.assert_allclose(largest, largest[-1], rtol=1e-9)

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import json
 import math
+from functools import partial
 
 import pytest
 
 from leblanc.cli import main
 
+slow = partial(pytest.param, marks=pytest.mark.slow)
 CHAMBER = ["volume", "--radius", "0.2", "--height", "0.05"]
 
 
@@ -59,8 +61,8 @@ def test_cases(capsys: pytest.CaptureFixture[str], volume: str, case: int) -> No
     assert answer["unbalance_volume_fem"] == pytest.approx(answer["unbalance_volume"], rel=1e-5)
 
 
-@pytest.mark.parametrize("eccentricity", ["0", "1e-5", "0.2", "0.3", "2"])
-@pytest.mark.parametrize("speed", ["0", "1e-4", "1e5"])
+@pytest.mark.parametrize("eccentricity", ["0", slow("1e-5"), "0.2", slow("0.3"), slow("2")])
+@pytest.mark.parametrize("speed", ["0", slow("1e-4"), "1e5"])
 @pytest.mark.parametrize("gravity", ["0", "9.81"])
 @pytest.mark.parametrize("volume", ["0", "6.283185307179587e-3"])
 def test_extremes(

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 import os
-import subprocess
 import sys
 import threading
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
+
+from leblanc.cli import main
 
 pty = pytest.importorskip("pty")
 
@@ -36,47 +38,35 @@ SHOWN = {
 
 
 @pytest.mark.parametrize("name", SHOWN)
-def test_progress(name: str, tmp_path: Path) -> None:
+def test_progress(
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
     arguments, wanted = SHOWN[name]
     terminal, end = pty.openpty()
-    process = subprocess.Popen(
-        [sys.executable, "-m", "leblanc", *arguments, "--json"],
-        stdout=subprocess.PIPE,
-        stderr=end,
-        cwd=tmp_path,
-        env=os.environ | {"TERM": "xterm", "PYTHONPATH": str(ROOT)},
-    )
-    os.close(end)
     seen: list[bytes] = []
 
     def read() -> None:
-        try:
+        with suppress(OSError):  # the other end is closed
             while piece := os.read(terminal, 1 << 16):
                 seen.append(piece)
-        except OSError:  # the other end is closed
-            pass
 
     reader = threading.Thread(target=read)
     reader.start()
-    out, _ = process.communicate(timeout=300)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("TERM", "xterm")
+    with os.fdopen(end, "w") as stream, monkeypatch.context() as patch:
+        patch.setattr(sys, "stderr", stream)
+        code = main([*arguments, "--json"])
     reader.join()
     os.close(terminal)
     shown = b"".join(seen).decode()
-    assert process.returncode == 0, shown
-    assert isinstance(json.loads(out), dict)
+    assert code == 0, shown
+    assert isinstance(json.loads(capsys.readouterr().out), dict)
     for words in wanted:
         assert words in shown
 
 
-def test_nothing_is_shown_elsewhere(tmp_path: Path) -> None:
+def test_nothing_is_shown_elsewhere(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Without a terminal stderr has the closing line alone."""
-    arguments = [*SHOWN["map"][0], "--json"]
-    done = subprocess.run(
-        [sys.executable, "-m", "leblanc", *arguments],
-        cwd=tmp_path,
-        env=os.environ | {"PYTHONPATH": str(ROOT)},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert done.stderr == "Vertical rig: 21 volumes by 21 speeds done\n"
+    assert main([*SHOWN["map"][0], "--json", "--out", str(tmp_path)]) == 0
+    assert capsys.readouterr().err == "Vertical rig: 21 volumes by 21 speeds done\n"

@@ -69,8 +69,9 @@ def two_planes() -> Scene:
 @pytest.fixture(autouse=True)
 def _short(monkeypatch: pytest.MonkeyPatch) -> None:
     """Few generations: what follows the search finds the ends exactly."""
-    monkeypatch.setattr(search, "_GENERATIONS", 3)
-    monkeypatch.setattr(search, "_STEPS", 20)
+    monkeypatch.setattr(search, "_GENERATIONS", 1)
+    monkeypatch.setattr(search, "_STEPS", 6)
+    monkeypatch.setattr(search, "_FOUND", 1e-4)
 
 
 @kills(f"{ROOM}.problem:total_mass", "race.count * race.each", "race.each")
@@ -85,6 +86,7 @@ def test_least_mass_is_the_unbalance_over_the_radius(count: int, monkeypatch: py
     """
     limit = 2e-6
     monkeypatch.setattr(search, "_ROUNDS", 1)  # enough for a single race
+    monkeypatch.setattr(search, "_FOUND", 1e-7)
     task = Optimisation(
         objective="least_mass",
         vibration_limit=limit,
@@ -109,7 +111,6 @@ def test_the_leading_root_is_the_margin(monkeypatch: pytest.MonkeyPatch) -> None
     """Lightest balls with a margin: the roots of rotor and balls, by another code, fade with just that."""
     margin = 4.0
     monkeypatch.setattr(search, "_ROUNDS", 1)  # enough for a single race
-    monkeypatch.setattr(search, "_FOUND", 1e-4)
     monkeypatch.setattr(search, "_DRAG_FOUND", 1e-3)
     task = Optimisation(
         objective="least_mass",
@@ -201,7 +202,9 @@ def test_the_peak_counts_balls_on_the_heavy_side() -> None:
     assert found.amplitude[0] < gathered[0] * (1.0 + 1e-9)
 
 
-def test_the_search_is_the_same_again_and_better_than_the_scene() -> None:
+def test_the_search_is_the_same_again_and_better_than_the_scene(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(search, "_MEMBERS", 3)
+    monkeypatch.setattr(search, "_LEAST_MEMBERS", 9)
     task = Optimisation(balls={"count": [2, 4], "mass": ["2 g", "20 g"], "drag": [0.01, 1.0]})
     first, again = (optimise_balls(planar(), task) for _ in range(2))
     assert first.races == again.races

@@ -29,6 +29,8 @@ from tests.oracles.blocks import on_terminal
 from tests.oracles.optimise import FREE, random_scene
 
 EXAMPLES = Path(__file__).parents[4] / "examples"
+# Whirls that may grow take most of a search.
+ALONE = Optimisation(stable=False)
 
 
 def two_rings() -> Scene:
@@ -61,11 +63,10 @@ def not_beaten(best: OptimumAnswer) -> None:
     assert best.feasible == bool(over.min() == 0.0)
 
 
-PLANAR = ("planar 0", "planar 1", "planar 2")
-
-
-@pytest.mark.parametrize("objective", ["working_speed", "peak", "least_mass"])
-@pytest.mark.parametrize("name", PLANAR)
+@pytest.mark.parametrize(
+    ("name", "objective"),
+    [("planar 0", "least_mass"), ("planar 1", "peak"), ("planar 2", "working_speed")],
+)
 def test_nothing_that_was_tried_beats_the_answer(name: str, objective: str) -> None:
     not_beaten(optimise_scene(machines()[name], objective, front=False, response=False))
 
@@ -80,7 +81,7 @@ def test_nor_of_other_machines(name: str, objective: str) -> None:
 
 def test_the_least_liquid_of_several_planes() -> None:
     """Of two rings a tenth of the liquid does as well as what vibrates least: 2.7 kg gain a thousandth."""
-    best = optimise_scene(two_rings(), front=False, response=False)
+    best = optimise_scene(two_rings(), task=ALONE, front=False, response=False)
     most = best.candidates.mass[np.argmin(best.candidates.objective)]
     assert best.mass < 0.3 and most > 2.0
     not_beaten(best)
@@ -125,8 +126,8 @@ def test_a_film_has_a_least_depth() -> None:
     assert (excess(own, rows) <= 0.0).tolist() == [True, True, False, False]
     # The rotor is so well balanced that a thinner film would be enough.
     light = scene.replace({"rotor.unbalance": 0.02 * scene.rotor.unbalance})
-    thin = optimise_scene(light, task=Optimisation(least_film=0.0), front=False)
-    kept = optimise_scene(light, front=False)
+    thin = optimise_scene(light, task=ALONE.altered(least_film=0.0), front=False)
+    kept = optimise_scene(light, task=ALONE, front=False)
     assert min(fill.depth for fill in with_volumes(light, thin.volume).fills) < 5e-5
     depths = [fill.depth for fill in with_volumes(light, kept.volume).fills]
     assert all(depth == 0.0 or depth >= 5e-5 * (1.0 - 1e-12) for depth in depths)
@@ -220,9 +221,9 @@ def test_an_interrupt_keeps_the_best_so_far(monkeypatch: pytest.MonkeyPatch) -> 
             raise KeyboardInterrupt
         return whole(vibration, volumes)
 
-    full = optimise_scene(scene, front=False)
+    full = optimise_scene(scene, task=ALONE, front=False)
     monkeypatch.setattr(AtSpeed, "exact", exact)
-    best = optimise_scene(scene)
+    best = optimise_scene(scene, task=ALONE)
     assert best.interrupted and not full.interrupted
     assert best.front is None and best.candidates.objective.size < full.candidates.objective.size
     not_beaten(best)
@@ -242,9 +243,9 @@ def test_an_interrupt_after_the_search_keeps_the_answer() -> None:
         if share is not None and share > 0.8:
             raise KeyboardInterrupt
 
-    full = optimise_scene(scene)
+    full = optimise_scene(scene, task=ALONE)
     with told(stop):
-        best = optimise_scene(scene)
+        best = optimise_scene(scene, task=ALONE)
     assert best.interrupted and best.front is None and full.front is not None
     assert best.value == full.value and best.volume.tolist() == full.volume.tolist()
     (note,) = [note for note in best.notes if note.code is OptimumCode.INTERRUPTED]
@@ -264,7 +265,7 @@ def test_progress_says_what_is_done(front: bool) -> None:
         words.append(what)
 
     with told(hear):
-        best = optimise_scene(load_scene(EXAMPLES / "horizontal_rig.toml"), front=front)
+        best = optimise_scene(load_scene(EXAMPLES / "horizontal_rig.toml"), task=ALONE, front=front)
     assert (done[-1] > 0.99) == front
     assert np.all(np.diff(done) >= 0.0) and 0.0 < done[-1] <= 1.0
     counts = [int(what.split()[0]) for what in words if what.endswith("sets of volumes judged")]

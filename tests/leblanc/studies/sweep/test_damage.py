@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import shutil
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +19,10 @@ from tests.oracles.sweeps import STUDY, study_in, tree
 
 Capture = pytest.CaptureFixture[str]
 pytestmark = pytest.mark.usefixtures("quick")
+
+#: Of all files or places each, and one of several at every landing.
+some = partial(pytest.mark.parametrize, "every")
+whole = pytest.param(1, marks=pytest.mark.slow)
 
 TWO_BLOCKS = STUDY.replace("samples = 256", "samples = 128")
 
@@ -40,13 +45,15 @@ def files(store: Path) -> list[Path]:
     return found
 
 
-def test_no_flipped_byte_changes_a_number(store: Path) -> None:
-    """Every file of the store, at its ends and at many places between: refused, or of no consequence."""
-    whole, values = tree(store), {name: a.values for name, a in read_arrays(store).arrays.items()}
+@some([4, whole])
+def test_no_flipped_byte_changes_a_number(store: Path, every: int) -> None:
+    """Every file of the store, at its ends and at places between: refused, or of no consequence."""
+    kept, values = tree(store), {name: a.values for name, a in read_arrays(store).arrays.items()}
     refused = 0
-    for path in files(store):
+    for k, path in enumerate(files(store)):
         content = path.read_bytes()
-        for place in {0, len(content) // 3, 2 * len(content) // 3, len(content) - 1}:
+        places = 0, len(content) // 3, 2 * len(content) // 3, len(content) - 1
+        for place in places[k % every :: every]:
             changed = bytearray(content)
             changed[place] ^= 1 << place % 8
             path.write_bytes(changed)
@@ -61,16 +68,17 @@ def test_no_flipped_byte_changes_a_number(store: Path) -> None:
                         array.values, values[name], equal_nan=array.values.dtype.kind == "f"
                     )
         path.write_bytes(content)
-    assert refused > 200
-    assert tree(store) == whole
+    assert refused > 200 / every
+    assert tree(store) == kept
 
 
-def test_what_is_missing_is_answered_again(store: Path) -> None:
+@some([5, whole])
+def test_what_is_missing_is_answered_again(store: Path, every: int) -> None:
     """One chunk after the other, of every fifth variable; metadata are not made up."""
-    whole = tree(store)
+    kept = tree(store)
     metadata = [path for path in files(store) if path.name == "zarr.json"]
     chunks = [path for path in files(store) if path.name != "zarr.json"]
-    for path in metadata + chunks[::5]:
+    for path in (metadata + chunks[::5])[::every]:
         content = path.read_bytes()
         path.unlink()
         if path.name == "zarr.json":
@@ -82,11 +90,12 @@ def test_what_is_missing_is_answered_again(store: Path) -> None:
             with pytest.raises(InputError, match="1 are pending"):
                 read_arrays(store)
             again(store)
-        assert tree(store) == whole
+        assert tree(store) == kept
 
 
-def test_a_cut_file_is_refused(store: Path) -> None:
-    for path in files(store):
+@some([4, whole])
+def test_a_cut_file_is_refused(store: Path, every: int) -> None:
+    for path in files(store)[::every]:
         content = path.read_bytes()
         for length in (0, len(content) - 1):
             path.write_bytes(content[:length])
@@ -128,8 +137,7 @@ def test_a_chunk_of_another_array_is_seen(store: Path) -> None:
 
 
 def test_the_command_says_it_in_one_line(store: Path, capsys: Capture) -> None:
-    study = study_in(store.parents[1], TWO_BLOCKS)
-    del study
+    study_in(store.parents[1], TWO_BLOCKS)
     chunk = store / "peak_amplitude" / "c" / "0"
     chunk.write_bytes(chunk.read_bytes()[:-1] + b"\0")
     arguments = ["sweep", str(store.parents[1] / "study.toml"), "--workers", "0", "--out", str(store.parent)]

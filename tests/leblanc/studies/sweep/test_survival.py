@@ -73,13 +73,13 @@ def workers_of(process: subprocess.Popen[str]) -> list[psutil.Process]:
 
 
 def test_the_store_does_not_depend_on_the_workers(tmp_path: Path) -> None:
-    study = STUDY.replace("samples = 256", "samples = 200")
+    study = STUDY.replace("samples = 256", "samples = 130")
     (tmp_path / "alone").mkdir()
     alone = undisturbed(tmp_path / "alone", study)
     write_study(tmp_path, study)
     out = complete(leblanc("study.toml", "--workers", "2", "--out", "out", "--json", cwd=tmp_path))
     assert tree(tmp_path / "out" / STORE) == alone
-    assert json.loads(out)["done"] == 200
+    assert json.loads(out)["done"] == 130
 
 
 @pytest.mark.slow

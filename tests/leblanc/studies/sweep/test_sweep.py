@@ -276,21 +276,21 @@ def test_number_height_and_angle_of_baffles_vary(tmp_path: Path) -> None:
     base = (Path(__file__).parents[4] / "docs" / "examples" / "closed_baffles.toml").read_text(
         encoding="utf-8"
     )
-    (tmp_path / "scene.toml").write_text(base.replace("count = 41", "count = 3"), encoding="utf-8")
+    (tmp_path / "scene.toml").write_text(base.replace("count = 41", "count = 2"), encoding="utf-8")
     study = """scene = "scene.toml"
 method = "grid"
 [vary]
-"chambers.0.baffles.count" = { choice = [2, 3, 6] }
+"chambers.0.baffles.count" = { choice = [2, 3] }
 "chambers.0.baffles.tip_radius" = { linspace = ["141 mm", "179 mm", 2] }
 "chambers.0.baffles.first_angle" = { linspace = ["0 deg", "10 deg", 2] }
 """
     (tmp_path / "study.toml").write_text(study, encoding="utf-8")
     lb.sweep(tmp_path / "study.toml", tmp_path / "out", workers=0)
     found = xr.open_zarr(tmp_path / "out" / STORE, consolidated=False).load()
-    assert found.sizes["sample"] == 12
+    assert found.sizes["sample"] == 8
     scene = lb.load_scene(tmp_path / "scene.toml")
     paths = [f"chambers.0.baffles.{name}" for name in ("count", "tip_radius", "first_angle")]
-    for k in range(12):
+    for k in range(8):
         values = {path: found[path].values[k].item() for path in paths}
         cut = values[paths[1]] < 0.15
         if values[paths[0]] == 2 and cut:
