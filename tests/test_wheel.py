@@ -74,14 +74,18 @@ def test_holds_the_packages_and_the_examples_and_nothing_else(wheel: Path) -> No
 
 
 def test_its_commands_run_away_from_the_sources(run: Run) -> None:
-    where = run("python -P -c 'import leblanc, validation; print(leblanc.__file__, validation.__file__)'")
-    assert where.returncode == 0 and str(ROOT) not in where.stdout
-    for line in ("leblanc new --list", "leblanc validate errata", "leblanc trade --help"):
-        done = run(line)
-        assert done.returncode == 0 and done.stdout, done.stderr
-    done = run("leblanc new --example studies/fill_grid && leblanc new --example horizontal_rig")
-    assert done.returncode == 0, done.stderr
-    done = run("leblanc run horizontal_rig.toml && leblanc notebooks nothing")
+    lines = (
+        *("new --list", "validate vector_model", "trade --help", "new --example studies/fill_grid"),
+        *("new --example spindle", "run spindle.toml"),
+    )
+    done = run(
+        "python -P - <<'END'\nimport leblanc, validation\nfrom leblanc.cli import main\n"
+        "print(leblanc.__file__, validation.__file__)\n"
+        f"for line in {lines}:\n    print(line, '->', main(line.split()))\nEND"
+    )
+    assert done.returncode == 0 and str(ROOT) not in done.stdout, done.stderr
+    assert all(f"{line} -> 0\n" in done.stdout for line in lines), done.stdout
+    done = run("leblanc notebooks nothing")
     assert done.returncode == 2 and "1_paraboloid" in done.stderr
 
 

@@ -450,30 +450,33 @@ def test_a_lying_machine_is_compared_with_its_motion_held_in_time() -> None:
 
 
 @kills("validation.trade.answers:_held", "0.5 * (state.largest - state.least)", "state.largest - state.least")
-@kills("validation.trade.judge:_ripple_error", "found.ripple - best.ripple", "found.ripple + best.ripple")
 def test_held_answers_are_those_of_run() -> None:
-    """Mean and ripple of two speeds of the rig; gravity makes the motion ripple, no steady one does."""
+    """Mean and ripple at a speed of the rig; gravity makes the motion ripple, no steady one does."""
     machine = scene("horizontal_rig")
-    cut = at_speeds(machine, np.array([40.0, 70.0]))
-    found, still = (answer(cut, Case(RESPONSE, *case)) for case in (("long_wave", 32, HELD), ("statics",)))
-    asked = machine.replace({"model.liquid": "long_wave", "model.cells": 32})
-    result = run_scene(at_speeds(asked, np.array([40.0, 70.0])))
+    cut = at_speeds(machine, np.array([50.0]))
+    found, still = (answer(cut, Case(RESPONSE, *case)) for case in (("long_wave", 16, HELD), ("statics",)))
+    asked = machine.replace({"model.liquid": "long_wave", "model.cells": 16})
+    result = run_scene(at_speeds(asked, np.array([50.0])))
     assert result.held is not None and found.ripple is not None and still.ripple is not None
     np.testing.assert_allclose(found.values, result.amplitude, rtol=1e-12)
     half = 0.5 * (result.held.largest - result.held.least)
     np.testing.assert_allclose(found.ripple, half, rtol=1e-12)
     assert half[0] > 1e-4 * found.values[0] and (still.ripple <= 1e-12 * still.values).all()
-    # Gravity leaves the mean to a per cent or so, 32 cells another half.
+    # Gravity leaves the mean to a half per cent or so, 16 cells another.
     np.testing.assert_allclose(still.values, found.values, rtol=0.02)
     assert still.estimate > 1e-3 and math.isnan(found.estimate)
-    question = Question(RESPONSE, cut, "", (), Case(RESPONSE, "long_wave", 32, HELD), ())
+
+
+@kills("validation.trade.judge:_ripple_error", "found.ripple - best.ripple", "found.ripple + best.ripple")
+def test_what_ripples_is_told_beside_the_mean() -> None:
+    """Largest share of the amplitudes by which a half-swing is off; here of 0.2 in 4, and none of itself."""
+    still, best = (replace(said([2.0, 4.0]), ripple=np.array(each)) for each in ([0.0, 0.0], [0.04, 0.2]))
+    still = replace(still, estimate=0.03)
     cases = tuple(Case(RESPONSE, *case) for case in (("statics",), ("long_wave", 32, HELD)))
-    runs = dict(zip(cases, (Run(each, (1.0,), 0.1, 0) for each in (still, found)), strict=True))
-    one = compare(replace(question, cases=cases, ladder=(question.reference,)), runs, 1e-3)
-    assert (
-        one.ripple == one.rows[0].ripple_error == pytest.approx(float(np.max(half / found.values)), rel=1e-9)
-    )
-    assert one.rows[1].ripple_error == 0.0 and one.rows[0].estimate == still.estimate
+    runs = dict(zip(cases, (Run(each, (1.0,), 0.1, 0) for each in (still, best)), strict=True))
+    one = compare(Question(RESPONSE, scene(), "", cases, cases[1], cases[1:]), runs, 1e-3)
+    assert one.ripple == one.rows[0].ripple_error == pytest.approx(0.05, rel=1e-14)
+    assert one.rows[1].ripple_error == 0.0 and one.rows[0].estimate == 0.03
     assert "ripple" in "\n".join(trade_lines(replace(record(), comparisons=(one,))))
 
 
@@ -481,7 +484,7 @@ def test_held_answers_are_those_of_run() -> None:
 @kills("validation.trade.cases:passage", "length = (stop - start) / plan.rate", "length = stop / plan.rate")
 def test_passage() -> None:
     """Within the scene's own run-up; with gravity across, from four times that at the surface on."""
-    for name, passes in (("runup", True), ("washing_machine", False)):
+    for name, passes in (("washing_machine", False), ("runup", True)):
         machine = scene(name)
         plan, cut = planned(machine), passage(machine)[0]
         assert (
@@ -492,9 +495,9 @@ def test_passage() -> None:
         if machine.rotor.axis == "horizontal":
             held = max(float(capture_speed(fill.surface_radius, 9.81)) for fill in machine.fills)
             assert cut.start >= 2.0 * held * (1.0 - 1e-12)
-        values = answer(machine.altered(runup=cut), Case(RUNUP, "long_wave", 32)).values
-        top = int(np.argmax(values))
-        assert not passes or 0 < top < values.size - 1
+        if passes:
+            values = answer(machine.altered(runup=cut), Case(RUNUP, "long_wave", 8)).values
+            assert 0 < int(np.argmax(values)) < values.size - 1
 
 
 def test_same_answer_alone() -> None:
