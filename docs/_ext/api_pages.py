@@ -11,6 +11,7 @@ import importlib.util
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 PACKAGES = ("meshes", "fluid", "solvers", "leblanc", "validation")
@@ -100,8 +101,13 @@ def source_root() -> Path:
     return Path(found.origin).parents[1]
 
 
-def modules(root: Path) -> Iterator[Module]:
+@cache
+def modules(root: Path) -> tuple[Module, ...]:
     """Public modules below a folder, package by package."""
+    return tuple(_modules(root))
+
+
+def _modules(root: Path) -> Iterator[Module]:
     public = public_homes()
     for package in PACKAGES:
         for path in sorted((root / package).rglob("*.py")):
@@ -195,7 +201,7 @@ def write(folder: Path) -> list[Path]:
     """
     folder.mkdir(parents=True, exist_ok=True)
     by_package: dict[str, list[Module]] = {}
-    found = list(modules(source_root()))
+    found = modules(source_root())
     answers = results(found)
     for module in found:
         by_package.setdefault(module.package, []).append(module)
@@ -208,7 +214,7 @@ def write(folder: Path) -> list[Path]:
     return pages
 
 
-def _public_page(found: list[Module], answers: list[Member]) -> str:
+def _public_page(found: Iterable[Module], answers: list[Member]) -> str:
     """The public names of `leblanc` and its results, each with its docstring."""
     members = {member.full: member for module in found for member in module.members}
     title = "Public names"
