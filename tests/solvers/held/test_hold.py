@@ -163,7 +163,6 @@ def test_a_whirl_that_excites_itself(ratio: float) -> None:
     assert found.energy_error < 1e-2
 
 
-@kills("solvers.held.turns:Watch._died", "return late <= ", "return late < 0.0 * ")
 def test_unbalance_may_hold_what_would_whirl() -> None:
     """Where linear theory lets a whirl of the even layer grow, unbalance and gravity can keep it down.
 
@@ -190,7 +189,7 @@ def test_the_way_down_is_another_one() -> None:
     rotor, fill = whirler(0.02)
     friction, numerics = Friction("linear", LAG * SCALE), HoldNumerics(cells=32)
     machine = HeldMachine(rotor.system(), (fill,), friction)
-    spins = SCALE * np.array([1.3, 1.4, 1.47, 1.55])
+    spins = SCALE * np.array([1.3, 1.45, 1.55])
     growth = asynchronous_growth(rotor, [fill], spins, friction)[0]
     tasks = [
         HeldTask(start(machine, spin, numerics, kick=0.1 if grows > 0.0 else 0.0), float(grows))
@@ -202,7 +201,7 @@ def test_the_way_down_is_another_one() -> None:
             yield k, hold_with_error(machine, task.begin, numerics, task.slowest)
 
     found = held_branches(tasks, one_by_one)
-    assert found.hysteresis.tolist() == [False, False, False, True]
+    assert found.hysteresis.tolist() == [False, False, True]
     # W/h0 carried up is 0.8126 at 128 cells.
     assert found.up[-1].amplitude / fill.depth == pytest.approx(0.8126, rel=0.02)
     assert found.down[-1].amplitude < 1e-6 * fill.depth

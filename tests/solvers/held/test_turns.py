@@ -73,6 +73,16 @@ def test_a_whirl_that_has_had_its_time() -> None:
         assert found.kind is (HeldKind.STEADY if kind is HeldKind.PERIODIC else kind)
 
 
+@kills("solvers.held.turns:Watch._died", "return late <= ", "return late < 0.0 * ")
+def test_a_whirl_that_decays_against_linear_theory_has_died() -> None:
+    """A beat of a millionth of the amplitude that falls to e^-4 of it in a window; one that stays has not."""
+    for rate, died in ((-4.0, True), (0.0, False)):
+        found = watch(0.01)
+        k = np.arange(2 * found.window)
+        beat = 1e-6 * SIZE * np.exp(rate * k / found.window) * np.cos(0.7 * k)
+        assert found._died(np.stack([SIZE + beat] * 3, axis=1), SIZE) is died
+
+
 def marks(modes: int, count: int = 10) -> tuple[list[Array], Array]:
     """States of a linear motion at the ends of turns, and where it is bound for."""
     rng = np.random.default_rng(4)

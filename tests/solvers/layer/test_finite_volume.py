@@ -118,11 +118,11 @@ def test_equilibria() -> None:
             np.testing.assert_allclose(area, start, atol=1e-13)
 
 
-def test_a_million_steps_lose_no_mass() -> None:
+def test_many_steps_lose_no_mass() -> None:
     n = 16
     area, q = np.full(n, 0.095), np.full(n, -(0.095**2))
     before, taken = area.sum(), 0
-    while taken < 1_000_000:
+    while taken < 300_000:
         # Strong asynchronous whirl with a dry patch and bores.
         steps = run(area, q, 20000.0, (0.1, -0.24, 100.0, 0.76, 0.0), (1, 0.02, 0.0, False))
         assert steps > 0
@@ -309,7 +309,7 @@ def test_dispersion_leaves_the_torque(amplitude: float) -> None:
     """
     whirl, k, depth = 0.73132, 0.0230769, 0.1
     period = 2.0 * math.pi / (1.0 - whirl)
-    for n in (64, 128, 256, 512):
+    for n in (64, 128, 256):
         area = np.full(n, depth - 0.5 * depth**2)
         q, cosine, sine = -(area**2), *angles(n)[:2]
         drive, rub = (amplitude, whirl - 1.0, 10.0 * period, whirl, 0.0), Wall(1, k, 0.0, True)

@@ -129,7 +129,7 @@ def test_water_that_leaves_takes_its_momentum_along(model: RunupModel) -> None:
     still = replace(ROTOR.system(), unbalance=np.zeros(2, dtype=complex))
     shed = Shed(np.zeros(2, dtype=complex), 1.2, 1.0, np.diag([8.0, 8.0]), 0.25)
     system = replace(still, sheds=(shed,))
-    coast = (Stage(duration=3.0, free=True),)
+    coast = (Stage(duration=1.0, free=True),)
     numerics = replace(ALONE, cells=32)
     free = run_up(system, (), Programme(40.0, coast, 0.4), numerics=numerics, model=model)
     np.testing.assert_allclose(free.speed, 40.0, rtol=1e-12)

@@ -197,7 +197,7 @@ def with_discs(system: RotorSystem, discs: list[tuple[float, float]]) -> RotorSy
 )
 def test_added_mass() -> None:
     """Walls wet all over in isotropic supports: the mass of full chambers, at each plane its own."""
-    system, speed = two_plane().system(), np.linspace(10.0, 300.0, 15)
+    system, speed = two_plane().system(), np.linspace(10.0, 300.0, 5)
     wet = [at_plane(-0.25, 1.2e-4), at_plane(0.2, 1e-4, radius=0.08)]
     found = response(system, wet, speed, 0.0)
     assert not found.dry_patch.any() and found.converged.all()
@@ -389,9 +389,9 @@ def assert_each_as_if_alone(rotor: Rotor, sets: list[list[Fill]], speed: Array) 
 def test_volumes_in_several_planes_at_once() -> None:
     """Sets of volumes with folds, some without liquid in a chamber."""
     first, second = rig(0.001, 1e-4), Jeffcott(4.0, 3.6e4, 40.0, 3e-3)
-    volumes = [(1.2e-5, 1e-5), (0.0, 2e-5), (4e-5, 1e-6), (0.0, 0.0), (1.5e-5, 1e-5), (3e-5, 0.0)]
+    volumes = [(1.2e-5, 1e-5), (0.0, 2e-5), (0.0, 0.0), (3e-5, 0.0)]
     sets = [[at_plane(z, v) for z, v in zip((-0.4, 0.4), row, strict=True)] for row in volumes]
-    assert_each_as_if_alone(dumbbell(((-1.0, first), (1.0, second))), sets, np.linspace(94.0, 102.0, 17))
+    assert_each_as_if_alone(dumbbell(((-1.0, first), (1.0, second))), sets, np.linspace(94.0, 102.0, 9))
 
 
 @kills(

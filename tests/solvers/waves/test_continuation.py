@@ -155,7 +155,7 @@ def test_free_waves_are_neutral(c) -> None:  # type: ignore[no-untyped-def]
     assert np.max(np.abs(rates.real)) < 1e-9 * abs(c.dispersion) * 60**3
 
 
-@pytest.mark.parametrize("acceleration", [0.02, 0.1])
+@pytest.mark.parametrize("acceleration", [pytest.param(0.02, marks=pytest.mark.slow), 0.1])
 def test_both_directions_and_step_lengths_see_the_same_curve(acceleration: float) -> None:
     problem = family_problem(RETROGRADE, acceleration, decay=0.07, diffusion=0.01)
     ways = [

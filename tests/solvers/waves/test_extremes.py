@@ -90,7 +90,9 @@ def crest_over_the_highest(wave: SteadyWave) -> float:
     return float(np.max(wave.problem.steepening * wave.profile(16384) / highest))
 
 
-@pytest.mark.parametrize("family", [1, -1], ids=["prograde", "retrograde"])
+@pytest.mark.parametrize(
+    "family", [pytest.param(1, id="prograde", marks=pytest.mark.slow), pytest.param(-1, id="retrograde")]
+)
 def test_a_wave_that_breaks_says_so(family: int) -> None:
     """With exact dispersion the steepening of a high wave has no match: its crest comes to stand still."""
     low, c = answer(family, whitham=True, amplitude=1e-3)
