@@ -13,20 +13,20 @@ Imports = Mapping[tuple[str, str], int]
 FLOORS: tuple[tuple[str, Mapping[str, tuple[str, ...]]], ...] = (
     ("validation", {"cases, notebooks, trade": ("validation",)}),
     ("leblanc", {"commands": ("leblanc.cli", "leblanc.__main__"), "three dimensions": ("leblanc.view",)}),
-    ("leblanc", {"calls": ("leblanc", "leblanc.api"), "wings": ("leblanc.wings",)}),
+    ("leblanc", {"calls": ("leblanc",), "wings": ("leblanc.wings",)}),
     (
         "leblanc",
         {
             "studies: question, study, answer": ("leblanc.studies",),
-            "figures": ("leblanc.figures", "leblanc.results", "leblanc.text"),
+            "plotting": ("leblanc.plotting",),
         },
     ),
+    ("leblanc", {"liquid models: choice, errors": ("leblanc.liquid",)}),
     ("leblanc", {"machine file": ("leblanc.scene",)}),
     (
         "leblanc",
         {
-            "core": ("leblanc.core", "leblanc.questions"),
-            "registry": ("leblanc.registry", "leblanc.moved"),
+            "core, registry": ("leblanc.core", "leblanc.registry", "leblanc.moved"),
         },
     ),
     (

@@ -20,7 +20,7 @@ from fluid.fill import Fill
 from fluid.friction.laws import Friction, FrictionLaw
 from fluid.liquid import known_liquid
 from leblanc.core.units import RPM
-from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, save, style
+from leblanc.plotting.page import Figure, Frame, lay_out, number, save, style
 from meshes.arrays import Array, Complex
 from meshes.chamber import Chamber
 from solvers.ross import liquid_layer

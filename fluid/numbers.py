@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,20 +13,46 @@ from fluid.fill import Fill
 from fluid.paraboloid import CYLINDER_STEEPNESS, steepness
 from fluid.waves import free_wave_speeds
 from meshes.arrays import Array
+from meshes.quantity import Q
+
+_ENDS = ("end",)  # of the range of speeds
 
 
 @dataclass(frozen=True)
 class LayerNumbers:
     """What decides how a layer behaves; shapes (...,) of the speed."""
 
-    fill: float  #: volume over capacity
-    relative_depth: float  #: mean depth over radius, h0/R
-    curvature: float  #: (R/a)^2, kappa
-    centrifuge: Array  #: centrifugal acceleration at the free surface over gravity, Omega^2 a/g
-    #: rise of the surface over the chamber's radius in chamber heights, beta R^2/h; infinite for a cylinder
-    steepness: Array
-    reynolds: Array  #: Omega R^2/nu
-    skin: Array  #: depth of the laminar wall layer over the mean depth, sqrt(nu/Omega)/h0
+    fill: Annotated[float, Q("1", "fill", "volume over capacity", variable="fill")]
+    relative_depth: Annotated[
+        float, Q("1", "relative depth", "mean depth over radius, h0/R", variable="relative_depth")
+    ]
+    curvature: Annotated[float, Q("1", "curvature", "(R/a)^2, kappa", variable="curvature")]
+    centrifuge: Annotated[
+        Array,
+        Q(
+            "1",
+            "centrifuge",
+            "centrifugal acceleration at the free surface over gravity, Omega^2 a/g",
+            _ENDS,
+            variable="centrifuge",
+        ),
+    ]
+    #: infinite for a cylinder
+    steepness: Annotated[
+        Array,
+        Q(
+            "1",
+            "steepness",
+            "rise of the surface over the radius in chamber heights, beta R^2/h",
+            _ENDS,
+            variable="steepness",
+        ),
+    ]
+    reynolds: Annotated[Array, Q("1", "reynolds", "Omega R^2/nu", _ENDS, variable="reynolds")]
+    skin: Annotated[
+        Array,
+        Q("1", "skin", "laminar wall layer over the mean depth, sqrt(nu/Omega)/h0", _ENDS, variable="skin"),
+    ]
 
 
 def layer_numbers(fill: Fill, speed: ArrayLike, gravity: float, axial_gravity: float) -> LayerNumbers:

@@ -14,11 +14,6 @@ if TYPE_CHECKING:
     from fluid.fill import Fill
     from fluid.friction.laws import Friction
     from fluid.liquid import Liquid
-    from leblanc.api import (
-        compare,
-        explain,
-        validate,
-    )
     from leblanc.core.disk import opened as open
     from leblanc.scene.examples import example
     from leblanc.scene.magnetic import MagneticRotor
@@ -27,6 +22,8 @@ if TYPE_CHECKING:
     from leblanc.scene.schema.load import SceneError
     from leblanc.scene.spindle import Spindle
     from leblanc.studies.bearing import bearing
+    from leblanc.studies.compare import compare
+    from leblanc.studies.explain import explain
     from leblanc.studies.fit import fit
     from leblanc.studies.layer import layer
     from leblanc.studies.map import map_balls, map_whirl
@@ -37,6 +34,7 @@ if TYPE_CHECKING:
     from leblanc.studies.runup import run_up
     from leblanc.studies.runup import runup as runup  # another name of it
     from leblanc.studies.sweep import sweep
+    from leblanc.studies.validate import validate
     from leblanc.studies.volume import volume
     from meshes.chamber import Chamber
     from meshes.errors import InputError
@@ -79,9 +77,11 @@ __all__ = [
 
 sys.meta_path.append(Finder)
 
-_API = "leblanc.api"
-# Each in a package of its name.
-_QUESTIONS = ("bearing", "fit", "layer", "modes", "optimise", "outputs", "run", "runup", "sweep", "volume")
+# Each in a module of its name.
+_QUESTIONS = (
+    *("bearing", "compare", "explain", "fit", "layer", "modes", "optimise", "outputs", "run", "runup"),
+    *("sweep", "validate", "volume"),
+)
 # Where each public name lives: its module, and its name there.
 _HOMES = {
     "Chamber": ("meshes.chamber", "Chamber"),
@@ -105,10 +105,7 @@ _HOMES = {
     "load_scene": ("leblanc.scene.scene", "load_scene"),
     "map_balls": ("leblanc.studies.map", "map_balls"),
     "map_whirl": ("leblanc.studies.map", "map_whirl"),
-    "compare": (_API, "compare"),
-    "explain": (_API, "explain"),
 }
-_HOMES |= {name: (_API, name) for name in __all__ if name not in _HOMES}
 
 
 def __getattr__(name: str) -> object:

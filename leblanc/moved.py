@@ -15,6 +15,7 @@ _GONE = "0.3"  # version in which these are no longer read
 # "module:name" of a class as it was, and as it is. The modules are gone.
 NAMES = {
     "leblanc.results.exciter:ExciterResult": "leblanc.wings.exciter.answer:ExciterAnswer",
+    "leblanc.results.explanation:Explanation": "leblanc.studies.explain.answer:ExplainAnswer",
     "leblanc.results.fit:FitResult": "leblanc.studies.fit.answer:FitAnswer",
     "leblanc.results.layer:FreeWaveResult": "leblanc.studies.layer.answer:FreeWaveAnswer",
     "leblanc.results.layer:LayerPeriodsResult": "leblanc.studies.layer.answer:PeriodsAnswer",
@@ -29,6 +30,10 @@ NAMES = {
     "leblanc.results.optimum:OptimumResult": "leblanc.studies.optimise.answer:OptimumAnswer",
     "leblanc.results.races.chart:BallChart": "leblanc.studies.map.balls.answer:BallChart",
     "leblanc.results.races.design:BallDesignResult": "leblanc.studies.optimise.balls.answer:BallDesignAnswer",
+    "leblanc.results.models.comparison:Comparison": "leblanc.studies.compare.answer:CompareAnswer",
+    "leblanc.results.races.numbers:BallExplanation": (
+        "leblanc.studies.explain.balls.answer:BallExplainAnswer"
+    ),
     "leblanc.results.races.states:BallsResult": "leblanc.studies.balls.answer:BallsAnswer",
     "leblanc.results.response:RunResult": "leblanc.studies.run.answer:RunAnswer",
     "leblanc.results.runup:RunupResult": "leblanc.studies.runup.answer:RunupAnswer",

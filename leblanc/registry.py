@@ -14,7 +14,10 @@ CORE = ("jeffcott", "two_plane", "tub")  # kinds that the core's own studies ans
 
 # "module:function" of a scene, by kind of machine and by question.
 WINGS: dict[str, dict[str, str]] = {
-    "balls": {"run": "leblanc.studies.balls.study:run_balls"},
+    "balls": {
+        "run": "leblanc.studies.balls.study:run_balls",
+        "explain": "leblanc.studies.explain.balls.study:explain_balls",
+    },
     "exciter": {
         "run": "leblanc.wings.exciter.study:run_exciter",
         "explain": "leblanc.wings.exciter.study:explain_exciter",

@@ -306,7 +306,7 @@ def test_pages_of_models_have_their_parts() -> None:
 
 
 def test_ranges_that_the_pages_show_are_those_of_the_code() -> None:
-    from leblanc.studies.models.liquid import WAVE_MODELS
+    from leblanc.liquid.models import WAVE_MODELS
 
     shown = set()
     for page in PAGES:

@@ -111,6 +111,11 @@ def test_words_stand_in_their_boxes_and_the_picture_is_the_same_each_time(tmp_pa
 def test_a_traced_command_enters_its_own_module_and_draws_nothing() -> None:
     entered, with_definitions, imported = flows.trace(["explain", "examples/horizontal_rig.toml"], ROOT)
     front = "leblanc" if (ROOT / "leblanc").is_dir() else "study"
-    assert {f"{front}.cli", f"{front}.cli.explain"} <= set(entered) <= set(with_definitions) <= set(imported)
+    assert (
+        {f"{front}.cli", f"{front}.studies.explain.study"}
+        <= set(entered)
+        <= set(with_definitions)
+        <= set(imported)
+    )
     assert any(name.startswith("solvers.") for name in entered) and set(imported) - set(with_definitions)
     assert not [name for name in imported if name.startswith(f"{front}.figures")]

@@ -10,9 +10,9 @@ from dataclasses import dataclass
 from html import escape
 from typing import Any, get_args
 
-from leblanc.figures.drawing.page import WIDTH, Frame, lay_out, style
-from leblanc.figures.drawing.page import Figure as Figure
-from leblanc.figures.drawing.page import number as number
+from leblanc.plotting.page import WIDTH, Frame, lay_out, style
+from leblanc.plotting.page import Figure as Figure
+from leblanc.plotting.page import number as number
 from validation.case import Case, Value, Verdict
 
 _DPI, _WIDE = 160, 110  # dots of a file and of the screen to an inch

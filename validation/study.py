@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, TypeVar, get_args, get_origin, get_type_hints
 
 if TYPE_CHECKING:
-    from leblanc.figures.drawing.page import Figure
+    from leblanc.plotting.page import Figure
 
 _Kept = TypeVar("_Kept")
 
@@ -63,7 +63,7 @@ def shown(
     """
 
     def show(out: Path = Path("docs/images")) -> Iterator[object]:
-        from leblanc.figures.drawing.page import save_png
+        from leblanc.plotting.page import save_png
 
         for stem, figure in figures.items():
             about = getattr(figure, "func", figure).__doc__ or stem

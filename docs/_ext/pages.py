@@ -89,8 +89,8 @@ class Ranges(SphinxDirective):
 
     def run(self) -> list[nodes.Node]:
         """A table, or a sentence where there is no bound."""
-        from leblanc.studies.models.liquid import wave_model
-        from leblanc.studies.models.validity import MEANING
+        from leblanc.liquid.models import wave_model
+        from leblanc.liquid.validity import MEANING
 
         bounds = wave_model(self.arguments[0]).ranges
         if not bounds:

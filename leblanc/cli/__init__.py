@@ -9,7 +9,7 @@ from __future__ import annotations
 import gc
 import os
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import wraps
 from importlib import import_module
 from importlib.metadata import EntryPoint, PackageNotFoundError, version
@@ -19,7 +19,7 @@ from typing import Annotated, Any
 import typer
 from typer.main import get_command
 
-from leblanc.cli import compare, explain, new, view
+from leblanc.cli import new, view
 from leblanc.core.answer import NotConverged
 from leblanc.core.contents import recording
 from leblanc.core.interrupts import INTERRUPTED, TERMINATED, Terminated, behind, heard, leave, said
@@ -37,7 +37,7 @@ NAMES = (
     *("new", "explain", "run", "compare", "fit", "map", "runup", "optimise", "sweep", "view"),
     *("layer", "modes", "bearing", "volume", "outputs"),
 )
-MODULES = {each.__name__.rpartition(".")[2]: each for each in (new, explain, compare, view)}
+MODULES = {each.__name__.rpartition(".")[2]: each for each in (new, view)}
 ALIASES = {"run_up": "runup", "run-up": "runup"}  # names that are read as well
 
 # The current folder may hold a stranger's files: a pickle.py is not for the processes that are started from
@@ -213,11 +213,26 @@ def _as_typed(command: Callable[..., object]) -> Callable[..., object]:
                 fault = fault_in(scene, error)
             if fault is not None:
                 raise fault from error
-            from leblanc.questions import as_typed
-
-            raise as_typed(error, options) from error
+            raise _option_as_typed(error, options) from error
 
     return asked
+
+
+def _option_as_typed(error: InputError, given: Mapping[str, Any]) -> InputError:
+    """What is refused of an option, with the value as it was typed and its bounds in the unit typed."""
+    name = error.field.removeprefix("--").replace("-", "_")
+    typed = given.get(name)
+    if not isinstance(typed, str):
+        return error
+    if not error.field.startswith("--") and not typed.lstrip("+-. ")[:1].isdigit():
+        return error  # no quantity: a name, which may be an argument and no option
+    option = f"--{name.replace('_', '-')}"
+    try:
+        return InputError(option, float(typed), error.allowed)  # in SI, as the bounds are
+    except ValueError:
+        from leblanc.core.units import allowed_as_typed
+
+        return InputError(option, typed, allowed_as_typed(error.allowed, typed))
 
 
 def _unread(why: str) -> None:

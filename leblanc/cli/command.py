@@ -135,9 +135,10 @@ def _typed(one: Asked) -> Parameter:
     kind: Any = one.kind
     if kind == Texts:
         return _parameter(one.name, list[str] | None, typer.Option(*one.option.names, help=one.text), None)
+    several = one.read.many if isinstance(one.read, Reader) else get_origin(kind) is Sequence
     if kind == Points:
         kind = int
-    elif get_origin(kind) is Sequence or (isinstance(one.read, Reader) and one.read.many):
+    elif several:
         kind = list[str] if one.default is Parameter.empty else list[str] | None
     elif one.read is not None or kind == Quantity | None:  # of the latter the study knows the unit
         kind = str if one.default is Parameter.empty else str | None

@@ -10,7 +10,6 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib import metadata
-from operator import attrgetter
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -89,81 +88,6 @@ def attributes(
     }
 
 
-def carried(path: str) -> Any:
-    """A name of an answer's JSON for what stands deeper in it, as "history.time".
-
-    Where a part of the path is None the answer does not have the name.
-    """
-    return property(attrgetter(path))
-
-
-class Result(ABC):
-    """An answer to a question about a machine.
-
-    A subclass is a frozen dataclass that names `figure`, the function that draws its main figure, and
-    `summary`, the function that gives its main numbers as labels and values; both as "module:function".
-    """
-
-    figure: ClassVar[str]
-    summary: ClassVar[str]
-
-    def __init_subclass__(cls) -> None:
-        super().__init_subclass__()
-        # In place of what a dataclass would make of fields that are arrays.
-        for name in ("__eq__", "__hash__", "__repr__"):
-            if name not in vars(cls) or (name == "__hash__" and cls.__hash__ is None):
-                setattr(cls, name, getattr(Result, name))
-
-    def __eq__(self, other: object) -> bool:
-        """Of the same kind with the same values, arrays element by element, nan equal to nan."""
-        from leblanc.core.quantities import alike
-
-        return alike(self, other) if type(self) is type(other) else NotImplemented
-
-    def __hash__(self) -> int:
-        return hash((type(self), getattr(self, "digest", None)))
-
-    def __repr__(self) -> str:
-        """What it is, of which machine, and how much of it."""
-        sizes = ", ".join(f"{name} {size}" for name, size in self.named_arrays().sizes.items())
-        of = getattr(self, "name", None)
-        return (
-            f"<{type(self).__name__}{f' of {one_line(of)!r}' if of else ''}{f': {sizes}' if sizes else ''}>"
-        )
-
-    @abstractmethod
-    def to_json(self) -> dict[str, Any]:
-        """What the command prints with --json: SI, radians, complex numbers as [re, im]."""
-
-    @abstractmethod
-    def named_arrays(self) -> NamedArrays:
-        """Its numbers as arrays with named dimensions, units in their attributes."""
-
-    def to_dataset(self) -> Dataset:
-        """The same as an xarray dataset."""
-        return self.named_arrays().to_dataset()
-
-    def plot(self, ax: Any = None) -> Any:
-        """The main figure, a `matplotlib.figure.Figure`; one of a single axes on somebody else's `ax`.
-
-        An `InputError` refuses `ax` where the figure has several.
-        """
-        if ax is None:
-            return called(self.figure)(self)
-        return called("leblanc.figures.drawing.page:drawn_on")(called(self.figure), self, ax)
-
-    def _repr_html_(self) -> str:
-        """The main numbers and the main figure, for a notebook."""
-        drawing, figure = io.BytesIO(), self.plot()
-        figure.savefig(drawing, format="svg")
-        address = b64encode(drawing.getvalue()).decode("ascii")
-        alt = html.escape(getattr(figure, "alt", ""))
-        return f'{self._tables()}<img alt="{alt}" src="data:image/svg+xml;base64,{address}">'
-
-    def _tables(self) -> str:
-        return _table(called(self.summary)(self))
-
-
 def _table(rows: Sequence[Sequence[Any]], head: Sequence[str] = ()) -> str:
     """A table of texts and cells as HTML."""
 
@@ -186,9 +110,10 @@ def _read_only(value: Any) -> Any:
     return value
 
 
-class Answer(Result):
+class Answer(ABC):
     """Base of a frozen dataclass whose fields and properties are declared by `Q`."""
 
+    figure: ClassVar[str]  #: "module:function" that draws its main figure
     command: ClassVar[str]  #: that asks for it
     title: ClassVar[str] = ""  #: of its report
     data: ClassVar[str] = ""  #: file of its numbers; empty where there is none
@@ -197,6 +122,30 @@ class Answer(Result):
     unused: tuple[str, ...] = ()  #: tables of the scene on which its numbers do not depend
     task: Any = None  #: of an optimisation, in place of the scene's
     interrupted = False  #: it was ended before its time; what is there is whole
+
+    def __init_subclass__(cls) -> None:
+        super().__init_subclass__()
+        # In place of what a dataclass would make of fields that are arrays.
+        for name in ("__eq__", "__hash__", "__repr__"):
+            if name not in vars(cls) or (name == "__hash__" and cls.__hash__ is None):
+                setattr(cls, name, getattr(Answer, name))
+
+    def __eq__(self, other: object) -> bool:
+        """Of the same kind with the same values, arrays element by element, nan equal to nan."""
+        from leblanc.core.quantities import alike
+
+        return alike(self, other) if type(self) is type(other) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash((type(self), getattr(self, "digest", None)))
+
+    def __repr__(self) -> str:
+        """What it is, of which machine, and how much of it."""
+        sizes = ", ".join(f"{name} {size}" for name, size in self.named_arrays().sizes.items())
+        of = getattr(self, "name", None)
+        return (
+            f"<{type(self).__name__}{f' of {one_line(of)!r}' if of else ''}{f': {sizes}' if sizes else ''}>"
+        )
 
     @property
     def attributes(self) -> Mapping[str, Any]:
@@ -222,7 +171,7 @@ class Answer(Result):
         """What was done, for the end of a command."""
         return ""
 
-    def after(self) -> None:
+    def after(self) -> None:  # noqa: B027 - most have nothing to do
         """What the command does once its files are written."""
 
     def __getattribute__(self, name: str) -> Any:
@@ -261,6 +210,10 @@ class Answer(Result):
 
         return named_arrays(self, self.attributes)
 
+    def to_dataset(self) -> Dataset:
+        """The same as an xarray dataset."""
+        return self.named_arrays().to_dataset()
+
     def save(self, path: str | PathLike[str]) -> None:
         """Write it as a netCDF file, from which `leblanc.open` makes it again."""
         called("leblanc.core.disk:save")(self, Path(path))
@@ -268,6 +221,23 @@ class Answer(Result):
     def write(self, folder: str | PathLike[str]) -> None:
         """Write the files of its command into a folder: data, pictures, report."""
         called("leblanc.core.disk:write")(self, Path(folder))
+
+    def plot(self, ax: Any = None) -> Any:
+        """The main figure, a `matplotlib.figure.Figure`; one of a single axes on somebody else's `ax`.
+
+        An `InputError` refuses `ax` where the figure has several.
+        """
+        if ax is None:
+            return called(self.figure)(self)
+        return called("leblanc.plotting.page:drawn_on")(called(self.figure), self, ax)
+
+    def _repr_html_(self) -> str:
+        """The main numbers and the main figure, for a notebook."""
+        drawing, figure = io.BytesIO(), self.plot()
+        figure.savefig(drawing, format="svg")
+        address = b64encode(drawing.getvalue()).decode("ascii")
+        alt = html.escape(getattr(figure, "alt", ""))
+        return f'{self._tables()}<img alt="{alt}" src="data:image/svg+xml;base64,{address}">'
 
     def _tables(self) -> str:
         shown = list(flat(self.blocks(), "page"))

@@ -54,7 +54,7 @@ def write(answer: Answer, folder: Path, machine: Any = None) -> list[Any]:
 
 def drawing(answer: Answer, picture: Picture, folder: Path) -> Any:
     """Files of a picture of an answer, drawn."""
-    save_figure = called("leblanc.figures.drawing.page:save")
+    save_figure = called("leblanc.plotting.page:save")
     return save_figure(called(picture.draw)(answer), folder, picture.name, picture.title)
 
 

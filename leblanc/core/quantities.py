@@ -151,13 +151,13 @@ def to_json(record: Any, only: Collection[str] = ()) -> dict[str, Any]:
         if q.part:
             if value is not None:
                 found |= value.to_json() if hasattr(value, "to_json") else to_json(value)
-        elif q.prefix and value is not None:
-            found[key] = to_json(value, q.only)
+        elif q.prefix:
+            found[key] = None if value is None else to_json(value, q.only)
         elif q.sparse:
             there = ~np.isnan(getattr(record, q.sparse))
             each, ends = plain(value[there]), np.cumsum(there.sum(axis=1)).tolist()
             found[key] = [each[start:end] for start, end in pairwise([0, *ends])]
-        elif not q.prefix:
+        else:
             found[key] = plain(value)
     return found
 
@@ -178,24 +178,36 @@ def named_arrays(record: Any, attrs: Mapping[str, Any] = MappingProxyType({})) -
 def _with_parts(record: Any, only: Collection[str] = ()) -> Iterator[tuple[str, Q, Any]]:
     """Variables of a record, of its parts, of records in rows; a part may bring its own `variables`."""
     for key, q, value in _of(record):
-        if not q.data or (only and key not in only) or (value is None and (q.part or q.prefix or q.rows)):
+        if not q.data or (only and key not in only) or (value is None and (q.part or q.rows)):
             continue
         if q.part and hasattr(value, "variables"):
             yield from ((name, q, variable) for name, variable in value.variables().items())
         elif q.part:
             yield from _with_parts(value)
         elif q.prefix:
-            own = {name for name, _, _ in _with_parts(value, q.only)}
-            for name, inner, each in _with_parts(value, q.only):
-                over = tuple(f"{q.prefix}_{dim}" if dim in own else dim for dim in inner.over)
+            own = [(name, inner, math.nan) for name, inner in _scalars(type(record), key)]
+            own = own if value is None else list(_with_parts(value, q.only))
+            dims = {name for name, _, _ in own}
+            for name, inner, each in own:
+                over = tuple(f"{q.prefix}_{dim}" if dim in dims else dim for dim in inner.over)
                 text = ", ".join(part for part in (q.text, inner.text) if part)
                 found = name if inner.variable else f"{q.prefix}_{name}"
                 yield found, replace(inner, over=over, text=text), each
         elif q.rows and value:
-            yield from _columns(type(value[0]), value, q.rows)
+            yield from _columns(
+                next(kind for kind in types_of(type(record), key) if _declared(kind)), value, q.rows
+            )
         elif not q.rows:
             said = {part: getattr(q, part).format(record) for part in ("unit", "name", "text")}
             yield q.variable or key, replace(q, **said), value
+
+
+def _scalars(kind: type, key: str) -> Iterator[tuple[str, Q]]:
+    """What the data file has of a record that is not there: its numbers without dimensions, as nan."""
+    for record in types_of(kind, key):
+        for name, each in _declared(record).items():
+            if each.q.data and each.q.unit and not each.q.over and not each.q.axes:
+                yield each.q.variable or name, each.q
 
 
 def row_variables(kind: type, rows: Sequence[Any], dim: str) -> dict[str, Variable]:
@@ -205,10 +217,17 @@ def row_variables(kind: type, rows: Sequence[Any], dim: str) -> dict[str, Variab
 
 
 def _columns(kind: type, rows: Sequence[Any], dim: str) -> Iterator[tuple[str, Q, Any]]:
+    """Quantities of records along a dimension, those of their parts among them; nan in place of no record."""
     for name, each in _declared(kind).items():
-        if each.q.data:
-            column = np.array([getattr(row, each.attribute) for row in rows])
-            yield each.q.variable or f"{dim}_{name}", replace(each.q, over=(dim, *each.q.over)), column
+        column = [None if row is None else getattr(row, each.attribute) for row in rows]
+        if each.q.part or each.q.prefix:
+            yield from _columns(each.types[0], column, dim)
+        elif each.q.data and not (each.q.over and all(value is None for value in column)):
+            shape = next((np.shape(value) for value in column if value is not None), ())
+            nothing = np.full(shape, False if each.q.flags else math.nan)
+            values = [nothing if value is None else value for value in column]
+            found = each.q.variable or f"{dim}_{name}"
+            yield found, replace(each.q, over=(dim, *each.q.over)), np.array(values)
 
 
 def _variables(name: str, q: Q, value: Any) -> dict[str, Variable]:

@@ -15,8 +15,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.studies.models.choose import Prepared, models_at, models_of
-from leblanc.studies.models.liquid import synchronous_model
+from leblanc.liquid.choose import Prepared, models_at, models_of
+from leblanc.liquid.models import synchronous_model
 from meshes.arrays import Array, Complex, Flags, Index
 from solvers.checked_model import CheckedModel
 from solvers.rotor.jeffcott import Jeffcott

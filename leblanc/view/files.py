@@ -24,7 +24,7 @@ import numpy as np
 
 from leblanc.core.files import writing
 from leblanc.core.interrupts import given_back
-from leblanc.results.drawn.machine import DrawnLiquid, MachineMotion, Scale
+from leblanc.plotting.drawn import DrawnLiquid, MachineMotion, Scale
 from leblanc.view.gate import address_of, gate
 from leblanc.view.parts import Picture
 from leblanc.view.picture import (

@@ -15,8 +15,8 @@ import numpy as np
 from leblanc.core.files import writing
 from leblanc.core.notes import one_line
 from leblanc.core.units import DEGREE, LENGTH, RPM, in_rpm, unit_for, with_unit
-from leblanc.results.drawn.balls import BallView
-from leblanc.results.drawn.machine import (
+from leblanc.plotting.drawn import (
+    BallView,
     DrawnLiquid,
     LiquidBodies,
     LiquidShape,

@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 
 from leblanc.core.notes import one_line
 from leblanc.core.units import DEGREE, LENGTH, MINUS, Unit, in_rpm, unit_for
-from leblanc.figures.chambers import plates
-from leblanc.figures.drawing.page import zero_of
-from leblanc.results.drawn.machine import DrawnLiquid, LiquidBodies, LiquidShape, MachineMotion, Scale, strips
+from leblanc.plotting.chambers import plates
+from leblanc.plotting.drawn import DrawnLiquid, LiquidBodies, LiquidShape, MachineMotion, Scale, strips
+from leblanc.plotting.page import zero_of
 from leblanc.studies.run.words import amplitude_place
 from leblanc.view.cabinet import around, corners
 from leblanc.view.machine import ground_end, machine

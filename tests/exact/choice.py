@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.studies.models.whirling import AutoWave, choose_wave
+from leblanc.liquid.whirling import AutoWave, choose_wave
 from meshes.arrays import Array
 from solvers.liquid_model import Whirl
 from tests.exact.answers import layer_fill

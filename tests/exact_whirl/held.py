@@ -8,10 +8,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from leblanc.liquid.choose import choose_all, costed, liquid_models, prepare
 from leblanc.scene.examples import example
 from leblanc.studies.held.held import held_machine, hold_speeds
 from leblanc.studies.held.holding import HERE
-from leblanc.studies.models.choose import choose_all, costed, liquid_models, prepare
 from solvers.held.hold import compile_kernels, start
 from solvers.held.state import HoldNumerics
 from solvers.synchronous.response import response

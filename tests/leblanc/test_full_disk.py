@@ -33,8 +33,8 @@ write = lambda path: write_png(np.random.default_rng(1).integers(0, 255, (400, 4
 """,
     "figure": """
 from pathlib import Path
-from leblanc.figures.drawing.page import save
-from leblanc.figures.drawing.curves import *
+from leblanc.plotting.page import save
+from leblanc.plotting.curves import *
 import numpy as np
 import matplotlib.figure
 class Figure(matplotlib.figure.Figure):

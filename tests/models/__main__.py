@@ -6,11 +6,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from leblanc.results.models.comparison import ModelAnswer
+import leblanc as lb
 from leblanc.scene.examples import example
 from leblanc.scene.scene import Scene
-from leblanc.studies.compare import compare_models
-from leblanc.studies.held.holding import Holding, cores
+from leblanc.studies.compare.answer import ModelAnswer
+from leblanc.studies.held.holding import cores
 from leblanc.studies.run.answer import RunAnswer
 from solvers.synchronous.response import distance
 from tests.models import ModelRow, ModelTable, keep
@@ -59,7 +59,7 @@ def _least(scene: Scene, model: str) -> ModelAnswer:
 
 
 def _once(scene: Scene, model: str) -> ModelAnswer:
-    (answer,) = compare_models(scene, [model], Holding(cores())).answers
+    (answer,) = lb.compare(scene, [model], workers=cores()).answers
     return answer
 
 

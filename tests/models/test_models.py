@@ -11,9 +11,9 @@ from typing import Any
 
 import pytest
 
+import leblanc as lb
 from leblanc.scene.examples import example
 from leblanc.scene.scene import LIQUID_MODELS
-from leblanc.studies.compare import compare_models
 from tests import models
 from tests.models import ModelRow, error_words, kept, time_words, words
 from tests.models.__main__ import SCENES, row_of
@@ -39,7 +39,7 @@ def test_every_model_has_its_row() -> None:
 def test_what_is_kept_is_what_the_models_answer(model: str) -> None:
     """Upright, where the exact equilibrium is the best answer; times are of another day."""
     scene = example("runup").replace(SCENES["runup"][0])
-    exact, answer = (compare_models(scene, [name]).answers[0] for name in ("statics", model))
+    exact, answer = (lb.compare(scene, [name]).answers[0] for name in ("statics", model))
     found = row_of(model, None, answer, exact.result if model != "statics" else answer.result)
     (before,) = [row for row in table("runup").rows if row.model == model]
     told = replace(found, time=before.time)

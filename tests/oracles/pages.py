@@ -12,7 +12,7 @@ from pathlib import Path
 from leblanc.core.answer import Answer
 from leblanc.core.blocks import Block, Cell, Checks, Columns, Picture, Section, Table, flat
 from leblanc.core.page import About, write_page
-from leblanc.figures.drawing.page import FigureFiles
+from leblanc.plotting.page import FigureFiles
 from leblanc.scene.rows import Row, Value
 from leblanc.studies.run.answer import RunAnswer
 

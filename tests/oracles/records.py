@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.results.base import FilledChamber
+from leblanc.liquid.filled import FilledChamber
 from leblanc.studies.held.answer import Held
 from leblanc.studies.run import notes as run_notes
 from leblanc.studies.run.answer import RunAnswer

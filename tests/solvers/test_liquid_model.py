@@ -11,7 +11,7 @@ import pytest
 from fluid.fill import Fill, Fills
 from fluid.friction.laws import Friction
 from fluid.liquid import known_liquid
-from leblanc.studies.models.liquid import WAVE_MODELS, synchronous_model, wave_model
+from leblanc.liquid.models import WAVE_MODELS, synchronous_model, wave_model
 from meshes.chamber import Chamber
 from meshes.errors import InputError
 from solvers.layer.state import Numerics

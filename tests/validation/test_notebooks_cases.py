@@ -9,9 +9,9 @@ from unittest import mock
 import numpy as np
 import pytest
 
+from leblanc.liquid.choose import axial_gravity
 from leblanc.scene.examples import example
 from leblanc.scene.scene import jeffcott
-from leblanc.studies.models.choose import axial_gravity
 from solvers.statics.hydrostatics import equilibrium
 from solvers.synchronous.response import response
 from tests.mutants import kills

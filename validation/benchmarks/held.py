@@ -19,10 +19,10 @@ for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
 
 import numpy as np  # noqa: E402
 
+from leblanc.liquid.choose import choose_all, costed, held_at, liquid_models, prepare  # noqa: E402
 from leblanc.scene.examples import example  # noqa: E402
 from leblanc.studies.held.held import held_machine, hold_speeds  # noqa: E402
 from leblanc.studies.held.holding import HERE  # noqa: E402
-from leblanc.studies.models.choose import choose_all, costed, held_at, liquid_models, prepare  # noqa: E402
 from meshes.arrays import Array  # noqa: E402
 from solvers.held.hold import compile_kernels, start  # noqa: E402
 from solvers.held.state import HoldNumerics  # noqa: E402

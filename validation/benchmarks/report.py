@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.figures.drawing.page import save_png
+from leblanc.plotting.page import save_png
 from validation.benchmarks import growth, ours
 from validation.benchmarks import ours as layers
 from validation.benchmarks.growth import Growth

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.figures.drawing.page import fill
+from leblanc.plotting.page import fill
 from validation.breaking import Beside, Kept, crests, kept
 from validation.breaking.crests import Crest
 from validation.page import Figure, number, page

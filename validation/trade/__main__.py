@@ -69,7 +69,7 @@ def keep(path: Path, out: Path | None = None, question: str | None = None) -> No
         raise RuntimeError(f"{path.stem}: the others are kept with other versions; measure all questions")
     (_HERE / f"{path.stem}.json").write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
     print(f"{path.stem}: {time.perf_counter() - begin:.0f} s", file=sys.stderr, flush=True)
-    from leblanc.figures.drawing.page import save_png
+    from leblanc.plotting.page import save_png
     from validation.trade.figure import PICTURED, trade_figure
 
     if out is not None and path.stem in PICTURED:

@@ -11,10 +11,8 @@ from pydantic import Field
 
 from fluid.fill import Fill
 from fluid.friction.laws import Friction, FrictionLaw
-from leblanc.results.choice import Choice
-from leblanc.scene.scene import Exciter, Runup, Scene, dry_rotor
-from leblanc.studies.drives import drive_of, planned
-from leblanc.studies.models.choose import (
+from leblanc.liquid.choice import Choice
+from leblanc.liquid.choose import (
     across_gravity,
     axial_gravity,
     choose,
@@ -22,6 +20,8 @@ from leblanc.studies.models.choose import (
     liquid_models,
     prepare,
 )
+from leblanc.scene.scene import Exciter, Runup, Scene, dry_rotor
+from leblanc.studies.drives import drive_of, planned
 from leblanc.studies.runup.study import RunupChoice, chosen_run, judged
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError

@@ -9,9 +9,9 @@ import numpy as np
 
 from fluid.fill import FULL
 from fluid.kdv import coefficients
+from leblanc.liquid.choose import across_gravity, is_cut
 from leblanc.scene.scene import Exciter, Runup, Scene, require_clear
 from leblanc.studies.drives import planned
-from leblanc.studies.models.choose import across_gravity, is_cut
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
 from solvers.layer.places import fewest_cells

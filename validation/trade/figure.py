@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from leblanc.core.notes import one_line
-from leblanc.figures.drawing.page import Figure, Frame, lay_out, style
-from leblanc.figures.drawing.page import save as save  # a figure is drawn and written together
+from leblanc.plotting.page import Figure, Frame, lay_out, style
+from leblanc.plotting.page import save as save  # a figure is drawn and written together
 
 if TYPE_CHECKING:
     from validation.trade.judge import Comparison, Row

@@ -14,10 +14,9 @@ if TYPE_CHECKING:
 
 def load(path: Path) -> Scene:
     """Scene from a file, SceneError with all that is wrong; doubts go to stderr, one line each."""
-    from leblanc.results.notes.doubts import DoubtCode
+    from leblanc.liquid.validity import DoubtCode, doubts, moves_freely
     from leblanc.scene.scene import scene_from_table
     from leblanc.scene.schema.load import escaped, given_at, read_text, scene_table, with_lines
-    from leblanc.studies.models.validity import doubts, moves_freely
 
     text = read_text(path)
     table = scene_table(text, path)
@@ -33,7 +32,7 @@ def load(path: Path) -> Scene:
 
 def load_study(path: Path) -> Sweep:
     """Sweep from a study file, as `load` reads a scene."""
-    from leblanc.studies.models.validity import doubts
+    from leblanc.liquid.validity import doubts
     from leblanc.studies.sweep.plan import load_sweep
     from leblanc.studies.sweep.sampling import sampling_note
 

@@ -138,7 +138,7 @@ class BallsAnswer(Answer):
     #: above which a ring of liquid stands against it, rad/s; None where it does not act
     capture_speed: float | None = None
     #: what it does to the balls; None where it does not act
-    gravity: Annotated[GravityOnBalls | None, Q(prefix="gravity")] = None
+    gravity: Annotated[GravityOnBalls | None, Q(prefix="gravity", when="gravity")] = None
     tolerance: float | None = None  #: relative error that the scene allows
 
     @property

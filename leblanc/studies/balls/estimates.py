@@ -8,8 +8,8 @@ from typing import TypeVar
 
 import numpy as np
 
+from leblanc.liquid.choose import Prepared
 from leblanc.studies.balls.races import GravityOnBalls
-from leblanc.studies.models.choose import Prepared
 from meshes.arrays import Array, Complex, Flags, Index
 from solvers.liquid_model import ROUNDING
 from solvers.rotor.balls.balancers import BallRace, with_balls_at

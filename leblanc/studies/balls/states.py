@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fluid.fill import Fill
+from leblanc.liquid.choose import axial_gravity
+from leblanc.liquid.models import synchronous_model
 from leblanc.scene.scene import Scene, dry_rotor, require_clear
 from leblanc.studies.balls.answer import reported_state
-from leblanc.studies.models.choose import axial_gravity
-from leblanc.studies.models.liquid import synchronous_model
 from meshes.arrays import Array, Complex, Flags
 from meshes.errors import InputError, require_positive
 from solvers.liquid_model import LiquidModel

@@ -8,6 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from leblanc.core.notes import Note
+from leblanc.liquid.choose import Prepared, axial_gravity, carried_from, choose_all, prepare
+from leblanc.liquid.validity import doubts
 from leblanc.scene.inputs import input_rows
 from leblanc.scene.races import BallRace
 from leblanc.scene.scene import Scene
@@ -19,8 +21,6 @@ from leblanc.studies.balls.states import liquid_beside, own_family
 from leblanc.studies.closed_forms.study import closed_forms
 from leblanc.studies.loads.answer import MachineLoads
 from leblanc.studies.loads.study import loaded_machine, loads_over_speed
-from leblanc.studies.models.choose import Prepared, axial_gravity, carried_from, choose_all, prepare
-from leblanc.studies.models.validity import doubts
 from leblanc.studies.run import notes as response_notes
 from meshes.arrays import Array
 from meshes.errors import InputError

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from leblanc.figures.drawing.page import Caption, Figure, Frame, lay_out, number, style
+from leblanc.plotting.page import Caption, Figure, Frame, lay_out, number, style
 from leblanc.studies.bearing.answer import HERTZ, NAMES, BearingAnswer, bearing_words, frequency_rows
 
 FRAME = Frame(left=1.3, top=0.15, between=0.1, below=0.42)

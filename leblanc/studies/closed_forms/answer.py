@@ -93,11 +93,11 @@ class ClosedForms:
     """What closed forms say of a scene; None or empty where it lacks what they need."""
 
     #: of a vertical rotor with a ball joint
-    upright: Annotated[Upright | None, Q(prefix="upright", text="by the energy")] = None
+    upright: Annotated[Upright | None, Q(prefix="upright", text="by the energy", when="upright")] = None
     #: of a planar rotor's answer
-    vector: Annotated[VectorModel | None, Q(prefix="vector", key="vector_model")] = None
+    vector: Annotated[VectorModel | None, Q(prefix="vector", key="vector_model", when="vector")] = None
     #: conditions of balancing in two planes
-    balancing: Annotated[Balancing | None, Q(prefix="balancing")] = None
+    balancing: Annotated[Balancing | None, Q(prefix="balancing", when="balancing")] = None
     cages: tuple[Cage, ...] = ()  #: of the bearings whose balls are given
     #: what the scene lacks for those that its kind of machine could have, a sentence each
     lacking: tuple[str, ...] = ()

@@ -8,11 +8,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from fluid.printed import liquid_angle_as_printed
+from leblanc.liquid.choose import Prepared
 from leblanc.scene.bearings import CagedBearing
 from leblanc.scene.scene import Scene, TubRotor, TwoPlaneRotor
 from leblanc.studies.closed_forms.answer import Cage, ClosedForms, VectorModel
 from leblanc.studies.closed_forms.upright import lacking, upright
-from leblanc.studies.models.choose import Prepared
 from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.rotor.balls.two_plane_balance import Balancing, dynamic_balancing, of_two_planes

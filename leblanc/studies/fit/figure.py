@@ -8,7 +8,7 @@ import numpy as np
 
 from leblanc.core.notes import one_line
 from leblanc.core.units import MM, MM_PEAK, RPM
-from leblanc.figures.drawing.page import Caption, Figure, Frame, lay_out, number, style
+from leblanc.plotting.page import Caption, Figure, Frame, lay_out, number, style
 from leblanc.studies.fit.answer import FitAnswer, Measured
 from meshes.arrays import Array
 

@@ -9,13 +9,13 @@ from typing import Any
 
 import numpy as np
 
+from leblanc.liquid.choose import across_gravity, choose_all, liquid_models, models_at, prepare
+from leblanc.liquid.models import synchronous_model
 from leblanc.scene.scene import JeffcottRotor, Scene, dry_rotor
 from leblanc.scene.schema.load import SceneError
 from leblanc.studies.drives import drive_of, numerics_of, planned
 from leblanc.studies.fit.answer import REACH
 from leblanc.studies.fit.measured import ANGLES, FIELD, SIZES, TURNS, Measurement
-from leblanc.studies.models.choose import across_gravity, choose_all, liquid_models, models_at, prepare
-from leblanc.studies.models.liquid import synchronous_model
 from leblanc.studies.runup.study import chosen_run
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError

@@ -9,6 +9,7 @@ import numpy as np
 
 from leblanc.core import units
 from leblanc.core.notes import Note
+from leblanc.liquid.validity import require_supported
 from leblanc.scene.scene import Scene, dry_rotor, require_no_balls
 from leblanc.scene.schema.load import given_at
 from leblanc.scene.schema.paths import rule_at
@@ -46,7 +47,6 @@ from leblanc.studies.fit.problem import (
     ties_of,
 )
 from leblanc.studies.fit.search import Searched, Valley, descend, floor, search
-from leblanc.studies.models.validity import require_supported
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
 

@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 
 from fluid.whirl import covering_speed
 from leblanc.core.progress import update
-from leblanc.results.choice import Choice
+from leblanc.liquid.choice import Choice
+from leblanc.liquid.choose import Prepared, held_model, is_cut
 from leblanc.studies.held.answer import Held
 from leblanc.studies.held.holding import Began, Holding
 from leblanc.studies.held.store import FOLDER, kept
 from leblanc.studies.held.whirls import wave_errors
 from leblanc.studies.held.workers import runner
-from leblanc.studies.models.choose import Prepared, held_model, is_cut
 from meshes.arrays import Array, Complex, Flags, Index
 from solvers.held.branch import HeldBranches, HeldTask, held_branches
 from solvers.held.hold import require_known_solver, start

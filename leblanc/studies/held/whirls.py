@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from leblanc.studies.models.choose import Prepared, held_model
+from leblanc.liquid.choose import Prepared, held_model
 from meshes.arrays import Array
 from solvers.held.state import HeldKind, HeldState
 from solvers.rotor.system import RotorSystem

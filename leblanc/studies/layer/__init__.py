@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from leblanc.studies.layer.answer import AnyLayerAnswer
 
 FILES = ("wave.svg", "wave.png", "periods.svg", "periods.png")
-_FILM = Reader("leblanc.figures.drawing.page:film_path")
+_FILM = Reader("leblanc.plotting.page:film_path")
 
 
 def layer(

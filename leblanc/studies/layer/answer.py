@@ -19,8 +19,8 @@ from leblanc.core.answer import Answer
 from leblanc.core.blocks import Block, Notes, Picture, Table, Words
 from leblanc.core.notes import Note, texts
 from leblanc.core.units import LENGTH, NUMBER, Dimension, in_rpm, number, unit_for, with_unit
-from leblanc.results.drawn.wave import Wave
-from leblanc.results.notes.layer import Number
+from leblanc.liquid.notes import Number
+from leblanc.studies.layer.wave import Wave
 from meshes.arrays import Array, Complex
 from meshes.quantity import Q
 from solvers.liquid_history import LayerHistory

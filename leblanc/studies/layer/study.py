@@ -18,9 +18,8 @@ from leblanc.core.notes import Note
 from leblanc.core.progress import update
 from leblanc.core.question import called
 from leblanc.core.terminal import say
-from leblanc.results.drawn.wave import Wave, WaveFrames
-from leblanc.results.notes.baffles import smeared_baffles
-from leblanc.results.notes.layer import (
+from leblanc.liquid.models import wave_model
+from leblanc.liquid.notes import (
     LayerCode,
     against_whirl,
     dry_wall,
@@ -30,7 +29,20 @@ from leblanc.results.notes.layer import (
     no_answer,
     no_smooth_wave,
     out_of_range,
+    smeared_baffles,
     two_grids,
+)
+from leblanc.liquid.validity import judge
+from leblanc.liquid.whirling import (
+    AUTO,
+    LAYER_MODELS,
+    TOLERANCE,
+    AutoWave,
+    WaveChoice,
+    choose_free,
+    choose_in_time,
+    choose_wave,
+    watched,
 )
 from leblanc.scene.chambers import round_chamber
 from leblanc.studies.layer.answer import (
@@ -43,19 +55,7 @@ from leblanc.studies.layer.answer import (
     PeriodsAnswer,
     drawn_depth,
 )
-from leblanc.studies.models.liquid import wave_model
-from leblanc.studies.models.validity import judge
-from leblanc.studies.models.whirling import (
-    AUTO,
-    LAYER_MODELS,
-    TOLERANCE,
-    AutoWave,
-    WaveChoice,
-    choose_free,
-    choose_in_time,
-    choose_wave,
-    watched,
-)
+from leblanc.studies.layer.wave import Wave, WaveFrames
 from meshes.errors import InputError, require_not_negative, require_positive
 from solvers.liquid_model import LiquidWave, WaveModel, Whirl, drag_frequency
 from solvers.potential.model import Potential, PotentialWave
@@ -174,7 +174,7 @@ def answer_layer(
 
     The whirl speed is that in space, not 0, negative against the spin; without an amplitude under gravity the
     spin takes its place. Without an amplitude statics, linear theory and elements give the limit of the force
-    ratio, the others no force. A model is one of `leblanc.studies.models.liquid.wave_model`, or
+    ratio, the others no force. A model is one of `leblanc.liquid.models.wave_model`, or
     what stands for the cheapest that is good enough. Gravity acts across the axis.
     """
     require_positive("speed", speed)

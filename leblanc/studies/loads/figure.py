@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from leblanc.core.units import MM, RPM
-from leblanc.figures.drawing.page import Caption, Figure, Frame, add_rate_axis, lay_out, number, style
+from leblanc.plotting.page import Caption, Figure, Frame, add_rate_axis, lay_out, number, style
 from leblanc.studies.loads.answer import MachineLoads, verdict
 from meshes.arrays import Array
 

@@ -26,7 +26,7 @@ from leblanc.core.blocks import (
 )
 from leblanc.core.notes import Note, texts
 from leblanc.core.units import LENGTH, RPM, VOLUME, in_rpm, number, unit_for, with_unit
-from leblanc.results.motion.cycles import Cycle, Cycles
+from leblanc.studies.cycles.answer import Cycle, Cycles
 from meshes.arrays import Array, Flags
 from meshes.quantity import Q
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from leblanc.core.notes import one_line
 from leblanc.core.units import ML, MM, MM_PEAK, RPM, VOLUME, with_unit
-from leblanc.figures.drawing.page import (
+from leblanc.plotting.page import (
     RIGHT,
     WIDTH,
     Caption,

@@ -15,14 +15,14 @@ from fluid.whirl import covering_speed, is_full
 from leblanc.core.notes import Note, NoteCode
 from leblanc.core.progress import update
 from leblanc.core.units import VOLUME, rpm_bands, with_unit
-from leblanc.results.motion.cycles import Cycles
+from leblanc.liquid.choose import Prepared, prepare
+from leblanc.liquid.models import asked_with
+from leblanc.liquid.validity import doubts
 from leblanc.scene.scene import Scene, require_no_balls, require_whirl
-from leblanc.studies.cycles import scene_cycles
+from leblanc.studies.cycles.answer import Cycles
+from leblanc.studies.cycles.study import scene_cycles
 from leblanc.studies.map.answer import WhirlMap
 from leblanc.studies.map.axes import few_points, speeds_of
-from leblanc.studies.models.choose import Prepared, prepare
-from leblanc.studies.models.liquid import asked_with
-from leblanc.studies.models.validity import doubts
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
 from solvers.checked_model import CheckedModel

@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.core.answer import Answer, carried
+from leblanc.core.answer import Answer
 from leblanc.core.blocks import Block, Notes, Picture, Table, Words
 from leblanc.core.notes import Note, NoteCode, one_line, texts
 from leblanc.core.units import LENGTH, with_unit
@@ -88,7 +88,9 @@ class ModesAnswer(Answer):
     shapes: SloshingModes  #: of the modes
     phase: Array  #: of each mode at the instant of its strongest flow, rad, shape (k,)
 
-    title = carried("chamber")
+    @property
+    def title(self) -> str:  # type: ignore[override]  # of a frozen class, not set
+        return self.chamber
 
     @property
     def mode(self) -> Annotated[NDArray[np.int32], Q("1", "mode", over=_OVER, json=False)]:

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from leblanc.core.units import MM, RPM
-from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, style
-from leblanc.results.drawn.machine import rounded_down
+from leblanc.plotting.drawn import rounded_down
+from leblanc.plotting.page import Figure, Frame, lay_out, number, style
 from leblanc.studies.modes.answer import ModesAnswer
 from meshes.arrays import Array
 from meshes.liquid_section import LiquidSection

@@ -42,7 +42,7 @@ from leblanc.core.units import (
     unit_for,
     with_unit,
 )
-from leblanc.results.choice import ModelSpan
+from leblanc.liquid.choice import ModelSpan
 from leblanc.scene.scene import Scene
 from leblanc.scene.tasks import Optimisation
 from leblanc.studies.loads.answer import load_table

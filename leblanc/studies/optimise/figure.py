@@ -10,7 +10,7 @@ import numpy as np
 from fluid.temperature import CELSIUS
 from leblanc.core.notes import one_line, texts
 from leblanc.core.units import DEGREE, LENGTH, ML, MM, MM_PEAK, UNBALANCE, VOLUME, in_rpm, unit_for, with_unit
-from leblanc.figures.drawing.page import RIGHT, WIDTH, Caption, Figure, Frame, lay_out, number, style
+from leblanc.plotting.page import RIGHT, WIDTH, Caption, Figure, Frame, lay_out, number, style
 from leblanc.studies.optimise.answer import ConditionTable, OptimumAnswer, load_words
 from leblanc.studies.run.notes import plane_label
 from meshes.arrays import Array, Flags

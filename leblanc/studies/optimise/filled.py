@@ -10,10 +10,10 @@ from typing import Generic, TypeVar
 import numpy as np
 
 from fluid.waves import capture_speed
+from leblanc.liquid.choose import Prepared, axial_gravity, is_cut, models_at, prepare
+from leblanc.liquid.models import synchronous_model
+from leblanc.liquid.validity import require_supported
 from leblanc.scene.scene import JeffcottRotor, Scene, Speeds, dry_rotor, jeffcott
-from leblanc.studies.models.choose import Prepared, axial_gravity, is_cut, models_at, prepare
-from leblanc.studies.models.liquid import synchronous_model
-from leblanc.studies.models.validity import require_supported
 from leblanc.studies.peaks import responses_between, wet_resonances
 from meshes.arrays import Array, Flags
 from solvers.rotor.balance_quality import balance_quality

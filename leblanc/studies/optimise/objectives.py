@@ -13,9 +13,9 @@ from typing import Protocol
 
 import numpy as np
 
+from leblanc.liquid.models import runup_model
 from leblanc.scene.scene import Scene, Speeds
 from leblanc.studies.loads.study import loaded_machine, loads_over_time, steady_power
-from leblanc.studies.models.liquid import runup_model
 from leblanc.studies.optimise.filled import FilledMachine, Once, with_volumes
 from meshes.arrays import Array
 from solvers.rotor.loads.turn import turn_extremes
@@ -78,8 +78,8 @@ class Passages:
     """The run-ups of a scene in time; no volumes are run twice."""
 
     def __init__(self, scene: Scene, cells: int | None = None, loaded: bool = False) -> None:
+        from leblanc.liquid.choose import across_gravity
         from leblanc.studies.drives import drive_of, numerics_of, planned
-        from leblanc.studies.models.choose import across_gravity
         from leblanc.studies.runup.study import liquid_model
 
         plan = planned(scene)

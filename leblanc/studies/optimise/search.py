@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 
 from leblanc.core.progress import update
+from leblanc.liquid.choose import axial_gravity
 from leblanc.scene.scene import JeffcottRotor, Scene, jeffcott
 from leblanc.scene.tasks import Optimisation
-from leblanc.studies.models.choose import axial_gravity
 from leblanc.studies.optimise.objectives import Passages, PeakOver
 from leblanc.studies.optimise.problem import Problem
 from leblanc.studies.optimise.wetting import wetting_volumes

@@ -20,12 +20,12 @@ from leblanc.core.answer import Answer
 from leblanc.core.notes import Note
 from leblanc.core.progress import update
 from leblanc.core.units import in_rpm
-from leblanc.results.notes.baffles import compartment_notes
+from leblanc.liquid.choose import axial_gravity
+from leblanc.liquid.models import SYNCHRONOUS_MODELS
+from leblanc.liquid.notes import compartment_notes
+from leblanc.liquid.validity import doubts
 from leblanc.scene.scene import Scene, Speeds, require_clear, require_no_balls, require_whirl
 from leblanc.scene.tasks import OBJECTIVES, Optimisation
-from leblanc.studies.models.choose import axial_gravity
-from leblanc.studies.models.liquid import SYNCHRONOUS_MODELS
-from leblanc.studies.models.validity import doubts
 from leblanc.studies.optimise import notes as notes_of
 from leblanc.studies.optimise.answer import (
     CandidateChamber,

@@ -79,4 +79,4 @@ def _outputs(
         for one in inner:
             dim = (q.rows,) if q.rows else ()
             begin = f"{q.prefix or q.rows}_" if q.prefix or q.rows else ""
-            yield from _outputs(top, one, f"{path}{name}{'[]' if dim else ''}.", begin, q.only, dim)
+            yield from _outputs(top, one, f"{path}{name}{'[]' if dim else ''}.", begin, q.only, dim or rows)

@@ -15,9 +15,9 @@ from leblanc.core.blocks import Block, Checks, Columns, Headline, Notes, Picture
 from leblanc.core.netcdf import NamedArrays
 from leblanc.core.notes import Note
 from leblanc.core.units import amplitude_sentence
-from leblanc.results.base import FilledChamber
-from leblanc.results.choice import HELD_MODELS, ModelSpan
-from leblanc.results.notes.baffles import BaffleCode
+from leblanc.liquid.choice import HELD_MODELS, ModelSpan
+from leblanc.liquid.filled import FilledChamber
+from leblanc.liquid.notes import BaffleCode
 from leblanc.studies.closed_forms.answer import HEAD, ClosedForms, closed_form_table, vector_rows
 from leblanc.studies.held.answer import MOTIONS, Held
 from leblanc.studies.loads.answer import MachineLoads, load_table
@@ -107,7 +107,7 @@ class RunAnswer(Answer):
     tolerance: float | None = None  #: relative error that the scene allows; None where nothing was estimated
     #: where it takes that to find the largest amplitudes, by rising speed; None where nobody looked
     refined: Annotated[
-        Response | None, Q(text="between the speeds asked for", prefix="refined", only=_CURVE)
+        Response | None, Q(text="between the speeds asked for", prefix="refined", only=_CURVE, when="refined")
     ] = None
     #: [theory: balance_quality, eq. 1]; infinite where the motion is; None where no mass spins
     balance_quality: Annotated[
@@ -348,7 +348,7 @@ class RunAnswer(Answer):
         if not few:
             yield phase_of
         if wet:
-            chamber = "leblanc.figures.chambers:chamber_figure"
+            chamber = "leblanc.plotting.chambers:chamber_figure"
             yield Picture("chamber", "Chamber seen along the axis", chamber)
         if few:
             yield phase_of

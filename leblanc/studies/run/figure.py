@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from leblanc.core.units import MM, MM_PEAK, RPM, in_rpm
-from leblanc.figures.chambers import chamber_figure
-from leblanc.figures.drawing.curves import (
+from leblanc.plotting.chambers import chamber_figure
+from leblanc.plotting.curves import (
     NARROW,
     Curves,
     HeldCurves,
@@ -24,7 +24,7 @@ from leblanc.figures.drawing.curves import (
     widened,
     windows,
 )
-from leblanc.figures.drawing.page import (
+from leblanc.plotting.page import (
     Figure,
     FigureFiles,
     Frame,

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import numpy as np
 
-from leblanc.results.motion.cycles import LargeWhirl
+from leblanc.studies.cycles.answer import LargeWhirl
 from meshes.arrays import Array, Complex, Flags
 from meshes.quantity import Q
 from solvers.rotor.campbell import Campbell

@@ -18,8 +18,8 @@ from leblanc.core.units import (
     rpm_range,
     with_unit,
 )
-from leblanc.results.choice import HELD_MODELS, Choice, HeldCost
-from leblanc.results.motion.cycles import LargeWhirl
+from leblanc.liquid.choice import HELD_MODELS, Choice, HeldCost
+from leblanc.studies.cycles.answer import LargeWhirl
 from leblanc.studies.held.answer import Held
 from leblanc.studies.run.motion import SelfExcited
 from meshes.arrays import Array

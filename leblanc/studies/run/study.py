@@ -15,20 +15,8 @@ from leblanc.core.answer import Answer, as_typed
 from leblanc.core.notes import Note
 from leblanc.core.progress import update
 from leblanc.core.question import called
-from leblanc.registry import answerer
-from leblanc.results.base import FilledChamber
-from leblanc.results.choice import HELD_MODELS, Choice, model_spans
-from leblanc.results.notes.baffles import compartment_notes, smeared_baffles
-from leblanc.scene.inputs import input_rows
-from leblanc.scene.scene import Scene, TubRotor
-from leblanc.scene.unbalances import left_in_the_end, sheds_of
-from leblanc.studies.closed_forms.study import closed_forms
-from leblanc.studies.cycles import large_whirl
-from leblanc.studies.held.answer import Held
-from leblanc.studies.held.holding import HERE, Began, Holding
-from leblanc.studies.loads.answer import MachineLoads
-from leblanc.studies.loads.study import loaded_machine, loads_over_speed
-from leblanc.studies.models.choose import (
+from leblanc.liquid.choice import HELD_MODELS, Choice, model_spans
+from leblanc.liquid.choose import (
     Prepared,
     by_elements,
     carried_from,
@@ -40,8 +28,20 @@ from leblanc.studies.models.choose import (
     may_hold,
     prepare,
 )
-from leblanc.studies.models.liquid import asked_with, element_model, synchronous_model
-from leblanc.studies.models.validity import doubts
+from leblanc.liquid.filled import FilledChamber
+from leblanc.liquid.models import asked_with, element_model, synchronous_model
+from leblanc.liquid.notes import compartment_notes, smeared_baffles
+from leblanc.liquid.validity import doubts
+from leblanc.registry import answerer
+from leblanc.scene.inputs import input_rows
+from leblanc.scene.scene import Scene, TubRotor
+from leblanc.scene.unbalances import left_in_the_end, sheds_of
+from leblanc.studies.closed_forms.study import closed_forms
+from leblanc.studies.cycles.study import large_whirl
+from leblanc.studies.held.answer import Held
+from leblanc.studies.held.holding import HERE, Began, Holding
+from leblanc.studies.loads.answer import MachineLoads
+from leblanc.studies.loads.study import loaded_machine, loads_over_speed
 from leblanc.studies.peaks import responses_between
 from leblanc.studies.run import notes as notes
 from leblanc.studies.run.answer import RunAnswer

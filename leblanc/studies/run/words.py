@@ -27,7 +27,7 @@ from leblanc.core.units import (
     unit_for,
     with_unit,
 )
-from leblanc.results.choice import HELD_MODELS, ModelSpan
+from leblanc.liquid.choice import HELD_MODELS, ModelSpan
 from leblanc.studies.held.answer import Held
 from leblanc.studies.run.notes import plane_words
 from meshes.arrays import Array, Flags, Index

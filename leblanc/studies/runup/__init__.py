@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from leblanc.studies.runup.answer import RunupAnswer
 
 FILES = ("runup.html", "runup.nc")
-_FILM = Reader("leblanc.figures.drawing.page:film_path")
+_FILM = Reader("leblanc.plotting.page:film_path")
 
 
 def runup(

@@ -21,7 +21,7 @@ from leblanc.core.quantities import plain
 from leblanc.core.question import called
 from leblanc.core.terminal import say
 from leblanc.core.units import LENGTH, friction_words, with_unit
-from leblanc.results.base import FilledChamber
+from leblanc.liquid.filled import FilledChamber
 from leblanc.studies.balls.races import RaceOfBalls, ball_moment, in_race
 from leblanc.studies.loads.answer import MachineLoads
 from leblanc.studies.run.answer import phase

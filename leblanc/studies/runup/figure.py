@@ -9,8 +9,8 @@ import numpy as np
 
 from leblanc.core.notes import one_line, percent
 from leblanc.core.units import LENGTH, MM, MM_PEAK, RPM, friction_words, with_unit
-from leblanc.figures.drawing.curves import gapped, joined, lag_degrees, link, spans, widened
-from leblanc.figures.drawing.page import (
+from leblanc.plotting.curves import gapped, joined, lag_degrees, link, spans, widened
+from leblanc.plotting.page import (
     WIDTH,
     Caption,
     Figure,

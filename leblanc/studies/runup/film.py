@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 
 from leblanc.core.units import LENGTH, MM, MM_PEAK, RPM, unit_for
-from leblanc.figures import wave
-from leblanc.figures.drawing.page import (
+from leblanc.liquid.filled import FilledChamber
+from leblanc.plotting.drawn import film_factor, pool
+from leblanc.plotting.page import (
     FILM_DPI,
     RIGHT,
     WIDTH,
@@ -22,8 +23,7 @@ from leblanc.figures.drawing.page import (
     style,
     write_film,
 )
-from leblanc.results.base import FilledChamber
-from leblanc.results.drawn.machine import film_factor, pool
+from leblanc.studies.layer import figure as wave
 from leblanc.studies.runup.answer import RunupAnswer, RunupFrames
 from leblanc.studies.runup.figure import caption
 from meshes.arrays import Array

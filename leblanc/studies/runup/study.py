@@ -16,14 +16,7 @@ from fluid.waves import capture_speed
 from fluid.whirl import covering_speed, is_full
 from leblanc.core.notes import Note, percent
 from leblanc.core.progress import update
-from leblanc.results.base import FilledChamber
-from leblanc.results.notes.baffles import smeared_baffles
-from leblanc.scene.inputs import runup_rows
-from leblanc.scene.scene import JeffcottRotor, Runup, Scene, dry_rotor, jeffcott, require_clear
-from leblanc.studies.balls.study import races_shown, started_balls
-from leblanc.studies.drives import drive_of, numerics_of, planned, rotor_in_time, unbalance_left
-from leblanc.studies.loads.study import loaded_machine, loads_over_time
-from leblanc.studies.models.choose import (
+from leblanc.liquid.choose import (
     across_gravity,
     axial_gravity,
     captured_speed,
@@ -31,8 +24,15 @@ from leblanc.studies.models.choose import (
     prepare,
     ruled_out_linear,
 )
-from leblanc.studies.models.liquid import RUNUP_MODELS, runup_model
-from leblanc.studies.models.validity import doubts, require_supported
+from leblanc.liquid.filled import FilledChamber
+from leblanc.liquid.models import RUNUP_MODELS, runup_model
+from leblanc.liquid.notes import smeared_baffles
+from leblanc.liquid.validity import doubts, require_supported
+from leblanc.scene.inputs import runup_rows
+from leblanc.scene.scene import JeffcottRotor, Runup, Scene, dry_rotor, jeffcott, require_clear
+from leblanc.studies.balls.study import races_shown, started_balls
+from leblanc.studies.drives import drive_of, numerics_of, planned, rotor_in_time, unbalance_left
+from leblanc.studies.loads.study import loaded_machine, loads_over_time
 from leblanc.studies.peaks import responses_between
 from leblanc.studies.runup import notes
 from leblanc.studies.runup.answer import Bands, Passage, RunupAnswer, RunupFrames, run_faults

@@ -8,7 +8,8 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from fluid.fill import Fill
-from leblanc.results.drawn.machine import (
+from leblanc.liquid.choose import across_gravity, axial_gravity, choose, liquid_models
+from leblanc.plotting.drawn import (
     DrawnLiquid,
     Liquid,
     MachineMotion,
@@ -22,7 +23,6 @@ from leblanc.results.drawn.machine import (
 )
 from leblanc.scene.rotors import Machine
 from leblanc.scene.scene import Exciter, JeffcottRotor, Scene, Speeds, Spindle, dry_rotor
-from leblanc.studies.models.choose import across_gravity, axial_gravity, choose, liquid_models
 from leblanc.studies.run.answer import RunAnswer
 from leblanc.studies.run.study import run_scene
 from leblanc.studies.runup.answer import RunupAnswer, RunupFrames

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from leblanc.liquid.choose import choose_all, prepare
+from leblanc.liquid.models import synchronous_model
 from leblanc.scene.scene import JeffcottRotor, Scene
 from leblanc.studies.balls.study import run_balls
-from leblanc.studies.models.choose import choose_all, prepare
-from leblanc.studies.models.liquid import synchronous_model
 from leblanc.studies.peaks import responses_between
 from leblanc.studies.run.answer import phase
 from leblanc.studies.run.study import run_scene

@@ -8,8 +8,8 @@ import numpy as np
 
 from leblanc.core.notes import one_line
 from leblanc.core.units import MM, MM_PEAK, RPM
-from leblanc.figures.drawing.curves import COLUMNS, Span, thin, windows
-from leblanc.figures.drawing.page import (
+from leblanc.plotting.curves import COLUMNS, Span, thin, windows
+from leblanc.plotting.page import (
     Caption,
     Figure,
     Frame,

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from leblanc.core.units import MM
-from leblanc.figures.chambers import liquid_outline
-from leblanc.figures.drawing.page import Caption, Figure, Frame, lay_out, number, style
-from leblanc.results.base import FilledChamber
+from leblanc.liquid.filled import FilledChamber
+from leblanc.plotting.chambers import liquid_outline
+from leblanc.plotting.page import Caption, Figure, Frame, lay_out, number, style
 from leblanc.studies.volume.answer import VolumeAnswer, facts, question_words
 from meshes.arrays import Array
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from leblanc.core.notes import one_line
 from leblanc.core.units import MM, MM_PEAK, RPM
-from leblanc.figures.drawing.page import (
+from leblanc.plotting.page import (
     Caption,
     Figure,
     Frame,

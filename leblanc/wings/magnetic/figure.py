@@ -8,7 +8,7 @@ import numpy as np
 
 from leblanc.core.notes import one_line
 from leblanc.core.units import LENGTH, RPM, in_rpm, with_unit
-from leblanc.figures.drawing.page import (
+from leblanc.plotting.page import (
     Caption,
     Figure,
     Frame,

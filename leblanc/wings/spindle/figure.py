@@ -9,7 +9,7 @@ import numpy as np
 
 from leblanc.core.notes import one_line
 from leblanc.core.units import MM
-from leblanc.figures.drawing.page import Caption, Figure, Frame, lay_out, number, style
+from leblanc.plotting.page import Caption, Figure, Frame, lay_out, number, style
 from leblanc.wings.spindle.answer import PER_NEWTON, THEORIES, SpindleAnswer, hertz, sentence
 from meshes.arrays import Complex
 

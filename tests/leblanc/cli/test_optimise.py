@@ -15,7 +15,7 @@ from leblanc.cli import main
 from leblanc.core import units
 from leblanc.core.blocks import Picture, flat
 from leblanc.core.question import called
-from leblanc.figures.drawing.page import save
+from leblanc.plotting.page import save
 from leblanc.scene.scene import load_scene, scene_from_table
 from leblanc.scene.schema.load import SceneError
 from leblanc.scene.tasks import Optimisation

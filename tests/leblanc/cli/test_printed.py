@@ -14,7 +14,7 @@ import leblanc as lb
 from leblanc.cli import main
 from leblanc.core.blocks import Table, Words, flat
 from leblanc.core.units import LENGTH, RPM, with_unit
-from leblanc.figures.chambers import describe_state as chamber_state
+from leblanc.plotting.chambers import describe_state as chamber_state
 from leblanc.scene.examples import example_path
 from leblanc.studies.run import words as text
 from leblanc.studies.shapes.machine import machine_motion

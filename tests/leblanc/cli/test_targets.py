@@ -22,7 +22,7 @@ Capture = pytest.CaptureFixture[str]
 WORK = (
     "leblanc.studies.run.study.run_scene",
     "leblanc.wings.exciter.study.run_exciter",
-    "leblanc.studies.compare.compare_models",
+    "leblanc.studies.compare.study._answer",
     "leblanc.studies.layer.study.answer_layer",
     "leblanc.studies.layer.study.layer_history",
     "leblanc.studies.layer.study.layer_film",

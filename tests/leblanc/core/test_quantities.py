@@ -12,7 +12,7 @@ import pytest
 from leblanc.core.answer import Answer
 from leblanc.core.netcdf import Variable, variable
 from leblanc.core.notes import Note, NoteCode
-from leblanc.core.quantities import named_arrays, names, plain, quantities
+from leblanc.core.quantities import named_arrays, names, plain, quantities, to_json
 from meshes.arrays import Array, Complex
 from meshes.quantity import Q
 from tests.mutants import kills
@@ -67,6 +67,23 @@ class Row:
 
 
 @dataclass(frozen=True)
+class Layer:
+    """A record in rows, with one in it."""
+
+    depth: Annotated[float, Q("m", "depth")]
+    numbers: Annotated[Motion | None, Q(prefix="numbers")]
+    wet: Annotated[bool, Q(name="wet", flags="no yes")]
+
+
+@dataclass(frozen=True)
+class Several:
+    """Records of which some are not there."""
+
+    whirl: Annotated[Layer | None, Q(prefix="whirl")]
+    layers: Annotated[tuple[Layer | None, ...], Q(rows="layer")]
+
+
+@dataclass(frozen=True)
 class Whole(Answer):
     """An answer with one of each."""
 
@@ -79,7 +96,7 @@ class Whole(Answer):
     motion: Annotated[Motion | None, Q(part=True)]
     drawn: Annotated[Drawn | None, Q(part=True)]
     gap: Annotated[float | None, Q("m", "gap", when="gap")]
-    refined: Annotated[Curve | None, Q(prefix="curve", only=("speed", "size"))]
+    refined: Annotated[Curve | None, Q(prefix="curve", only=("speed", "size"), when="refined")]
     rows: Annotated[tuple[Row, ...], Q(rows="row")]
     notes: Annotated[tuple[Note, ...], Q(text="what a reader must know", data=False)]
 
@@ -131,7 +148,7 @@ def test_json_has_each_quantity_once_under_its_public_name() -> None:
     }
 
 
-@kills(f"{AT}:_with_parts", 'f"{q.prefix}_{dim}" if dim in own', "dim if dim in own")
+@kills(f"{AT}:_with_parts", 'f"{q.prefix}_{dim}" if dim in dims', "dim if dim in dims")
 @kills(f"{AT}:_columns", "each.q.variable or ", "")
 @kills(f"{AT}:_columns", "(dim, *each.q.over)", "(*each.q.over, dim)")
 @kills(f"{AT}:_variables", "complex(math.nan, math.nan), values)", "values, values)")
@@ -161,6 +178,20 @@ def test_what_is_not_there_is_left_out() -> None:
     assert {"gap", "refined", "lean", "size", "cycles"}.isdisjoint(bare.to_json())
     found = named_arrays(bare)
     assert {*found.arrays, *found.coords} == {"speed", "deflection_real", "deflection_imag", "state", "share"}
+
+
+@kills(f"{AT}:_scalars", "not each.q.over", "each.q.over")
+def test_records_that_are_not_there_are_null_and_nan() -> None:
+    """As numbers are; of records in rows as well, where a part may be the one that lacks."""
+    layer = Layer(0.5, whole().motion, True)
+    found, rows = named_arrays(Several(None, (None, layer))), ("layer",)
+    assert to_json(Several(None, (None, layer)))["whirl"] is None
+    assert {"whirl_depth", "whirl_size", "whirl_wet"} & {*found.arrays} == {"whirl_depth"}
+    assert np.isnan(found.arrays["whirl_depth"].values)
+    np.testing.assert_array_equal(found.arrays["layer_depth"].values, [math.nan, 0.5])
+    assert found.arrays["layer_wet"].values.tolist() == [0, 1]
+    assert found.arrays["layer_size"].dims == (*rows, *quantities(Motion)["size"].over)
+    assert np.isnan(found.arrays["layer_size"].values[0]).all()
 
 
 @kills(f"{AT}:reached", "return None", "continue")

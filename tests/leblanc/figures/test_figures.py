@@ -18,14 +18,19 @@ from matplotlib.figure import Figure
 from matplotlib.patches import ConnectionPatch
 from matplotlib.transforms import Bbox
 
-from leblanc import figures
-from leblanc.figures import chambers as chamber
-from leblanc.figures.drawing import curves
-from leblanc.figures.drawing.page import number
-from leblanc.results.base import FilledChamber
+from leblanc.liquid.filled import FilledChamber
+from leblanc.plotting import chambers as chamber
+from leblanc.plotting import curves
+from leblanc.plotting.page import number
+from leblanc.studies.run import figure as run_figures
 from tests.oracles.records import EXTREMES, RPM, dry_deflection, folded, record_of, response_of, rig
 
-DRAW = (figures.amplitude_figure, figures.liquid_figure, figures.phase_figure, figures.chamber_figure)
+DRAW = (
+    run_figures.amplitude_figure,
+    run_figures.liquid_figure,
+    run_figures.phase_figure,
+    chamber.chamber_figure,
+)
 
 
 def line(figure: Figure, label: str, axes: int = 0):
@@ -39,7 +44,7 @@ def legend(figure: Figure) -> list[str]:
 
 def test_amplitude_in_mm_over_rpm():
     record = rig()
-    figure = figures.amplitude_figure(record)
+    figure = run_figures.amplitude_figure(record)
     (axes,) = figure.axes
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("Speed (rpm)", "Amplitude (mm 0-p)")
     assert axes.child_axes[0].get_xlabel() == "Speed (rad/s)"
@@ -61,7 +66,7 @@ def test_amplitude_in_mm_over_rpm():
 
 
 def test_lines_differ_without_colour():
-    figure = figures.amplitude_figure(folded())
+    figure = run_figures.amplitude_figure(folded())
     styles = [
         (drawn.get_linestyle(), drawn.get_linewidth(), drawn.get_marker(), drawn._unscaled_dash_pattern)
         for drawn in figure.axes[0].lines
@@ -73,7 +78,7 @@ def test_lines_differ_without_colour():
 
 def test_fold_shows_all_branches_and_the_jump():
     record = folded()
-    figure = figures.amplitude_figure(record)
+    figure = run_figures.amplitude_figure(record)
     amplitudes = np.abs(record.response.branch_deflection) * 1e3
     stable, unstable = line(figure, "other branches, stable"), line(figure, "other branches, unstable")
     middle = amplitudes[~np.isnan(amplitudes[:, 2]), 1]
@@ -92,7 +97,7 @@ def test_unstable_answer_is_dashed():
     record = folded()
     r = record.response
     stable = r.speed < 900.0 * RPM
-    figure = figures.amplitude_figure(replace(record, response=replace(r, stable=stable)))
+    figure = run_figures.amplitude_figure(replace(record, response=replace(r, stable=stable)))
     solid, dashed = line(figure, "with liquid"), line(figure, "with liquid, unstable")
     assert np.nanmax(solid.get_xdata()[~np.isnan(solid.get_ydata())]) < 900.0
     assert np.nanmin(dashed.get_xdata()[~np.isnan(dashed.get_ydata())]) > 890.0
@@ -101,7 +106,7 @@ def test_unstable_answer_is_dashed():
 
 def test_liquid_offset_in_mm_and_angle_from_0_to_minus_180():
     record = rig()
-    figure = figures.liquid_figure(record)
+    figure = run_figures.liquid_figure(record)
     top, bottom = figure.axes
     assert (top.get_ylabel(), bottom.get_ylabel()) == ("Liquid offset (mm)", "Liquid angle (deg)")
     offset, angle = (line(figure, "liquid's centre of mass", i).get_ydata() for i in (0, 1))
@@ -117,28 +122,28 @@ def test_undamped_phase_falls_by_half_a_turn():
     speed = np.linspace(100.0, 2000.0, 200) * RPM
     w = dry_deflection(speed, 4.0, 0.0)
     record = record_of(replace(response_of(speed), deflection=w, branch_deflection=w[:, None]))
-    drawn = line(figures.phase_figure(record), "with liquid").get_ydata()
+    drawn = line(run_figures.phase_figure(record), "with liquid").get_ydata()
     assert set(drawn) == {0.0, -180.0}
 
 
 def test_dry_patch_is_marked_where_it_is():
     record = folded()
-    figure = figures.phase_figure(record)
+    figure = run_figures.phase_figure(record)
     x = line(figure, "dry patch on the wall").get_xdata()
     dry = record.response.speed[record.response.dry_patch] / RPM
     step = np.diff(record.response.speed)[0] / RPM
     np.testing.assert_allclose(x[:2], (dry[0] - step / 2, dry[-1] + step / 2), rtol=1e-12)
-    assert "dry patch on the wall" not in legend(figures.phase_figure(rig()))
+    assert "dry patch on the wall" not in legend(run_figures.phase_figure(rig()))
 
 
 def test_peak_that_flattens_the_rest_gets_a_logarithmic_axis():
     speed = np.linspace(10.0, 2000.0, 400) * RPM
     sharp = replace(response_of(speed), deflection_dry=dry_deflection(speed, 4.0, 1e-3))
-    figure = figures.amplitude_figure(record_of(sharp))
+    figure = run_figures.amplitude_figure(record_of(sharp))
     assert figure.axes[0].get_yscale() == "log"
     low, high = figure.axes[0].get_ylim()
     assert low < np.median(np.abs(sharp.deflection)) * 1e3 < np.max(np.abs(sharp.deflection_dry)) * 1e3 < high
-    assert figures.amplitude_figure(rig()).axes[0].get_yscale() == "linear"
+    assert run_figures.amplitude_figure(rig()).axes[0].get_yscale() == "linear"
 
 
 @pytest.mark.parametrize("damping", [0.002, 0.05])
@@ -150,7 +155,7 @@ def test_refined_points_do_not_change_the_scale(damping: float):
     for speed in (even, np.union1d(even, peak)):
         own = dry_deflection(speed, 4.0, 2.0 * damping * 4.0 * 1000.0 * RPM)
         sharp = replace(response_of(speed), deflection_dry=own, deflection=own)
-        scales.append(figures.amplitude_figure(record_of(sharp)).axes[0].get_yscale())
+        scales.append(run_figures.amplitude_figure(record_of(sharp)).axes[0].get_yscale())
     assert scales[0] == scales[1] == ("log" if damping < 0.01 else "linear")
 
 
@@ -158,7 +163,7 @@ def test_narrow_resonance_is_drawn_wider_below():
     """Both panels show the same lines; frame and links mark on the upper one what the lower one shows."""
     record = narrow()
     own = record.response.deflection
-    figure = figures.amplitude_figure(record)
+    figure = run_figures.amplitude_figure(record)
     whole, wide = figure.axes
     low, high = wide.get_xlim()
     band = 2.0 * 0.01 * 1000.0  # half-power bandwidth of a light damping
@@ -175,9 +180,9 @@ def test_narrow_resonance_is_drawn_wider_below():
     caption = " ".join(text.get_text() for text in reversed(figure.texts))
     assert figure.alt.endswith(f"Drawn once more below, wider: {low:.0f} to {high:.0f} rpm.")
     assert "resonances under 2.5 % of the axis" in caption
-    assert len(figures.amplitude_figure(rig()).axes) == 1
+    assert len(run_figures.amplitude_figure(rig()).axes) == 1
     # The liquid's two panels have two below them; only the lowest of each pair has numbers under it.
-    several = figures.liquid_figure(record).axes
+    several = run_figures.liquid_figure(record).axes
     assert len(several) == 4
     assert several[2].get_xlim() == several[3].get_xlim() == (low, high)
     assert several[2].get_ylabel() == several[0].get_ylabel() != several[3].get_ylabel()
@@ -194,7 +199,7 @@ def test_caption_says_scene_model_and_assumed_values():
 
 def test_chamber_at_the_peak_and_at_the_working_speed():
     record = rig()
-    figure = figures.chamber_figure(record)
+    figure = chamber.chamber_figure(record)
     r = record.response
     highest = int(np.argmax(np.abs(r.deflection)))
     headings = [axes.texts[-2].get_text() for axes in figure.axes]
@@ -216,7 +221,7 @@ def test_chamber_at_the_peak_and_at_the_working_speed():
 
 
 def test_spin_is_drawn_the_way_angles_grow():
-    axes = figures.chamber_figure(rig()).axes[0]
+    axes = chamber.chamber_figure(rig()).axes[0]
     (arrow,) = [text for text in axes.texts if getattr(text, "arrow_patch", None) is not None]
     (x0, y0), (x1, y1) = arrow.xyann, arrow.xy
     assert x0 * y1 - x1 * y0 > 0.0
@@ -277,7 +282,7 @@ def test_a_million_speeds_keep_their_peak():
     w = r.deflection.copy()
     w[123_457] *= 100.0
     record = replace(record, response=replace(r, deflection=w, dry_patch=np.arange(w.size) % 2 == 0))
-    figure = figures.amplitude_figure(record)
+    figure = run_figures.amplitude_figure(record)
     drawn = line(figure, "with liquid").get_ydata()
     assert drawn.size < 50_000
     assert np.max(drawn) == abs(w[123_457]) * 1e3
@@ -285,9 +290,9 @@ def test_a_million_speeds_keep_their_peak():
 
 
 def test_same_record_same_bytes_whatever_the_user_sets(tmp_path: Path):
-    first = figures.write_figures(folded(), tmp_path / "a")
+    first = run_figures.write_figures(folded(), tmp_path / "a")
     with matplotlib.rc_context({"lines.linewidth": 9.0, "font.size": 30.0, "svg.hashsalt": "other"}):
-        second = figures.write_figures(folded(), tmp_path / "b")
+        second = run_figures.write_figures(folded(), tmp_path / "b")
     assert [files.name for files in first] == ["amplitude", "liquid", "phase", "chamber"]
     for one, other in zip(first, second, strict=True):
         for a, b in ((one.png, other.png), (one.svg, other.svg)):
@@ -307,7 +312,7 @@ def test_right_angle_between_unbalance_and_deflection_at_resonance():
     record = rig(1, 1000.0, 1000.0)
     r = record.response
     w = dry_deflection(r.speed, 4.0)
-    axes = figures.chamber_figure(record_of(replace(r, deflection=w))).axes[0]
+    axes = chamber.chamber_figure(record_of(replace(r, deflection=w))).axes[0]
     (centre,) = [drawn for drawn in axes.lines if drawn.get_label() == "geometric centre"]
     x, y = (float(values[0]) for values in centre.get_data())
     assert y < 0.0

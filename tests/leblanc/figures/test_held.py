@@ -11,8 +11,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import FillBetweenPolyCollection, LineCollection
 from matplotlib.figure import Figure
 
-from leblanc import figures
-from leblanc.figures.drawing import curves
+from leblanc.plotting import chambers, curves
+from leblanc.studies.run import figure as run_figures
 from tests.oracles.records import RPM, held_rig, record_of, response_of, rig
 
 
@@ -31,7 +31,7 @@ def test_the_band_reaches_from_the_least_to_the_largest(at: slice) -> None:
     result = held_rig(at=at)
     held = result.held
     assert held is not None
-    points = band(figures.amplitude_figure(result))
+    points = band(run_figures.amplitude_figure(result))
     for k in np.flatnonzero(held.at).tolist():
         here = points[np.isclose(points[:, 0], result.speed[k] / RPM), 1]
         assert here.min() == pytest.approx(held.least[k] * 1e3)
@@ -63,7 +63,7 @@ def test_limit_cycles_are_marked_and_their_whirl_drawn() -> None:
     result = held_rig()
     held = result.held
     assert held is not None
-    figure = figures.amplitude_figure(result)
+    figure = run_figures.amplitude_figure(result)
     assert [axes.get_ylabel() for axes in figure.axes[:2]] == ["Amplitude (mm 0-p)", "Whirl speed (rpm)"]
     marks = line(figure, "limit cycle, mean")
     known = np.isfinite(marks.get_ydata())
@@ -88,7 +88,7 @@ def test_without_limit_cycles_there_is_no_panel_for_them() -> None:
     calm = np.where(held.limit_cycle, "periodic", held.state)
     response = replace(result.response, stable=result.response.converged)
     quiet = replace(result, response=response, held=replace(held, state=calm))
-    (axes,) = figures.amplitude_figure(quiet).axes
+    (axes,) = run_figures.amplitude_figure(quiet).axes
     assert "limit cycle, mean" not in [drawn.get_label() for drawn in axes.lines]
 
 
@@ -96,7 +96,7 @@ def test_the_way_down_is_a_line_of_its_own() -> None:
     result = held_rig()
     held = result.held
     assert held is not None
-    down = line(figures.amplitude_figure(result), "while the speed falls")
+    down = line(run_figures.amplitude_figure(result), "while the speed falls")
     known = np.isfinite(down.get_ydata())
     k = int(np.flatnonzero(held.hysteresis)[0])
     # From the neighbour below to the one above, where both ways are the same.
@@ -109,7 +109,7 @@ def test_layers_have_their_mean_and_swing() -> None:
     result = held_rig()
     held = result.held
     assert held is not None
-    figure = figures.liquid_figure(result)
+    figure = run_figures.liquid_figure(result)
     assert [axes.get_ylabel() for axes in figure.axes[:3]] == [
         "Liquid offset (mm)",
         "Liquid angle (deg)",
@@ -128,8 +128,8 @@ def test_what_is_out_of_range_does_not_set_the_scale_of_the_layers() -> None:
     held = result.held
     assert held is not None
     wild = np.where(result.in_range[:, None], held.ripple, 0.06)
-    figure = figures.liquid_figure(replace(result, held=replace(held, ripple=wild)))
-    assert figure.axes[2].get_ylim() == figures.liquid_figure(result).axes[2].get_ylim()
+    figure = run_figures.liquid_figure(replace(result, held=replace(held, ripple=wild)))
+    assert figure.axes[2].get_ylim() == run_figures.liquid_figure(result).axes[2].get_ylim()
 
 
 def test_only_the_layers_that_swing_most_are_drawn() -> None:
@@ -138,7 +138,7 @@ def test_only_the_layers_that_swing_most_are_drawn() -> None:
     assert held is not None
     swing = held.ripple * np.array([1.0, 6.0, 3.0, 5.0, 2.0, 4.0])
     many = replace(held, ripple=swing, liquid=np.repeat(held.liquid, 6, axis=1))
-    figure = figures.liquid_figure(replace(result, held=many))
+    figure = run_figures.liquid_figure(replace(result, held=many))
     labels = [drawn.get_label() for drawn in figure.axes[2].lines]
     assert [x for x in labels if x.startswith("layer")] == [f"layer of chamber {k}" for k in (2, 3, 4, 6)]
     assert "(the 4 that swing most)" in str(figure.caption)
@@ -146,15 +146,15 @@ def test_only_the_layers_that_swing_most_are_drawn() -> None:
 
 def test_alternative_texts_tell_what_is_drawn() -> None:
     result = held_rig()
-    alt = figures.amplitude_figure(result).alt
+    alt = run_figures.amplitude_figure(result).alt
     assert "A band from the least to the largest amplitude over time" in alt
     assert "limit cycles: 1145 to 1335 rpm, amplitude up to 0.6426 mm" in alt
     assert "while the speed falls: 1430 rpm" in alt and "not settled: 195 rpm" in alt
-    assert figures.liquid_figure(result).alt.endswith("at most 2 mm.")
-    assert "band" not in figures.amplitude_figure(rig()).alt
+    assert run_figures.liquid_figure(result).alt.endswith("at most 2 mm.")
+    assert "band" not in run_figures.amplitude_figure(rig()).alt
 
 
-@pytest.mark.parametrize("draw", [figures.amplitude_figure, figures.liquid_figure])
+@pytest.mark.parametrize("draw", [run_figures.amplitude_figure, run_figures.liquid_figure])
 def test_panels_do_not_overlap(draw) -> None:
     figure = draw(held_rig())
     FigureCanvasAgg(figure).draw()
@@ -164,13 +164,13 @@ def test_panels_do_not_overlap(draw) -> None:
 
 def test_the_drawing_of_the_chamber_says_that_it_has_no_waves() -> None:
     said = "at rest in the mean motion, without its waves"
-    assert said in str(figures.chamber_figure(held_rig()).caption)
-    assert said not in str(figures.chamber_figure(rig()).caption)
+    assert said in str(chambers.chamber_figure(held_rig()).caption)
+    assert said not in str(chambers.chamber_figure(rig()).caption)
 
 
 def test_figures_without_held_motions_are_as_they_were() -> None:
     """No band, no further panel, no word of it."""
-    for draw, panels in ((figures.amplitude_figure, 1), (figures.liquid_figure, 2)):
+    for draw, panels in ((run_figures.amplitude_figure, 1), (run_figures.liquid_figure, 2)):
         figure = draw(record_of(rig().response))
         assert len(figure.axes) == panels
         assert "Held" not in str(figure.caption) and "held" not in figure.alt
@@ -183,7 +183,7 @@ def test_a_speed_alone_is_marked() -> None:
     cycle = np.array([True])
     held = replace(plain.held, state=np.array(["limit_cycle"]), whirl_speed=0.8 * plain.speed)
     result = replace(plain, held=held, response=replace(plain.response, stable=~cycle, converged=cycle))
-    figure = figures.liquid_figure(result)
+    figure = run_figures.liquid_figure(result)
     for axes in (0, 1):
         drawn = line(figure, "liquid's centre of mass, limit cycle", axes)
         assert drawn.get_marker() == "D" and np.isfinite(drawn.get_ydata()[drawn.get_markevery()]).all()

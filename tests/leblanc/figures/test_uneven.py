@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from leblanc.figures.chambers import LiquidOutline, bodies, exaggeration, plates, walls
-from leblanc.results.base import FilledChamber
+from leblanc.liquid.filled import FilledChamber
+from leblanc.plotting.chambers import LiquidOutline, bodies, exaggeration, plates, walls
 from meshes.baffles import Baffles
 from meshes.chamber_section import chamber_section
 from meshes.section import Section, annulus, disc

@@ -18,9 +18,9 @@ import pytest
 from matplotlib.path import Path as Lines
 
 from fluid.liquid import known_liquid
-from leblanc import figures
-from leblanc.figures.chambers import SURFACE, bodies
-from leblanc.results.base import FilledChamber
+from leblanc.liquid.filled import FilledChamber
+from leblanc.plotting.chambers import SURFACE, bodies, chamber_figure
+from leblanc.plotting.page import Figure
 from leblanc.studies.modes.figure import modes_figure
 from leblanc.studies.modes.study import Resolution, SectionSource, answer_modes
 from leblanc.studies.run.answer import RunAnswer
@@ -88,7 +88,7 @@ def surfaces(axes: Any) -> list[Any]:
     return [line for line in axes.lines if line.get_color() == SURFACE and line.get_marker() == "None"]
 
 
-def factors(figure: figures.Figure) -> list[float]:
+def factors(figure: Figure) -> list[float]:
     """Of the deflection of each view, as the caption says."""
     if "Everything to scale." in figure.caption.shown:
         return [1.0]
@@ -146,7 +146,7 @@ def outside(chamber: FilledChamber, points: np.ndarray) -> float:
 def check(chambers: tuple[FilledChamber, ...], *deflections: complex, slowest: float = 0.0) -> None:
     """Every drawn point of liquid and surface lies in its chamber."""
     result = machine(chambers, *deflections, slowest=slowest)
-    figure = figures.chamber_figure(result)
+    figure = chamber_figure(result)
     said = factors(figure)
     for axes in figure.axes:
         marks = {line.get_label(): line for line in axes.lines}
@@ -213,7 +213,7 @@ def test_a_surface_that_meets_no_inner_wall_is_drawn_meeting_none(
 ) -> None:
     here = chamber(kind, share, inner)
     check((here,), size * np.exp(-1.6j), 0.1 * size)
-    figure = figures.chamber_figure(machine((here,), size * np.exp(-1.6j), 0.1 * size))
+    figure = chamber_figure(machine((here,), size * np.exp(-1.6j), 0.1 * size))
     assert ("reaches an inner wall" in figure.caption.shown) == touches(here, size * np.exp(-1.6j))
     if "reaches an inner wall" in figure.caption.shown:
         assert min(factors(figure)) <= 1.0
@@ -281,9 +281,9 @@ def test_a_bowl_is_the_equilibrium_of_its_volume() -> None:
         assert body.level == pytest.approx(floor, abs=2e-4 * 0.1)
         reach = [min(float(np.abs(z).min()) for z in tier.loops) for tier in body.higher if tier.loops]
         assert reach == sorted(reach)
-        figure = figures.chamber_figure(machine((here,), size, slowest=speed))
+        figure = chamber_figure(machine((here,), size, slowest=speed))
         assert f"a bowl at {speed * 60.0 / 2.0 / math.pi:.4g} rpm" in figure.caption.shown
-    assert "bowl" not in figures.chamber_figure(machine((here,), size, slowest=500.0)).caption.shown
+    assert "bowl" not in chamber_figure(machine((here,), size, slowest=500.0)).caption.shown
 
 
 def test_chambers_inside_one_another_and_dry_ones() -> None:
@@ -299,7 +299,7 @@ def test_a_film_is_drawn_deep_enough_to_be_seen() -> None:
     volume = math.pi * (radius**2 - (radius - film) ** 2) * HEIGHT
     here = FilledChamber(radius, 0.08, HEIGHT, volume, "water", radius - film)
     for size, least in ((1e-5, 0.05), (0.01, 0.01)):
-        figure = figures.chamber_figure(machine((here,), size + 0j, 1j * size))
+        figure = chamber_figure(machine((here,), size + 0j, 1j * size))
         said = re.search(r"layer \S\N{NO-BREAK SPACE}([\d.]+)", figure.caption.shown)
         assert said is not None
         assert float(said[1]) * film > least * radius

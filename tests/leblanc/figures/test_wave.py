@@ -15,10 +15,10 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.transforms import Bbox
 from PIL import Image
 
-from leblanc import figures
-from leblanc.figures import wave
-from leblanc.figures import wave as wave_page
-from leblanc.results.drawn.wave import Wave, WaveFrames
+from leblanc.plotting import page
+from leblanc.studies.layer import figure as wave
+from leblanc.studies.layer import figure as wave_page
+from leblanc.studies.layer.wave import Wave, WaveFrames
 from meshes.errors import InputError
 from tests.leblanc.figures.test_wave_values import (
     R,
@@ -218,7 +218,7 @@ def test_same_history_same_film_whatever_the_user_sets(tmp_path: Path):
 
 
 def test_same_record_same_figure(tmp_path: Path):
-    one, other = (figures.save(wave.wave_figure(bore()), tmp_path / name, "wave", "W") for name in "ab")
+    one, other = (page.save(wave.wave_figure(bore()), tmp_path / name, "wave", "W") for name in "ab")
     assert one.png.read_bytes() == other.png.read_bytes()
     assert one.svg.read_bytes() == other.svg.read_bytes()
 

@@ -9,9 +9,9 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.markers import MarkerStyle
 
-from leblanc.figures import wave
-from leblanc.figures import wave as wave_time
-from leblanc.results.drawn.wave import Wave, WaveFrames
+from leblanc.studies.layer import figure as wave
+from leblanc.studies.layer import figure as wave_time
+from leblanc.studies.layer.wave import Wave, WaveFrames
 
 R, SURFACE, SPIN = 0.15, 0.135, 40.0
 

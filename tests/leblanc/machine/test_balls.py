@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 import leblanc as lb
+from leblanc.liquid.choose import across_gravity
 from leblanc.studies.balls.answer import BallsAnswer
 from leblanc.studies.drives import drive_of, numerics_of, planned
 from leblanc.studies.loads.study import loaded_machine
-from leblanc.studies.models.choose import across_gravity
 from leblanc.studies.runup.study import chosen_run
 from tests.mutants import kills
 

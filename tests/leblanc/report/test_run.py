@@ -19,8 +19,8 @@ from leblanc.core.blocks import Notes
 from leblanc.core.notes import Note
 from leblanc.core.page import LIGHT, all_versions, citation, picture
 from leblanc.core.units import number, ranges
-from leblanc.figures.drawing.page import FigureFiles
-from leblanc.results.base import FilledChamber
+from leblanc.liquid.filled import FilledChamber
+from leblanc.plotting.page import FigureFiles
 from leblanc.scene.scene import load_scene
 from leblanc.studies.run import words as words
 from leblanc.studies.run.answer import RunAnswer
@@ -369,16 +369,17 @@ def test_the_phase_stands_on_the_page_of_a_rotor_that_tilts_only(tmp_path: Path)
 
 def test_captions_are_text_and_cut_from_the_picture(tmp_path: Path) -> None:
     """The lines below the legend of a figure: as text, without the scene, and no longer shown."""
-    from leblanc import figures
+    from leblanc.plotting import chambers, page
+    from leblanc.studies.run import figure as run_figures
 
     record = replace(rig(41), name="A & B")
     drawn = {
-        "amplitude": figures.amplitude_figure(record),
-        "liquid": figures.liquid_figure(record),
-        "chamber": figures.chamber_figure(record),
+        "amplitude": run_figures.amplitude_figure(record),
+        "liquid": run_figures.liquid_figure(record),
+        "chamber": chambers.chamber_figure(record),
     }
     for name, one in drawn.items():
-        shown = picture(figures.save(one, tmp_path, name, "Title"))
+        shown = picture(page.save(one, tmp_path, name, "Title"))
         lines = sorted(one.texts, key=lambda line: -line.get_position()[1])
         caption = " ".join(line.get_text() for line in lines)
         assert "Scene: A & B." in caption

@@ -17,14 +17,13 @@ import pytest
 import leblanc as lb
 from leblanc import run_up
 from leblanc.cli import main
-from leblanc.core.answer import Result
+from leblanc.core.answer import Answer
 from leblanc.core.terminal import print_json
-from leblanc.figures.drawing.page import Figure
+from leblanc.liquid.choose import choose_all, prepare
+from leblanc.plotting.page import Figure
 from leblanc.scene.scene import Scene, load_scene
 from leblanc.scene.tasks import Optimisation
-from leblanc.studies.compare import compare_models
-from leblanc.studies.explain import explain_scene
-from leblanc.studies.models.choose import choose_all, prepare
+from leblanc.studies.explain.study import explain_scene
 from leblanc.studies.optimise import optimise
 from leblanc.studies.run.answer import RunAnswer
 from leblanc.studies.run.study import run_scene
@@ -66,7 +65,7 @@ RESULTS = {
         load_scene(ROOT / "docs/examples/self_excited.toml").replace(SELF_EXCITED), cycles=True
     ),
     "map": lambda: lb.map_whirl(scene("horizontal_rig"), volumes=5, speeds=21),
-    "compare": lambda: compare_models(scene("horizontal_rig"), ["kdv", "linear", "statics"]),
+    "compare": lambda: lb.compare(scene("horizontal_rig"), ["kdv", "linear", "statics"]),
     "explain": lambda: explain_scene(scene("runup")),
     "explain an exciter": lambda: explain_exciter(scene("vibratory_table")),
     "layer": lambda: lb.layer(**LAYER, whirl_speed=32.0, whirl_amplitude="0.15 mm"),
@@ -104,7 +103,7 @@ class Cells(HTMLParser):
 def test_every_result_has_every_way_out(
     name: str, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
-    result: Result = RESULTS[name]()
+    result: Answer = RESULTS[name]()
     print_json(result.to_json())
     assert json.loads(capsys.readouterr().out)
     for key, value in result.to_json().items():

@@ -13,11 +13,11 @@ import pytest
 import leblanc as lb
 from fluid.fill import Fills
 from leblanc.core.notes import percent
-from leblanc.results.notes.baffles import BaffleCode
+from leblanc.liquid.choose import choose
+from leblanc.liquid.notes import BaffleCode
 from leblanc.scene.scene import Scene, jeffcott, load_scene, scene_from_table
 from leblanc.scene.schema.load import SceneError, read_toml
-from leblanc.studies.explain import explain_scene
-from leblanc.studies.models.choose import choose
+from leblanc.studies.explain.study import explain_scene
 from leblanc.studies.run.study import run_scene
 from leblanc.studies.runup.study import runup_scene
 from leblanc.studies.sweep.batch import answer_scenes
@@ -99,8 +99,8 @@ def test_compartments_add_less_mass() -> None:
     assert added < 0.5 * scene(CUT).fills[0].full_mass
 
 
-@kills("leblanc.results.notes.baffles:closed_compartments", "fill.added_mass / fill.full_mass", "0.5")
-@kills("leblanc.results.notes.baffles:closed_compartments", "fill.compartments < 2", "fill.compartments > 2")
+@kills("leblanc.liquid.notes:closed_compartments", "fill.added_mass / fill.full_mass", "0.5")
+@kills("leblanc.liquid.notes:closed_compartments", "fill.compartments < 2", "fill.compartments > 2")
 def test_compartments_that_hardly_balance_are_told() -> None:
     """One sentence in `run` and `explain` for equal chambers; none where the liquid passes.
 

@@ -11,16 +11,15 @@ import pytest
 
 import leblanc as lb
 from leblanc.cli import main
-from leblanc.results.races.numbers import BallExplanation
 from leblanc.scene.scene import Scene, dry_rotor
 from leblanc.studies.balls.answer import BallsAnswer
+from leblanc.studies.explain.balls.answer import BallExplainAnswer, facts
 from leblanc.studies.fit.measured import Measurement
 from leblanc.studies.fit.problem import answer as _answer
 from leblanc.studies.fit.study import fit_scene
 from leblanc.studies.sweep.batch import answer_scenes
 from leblanc.studies.sweep.block import scene_maker
 from leblanc.studies.sweep.outputs import outputs_of
-from leblanc.text.races.numbers import facts
 from meshes.errors import InputError
 from solvers.rotor.balls.stability import balanced_stability
 from tests.leblanc.studies.optimise.test_balls import two_planes
@@ -32,14 +31,18 @@ EXAMPLE = lb.example("balls")
 FEW = EXAMPLE.replace({"speeds.count": 5})
 
 
-def explained(scene: Scene) -> BallExplanation:
+def explained(scene: Scene) -> BallExplainAnswer:
     told = lb.explain(scene)
-    assert isinstance(told, BallExplanation)
+    assert isinstance(told, BallExplainAnswer)
     return told
 
 
-@kills("leblanc.studies.races.numbers:_numbers", "inertia / race.drag", "race.each / race.drag")
-@kills("leblanc.studies.races.numbers:_balanced_from", "(low, middle) if stable", "(middle, high) if stable")
+@kills("leblanc.studies.explain.balls.study:_numbers", "inertia / race.drag", "race.each / race.drag")
+@kills(
+    "leblanc.studies.explain.balls.study:_balanced_from",
+    "(low, middle) if stable",
+    "(middle, high) if stable",
+)
 def test_the_example_in_numbers() -> None:
     """Sizes by hand; the edge of balancing by the roots of another code."""
     told = explained(FEW)

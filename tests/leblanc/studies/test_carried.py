@@ -11,9 +11,9 @@ import pytest
 import leblanc as lb
 from fluid.friction.baffles import baffle_torque
 from leblanc.scene.scene import Scene, scene_from_table
-from leblanc.studies.explain import explain_scene
+from leblanc.studies.explain.answer import layer_rows
+from leblanc.studies.explain.study import explain_scene
 from leblanc.studies.runup.study import runup_scene
-from leblanc.text.explanation import layer_rows
 from meshes.errors import InputError
 from tests.mutants import kills
 
@@ -79,8 +79,8 @@ def test_compartments_need_their_cells_and_their_waves() -> None:
         runup_scene(ring(closed), cells=12, check=False)
 
 
-@kills("leblanc.studies.explain:_carrying", "0.5 * fill.mass", "fill.mass")
-@kills("leblanc.studies.explain:_carrying", "math.sqrt(asked / able)", "(asked / able)")
+@kills("leblanc.studies.explain.study:_carrying", "0.5 * fill.mass", "fill.mass")
+@kills("leblanc.studies.explain.study:_carrying", "math.sqrt(asked / able)", "(asked / able)")
 def test_outlook() -> None:
     """At the speed it names the baffles' largest torque is what the ramp asks to take the liquid along."""
     scene = ring(PLATES, 60.0)
@@ -135,8 +135,8 @@ def test_a_gap_that_fills() -> None:
     assert gap < deepest < 1.03 * gap and found.mass_error < 1e-12
 
 
-@kills("leblanc.studies.explain:_rise", "max(found, key", "min(found, key")
-@kills("leblanc.studies.explain:_rise", "step.speed > max(speed, above)", "step.speed > speed")
+@kills("leblanc.studies.explain.study:_rise", "max(found, key", "min(found, key")
+@kills("leblanc.studies.explain.study:_rise", "step.speed > max(speed, above)", "step.speed > speed")
 def test_a_programme_asks_by_its_steepest_rise() -> None:
     """Of the rises that end above the speed of capture the steepest counts, for each ring."""
     steps = ["to 50 rpm in 0.5 s", "hold 2 s", "to 400 rpm at 40 rpm/s", "to 900 rpm at 60 rpm/s"]

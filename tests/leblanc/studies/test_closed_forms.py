@@ -15,11 +15,11 @@ import leblanc as lb
 from fluid.fill import Fill
 from fluid.liquid import Liquid
 from leblanc.core.blocks import Table
+from leblanc.liquid.choose import prepare
 from leblanc.scene.schema.load import SceneError
 from leblanc.studies.closed_forms import study
 from leblanc.studies.closed_forms.answer import HEAD, ClosedForms, closed_form_table, vector_rows
 from leblanc.studies.closed_forms.study import vector_model
-from leblanc.studies.models.choose import prepare
 from meshes.chamber import Chamber
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.vector_model import balance_residual

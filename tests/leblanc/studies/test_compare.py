@@ -10,14 +10,14 @@ import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
+import leblanc as lb
 from leblanc.cli import main
-from leblanc.figures.comparison import comparison_figure
 from leblanc.scene.examples import example
 from leblanc.scene.scene import Scene
-from leblanc.studies.compare import compare_models
+from leblanc.studies.compare.answer import comparison_rows
+from leblanc.studies.compare.figure import comparison_figure
 from leblanc.studies.held.holding import Holding
 from leblanc.studies.run.study import run_scene
-from leblanc.text.explanation import comparison_rows
 from meshes.errors import InputError
 from tests.mutants import kills
 
@@ -31,7 +31,7 @@ def by(scene: Scene, model: str) -> Scene:
 @pytest.mark.parametrize("name", ["horizontal_rig", "centrifuge", "tub"])
 def test_a_comparison_is_the_difference_of_two_runs(name: str) -> None:
     scene = example(name).replace({"speeds.count": 41})
-    found = compare_models(scene, ["linear", "statics"])
+    found = lb.compare(scene, ["linear", "statics"])
     linear, statics = (run_scene(by(scene, model)) for model in ("linear", "statics"))
     difference, largest = linear.amplitude - statics.amplitude, statics.peak["amplitude"]
     assert largest >= statics.amplitude.max()
@@ -45,7 +45,7 @@ def test_an_empty_machine_is_the_same_by_every_model() -> None:
     """Without liquid each answers the dry rotor, whose amplitude is known."""
     scene = example("horizontal_rig")
     empty = scene.replace({f"chambers.{k}.volume": 0.0 for k in range(len(scene.chambers))})
-    found = compare_models(empty, ["linear", "statics"])
+    found = lb.compare(empty, ["linear", "statics"])
     rotor, speed = empty.rotor.machine(), found.speed  # type: ignore[union-attr]
     stiff = rotor.stiffness - rotor.mass * speed**2
     dry = rotor.unbalance * speed**2 / np.abs(stiff + 1j * rotor.damping * speed)
@@ -54,11 +54,11 @@ def test_an_empty_machine_is_the_same_by_every_model() -> None:
         np.testing.assert_allclose(one.amplitude, dry, rtol=1e-12)
 
 
-@kills("leblanc.figures.comparison:_two_lines", 'label.replace(" at ", "\\nat ")', "label")
-@kills("leblanc.text.explanation:_estimate", "error >= WHOLE", "error < 0.0")
+@kills("leblanc.studies.compare.figure:_two_lines", 'label.replace(" at ", "\\nat ")', "label")
+@kills("leblanc.studies.compare.answer:_estimate", "error >= WHOLE", "error < 0.0")
 def test_a_tub_fits_its_low_panels_and_no_error_is_thousands() -> None:
     """Resonances drawn wider halve the panels: no label reaches the next one. 100 % and more are words."""
-    found = compare_models(example("tub"), ["linear", "statics"])
+    found = lb.compare(example("tub"), ["linear", "statics"])
     figure = comparison_figure(found)
     FigureCanvasAgg(figure).draw()
     labels = [axes.yaxis.label.get_window_extent() for axes in figure.axes if axes.get_ylabel()]
@@ -69,19 +69,19 @@ def test_a_tub_fits_its_low_panels_and_no_error_is_thousands() -> None:
 
 
 def test_a_model_by_itself_has_no_difference() -> None:
-    found = compare_models(example("centrifuge"), ["linear"])
+    found = lb.compare(example("centrifuge"), ["linear"])
     assert found.reference == "linear" and found.largest_difference("linear") == 0.0
 
 
 def test_the_scenes_own_model_does_not_count() -> None:
     scene = example("horizontal_rig")
-    one, other = (compare_models(by(scene, own), ["linear"]) for own in ("auto", "kdv"))
+    one, other = (lb.compare(by(scene, own), ["linear"]) for own in ("auto", "kdv"))
     np.testing.assert_array_equal(one.results["linear"].amplitude, other.results["linear"].amplitude)
 
 
 def test_a_refusal_is_an_entry() -> None:
     cut = example("horizontal_rig").replace({"chambers.0.baffles": {"count": 4}})
-    found = compare_models(cut, ["fem", "kdv"])
+    found = lb.compare(cut, ["fem", "kdv"])
     assert [one.answered for one in found.answers] == [True, False]
     assert found.reference == "fem"
     refused = found.answers[1]
@@ -91,7 +91,7 @@ def test_a_refusal_is_an_entry() -> None:
 def test_waves_held_in_time_are_a_model_like_the_others() -> None:
     """Upright they are the exact equilibrium, to their own estimate of the error."""
     change = {"speeds.start": 60.0, "speeds.count": 2, "model.cells": 32, "model.friction": {"linear": 5.0}}
-    found = compare_models(example("vertical_rig").replace(change), ["statics", "long_wave"])
+    found = lb.compare(example("vertical_rig").replace(change), ["statics", "long_wave"])
     assert [one.answered for one in found.answers] == [True, True]
     held = found.results["long_wave"]
     assert held.error_estimate is not None and held.converged.all()
@@ -102,27 +102,27 @@ def test_waves_held_in_time_are_a_model_like_the_others() -> None:
 @pytest.mark.parametrize(
     ("name", "models", "field"),
     [
-        ("horizontal_rig", [], "--models"),
-        ("horizontal_rig", ["statics", "beauty"], "--models"),
-        ("horizontal_rig", ["statics", "linear", "statics"], "--models"),
+        ("horizontal_rig", [], "models"),
+        ("horizontal_rig", ["statics", "beauty"], "models"),
+        ("horizontal_rig", ["statics", "linear", "statics"], "models"),
         ("vibratory_table", ["statics"], "rotor.kind"),
     ],
 )
 def test_faults_name_the_field(name: str, models: list[str], field: str) -> None:
     with pytest.raises(InputError) as fault:
-        compare_models(example(name), models)
+        lb.compare(example(name), models)
     assert fault.value.field == field
 
 
 def test_a_fault_of_the_scene_is_not_one_of_the_models() -> None:
     halves = example("horizontal_rig").replace({"chambers.0.baffles": {"count": 2}})
     with pytest.raises(InputError) as fault:
-        compare_models(halves, ["auto", "fem"])
+        lb.compare(halves, ["auto", "fem"])
     assert fault.value.field == "chambers.0.baffles.count"
     quarters = example("horizontal_rig").replace({"chambers.0.baffles": {"count": 4}})
     with pytest.raises(InputError) as fault:
-        compare_models(quarters, ["kdv"])
-    assert fault.value.field == "--models"
+        lb.compare(quarters, ["kdv"])
+    assert fault.value.field == "models"
 
 
 def test_the_command_writes_what_it_prints(tmp_path: Path, capsys: Capture) -> None:
@@ -161,11 +161,11 @@ def test_kept_states_are_held_anew_where_their_time_is_asked_for(
     """Else what an earlier run has left is taken, and costs nothing."""
     seen: list[Holding] = []
 
-    def looked_at(scene: Scene, models: list[str], holding: Holding) -> object:
+    def looked_at(scene: Scene, name: str, holding: Holding) -> object:
         seen.append(holding)
         raise InputError("scene", "enough", "seen")
 
-    monkeypatch.setattr("leblanc.studies.compare.compare_models", looked_at)
+    monkeypatch.setattr("leblanc.studies.compare.study._answer", looked_at)
     typed = ["compare", "examples/centrifuge.toml", "--models", "long_wave", "--out", str(tmp_path / "out")]
     assert main(typed) == main([*typed, "--fresh", "--workers", "3"]) == 2
     assert [holding.fresh for holding in seen] == [False, True] and seen[1].workers == 3

@@ -13,12 +13,12 @@ import leblanc as lb
 from leblanc.cli import main
 from leblanc.scene.scene import Scene, load_scene
 from leblanc.scene.tasks import Optimisation
-from leblanc.studies.explain import explain_scene
+from leblanc.studies.explain.answer import facts as explained
+from leblanc.studies.explain.study import explain_scene
 from leblanc.studies.map.answer import WhirlMap, facts, sentence
 from leblanc.studies.map.figure import cycles_figure
 from leblanc.studies.optimise.constraints import whirl_size
 from leblanc.studies.runup.study import runup_scene, whirl_on_the_way
-from leblanc.text.explanation import facts as explained
 from meshes.errors import InputError
 from tests.mutants import kills
 

@@ -13,10 +13,10 @@ import pytest
 
 import leblanc as lb
 from leblanc.cli import main
+from leblanc.liquid.validity import doubts
 from leblanc.scene.examples import example_names, example_path
 from leblanc.scene.scene import Scene, scene_from_table
-from leblanc.studies.models.validity import doubts
-from leblanc.text.explanation import machine_rows
+from leblanc.studies.explain.answer import machine_rows
 from meshes.errors import InputError
 
 SCENES = [name for name in example_names() if "rotor" in tomllib.loads(example_path(name).read_text())]

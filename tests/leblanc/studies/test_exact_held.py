@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from leblanc.liquid.choose import prepare
 from leblanc.scene.examples import example
 from leblanc.scene.scene import load_scene
 from leblanc.studies.held.held import held_machine
-from leblanc.studies.models.choose import prepare
 from leblanc.studies.run.study import run_scene
 from leblanc.studies.runup.study import runup_scene
 from meshes.errors import InputError

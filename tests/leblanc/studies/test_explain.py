@@ -15,11 +15,11 @@ from fluid.numbers import layer_numbers
 from fluid.pool import balance_speed, pool_of
 from leblanc.cli import main
 from leblanc.core.units import in_rpm
+from leblanc.liquid.choose import carried_from, choose
 from leblanc.scene.scene import Scene, load_scene, scene_from_table
-from leblanc.studies.explain import explain_scene
-from leblanc.studies.models.choose import carried_from, choose
+from leblanc.studies.explain.answer import layer_rows
+from leblanc.studies.explain.study import explain_scene
 from leblanc.studies.run.study import run_scene
-from leblanc.text.explanation import layer_rows
 from meshes.chamber import Chamber
 from meshes.errors import InputError
 from tests.mutants import kills
@@ -87,7 +87,7 @@ def test_no_gravity_is_the_limit_of_little(axis: str) -> None:
     np.testing.assert_allclose(run_scene(without).amplitude, run_scene(little).amplitude, rtol=1e-6)
 
 
-@kills("leblanc.studies.models.choose:_carried", "speed > captured_from", "speed < captured_from")
+@kills("leblanc.liquid.choose:_carried", "speed > captured_from", "speed < captured_from")
 def test_a_horizontal_axis_needs_capture() -> None:
     """The liquid of a horizontal axis is captured where Omega^2 a exceeds g; a vertical axis needs none."""
     lying = choose(scene())
@@ -100,7 +100,7 @@ def test_a_horizontal_axis_needs_capture() -> None:
     assert choose(scene(axis="vertical")).in_range.all()
 
 
-@kills("leblanc.studies.models.choose:carried_from", "max([stands", "min([stands")
+@kills("leblanc.liquid.choose:carried_from", "max([stands", "min([stands")
 def test_run_tells_both_speeds_of_a_lying_drum() -> None:
     """From where a ring can stand, and from where the walls carry the liquid round: `fluid.pool` has both."""
     lying = scene().replace({"model.friction": "stokes"})

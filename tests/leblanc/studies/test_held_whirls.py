@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from leblanc.liquid.choose import Prepared, prepare
 from leblanc.scene.examples import example
 from leblanc.studies.held.whirls import own_whirl, wave_errors
-from leblanc.studies.models.choose import Prepared, prepare
 from solvers.held.hold import start
 from solvers.held.state import HeldKind, HeldMachine, HeldState, HoldNumerics
 from solvers.wave_error import long_wave_error

@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from leblanc.liquid.choose import prepare
 from leblanc.scene.scene import Scene, load_scene
-from leblanc.studies.cycles import CycleCode
-from leblanc.studies.models.choose import prepare
+from leblanc.studies.cycles.study import CycleCode
 from leblanc.studies.run.answer import RunAnswer
 from leblanc.studies.run.figure import amplitude_figure
 from leblanc.studies.run.notes import RunCode

@@ -14,11 +14,11 @@ from fluid.friction.laws import Friction
 from fluid.liquid import known_liquid
 from leblanc.cli import main
 from leblanc.core.units import number
-from leblanc.results.notes.layer import LayerCode
+from leblanc.liquid.models import wave_model
+from leblanc.liquid.notes import LayerCode
 from leblanc.studies.layer import layer
 from leblanc.studies.layer.answer import LayerAnswer
 from leblanc.studies.layer.study import answer_layer, steady_film
-from leblanc.studies.models.liquid import wave_model
 from meshes.chamber import Chamber
 from solvers.liquid_model import Whirl, drag_frequency
 from solvers.potential.steady import forced, linear_detuning
@@ -274,7 +274,7 @@ def test_long_wave_that_leaves_its_range_is_exit_code_3(capsys: pytest.CaptureFi
 @pytest.fixture
 def short_films(monkeypatch: pytest.MonkeyPatch) -> None:
     """Films of a few frames: every frame is drawn alike, and drawing takes the time."""
-    monkeypatch.setattr("leblanc.figures.wave.MOST_FRAMES", 12)
+    monkeypatch.setattr("leblanc.studies.layer.figure.MOST_FRAMES", 12)
 
 
 @pytest.mark.usefixtures("short_films")

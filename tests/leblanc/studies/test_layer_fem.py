@@ -11,10 +11,10 @@ import pytest
 from fluid.fill import Fill, compartment_share
 from fluid.liquid import known_liquid
 from leblanc.cli import main
+from leblanc.liquid.models import wave_model
 from leblanc.studies.layer import layer
 from leblanc.studies.layer.answer import LayerAnswer
 from leblanc.studies.layer.study import answer_layer
-from leblanc.studies.models.liquid import wave_model
 from meshes.baffles import Baffles
 from meshes.chamber import Chamber
 from meshes.errors import InputError

@@ -15,9 +15,9 @@ import xarray as xr
 from fluid.fill import Fill
 from fluid.liquid import known_liquid
 from leblanc.cli import main
-from leblanc.figures.chambers import chamber_figure, side_by_side
+from leblanc.plotting.chambers import chamber_figure, side_by_side
 from leblanc.scene.scene import Scene, dry_rotor, load_scene, scene_from_table
-from leblanc.studies.explain import explain_scene
+from leblanc.studies.explain.study import explain_scene
 from leblanc.studies.run.figure import amplitude_figure, campbell_figure
 from leblanc.studies.run.study import run_scene
 from leblanc.studies.run.words import comparisons, facts
@@ -164,7 +164,7 @@ def test_the_same_mode_with_liquid(name: str) -> None:
     assert np.all(np.abs(steps[1:] / steps[:-1] - 1.0) <= 0.1)
 
 
-@kills("leblanc.studies.explain:explain_scene", "fill.added_mass / bare.mass", "fill.mass / bare.mass")
+@kills("leblanc.studies.explain.study:explain_scene", "fill.added_mass / bare.mass", "fill.mass / bare.mass")
 def test_explained_mass() -> None:
     """A full chamber of liquid over the rotor's mass; of a tub, over that of tub and drum."""
     for name, mass, density in (("two_plane_rig", 20.0, 998.2), ("tub", 60.7, 1197.0)):

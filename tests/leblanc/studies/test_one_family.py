@@ -11,10 +11,10 @@ import pytest
 
 from fluid.fill import Fill, Fills
 from leblanc.cli import main
+from leblanc.liquid.choose import prepare
 from leblanc.scene.examples import example
 from leblanc.scene.scene import Scene
-from leblanc.studies.explain import explain_scene
-from leblanc.studies.models.choose import prepare
+from leblanc.studies.explain.study import explain_scene
 from leblanc.studies.run.notes import RunCode
 from leblanc.studies.run.study import run_scene
 from leblanc.studies.sweep.batch import answer_scenes

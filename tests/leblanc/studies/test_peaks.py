@@ -13,10 +13,9 @@ import pytest
 
 import leblanc as lb
 from leblanc.core.units import RPM
+from leblanc.liquid.choose import choose_all, liquid_models, prepare
 from leblanc.scene.scene import Scene, load_scene
 from leblanc.scene.tasks import Optimisation
-from leblanc.studies.compare import compare_models
-from leblanc.studies.models.choose import choose_all, liquid_models, prepare
 from leblanc.studies.optimise.filled import FilledMachine, with_volumes
 from leblanc.studies.optimise.objectives import PeakOver
 from leblanc.studies.optimise.study import optimise_scene
@@ -218,7 +217,7 @@ def test_sweeps_and_comparisons() -> None:
         alone = run_scene(own)
         assert answers.peak_amplitude[k] == pytest.approx(alone.peak["amplitude"], rel=1e-9)
         assert answers.peak_amplitude_dry[k] == pytest.approx(alone.peak_dry["amplitude"], rel=1e-9)
-    models = compare_models(scenes[0], ["linear", "statics"])
+    models = lb.compare(scenes[0], ["linear", "statics"])
     assert models.answers[1].peak_amplitude == pytest.approx(
         run("centrifuge", 241).peak["amplitude"], rel=1e-3
     )

@@ -22,7 +22,7 @@ from leblanc.cli import main
 from leblanc.core.blocks import Picture, flat
 from leblanc.core.netcdf import write_netcdf
 from leblanc.core.units import LENGTH, with_unit
-from leblanc.results.drawn.machine import film_factor, half_angle
+from leblanc.plotting.drawn import film_factor, half_angle
 from leblanc.scene.scene import Scene, scene_from_table
 from leblanc.scene.schema.load import SceneError
 from leblanc.studies.drives import drive_of, planned
@@ -760,7 +760,7 @@ def shoelace(edge: np.ndarray) -> float:
 
 
 @kills(
-    "leblanc.studies.models.choose:across_gravity",
+    "leblanc.liquid.choose:across_gravity",
     'scene.gravity if scene.rotor.axis == "horizontal"',
     'scene.gravity if scene.rotor.axis == "vertical"',
 )

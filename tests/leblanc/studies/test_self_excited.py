@@ -9,8 +9,8 @@ import pytest
 
 from fluid.friction.laws import NO_FRICTION, layer_thickness
 from fluid.whirl import damped_waves
+from leblanc.liquid.choose import prepare
 from leblanc.scene.scene import dry_rotor, load_scene
-from leblanc.studies.models.choose import prepare
 from leblanc.studies.run.motion import SelfExcited
 from leblanc.studies.run.notes import RunCode
 from leblanc.studies.run.notes import self_excited as note_of

@@ -11,10 +11,10 @@ import pytest
 from pde.solvers.controller import Controller
 
 from fluid.friction.laws import Friction
+from leblanc.liquid.models import wave_model
 from leblanc.scene.examples import example
 from leblanc.scene.scene import Scene
 from leblanc.studies.layer.study import answer_layer
-from leblanc.studies.models.liquid import wave_model
 from leblanc.studies.run.study import run_scene
 from solvers.pypde import family_law
 from tests.leblanc.studies.test_compare import by

@@ -11,8 +11,7 @@ import pytest
 
 import leblanc as lb
 from leblanc.cli import main
-from leblanc.results.drawn.balls import BallView
-from leblanc.results.drawn.machine import DrawnRace
+from leblanc.plotting.drawn import BallView, DrawnRace
 from leblanc.studies.balls.answer import BallsAnswer
 from leblanc.studies.shapes.balls import ball_radius, ball_view, drawn_races, ringed, side_by_side
 from leblanc.studies.shapes.machine import runup_view

@@ -10,7 +10,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from leblanc.results.drawn.machine import RunupView
+from leblanc.plotting.drawn import RunupView
 from leblanc.studies.shapes.machine import mode_view, runup_view, strobe
 from leblanc.view.film import mode_film, runup_film
 from leblanc.view.inset import WIDE, point_at, with_inset

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from fluid.waves import free_wave_frequencies
-from leblanc.results.drawn.machine import LiquidShape, Scale
+from leblanc.plotting.drawn import LiquidShape, Scale
 from leblanc.scene.scene import Scene, Speeds, load_scene
 from leblanc.studies.run.motion import SelfExcited
 from leblanc.studies.run.study import run_scene

@@ -17,8 +17,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from leblanc.results.base import FilledChamber
-from leblanc.results.drawn.machine import MachineMotion, Scale, pool
+from leblanc.liquid.filled import FilledChamber
+from leblanc.plotting.drawn import MachineMotion, Scale, pool
 from leblanc.scene.scene import scene_from_table
 from leblanc.studies.runup import film as films
 from leblanc.studies.runup.answer import RunupFrames

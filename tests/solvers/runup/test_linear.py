@@ -11,7 +11,7 @@ import pytest
 from fluid.fill import Fill
 from fluid.friction.laws import Friction
 from fluid.liquid import Liquid
-from leblanc.studies.models.liquid import runup_model
+from leblanc.liquid.models import runup_model
 from meshes.chamber import Chamber
 from meshes.errors import InputError
 from solvers.layer.records import Outcome

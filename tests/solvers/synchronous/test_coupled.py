@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from fluid.fill import Fill
 from fluid.liquid import Liquid
 from fluid.waves import displacement_ratio, offset_ratio
-from leblanc.studies.models.liquid import synchronous_model
+from leblanc.liquid.models import synchronous_model
 from meshes.arrays import Array
 from meshes.chamber import Baffles, Chamber
 from meshes.errors import InputError

@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 from fluid.fill import Fill, Fills
 from fluid.liquid import KNOWN_LIQUIDS
 from fluid.waves import gravity_offset
+from leblanc.liquid.choose import across_gravity, axial_gravity
 from leblanc.scene.scene import dry_rotor, load_scene
-from leblanc.studies.models.choose import across_gravity, axial_gravity
 from meshes.chamber import Chamber
 from solvers.layer.records import Outcome
 from solvers.liquid_model import Whirls

@@ -9,7 +9,7 @@ import numpy as np
 from fluid.fill import Fill, Fills
 from fluid.friction.laws import Friction
 from fluid.liquid import Liquid
-from leblanc.studies.models.liquid import synchronous_model
+from leblanc.liquid.models import synchronous_model
 from meshes.chamber import Chamber
 from solvers.rotor.jeffcott import Jeffcott, PlanarMachine
 from solvers.statics.hydrostatics import equilibrium

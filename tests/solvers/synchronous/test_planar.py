@@ -13,7 +13,7 @@ from scipy.interpolate import CubicSpline
 
 from fluid.fill import Fill
 from fluid.liquid import Liquid
-from leblanc.studies.models.liquid import synchronous_model
+from leblanc.liquid.models import synchronous_model
 from meshes.chamber import Chamber
 from meshes.errors import InputError
 from solvers.rotor.jeffcott import Jeffcott

@@ -13,10 +13,10 @@ from pathlib import Path
 
 import numpy as np
 
+from leblanc.liquid.choose import across_gravity
 from leblanc.scene.programme.table import Programme
 from leblanc.scene.scene import Scene, load_scene
 from leblanc.studies.drives import drive_of, numerics_of, planned
-from leblanc.studies.models.choose import across_gravity
 from leblanc.studies.optimise.filled import FilledMachine
 from leblanc.studies.runup.study import chosen_run
 from meshes.arrays import Array

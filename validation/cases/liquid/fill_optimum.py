@@ -7,9 +7,9 @@ machine has with a full chamber's mass added to it: both follow without a search
 from __future__ import annotations
 
 from leblanc.core.units import MM
+from leblanc.liquid.choose import axial_gravity
 from leblanc.scene.examples import example
 from leblanc.scene.scene import Scene, jeffcott
-from leblanc.studies.models.choose import axial_gravity
 from leblanc.studies.optimise.study import optimise_scene
 from leblanc.studies.optimise.wetting import wetting_volumes
 from validation.case import Case, Claims

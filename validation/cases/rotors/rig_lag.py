@@ -148,7 +148,7 @@ def lag_figure(lags: Sequence[Lag], damping_ratio: float) -> Figure:
 
 def _draw_angles(axes: Any, lags: Sequence[Lag], damping_ratio: float) -> None:
     """Angle of the liquid over speed: measured, steady, and at each rate."""
-    from leblanc.figures.drawing.curves import gapped
+    from leblanc.plotting.curves import gapped
 
     measured = data("dr18_fig24.json")
     speed = np.linspace(LOOKED[0], BEYOND[1], 400)

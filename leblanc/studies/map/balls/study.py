@@ -12,6 +12,7 @@ import numpy as np
 from leblanc.core.notes import Note
 from leblanc.core.progress import update
 from leblanc.core.units import parse_option
+from leblanc.liquid.validity import doubts
 from leblanc.scene.scene import Scene, dry_rotor
 from leblanc.scene.schema.load import SceneError
 from leblanc.scene.schema.paths import keys_of, rule_at
@@ -20,7 +21,6 @@ from leblanc.studies.balls import notes
 from leblanc.studies.balls.states import Parts, liquid_beside, own_family, parts_of
 from leblanc.studies.map.axes import few_points, speeds_of
 from leblanc.studies.map.balls.answer import STATES, BallChart, Curve
-from leblanc.studies.models.validity import doubts
 from meshes.errors import InputError
 from solvers.rotor.balls.charts import (
     Edge,

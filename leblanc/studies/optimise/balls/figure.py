@@ -9,8 +9,8 @@ import numpy as np
 
 from leblanc.core.notes import one_line
 from leblanc.core.units import MM, MM_PEAK, RPM
-from leblanc.figures.drawing.curves import gapped
-from leblanc.figures.drawing.page import Caption, Figure, Frame, lay_out, number, style
+from leblanc.plotting.curves import gapped
+from leblanc.plotting.page import Caption, Figure, Frame, lay_out, number, style
 from leblanc.studies.optimise.balls.answer import BallDesignAnswer
 from leblanc.studies.run.figure import DRY, WET
 from meshes.arrays import Flags

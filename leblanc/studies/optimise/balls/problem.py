@@ -15,13 +15,13 @@ import numpy as np
 
 from leblanc.core.notes import Note
 from leblanc.core.units import in_rpm, rpm_range
+from leblanc.liquid.choose import across_gravity, axial_gravity
 from leblanc.scene.races import BallRace
 from leblanc.scene.scene import Runup, Scene, dry_rotor, require_clear, require_whirl
 from leblanc.scene.tasks import MAX_BALLS, Optimisation
 from leblanc.scene.unbalances import unbalances_of, with_unbalances
 from leblanc.studies.balls.states import WorstStates, planes_of, worst_states
 from leblanc.studies.drives import drive_of, numerics_of, planned, rotor_in_time
-from leblanc.studies.models.choose import across_gravity, axial_gravity
 from leblanc.studies.optimise import notes
 from leblanc.studies.optimise.balls.answer import DesignRange
 from leblanc.studies.optimise.constraints import Limit

@@ -11,12 +11,12 @@ import numpy as np
 
 from leblanc.core.notes import Note
 from leblanc.core.progress import update
+from leblanc.liquid.validity import doubts
 from leblanc.scene.races import BallRace
 from leblanc.scene.scene import Scene
 from leblanc.scene.tasks import Optimisation
 from leblanc.studies.balls.states import worst_states
 from leblanc.studies.balls.study import run_balls
-from leblanc.studies.models.validity import doubts
 from leblanc.studies.optimise import notes
 from leblanc.studies.optimise.answer import about
 from leblanc.studies.optimise.balls.answer import BallDesignAnswer, DesignedRace, TriedDesigns

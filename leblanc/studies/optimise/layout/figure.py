@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from leblanc.core.units import MM
-from leblanc.figures.drawing.page import Figure, Frame, lay_out, number, style
+from leblanc.plotting.page import Figure, Frame, lay_out, number, style
 from leblanc.studies.optimise.layout.answer import LayoutAnswer, MountPlace, pair_names
 from meshes.arrays import Array
 

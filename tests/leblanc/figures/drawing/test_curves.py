@@ -8,10 +8,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from leblanc import figures
-from leblanc.figures import chambers
-from leblanc.figures.drawing import curves
-from leblanc.results.base import FilledChamber
+from leblanc.liquid.filled import FilledChamber
+from leblanc.plotting import chambers, curves
+from leblanc.studies.run import figure as run_figures
 from tests.oracles.records import folded, rig
 
 CHAMBER = FilledChamber(
@@ -122,7 +121,7 @@ def test_drawing_keeps_wet_wet_and_dry_dry() -> None:
 
 
 def test_top_axis_is_in_radians_per_second() -> None:
-    figure = figures.phase_figure(rig(21))
+    figure = run_figures.phase_figure(rig(21))
     top = figure.axes[0].child_axes[0]
     figure.draw_without_rendering()
     # 100 and 2000 rpm

@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 
 from fluid.fill import Fill
 from fluid.liquid import known_liquid
+from leblanc.liquid.choose import prepare
 from leblanc.scene.scene import Scene, Speeds, load_scene
 from leblanc.scene.tasks import Optimisation
-from leblanc.studies.models.choose import prepare
 from leblanc.studies.optimise.constraints import growth, stability
 from leblanc.studies.optimise.filled import FilledMachine
 from leblanc.studies.optimise.objectives import AtSpeed, PeakOver

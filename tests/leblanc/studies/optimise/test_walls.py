@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from leblanc.core.units import LENGTH, with_unit
-from leblanc.results.notes.baffles import BaffleCode
+from leblanc.liquid.notes import BaffleCode
 from leblanc.scene.examples import example
 from leblanc.scene.scene import Scene, scene_from_table
 from leblanc.scene.tasks import Optimisation

@@ -1,1 +1,0 @@
-"""Figures of rotors with balls in races."""

@@ -1,0 +1,1 @@
+"""Which liquid model answers where, why, and how well; models by name."""

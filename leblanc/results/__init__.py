@@ -1,1 +1,0 @@
-"""What the studies found, and how it is written for other programs: netCDF and JSON."""

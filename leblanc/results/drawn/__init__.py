@@ -1,1 +1,0 @@
-"""Machines as pictures draw them: with liquid, balls in races."""

@@ -1,1 +1,0 @@
-"""The same scene by several liquid models, side by side."""

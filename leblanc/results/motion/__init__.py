@@ -1,1 +1,0 @@
-"""What a response says of the motion beside a circle with the spin: tilting, self-excited, held in time."""

@@ -1,1 +1,0 @@
-"""Balls in their races: states, numbers, charts of stability, designs, and machines with them as drawn."""

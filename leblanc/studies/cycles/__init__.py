@@ -1,0 +1,1 @@
+"""Self-excited whirls of finite size."""

@@ -1,0 +1,230 @@
+"""What a scene is in numbers, and which liquid model answers it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from fluid.fill import Fill
+from fluid.friction.baffles import most_torque
+from fluid.friction.laws import FrictionLaw
+from fluid.friction.pipe import hydraulic_diameter, regime, spin_up_time, steady_lag
+from fluid.numbers import layer_numbers
+from fluid.whirl import is_full
+from leblanc.core.answer import Answer
+from leblanc.core.question import called
+from leblanc.liquid.choice import model_spans, speed_estimates
+from leblanc.liquid.choose import (
+    Prepared,
+    balance_from,
+    choose_all,
+    costed,
+    held_cost,
+    prepare,
+    runup_outlook,
+)
+from leblanc.liquid.models import synchronous_model
+from leblanc.liquid.notes import closed_compartments
+from leblanc.registry import answerer
+from leblanc.scene.rows import baffle_words
+from leblanc.scene.scene import Runup, Scene
+from leblanc.studies.closed_forms.study import closed_forms
+from leblanc.studies.explain.answer import (
+    BaffleOutlook,
+    ExplainAnswer,
+    LayerExplanation,
+    SpinUp,
+    WhirlOutlook,
+)
+from leblanc.studies.run.motion import RestMode
+from leblanc.studies.run.study import rest_modes
+from solvers.cycles.estimate import largest_estimate
+from solvers.rotor.jeffcott import Jeffcott
+from solvers.rotor.system import moving_mass
+from solvers.rotor.vibration import axis_is_free, critical_speeds, modes, orbit, unbalance_response
+from solvers.statics.hydrostatics import optimal_volume
+from solvers.synchronous.response import critical_speed, main_critical_speeds, wet_critical_speeds
+from solvers.whirl.growth import asynchronous_growth
+
+
+def answer(scene: Scene) -> Answer:
+    """The numbers of a scene, by whoever answers for its kind of machine."""
+    if (address := answerer("explain", scene.kind)) is not None:
+        found: Answer = called(address)(scene)
+        return found
+    return explain_scene(scene)
+
+
+def explain_scene(scene: Scene) -> ExplainAnswer:
+    """Dimensionless numbers of a scene and the model that each speed takes."""
+    scene = scene.as_read()
+    machine = prepare(scene, free=True)
+    gravity, (choice,) = machine.axial_gravity, choose_all([machine])
+    growth = asynchronous_growth(machine.rotor, scene.fills, machine.speed, machine.waves)[0]
+    choice = costed(machine, choice, growth)
+    ends = np.array([scene.speeds.start, scene.speeds.stop])
+    bare = _bare(machine, choice.model)
+    layers: list[LayerExplanation | None] = []
+    for fill, dry in zip(scene.fills, bare.deflection, strict=True):
+        if fill.volume == 0.0:
+            layers.append(None)
+            continue
+        layers.append(
+            LayerExplanation(
+                numbers=layer_numbers(fill, ends, scene.gravity, gravity),
+                depth=fill.depth,
+                added_mass_ratio=fill.added_mass / bare.mass,
+                liquid_mass_ratio=fill.mass / bare.mass,
+                optimal_volume=_covering(fill, dry, ends[1], gravity),
+                walls=_walls(fill),
+                carried_from=balance_from(scene, fill),
+                spin_up=_spin_up(scene, fill),
+                carrying=_carrying(scene, fill, choice.captured_from),
+            )
+        )
+    return ExplainAnswer(
+        name=scene.name,
+        critical_speed_dry=bare.critical_speed,
+        critical_speed_wet=bare.critical_speed_wet if scene.fills else math.nan,
+        damping_ratio=bare.damping_ratio,
+        speed_ratio=(ends[0] / bare.critical_speed, ends[1] / bare.critical_speed),
+        captured_from=choice.captured_from,
+        layers=tuple(layers),
+        models=model_spans(choice, machine.speed) if scene.fills else (),
+        estimates=speed_estimates(choice, machine.speed) if scene.fills else (),
+        tolerance=choice.tolerance,
+        modes=bare.modes,
+        runup=runup_outlook(scene),
+        whirl=_whirl(machine),
+        held=held_cost(machine, choice, growth),
+        source=scene.source,
+        assumed=scene.assumed,
+        digest=scene.digest,
+        closed_forms=closed_forms(machine),
+    )
+
+
+def _whirl(machine: Prepared) -> WhirlOutlook | None:
+    """How large a whirl grows by itself between the scene's first and last speed; None where none does."""
+    scene, range_ = machine.scene, (float(machine.speed.min()), float(machine.speed.max()))
+    if not scene.fills or range_[0] == range_[1]:
+        return None
+    most = largest_estimate(machine.rotor, scene.fills, range_, scene.model.friction)
+    if most is None:
+        return None
+    return WhirlOutlook(most.spin, most.amplitude, most.whirl_speed, most.lag)
+
+
+def _covering(fill: Fill, deflection: float, speed: float, gravity: float) -> float:
+    """Volume that just covers the wall of a clear circular chamber, m^3."""
+    if fill.compartments > 1 or fill.chamber.section is not None:
+        return math.nan
+    return float(optimal_volume(fill.chamber, deflection, speed, gravity))
+
+
+class _Rise(NamedTuple):
+    """A rise of the spin speed: from and to, rad/s, and its rate, rad/s^2."""
+
+    start: float
+    stop: float
+    rate: float
+
+
+def _rise(scene: Scene, above: float) -> _Rise | None:
+    """The steepest rise of a run-up or programme that ends above a speed, rad/s; None without one."""
+    plan = scene.speed_plan
+    if plan is None or isinstance(plan, Runup):
+        return None if plan is None or plan.rate is None else _Rise(plan.start, plan.stop, plan.rate)
+    found, speed = [], plan.start
+    for step in plan.steps:
+        if step.kind == "to" and step.speed is not None and step.speed > max(speed, above):
+            rate = step.rate or (step.speed - speed) / (step.time or math.inf)
+            found.append(_Rise(speed, step.speed, rate))
+        # After a coast for a time the speed is not known before: from rest at the worst.
+        speed = speed if step.kind == "hold" else step.speed or 0.0
+    return max(found, key=lambda rise: rise.rate, default=None)
+
+
+# Share of the first lag at which the liquid counts as carried along.
+_CARRIED = 0.1
+
+
+def _spin_up(scene: Scene, fill: Fill) -> SpinUp | None:
+    """How the wall carries the liquid along; None unless its law acts on a layer in a clear ring."""
+    friction, chamber, rise = scene.model.friction, fill.chamber, _rise(scene, 0.0)
+    if friction.law is not FrictionLaw.WALL or fill.uneven or is_full(fill):
+        return None
+    viscosity = fill.liquid.viscosity
+    last = scene.speeds.stop if rise is None else rise.stop
+    given = float(hydraulic_diameter(fill.depth, chamber.height)), viscosity, friction.roughness
+    lag, ramp_time = last, None
+    if rise is not None:
+        lag = min(last, steady_lag(rise.rate, chamber.radius, *given) / chamber.radius)
+        ramp_time = (rise.stop - rise.start) / rise.rate
+    reynolds = lag * chamber.radius * given[0] / viscosity if viscosity > 0.0 else math.inf
+    return SpinUp(
+        regime=str(regime(reynolds)),
+        reynolds=reynolds,
+        lag=lag,
+        ramp=ramp_time is not None,
+        time=float(spin_up_time(_CARRIED, last * chamber.radius, *given)),
+        ramp_time=ramp_time,
+    )
+
+
+def _walls(fill: Fill) -> str:
+    """What is there besides a plain ring."""
+    if fill.chamber.section is not None:
+        return f"section of {fill.chamber.section.name}"
+    if fill.chamber.baffles is None:
+        return ""
+    effect = closed_compartments(fill) or "at rest in the drum the liquid lies as without them"
+    return f"baffles: {baffle_words(fill.chamber.baffles)}; {effect}"
+
+
+def _carrying(scene: Scene, fill: Fill, captured_from: float | None) -> BaffleOutlook | None:
+    """What the baffles of a chamber can do on the ramp, None where nothing is asked of them."""
+    rise = _rise(scene, captured_from or 0.0)
+    if rise is None or not fill.uneven or fill.chamber.baffles is None or fill.compartments > 1:
+        return None
+    speed = min(max(rise.start, captured_from or 0.0), rise.stop)
+    # Both the flow and what holds it to the wall go with the speed.
+    able = most_torque(fill, speed)
+    asked = rise.rate * 0.5 * fill.mass * (fill.chamber.radius**2 + fill.surface_radius**2)
+    enough = speed * math.sqrt(asked / able) if able > 0.0 else math.inf
+    return BaffleOutlook(speed, able, asked, enough)
+
+
+@dataclass(frozen=True)
+class _Bare:
+    """The rotor without liquid in numbers; its deflection at each chamber is that of the last speed."""
+
+    mass: float
+    critical_speed: float
+    critical_speed_wet: float
+    damping_ratio: float
+    deflection: tuple[float, ...]
+    modes: tuple[RestMode, ...] = ()
+
+
+def _bare(machine: Prepared, model: str) -> _Bare:
+    rotor, system, fills = machine.rotor, machine.system, machine.scene.fills
+    gravity, last = machine.axial_gravity, np.array([machine.scene.speeds.stop])
+    answer = unbalance_response(system, last)
+    moved = [float(np.abs(orbit(system, answer, fill.chamber.plane).forward[0])) for fill in fills]
+    deflection = tuple(size if np.isfinite(size) else 0.0 for size in moved)
+    if axis_is_free(system):
+        nothing = math.nan
+        return _Bare(moving_mass(rotor), nothing, nothing, nothing, deflection, rest_modes(system))
+    if isinstance(rotor, Jeffcott):
+        wet = critical_speed(rotor, fills, gravity, synchronous_model(model))
+        return _Bare(moving_mass(rotor), rotor.natural_frequency, wet, rotor.damping_ratio, deflection)
+    liquid = wet_critical_speeds(system, fills, gravity, synchronous_model(model))
+    dry, wet = main_critical_speeds(system, fills, critical_speeds(system), liquid)
+    turning = modes(system, dry if np.isfinite(dry) else 0.0)
+    nearest = int(np.argmin(np.abs(turning.frequency[0] - dry))) if np.isfinite(dry) else 0
+    ratio = float(turning.damping_ratio[0, nearest])
+    return _Bare(moving_mass(rotor), dry, wet, ratio, deflection, rest_modes(system))

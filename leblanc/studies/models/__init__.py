@@ -1,1 +1,0 @@
-"""Liquid models of a scene: by their names, chosen within a tolerance, and how far to believe them."""

@@ -1,1 +1,0 @@
-"""Results as lines and tables of text, for terminals and reports."""

@@ -1,1 +1,0 @@
-"""Balls in races, in words."""

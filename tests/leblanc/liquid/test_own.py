@@ -1,0 +1,230 @@
+"""A liquid model of one's own answers as the built-in one with its formulas; what is none is refused."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from importlib.metadata import EntryPoint
+from pathlib import Path
+from typing import Any, ClassVar
+
+import numpy as np
+import pytest
+
+import leblanc as lb
+from fluid.fill import Fills
+from fluid.friction.laws import NO_FRICTION, Friction, FrictionLaw
+from fluid.whirl import layer_rate, offset_with_friction, plane_layer
+from leblanc.liquid.models import asked_with
+from meshes.errors import InputError
+from solvers.checked_model import CheckedModel
+from solvers.liquid_model import LiquidAnswer, Whirls
+from solvers.whirl.growth import growth_map
+from tests.mutants import kills
+
+SAME = 1e-12
+
+
+class Ring:
+    """The linear layer with friction [theory: whirl, eq. 4], as anybody would write it; not hashable."""
+
+    name = "my ring"
+    __hash__: ClassVar[None] = None  # type: ignore[assignment]
+
+    def __init__(self, friction: Friction = NO_FRICTION, spoilt: dict[str, Any] | None = None) -> None:
+        self.friction, self.spoilt = friction, spoilt or {}
+
+    def answer(self, fills: Fills, whirls: Whirls) -> Any:
+        added, yes = np.empty(len(fills), dtype=complex), np.ones(len(fills), dtype=bool)
+        for k in np.unique(fills.which).tolist():
+            fill, at = fills.origin[k], fills.which == k
+            layer = plane_layer(fill, self.friction)
+            assert layer is not None
+            spin, speed = whirls.spin[at], whirls.speed[at]
+            rate = layer_rate(layer, spin, speed - spin)
+            added[at] = fill.mass * (1.0 + offset_with_friction(layer.layer_tanh, spin, speed, rate))
+        found = LiquidAnswer(
+            unbalance=added * whirls.amplitude,
+            slope=added,
+            offset=(added / fills.mass - 1.0) * whirls.amplitude,
+            dry_patch=~yes,
+            converged=yes,
+            limits={"wave_amplitude": yes},
+            error=np.full(len(fills), math.nan),
+        )
+        return replace(found, **self.spoilt) if isinstance(self.spoilt, dict) else self.spoilt
+
+
+def scene(name: str, **changes: Any) -> lb.Scene:
+    """An example whose friction is none and whose model is linear."""
+    table = {"model.friction": "none", "model.liquid": "linear", "speeds.count": 13} | changes
+    return lb.example(name).replace(table)
+
+
+@kills(
+    "solvers.whirl.transfer:_solved",
+    "root = np.where(endless, np.nan, _SHIFT + ",
+    "root = np.where(endless, np.nan, 1e-6 + _SHIFT + ",
+)
+@pytest.mark.parametrize("name", ["horizontal_rig", "vertical_rig", "two_plane_rig", "tub"])
+def test_a_copy_of_the_ring_answers_as_the_ring(name: str) -> None:
+    own, ours = lb.run(scene(name), model=Ring()), lb.run(scene(name))
+    assert set(own.model.tolist()) == {"my ring"}
+    for key in ("amplitude", "deflection", "liquid_offset", "liquid_angle", "stable"):
+        assert np.allclose(getattr(own, key), getattr(ours, key), rtol=SAME, atol=0.0), key
+    assert np.abs(own.growth - ours.growth).max() <= SAME * own.speed.max()
+    assert np.allclose(own.whirl_speed, ours.whirl_speed, rtol=SAME)
+    assert own.critical_speed_wet == pytest.approx(ours.critical_speed_wet, rel=SAME)
+    assert np.allclose(own.whirl.bands, ours.whirl.bands, rtol=1e-9)
+
+
+@pytest.mark.parametrize(("name", "volumes"), [("horizontal_rig", 4), ("tub", 2)])
+def test_its_map_is_that_of_the_ring(name: str, volumes: int) -> None:
+    friction = Friction(FrictionLaw.LINEAR, 2.0)
+    ours = lb.map_whirl(scene(name), volumes=volumes, speeds=7, friction=friction)
+    own = lb.map_whirl(scene(name), volumes=volumes, speeds=7, model=Ring(friction))
+    assert np.abs(own.growth - ours.growth).max() <= SAME * own.speed.max()
+    assert np.allclose(own.whirl_speed, ours.whirl_speed, rtol=SAME)
+    assert own.friction == "as the model my ring has it"
+
+
+def test_growth_with_laminar_layers_which_no_rational_function_is() -> None:
+    """To the accuracy of the fit, of the mode that grows; a cut of the function makes no mode."""
+    rig = scene("horizontal_rig")
+    friction, speed = Friction(FrictionLaw.STOKES), np.linspace(120.0, 200.0, 4)
+    rotor, rows = rig.rotor.machine(), [rig.fills]
+    ours, own = (growth_map(rotor, rows, speed, law) for law in (friction, CheckedModel(Ring(friction))))
+    assert ours[0].max() > 0.0
+    for here, there in zip(own, ours, strict=True):
+        assert np.abs(here - there).max() <= 3e-5 * speed.max()
+
+
+@kills("solvers.synchronous.response:_fixed_speed", "rotor.mass + (float", "2.0 * rotor.mass + (float")
+@kills("solvers.checked_model:CheckedModel._slope", "/ (2.0 * base * share)", "/ (base * share)")
+def test_a_force_across_the_deflection_is_that_of_the_complex_mass() -> None:
+    """K - Omega^2 (M + m) + i C Omega with a complex m, which brakes or drives."""
+
+    class Lagging(Ring):
+        name = "lagging"
+
+        def answer(self, fills: Fills, whirls: Whirls) -> Any:
+            found, turn = super().answer(fills, whirls), 1.0 - 0.3j
+            return replace(found, unbalance=turn * found.unbalance, slope=np.full(len(fills), math.nan))
+
+    rig = scene("horizontal_rig")
+    own, rotor = lb.run(rig, model=Lagging()), rig.rotor.machine()
+    mass = rotor.mass + (1.0 - 0.3j) * sum(fill.full_mass for fill in rig.fills)
+    speed = math.sqrt(rotor.stiffness / mass.real)
+    assert own.critical_speed_wet == pytest.approx(speed, rel=SAME)
+    stiffness = rotor.stiffness - mass * own.speed**2 + 1j * rotor.damping * own.speed
+    assert np.allclose(own.deflection, rotor.unbalance * own.speed**2 / stiffness, rtol=1e-9)
+
+
+YES = np.ones(2, dtype=bool)
+BROKEN: list[tuple[Any, str, str]] = [
+    ({"unbalance": np.full(2, math.nan)}, "model.answer.unbalance", "finite where converged"),
+    ({"unbalance": np.zeros((2, 1))}, "model.answer.unbalance", "shape (2,)"),
+    ({"unbalance": [1.0, 1.0]}, "model.answer.unbalance", "an array of numbers"),
+    ({"slope": np.array(["a", "b"])}, "model.answer.slope", "an array of numbers"),
+    ({"offset": np.full(2, math.inf)}, "model.answer.offset", "finite where converged"),
+    ({"converged": np.ones(2)}, "model.answer.converged", "truth values"),
+    ({"error": np.full(2, -0.1)}, "model.answer.error", "0 or above"),
+    ({"error": np.full(2, 1j)}, "model.answer.error", "real numbers"),
+    ({"limits": [YES]}, "model.answer.limits", "flags by the names"),
+    ({"limits": {"depth": 1}}, "model.answer.limits.depth", "truth values"),
+    (None, "model.answer", "LiquidAnswer"),
+]
+
+
+@pytest.mark.parametrize(("spoilt", "field", "allowed"), BROKEN)
+def test_an_answer_that_is_none_is_refused(spoilt: Any, field: str, allowed: str) -> None:
+    ring, spin = Ring(), np.array([100.0, 200.0])
+    ring.spoilt = spoilt
+    fills = Fills.of(scene("horizontal_rig").fills[:1]).at(np.zeros(2, dtype=np.intp))
+    with pytest.raises(InputError) as refused:
+        CheckedModel(ring).answer(fills, Whirls.synchronous(spin, 1e-6 * spin, 0.0 * spin))
+    assert refused.value.field == field
+    assert allowed in refused.value.allowed
+
+
+def test_a_force_of_the_wrong_sign_is_refused() -> None:
+    class Inwards(Ring):
+        name = "inwards"
+
+        def answer(self, fills: Fills, whirls: Whirls) -> Any:
+            found = super().answer(fills, whirls)
+            return replace(found, unbalance=-found.unbalance)
+
+    with pytest.raises(InputError, match=r"model\.answer\.unbalance = .* throws liquid outwards"):
+        lb.run(scene("horizontal_rig"), model=Inwards())
+
+
+class Fails(Ring):
+    """It raises."""
+
+    def answer(self, fills: Fills, whirls: Whirls) -> Any:
+        raise ZeroDivisionError("by nothing")
+
+
+def named(name: Any) -> Ring:
+    ring = Ring()
+    ring.name = name
+    return ring
+
+
+NO_MODELS: list[tuple[Any, dict[str, Any], str]] = [
+    (Fails(), {}, "model.answer"),
+    (object(), {}, "model.name"),
+    (named(""), {}, "model.name"),
+    (named(7), {}, "model.name"),
+    (named("linear"), {}, "model.name"),
+    (type("Named", (), {"name": "nothing"})(), {}, "model"),
+    (Ring(), {"friction": "stokes"}, "friction"),
+    (Ring(), {"cycles": True}, "cycles"),
+]
+
+
+@pytest.mark.parametrize(("model", "options", "field"), NO_MODELS)
+def test_what_is_no_model_or_goes_with_none(model: Any, options: dict[str, Any], field: str) -> None:
+    with pytest.raises(InputError) as refused:
+        lb.map_whirl(scene("horizontal_rig"), volumes=2, speeds=3, model=model, **options)
+    assert refused.value.field == field
+
+
+def test_a_machine_without_liquid_has_no_model() -> None:
+    with pytest.raises(InputError, match="no chamber holds liquid"):
+        lb.run(lb.example("spindle"), model=Ring())
+
+
+def test_an_announced_model_is_named_in_a_machine_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "my_liquids.py").write_text(
+        "from tests.leblanc.liquid.test_own import Ring\nring = Ring()\nbroken = None\n"
+    )
+    monkeypatch.syspath_prepend(tmp_path)
+    names = {"thin ring": "my_liquids:ring", "broken": "my_liquids:broken", "gone": "no_such_module:it"}
+    entries = [EntryPoint(name, place, "leblanc.liquids") for name, place in names.items()]
+    package = type("Package", (), {"entry_points": entries})
+    monkeypatch.setattr("leblanc.registry.distributions", lambda: [package])
+
+    rig = scene("horizontal_rig", **{"model.liquid": "thin ring"})
+    own, ours = lb.run(rig), lb.run(scene("horizontal_rig"))
+    assert set(own.model.tolist()) == {"thin ring"}
+    assert np.allclose(own.amplitude, ours.amplitude, rtol=SAME)
+    assert np.array_equal(lb.run(scene("horizontal_rig"), model="thin ring").amplitude, own.amplitude)
+
+    for name in ("broken", "gone"):
+        with pytest.raises(InputError, match="cannot be loaded"):
+            lb.run(scene("horizontal_rig", **{"model.liquid": name}))
+    with pytest.raises(lb.SceneError, match=r"model\.liquid"):
+        scene("horizontal_rig", **{"model.liquid": "thick ring"})
+    with pytest.raises(InputError, match="long_wave or linear"):
+        lb.run_up(lb.example("runup").replace({"model.liquid": "thin ring"}))
+
+
+def test_it_is_known_only_while_it_is_asked_with() -> None:
+    with asked_with(scene("horizontal_rig"), Ring()) as other:
+        assert other.model.liquid == "my ring"
+    with pytest.raises(InputError, match=r"model\.liquid = 'my ring'"):
+        lb.run(other)
