@@ -98,10 +98,10 @@ def test_the_users_own_choice_comes_first(
 
 
 def test_commands_say_that_nothing_is_kept(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr("solvers.machine_code.private_folder", lambda name: None)
-    arguments = ["run", "examples/horizontal_rig.toml", "--out", str(tmp_path)]
+    arguments = "volume --radius 0.2 --height 0.05 --eccentricity 0.01 --speed 30".split()
     assert main(arguments) == 0
     said = capsys.readouterr().err.splitlines()
     assert sum("compiled for this run alone" in line for line in said) == 1

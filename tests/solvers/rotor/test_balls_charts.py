@@ -136,7 +136,7 @@ def heavy(speed: float, unbalance: float) -> Machine:
 @kills("solvers.rotor.balls.charts:_held", "rotor.coordinates(compliance, places[None])[0]", "np.zeros(2)")
 def test_states_of_a_heavy_ball_meet_in_the_fold_of_their_quadratic() -> None:
     """|D a - m R| = U: two deflections a that meet where U = m R |Im D|/|D|, and none below."""
-    chart = stability_chart(heavy, np.linspace(20.0, 44.0, 5), np.linspace(2e-4, 1.5e-3, 5), State([-0.8]))
+    chart = stability_chart(heavy, np.linspace(20.0, 44.0, 3), np.linspace(2e-4, 1.5e-3, 3), State([-0.8]))
     assert NONE in chart.growing and 0 in chart.growing
     assert len(chart.edges) == 1
     edge = chart.edges[0]
