@@ -101,7 +101,7 @@ def test_commands_say_that_nothing_is_kept(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr("solvers.machine_code.private_folder", lambda name: None)
-    arguments = "volume --radius 0.2 --height 0.05 --eccentricity 0.01 --speed 30".split()
+    arguments = ["volume", "--radius", "0.2", "--height", "0.05", "--eccentricity", "0.01", "--speed", "30"]
     assert main(arguments) == 0
     said = capsys.readouterr().err.splitlines()
     assert sum("compiled for this run alone" in line for line in said) == 1
