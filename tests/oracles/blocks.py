@@ -1,13 +1,20 @@
-"""What an answer shows: a table by its head, its checks that fail, its text on a terminal."""
+"""What an answer shows: a table by its head, its checks that fail, its text on a terminal; or no pictures."""
 
 from __future__ import annotations
 
 import io
 from contextlib import redirect_stdout
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
 
+import pytest
+
+from leblanc.core import disk
 from leblanc.core.answer import Answer
-from leblanc.core.blocks import Cell, Checks, Table, flat
+from leblanc.core.blocks import Cell, Checks, Picture, Table, flat
 from leblanc.core.terminal import show
+from leblanc.plotting.page import Figure
 
 
 def table(answer: Answer, *head: str) -> Table:
@@ -40,3 +47,19 @@ def on_terminal(answer: Answer) -> str:
     with redirect_stdout(printed):
         show(answer.blocks())
     return printed.getvalue()
+
+
+def nothing(_: Answer) -> Figure:
+    """A picture of nothing, which takes no time."""
+    return Figure(figsize=(1.0, 1.0))
+
+
+@pytest.fixture
+def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Commands write pictures of nothing, where what they say and which files they write is asked."""
+    draw = disk.drawing
+
+    def drawing(answer: Answer, picture: Picture, folder: Path) -> Any:
+        return draw(answer, replace(picture, draw=f"{__name__}:{nothing.__name__}"), folder)
+
+    monkeypatch.setattr(disk, "drawing", drawing)

@@ -26,7 +26,8 @@ NAMES = (
 
 
 SIZES = ("--radius", "0.1", "--volume", "2e-4", "--height", "0.05", "--speed", "40")
-LAYER = (*SIZES, "--whirl-speed", "30", "--whirl-amplitude", "1e-5")
+LAYER = ("layer", *SIZES, "--whirl-speed", "30", "--whirl-amplitude", "1e-5")
+FILM = (*LAYER, "--cells", "16", "--model", "long_wave", "--animate", "layer.mp4")
 
 
 @pytest.fixture
@@ -78,11 +79,11 @@ def leblanc(folder: Path, *arguments: str, module: bool = False) -> subprocess.C
     "arguments",
     [
         ("run", "horizontal_rig.toml"),
-        ("layer", *LAYER, "--cells", "16", "--model", "long_wave", "--animate", "layer.mp4"),
+        pytest.param(FILM, marks=pytest.mark.slow),
         ("sweep", "sweep.toml", "--workers", "2"),
         # Each model in two processes of its own.
         pytest.param(("trade", "vibratory_table.toml", "--quick", "--repeats", "2"), marks=pytest.mark.slow),
-        ("validate", "vector_model"),
+        pytest.param(("validate", "vector_model"), marks=pytest.mark.slow),
         pytest.param(("notebooks", "own.py"), marks=pytest.mark.notebook),
     ],
     ids=lambda arguments: arguments[0],

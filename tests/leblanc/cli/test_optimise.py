@@ -131,6 +131,7 @@ def run(capsys: pytest.CaptureFixture[str], *arguments: str) -> dict[str, object
     return found
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_json_and_files(scene_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     found = run(capsys, str(scene_file), "--out", str(tmp_path))
     assert found.keys() >= KEYS
@@ -160,6 +161,7 @@ def test_json_and_files(scene_file: Path, tmp_path: Path, capsys: pytest.Capture
         assert file["front_mass"].size == len(found["pareto"])
 
 
+@pytest.mark.usefixtures("undrawn")
 @pytest.mark.parametrize("objective", ["peak", "mean", "least_mass", "robust"])
 def test_every_objective_answers(
     objective: str, scene_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
@@ -228,6 +230,7 @@ def test_figures_without_liquid_or_front(tmp_path: Path) -> None:
     assert len(_drawn(replace(best, front=None, sweep=None), tmp_path)) == 1
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_what_is_not_allowed_and_what_is_interrupted_have_their_codes(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

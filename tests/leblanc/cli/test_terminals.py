@@ -44,7 +44,7 @@ COMMANDS = {
 }
 #: What each terminal sees at every landing; all commands on all terminals are a slow test.
 QUICK = ("help", "new", "run", "no command", "no file")
-MORE = {"ascii": ("explain", "run in JSON", "volume", "sweep"), "all closed": ("run in JSON", "sweep")}
+MORE = {"ascii": ("explain", "volume"), "all closed": ("sweep",)}
 
 CHILD = """if True:
     import os, sys, traceback

@@ -155,8 +155,8 @@ def test_worst_over_a_turn() -> None:
 @kills("leblanc.studies.loads.study:loads_over_speed", "if spin in states:", "if False:")
 def test_motions_held_in_time_have_their_own_forces() -> None:
     """With gravity across the axis a layer throws its rotor about: forces follow the largest deflection."""
-    speed = {"speeds.start": "1200 rpm", "speeds.stop": "1300 rpm", "speeds.count": 2}
-    model = {"model.held": "always", "model.cells": 32, "model.friction": {"linear": 1.0}}
+    speed = {"speeds.start": "1200 rpm", "speeds.stop": "1200 rpm", "speeds.count": 1}
+    model = {"model.held": "always", "model.cells": 16, "model.friction": {"linear": 1.0}}
     result = lb.run(_rig(**speed, **model))
     assert result.loads is not None
     found = result.to_json()
@@ -309,8 +309,6 @@ def test_optimise_over_the_run_up() -> None:
     with_liquid, without = LoadsOver(FilledMachine(scene), None, 0.0, runs).of("floor_force", volumes)
     limit = 1.001 * max(with_liquid, without)
     task = {"floor_force": limit, "loads_over": "runup", "volumes": [["5 ml", "15 ml"]]}
-    best = optimise_scene(scene.replace({"optimise": task}), front=False, response=False)
-    assert best.feasible and best.in_time
     steady = optimise_scene(
         scene.replace({"optimise": task | {"loads_over": "both"}}), front=False, response=False
     )
@@ -318,6 +316,7 @@ def test_optimise_over_the_run_up() -> None:
     least = optimise_scene(
         scene.replace({"optimise": task | {"objective": "floor_force"}}), front=False, response=False
     )
+    assert least.feasible and least.in_time
     assert least.unit == "N" and least.value <= with_liquid
     assert least.meaning == "largest force under a foot over the run-up in time"
 

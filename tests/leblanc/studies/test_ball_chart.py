@@ -124,6 +124,7 @@ def test_the_balanced_state_ends_where_the_balls_hold_the_unbalance() -> None:
     np.testing.assert_allclose(heavy.bounds, [6e-4 / (2 * 0.065)], rtol=1e-8)
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_the_long_rotor_comes_out_of_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     over = [word for path in SUPPORTS for word in ("--over", path)]
     words = [*over, "--from", "0.3", "--to", "1.2e4", "--values", "6", "--speeds", "7", "--json"]
@@ -145,7 +146,7 @@ def test_the_long_rotor_comes_out_of_the_command(tmp_path: Path, capsys: pytest.
     }
 
 
-@pytest.mark.usefixtures("no_curves")
+@pytest.mark.usefixtures("no_curves", "undrawn")
 def test_the_command_says_what_the_function_returns(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

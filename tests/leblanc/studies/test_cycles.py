@@ -150,7 +150,7 @@ def test_a_run_up_says_how_large_the_whirl_on_its_way_becomes(machine: Scene, fo
 
 
 def test_a_limit_of_the_whirl(machine: Scene) -> None:
-    limit = whirl_size(machine, np.linspace(100.0, 140.0, 9), 5e-3)
+    limit = whirl_size(machine, np.linspace(100.0, 140.0, 5), 5e-3)
     values = limit.value(np.array([[0.0], [2e-5], [1.1938e-4], [6e-4]]))
     # Nothing in the chamber, nothing that whirls; a thin layer; the scene's own; nearly full.
     assert values[0] == 0.0 and values[3] == 0.0

@@ -124,6 +124,7 @@ def test_a_scene_says_what_its_bores_leave() -> None:
     assert found.named_arrays().attrs["bore"] == "enstrophy"
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "s.toml"
     text = (ROOT / "examples/runup.toml").read_text().replace('duration = "14 s"', 'duration = "0.5 s"')

@@ -109,6 +109,7 @@ def test_words(capsys: pytest.CaptureFixture[str]) -> None:
     assert "1.044 and 0.952 mean depths" in out and "Its estimated error" in out
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_in_time(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     """Grown slowly off the resonance, its means come near the steady wave; at the resonance it breaks."""
     slow = ["--whirl-speed", "34", "--whirl-amplitude", "0.1 mm", "--model", "potential"]

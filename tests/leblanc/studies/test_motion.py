@@ -28,6 +28,7 @@ from solvers.synchronous.response import main_critical_speeds, wet_critical_spee
 from tests.leblanc.studies.test_run import KEYS
 from tests.mutants import kills
 
+MORE = ("vertical_rig", "washing_machine")
 SAME = """
 name = "Two views of one rotor"
 [rotor]
@@ -82,7 +83,8 @@ def test_one_rotor_two_ways() -> None:
 
 
 @pytest.mark.parametrize(
-    "name", ["horizontal_rig", "vertical_rig", "washing_machine", "two_plane_rig", "tub"]
+    "name",
+    ["horizontal_rig", "two_plane_rig", "tub", *(pytest.param(n, marks=pytest.mark.slow) for n in MORE)],
 )
 def test_critical_speeds_are_the_machine_s(name: str) -> None:
     """The same number for other speeds, as many or as few, for chambers in any order, and in `explain`."""

@@ -25,7 +25,8 @@ from solvers.synchronous.response import response
 from tests.leblanc.studies.test_compare import by
 
 Capture = pytest.CaptureFixture[str]
-ROTORS = ("horizontal_rig", "vertical_rig", "centrifuge", "runup", "tub", "two_plane_rig", "washing_machine")
+ROTORS = ("horizontal_rig", "runup", "tub")
+MORE = ("vertical_rig", "centrifuge", "two_plane_rig", "washing_machine")
 
 
 def few(name: str, **more: object) -> Scene:
@@ -79,7 +80,7 @@ def test_small_waves_of_a_rotor_that_tilts() -> None:
     assert result.converged.all() and result.response.residual.max() < 1e-9
 
 
-@pytest.mark.parametrize("name", ROTORS)
+@pytest.mark.parametrize("name", [*ROTORS, *(pytest.param(name, marks=pytest.mark.slow) for name in MORE)])
 def test_every_rotor_is_answered(name: str) -> None:
     """Force and centre of mass are Newton's; range and error are told at each speed."""
     scene = few(name)
@@ -114,6 +115,7 @@ def test_many_machines_at_once_are_each_one_alone() -> None:
         assert not found.in_range[k].any()
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_where_no_wave_stands_the_answer_says_so(tmp_path: Path, capsys: Capture) -> None:
     """At its resonance this rotor goes farther than the layer is deep."""
     text = Path("examples/runup.toml").read_text(encoding="utf-8").replace('"auto"', '"kdv"')

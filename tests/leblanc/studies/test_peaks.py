@@ -62,8 +62,8 @@ def sampled(own: Scene, count: int) -> Response:
 
 @pytest.mark.parametrize("name", ["tub", "centrifuge", "two_plane_rig"])
 def test_peak_does_not_depend_on_the_speeds(name: str) -> None:
-    """One machine at 30, 60 and 601 speeds has one peak, with liquid and without, to 1e-9."""
-    found = [both(scene(name, count)) for count in (30, 60, 601)]
+    """One machine at 30, 60 and 241 speeds has one peak, with liquid and without, to 1e-9."""
+    found = [both(scene(name, count)) for count in (30, 60, 241)]
     for size in ("amplitude", "amplitude_dry"):
         largest = [float(getattr(each, size).max()) for each in found]
         np.testing.assert_allclose(largest, largest[-1], rtol=1e-9)
@@ -133,7 +133,8 @@ def test_a_speed_on_a_tongue_sees_it() -> None:
 
 def test_a_tongue_between_the_speeds() -> None:
     """The upper branch of a sharp resonance, which most speeds do not see, is followed to where it ends."""
-    peaks = [float(both(random_machine(12).replace({"speeds.count": n})).amplitude.max()) for n in (30, 97)]
+    own = random_machine(12).replace({"speeds.start": 105.0, "speeds.stop": 118.0})
+    peaks = [float(both(own.replace({"speeds.count": n})).amplitude.max()) for n in (4, 9)]
     assert peaks[0] == pytest.approx(peaks[1], rel=1e-9)
 
 
@@ -176,7 +177,7 @@ def test_no_damping_no_bound() -> None:
 @kills("leblanc.studies.peaks:_without_bound", ">= _GROWN *", "< _GROWN *")
 def test_no_damping_of_a_tilting_rotor() -> None:
     """Of a rotor whose resonances are found as roots: the amplitude goes as one over the distance."""
-    own = scene("two_plane_rig", 9, **{f"rotor__supports__{k}__damping": 0.0 for k in range(2)})
+    own = scene("two_plane_rig", 5, **{f"rotor__supports__{k}__damping": 0.0 for k in range(2)})
     speed = assert_unbounded(own).peak["speed"]
     near = response(own.rotor.machine(), own.fills, speed * (1.0 - np.array([1e-3, 1e-5])), 0.0)
     assert near.amplitude[1] > 50.0 * near.amplitude[0]
@@ -317,7 +318,7 @@ def test_one_curve_contains_its_peaks() -> None:
 def test_a_dry_machine_has_one_peak_however_its_liquid_is_held() -> None:
     """Held in time or not, the peak without liquid is one number; with liquid it is looked at there too."""
     own = lb.example("two_plane_rig").replace({"speeds.start": "400 rpm", "speeds.stop": "1200 rpm"})
-    own = own.replace({"speeds.count": 6, "model.cells": 16, "model.friction": {"linear": 20.0}})
+    own = own.replace({"speeds.count": 4, "model.cells": 16, "model.friction": {"linear": 20.0}})
     steady, held = (run_scene(own.replace({"model.held": way})) for way in ("never", "always"))
     assert held.held is not None and held.held.at.all() and held.refined is not None
     assert held.peak_dry == steady.peak_dry and held.peak_dry["amplitude"] > held.amplitude_dry.max()
@@ -343,13 +344,13 @@ def test_a_peak_of_the_optimiser_does_not_fall_because_less_of_it_counts() -> No
 def over(own: Scene, volume: Array, count: int) -> float:
     """Largest amplitude that `run` finds with some volumes, by the model of the optimiser."""
     fine = with_volumes(own.replace({"speeds.count": count, "model.liquid": "statics"}), volume)
-    return run_scene(fine).peak["amplitude"]
+    return float(both(fine).amplitude.max())
 
 
 @pytest.mark.parametrize(("name", "counts"), [("horizontal_rig", (9, 60)), ("centrifuge", (9,))])
 def test_the_optimiser_promises_what_run_finds(name: str, counts: tuple[int, ...]) -> None:
     """The value of the best volumes is the peak at 2001 speeds, and no grid is there to profit from."""
-    task = Optimisation(objective="peak", steady=True)
+    task = Optimisation(objective="peak", steady=True, stable=False)
     for count in counts:
         own = scene(name, count)
         best = optimise_scene(own, task=task, front=False)

@@ -22,10 +22,11 @@ KEYS = {
     "speed", "amplitude", "amplitude_dry", "phase", "liquid_offset", "liquid_angle", "dry_patch",
     "stable", "model",
 }  # fmt: skip
-EXAMPLES = ["horizontal_rig", "vertical_rig", "washing_machine", "centrifuge"]
+EXAMPLES = ["horizontal_rig", "centrifuge"]
+MORE = [pytest.param(name, marks=pytest.mark.slow) for name in ("vertical_rig", "washing_machine")]
 
 
-@pytest.mark.parametrize("name", EXAMPLES)
+@pytest.mark.parametrize("name", [*EXAMPLES, *MORE])
 def test_examples(name: str, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     assert main(["run", f"examples/{name}.toml", "--json", "--out", str(tmp_path)]) == 0
     out, _ = capsys.readouterr()

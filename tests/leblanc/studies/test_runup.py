@@ -666,6 +666,7 @@ def baffled(count: int, tip: float, start: float) -> Scene:
     )
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_deflection_beyond_the_wall_ends_with_3(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Saved, the term named, the JSON printed as well."""
     scene = tmp_path / "wide.toml"
@@ -874,6 +875,7 @@ PICTURES = {f"runup_{name}.{kind}" for name in ("speed", "time", "energy") for k
 FILES = {*PICTURES, "runup.nc", "runup.html", "contents.json"}
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = write_scene(tmp_path / "s.toml", table(runup={"duration": 0.3}))
     again = ["runup", str(file), "--cells", "8", "--samples", "20", "--out", str(tmp_path / "out")]
@@ -924,6 +926,7 @@ def standing_motor() -> dict[str, Any]:
     return content
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_what_was_reached_is_written(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = write_scene(tmp_path / "s.toml", standing_motor())
     assert main(["runup", str(file), "--out", str(tmp_path / "out"), "--json", "--no-check"]) == 3
@@ -940,6 +943,7 @@ def test_what_was_reached_is_written(tmp_path: Path, capsys: pytest.CaptureFixtu
     }
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_an_interrupted_run_leaves_its_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     history = history_of(20, 1, outcome=Outcome.INTERRUPTED, reason="interrupted at 1 s, 100 rad/s")
     monkeypatch.setattr(runup_module, "runup_scene", lambda **_: made_up(history))

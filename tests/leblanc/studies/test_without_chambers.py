@@ -159,6 +159,7 @@ def test_what_needs_a_liquid_refuses_in_one_line(
     assert len(told) == 1 and 'chambers = "none": must be at least one' in told[0]
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_commands(scene: Scene, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = str(tmp_path / "rotor.toml")
     assert main(["run", path, "--out", str(tmp_path), "--json"]) == 0

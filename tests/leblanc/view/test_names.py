@@ -115,7 +115,7 @@ def test_names_cover_nothing() -> None:
             plot.close()
 
 
-@pytest.mark.parametrize("size", [(800, 600), (640, 900)])
+@pytest.mark.parametrize("size", [(640, 900), pytest.param((800, 600), marks=pytest.mark.slow)])
 def test_names_cover_nothing_in_other_views(size: tuple[int, int]) -> None:
     from leblanc.view.sight import VIEWS, layout
 
@@ -151,7 +151,7 @@ def short_runup(name: str) -> Film:
     return runup_film(runup_view(short, 13))
 
 
-@pytest.mark.parametrize("name", ["washing_machine", "runup"])
+@pytest.mark.parametrize("name", ["washing_machine", pytest.param("runup", marks=pytest.mark.slow)])
 def test_names_stay_in_a_film(name: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     frames = names_of_film(short_runup(name), monkeypatch, tmp_path)
     check_film(frames)

@@ -21,6 +21,8 @@ from leblanc.view.sight import INSET, letters
 from tests.leblanc.view.test_picture import MACHINES, across, middle_of_circle, scene, short_film, working
 from tests.leblanc.view.views import show
 
+MORE = ("washing_machine", "two_plane_rig")
+
 
 def ends_of(picture: Picture, name: str) -> tuple[np.ndarray, np.ndarray]:
     """First and last point of the line in the middle of a coil, mm."""
@@ -103,7 +105,9 @@ def blue(picture: Picture, machine: Picture) -> float:
     return float(np.mean(seen[..., 2] > seen[..., 0] + 25))
 
 
-@pytest.mark.parametrize("name", ["tub", "washing_machine", "two_plane_rig", "centrifuge"])
+@pytest.mark.parametrize(
+    "name", ["tub", "centrifuge", *(pytest.param(n, marks=pytest.mark.slow) for n in MORE)]
+)
 def test_parts_leave_the_liquid_in_sight(name: str) -> None:
     view = working(name)
     liquid = tuple(piece for piece in view.picture.pieces if piece.look in ("liquid", "surface"))
@@ -168,7 +172,7 @@ def test_a_film_of_a_run_up_shows_motion() -> None:
 
 
 def test_a_pool_lies_at_the_bottom_of_every_frame() -> None:
-    view = run_up("washing_machine", 41)
+    view = run_up("washing_machine", 25)
     film = runup_film(view)
     pools = [k for k in range(film.count) if np.isnan(view.frames.depth[k, 0]).any()]
     assert len(pools) > 1

@@ -124,7 +124,9 @@ def asked(picture: Picture) -> float:
     return 1.0 if found is None or "Everything to scale" in picture.caption else float(found[1])
 
 
-@pytest.mark.parametrize("seed", range(24))
+@pytest.mark.parametrize(
+    "seed", [*range(12), *(pytest.param(k, marks=pytest.mark.slow) for k in range(12, 24))]
+)
 def test_liquid_stays_between_the_walls(seed: int) -> None:
     rng = np.random.default_rng(seed)
     kind, axis = list(KINDS)[seed % len(KINDS)], ("vertical", "horizontal")[seed // 6 % 2]

@@ -37,6 +37,7 @@ SHOWN = {
 }
 
 
+@pytest.mark.usefixtures("undrawn")
 @pytest.mark.parametrize("name", SHOWN)
 def test_progress(
     name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
@@ -66,6 +67,7 @@ def test_progress(
         assert words in shown
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_nothing_is_shown_elsewhere(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Without a terminal stderr has the closing line alone."""
     assert main([*SHOWN["map"][0], "--json", "--out", str(tmp_path)]) == 0

@@ -325,6 +325,7 @@ def _file(tmp_path: Path, **optimise: object) -> Path:
 RANGES = {"count": [2, 3], "diameter": ["6 mm", "14 mm"]}
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_the_command_writes_and_prints(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = _file(tmp_path, objective="least_mass", balls=RANGES)
     assert main(["optimise", str(file), "--json", "--out", str(tmp_path / "a")]) == 0
@@ -343,6 +344,7 @@ def test_the_command_writes_and_prints(tmp_path: Path, capsys: pytest.CaptureFix
     assert 'diameter = "' in said
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_no_balls_that_meet_all_end_with_code_3(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = _file(tmp_path, objective="least_mass", stability_margin="500 1/s", balls=RANGES)
     assert main(["optimise", str(file), "--out", str(tmp_path / "a")]) == 3
@@ -352,6 +354,7 @@ def test_no_balls_that_meet_all_end_with_code_3(tmp_path: Path, capsys: pytest.C
     assert (tmp_path / "a" / "optimise.html").exists()
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_an_interrupted_search_keeps_the_best(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

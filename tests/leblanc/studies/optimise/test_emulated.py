@@ -80,6 +80,7 @@ def test_what_does_not_fit_is_said(swept: tuple[Scene, Path], tmp_path: Path) ->
         emulated_vibration(tmp_path / "sweep.zarr", load_scene(tmp_path / "scene.toml"), Optimisation())
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_command(swept: tuple[Scene, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     store = swept[1]
     scene = store.parent / "scene.toml"

@@ -158,8 +158,6 @@ def test_the_answer_is_that_of_its_places() -> None:
     assert found.value == pytest.approx(total, rel=1e-10)
     rates = natural_frequencies(stiffness, mass_matrix(machine, origin))
     np.testing.assert_allclose(found.frequency[1], rates[0], rtol=1e-10)
-    again = best(scene, reach=["20 mm", "50 mm", "20 mm"], turn="10 deg")
-    assert again.to_json() == found.to_json()
 
 
 @kills(f"{ROOM}:_penalised", "found.excess > 0.0", "found.excess > 1e9")
@@ -234,7 +232,8 @@ def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_words() -> None:
-    found = best(lb.example("tub"), reach=[0, 0.05, 0], turn=0)
+    found, again = (best(lb.example("tub"), reach=[0, 0.05, 0], turn=0) for _ in range(2))
+    assert again.to_json() == found.to_json()
     assert len(table(found, "mount").rows) == 10
     assert {row[0] for row in table(found, "coupling").rows} <= set(pair_names())
     assert "none about the centre of mass" in labels(found)["Couplings of the mass"]

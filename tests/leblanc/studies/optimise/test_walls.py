@@ -92,7 +92,7 @@ def test_compartments_are_answered_by_elements() -> None:
 
 def test_the_peak_of_compartments_is_that_of_a_run() -> None:
     """The top of the curve is the highest of many speeds, and what a run finds between its own."""
-    scene, volume = rig(), np.array([[3e-5]])
+    scene, volume = rig(**{"speeds.count": 3}), np.array([[3e-5]])
     found = FilledMachine(scene).peaks(volume, scene.speeds)[0]
     speeds = np.linspace(100.0, 110.0, 20001)
     # The elements' mass, to 3e-7, and the square of half a step over the width of the resonance.

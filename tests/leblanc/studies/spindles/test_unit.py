@@ -120,6 +120,7 @@ def test_a_cut_section_is_the_same_beam() -> None:
     assert found.wanted == pytest.approx(known.wanted, rel=1e-9)
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_files_and_json(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     scene = tmp_path / "few.toml"
     text = example_path("spindle").read_text(encoding="utf-8")

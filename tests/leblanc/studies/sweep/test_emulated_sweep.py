@@ -71,6 +71,7 @@ def test_what_cannot_be_emulated_is_said(tmp_path: Path) -> None:
     assert all("words" in str(one) for one in emulated_outputs(store).values())
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     study_in(tmp_path, SMOOTH)
     arguments = ["sweep", str(tmp_path / "study.toml"), "--workers", "0", "--out", str(tmp_path), "--emulate"]

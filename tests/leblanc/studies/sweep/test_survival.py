@@ -17,7 +17,8 @@ import pytest
 
 from leblanc.studies.sweep.block import PENDING
 from leblanc.studies.sweep.store import STORE, read_store
-from tests.oracles.sweeps import ROOT, STUDY, leblanc, tree, write_study
+from leblanc.studies.sweep.study import run_sweep
+from tests.oracles.sweeps import ROOT, STUDY, leblanc, study_in, tree, write_study
 
 psutil = pytest.importorskip("psutil")
 
@@ -51,9 +52,8 @@ def complete(process: subprocess.Popen[str]) -> str:
 
 
 def undisturbed(folder: Path, study: str) -> dict[str, bytes]:
-    """The store of a sweep that nothing happens to, in one process."""
-    write_study(folder, study)
-    complete(leblanc("study.toml", "--workers", "0", "--out", "out", cwd=folder))
+    """The store of a sweep that nothing happens to, in this process."""
+    run_sweep(study_in(folder, study), folder / "out", workers=0)
     return tree(folder / "out" / STORE)
 
 
@@ -73,13 +73,13 @@ def workers_of(process: subprocess.Popen[str]) -> list[psutil.Process]:
 
 
 def test_the_store_does_not_depend_on_the_workers(tmp_path: Path) -> None:
-    study = STUDY.replace("samples = 256", "samples = 130")
+    study = STUDY.replace("samples = 256", "samples = 70")
     (tmp_path / "alone").mkdir()
     alone = undisturbed(tmp_path / "alone", study)
     write_study(tmp_path, study)
     out = complete(leblanc("study.toml", "--workers", "2", "--out", "out", "--json", cwd=tmp_path))
     assert tree(tmp_path / "out" / STORE) == alone
-    assert json.loads(out)["done"] == 130
+    assert json.loads(out)["done"] == 70
 
 
 @pytest.mark.slow
