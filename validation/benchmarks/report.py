@@ -171,8 +171,7 @@ def accuracy_figure(section: Section) -> Figure:
 
 def _logarithmic(axes: Any) -> None:
     """Both axes, labelled at powers of ten as the house style writes them, upwards at two at least."""
-    axes.set_xscale("log")
-    axes.set_yscale("log")
+    axes.set(xscale="log", yscale="log")
     low, high = (math.log10(value) for value in axes.get_ylim())
     if math.floor(high) - math.ceil(low) < 1:
         axes.set_ylim(10.0 ** math.floor(low), 10.0 ** math.ceil(high))
@@ -200,8 +199,7 @@ def growth_figure(growths: Sequence[Growth]) -> Figure:
         _logarithmic(axes)
         counts = sorted({n for curve in growths for n in curve.counts})
         axes.set_xticks(counts, [str(n) for n in counts])
-        axes.set_xlabel(f"Number of {over} (\N{EN DASH})")
-        axes.set_ylabel("Time (s)")
+        axes.set(xlabel=f"Number of {over} (\N{EN DASH})", ylabel="Time (s)")
     return figure
 
 

@@ -47,8 +47,7 @@ def breaking_figure() -> Figure:
 
 
 def _draw_ends(axes: Any, results: Kept) -> None:
-    axes.set_xscale("log")
-    axes.set_yscale("log")
+    axes.set(xscale="log", yscale="log")
     for depth, look in _LOOKS.items():
         rows = [row for row in results.endings if row.depth == depth]
         broken = [row for row in rows if row.state == "broken"]
@@ -72,8 +71,7 @@ def _draw_ends(axes: Any, results: Kept) -> None:
     axes.set_yticks([1, 2, 5, 10, 20], ["1", "2", "5", "10", "20"])
     axes.set_ylim(1.0, 32.0)
     axes.minorticks_off()
-    axes.set_xlabel("Whirl over depth, w0/h0")
-    axes.set_ylabel("Whirl periods to breaking")
+    axes.set(xlabel="Whirl over depth, w0/h0", ylabel="Whirl periods to breaking")
 
 
 def _draw_crests(axes: Any, results: Kept) -> None:
@@ -85,8 +83,7 @@ def _draw_crests(axes: Any, results: Kept) -> None:
         label="highest free wave",
     )
     axes.set_ylim(bottom=1.0)
-    axes.set_xlabel("Depth h0/R")
-    axes.set_ylabel("Crest over h0")
+    axes.set(xlabel="Depth h0/R", ylabel="Crest over h0")
 
 
 def _draw_times(axes: Any, results: Kept) -> None:
@@ -96,8 +93,7 @@ def _draw_times(axes: Any, results: Kept) -> None:
         name = "long wave + dispersion" if row.dispersion else "long wave"
         axes.plot(row.time, row.crest, color=colour, linestyle=line, label=name)
     axes.set_ylim(bottom=1.0)
-    axes.set_xlabel("Time (whirl periods)")
-    axes.set_ylabel("Crest over h0")
+    axes.set(xlabel="Time (whirl periods)", ylabel="Crest over h0")
 
 
 def pair_shown(results: Kept) -> list[Beside]:
@@ -127,11 +123,9 @@ def crest_figure(found: Sequence[Crest] | None = None) -> Figure:
             _draw_crest(near, row, colour)
         depths = np.arange(0.0, 1.9, 0.5)
         near.set_yticks(_unrolled(crests.LAYER * depths), [number(depth) for depth in depths])
-        near.set_xlim(-_AHEAD, _BEHIND)
-        near.set_ylim(0.0, float(_unrolled(1.7 * crests.LAYER)))
+        near.set(xlim=(-_AHEAD, _BEHIND), ylim=(0.0, float(_unrolled(1.7 * crests.LAYER))))
         near.axhline(float(_unrolled(crests.LAYER)), color="0.5", linewidth=0.7, linestyle=":")
-        near.set_xlabel("Angle from the crest (rad); the wave runs to the left")
-        near.set_ylabel("Depth over h0")
+        near.set(xlabel="Angle from the crest (rad); the wave runs to the left", ylabel="Depth over h0")
         figure.alt = crest_words(rows)
     return figure
 
@@ -145,8 +139,7 @@ def _draw_drum(axes: Any, row: Crest) -> None:
     angle = np.linspace(-math.pi, math.pi, _DRUM_LINES)
     depth = np.interp(angle, crests.angles(), row.depth)
     wall, free = np.exp(1j * (row.place + angle)), (1.0 - depth) * np.exp(1j * (row.place + angle))
-    axes.set_xlim(-1.06, 1.06)
-    axes.set_ylim(-1.06, 1.06)
+    axes.set(xlim=(-1.06, 1.06), ylim=(-1.06, 1.06))
     axes.set_aspect("equal")
     axes.set_axis_off()
     ring = np.concatenate((wall, free[::-1]))

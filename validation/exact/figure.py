@@ -73,12 +73,10 @@ def _dress(axes: Any, first: bool, last: bool) -> None:
     axes.set_yscale("log")
     axes.set_yticks(_TICKS, [number(tick) for tick in _TICKS])
     axes.minorticks_off()
-    axes.set_xlim(0.2, 2.15)
-    axes.set_ylim(0.02, 0.7)
+    axes.set(xlim=(0.2, 2.15), ylim=(0.02, 0.7))
     axes.set_facecolor("0.88")
     axes.grid(visible=False)
-    axes.set_ylabel("Depth h0/R" if first else "")
-    axes.set_xlabel("Detuning p/p1" if last else "")
+    axes.set(ylabel="Depth h0/R" if first else "", xlabel="Detuning p/p1" if last else "")
     axes.tick_params(labelleft=first, labelbottom=last)
 
 
@@ -125,11 +123,9 @@ def ends_figure(ends: Ends) -> Figure:
                 axes.plot(ends.ratio[folds], ends.whirl[folds], "o", color=look, markersize=3.0)
                 choked = mine & side & (ends.choked > 0.0)
                 axes.plot(ends.ratio[choked], ends.choked[choked], ":", color=look, linewidth=0.9)
-        axes.set_xlim(0.3, 1.8)
-        axes.set_ylim(2e-4, 0.5)
+        axes.set(xlim=(0.3, 1.8), ylim=(2e-4, 0.5))
         axes.yaxis.set_major_formatter(number)
-        axes.set_xlabel("Detuning p/p1")
-        axes.set_ylabel("Largest whirl w0/h0")
+        axes.set(xlabel="Detuning p/p1", ylabel="Largest whirl w0/h0")
         figure.alt = ends_words(ends)
     return figure
 

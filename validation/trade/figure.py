@@ -121,8 +121,7 @@ def _look(kind: str) -> tuple[str, str, str]:
 def _draw(axes: Axes, comparison: Comparison, tolerance: float) -> None:
     """Ladders, front, marks and the region below the best answer's own error."""
     rows, floor = _known(comparison), _floor(comparison)
-    axes.set_xscale("log")
-    axes.set_yscale("log")
+    axes.set(xscale="log", yscale="log")
     for kind in dict.fromkeys(_kind(row) for row in rows):
         _ladder(axes, kind, [row for row in rows if _kind(row) == kind], comparison)
     front = sorted((row for row in rows if row.on_front), key=lambda row: row.time)

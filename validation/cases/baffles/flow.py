@@ -243,9 +243,7 @@ def lag_figure() -> Figure:
         panels = [axes for [axes] in rows]
         for axes, looks, last in ((panels[0], _LOOKS, 0.8), (panels[1], _DRIVEN, 1.2)):
             _draw(axes, looks)
-            axes.set_xlim(0.0, last)
-            axes.set_ylim(0.0, None)
-            axes.set_ylabel("Lag over the spin (\N{EN DASH})")
+            axes.set(xlim=(0.0, last), ylim=(0.0, None), ylabel="Lag over the spin (\N{EN DASH})")
         panels[1].set_xlabel("Time (s)")
     return figure
 

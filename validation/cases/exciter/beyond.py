@@ -391,9 +391,7 @@ def _chaos(axes: Any) -> None:
 
 def _scales(axes: Any, end: float) -> None:
     logarithmic(axes, y=[1e-4, 1e-3, 1e-2, 0.1, 1.0, 10.0])
-    axes.set_ylim(1e-4, 30.0)
-    axes.set_xlim(0.0, end)
-    axes.set_xlabel("Frequency (\N{EN DASH})")
+    axes.set(ylim=(1e-4, 30.0), xlim=(0.0, end), xlabel="Frequency (\N{EN DASH})")
 
 
 def _map(axes: Any, rows: list[dict[str, Any]], smallness: float, damping: float) -> None:
@@ -406,8 +404,7 @@ def _map(axes: Any, rows: list[dict[str, Any]], smallness: float, damping: float
     drags = sorted({row["drag"] for row in rows})
     bound = np.array([_bound(rows, drag, smallness, damping) for drag in drags])
     axes.plot(bound, drags, color="0.45", linewidth=1.0, label="bound of the third speed")
-    axes.set_xlim(-0.1, 1.1)
-    axes.set_xticks(sorted({row["unbalance"] for row in rows}))
+    axes.set(xlim=(-0.1, 1.1), xticks=sorted({row["unbalance"] for row in rows}))
     axes.xaxis.set_major_formatter(lambda value, _place: f"{value:.2g}")
     axes.set_ylim(0.05, 0.65)
     axes.set_xlabel("Unbalance \N{GREEK SMALL LETTER DELTA} (\N{EN DASH})")

@@ -217,8 +217,7 @@ def trace_figure() -> Figure:
             gap.plot(found.turns, values - lowest, color=color, linestyle=dashes)
         balls.set_ylabel("Ball speed (\N{EN DASH})")
         motion.set_ylabel("Platform (\N{EN DASH})")
-        gap.set_ylabel("Gap (\N{EN DASH})")
-        gap.set_xlabel("Turns of the balls (\N{EN DASH})")
+        gap.set(ylabel="Gap (\N{EN DASH})", xlabel="Turns of the balls (\N{EN DASH})")
         for axes in panels:
             axes.set_xlim(0.0, 3.0)
             axes.tick_params(labelbottom=axes is gap)

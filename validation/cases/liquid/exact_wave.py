@@ -404,15 +404,12 @@ def force_figure() -> Figure:
                     axes.plot(column[side], force[side], **look, label=name)
                     if force is not exact:
                         _draw_off(below, column[side], force[side], exact[side], look)
-        axes.set_ylim(-_HIGH, _HIGH)
-        axes.set_ylabel("Force ratio G")
+        axes.set(ylim=(-_HIGH, _HIGH), ylabel="Force ratio G")
         axes.tick_params(labelbottom=False)
-        below.set_yscale("log")
-        below.set_ylim(_LEAST, 0.5)
+        below.set(yscale="log", ylim=(_LEAST, 0.5))
         below.set_yticks([1e-5, 1e-4, 1e-3, 1e-2, 1e-1], ["0.001 %", "0.01 %", "0.1 %", "1 %", "10 %"])
         below.minorticks_off()
-        below.set_ylabel("Off the exact G")
-        below.set_xlabel("Whirl speed over spin speed")
+        below.set(ylabel="Off the exact G", xlabel="Whirl speed over spin speed")
         for each in (axes, below):
             each.set_xlim(speed[0], speed[-1])
         ends = [_RATIOS[np.isfinite(exact) & side] for side in (_RATIOS < 1.0, _RATIOS > 1.0)]
@@ -484,8 +481,7 @@ def free_figure(climbs: dict[float, list[SteadyWave]]) -> Figure:
         for [axes] in rows:
             axes.set_xlim(1.0, 1.75)
         rows[0][0].set_ylabel("s/Omega, backward")
-        rows[1][0].set_ylabel("s/Omega, forward")
-        rows[1][0].set_xlabel("Crest over h0")
+        rows[1][0].set(ylabel="s/Omega, forward", xlabel="Crest over h0")
         rows[0][0].tick_params(labelbottom=False)
         figure.alt = "; ".join(
             f"h0/R = {layer:g}: s = {waves[0].slip_speeds()[1]:.4f} at a crest of {waves[0].crest:.3f}, "
@@ -516,9 +512,7 @@ def sharp_figure(wave: SteadyWave, lower: SteadyWave) -> Figure:
         near.set_xlim(-_NEAR_CREST, _NEAR_CREST)
         near.set_ylim(float(depth[within].min()), 1.005 * float(depth.max()))
         near.set_xticks([-0.1, -0.05, 0.0, 0.05, 0.1])
-        whole.set_xlim(-math.pi, math.pi)
-        whole.set_xticks([-3, -2, -1, 0, 1, 2, 3])
-        whole.set_ylabel("Depth over h0")
+        whole.set(xlim=(-math.pi, math.pi), xticks=[-3, -2, -1, 0, 1, 2, 3], ylabel="Depth over h0")
         for axes in (whole, near):
             axes.set_xlabel("Angle from the crest (rad)")
         to = nodes(wave.surface.size - 1, wave.at.crests, 1.0)
@@ -535,8 +529,7 @@ def sharp_figure(wave: SteadyWave, lower: SteadyWave) -> Figure:
         spectra.set_yticks([1e-12, 1e-8, 1e-4, 1.0], ["1e-12", "1e-8", "1e-4", "1"])
         spectra.set_xlim(0, wave.surface.size)
         spectra.minorticks_off()
-        spectra.set_xlabel("Number k of the cosine")
-        spectra.set_ylabel("k |Yk| over largest")
+        spectra.set(xlabel="Number k of the cosine", ylabel="k |Yk| over largest")
         figure.alt = (
             f"A free wave with a crest of {wave.crest:.4f} depths, nearly a corner; its nodes crowd there. "
             f"Tail of its spectrum {wave.tail:.1e} with crowded nodes, {even.tail:.1e} on as many even ones."

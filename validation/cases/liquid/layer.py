@@ -249,8 +249,7 @@ def force_figure(cells: int = 64) -> Figure:
             waves = {"color": "#D55E00", "marker": "x", "markersize": 6.0, "linestyle": "none", "zorder": 5}
             axes.plot(at, found.force_ratio[-1].real, **waves, label=label)
             axes.plot(at, run["force_ratio"][0], **_FLOW, label="computed two-phase flow")
-        axes.set_xlim(ratio[0], ratio[-1])
-        axes.set_ylim(-4.0, 5.0)
+        axes.set(xlim=(ratio[0], ratio[-1]), ylim=(-4.0, 5.0))
         axes.set_xlabel("Whirl speed over spin speed (\N{EN DASH})")
         axes.set_ylabel("Force along the deflection over that of a full drum (\N{EN DASH})")
     return figure
@@ -271,8 +270,7 @@ def bore_figure() -> Figure:
         _draw_flow(panels)
         labels = ("Force along (\N{EN DASH})", "90\N{DEGREE SIGN} ahead (\N{EN DASH})")
         for axes, name in zip(panels, (*labels, "Depth (mm)", "Rotation (rad/s)"), strict=True):
-            axes.set_ylabel(name)
-            axes.set_xlim(0.0, 6.8)
+            axes.set(ylabel=name, xlim=(0.0, 6.8))
             axes.tick_params(labelbottom=axes is panels[-1])
         panels[-1].set_xlabel("Time (s)")
     return figure

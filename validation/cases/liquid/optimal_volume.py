@@ -110,9 +110,7 @@ def volume_figure() -> Figure:
         axes.plot(fine * MM, thin, color="0.45", linewidth=1.0, linestyle=(0, (1, 1.5)), label="fast spin")
         axes.axhline(CHAMBER.capacity * _ML, color="0.15", linewidth=0.8, label="chamber full")
         logarithmic(axes, x=[0.3, 1.0, 3.0, 10.0, 30.0], y=[10.0**k for k in range(7)])
-        axes.set_xlim(0.3, 30.0)
-        axes.set_xlabel("Deflection (mm)")
-        axes.set_ylabel("Optimal volume (ml)")
+        axes.set(xlim=(0.3, 30.0), xlabel="Deflection (mm)", ylabel="Optimal volume (ml)")
     return figure
 
 
@@ -154,8 +152,6 @@ def law_figure() -> Figure:
         full = water.density * CHAMBER.capacity * deflection * _GRAMS
         dots = {"color": "0.15", "linewidth": 0.9, "linestyle": (0, (1, 1.5))}
         axes.plot(deflection * MM, full, **dots, label="full chamber")
-        axes.set_xlim(0.0, 20.0)
-        axes.set_ylim(0.0, 80000.0)
-        axes.set_xlabel("Deflection (mm)")
-        axes.set_ylabel("Unbalance of the liquid (g mm)")
+        axes.set(xlim=(0.0, 20.0), ylim=(0.0, 80000.0))
+        axes.set(xlabel="Deflection (mm)", ylabel="Unbalance of the liquid (g mm)")
     return figure

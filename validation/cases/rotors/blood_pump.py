@@ -307,8 +307,7 @@ def coils_figure() -> Figure:
         above.set_ylim(0.9, 100.0)
         above.tick_params(labelbottom=False)
         above.set_ylabel("Largest sensitivity (\N{EN DASH})")
-        below.set_ylabel("Least damping ratio (\N{EN DASH})")
-        below.set_xlabel("Bandwidth of the coils (kHz)")
+        below.set(ylabel="Least damping ratio (\N{EN DASH})", xlabel="Bandwidth of the coils (kHz)")
     return figure
 
 

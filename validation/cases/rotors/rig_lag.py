@@ -168,9 +168,7 @@ def _draw_angles(axes: Any, lags: Sequence[Lag], damping_ratio: float) -> None:
     error = {"elinewidth": 0.8, "capsize": 2.0, "linestyle": "none", "label": "measured, read to 30 deg"}
     axes.errorbar(measured["speed_rpm"], measured["angle_deg"], yerr=15.0, fmt="o", **mark, **error)
     axes.set_ylim(-35.0, 235.0)
-    axes.set_yticks(range(0, 226, 45))
-    axes.set_xlabel("Speed (rpm)")
-    axes.set_ylabel("Liquid behind\nthe unbalance (deg)")
+    axes.set(yticks=range(0, 226, 45), xlabel="Speed (rpm)", ylabel="Liquid behind\nthe unbalance (deg)")
 
 
 def _draw_errors(axes: Any, lags: Sequence[Lag]) -> None:
@@ -185,8 +183,7 @@ def _draw_errors(axes: Any, lags: Sequence[Lag]) -> None:
     axes.set_xticks(rates)
     axes.set_yticks([1.0, 3.0, 10.0, 30.0, 100.0], ["1", "3", "10", "30", "100"])
     axes.minorticks_off()
-    axes.set_xlabel("Rate (rad/s\N{SUPERSCRIPT TWO})")
-    axes.set_ylabel("Error (%)")
+    axes.set(xlabel="Rate (rad/s\N{SUPERSCRIPT TWO})", ylabel="Error (%)")
 
 
 def main(out: Path, workers: int = 2) -> Iterator[object]:
@@ -225,11 +222,8 @@ def angle_figure(damping_ratio: float) -> Figure:
         seen = np.array(measured["angle_deg"], dtype=float)
         axes.vlines(measured["speed_rpm"], seen - _READING, seen + _READING, color="black", linewidth=0.8)
         axes.plot(measured["speed_rpm"], seen, **marks, zorder=4, label="measured, DR18, Fig. 24")
-        axes.set_xlim(speed[0], speed[-1])
-        axes.set_ylim(-20.0, 200.0)
-        axes.set_yticks(range(0, 181, 30))
-        axes.set_xlabel("Speed (rpm)")
-        axes.set_ylabel("Liquid behind the unbalance (deg)")
+        axes.set(xlim=(speed[0], speed[-1]), ylim=(-20.0, 200.0))
+        axes.set(yticks=range(0, 181, 30), xlabel="Speed (rpm)", ylabel="Liquid behind the unbalance (deg)")
     return figure
 
 

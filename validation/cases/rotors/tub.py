@@ -272,10 +272,8 @@ def draw(plot: Plot) -> Figure:
                 linewidth=1.2,
                 label=label,
             )
-        axes.set_xlim(speed[0], speed[-1])
-        axes.set_ylim(0.0, 1.08 * highest)
-        axes.set_xlabel("Speed (rpm)")
-        axes.set_ylabel(plot.label)
+        axes.set(xlim=(speed[0], speed[-1]), ylim=(0.0, 1.08 * highest))
+        axes.set(xlabel="Speed (rpm)", ylabel=plot.label)
         above = axes.secondary_xaxis("top", functions=(lambda x: x * _RPM, lambda x: x / _RPM))
         above.set_xlabel("Speed (rad/s)")
     return figure

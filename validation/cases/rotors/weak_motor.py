@@ -44,8 +44,7 @@ def motor_figure() -> Figure:
             lower.plot(history.time, history.amplitude * MM, **(look | {"linewidth": 1.0, "label": "_"}))
         upper.set_ylabel("Speed (rpm)")
         upper.tick_params(labelbottom=False)
-        lower.set_ylabel("Amplitude (mm)")
-        lower.set_xlabel("Time (s)")
+        lower.set(ylabel="Amplitude (mm)", xlabel="Time (s)")
         for axes in (upper, lower):
             axes.set_xlim(0.0, float(wet.time[-1]))
             axes.set_ylim(bottom=0.0)

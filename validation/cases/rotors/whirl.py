@@ -266,8 +266,7 @@ def growth_figure(in_time: list[Case]) -> Figure:
             ratio = float(case.name.rpartition("-")[2])
             assert isinstance(case.computed, float)
             axes.plot(ratio, case.computed / NATURAL, **marks, zorder=4, label="coupled long waves in time")
-        axes.set_xlim(0.6, 2.4)
-        axes.set_ylim(-0.03, 0.08)
+        axes.set(xlim=(0.6, 2.4), ylim=(-0.03, 0.08))
         axes.set_xlabel("Spin speed over the natural frequency without liquid (\N{EN DASH})")
         axes.set_ylabel("Growth over the natural frequency (\N{EN DASH})")
     return figure

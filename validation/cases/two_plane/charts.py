@@ -146,8 +146,7 @@ def _draw(axes: Any, chart: Chart, scale: float = 1.0) -> None:
         shown = f"_{label}" if label in known else label
         known.add(label)
         axes.plot(curve.first, scale * curve.second, color=color, linestyle=dashes, label=shown)
-    axes.set_xlim(chart.first[0], chart.first[-1])
-    axes.set_ylim(scale * chart.second[0], scale * chart.second[-1])
+    axes.set(xlim=(chart.first[0], chart.first[-1]), ylim=(scale * chart.second[0], scale * chart.second[-1]))
 
 
 def damping_figure() -> Figure:
@@ -168,8 +167,7 @@ def damping_figure() -> Figure:
             axes.plot(speeds, np.log10(DAMPINGS), mark, color="black", markerfacecolor="none", label=label)
         ticks = [0, 1, 2, 3, 4]
         axes.set_yticks(ticks, [f"{10**tick:g}" for tick in ticks])
-        axes.set_xlabel("Speed (rad/s)")
-        axes.set_ylabel("Damping of each support (N s/m)")
+        axes.set(xlabel="Speed (rad/s)", ylabel="Damping of each support (N s/m)")
         axes.text(82.0, 2.6, "balanced", bbox={"facecolor": "white", "edgecolor": "none"})
         axes.text(33.0, 2.6, "not balanced", bbox={"facecolor": "white", "edgecolor": "none"})
     return figure
@@ -231,11 +229,8 @@ def states_figure() -> Figure:
                 axes.text(
                     x, y, word, ha="center", bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.5}
                 )
-            axes.set_xlim(balanced.first[0], balanced.first[-1])
-            axes.set_ylim(slow.second[0], slow.second[-1])
-            axes.set_xlabel("Speed (rad/s)")
-            axes.set_ylabel("Capacity over unbalance (\N{EN DASH})")
-            axes.set_title(name)
+            axes.set(xlim=(balanced.first[0], balanced.first[-1]), ylim=(slow.second[0], slow.second[-1]))
+            axes.set(xlabel="Speed (rad/s)", ylabel="Capacity over unbalance (\N{EN DASH})", title=name)
     return figure
 
 

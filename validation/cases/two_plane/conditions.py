@@ -158,8 +158,7 @@ def _draw(axes: Any, name: str, rotor: TwoPlane, speed: float, duration: float) 
     verdict = "conditions: yes" if said else "conditions: no"
     axes.set_title(f"{name} rotor, {speed:.0f} rad/s; {verdict}")
     logarithmic(axes, y=[1e-4, 1e-3, 1e-2, 1e-1, 1.0, 10.0])
-    axes.set_ylim(1e-4, 10.0)
-    axes.set_xlim(0.0, duration)
+    axes.set(ylim=(1e-4, 10.0), xlim=(0.0, duration))
 
 
 if __name__ == "__main__":
