@@ -120,7 +120,7 @@ def earliest(body: list[ast.stmt]) -> list[int]:
     Those on tables of cases, which take longest, come last.
     """
     needed = [_needed(body, k) for k, node in enumerate(body) if isinstance(node, ast.Assert)]
-    slow = [any("cases()" in ast.unparse(body[k]) for k in one) for one in needed]
+    slow = [any("cases(" in ast.unparse(body[k]) for k in one) for one in needed]
     order: list[int] = []
     for _, one in sorted(zip(slow, needed, strict=True), key=lambda pair: pair[0]):
         order += [k for k in one if k not in order]

@@ -9,15 +9,15 @@ import pytest
 from meshes.errors import InputError
 from tests.mutants import kills
 from validation.case import Case, Effect, compare, shape_verdict
-from validation.cases import errata
 from validation.cases.errata import formulas
 from validation.cases.errata.tub import tub_matrices
 from validation.cases.rotors.rigs import horizontal_rig
+from validation.command import all_cases
 
 
 @cache
 def by_name() -> dict[str, Case]:
-    cases = errata.cases()
+    cases = all_cases("errata")
     assert len({case.name for case in cases}) == len(cases)
     return {case.name: case for case in cases}
 

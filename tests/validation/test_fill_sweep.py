@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from tests.mutants import kills
-from validation.cases.fill_sweep import cases, contact, fitted, judged, machine
+from validation.cases.fill_sweep import contact, fitted, judged, machine
 from validation.cases.fill_sweep.machine import Values
 from validation.study import data
 
@@ -106,7 +106,7 @@ def test_what_is_kept_is_what_the_machine_answers() -> None:
 
 def test_verdicts() -> None:
     """No set of values makes of the fill what was measured; what the pages say of it."""
-    found = {one.name.partition("/")[2]: one for one in cases()}
+    found = {one.name.partition("/")[2]: one for one in judged.cases()}
     assert {name: one.verdict for name, one in found.items()} == {
         "resonance-peak": "differs",
         "clearance": "differs",

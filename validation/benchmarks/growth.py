@@ -83,10 +83,7 @@ def over_speeds(quick: bool = False) -> list[Growth]:
             "statics", "speeds", counts, each(lambda _: answer_layer(layer, SPIN, SPIN, AMPLITUDE, STATICS))
         ),
         Growth(
-            "linear",
-            "speeds",
-            counts,
-            each(lambda s: answer_layer(layer, SPIN, SPIN + s, AMPLITUDE, LINEAR)),
+            "linear", "speeds", counts, each(lambda s: answer_layer(layer, SPIN, SPIN + s, AMPLITUDE, LINEAR))
         ),
         Growth("kdv, whole curve", "speeds", counts[1:], curves),
         Growth(

@@ -53,10 +53,7 @@ def _draw_ends(axes: Any, results: Kept) -> None:
         broken = [row for row in rows if row.state == "broken"]
         others = [row for row in rows if row.state != "broken"]
         axes.plot(
-            [row.whirl for row in broken],
-            [row.periods for row in broken],
-            label=f"h0/R = {depth:g}",
-            **look,
+            [row.whirl for row in broken], [row.periods for row in broken], label=f"h0/R = {depth:g}", **look
         )
         axes.plot(
             [row.whirl for row in others],

@@ -33,9 +33,9 @@
 #   90 rad/s, and 50 mm by 20 mm at 100 rad/s, with deflections of 1, 3 and 10 mm.
 
 # %%
-from validation.cases import errata
 from validation.cases.liquid import optimal_volume
 from validation.cases.liquid.optimal_volume import law_figure, volume_figure
+from validation.command import all_cases
 from validation.page import case_table, picture, verdicts
 
 # %% [markdown]
@@ -71,7 +71,7 @@ picture(law_figure())
 # a term; of printed numbers those are listed that the source's own data contradict beyond their last digit.
 
 # %%
-wrong = errata.cases()
+wrong = all_cases("errata")
 case_table(wrong)
 
 # %% [markdown]

@@ -30,9 +30,9 @@
 #   start at the natural frequency, 0.3 rad apart. No gravity.
 
 # %%
-from validation.cases import exciter, two_plane
 from validation.cases.exciter.speeds import table_figure
 from validation.cases.two_plane.conditions import balls_figure
+from validation.command import all_cases
 from validation.page import case_table, picture, verdicts
 
 # %% [markdown]
@@ -45,7 +45,7 @@ from validation.page import case_table, picture, verdicts
 picture(balls_figure())
 
 # %%
-planes = two_plane.cases()
+planes = all_cases("two_plane")
 case_table(planes)
 
 # %% [markdown]
@@ -58,7 +58,7 @@ case_table(planes)
 picture(table_figure())
 
 # %%
-excited = exciter.cases()
+excited = all_cases("exciter")
 case_table(excited)
 
 # %% [markdown]

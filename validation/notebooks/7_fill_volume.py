@@ -34,7 +34,7 @@
 import leblanc as lb
 from leblanc.studies.optimise.figure import objective_figure
 from leblanc.studies.optimise.study import optimise_scene
-from validation.cases import fill_sweep
+from validation.cases.fill_sweep import judged
 from validation.cases.fill_sweep.judged import sweep_figure
 from validation.cases.liquid import fill_optimum
 from validation.cases.rotors import runup as runup_given
@@ -70,7 +70,7 @@ case_table(runup)
 picture(sweep_figure())
 
 # %%
-sweep = fill_sweep.cases()
+sweep = judged.cases()
 case_table(sweep)
 
 # %% [markdown]

@@ -12,14 +12,7 @@ from pydantic import Field
 from fluid.fill import Fill
 from fluid.friction.laws import Friction, FrictionLaw
 from leblanc.liquid.choice import Choice
-from leblanc.liquid.choose import (
-    across_gravity,
-    axial_gravity,
-    choose,
-    is_cut,
-    liquid_models,
-    prepare,
-)
+from leblanc.liquid.choose import across_gravity, axial_gravity, choose, is_cut, liquid_models, prepare
 from leblanc.scene.scene import Exciter, Runup, Scene, dry_rotor
 from leblanc.studies.drives import drive_of, planned
 from leblanc.studies.runup.study import RunupChoice, chosen_run, judged

@@ -185,8 +185,7 @@ def _label(figure: Figure, axes: Axes, comparison: Comparison) -> None:
         text = str(row.resolution)
         width, tall = 0.62 * LABEL * len(text), LABEL
         best = min(
-            _places(x, y, width, tall),
-            key=lambda box: sum(map(box.overlap, taken)) + 0.05 * _away(box, x, y),
+            _places(x, y, width, tall), key=lambda box: sum(map(box.overlap, taken)) + 0.05 * _away(box, x, y)
         )
         taken.append(_Box(best.left - 1.5, best.bottom, best.right + 1.5, best.top))
         axes.annotate(

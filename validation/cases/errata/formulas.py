@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -129,7 +130,7 @@ def _liquid_angle(name: str, source: str) -> Case:
     return CLAIMS.case("liquid-angle", float(computed), printed=printed, **words)
 
 
-def _artificial_unbalance() -> list[Case]:
+def _artificial_unbalance() -> Iterator[Case]:
     """DG21, section 4: amplitude of a body on springs far above resonance, and the largest at any speed."""
     tub, drum, eccentricity = 48.2, 12.5, 14.8e-3
     springs, dampers = (
@@ -144,17 +145,13 @@ def _artificial_unbalance() -> list[Case]:
         f"m_2 e = {drum * eccentricity * 1e6:.0f} g mm of the same paper gives "
         f"{drum * eccentricity * far * 1e3:.2f} mm far above resonance"
     )
-    found = []
     for name, meaning, factor in (
         ("far", "far above resonance", far),
         ("peak", "at the worst speed", float(response.max())),
     ):
-        found.append(
-            CLAIMS.case(
-                "dg-section-4", unbalance * factor, name=f"dg-section-4-{name}", meaning=meaning, note=note
-            )
+        yield CLAIMS.case(
+            "dg-section-4", unbalance * factor, name=f"dg-section-4-{name}", meaning=meaning, note=note
         )
-    return found
 
 
 def _kinetic_energy() -> Case:

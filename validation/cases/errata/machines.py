@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -107,28 +108,24 @@ def _housing() -> list[Case]:
     return [CLAIMS.case("dr-eq-x5", float(place), number=number) for number in (14, 16)]
 
 
-def _drag_number() -> list[Case]:
+def _drag_number() -> Iterator[Case]:
     """DR18, chapter 2.3, table 1: the drag's similarity number from the table's own values."""
     shape, viscosity, length, radius = 0.91, 0.056, 22e-3, 7.8e-3
     mass, stiffness, inertia = 12.42e-3, 6000.0, 6.9e-7
     plain = shape * viscosity * math.pi * length**3 * math.sqrt(mass / stiffness) / inertia
     # Radius and length over the scale of lengths, which is the length.
     full = plain * (radius / length) ** 2
-    found = []
     for name, source, computed, note in (
         ("table", "table 1", plain, "the table's formula with the table's values"),
         ("eq-41", "table 1 and eq. 41", full, "eq. 41 has r^2 l over the length as well, r = d/2"),
     ):
-        found.append(
-            CLAIMS.case(
-                "dr-pump-drag",
-                computed,
-                name=f"dr-pump-drag-{name}",
-                source=f"DR18, chapter 2.3, {source}",
-                note=note,
-            )
+        yield CLAIMS.case(
+            "dr-pump-drag",
+            computed,
+            name=f"dr-pump-drag-{name}",
+            source=f"DR18, chapter 2.3, {source}",
+            note=note,
         )
-    return found
 
 
 def _weak_supports() -> Case:

@@ -6,6 +6,7 @@ gyroscopic and stiffness matrices are derivatives of the energies at rest.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -101,19 +102,17 @@ def cases() -> list[Case]:
     ]
 
 
-def _gyroscopic_cases(matrices: TubMatrices) -> list[Case]:
+def _gyroscopic_cases(matrices: TubMatrices) -> Iterator[Case]:
     """The coupling of alpha and gamma by the drum's spin."""
     import sympy as sp
 
     unit = sp.symbols("J_b") * sp.symbols("omega")
-    found = []
     for equation, rate, row, column, printed in (
         ("alpha", "gamma", 3, 5, -2.0),
         ("gamma", "alpha", 5, 3, 2.0),
     ):
         computed = float(sp.simplify(matrices.gyroscopic[row, column] / unit))
-        found.append(CLAIMS.case("dr-gyroscopic", computed, equation=equation, rate=rate, printed=printed))
-    return found
+        yield CLAIMS.case("dr-gyroscopic", computed, equation=equation, rate=rate, printed=printed)
 
 
 def _stiffness_cases(matrices: TubMatrices) -> list[Case]:
@@ -140,23 +139,19 @@ def _stiffness_cases(matrices: TubMatrices) -> list[Case]:
     ]
 
 
-def _order_cases(matrices: TubMatrices) -> list[Case]:
+def _order_cases(matrices: TubMatrices) -> Iterator[Case]:
     """How often gamma is differentiated in the equation of y."""
     import sympy as sp
 
     unit = sp.symbols("m_2") * sp.symbols("x_D")
-    found = []
     for order, matrix, printed in (("gamma'", matrices.gyroscopic, 1.0), ("gamma''", matrices.mass, 0.0)):
-        found.append(
-            CLAIMS.case(
-                "dr-y-equation-derivative",
-                float(sp.simplify(matrix[1, 5] / unit)),
-                name=f"dr-y-equation-{'first' if printed else 'second'}-derivative",
-                order=order,
-                printed=printed,
-            )
+        yield CLAIMS.case(
+            "dr-y-equation-derivative",
+            float(sp.simplify(matrix[1, 5] / unit)),
+            name=f"dr-y-equation-{'first' if printed else 'second'}-derivative",
+            order=order,
+            printed=printed,
         )
-    return found
 
 
 @dataclass(frozen=True)
@@ -180,11 +175,10 @@ _TERMS = (
 )
 
 
-def _row_cases(matrices: TubMatrices) -> list[Case]:
+def _row_cases(matrices: TubMatrices) -> Iterator[Case]:
     """Springs and dampers in the equations of alpha, beta and gamma, term by term."""
     import sympy as sp
 
-    found = []
     for term in _TERMS:
         computed = matrices.stiffness[term.row, term.column]
         if not term.rate and sp.expand(sp.sympify(term.printed) - computed) == 0:
@@ -192,21 +186,18 @@ def _row_cases(matrices: TubMatrices) -> list[Case]:
         of = _NAMES[term.column] + ("'" if term.damping else "")
         shown, derived = (_as_damping(_written(text), term.damping) for text in (term.printed, computed))
         kind = "rate" if term.rate else "damping" if term.damping else "stiffness"
-        found.append(
-            CLAIMS.case(
-                "dr-equation",
-                derived,
-                name=f"dr-{_NAMES[term.row]}-equation-{kind}",
-                quantity=f"coefficient of {of} in the equation of {_NAMES[term.row]}, of one "
-                + ("damper (h_x, h_y, h_z)" if term.damping else "spring (c_x, c_y, c_z)")
-                + " at (x, y, z)",
-                printed=f"0, and {shown} of {of}'" if term.rate else shown,
-                note="a stiffness multiplies the angle, not its rate"
-                if term.rate
-                else "symmetric, as J^T c J is",
-            )
+        yield CLAIMS.case(
+            "dr-equation",
+            derived,
+            name=f"dr-{_NAMES[term.row]}-equation-{kind}",
+            quantity=f"coefficient of {of} in the equation of {_NAMES[term.row]}, of one "
+            + ("damper (h_x, h_y, h_z)" if term.damping else "spring (c_x, c_y, c_z)")
+            + " at (x, y, z)",
+            printed=f"0, and {shown} of {of}'" if term.rate else shown,
+            note="a stiffness multiplies the angle, not its rate"
+            if term.rate
+            else "symmetric, as J^T c J is",
         )
-    return found
 
 
 def _written(expression: object) -> str:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -16,12 +17,7 @@ from typing import Any
 import numpy as np
 
 from meshes.arrays import Array
-from solvers.rotor.exciter.machine import (
-    Dimensionless,
-    characteristic_speeds,
-    platform_motion,
-    stuck_speeds,
-)
+from solvers.rotor.exciter.machine import Dimensionless, characteristic_speeds, platform_motion, stuck_speeds
 from solvers.rotor.exciter.motion import Trace, critical_speeds, trace
 from validation.case import Case, Claims
 from validation.cases.exciter.speeds import vibratory_table
@@ -43,13 +39,7 @@ PANELS: tuple[tuple[str, tuple[float, ...], str, tuple[float, ...], dict[str, fl
         (0.005, 0.01, 0.02),
         {"drag": 0.4, "unbalance": 0.25},
     ),
-    (
-        "drag",
-        (0.1, 0.2, 0.35, 0.6),
-        "damping",
-        (0.01, 0.03, 0.07),
-        {"smallness": 0.005, "unbalance": 0.25},
-    ),
+    ("drag", (0.1, 0.2, 0.35, 0.6), "damping", (0.01, 0.03, 0.07), {"smallness": 0.005, "unbalance": 0.25}),
     (
         "unbalance",
         (0.0, 0.25, 0.5, 0.75, 1.0),
@@ -89,10 +79,7 @@ def traces() -> Traces:
     # The constant of the balls' phase is free [YF17, eq. 8]: that of their mean over these turns.
     phase = float(np.mean(motion.ball_angle.mean(axis=1) - slowest * motion.time))
     waves = np.stack(
-        [
-            slow * np.exp(1j * (slowest * motion.time + phase)),
-            fast * np.exp(1j * SPEED * motion.time),
-        ]
+        [slow * np.exp(1j * (slowest * motion.time + phase)), fast * np.exp(1j * SPEED * motion.time)]
     )
     factors = np.array([1j * slowest, 1j * SPEED])[:, None]
     lowest = np.stack([(waves * factors**k).sum(axis=0).imag for k in range(3)])
@@ -150,9 +137,8 @@ def _dimensional() -> list[Case]:
     return [CLAIMS.case("eq-21", exact, printed=printed)]
 
 
-def _trends(panels: list[dict[str, Any]]) -> list[Case]:
+def _trends(panels: list[dict[str, Any]]) -> Iterator[Case]:
     """Whether each curve of figures 5 and 6 goes one way, as the source says."""
-    found = []
     for figure, panel in zip(FIGURES, panels, strict=True):
         rises, along = _RISES[panel["along"]], panel["along"]
         steps = [np.diff(curve) / np.array(curve[:-1]) for curve in panel["curves"]]
@@ -160,17 +146,14 @@ def _trends(panels: list[dict[str, Any]]) -> list[Case]:
         worst = max(against)
         same = worst <= _SLACK
         shape = "rises" if rises else "falls"
-        found.append(
-            CLAIMS.case(
-                "fig",
-                f"{shape} all the way" if same else f"not all the way: {100 * worst:.0f} % against it",
-                same,
-                figure=figure,
-                quantity=f"critical speed over {along}, {len(steps)} curves",
-                shape=shape,
-            )
+        yield CLAIMS.case(
+            "fig",
+            f"{shape} all the way" if same else f"not all the way: {100 * worst:.0f} % against it",
+            same,
+            figure=figure,
+            quantity=f"critical speed over {along}, {len(steps)} curves",
+            shape=shape,
         )
-    return found
 
 
 def keep() -> None:

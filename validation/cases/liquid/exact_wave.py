@@ -230,10 +230,7 @@ def _folds(table: dict[str, Any]) -> Iterator[Case]:
 def _twins() -> Iterator[Case]:
     """One wave, put into two drums: the equations in time know whirl speeds with their signs."""
     for layer, speed, share in _TWINS:
-        wave, twin = (
-            held({"depth": layer, "whirl_speed": speed, "whirl": share}),
-            1.0 / (2.0 - 1.0 / speed),
-        )
+        wave, twin = (held({"depth": layer, "whirl_speed": speed, "whirl": share}), 1.0 / (2.0 - 1.0 / speed))
         pair = [_after(wave, each) for each in (speed, twin)]
         off = abs(pair[1] - pair[0])
         yield _case(

@@ -8,6 +8,7 @@ codes of the same equations stand side by side: py-pde's Runge-Kutta and the com
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from functools import cache
 from typing import Any
 
@@ -100,15 +101,13 @@ def bore_reference() -> dict[str, Any]:
     return next(run for run in runs if "time" in run)
 
 
-def _bore(run: dict[str, Any]) -> list[Case]:
+def _bore(run: dict[str, Any]) -> Iterator[Case]:
     """The near-resonant case period by period, by four variants of the model."""
     reference = np.array([complex(*pair) for pair in run["force_ratio"]])
-    found = []
     for name, history in bore_histories().items():
-        found += _force_cases(run["name"], name, history.force_ratio, reference)
+        yield from _force_cases(run["name"], name, history.force_ratio, reference)
         if name == "both":
-            found.append(_rotation_case(run, history.time, history.mean_rotation))
-    return found
+            yield _rotation_case(run, history.time, history.mean_rotation)
 
 
 def _force_cases(
@@ -202,10 +201,7 @@ def rotor_cases() -> list[Case]:
         for cells, (first, second) in pairs.items()
     ]
     order = math.log2(apart[CELLS[-2]] / apart[CELLS[-1]])
-    return [
-        *found,
-        CLAIMS.case("rotor-order", order),
-    ]
+    return [*found, CLAIMS.case("rotor-order", order)]
 
 
 def all_cases() -> list[Case]:

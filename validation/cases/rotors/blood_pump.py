@@ -14,13 +14,7 @@ from leblanc.wings.magnetic.study import run_magnetic
 from meshes.arrays import Array
 from solvers.rotor.magnetic.control import Controller, Pid, Synergetic, source_times
 from solvers.rotor.magnetic.linear import Loop, closed_loop, margins, orbit_size
-from solvers.rotor.magnetic.machine import (
-    MagneticRotor,
-    Magnets,
-    dimensionless,
-    motor_length,
-    screw_drag,
-)
+from solvers.rotor.magnetic.machine import MagneticRotor, Magnets, dimensionless, motor_length, screw_drag
 from solvers.rotor.magnetic.motion import SpeedLaw, integrate, settling_time
 from validation.case import Case, Claims
 from validation.page import Figure, Table, logarithmic, page

@@ -7,7 +7,7 @@ y, x lies across, z is up, and positions count from the tub's centre of mass.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 
@@ -113,14 +113,7 @@ _CIRCLE, _BALL = 28.5, 6.75
 
 def cases() -> list[Case]:
     """Every case of the tub and of the bearing's cage."""
-    return [
-        _supercritical(),
-        _measured(),
-        *_with_distance(),
-        *_springs(),
-        _rigidity_centre(),
-        _cage(),
-    ]
+    return [_supercritical(), _measured(), *_with_distance(), *_springs(), _rigidity_centre(), _cage()]
 
 
 def _supercritical() -> Case:
@@ -145,26 +138,22 @@ def _measured() -> Case:
     )
 
 
-def _with_distance() -> list[Case]:
+def _with_distance() -> Iterator[Case]:
     """Largest angular and longitudinal motion over the whole range of speeds, as the laundry moves off."""
-    found = []
     for name, coordinate, unit, meaning in (
         ("angular-motion", "alpha", "mrad", "turn about x"),
         ("longitudinal-motion", "y", "mm", "motion along the axis"),
     ):
         size = [1e3 * float(amplitude(suspended_tub(y), _SPEEDS, coordinate).max()) for y in _PLACES]
         rises = bool(np.all(np.diff(size) > 0.0))
-        found.append(
-            CLAIMS.case(
-                "with_distance",
-                ", ".join(f"{value:.3g}" for value in size),
-                rises,
-                name=f"{name}",
-                meaning=meaning,
-                unit=unit,
-            )
+        yield CLAIMS.case(
+            "with_distance",
+            ", ".join(f"{value:.3g}" for value in size),
+            rises,
+            name=f"{name}",
+            meaning=meaning,
+            unit=unit,
         )
-    return found
 
 
 def _springs() -> list[Case]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 from validation.case import Case, Claims
 
@@ -49,32 +50,28 @@ def single_mode_damping(resonance: float, off: float, share: float) -> float:
     return share * abs(1.0 - ratio**2) / (2.0 * ratio * math.sqrt(ratio**2 - share**2))
 
 
-def _resonances() -> list[Case]:
+def _resonances() -> Iterator[Case]:
     """Whether the three are told apart: the width of each at half its power is below the way to the next.
 
     Each is taken as a mode by itself. Its neighbours have a share in what is seen beside it: of the two sides
     the one that asks for less damping counts.
     """
-    found = []
     for hertz, amplitude in _PEAKS.items():
         beside = {off: size for off, size in _BETWEEN.items() if abs(off - hertz) < 10.0}
         ratios = [single_mode_damping(hertz, off, size / amplitude) for off, size in beside.items()]
         width, gap = 2.0 * min(ratios) * hertz, min(abs(hertz - other) for other in _PEAKS if other != hertz)
-        found.append(
-            CLAIMS.case(
-                "resonance",
-                width,
-                width < gap,
-                hertz=hertz,
-                quantity=f"width at half the power of the resonance at {hertz:.0f} Hz, by the amplitudes at "
-                f"it and at {' and '.join(f'{off:.0f}' for off in beside)} Hz, Hz",
-                gap=gap,
-                difference=f"{width / gap:.2f} of that distance",
-                note=f"one mode under an unbalance, damping ratio {min(ratios):.3f}, {60.0 * hertz:.0f} rpm; "
-                "the source gives neither mass nor stiffness, so the resonance itself cannot be computed",
-            )
+        yield CLAIMS.case(
+            "resonance",
+            width,
+            width < gap,
+            hertz=hertz,
+            quantity=f"width at half the power of the resonance at {hertz:.0f} Hz, by the amplitudes at "
+            f"it and at {' and '.join(f'{off:.0f}' for off in beside)} Hz, Hz",
+            gap=gap,
+            difference=f"{width / gap:.2f} of that distance",
+            note=f"one mode under an unbalance, damping ratio {min(ratios):.3f}, {60.0 * hertz:.0f} rpm; "
+            "the source gives neither mass nor stiffness, so the resonance itself cannot be computed",
         )
-    return found
 
 
 def _contradictions() -> list[Case]:

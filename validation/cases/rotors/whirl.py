@@ -7,6 +7,7 @@ of 5e-4 of the natural frequency: an edge is known to one step, a growth rate to
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -48,12 +49,11 @@ def cases() -> list[Case]:
     return [*found, *_peaks(), _weak(), *_limits(), *_in_time(), *_limit_cycles(), *_run_ups()]
 
 
-def _in_time() -> list[Case]:
+def _in_time() -> Iterator[Case]:
     """The linear growth against the coupled nonlinear model, let go from 1e-7 of the depth.
 
     Inside the band without any damping, on both sides of it with damping of the support and of the liquid.
     """
-    found = []
     free, damped_points = (1.15, 1.3, 1.45), (1.0, 1.7)
     points = [(at, 0.0, 0.0) for at in free] + [(at, 0.02, 30.0) for at in damped_points]
     for ratio, zeta, rate in points:
@@ -66,10 +66,7 @@ def _in_time() -> list[Case]:
         duration = (400.0 if rate else 150.0) / NATURAL
         seen = whirl_in_time(rotor.system(), [fill], speed, law, duration, numerics)
         damped = f", damping ratio {zeta:g}, friction {rate:g} 1/s" if rate else ", no damping"
-        found.append(
-            CLAIMS.case("in-time", seen.growth, ratio=ratio, damped=damped, printed=float(growth[0]))
-        )
-    return found
+        yield CLAIMS.case("in-time", seen.growth, ratio=ratio, damped=damped, printed=float(growth[0]))
 
 
 def _limit_cycles() -> list[Case]:
@@ -122,28 +119,25 @@ def slow_passage(rate: float) -> Passage:
     return passage(*banded_rotor(), BANDED, speeds, rate, RunupNumerics(cells=64))
 
 
-def _run_ups() -> list[Case]:
+def _run_ups() -> Iterator[Case]:
     """Run-ups through a band: the branch that they follow, how far behind, and how the whirl begins."""
     rotor, fill = banded_rotor()
     branch = limit_cycles(rotor, [fill], (0.95 * NATURAL, 1.65 * NATURAL), BANDED)
     fast, slow = (slow_passage(rate) for rate in _RATES)
-    found = []
     for ratio, back in _MEASURED:
         speed, way = ratio * NATURAL, "down" if back else "up"
         size = branch.largest_stable(speed)
         ends = fast.at(speed, back), slow.at(speed, back)
-        found.append(CLAIMS.case("run", 2.0 * ends[1] - ends[0], way=way, ratio=ratio, printed=size))
+        yield CLAIMS.case("run", 2.0 * ends[1] - ends[0], way=way, ratio=ratio, printed=size)
         apart = [abs(end / size - 1.0) for end in ends]
-        found.append(
-            CLAIMS.case(
-                "run-lag",
-                math.log2(apart[0] / apart[1]),
-                way=way,
-                ratio=ratio,
-                note=f"{apart[0]:.2%} at {_RATES[0]:g} rad/s^2, {apart[1]:.2%} at {_RATES[1]:g}",
-            )
+        yield CLAIMS.case(
+            "run-lag",
+            math.log2(apart[0] / apart[1]),
+            way=way,
+            ratio=ratio,
+            note=f"{apart[0]:.2%} at {_RATES[0]:g} rad/s^2, {apart[1]:.2%} at {_RATES[1]:g}",
         )
-    return [*found, _beginning()]
+    yield _beginning()
 
 
 def _beginning() -> Case:
@@ -211,12 +205,11 @@ def _weak() -> Case:
     )
 
 
-def _limits() -> list[Case]:
+def _limits() -> Iterator[Case]:
     """No whirl grows without liquid, in a full chamber, and on supports of a thousand times the frequency."""
     rotor, fill = layered_rotor(0.1, 0.1, 0.0)
     chamber, water, speed = fill.chamber, fill.liquid, RANGE * NATURAL
     rigid = Jeffcott(rotor.mass, rotor.stiffness * 1e6, 0.0, 0.0)
-    found = []
     for name, machine, volume in (
         ("empty", rotor, 0.0),
         ("full", rotor, chamber.capacity),
@@ -224,16 +217,13 @@ def _limits() -> list[Case]:
     ):
         growth, _ = asynchronous_growth(machine, [Fill(chamber, water, volume)], speed)
         largest = float(growth.max())
-        found.append(
-            CLAIMS.case(
-                "limits",
-                largest,
-                largest == 0.0,
-                name=f"{name}",
-                difference="none" if math.isclose(largest, 0.0) else f"{largest:.3g} 1/s",
-            )
+        yield CLAIMS.case(
+            "limits",
+            largest,
+            largest == 0.0,
+            name=f"{name}",
+            difference="none" if math.isclose(largest, 0.0) else f"{largest:.3g} 1/s",
         )
-    return found
 
 
 def growth_figure(in_time: list[Case]) -> Figure:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -90,27 +90,23 @@ def _special() -> Case:
     )
 
 
-def _balls() -> list[Case]:
+def _balls() -> Iterator[Case]:
     """A long and a short rotor, below and above the resonances, with two ball balancers."""
-    found = []
     for name, rotor in (("long", LONG), ("short", SHORT)):
         for speed in (30.0, 120.0):
             answer = dynamic_balancing(of_two_planes(rotor, BALLS), speed)
             said, seen = bool(answer.possible[0]), balls_in_time(rotor, speed)
             balanced = seen.left < 1e-6
-            found.append(
-                CLAIMS.case(
-                    "balls",
-                    seen.left,
-                    seen.converged and said == balanced,
-                    name=f"balls-{name}-{speed:.0f}",
-                    quantity=f"{name} rotor, two ball balancers, {speed:.0f} rad/s: deflection over the bare",
-                    printed="balanced" if said else "not balanced",
-                    difference="none" if said == balanced else "the other way",
-                    note=answer.why(),
-                )
+            yield CLAIMS.case(
+                "balls",
+                seen.left,
+                seen.converged and said == balanced,
+                name=f"balls-{name}-{speed:.0f}",
+                quantity=f"{name} rotor, two ball balancers, {speed:.0f} rad/s: deflection over the bare",
+                printed="balanced" if said else "not balanced",
+                difference="none" if said == balanced else "the other way",
+                note=answer.why(),
             )
-    return found
 
 
 # Each kind of balancer adds its own function here.

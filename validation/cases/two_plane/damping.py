@@ -7,6 +7,7 @@ validation.cases.two_plane.damping` makes them anew.
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
@@ -190,9 +191,8 @@ def cases() -> list[Case]:
     return [*found, *_long(kept())]
 
 
-def _long(runs: list[dict[str, float]]) -> list[Case]:
+def _long(runs: list[dict[str, float]]) -> Iterator[Case]:
     """What is left after minutes, beside what the conditions say."""
-    found = []
     for run in runs:
         balanced = run["rate"] < 0.0 and run["left"] < 1.0
         # Where the state is stable and this start does not lead to it, the source is not wrong.
@@ -204,8 +204,7 @@ def _long(runs: list[dict[str, float]]) -> list[Case]:
             "difference": "none" if balanced else _NOT_REACHED if stable else "it grows",
             "verdict": "agrees" if balanced else "differs" if stable else "erratum",
         }
-        found.append(CLAIMS.case("long-run", run["left"], **words))
-    return found
+        yield CLAIMS.case("long-run", run["left"], **words)
 
 
 def measure() -> dict[str, Any]:
