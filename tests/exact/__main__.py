@@ -13,9 +13,9 @@ from solvers.layer.state import Numerics
 from solvers.liquid_model import Whirl
 from solvers.pypde.settle import settle
 from tests.exact.answers import beside, layer_fill
+from tests.exact.branch import WIDEST, End, Held, end, held_waves
 from tests.exact.choice import choices, words
-from validation.exact import Cases, Ends, Marched, Measured, keep, kept
-from validation.exact.branch import WIDEST, End, Held, detuning, end, held_waves
+from validation.exact import Cases, Ends, Marched, Measured, detuning, keep, kept
 from validation.exact.long_wave import choking, steady_long_wave
 from validation.study import launch
 

@@ -13,8 +13,8 @@ from fluid.liquid import Liquid
 from meshes.chamber import Chamber
 from solvers.liquid_model import Whirl
 from solvers.pypde.models import OneFamily
-from validation.exact import MODELS, Cases
-from validation.exact.branch import Held, detuning, whirl_speeds
+from tests.exact.branch import Held
+from validation.exact import MODELS, Cases, detuning, whirl_speeds
 from validation.exact.long_wave import steady_long_wave
 
 # A liquid without friction in a drum of unit radius and height.

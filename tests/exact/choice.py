@@ -11,8 +11,7 @@ from leblanc.liquid.whirling import AutoWave, choose_wave
 from meshes.arrays import Array
 from solvers.liquid_model import Whirl
 from tests.exact.answers import layer_fill
-from validation.exact import Cases
-from validation.exact.branch import whirl_speeds
+from validation.exact import Cases, whirl_speeds
 
 # Kept waves have a spectrum that falls to a millionth: no smaller error is told from theirs.
 RESOLVED = 1e-6

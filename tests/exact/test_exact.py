@@ -24,10 +24,10 @@ from solvers.wave_error import (
     small_force,
 )
 from tests.exact.answers import family_answer, layer_fill, model_answers
+from tests.exact.branch import end, held_waves
 from tests.exact.choice import RESOLVED, choices, words
 from tests.mutants import kills
-from validation.exact import MODELS, Cases, kept
-from validation.exact.branch import detuning, end, held_waves, whirl_speeds
+from validation.exact import MODELS, Cases, detuning, kept, whirl_speeds
 from validation.exact.figure import ends_figure, ends_words, maps_figure, maps_words
 from validation.exact.long_wave import choking, steady_long_wave
 

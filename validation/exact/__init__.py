@@ -6,6 +6,7 @@ detunings are ratios p/p_1 to that of small free waves.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,12 +14,25 @@ from pathlib import Path
 import numpy as np
 
 from meshes.arrays import Array, Flags
+from solvers.potential.steady import linear_detuning
 from validation.study import stored
 
 KEPT = Path(__file__).parent / "results.json"
+SMOOTH = 1e-6  # tail of a spectrum that counts as ended
 # Models by their names here; one family answers the whirl behind the drum and its twin ahead, which the
 # others do not tell apart.
 MODELS = ("linear", "long_wave", "dispersion", "kdv", "kdv_twin", "whitham", "whitham_twin")
+
+
+def detuning(layer: float, ratio: float) -> float:
+    """p^2 at a ratio p/p_1."""
+    return ratio * ratio * linear_detuning(layer)
+
+
+def whirl_speeds(layer: float, ratio: float) -> tuple[float, float]:
+    """Whirl speeds at a ratio p/p_1, over the spin: behind the drum, and ahead or against it."""
+    p = math.sqrt(detuning(layer, ratio))
+    return 1.0 / (1.0 + p), 1.0 / (1.0 - p)
 
 
 @dataclass(frozen=True)

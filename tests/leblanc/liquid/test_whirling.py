@@ -31,8 +31,7 @@ from solvers.pypde.models import LongWave, OneFamily
 from solvers.wave_error import largest_whirl
 from tests.exact.answers import layer_fill
 from tests.mutants import kills
-from validation.exact import kept
-from validation.exact.branch import detuning, whirl_speeds
+from validation.exact import detuning, kept, whirl_speeds
 
 
 def chosen(layer: float, speed: float, size: float, **more: Any) -> WaveChoice:

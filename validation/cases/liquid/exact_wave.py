@@ -31,7 +31,7 @@ from solvers.potential.unsteady import Surface, force, invariants, started
 from validation.breaking import kept
 from validation.case import COMPUTED_FLOW, Case, Origin, Value, Verdict
 from validation.cases.liquid.layer import bore_reference, plane_layer
-from validation.exact.branch import SMOOTH, detuning, whirl_speeds
+from validation.exact import SMOOTH, detuning, whirl_speeds
 from validation.exact.long_wave import steady_long_wave
 from validation.page import Figure, page
 from validation.study import data

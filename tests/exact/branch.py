@@ -11,11 +11,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solvers.potential.steady import SteadyWave, at_rest, follow, linear_detuning, solve
+from solvers.potential.steady import SteadyWave, at_rest, follow, solve
 from solvers.potential.strip import nodes
+from validation.exact import SMOOTH, detuning
 
-# Steps from crest to trough to begin with, and at most; tail of a spectrum that counts as ended.
-_FIRST, _MOST, _MOST_AT_FOLDS, SMOOTH = 64, 128, 216, 1e-6
+_FIRST, _MOST, _MOST_AT_FOLDS = 64, 128, 216  # steps from crest to trough to begin with, and at most
 # Lee waves, over the height, beyond which a wave is not one wave any more.
 RIPPLED = 0.1
 # Shortest step of a way, of the way.
@@ -44,17 +44,6 @@ class End:
 
     whirl: float  #: w_0/h_0
     fold: bool  #: there it turns back; elsewhere no smooth wave was found any more
-
-
-def detuning(layer: float, ratio: float) -> float:
-    """p^2 at a ratio p/p_1."""
-    return ratio * ratio * linear_detuning(layer)
-
-
-def whirl_speeds(layer: float, ratio: float) -> tuple[float, float]:
-    """Whirl speeds at a ratio p/p_1, over the spin: behind the drum, and ahead or against it."""
-    p = math.sqrt(detuning(layer, ratio))
-    return 1.0 / (1.0 + p), 1.0 / (1.0 - p)
 
 
 def held_waves(layer: float, ratio: float, whirls: Sequence[float], end: float = math.inf) -> list[Held]:
