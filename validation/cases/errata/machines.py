@@ -4,17 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import replace
 
 import numpy as np
 
-from meshes.arrays import Array
 from solvers.rotor.balls.stability import balanced_roots
 from solvers.rotor.balls.two_plane_balance import dynamic_balancing, of_two_planes
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.two_plane import TwoPlane
 from solvers.rotor.vibration import unbalance_response
 from validation.case import Case, Claims
+from validation.cases.two_plane.damping import damped, lasting
 from validation.cases.two_plane.machine import BALLS, LONG, RACES
 
 CLAIMS = Claims("errata")
@@ -131,31 +130,14 @@ def _drag_number() -> Iterator[Case]:
 def _weak_supports() -> Case:
     """FF20, conclusion 2: from which speed balls balance a long rotor whose supports hardly damp."""
     damping = 0.5
-    weak = replace(LONG, supports=tuple(replace(support, damping=damping) for support in LONG.supports))
+    weak = damped(LONG, damping)
     printed = dynamic_balancing(of_two_planes(weak, BALLS), 1.0).above
-    usual = first_stable_speed(LONG)
-    return CLAIMS.case(
-        "ff-conclusion-2", first_stable_speed(weak), damping=damping, printed=float(printed), usual=usual
-    )
 
+    def first(rotor: TwoPlane) -> float:
+        """Least speed above which the rotor without unbalance and its balls are stable, rad/s."""
+        system = rotor.system()
+        speeds = np.linspace(40.0, 150.0, 101)
+        return lasting(lambda speed: balanced_roots(system, RACES, speed).real.max() < 0.0, speeds, 30)
 
-def first_stable_speed(rotor: TwoPlane, low: float = 40.0, high: float = 150.0) -> float:
-    """Least speed above which rotor and balls of `RACES` are stable up to `high`, rad/s.
-
-    Found to the hundredth part of the range, then halved.
-    """
-    system = rotor.system()
-
-    def stable(speed: float) -> bool:
-        return float(balanced_roots(system, RACES, speed).real.max()) < 0.0
-
-    grid: Array = np.linspace(low, high, 101)
-    below = [speed for speed in grid.tolist() if not stable(speed)]
-    if not below:
-        return low
-    left = max(below)
-    right = left + (high - low) / 100.0
-    for _ in range(30):
-        middle = 0.5 * (left + right)
-        left, right = (left, middle) if stable(middle) else (middle, right)
-    return float(right)
+    words = {"damping": damping, "printed": float(printed), "usual": first(LONG)}
+    return CLAIMS.case("ff-conclusion-2", first(weak), **words)

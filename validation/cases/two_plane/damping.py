@@ -7,7 +7,7 @@ validation.cases.two_plane.damping` makes them anew.
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
@@ -60,23 +60,21 @@ def damped(rotor: TwoPlane, damping: float) -> TwoPlane:
 
 
 @cache
-def edge(damping: float, low: float = 42.0, high: float = 150.0) -> float:
-    """Least speed above which the long rotor stays balanced, up to `high`, rad/s; damping in N s/m.
+def edge(damping: float) -> float:
+    """Least speed above which the long rotor stays balanced, up to 150 rad/s; damping in N s/m."""
+    system = damped(LONG, damping).system()
+    speeds = np.linspace(42.0, 150.0, 109)
+    return lasting(lambda speed: balanced_stability(system, RACES, speed).stable, speeds, 24)
 
-    The range is searched in 108 parts, the last of which is halved.
-    """
-    system, races = damped(LONG, damping).system(), RACES
 
-    def stable(speed: float) -> bool:
-        return balanced_stability(system, races, speed).stable
-
-    grid: Array = np.linspace(low, high, 109)
-    below = [k for k, speed in enumerate(grid.tolist()) if not stable(speed)]
-    left, right = float(grid[below[-1]]), float(grid[below[-1] + 1])
-    for _ in range(24):
+def lasting(stable: Callable[[float], bool], speeds: Array, halvings: int) -> float:
+    """Least speed above which all is stable, searched for among rising speeds, then by halving."""
+    last = max(k for k, speed in enumerate(speeds.tolist()) if not stable(speed))
+    left, right = speeds[last : last + 2].tolist()
+    for _ in range(halvings):
         middle = 0.5 * (left + right)
         left, right = (left, middle) if stable(middle) else (middle, right)
-    return right
+    return float(right)
 
 
 def side(damping: float, speed: float) -> Side:
