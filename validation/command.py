@@ -22,7 +22,7 @@ GROUPS = {
     "layer": "liquid.layer:all_cases",
     "whirl": "rotors.whirl",
     "tub": "rotors.tub",
-    "two_plane": "two_plane.conditions",
+    "two_plane": "two_plane.conditions two_plane.damping two_plane.layers",
     "exciter": "exciter.speeds exciter.traces exciter.beyond",
     "runup": "rotors.runup",
     "fill_sweep": "fill_sweep.judged",

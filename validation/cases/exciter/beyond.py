@@ -13,6 +13,7 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cache
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -34,7 +35,7 @@ from solvers.rotor.exciter.tangent import follow
 from validation.case import Case, Claims
 from validation.cases.exciter.speeds import sample
 from validation.page import Figure, logarithmic, page
-from validation.study import launch, shown
+from validation.study import data, launch, shown
 
 CLAIMS = Claims("exciter")
 
@@ -106,7 +107,7 @@ def three_frequencies() -> Three:
 
 def cases() -> list[Case]:
     """How the stuck motion ends, and the motions beyond the critical speed."""
-    kept: dict[str, Any] = json.loads(DATA.read_text(encoding="utf-8"))
+    kept = data(DATA.name)
     return [*_stuck(kept["sweeps"]), *_third(), *_regimes(kept)]
 
 
@@ -263,11 +264,6 @@ def run(machine: Dimensionless, speed: float, start: str) -> dict[str, Any]:
     }
 
 
-def _cell(machine: Dimensionless) -> list[dict[str, Any]]:
-    critical = critical_speed(machine, width=0.2, ratio=1.2).holds
-    return [run(machine, BEYOND * critical, start) for start in STARTS]
-
-
 def long_chaos(seed: int, decays: float = 60.0, steps: int = 24) -> dict[str, float]:
     """Run of the machine that stays chaotic over `decays` decay times, from scattered balls."""
     random = np.random.default_rng(seed)
@@ -287,24 +283,22 @@ def long_chaos(seed: int, decays: float = 60.0, steps: int = 24) -> dict[str, fl
 
 def measure(workers: int = 1) -> dict[str, Any]:
     """Make the kept runs anew, in threads."""
+
+    def cell(machine: Dimensionless) -> list[dict[str, Any]]:
+        critical = critical_speed(machine, width=0.2, ratio=1.2).holds
+        return [run(machine, BEYOND * critical, start) for start in STARTS]
+
     machines = [
-        Dimensionless(smallness, drag, unbalance, damping)
-        for smallness, damping in MAPS
-        for drag in DRAGS
-        for unbalance in UNBALANCES
+        Dimensionless(small, *pair, damping) for small, damping in MAPS for pair in product(DRAGS, UNBALANCES)
     ]
     with ThreadPoolExecutor(max_workers=workers) as pool:
-        runs = [row for cell in pool.map(_cell, machines) for row in cell]
+        runs = [row for found in pool.map(cell, machines) for row in found]
         chaos = list(pool.map(long_chaos, range(8)))
     sweeps = []
-    for smallness in SWEPT:
-        for unbalance in SWEPT_UNBALANCES:
-            machine = Dimensionless(smallness, 0.4, unbalance, 0.03)
-            found = sweep(machine, 12.0, 22.3)
-            sweeps.append(
-                {"smallness": smallness, "unbalance": unbalance}
-                | {name: round(value, 4) for name, value in found.items()}
-            )
+    for smallness, unbalance in product(SWEPT, SWEPT_UNBALANCES):
+        found = sweep(Dimensionless(smallness, 0.4, unbalance, 0.03), 12.0, 22.3)
+        rounded = {name: round(value, 4) for name, value in found.items()}
+        sweeps.append({"smallness": smallness, "unbalance": unbalance} | rounded)
     return {"runs": runs, "chaos": chaos, "sweeps": sweeps}
 
 
@@ -343,7 +337,7 @@ _MARKS: tuple[tuple[str, Callable[[dict[str, Any]], bool], float, dict[str, Any]
 
 def beyond_figure() -> Figure:
     """Spectra of three frequencies and of chaos, and two maps of what is reached over drag and unbalance."""
-    runs: list[dict[str, Any]] = json.loads(DATA.read_text(encoding="utf-8"))["runs"]
+    runs: list[dict[str, Any]] = data(DATA.name)["runs"]
     text = (
         "Above: spectrum of the platform with one ball at the resonance and one at the third stuck "
         "speed (eps = 0.01, b = 0.4, delta = 0.05, h = 0.03, n = 8.15), and in chaos over two decay "

@@ -6,7 +6,6 @@ validation.cases.exciter.traces --anew` makes anew.
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -22,7 +21,7 @@ from solvers.rotor.exciter.motion import Trace, critical_speeds, trace
 from validation.case import Case, Claims
 from validation.cases.exciter.speeds import vibratory_table
 from validation.page import Figure, logarithmic, page
-from validation.study import launch, shown, write
+from validation.study import data, launch, shown, write
 
 CLAIMS = Claims("exciter")
 
@@ -31,29 +30,12 @@ TYPICAL = Dimensionless(smallness=0.01, drag=0.4, unbalance=0.25, damping=0.03)
 SPEED = 5.0
 _PRINTED_GAP = 0.01105
 # Curves of a panel: what runs along it, its values, what tells the curves apart, its values, the rest.
+_DAMPINGS, _SMALL, _UNBALANCES = (0.01, 0.03, 0.07), (0.005, 0.01, 0.02), (0.0, 0.25, 0.5, 0.75, 1.0)
 PANELS: tuple[tuple[str, tuple[float, ...], str, tuple[float, ...], dict[str, float]], ...] = (
-    (
-        "damping",
-        (0.01, 0.025, 0.04, 0.055, 0.07),
-        "smallness",
-        (0.005, 0.01, 0.02),
-        {"drag": 0.4, "unbalance": 0.25},
-    ),
-    ("drag", (0.1, 0.2, 0.35, 0.6), "damping", (0.01, 0.03, 0.07), {"smallness": 0.005, "unbalance": 0.25}),
-    (
-        "unbalance",
-        (0.0, 0.25, 0.5, 0.75, 1.0),
-        "damping",
-        (0.01, 0.03, 0.07),
-        {"smallness": 0.01, "drag": 0.4},
-    ),
-    (
-        "unbalance",
-        (0.0, 0.25, 0.5, 0.75, 1.0),
-        "smallness",
-        (0.005, 0.01, 0.02),
-        {"drag": 0.4, "damping": 0.03},
-    ),
+    ("damping", (0.01, 0.025, 0.04, 0.055, 0.07), "smallness", _SMALL, {"drag": 0.4, "unbalance": 0.25}),
+    ("drag", (0.1, 0.2, 0.35, 0.6), "damping", _DAMPINGS, {"smallness": 0.005, "unbalance": 0.25}),
+    ("unbalance", _UNBALANCES, "damping", _DAMPINGS, {"smallness": 0.01, "drag": 0.4}),
+    ("unbalance", _UNBALANCES, "smallness", _SMALL, {"drag": 0.4, "damping": 0.03}),
 )
 FIGURES = ("5a", "5b", "6a", "6b")
 _RISES = {"damping": False, "drag": False, "unbalance": True}
@@ -90,40 +72,28 @@ def traces() -> Traces:
 
 def cases() -> list[Case]:
     """Traces, critical speed in dimensions, trends."""
-    kept: dict[str, Any] = json.loads(DATA.read_text(encoding="utf-8"))
-    return [*_traces(), *_dimensional(), *_trends(kept["panels"])]
+    return [*_traces(), *_dimensional(), *_trends(data(DATA.name)["panels"])]
 
 
-def _traces() -> list[Case]:
+def _traces() -> Iterator[Case]:
     found = traces()
     names = ("displacement", "velocity", "acceleration")
     worst = float(found.gap.max())
-    rows = [
-        CLAIMS.case(
-            "trace-gap",
-            worst,
-            worst <= _PRINTED_GAP * 1.1,
-            difference=", ".join(
-                f"{name} {100 * gap:.2f} %" for name, gap in zip(names, found.gap, strict=True)
-            ),
-        )
-    ]
+    apart = ", ".join(f"{name} {100 * gap:.2f} %" for name, gap in zip(names, found.gap, strict=True))
+    yield CLAIMS.case("trace-gap", worst, worst <= _PRINTED_GAP * 1.1, difference=apart)
     for name, printed, values in (
         ("ball-speed-high", 0.97, found.motion.ball_speed.max()),
         ("ball-speed-low", 0.92, found.motion.ball_speed.min()),
         ("acceleration", 14.0, np.abs(found.motion.acceleration).max()),
     ):
-        rows.append(
-            CLAIMS.case(
-                "trace",
-                float(values),
-                name=f"trace-{name}",
-                quantity=f"largest value of the trace at n = 5: {name.replace('-', ' ')}",
-                printed=printed,
-                tolerance=0.1 if name == "acceleration" else 0.02,
-            )
+        yield CLAIMS.case(
+            "trace",
+            float(values),
+            name=f"trace-{name}",
+            quantity=f"largest value of the trace at n = 5: {name.replace('-', ' ')}",
+            printed=printed,
+            tolerance=0.1 if name == "acceleration" else 0.02,
         )
-    return rows
 
 
 def _dimensional() -> list[Case]:
@@ -184,11 +154,9 @@ def trace_figure() -> Figure:
     seen = (found.motion.position, found.motion.velocity, found.motion.acceleration)
     names = ("displacement", "velocity", "acceleration")
     text = (
-        "Dual-frequency motion at n = 5, eps = 0.01, b = 0.4, delta = 0.25, h "
-        "= 0.03, in the machine\u2019s own "
-        "units: speed of both balls, motion of the platform, and what it "
-        "differs by from the lowest order "
-        "(theory: balls, eq. 7), whose phase is fitted."
+        "Dual-frequency motion at n = 5, eps = 0.01, b = 0.4, delta = 0.25, h = 0.03, in the machine\u2019s "
+        "own units: speed of both balls, motion of the platform, and what it differs by from the lowest "
+        "order (theory: balls, eq. 7), whose phase is fitted."
     )
     with page([1.2, 1.5, 1.2], text, top=0.2, between=0.3, below=0.45) as (figure, rows):
         balls, motion, gap = panels = [axes for [axes] in rows]
@@ -209,16 +177,14 @@ def trace_figure() -> Figure:
 
 def trend_figure() -> Figure:
     """Critical speed over damping, drag and unbalance, from the kept runs [YF17, fig. 5 and 6]."""
-    kept = json.loads(DATA.read_text(encoding="utf-8"))["panels"]
     text = (
-        "Critical speed of the exciter with two balls, released 0.3 rad apart, "
-        "no gravity; numbers that are not "
-        "on a panel: b = 0.4, h = 0.03, delta = 0.25, and eps = 0.01 (0.005 in 5b)."
+        "Critical speed of the exciter with two balls, released 0.3 rad apart, no gravity; numbers that are "
+        "not on a panel: b = 0.4, h = 0.03, delta = 0.25, and eps = 0.01 (0.005 in 5b)."
     )
     room = {"left": 0.6, "top": 0.25, "between": 0.75, "below": 0.45, "apart": 0.65}
     with page([2.0, 2.0], text, (2, 2), **room) as (figure, rows):
         panels = [axes for row in rows for axes in row]
-        for name, panel, axes in zip(FIGURES, kept, panels, strict=True):
+        for name, panel, axes in zip(FIGURES, data(DATA.name)["panels"], panels, strict=True):
             apart = _LETTERS[panel["apart"]]
             for other, curve, (color, mark, dashes) in zip(
                 panel["others"], panel["curves"], _LOOKS, strict=True

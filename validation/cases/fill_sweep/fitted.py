@@ -7,7 +7,6 @@ validation.cases.fill_sweep.fitted` draws again, runs all fills with each draw, 
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
@@ -17,7 +16,7 @@ import numpy as np
 from meshes.arrays import Array
 from validation.cases.fill_sweep import machine
 from validation.cases.fill_sweep.machine import RANGES, Values
-from validation.study import data, launch
+from validation.study import data, launch, read, write
 
 KEPT = Path(__file__).parent / "answers.json"
 DRAWS, SEED = 400, 11
@@ -153,42 +152,23 @@ def weaker(answers: Answers) -> Array:
     return np.array(found)
 
 
-def plain(answers: Answers) -> dict[str, object]:
-    """Answers as JSON holds them."""
-    return {
-        name: [[float(f"{x:.6g}") for x in row] for row in value] for name, value in vars(answers).items()
-    }
-
-
-def keep(answers: Answers, fitted: Fitted) -> None:
-    """Write answers and the fitted machine to the file beside this module."""
-    one = {
-        "answers": plain(fitted.answers),
-        "down": fitted.down,
-        "fine": fitted.fine.tolist(),
-        "weaker": fitted.weaker.tolist(),
-    }
-    text = json.dumps({"draws": plain(answers), "fitted": one}).replace("], [", "],\n[")
-    KEPT.write_text(text + "\n", encoding="utf-8")
+@dataclass(frozen=True)
+class _Kept:
+    draws: Answers
+    fitted: Fitted
 
 
 @cache
 def kept() -> tuple[Answers, Fitted]:
     """The answers that were kept last, and the machine that was fitted."""
-    found = json.loads(KEPT.read_text(encoding="utf-8"))
-    one = found["fitted"]
-    arrays = (np.array(one[name]) for name in ("fine", "weaker"))
-    return _read(found["draws"]), Fitted(_read(one["answers"]), one["down"], *arrays)
-
-
-def _read(found: dict[str, list[list[float]]]) -> Answers:
-    return Answers(**{name: np.array(value) for name, value in found.items()})
+    found = read(KEPT, _Kept)
+    return found.draws, found.fitted
 
 
 def main(draws: int = DRAWS) -> None:
     """Draw, run, keep."""
     answers = run(drawn(draws))
-    keep(answers, fit(answers))
+    write(KEPT, _Kept(answers, fit(answers)), digits=6, compact=True)
 
 
 if __name__ == "__main__":

@@ -177,10 +177,8 @@ def reference_figure() -> Figure:
     """Reference machine over speed and unbalance, and over speed and damping."""
     charts = reference_charts()
     text = (
-        "Balanced state of the dimensionless rotor with two races of two balls "
-        "of RCFW08, by the roots of "
-        "small motions: stable where hatched. Left: damping 0.02. Right: both "
-        "unbalances 5e-5. Drag of the "
+        "Balanced state of the dimensionless rotor with two races of two balls of RCFW08, by the roots of "
+        "small motions: stable where hatched. Left: damping 0.02. Right: both unbalances 5e-5. Drag of the "
         "races over a ball's mass 0.01; supports alike in both directions."
     )
     with page([2.7], text, (2,), left=0.7, below=0.5, apart=0.65) as (figure, [panels]):

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -19,37 +18,24 @@ from solvers.rotor.balls.two_plane_balance import (
 )
 from solvers.rotor.two_plane import TwoPlane
 from validation.case import Case, Claims
-from validation.cases.two_plane import damping as two_plane_damping
-from validation.cases.two_plane import layers as two_plane_layers
-from validation.cases.two_plane.machine import BALLS, LONG, RACES, SCATTERED, SHORT, bare_deflection
+from validation.cases.two_plane.machine import (
+    BALLS,
+    LONG,
+    RACES,
+    SCATTERED,
+    SHORT,
+    bare_deflection,
+    over_bare,
+)
 from validation.page import Figure, logarithmic, page
 from validation.study import launch, shown
 
 CLAIMS = Claims("two_plane")
 
 
-@dataclass(frozen=True)
-class Balanced:
-    """What balancers in two planes made of a rotor."""
-
-    left: float  #: largest deflection at the supports in the end, over that without balancers
-    converged: bool  #: the integration is sound
-
-
 def cases() -> list[Case]:
-    """The conditions beside their potential, then each kind of balancer in time."""
-    return [_hessian(), _special(), *(case for group in DEMONSTRATIONS for case in group())]
-
-
-def balls_in_time(rotor: TwoPlane, speed: float, duration: float = 60.0) -> Balanced:
-    """Two ball balancers with two balls each, from scattered places."""
-    system = rotor.system()
-    run = simulate(system, RACES, speed, duration, places=SCATTERED)
-    last, ratios = -run.time.size // 10, []
-    for support in rotor.supports:
-        size = np.abs(run.deflection(system, support.position))[last:]
-        ratios.append(float(size.max()) / bare_deflection(rotor, support.position, speed))
-    return Balanced(max(ratios), run.converged)
+    """The conditions beside their potential, and balls in time."""
+    return [_hessian(), _special(), *_balls()]
 
 
 def _hessian() -> Case:
@@ -95,26 +81,19 @@ def _balls() -> Iterator[Case]:
     for name, rotor in (("long", LONG), ("short", SHORT)):
         for speed in (30.0, 120.0):
             answer = dynamic_balancing(of_two_planes(rotor, BALLS), speed)
-            said, seen = bool(answer.possible[0]), balls_in_time(rotor, speed)
-            balanced = seen.left < 1e-6
+            run = simulate(rotor.system(), RACES, speed, 60.0, places=SCATTERED)
+            left = float(over_bare(rotor, run, speed)[-run.time.size // 10 :].max())
+            said, balanced = bool(answer.possible[0]), left < 1e-6
             yield CLAIMS.case(
                 "balls",
-                seen.left,
-                seen.converged and said == balanced,
+                left,
+                run.converged and said == balanced,
                 name=f"balls-{name}-{speed:.0f}",
                 quantity=f"{name} rotor, two ball balancers, {speed:.0f} rad/s: deflection over the bare",
                 printed="balanced" if said else "not balanced",
                 difference="none" if said == balanced else "the other way",
                 note=answer.why(),
             )
-
-
-# Each kind of balancer adds its own function here.
-DEMONSTRATIONS: tuple[Callable[[], list[Case]], ...] = (
-    _balls,
-    two_plane_damping.cases,
-    two_plane_layers.cases,
-)
 
 
 _SPEEDS = (30.0, 120.0)

@@ -6,12 +6,10 @@ validation.cases.two_plane.damping` makes them anew.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -23,8 +21,8 @@ from solvers.rotor.balls.steps import advance
 from solvers.rotor.balls.two_plane_balance import dynamic_balancing, of_two_planes
 from solvers.rotor.two_plane import TwoPlane
 from validation.case import Case, Claims
-from validation.cases.two_plane.machine import BALLS, LONG, RACES, SCATTERED, bare_deflection
-from validation.study import launch, write
+from validation.cases.two_plane.machine import BALLS, LONG, RACES, SCATTERED, over_bare
+from validation.study import data, launch, write
 
 CLAIMS = Claims("two_plane")
 
@@ -140,11 +138,7 @@ def long_run(damping: float, speed: float, duration: float, near: bool = False) 
     system = rotor.system()
     places = balanced_places(system, RACES) + np.array(OFF) if near else np.array(SCATTERED)
     run = simulate(system, RACES, speed, duration, places=places, samples=3000, steps=32)
-    sizes = [
-        np.abs(run.deflection(system, support.position)) / bare_deflection(rotor, support.position, speed)
-        for support in rotor.supports
-    ]
-    size = np.max(sizes, axis=0)
+    size = over_bare(rotor, run, speed)
     late = slice(2 * size.size // 3, None)
     rate = float(np.polyfit(run.time[late], np.log(size[late]), 1)[0])
     return {
@@ -161,8 +155,7 @@ def long_run(damping: float, speed: float, duration: float, near: bool = False) 
 
 def kept() -> list[dict[str, float]]:
     """The long runs as they are kept."""
-    found: list[dict[str, float]] = json.loads(DATA.read_text(encoding="utf-8"))["runs"]
-    return found
+    return list(data(DATA.name)["runs"])
 
 
 def cases() -> list[Case]:
@@ -205,23 +198,16 @@ def _long(runs: list[dict[str, float]]) -> Iterator[Case]:
         yield CLAIMS.case("long-run", run["left"], **words)
 
 
-def measure() -> dict[str, Any]:
+def keep() -> None:
     """Make the kept runs anew."""
-    return {
-        "about": "Motion in time of the long rotor of "
-        "validation.cases.two_plane.damping from scattered places "
-        "of the balls, or near the balanced ones. left: largest deflection at "
-        "the supports in the last tenth over that without balancers; "
-        "rate: of its logarithm over the last third, 1/s; root: real part of the leading root, 1/s.",
-        "runs": [long_run(*run) for run in LONG_RUNS],
-    }
-
-
-def main() -> str:
-    """Measure and keep."""
-    write(DATA, measure())
-    return DATA.read_text(encoding="utf-8")
+    about = (
+        "Motion in time of the long rotor of validation.cases.two_plane.damping from scattered places of the "
+        "balls, or near the balanced ones. left: largest deflection at the supports in the last tenth over "
+        "that without balancers; rate: of its logarithm over the last third, 1/s; root: real part of the "
+        "leading root, 1/s."
+    )
+    write(DATA, {"about": about, "runs": [long_run(*run) for run in LONG_RUNS]})
 
 
 if __name__ == "__main__":
-    launch(main)
+    launch(keep)

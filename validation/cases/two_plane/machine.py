@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from solvers.rotor.balls.balancers import BallRace
+from meshes.arrays import Array
+from solvers.rotor.balls.balancers import BalancedRun, BallRace
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
 
 SUPPORTS = (Support(0.2, 1e4, 40.0), Support(-0.22, 1.1e4, 40.0))
@@ -22,3 +23,10 @@ def bare_deflection(rotor: TwoPlane, position: float, speed: float) -> float:
     matrix = system.stiffness - speed**2 * system.mass + 1j * speed * system.damping
     whirl = np.linalg.solve(matrix + 1j * speed**2 * system.gyroscopic, speed**2 * system.unbalance)
     return float(abs(system.at(position)[0] @ whirl))
+
+
+def over_bare(rotor: TwoPlane, run: BalancedRun, speed: float) -> Array:
+    """Larger deflection of the two supports in a run, over that without balancers, shape (k,)."""
+    system, places = rotor.system(), [support.position for support in rotor.supports]
+    sizes = [np.abs(run.deflection(system, at)) / bare_deflection(rotor, at, speed) for at in places]
+    return np.asarray(np.max(sizes, axis=0))
