@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import math
 import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -29,6 +30,7 @@ _CARDS = """<style>@media screen and (max-width: 40em) {
 .cards td { padding: 0.1em 0.3em; border: 0; white-space: normal }
 .cards td + td::before { content: attr(data-name) ": "; font-weight: bold }
 }</style>"""
+_RAISED = str.maketrans("-0123456789", "\N{SUPERSCRIPT MINUS}⁰¹²³⁴⁵⁶⁷⁸⁹")
 _BREAK = re.compile(r"(?<=[/_])(?=\w)")  # where a path or a name may go on in the next line
 
 
@@ -164,6 +166,11 @@ def logarithmic(*axes: Any, x: Sequence[float] = (), y: Sequence[float] = ()) ->
                 each.set(**{f"{name}scale": "log", f"{name}ticks": ticks})
                 getattr(each, f"{name}axis").set_major_formatter(number)
                 getattr(each, f"{name}axis").set_minor_formatter("")
+
+
+def power(value: float, _at: float | None = None) -> str:
+    """A power of ten in plain letters, for the ticks of an axis."""
+    return "10" + str(round(math.log10(value))).translate(_RAISED)
 
 
 def _lines(text: str) -> str:

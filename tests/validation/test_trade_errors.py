@@ -522,7 +522,7 @@ trade_answers.answer = lambda scene, case: trade_answers.Answer(
     np.array([np.ones(int(sys.argv[1]) // 8).sum()]), True, "", ("linear",)
 )
 case = trade_answers.Case(trade_answers.RESPONSE, "linear")
-print(trade_child.run(load_scene(sys.argv[2]), case)["memory"])
+print(trade_child.run(load_scene(sys.argv[2]), case).memory)
 """
 
 

@@ -22,23 +22,22 @@ from validation.benchmarks import ours as layers
 from validation.benchmarks.growth import Growth
 from validation.benchmarks.problems import WANTED, distance, steady_problem, travelling_problem
 from validation.benchmarks.timing import Answer, Contestant, Sample, measure, version
-from validation.page import Figure, page
+from validation.page import Figure, page, power
 from validation.study import launch, read, shown
 from validation.study import write as write_json
 
-_FILE = "results.json"
+KEPT = Path(__file__).parent / "results.json"
 
 
-def keep(results: Results, folder: Path | None = None) -> Path:
-    """Write a run beside this module (or to `folder`), null for what is not a number."""
-    file = (folder or Path(__file__).parent) / _FILE
-    write_json(file, results)
-    return file
+def keep(results: Results, folder: Path = KEPT.parent) -> Path:
+    """Write a run beside this module or to another folder."""
+    write_json(folder / KEPT.name, results)
+    return folder / KEPT.name
 
 
 def kept_results() -> Results:
     """Run that `keep` wrote beside this module."""
-    return read(Path(__file__).parent / _FILE, Results)
+    return read(KEPT, Results)
 
 
 @dataclass(frozen=True)
@@ -125,24 +124,14 @@ def at_equal_error(ours: Iterable[Sample], other: Iterable[Sample]) -> list[tupl
 
 def growth_markdown(growths: Sequence[Growth]) -> str:
     """Table of costs over one number."""
+    known = [dict(zip(curve.counts, curve.seconds, strict=True)) for curve in growths]
     counts = sorted({n for curve in growths for n in curve.counts})
-    head = (
-        f"| {growths[0].over} | "
-        + " | ".join(curve.name for curve in growths)
-        + " |\n|---:"
-        + "|---:" * len(growths)
-        + "|\n"
-    )
-    rows = []
-    for n in counts:
-        cells = [
-            duration(curve.seconds[curve.counts.index(n)]) if n in curve.counts else "" for curve in growths
-        ]
-        rows.append(f"| {n} | " + " | ".join(cells) + " |")
-    return head + "\n".join(rows) + "\n"
+    rows = [(str(n), *(duration(curve[n]) if n in curve else "" for curve in known)) for n in counts]
+    head = (growths[0].over, *(curve.name for curve in growths))
+    first, *lines = (f"| {' | '.join(row)} |\n" for row in (head, *rows))
+    return "".join([first, "|---:" * len(head) + "|\n", *lines])
 
 
-_RAISED = str.maketrans("-0123456789", "\u207b\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079")
 _MARKS = "osD^vP"
 _LINES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 3)))
 
@@ -177,11 +166,7 @@ def _logarithmic(axes: Any) -> None:
         axes.set_ylim(10.0 ** math.floor(low), 10.0 ** math.ceil(high))
     axes.minorticks_off()
     for axis in (axes.xaxis, axes.yaxis):
-        axis.set_major_formatter(_power)
-
-
-def _power(value: float, _position: int | None = None) -> str:
-    return "10" + str(round(math.log10(value))).translate(_RAISED)
+        axis.set_major_formatter(power)
 
 
 def growth_figure(growths: Sequence[Growth]) -> Figure:
@@ -342,12 +327,8 @@ def _equal_error(samples: tuple[Sample, ...], name: str) -> list[str]:
 
 def write(results: Results, directory: Path, sharing: str) -> None:
     """Write `benchmarks.md` and the figures of a run; `sharing` says how the processor was shared."""
-    text = [
-        "# Results of one run",
-        "",
-        f"On {sharing}. " + ", ".join(f"{k} {v}" for k, v in results.versions.items()),
-        "",
-    ]
+    versions = ", ".join(f"{k} {v}" for k, v in results.versions.items())
+    text = ["# Results of one run", "", f"On {sharing}. {versions}", ""]
     for section in results.sections:
         picture = save_png(accuracy_figure(section), directory, section.name, section.title)
         text += [markdown(section, ours.CODE), f"![{section.title}]({picture.name})", ""]

@@ -1,17 +1,19 @@
 """`python -m validation.trade.child`: one case in a process of its own, for the memory it takes.
 
-Reads a pickled scene and case on stdin, writes one JSON object on stdout.
+Reads a pickled scene and case on stdin, writes a pickled `Run` on stdout.
 """
 
 from __future__ import annotations
 
-import json
 import pickle
 import sys
 import time
 from contextlib import suppress
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from validation.trade.judge import Run
 
 _STATUS, _RESET = Path("/proc/self/status"), Path("/proc/self/clear_refs")
 
@@ -31,12 +33,8 @@ def resident() -> tuple[int, int]:
     return most, most
 
 
-def run(scene: Any, case: Any) -> dict[str, Any]:
-    """Answer of a case with what it takes beyond a process that has everything loaded and compiled.
-
-    `values` to `work` of the answer; `memory`, bytes; `time` and `first`, CPU time of the run and of the
-    first small piece with its imports and compilation, s.
-    """
+def run(scene: Any, case: Any) -> Run:
+    """Answer of a case with what it takes beyond a process that has everything loaded and compiled."""
     begin = time.process_time()
     from validation.trade.answers import answer, taste
 
@@ -49,19 +47,10 @@ def run(scene: Any, case: Any) -> dict[str, Any]:
     found = answer(scene, case)
     taken = time.process_time() - begin
     memory = max(0, resident()[1] - before)
-    return {
-        "values": found.values.tolist(),
-        "in_range": found.in_range,
-        "reason": found.reason,
-        "used": found.used,
-        "ripple": None if found.ripple is None else found.ripple.tolist(),
-        "estimate": found.estimate,
-        "work": found.work,
-        "memory": memory,
-        "time": taken,
-        "first": first,
-    }
+    from validation.trade.judge import Run
+
+    return Run(found, (taken,), first, memory)
 
 
 if __name__ == "__main__":
-    json.dump(run(*pickle.load(sys.stdin.buffer)), sys.stdout)
+    pickle.dump(run(*pickle.load(sys.stdin.buffer)), sys.stdout.buffer)

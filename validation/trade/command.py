@@ -48,7 +48,8 @@ def trade(
             layer=layer,
         )
 
-    from validation.trade.figure import save, trade_figure
+    from leblanc.plotting.page import save
+    from validation.trade.figure import trade_figure
     from validation.trade.results import trade_json, trade_lines
 
     found = trade_json(record)

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from leblanc.core.notes import one_line
-from leblanc.plotting.page import Figure, Frame, lay_out, style
-from leblanc.plotting.page import save as save  # a figure is drawn and written together
+from leblanc.plotting.page import style
+from validation.page import Figure, page, power
 
 if TYPE_CHECKING:
     from validation.trade.judge import Comparison, Row
@@ -20,9 +20,6 @@ if TYPE_CHECKING:
 PICTURED = ("runup", "horizontal_rig")  # scenes whose kept comparison is drawn
 Axes = Any  # matplotlib's, which no module that only draws imports
 
-FRAME = Frame(left=0.72, top=0.25, between=0.62, below=0.42)
-PANEL = 2.75  # inches
-LINES = 8  # of the caption
 LABEL = 6.5  # points, of a label's letters
 _REACH = 18.0  # points, farthest that a label is put from its marker
 _FLOOR = 1e-13  # of the errors drawn, where the best answer is exact
@@ -33,7 +30,6 @@ TITLES = {
     "long waves": "One layer, long waves from rest, by each solver of py-pde",
     "one family": "One layer, one steady family, by each solver of py-pde",
 }
-_RAISED = str.maketrans("-0123456789", "\N{SUPERSCRIPT MINUS}⁰¹²³⁴⁵⁶⁷⁸⁹")
 # Of each kind: colour, marker, line.
 LOOKS: dict[str, tuple[str, str, str]] = {
     "auto": ("black", "o", "none"),
@@ -79,19 +75,15 @@ class _Box:
 
 def trade_figure(record: TradeRecord) -> Figure:
     """Error over CPU time, one panel for each question."""
+    heights, room = [2.75] * len(record.comparisons), {"top": 0.25, "between": 0.62, "lines": 8}
     with style():
-        figure = Figure()
-        panels = []
-        for k, comparison in enumerate(record.comparisons):
-            axes = figure.add_axes((0, 0, 1, 1), label=comparison.question)
-            _draw(axes, comparison, record.tolerance)
-            axes.set_title(TITLES[comparison.question], loc="left")
-            axes.set_ylabel("Relative error (\N{EN DASH})")
-            if k == len(record.comparisons) - 1:
-                axes.set_xlabel("CPU time (s)")
-            panels.append(axes)
-        lay_out(figure, [[axes] for axes in panels], [PANEL] * len(panels), FRAME, _caption(record), LINES)
-        for axes, comparison in zip(panels, record.comparisons, strict=True):
+        with page(heights, _caption(record), **room) as (figure, rows):
+            for [axes], comparison in zip(rows, record.comparisons, strict=True):
+                _draw(axes, comparison, record.tolerance)
+                axes.set_title(TITLES[comparison.question], loc="left")
+                axes.set_ylabel("Relative error (\N{EN DASH})")
+            axes.set_xlabel("CPU time (s)")
+        for [axes], comparison in zip(rows, record.comparisons, strict=True):
             _label(figure, axes, comparison)
     return figure
 
@@ -146,13 +138,8 @@ def _draw(axes: Axes, comparison: Comparison, tolerance: float) -> None:
             axes.plot(row.time, _height(row, comparison), shape, markersize=size, **marks)
             axes.plot([], [], shape, markersize=6.0, label=word, **marks)
     for axis in (axes.xaxis, axes.yaxis):
-        axis.set_major_formatter(_power)
+        axis.set_major_formatter(power)
         axis.set_minor_formatter(lambda _value, _at: "")
-
-
-def _power(value: float, _at: float) -> str:
-    """A power of ten in plain letters."""
-    return "10" + str(round(math.log10(value))).translate(_RAISED)
 
 
 def _ladder(axes: Axes, kind: str, rows: Sequence[Row], comparison: Comparison) -> None:

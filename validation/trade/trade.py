@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 import os
 import pickle
@@ -12,11 +11,9 @@ import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from leblanc.core.notes import one_line
 from leblanc.scene.scene import Scene, require_chambers, require_clear
-from validation.trade.answers import Answer, Case, answer, taste
+from validation.trade.answers import Case, answer, taste
 from validation.trade.cases import Question, finer, questions
 from validation.trade.judge import Comparison, Run, compare, decided, errors
 
@@ -136,12 +133,8 @@ def alone(scene: Scene, case: Case) -> Run:
     if done.returncode != 0:
         message = done.stderr.decode(errors="replace").strip().splitlines() or ["no message"]
         raise RuntimeError(f"{case.label}: the process ended with {done.returncode}: {message[-1]}")
-    read = json.loads(done.stdout)
-    found = Answer(
-        np.array(read["values"]), read["in_range"], read["reason"], tuple(read["used"]),
-        None if read["ripple"] is None else np.array(read["ripple"]), read["estimate"], read["work"],
-    )  # fmt: skip
-    return Run(found, (read["time"],), read["first"], read["memory"])
+    found: Run = pickle.loads(done.stdout)
+    return found
 
 
 def _cpu_time(scene: Scene, case: Case, expected: float) -> float:
