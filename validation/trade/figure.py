@@ -77,7 +77,7 @@ def trade_figure(record: TradeRecord) -> Figure:
     """Error over CPU time, one panel for each question."""
     heights, room = [2.75] * len(record.comparisons), {"top": 0.25, "between": 0.62, "lines": 8}
     with style():
-        with page(heights, _caption(record), **room) as (figure, rows):
+        with page(heights, _caption(record), (), **room) as (figure, rows):
             for [axes], comparison in zip(rows, record.comparisons, strict=True):
                 _draw(axes, comparison, record.tolerance)
                 axes.set_title(TITLES[comparison.question], loc="left")

@@ -149,10 +149,8 @@ def _decay(name: str, smeared: bool = False) -> Case:
         "decay",
         float(lag[k] + off[k]),
         abs(off[k]) <= _LAG,
-        name=f"{name}{'_sink' * smeared}",
-        quantity=f"lag {time[k]:.3g} s after 0.25, where it differs most; {plates}{_SINK * smeared}",
-        printed=float(lag[k]),
-        difference=f"{off[k]:+.3f} of the spin",
+        **{"run": name, "sink": "_sink" * smeared, "smeared": _SINK * smeared},
+        **{"time": time[k], "plates": plates, "off": off[k], "printed": float(lag[k])},
         note="agrees within 0.03 of the spin; " + ("without wall friction" if height == 0.0 else _KNOWN),
     )
 
@@ -163,9 +161,8 @@ def _driven(name: str, smeared: bool = False) -> Case:
     return CLAIMS.case(
         "driven",
         loss(name, smeared),
-        name=f"{name}{'_sink' * smeared}",
-        quantity=f"loss coefficient of baffles of {1e3 * (run['R'] - run['r_tip']):.0f} mm at a spin-up of "
-        f"{-run['aDrive']:g} rad/s^2{_SINK * smeared}",
+        **{"run": name, "sink": "_sink" * smeared, "smeared": _SINK * smeared},
+        **{"height": 1e3 * (run["R"] - run["r_tip"]), "rate": -run["aDrive"]},
         printed=run["fits"][0]["zeta_torque"],
     )
 

@@ -140,7 +140,7 @@ def _case(kind: Kind, measure: str, meaning: str) -> Case:
     return CLAIMS.case(
         "chambers",
         ", ".join(f"{size:{'.2f' if measure == 'run_up' else '.4g'}}" for size in sizes),
-        name=f"chambers-{kind}-{measure.replace('_', '-')}",
+        key=measure.replace("_", "-"),
         meaning=meaning,
         kind=kind,
         difference=outcome,

@@ -103,14 +103,8 @@ def _rule(name: str, meaning: str, kept: dict[str, float], broken: dict[str, flo
     """A rule that must take every coupling away, and without which there are some."""
     holds = not kept and bool(broken)
     left = ", ".join(f"{pair} {size:.3f}" for pair, size in broken.items())
-    return CLAIMS.case(
-        "layout",
-        f"none; broken: {left}" if not kept else ", ".join(kept),
-        holds,
-        name=f"layout-{name}",
-        quantity=meaning,
-        broken_by=broken_by,
-    )
+    computed = f"none; broken: {left}" if not kept else ", ".join(kept)
+    return CLAIMS.case("layout", computed, holds, rule=name, meaning=meaning, broken_by=broken_by)
 
 
 def _turns(machine: Tub) -> float:

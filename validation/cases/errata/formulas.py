@@ -145,13 +145,11 @@ def _artificial_unbalance() -> Iterator[Case]:
         f"m_2 e = {drum * eccentricity * 1e6:.0f} g mm of the same paper gives "
         f"{drum * eccentricity * far * 1e3:.2f} mm far above resonance"
     )
-    for name, meaning, factor in (
+    for key, meaning, factor in (
         ("far", "far above resonance", far),
         ("peak", "at the worst speed", float(response.max())),
     ):
-        yield CLAIMS.case(
-            "dg-section-4", unbalance * factor, name=f"dg-section-4-{name}", meaning=meaning, note=note
-        )
+        yield CLAIMS.case("dg-section-4", unbalance * factor, key=key, meaning=meaning, note=note)
 
 
 def _kinetic_energy() -> Case:

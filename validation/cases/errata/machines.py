@@ -114,17 +114,11 @@ def _drag_number() -> Iterator[Case]:
     plain = shape * viscosity * math.pi * length**3 * math.sqrt(mass / stiffness) / inertia
     # Radius and length over the scale of lengths, which is the length.
     full = plain * (radius / length) ** 2
-    for name, source, computed, note in (
+    for key, place, computed, note in (
         ("table", "table 1", plain, "the table's formula with the table's values"),
         ("eq-41", "table 1 and eq. 41", full, "eq. 41 has r^2 l over the length as well, r = d/2"),
     ):
-        yield CLAIMS.case(
-            "dr-pump-drag",
-            computed,
-            name=f"dr-pump-drag-{name}",
-            source=f"DR18, chapter 2.3, {source}",
-            note=note,
-        )
+        yield CLAIMS.case("dr-pump-drag", computed, key=key, place=place, note=note)
 
 
 def _weak_supports() -> Case:

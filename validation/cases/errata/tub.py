@@ -144,14 +144,12 @@ def _order_cases(matrices: TubMatrices) -> Iterator[Case]:
     import sympy as sp
 
     unit = sp.symbols("m_2") * sp.symbols("x_D")
-    for order, matrix, printed in (("gamma'", matrices.gyroscopic, 1.0), ("gamma''", matrices.mass, 0.0)):
-        yield CLAIMS.case(
-            "dr-y-equation-derivative",
-            float(sp.simplify(matrix[1, 5] / unit)),
-            name=f"dr-y-equation-{'first' if printed else 'second'}-derivative",
-            order=order,
-            printed=printed,
-        )
+    for which, order, matrix, printed in (
+        ("first", "gamma'", matrices.gyroscopic, 1.0),
+        ("second", "gamma''", matrices.mass, 0.0),
+    ):
+        words = {"which": which, "order": order, "printed": printed}
+        yield CLAIMS.case("dr-y-equation-derivative", float(sp.simplify(matrix[1, 5] / unit)), **words)
 
 
 @dataclass(frozen=True)
@@ -186,18 +184,11 @@ def _row_cases(matrices: TubMatrices) -> Iterator[Case]:
         of = _NAMES[term.column] + ("'" if term.damping else "")
         shown, derived = (_as_damping(_written(text), term.damping) for text in (term.printed, computed))
         kind = "rate" if term.rate else "damping" if term.damping else "stiffness"
-        yield CLAIMS.case(
-            "dr-equation",
-            derived,
-            name=f"dr-{_NAMES[term.row]}-equation-{kind}",
-            quantity=f"coefficient of {of} in the equation of {_NAMES[term.row]}, of one "
-            + ("damper (h_x, h_y, h_z)" if term.damping else "spring (c_x, c_y, c_z)")
-            + " at (x, y, z)",
-            printed=f"0, and {shown} of {of}'" if term.rate else shown,
-            note="a stiffness multiplies the angle, not its rate"
-            if term.rate
-            else "symmetric, as J^T c J is",
-        )
+        words = {"of": of, "row": _NAMES[term.row], "kind": kind}
+        words["part"] = "damper (h_x, h_y, h_z)" if term.damping else "spring (c_x, c_y, c_z)"
+        words["printed"] = f"0, and {shown} of {of}'" if term.rate else shown
+        rate, symmetric = "a stiffness multiplies the angle, not its rate", "symmetric, as J^T c J is"
+        yield CLAIMS.case("dr-equation", derived, note=rate if term.rate else symmetric, **words)
 
 
 def _written(expression: object) -> str:

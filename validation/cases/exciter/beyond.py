@@ -162,15 +162,8 @@ def _regimes(kept: dict[str, Any]) -> list[Case]:
     chaotic = [row for row in runs if row["chaos"] * _decay(row) >= _PRINTED_TIME]
     note = "kept runs over the source's ranges of b and delta, four starts each"
 
-    def counted(name: str, quantity: str, number: int, more: str) -> Case:
-        return CLAIMS.case(
-            "beyond",
-            float(number),
-            number,
-            name=f"beyond-{name}",
-            quantity=f"of {len(runs)} runs at 1.25 times the critical speed: {quantity}",
-            note=more,
-        )
+    def counted(key: str, what: str, number: int, more: str) -> Case:
+        return CLAIMS.case("beyond", float(number), number, key=key, runs=len(runs), what=what, note=more)
 
     return [
         counted("balancing", "balanced in the end", counts[Kind.BALANCED.value], f"{note}: {seen}"),

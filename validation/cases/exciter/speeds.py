@@ -69,14 +69,7 @@ def _roots() -> list[Case]:
     found = stuck_speeds(5.0, MACHINE)
     printed = (0.9465, 1.0732, 4.61875)
     return [
-        CLAIMS.case(
-            "stuck",
-            float(found[k]),
-            name=f"stuck-{k + 1}",
-            quantity=f"stuck speed {k + 1} at n = 5, h = 0.03, b = 0.4",
-            printed=value,
-        )
-        for k, value in enumerate(printed)
+        CLAIMS.case("stuck", float(found[k]), number=k + 1, printed=value) for k, value in enumerate(printed)
     ]
 
 
@@ -136,19 +129,12 @@ def _table() -> Iterator[Case]:
         "unbalance": (0.22, 0.22, 0.005),
         "damping": (0.032, 0.021, 0.02),
     }
-    for name, (empty, loaded, tolerance) in printed.items():
+    other = "the printed number belongs to a drag of 0.05 N s/m, not to the printed 0.03"
+    for key, (empty, loaded, tolerance) in printed.items():
         for load, mass, value in (("empty", 36.1, empty), ("loaded", 90.1, loaded)):
-            yield CLAIMS.case(
-                "table",
-                float(getattr(vibratory_table(mass).dimensionless(), name)),
-                name=f"table-{name}-{load}",
-                quantity=f"{name} of the {load} table, from its dimensions",
-                printed=value,
-                tolerance=tolerance,
-                note="the printed number belongs to a drag of 0.05 N s/m, not to the printed 0.03"
-                if name == "drag"
-                else "",
-            )
+            computed = float(getattr(vibratory_table(mass).dimensionless(), key))
+            words = {"key": key, "load": load, "tolerance": tolerance, "note": other if key == "drag" else ""}
+            yield CLAIMS.case("table", computed, printed=value, **words)
 
 
 STARTS = (

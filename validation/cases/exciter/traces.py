@@ -81,19 +81,13 @@ def _traces() -> Iterator[Case]:
     worst = float(found.gap.max())
     apart = ", ".join(f"{name} {100 * gap:.2f} %" for name, gap in zip(names, found.gap, strict=True))
     yield CLAIMS.case("trace-gap", worst, worst <= _PRINTED_GAP * 1.1, difference=apart)
-    for name, printed, values in (
-        ("ball-speed-high", 0.97, found.motion.ball_speed.max()),
-        ("ball-speed-low", 0.92, found.motion.ball_speed.min()),
-        ("acceleration", 14.0, np.abs(found.motion.acceleration).max()),
+    for key, printed, value, tolerance in (
+        ("ball-speed-high", 0.97, found.motion.ball_speed.max(), 0.02),
+        ("ball-speed-low", 0.92, found.motion.ball_speed.min(), 0.02),
+        ("acceleration", 14.0, np.abs(found.motion.acceleration).max(), 0.1),
     ):
-        yield CLAIMS.case(
-            "trace",
-            float(values),
-            name=f"trace-{name}",
-            quantity=f"largest value of the trace at n = 5: {name.replace('-', ' ')}",
-            printed=printed,
-            tolerance=0.1 if name == "acceleration" else 0.02,
-        )
+        words = {"key": key, "words": key.replace("-", " "), "tolerance": tolerance}
+        yield CLAIMS.case("trace", float(value), printed=printed, **words)
 
 
 def _dimensional() -> list[Case]:

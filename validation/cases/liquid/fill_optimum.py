@@ -30,21 +30,11 @@ def cases() -> list[Case]:
         scene = example(name)
         answer = optimise_scene(scene.altered(optimise=None), "working_speed", front=False)
         deflection, volume = closed_forms(scene)
-        at = f"{scene.name}, at the working speed"
+        words = {"machine": name, "at": f"{scene.name}, at the working speed"}
+        sizes = {"printed": volume * _ML, "tolerance": tolerance, "percent": 100.0 * tolerance}
         found += [
-            CLAIMS.case(
-                "volume",
-                float(answer.volume[0]) * _ML,
-                name=f"{name}-volume",
-                at=at,
-                printed=volume * _ML,
-                tolerance=tolerance,
-                note="printed is the closed form; the search takes the least volume within a small margin "
-                f"of the best: agrees within {100.0 * tolerance:g} %",
-            ),
-            CLAIMS.case(
-                "amplitude", answer.value * MM, name=f"{name}-amplitude", at=at, printed=deflection * MM
-            ),
+            CLAIMS.case("volume", float(answer.volume[0]) * _ML, **sizes, **words),
+            CLAIMS.case("amplitude", answer.value * MM, printed=deflection * MM, **words),
         ]
     return found
 

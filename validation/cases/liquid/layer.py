@@ -67,8 +67,8 @@ def _steady(run: dict[str, Any]) -> Case:
         "steady",
         whitham.real,
         off <= 0.01,
-        name=f"{run['name']}",
-        quantity=f"force ratio at whirl ratio {whirl.speed / whirl.spin:g}",
+        key=run["name"],
+        ratio=whirl.speed / whirl.spin,
         printed=reference.real,
         difference=(reference.real - whitham.real) / abs(whitham),
         real=plain.real,
@@ -152,7 +152,7 @@ def _rotation_case(run: dict[str, Any], time: NDArray[np.float64], rotation: NDA
         "mean-rotation",
         float(off.max()),
         bool(np.all(off <= _ROTATION)),
-        name=f"{run['name']}-mean-rotation",
+        key=run["name"],
         difference=_percent(off),
     )
 

@@ -30,26 +30,12 @@ def cases() -> list[Case]:
         for e in (1e-3, 3e-3, 10e-3):
             answer = answer_volume(radius, height, e, speed, gravity=_GRAVITY)
             at = f"R {radius:g} m, h {height:g} m, {speed:g} rad/s, e {e * 1e3:g} mm"
-            name = f"{radius * 1e3:g}-{speed:g}-{e * 1e3:g}"
-            found.append(
-                CLAIMS.case(
-                    "fem",
-                    answer.optimal_volume * _ML,
-                    name=f"fem-{name}",
-                    at=at,
-                    printed=answer.optimal_volume_fem * _ML,
-                )
-            )
-            if answer.printed_eq18 is not None:
-                found.append(
-                    CLAIMS.case(
-                        "eq18",
-                        answer.optimal_volume * _ML,
-                        name=f"eq18-{name}",
-                        at=at,
-                        printed=answer.printed_eq18 * _ML,
+            words = {"at": at, "key": f"{radius * 1e3:g}-{speed:g}-{e * 1e3:g}"}
+            for entry, printed in (("fem", answer.optimal_volume_fem), ("eq18", answer.printed_eq18)):
+                if printed is not None:
+                    found.append(
+                        CLAIMS.case(entry, answer.optimal_volume * _ML, printed=printed * _ML, **words)
                     )
-                )
     return [*found, _double_thickness(), _bend()]
 
 
@@ -64,11 +50,6 @@ def _double_thickness() -> Case:
 
 def _bend() -> Case:
     """The deflection at which a volume stops to be enough is the one whose optimal volume it is."""
-    import numpy as np
-
-    from fluid.fill import Fill, Fills
-    from fluid.liquid import known_liquid
-
     chamber, e = Chamber(0.2, 0.05), 3e-3
     volume = float(optimal_volume(chamber, e, 1.0, gravity=0.0))
     bend = Statics().linear_limit(

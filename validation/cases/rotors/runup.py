@@ -123,24 +123,17 @@ def cases() -> list[Case]:
     found = []
     for volume, rate, *given in GIVEN:
         point = run(volume, rate)
-        name = f"{volume * LITRE:g}-l-{rate:g}"
+        key = f"{volume * LITRE:g}-l-{rate:g}"
         what = f"{volume * LITRE:g} l of water, friction {rate:g} 1/s" if volume else "no liquid"
         rows = (
             ("peak", "largest amplitude, mm", point.peak * MM),
             ("speed", "speed there, rad/s", point.peak_speed),
             ("end", "amplitude at the end, mm", point.last * MM),
         )
-        for (kind, quantity, value), printed in zip(rows, given, strict=True):
-            found.append(
-                CLAIMS.case(
-                    "cases",
-                    value,
-                    name=f"{kind}-{name}",
-                    quantity=f"{quantity}: {what}",
-                    printed=printed,
-                    note=_FRICTION if volume else "",
-                )
-            )
+        note = _FRICTION if volume else ""
+        for (kind, size, value), printed in zip(rows, given, strict=True):
+            words = {"kind": kind, "key": key, "size": size, "what": what, "note": note}
+            found.append(CLAIMS.case("cases", value, printed=printed, **words))
     return found
 
 

@@ -140,20 +140,13 @@ def _measured() -> Case:
 
 def _with_distance() -> Iterator[Case]:
     """Largest angular and longitudinal motion over the whole range of speeds, as the laundry moves off."""
-    for name, coordinate, unit, meaning in (
+    for key, coordinate, unit, meaning in (
         ("angular-motion", "alpha", "mrad", "turn about x"),
         ("longitudinal-motion", "y", "mm", "motion along the axis"),
     ):
         size = [1e3 * float(amplitude(suspended_tub(y), _SPEEDS, coordinate).max()) for y in _PLACES]
-        rises = bool(np.all(np.diff(size) > 0.0))
-        yield CLAIMS.case(
-            "with_distance",
-            ", ".join(f"{value:.3g}" for value in size),
-            rises,
-            name=f"{name}",
-            meaning=meaning,
-            unit=unit,
-        )
+        rises, told = bool(np.all(np.diff(size) > 0.0)), ", ".join(f"{value:.3g}" for value in size)
+        yield CLAIMS.case("with_distance", told, rises, key=key, meaning=meaning, unit=unit)
 
 
 def _springs() -> list[Case]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -56,22 +57,16 @@ def layers_in_time(rotor: TwoPlane, speed: float, cells: int = 64) -> Layered:
     return Layered(steady / bare, float((last.std(axis=0) / steady).max()), bool(verdict.possible[0]))
 
 
-def cases() -> list[Case]:
+def cases() -> Iterator[Case]:
     """A long and a short rotor over the speeds."""
-    found = []
     for name, rotor in (("long", LONG), ("short", SHORT)):
         for speed in SPEEDS:
             run = layers_in_time(rotor, speed)
             better = bool(np.all(run.left < 1.0))
-            found.append(
-                CLAIMS.case(
-                    "layers",
-                    "yes" if better else "no",
-                    better == run.possible,
-                    name=f"layers-{name}-{speed:g}",
-                    quantity=f"two liquid layers on a {name} rotor at {speed:g} rad/s: do both planes gain?",
-                    printed="yes" if run.possible else "no",
-                    difference=f"deflections {run.left[0]:.2f} and {run.left[1]:.2f} of those without liquid",
-                )
-            )
-    return found
+            words = {
+                "rotor": name,
+                "speed": speed,
+                "left": run.left,
+                "printed": "yes" if run.possible else "no",
+            }
+            yield CLAIMS.case("layers", "yes" if better else "no", better == run.possible, **words)
