@@ -10,6 +10,7 @@ import os
 import re
 import sys
 import time
+from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -159,16 +160,23 @@ def _complaints(book: Any) -> str:
     return written if _TOLD.search(written) else ""
 
 
+@cache
+def _exporter() -> Any:
+    """The writer of pages, which reads and compiles a dozen templates."""
+    from nbconvert import HTMLExporter
+
+    return HTMLExporter(raw_template=_PAGE)
+
+
 def write_pages(book: Any, stem: str, out: Path) -> None:
     """Write a notebook with its outputs as .ipynb and as a page that needs nothing else."""
     import nbformat
-    from nbconvert import HTMLExporter
 
     from leblanc.core.files import writing
 
     out.mkdir(parents=True, exist_ok=True)
     with writing(out / f"{stem}.ipynb") as part:
         nbformat.write(book, part)
-    page, _ = HTMLExporter(raw_template=_PAGE).from_notebook_node(book, {"metadata": {"name": stem}})
+    page, _ = _exporter().from_notebook_node(book, {"metadata": {"name": stem}})
     with writing(out / f"{stem}.html") as part:
         part.write_text(page, encoding="utf-8")
