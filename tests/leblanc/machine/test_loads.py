@@ -309,9 +309,8 @@ def test_optimise_over_the_run_up() -> None:
     with_liquid, without = LoadsOver(FilledMachine(scene), None, 0.0, runs).of("floor_force", volumes)
     limit = 1.001 * max(with_liquid, without)
     task = {"floor_force": limit, "loads_over": "runup", "volumes": [["5 ml", "15 ml"]]}
-    steady = optimise_scene(
-        scene.replace({"optimise": task | {"loads_over": "both"}}), front=False, response=False
-    )
+    both = task | {"loads_over": "both", "volumes": [["10 ml", "10 ml"]]}
+    steady = optimise_scene(scene.replace({"optimise": both}), front=False, response=False)
     assert not steady.feasible
     least = optimise_scene(
         scene.replace({"optimise": task | {"objective": "floor_force"}}), front=False, response=False

@@ -130,7 +130,7 @@ def test_compartments_that_hardly_balance_are_told() -> None:
 @kills("leblanc.scene.chambers:_held", "volume < _FILM * drum", "volume < 0.0")
 def test_a_film_thinner_than_molecules_is_no_liquid() -> None:
     """Beside baffles, where elements mesh every layer: as an empty chamber; a film with a mesh answers."""
-    own = BASE | {"speeds": BASE["speeds"] | {"count": 3}}
+    own = BASE | {"speeds": {"start": 60.0, "stop": 60.0, "count": 1}}
     wet, drum = CHAMBER | {"baffles": CUT}, math.pi * 0.01 * 0.02
 
     def amplitude(volume: float) -> np.ndarray:
