@@ -32,7 +32,7 @@ SHOWN = {
     ),
     "compare": (
         ["compare", str(ROOT / "examples" / "vertical_rig.toml"), "--models", "statics,linear"],
-        ["response by several models"],
+        ["response by statics"],
     ),
 }
 
