@@ -75,7 +75,7 @@ def test_lean() -> None:
     assert lean == pytest.approx(math.asin(0.5))
     for model in MODELS:
         machine = model(STIFF.system(), [FILL], speed, friction, G, 32, False, handover=Handover.CARRIED)
-        machine.advance(15.0, 0.0, 0.8, 10**6)
+        machine.advance(10.0, 0.0, 0.8, 10**6)
         # The linear law takes the swing away at 5 (r^2)/(l_c l) times a half: nothing is left of it.
         assert seen(machine) == pytest.approx(lean, rel=1e-6)
         assert machine.read().mean_rotation[0] == pytest.approx(-speed, rel=1e-6)
