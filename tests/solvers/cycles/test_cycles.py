@@ -207,7 +207,7 @@ def test_what_keeps_no_whirl_is_told() -> None:
 @pytest.mark.parametrize("friction", [Friction("stokes"), Friction("quadratic", 0.02)])
 def test_the_other_laws_of_friction(friction: Friction) -> None:
     rotor, fill = machine(MU, 0.1, 0.02)
-    cycles = limit_cycles(rotor, [fill], (1.15 * NATURAL, 1.4 * NATURAL), friction)
+    cycles = limit_cycles(rotor, [fill], (1.2 * NATURAL, 1.4 * NATURAL), friction, cells=32)
     size, _, _ = stable_at(cycles, 1.3 * NATURAL)
     (estimate,) = whirl_estimate(rotor, [fill], np.array([1.3 * NATURAL]), friction)
     assert estimate is not None and size == pytest.approx(estimate.amplitude, rel=0.15)
@@ -217,7 +217,9 @@ def test_the_other_laws_of_friction(friction: Friction) -> None:
         more, fills = Friction(friction.law, 2.0 * larger), [fill]
     else:
         more, fills = friction, [Fill(fill.chamber, Liquid("thick", 1000.0, 4e-6), fill.volume)]
-    grown, _, _ = stable_at(limit_cycles(rotor, fills, (1.15 * NATURAL, 1.4 * NATURAL), more), 1.3 * NATURAL)
+    grown, _, _ = stable_at(
+        limit_cycles(rotor, fills, (1.2 * NATURAL, 1.4 * NATURAL), more, cells=32), 1.3 * NATURAL
+    )
     assert 1.2 < grown / size < 1.7
 
 
@@ -245,7 +247,7 @@ def test_the_size_of_a_whirl_follows_the_law_of_the_wall() -> None:
     rotor, fill = machine(MU, 0.1, 0.02)
     sizes = []
     for law in (Friction("wall"), Friction("wall", roughness=0.05 * fill.depth)):  # type: ignore[arg-type]
-        cycles = limit_cycles(rotor, [fill], (1.15 * NATURAL, 1.4 * NATURAL), law)
+        cycles = limit_cycles(rotor, [fill], (1.15 * NATURAL, 1.4 * NATURAL), law, cells=32)
         size, _, _ = stable_at(cycles, 1.3 * NATURAL)
         (estimate,) = whirl_estimate(rotor, [fill], np.array([1.3 * NATURAL]), law)
         assert estimate is not None and size == pytest.approx(estimate.amplitude, rel=0.2)
