@@ -276,7 +276,8 @@ def test_number_height_and_angle_of_baffles_vary(tmp_path: Path) -> None:
     base = (Path(__file__).parents[4] / "docs" / "examples" / "closed_baffles.toml").read_text(
         encoding="utf-8"
     )
-    (tmp_path / "scene.toml").write_text(base.replace("count = 41", "count = 2"), encoding="utf-8")
+    base = base.replace("count = 41", "count = 1").replace('"200 rpm"', '"1200 rpm"')
+    (tmp_path / "scene.toml").write_text(base, encoding="utf-8")
     study = """scene = "scene.toml"
 method = "grid"
 [vary]
