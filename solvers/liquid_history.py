@@ -8,6 +8,16 @@ from meshes.arrays import Array, Complex
 
 
 @dataclass(frozen=True)
+class LayerFilm:
+    """Pictures of a layer in the drum frame; k of them, n cells."""
+
+    time: Array  #: s, shape (k,)
+    theta: Array  #: angle in the drum, rad, shape (n,)
+    depth: Array  #: m, shape (k, n)
+    deflection: Complex  #: of the drum's axis, seen from the drum, m, complex, shape (k,)
+
+
+@dataclass(frozen=True)
 class LayerHistory:
     """Whirl periods of a layer; k of them, n cells. Complex: along the deflection, 90 deg ahead of it."""
 
@@ -21,16 +31,7 @@ class LayerHistory:
     depth_min: Array
     theta: Array  #: angle from the deflection at the end, rad, ascending, shape (n,)
     depth: Array  #: depth of the layer there, m, shape (n,)
+    ends: LayerFilm  #: at the start and at the end of each period
     mass_error: float  #: relative change of the liquid's volume
     converged: bool  #: every period was finished and, where it was to settle, the last two agree
     reason: str  #: why it is not, or empty
-
-
-@dataclass(frozen=True)
-class LayerFilm:
-    """Pictures of a layer in the drum frame; k of them, n cells."""
-
-    time: Array  #: s, shape (k,)
-    theta: Array  #: angle in the drum, rad, shape (n,)
-    depth: Array  #: m, shape (k, n)
-    deflection: Complex  #: of the drum's axis, seen from the drum, m, complex, shape (k,)

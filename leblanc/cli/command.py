@@ -58,21 +58,22 @@ def command(question: Callable[..., Any]) -> Callable[..., None]:
     files: tuple[str, ...] = getattr(sys.modules[question.__module__], "FILES", ())
     subject = next((one for one in own.values() if one.read in _LOADED), None)
     options = [_typed(one) for one in asked.values()]
+    whole = subject is not None and subject.default is Parameter.empty  # it has a folder of its own
     if files:
-        help_of_out = _ONLY_OUT if subject is None else _OUT.format(subject.name)
+        help_of_out = _OUT.format(subject.name) if subject is not None and whole else _ONLY_OUT
         options.append(_parameter("out", Path | None, typer.Option(help=help_of_out), None))
     options.append(_parameter("json", bool, typer.Option("--json", help=_JSON), False))
 
     def run(json: bool, out: Path | None = None, **given: Any) -> None:
         given |= {name: not given[name] for name, one in asked.items() if _usual(one)}
         machine, folder, where = None, None, f"leblanc {question.__name__}"
-        if subject is not None:
+        if subject is not None and given[subject.name] is not None:
             source = Path(given[subject.name])
             machine, where = _LOADED[subject.read](source), str(source)
-            if files:
+            if files and whole:
                 state = getattr(machine, "scene", machine).digest
                 folder = results_dir(machine.name, out, source, state, *files)
-        elif out is not None:
+        if out is not None and not whole:
             folder = out_dir(question.__name__, out)
         values = {name: _value(own[name], given[name]) for name in own}
         values |= {name: folder for name in _FOLDER if name in everything}
@@ -131,7 +132,9 @@ def _parameter(name: str, kind: Any, option: Any, default: Any) -> Parameter:
 def _typed(one: Asked) -> Parameter:
     """A parameter as typer takes it: a scene is the path of its file, quantities are texts."""
     if one.read is SCENE:
-        return _parameter(one.name, Path, typer.Argument(help="Scene file (TOML)."), Parameter.empty)
+        needed = one.default is Parameter.empty
+        words = "Scene file (TOML)." if needed else one.text
+        return _parameter(one.name, Path if needed else Path | None, typer.Argument(help=words), one.default)
     kind: Any = one.kind
     if kind == Texts:
         return _parameter(one.name, list[str] | None, typer.Option(*one.option.names, help=one.text), None)
@@ -183,7 +186,7 @@ def _command_line(name: str, asked: Sequence[Asked], given: Mapping[str, Any]) -
         value = given[one.name]
         option = _option(one, value)
         if one.read is SCENE or one.option.argument:
-            parts.append(path_text(value))
+            parts += [] if value is None else [path_text(value)]
         elif one.option.same or value == one.default:
             continue
         elif isinstance(value, bool):

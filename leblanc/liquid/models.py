@@ -78,8 +78,8 @@ _MAKE: Mapping[str, _Make] = {
     "potential": _potential,
 }
 WAVE_MODELS = tuple(_MAKE)
-# Those that py-pde solves.
-_MARCHED = ("long_wave", "kdv")
+# Those that py-pde solves, and that know friction.
+MARCHED = ("long_wave", "kdv")
 # Those that answer the unbalance of a rotor: the liquid is at rest in a synchronous whirl.
 SYNCHRONOUS_MODELS = ("statics", "linear", "fem", "kdv")
 # Those that go through time with a rotor.
@@ -99,8 +99,8 @@ def wave_model(
     """
     if name not in _MAKE:
         raise InputError("model", name, "one of " + ", ".join(_MAKE))
-    if solver is not None and name not in _MARCHED:
-        raise InputError("solver", solver, f"left out for {name}; " + " and ".join(_MARCHED) + " have one")
+    if solver is not None and name not in MARCHED:
+        raise InputError("solver", solver, f"left out for {name}; " + " and ".join(MARCHED) + " have one")
     return _MAKE[name](friction, cells, dispersion, solver)
 
 

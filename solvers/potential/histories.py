@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from fluid.fill import FULL, Fill
 from meshes.arrays import Array
@@ -28,7 +29,7 @@ _POINTS, _PANEL = 8, 3.0
 # Force by momentum and by pressure that differ by this share have no meaning.
 _GAP = 1e-2
 # Angles of a picture.
-_ANGLES = 256
+_AROUND = 2.0 * math.pi * (np.arange(256) + 0.5) / 256
 # Energy and angular momentum that count as moved by nothing, beside which gaps are rounding.
 _UNMOVED = 1e-9
 
@@ -70,6 +71,7 @@ def simulate(
     moments = course(begin, stops, push, steps)
     means = _Means(whirl, push, steps.friction, weights, _sample(begin, 0.0, push, steps.friction))
     deepest, last, reason = 1.0 - fill.chamber.inner_radius / fill.chamber.radius, None, ""
+    pictures = [1.0 - seen(begin.state, _AROUND)[0]]
     for moment in moments:
         last, reason = moment, moment.reason
         if reason:
@@ -78,13 +80,16 @@ def simulate(
             reason = "the crest came to the inner wall"
             break
         means.add(_sample(moment.surface, moment.time, push, steps.friction))
+        if len(means.rows) == len(pictures):
+            pictures.append(1.0 - seen(moment.surface.state, _AROUND)[0])
         if means.force_gap > _GAP:
             reason = f"forces by pressure and by momentum differ by {means.force_gap:.1e}"
             break
         if progress is not None:
             progress(moment.time / (period * count))
     assert last is not None
-    return _history(fill, whirl, last, reason, means)
+    ends = _film(fill, whirl, whirl.period * np.arange(len(pictures)), pictures)
+    return _history(fill, whirl, last, reason, means, ends)
 
 
 def film(
@@ -100,20 +105,25 @@ def film(
         raise InputError("frames", frames, "1 or more")
     require_positive("periods", periods)
     steps = steps or Steps()
-    begin, radius = _start(fill, steps), fill.chamber.radius
+    begin = _start(fill, steps)
     interval = periods * whirl.period / frames
-    theta = 2.0 * math.pi * (np.arange(_ANGLES) + 0.5) / _ANGLES
-    pictures = [1.0 - seen(begin.state, theta)[0]]
+    pictures = [1.0 - seen(begin.state, _AROUND)[0]]
     times = np.asarray(interval * np.arange(1, frames), dtype=np.float64)
     for moment in course(begin, times * whirl.spin, whirl_push(fill, whirl), steps):
         if moment.state is WaveState.BROKEN:
             break
-        pictures.append(1.0 - seen(moment.surface.state, theta)[0])
+        pictures.append(1.0 - seen(moment.surface.state, _AROUND)[0])
         if progress is not None:
             progress(len(pictures) / frames)
-    time = np.asarray(interval * np.arange(len(pictures)), dtype=np.float64)
+    return _film(fill, whirl, interval * np.arange(len(pictures)), pictures)
+
+
+def _film(fill: Fill, whirl: Whirl, at: ArrayLike, depths: Sequence[Array]) -> LayerFilm:
+    """Pictures of a layer from its depths over the radius at some times, s."""
+    time = np.asarray(at, dtype=np.float64)
     turning = grown(time, whirl.ramp) * np.exp(1j * whirl.slip * time)
-    return LayerFilm(time, theta, radius * np.array(pictures), np.asarray(whirl.amplitude * turning))
+    depth = fill.chamber.radius * np.array(depths)
+    return LayerFilm(time, _AROUND, depth, np.asarray(whirl.amplitude * turning))
 
 
 def whirl_push(fill: Fill, whirl: Whirl) -> Push:
@@ -236,7 +246,9 @@ def _start(fill: Fill, steps: Steps) -> Surface:
     return still(fill.depth / chamber.radius, steps.nodes)
 
 
-def _history(fill: Fill, whirl: Whirl, last: Moment, reason: str, means: _Means) -> PotentialHistory:
+def _history(
+    fill: Fill, whirl: Whirl, last: Moment, reason: str, means: _Means, ends: LayerFilm
+) -> PotentialHistory:
     """Means in SI units, and the layer as it stands in the frame of the deflection at the end."""
     radius, spin, found = fill.chamber.radius, whirl.spin, last.extremes
     table = np.array(means.rows, dtype=np.complex128).reshape(len(means.rows), 6)
@@ -255,6 +267,7 @@ def _history(fill: Fill, whirl: Whirl, last: Moment, reason: str, means: _Means)
         depth_min=least.real * radius,
         theta=theta[order],
         depth=-np.expm1(-last.surface.height[order]) * radius,
+        ends=ends,
         mass_error=found.drift,
         converged=not reason and bool(np.isfinite(table).all()),
         reason=reason,

@@ -7,7 +7,7 @@ states, whirl periods and when to stop.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from contextlib import suppress
 from typing import Any
 
@@ -18,7 +18,7 @@ from pde.trackers.trackers import CallbackTracker
 
 from fluid.fill import Fill
 from fluid.friction.laws import NO_FRICTION, Friction, FrictionLaw
-from meshes.arrays import Complex
+from meshes.arrays import Array
 from meshes.errors import InputError, require_positive
 from solvers.layer.state import Numerics, resting_area
 from solvers.liquid_history import LayerFilm, LayerHistory
@@ -111,16 +111,20 @@ def film(
     options = stepping(equation, state.grid, solver, interval)
     with suppress(RuntimeError):  # py-pde's solvers have no other; the pictures end there
         equation.solve(state, stop, tracker=trackers, solver=solver, **options)
-    moments = np.array(storage.times)
-    radius = fill.chamber.radius
-    areas = np.array([data[0] for data in storage.data])
+    return _film(equation, state, zip(storage.times, storage.data, strict=True))
+
+
+def _film(equation: AnnularLongWavePDE, state: Any, fields: Iterable[tuple[float, Array]]) -> LayerFilm:
+    """Pictures of a layer from its fields and their times."""
+    radius, whirl = equation.terms.fill.chamber.radius, equation.terms.whirl
+    found = list(fields)
+    moments, areas = np.array([time for time, _ in found]), np.array([data[0] for _, data in found])
+    turned = grown(moments, whirl.ramp) * np.exp(1j * whirl.slip * moments)
     return LayerFilm(
         time=moments,
         theta=np.asarray(state.grid.axes_coords[0]),
         depth=radius - np.sqrt(np.maximum(radius**2 - 2.0 * areas, 0.0)),
-        deflection=np.asarray(
-            whirl.amplitude * grown(moments, whirl.ramp) * np.exp(1j * whirl.slip * moments), dtype=complex
-        ),
+        deflection=np.asarray(whirl.amplitude * turned, dtype=complex),
     )
 
 
@@ -156,14 +160,14 @@ def _held(
     reason = run(equation, state, means, solver, options, progress)
     if not reason and settled is not None and not means.steady:
         reason = "the force still changes from one stretch of whirl periods to the next"
-    return _history(equation, means.rows, means.last or (state, 0.0), reason)
+    return _history(equation, means, means.last or (state, 0.0), reason)
 
 
 def _history(
-    equation: AnnularLongWavePDE, rows: list[Complex], last: tuple[Any, float], reason: str
+    equation: AnnularLongWavePDE, means: StretchMeans, last: tuple[Any, float], reason: str
 ) -> LayerHistory:
     """Means over whirl periods, and the layer as it stands in the frame of the deflection at the end."""
-    fill, whirl = equation.terms.fill, equation.terms.whirl
+    fill, whirl, rows = equation.terms.fill, equation.terms.whirl, means.rows
     table = np.array(rows, dtype=np.complex128).reshape(len(rows), 6)
     state, time = last
     theta = np.mod(state.grid.axes_coords[0] - whirl.slip * time + math.pi, 2.0 * math.pi) - math.pi
@@ -180,6 +184,7 @@ def _history(
         depth_max=largest.real,
         theta=theta[order],
         depth=equation.depth(state)[order],
+        ends=_film(equation, state, means.fields or [(time, state.data)]),
         mass_error=abs(volume / fill.volume - 1.0),
         converged=not reason and bool(np.isfinite(table).all()),
         reason=reason,

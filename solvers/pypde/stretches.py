@@ -99,6 +99,7 @@ class StretchMeans(TrackerBase):  # type: ignore[no-untyped-call]
         self.rows: list[Complex] = []
         self.steady = False
         self.last: tuple[Any, float] | None = None  # state at the end of the last stretch, and when
+        self.fields: list[tuple[float, Array]] = []  # at the start and at the end of each stretch
         self._place: Any = None  # of the liquid there
         self._ends, self._early = stretches.ends, _EARLY * stretches.period
         self._solver: dict[str, Any] = {}
@@ -117,6 +118,7 @@ class StretchMeans(TrackerBase):  # type: ignore[no-untyped-call]
         if t < self._ends[len(self.rows) + (self.last is not None)] - self._early:
             return
         place = self.equation.place(field, t)
+        self.fields.append((t, np.copy(field.data)))
         if self.last is None:
             self.last = field.copy(), t
         else:

@@ -117,7 +117,7 @@ def _data(folder: Path, before: set[str], measured: frozenset[str]) -> dict[str,
 
 def _held(data: dict[str, Any], measured: frozenset[str]) -> dict[str, Any]:
     """The same with the values of what a machine measures replaced."""
-    for name in measured & data["variables"].keys():
+    for name in (measured | {"wall_time"}) & data["variables"].keys():
         data["variables"][name]["values"] = kind(data["variables"][name]["values"])
     return data
 

@@ -293,6 +293,11 @@ def _words() -> Iterator[Case]:
     yield _case("fit-each", f"{fitted} --scale each --json --out out")
     yield _case("words-volume", f"{_VOLUME} --volume 2e-4")
     yield _case("words-layer", f"{_WHIRL} --model linear")
+    yield _case(
+        "layer-machine",
+        f"layer {_scene('horizontal_rig')} --chamber 2 --whirl-speed 1000rpm --whirl-amplitude 0.1mm --json",
+    )
+    yield _case("outputs-run", "outputs run --json")
     yield _case("words-layer-duration", f"{_WHIRL} --model long_wave --cells 32 --duration 2")
     yield _case("words-sweep", "sweep small/centrifuge_shares.toml --workers 0")
     yield _case("words-view", "view small/runup.toml --screenshot view.png", needs="screen")

@@ -4,22 +4,29 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Annotated, Any
 
-from leblanc.core.question import FRICTION, LIQUID, Option, Quantity, Reader, ask, called
+from leblanc.core.question import FRICTION, LIQUID, SCENE, Option, Quantity, Reader, ask, called
 from leblanc.core.units import ACCELERATION, ANGULAR_SPEED, LENGTH, TIME, VOLUME
 
 if TYPE_CHECKING:
+    from leblanc.scene.scene import SceneOrPath
     from leblanc.studies.layer.answer import AnyLayerAnswer
 
-FILES = ("wave.svg", "wave.png", "periods.svg", "periods.png")
+FILES = ("wave.svg", "wave.png", "periods.svg", "periods.png", "layer.nc")
 _FILM = Reader("leblanc.plotting.page:film_path")
 
 
 def layer(
+    scene: Annotated[
+        SceneOrPath | None, SCENE, "Machine file, in place of what follows up to the height."
+    ] = None,
     *,
-    radius: Annotated[Quantity, LENGTH, "Wall radius, m or with a unit."],
-    volume: Annotated[Quantity, VOLUME, "Volume of the liquid."],
-    height: Annotated[Quantity, LENGTH, "Height of the chamber along the axis."],
-    speed: Annotated[Quantity, ANGULAR_SPEED, "Spin speed, rad/s or with a unit."],
+    chamber: Annotated[int | None, "Which chamber of the machine [default: 1]."] = None,
+    radius: Annotated[Quantity | None, LENGTH, "Wall radius, m or with a unit."] = None,
+    height: Annotated[Quantity | None, LENGTH, "Height of the chamber along the axis."] = None,
+    volume: Annotated[Quantity | None, VOLUME, "Volume of the liquid [default: the machine's]."] = None,
+    speed: Annotated[
+        Quantity | None, ANGULAR_SPEED, "Spin speed, rad/s or with a unit [default: the machine's last]."
+    ] = None,
     whirl_speed: Annotated[
         Quantity | None, ANGULAR_SPEED, "Whirl speed in space; left out where gravity alone drives."
     ] = None,
@@ -51,10 +58,14 @@ def layer(
         bool, Option(("--dispersion",)), "Exact linear dispersion (long_wave, kdv)."
     ] = False,
     friction: Annotated[
-        Any, FRICTION, "none, stokes, wall[:ROUGHNESS], linear:RATE or quadratic:NUMBER."
-    ] = "none",
-    gravity: Annotated[Quantity, ACCELERATION, "Gravity across the axis."] = 0.0,
-    liquid: Annotated[Any, LIQUID, "Name of the liquid."] = "water",
+        Any,
+        FRICTION,
+        "none, stokes, wall[:ROUGHNESS], linear:RATE or quadratic:NUMBER [default: the machine's, none].",
+    ] = None,
+    gravity: Annotated[
+        Quantity | None, ACCELERATION, "Gravity across the axis [default: the machine's, 0]."
+    ] = None,
+    liquid: Annotated[Any, LIQUID, "Name of the liquid [default: the machine's, water]."] = None,
     duration: Annotated[
         Quantity | None, TIME, "Start from rest and answer period by period (long_wave, potential)."
     ] = None,
@@ -68,6 +79,7 @@ def layer(
 
     A free wave runs round the drum by itself; asked for is the speed at which it does. Friction is a text, a
     table as in a machine file ({"linear": 0.5}) or a `Friction`; a liquid a known name or a `leblanc.Liquid`.
+    Of a machine the chamber, baffles, liquid, law of friction and, where its axis lies, gravity are taken.
 
     Raises
     ------
@@ -80,6 +92,8 @@ def layer(
     ...                  whirl_amplitude="0.15 mm")
     >>> found.converged
     True
+    >>> lb.layer(lb.example("horizontal_rig"), whirl_speed="1000 rpm", whirl_amplitude="0.1 mm").case.radius
+    0.065
     """
     return ask(layer, "leblanc.studies.layer.study:answer", locals())
 

@@ -105,7 +105,7 @@ class ExactPeriods:
 class _Layered(Answer):
     """What all answers on a layer have."""
 
-    command = "layer"
+    command, data = "layer", "layer.nc"
     figure = "leblanc.studies.layer.figure:layer_figure"
 
     case: Annotated[LayerCase, Q(part=True)]
@@ -376,6 +376,31 @@ class PeriodsAnswer(_Layered):
     @property
     def depth(self) -> Annotated[Array, Q("m", "depth of the layer at the end", over=_ROUND)]:
         return self.history.depth
+
+    @property
+    def end(self) -> Annotated[Array, Q("s", "start, and ends of the periods", over=("end",), json=False)]:
+        return self.history.ends.time
+
+    @property
+    def angle(self) -> Annotated[Array, Q("rad", "angle in the drum", over=("angle",), json=False)]:
+        return self.history.ends.theta
+
+    @property
+    def depths(
+        self,
+    ) -> Annotated[
+        Array, Q("m", "depth of the layer over time and angle", over=("end", "angle"), json=False)
+    ]:
+        return self.history.ends.depth
+
+    @property
+    def deflection(
+        self,
+    ) -> Annotated[
+        Complex,
+        Q("m", "deflection seen from the drum", over=("end",), axes=("angle 0", "90 deg ahead"), json=False),
+    ]:
+        return self.history.ends.deflection
 
     @property
     def mass_error(self) -> Annotated[float, Q("1", "relative change of the liquid's volume")]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -12,13 +13,14 @@ import numpy as np
 
 from fluid import waves
 from fluid.fill import Fill
-from fluid.friction.laws import Friction
+from fluid.friction.laws import NO_FRICTION, Friction
 from fluid.liquid import Liquid
 from leblanc.core.notes import Note
 from leblanc.core.progress import update
 from leblanc.core.question import called
 from leblanc.core.terminal import say
-from leblanc.liquid.models import wave_model
+from leblanc.liquid.choose import across_gravity
+from leblanc.liquid.models import MARCHED, wave_model
 from leblanc.liquid.notes import (
     LayerCode,
     against_whirl,
@@ -45,6 +47,7 @@ from leblanc.liquid.whirling import (
     watched,
 )
 from leblanc.scene.chambers import round_chamber
+from leblanc.scene.scene import Scene, liquid_of
 from leblanc.studies.layer.answer import (
     AnyLayerAnswer,
     ExactPeriods,
@@ -71,10 +74,12 @@ _ONE_WAY = 1e-6  # part of the answer that may go the other way round before it 
 
 
 def answer(
-    radius: float,
-    volume: float,
-    height: float,
-    speed: float,
+    scene: Scene | None,
+    chamber: int | None,
+    radius: float | None,
+    height: float | None,
+    volume: float | None,
+    speed: float | None,
     whirl_speed: float | None,
     whirl_amplitude: float | None,
     free: float | None,
@@ -86,17 +91,30 @@ def answer(
     baffle_tip_radius: float,
     baffle_wall_gap: float,
     dispersion: bool,
-    friction: Friction,
-    gravity: float,
-    liquid: Liquid,
+    friction: Friction | None,
+    gravity: float | None,
+    liquid: Liquid | None,
     duration: float | None,
     ramp: float,
     solver: str | None,
 ) -> AnyLayerAnswer:
     """Answer to a whirl, settled or from rest over a duration, or the free wave of a crest height."""
     update(what="waves under the whirl")
-    chamber = round_chamber(radius, height, baffles, baffle_tip_radius, baffle_wall_gap)
-    fill = Fill(chamber, liquid, volume)
+    if scene is not None:
+        walls = {"radius": radius, "height": height, "baffles": baffles or None}
+        fill = _of_machine(scene, chamber, walls)
+        drag = scene.model.friction if model in (AUTO, *MARCHED) else NO_FRICTION
+        fill = Fill(fill.chamber, liquid or fill.liquid, fill.volume if volume is None else volume)
+        speed = scene.speeds.stop if speed is None else speed
+        gravity = across_gravity(scene) if gravity is None else gravity
+    else:
+        if chamber is not None:
+            raise InputError("chamber", chamber, "left out without a machine")
+        size = _given("radius", radius), _given("height", height)
+        ring = round_chamber(*size, baffles, baffle_tip_radius, baffle_wall_gap)
+        fill = Fill(ring, liquid or liquid_of("water", "liquid"), _given("volume", volume))
+        drag, speed = NO_FRICTION, _given("speed", speed)
+    friction, gravity = drag if friction is None else friction, gravity or 0.0
     if free is not None:
         unused = {
             "whirl_speed": whirl_speed, "whirl_amplitude": whirl_amplitude, "duration": duration,
@@ -124,6 +142,27 @@ def answer(
         return replace(answer_layer(**asked), asked=asked | {"ramp": ramp})
     asked |= {"duration": duration, "ramp": ramp}
     return replace(layer_history(**asked), asked=asked)
+
+
+def _given(name: str, value: float | None) -> float:
+    """A value that only a machine could stand for."""
+    if value is None:
+        raise InputError(name, None, "given, or a machine in place of it")
+    return value
+
+
+def _of_machine(scene: Scene, chamber: int | None, walls: Mapping[str, float | None]) -> Fill:
+    """A chamber of a machine with its liquid, counted from 1; it has walls of its own."""
+    for name, value in walls.items():
+        if value is not None:
+            raise InputError(name, value, "left out where a machine is given")
+    number = 1 if chamber is None else chamber
+    if not 1 <= number <= len(scene.fills):
+        allowed = f"1 to {len(scene.fills)}" if scene.fills else "of a machine with chambers"
+        raise InputError("chamber", number, allowed)
+    if scene.fills[number - 1].chamber.section is not None:
+        raise InputError("chamber", number, "one between circular walls")
+    return scene.fills[number - 1]
 
 
 def _named(

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import leblanc as lb
 from fluid.fill import Fill
 from fluid.friction.laws import Friction
 from fluid.liquid import known_liquid
@@ -20,6 +21,7 @@ from leblanc.studies.layer import layer
 from leblanc.studies.layer.answer import LayerAnswer
 from leblanc.studies.layer.study import answer_layer, steady_film
 from meshes.chamber import Chamber
+from meshes.errors import InputError
 from solvers.liquid_model import Whirl, drag_frequency
 from solvers.potential.steady import forced, linear_detuning
 from solvers.pypde.models import OneFamily
@@ -448,3 +450,72 @@ def test_a_wave_that_was_not_found_has_no_depths() -> None:
     assert not folded.converged and np.isnan(folded.depth).all() and folded.notes
     # A picture shows the layer at rest.
     assert folded.wave().depth == pytest.approx(np.full(folded.depth.shape, fill.depth))
+
+
+RIG = {"whirl_speed": "1000 rpm", "whirl_amplitude": "0.1 mm"}
+
+
+def test_a_machine_says_what_is_in_its_chamber() -> None:
+    """As typed one by one; what is typed besides stands in place of the machine's."""
+    scene = lb.example("horizontal_rig")
+    chamber, friction = scene.chambers[1], scene.model.friction
+    typed = {"radius": chamber.radius, "height": chamber.height, "liquid": chamber.liquid}
+    asked = RIG | {"model": "long_wave", "cells": 32, "duration": "0.5 s"}
+    found = layer(scene, chamber=2, **asked)
+    same = layer(
+        **typed, **asked, volume=chamber.volume, speed=scene.speeds.stop, friction=friction, gravity=9.81
+    )
+    assert found == same and found.typed.machine_file == scene.text
+    other = layer(scene.table(), chamber=2, volume="5 ml", speed=150.0, gravity=0.0, **RIG)
+    same = layer(**typed, **RIG, volume="5 ml", speed=150.0)
+    assert (other.case, other.force_ratio) == (same.case, same.force_ratio)
+    upright = layer(lb.example("vertical_rig"), **RIG)
+    assert (
+        upright.capture_speed == 0.0 if hasattr(upright, "capture_speed") else upright.gravity_offset == 0.0
+    )
+
+
+@pytest.mark.parametrize(
+    ("asked", "field"),
+    [
+        ({"chamber": 3}, "chamber"),
+        ({"radius": 0.1}, "radius"),
+        ({"baffles": 2}, "baffles"),
+        (
+            {"scene": None, "chamber": 1, "radius": 0.1, "height": 0.1, "volume": 1e-4, "speed": 9.0},
+            "chamber",
+        ),
+        ({"scene": None, "radius": 0.1, "height": 0.1, "speed": 9.0}, "volume"),
+        ({"scene": lb.example("vibratory_table")}, "chamber"),
+    ],
+)
+def test_what_a_machine_says_is_not_typed_again(asked: dict[str, object], field: str) -> None:
+    with pytest.raises(InputError) as fault:
+        layer(**({"scene": lb.example("horizontal_rig")} | RIG | asked))
+    assert fault.value.field == field
+
+
+def held_over_time(folder: Path, model: str, **cells: int) -> None:
+    """At the start an even layer; at the end of each period its volume, the last one the answer's own."""
+    asked = {"radius": R, "height": H, "volume": VOLUME, "speed": SPIN, "whirl_speed": 32.0}
+    found = layer(**asked, whirl_amplitude=2e-4, model=model, duration="2 s", **cells)
+    found.write(folder)
+    kept = lb.open(folder / "layer.nc").to_dataset()
+    depths, radius = kept.depths.values, R - kept.depths.values
+    assert kept.depths.dims == ("end", "angle") and kept.end.size == found.time.size + 1 == 3
+    np.testing.assert_allclose(math.pi * H * np.mean(R**2 - radius**2, axis=1), VOLUME, rtol=1e-9)
+    assert np.ptp(depths[0]) < 1e-12 * R < np.ptp(depths[-1])
+    # In the frame of the deflection the last one is the answer's depth, which other nodes may have.
+    frame = found.angle - np.angle(found.deflection[-1])
+    same = np.interp(frame, found.theta, found.depth, period=2.0 * math.pi)
+    np.testing.assert_allclose(depths[-1], same, rtol=0.0, atol=0.02 * np.ptp(depths[-1]))
+
+
+@kills("solvers.pypde.settle:_film", "radius**2 - 2.0 * areas", "radius**2 - 2.1 * areas")
+def test_depths_of_long_waves_over_time_and_angle(tmp_path: Path) -> None:
+    held_over_time(tmp_path, "long_wave", cells=48)
+
+
+@kills("solvers.potential.histories:simulate", "whirl.period * np.arange(", "1.1 * whirl.period * np.arange(")
+def test_depths_of_exact_waves_over_time_and_angle(tmp_path: Path) -> None:
+    held_over_time(tmp_path, "potential")
