@@ -61,13 +61,7 @@ def _peak_shift() -> Case:
         return float(found.x)
 
     shift = peak(0.2)
-    return CLAIMS.case(
-        "dr-fig-20",
-        shift,
-        shift <= 1.0,
-        note=f"1/sqrt(1 - 2 zeta^2) = {1.0 / math.sqrt(1.0 - 2.0 * 0.2**2):.4f}; a force of one size "
-        "at all speeds has its peak below",
-    )
+    return CLAIMS.case("dr-fig-20", shift, shift <= 1.0, exact=1.0 / math.sqrt(1.0 - 2.0 * 0.2**2))
 
 
 # The spindle's speeds that bring each frequency of its bearings to 33 Hz, Hz [DR18, chapter 2.2, table 1].

@@ -122,8 +122,7 @@ def _stuck(sweeps: list[dict[str, Any]]) -> list[Case]:
             through,
             abs(7.0 - through) <= 0.05,
             difference=7.0 / through - 1.0,
-            note="at n2 the balls part, at n3 the motion ends in a fold; no oscillation starts before "
-            f"({_growing_roots()} of 196 machines); a slow run-up in time loses it at {typical['lost']:.2f}",
+            **{"growing": _growing_roots(), "lost": typical["lost"]},
         ),
         CLAIMS.case("third-together", parting, parting <= 0.0),
     ]

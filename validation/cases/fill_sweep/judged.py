@@ -50,11 +50,8 @@ def _curve(name: str, text: str, added: Array, seen: Array, own: Array, band: Ar
     return CLAIMS.case(
         "curve",
         _words(own),
-        name=name,
-        quantity=f"{text}, {', '.join(f'{ml:g}' for ml in added[1:])} ml added over 0 ml",
-        printed=_words(seen),
-        difference=f"the five fills between are off by factors of {factors.min():.2g} to "
-        f"{factors.max():.2g}; {inside} of them within the band of the draws that come closest",
+        **{"key": name, "text": text, "volumes": ", ".join(f"{ml:g}" for ml in added[1:])},
+        **{"least": factors.min(), "most": factors.max(), "inside": inside, "printed": _words(seen)},
         verdict="agrees" if inside == factors.size else shape_verdict(same, effect),
         effect=effect,
     )
@@ -84,12 +81,15 @@ def _clearance(added: Array, seen: Array) -> Case:
         "clearance",
         _words(own),
         _least(added, seen) == _least(added, own),
-        printed=_words(seen),
-        difference=f"the five fills between are off by factors of {factors.min():.2g} to "
-        f"{factors.max():.2g}; {inside} of them within nine tenths of what is allowed",
-        note=f"the middle of {found.draw.size} pairs of values and clearances that 0 and 300 ml allow. These "
-        f"two do not tell where the step is: {at[1]:.0%} have it at {added[1]:g} ml, {at[step]:.0%} at "
-        f"{added[step]:g} ml as measured; {found.within(seen, 1.5):.0%} meet all five within a factor of 1.5",
+        **{"least": factors.min(), "most": factors.max(), "inside": inside, "printed": _words(seen)},
+        **{
+            "pairs": found.draw.size,
+            "at": at,
+            "added": added,
+            "at_seen": at[step],
+            "added_seen": added[step],
+        },
+        within=found.within(seen, 1.5),
         effect=effect,
     )
 
@@ -108,9 +108,7 @@ def _coast(computed: float) -> Case:
         printed=float(seen[0]),
         difference=float(seen[0] / computed - 1.0),
         verdict="agrees" if agrees else shape_verdict(bool((computed > 1.0) == (seen[0] > 1.0)), effect),
-        note=", ".join(f"{ratio:.2f} with {added} ml" for added, ratio in seen.items() if added)
-        + "; computed is a coast from the highest speed, measured are drums that had come to the resonance "
-        "or just above it, and both values at 0 ml have shocks in them",
+        others=", ".join(f"{ratio:.2f} with {added} ml" for added, ratio in seen.items() if added),
         effect=effect,
     )
 
@@ -135,10 +133,8 @@ def _columns() -> Case:
         "columns",
         ", ".join(f"{value}" for value in logs["passage_peak"][:3]) + ": largest at the resonance",
         column[:3] == logs["passage_peak"][:3],
-        printed=", ".join(f"{value}" for value in column[:3]) + ": largest from 28 to 32 s",
-        difference="in the window of the source the drum turns at "
-        + ", ".join(f"{hz:g}" for hz in known)
-        + " Hz; the resonance is at 4.3",
+        column=", ".join(f"{value}" for value in column[:3]),
+        hertz=", ".join(f"{hz:g}" for hz in known),
     )
 
 

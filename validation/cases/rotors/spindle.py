@@ -63,9 +63,7 @@ def _bearing() -> list[Case]:
             "balls",
             FRAME / PRINTED["bpfi"] / (1.0 - cage),
             printed=float(known.balls),
-            note=f"half a unit of the last digit printed; the fit to all four rows has {fit.bearing.balls} "
-            f"too, residual {100.0 * fit.residual_rms:.2f} %, with {fit.next_balls} balls "
-            f"{100.0 * fit.next_rms:.0f} %",
+            **{"fit": fit, "residual": 100.0 * fit.residual_rms, "next": 100.0 * fit.next_rms},
         ),
         CLAIMS.case("bpfi", speeds["bpfi"], printed=PRINTED["bpfi"], diameter_ratio=known.diameter_ratio),
         CLAIMS.case("bpfo", speeds["bpfo"], printed=PRINTED["bpfo"]),

@@ -64,13 +64,8 @@ def _resonances() -> Iterator[Case]:
             "resonance",
             width,
             width < gap,
-            hertz=hertz,
-            quantity=f"width at half the power of the resonance at {hertz:.0f} Hz, by the amplitudes at "
-            f"it and at {' and '.join(f'{off:.0f}' for off in beside)} Hz, Hz",
-            gap=gap,
-            difference=f"{width / gap:.2f} of that distance",
-            note=f"one mode under an unbalance, damping ratio {min(ratios):.3f}, {60.0 * hertz:.0f} rpm; "
-            "the source gives neither mass nor stiffness, so the resonance itself cannot be computed",
+            **{"hertz": hertz, "rpm": 60.0 * hertz, "beside": " and ".join(f"{off:.0f}" for off in beside)},
+            **{"gap": gap, "share": width / gap, "damping": min(ratios)},
         )
 
 

@@ -55,8 +55,7 @@ def _printed_angle(lag: np.ndarray, ratio: np.ndarray, angle: np.ndarray, speed:
         "eq-25",
         computed,
         not (printed is None or abs(printed - computed) > 1e-6),
-        quantity=f"angle of the liquid at {speed[k] / _RPM:.0f} rpm, deg",
+        **{"rpm": speed[k] / _RPM, "k": ratio[k]},
         printed=printed,
         difference="no real angle" if printed is None else f"{printed - computed:+.1f} deg",
-        note=f"the cosine lost a factor 1/k; here k = {ratio[k]:.3g}",
     )

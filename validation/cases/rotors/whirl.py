@@ -145,8 +145,7 @@ def _beginning() -> Case:
         "run-up-growth",
         math.log(seen.amplitude[last] / seen.amplitude[first]),
         printed=float(np.trapezoid(growth, time)),
-        note="printed is the growth rate over the time at the liquid's own speed, which lags by "
-        f"{seen.lag[first]:.3g} rad/s; at the drum's it would be {float(np.trapezoid(by_drum, time)):.4g}",
+        **{"lag": seen.lag[first], "by_drum": float(np.trapezoid(by_drum, time))},
     )
 
 
@@ -191,8 +190,7 @@ def _weak() -> Case:
         "damping-alone",
         float(np.mean(alone > 0.0)),
         np.all(alone > 0.0),
-        note=f"smallest growth {alone.min():.2g} of the natural frequency; with the laminar friction of "
-        f"water on a wall of 0.1 m at 100 rad/s unstable from {unstable[0]:.3f} to {unstable[-1]:.3f}",
+        **{"least": alone.min(), "unstable": unstable, "last": unstable[-1]},
     )
 
 

@@ -57,15 +57,6 @@ def reference(
     return system, races
 
 
-def damping_chart(values: int = 25) -> Chart:
-    """Long rotor over speed, rad/s, and the decimal logarithm of the damping of each support, N s/m."""
-
-    def family(speed: float, power: float) -> Machine:
-        return Machine(damped(LONG, 10.0**power).system(), RACES, speed)
-
-    return stability_chart(family, np.linspace(30.0, 110.0, values), np.linspace(-0.6, 4.2, values))
-
-
 def reference_charts(values: int = 21) -> tuple[Chart, Chart]:
     """Reference machine over speed and unbalance, and over speed and damping of the supports."""
 
@@ -80,15 +71,6 @@ def reference_charts(values: int = 21) -> tuple[Chart, Chart]:
         stability_chart(unbalanced, speeds, np.linspace(0.1, 1e5 * _MOST, values)),
         stability_chart(held, speeds, np.linspace(1e-3, 0.2, values)),
     )
-
-
-def unlike_chart(values: int = 21) -> Chart:
-    """Reference machine with supports of 5 and 45 in one direction, over speed and damping."""
-
-    def held(speed: float, damping: float) -> Machine:
-        return Machine(*reference(damping=damping, alike=False), speed)
-
-    return stability_chart(held, np.linspace(1.0, 6.0, 2 * values - 1), np.linspace(2e-3, 0.2, values))
 
 
 def state_charts(values: int = 25) -> tuple[Chart, Chart, Chart]:
@@ -151,7 +133,11 @@ def _draw(axes: Any, chart: Chart, scale: float = 1.0) -> None:
 
 def damping_figure() -> Figure:
     """Where balls balance the long rotor over speed and damping, with motions in time on both sides."""
-    chart = damping_chart()
+
+    def family(speed: float, power: float) -> Machine:
+        return Machine(damped(LONG, 10.0**power).system(), RACES, speed)
+
+    chart = stability_chart(family, np.linspace(30.0, 110.0, 25), np.linspace(-0.6, 4.2, 25))
     text = (
         "Balanced state of the long rotor with two ball balancers, by the roots of small motions: stable "
         "where hatched. Rotor of 10 kg, balls of 15 g, drag of the races 0.3 N s/m. Made-up machine."
@@ -192,7 +178,11 @@ def reference_figure() -> Figure:
 
 def unlike_figure() -> Figure:
     """Reference machine on unlike supports over speed and damping."""
-    chart = unlike_chart()
+
+    def held(speed: float, damping: float) -> Machine:
+        return Machine(*reference(damping=damping, alike=False), speed)
+
+    chart = stability_chart(held, np.linspace(1.0, 6.0, 41), np.linspace(2e-3, 0.2, 21))
     text = (
         "Balanced state of the dimensionless rotor of RCFW08 on supports of 5 and 45 in one "
         "direction, 1 and 9 in the other, by the multipliers of half a turn: stable where "
