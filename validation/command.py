@@ -72,8 +72,8 @@ def all_cases(
     """Cases of one group, or of all; progress: groups done, groups, name of the next."""
     from meshes.errors import InputError
 
-    if group is not None and group not in GROUPS:
-        raise InputError("case", group, "one of " + ", ".join(GROUPS))
+    if group is not None and not (isinstance(group, str) and group in GROUPS):
+        raise InputError("case", str(group), "one of " + ", ".join(GROUPS))
     chosen = tuple(GROUPS) if group is None else (group,)
     found: list[Case] = []
     for done, name in enumerate(chosen):

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import builtins
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import nullcontext
+from contextlib import nullcontext, suppress
 from dataclasses import dataclass
 from importlib import import_module
 from inspect import Parameter, Signature, cleandoc, signature
@@ -139,6 +139,8 @@ def read(question: Callable[..., Any], given: Mapping[str, Any]) -> dict[str, An
             continue
         value = values[one.name]
         if isinstance(one.read, Reader):
+            if value is None and one.default is Parameter.empty:
+                raise InputError(one.name, None, "given")
             values[one.name] = called(one.read.address)(value, one.name)
         elif one.read is None:
             values[one.name] = _typed(value, one.kind, one.name)
@@ -159,6 +161,8 @@ def _points(value: Any, dimension: Dimension, name: str) -> int | tuple[float, .
     each = points.tolist() if hasattr(points, "tolist") else points
     return tuple(parse_option(one, dimension, f"{name}.{k}") for k, one in enumerate(each))
 
+
+_LARGE = 1e15  # whole numbers up to here are printed
 
 # What a value may be by its type: who tells, what it becomes, and how a message says it.
 _PLAIN: dict[Any, tuple[Callable[[Any], bool], Callable[[Any], Any], str]] = {
@@ -195,10 +199,21 @@ def _typed(value: Any, kind: Any, name: str) -> Any:
         return None
     for one in kinds:
         if one is not NoneType and _PLAIN[one][0](value):
-            return _PLAIN[one][1](value)
+            if one is Sequence and isinstance(value, list | tuple):
+                return [_typed(each, _of_list(kind), f"{name}.{k}") for k, each in enumerate(value)]
+            with suppress(OverflowError):  # a whole number beyond all others
+                return _PLAIN[one][1](value)
     said = dict.fromkeys(_PLAIN[one][2] for one in kinds if one is not NoneType)
-    given = value if isinstance(value, str | int | float | None) else type(value).__name__
+    given = value if isinstance(value, str | float | None) else type(value).__name__
+    given = value if isinstance(value, int) and abs(value) < _LARGE else given
     raise InputError(name, given, " or ".join(said))
+
+
+def _of_list(kind: Any) -> Any:
+    """Of what a list is made by its type; `Parameter.empty`, which is anything, where it does not say."""
+    parts = get_args(kind) if get_origin(kind) in (Union, UnionType) else (kind,)
+    lists = (get_args(part)[0] for part in parts if get_args(part) and Sequence in _kinds(part))
+    return next(lists, Parameter.empty)
 
 
 _READ = {

@@ -290,6 +290,9 @@ def number(value: float) -> str:
     return (text.rstrip("0").rstrip(".") if "." in text else text).replace("-", MINUS)
 
 
+_MOST = 1e50  # in SI; powers and products of what is larger overflow, and nothing in the world is
+
+
 def parse(value: object, dimension: Dimension, field: str = "value") -> float:
     """Finite value in `dimension.unit` of a plain number, taken as SI, or of a text of a number and a unit.
 
@@ -300,7 +303,7 @@ def parse(value: object, dimension: Dimension, field: str = "value") -> float:
     >>> parse("65 mm", LENGTH), parse(0.065, LENGTH), parse("60 rpm", ANGULAR_SPEED) / math.pi
     (0.065, 0.065, 2.0)
     """
-    if isinstance(value, float) and math.isfinite(value):
+    if isinstance(value, float) and abs(value) <= _MOST:
         return float(value)  # most are: a sweep checks millions
     if isinstance(value, str):
         number = _from_text(value, dimension, field)
@@ -311,7 +314,7 @@ def parse(value: object, dimension: Dimension, field: str = "value") -> float:
             number = math.inf
     else:
         raise InputError(field, type(value).__name__, dimension.allowed)
-    if not math.isfinite(number):
+    if not abs(number) <= _MOST:
         given = value if isinstance(value, str) else number
         raise InputError(field, given, f"{dimension.allowed}, and finite")
     return number
@@ -403,7 +406,7 @@ def parse_option(text: str | float, dimension: Dimension, field: str) -> float:
     """Value of an option of a command, where a plain number is a text too, or of a keyword, as by `parse`."""
     try:
         number = float(text)
-    except (ValueError, TypeError):
+    except (ValueError, TypeError, OverflowError):
         return parse(text, dimension, field)
     return parse(number, dimension, field)
 

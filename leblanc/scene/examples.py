@@ -42,7 +42,8 @@ def example_path(name: str) -> Path:
     'tub.toml'
     """
     names = example_names()
-    if name not in names:
+    if not isinstance(name, str) or name not in names:
+        name = str(name)
         raise InputError("example", name, f"one of: {', '.join(names)}{meant(name, names)}")
     return _folder() / f"{name}.toml"
 

@@ -550,6 +550,8 @@ def load_scene(path: str | PathLike[str]) -> Scene:
     >>> lb.load_scene("examples/horizontal_rig.toml").speeds.count
     201
     """
+    if not isinstance(path, str | PathLike):
+        raise InputError("path", type(path).__name__, "the path of a scene file")
     with with_lines(path):
         return Scene.from_toml(read_text(path), str(path))
 

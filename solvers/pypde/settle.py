@@ -111,7 +111,8 @@ def film(
     options = stepping(equation, state.grid, solver, interval)
     with suppress(RuntimeError):  # py-pde's solvers have no other; the pictures end there
         equation.solve(state, stop, tracker=trackers, solver=solver, **options)
-    return _film(equation, state, zip(storage.times, storage.data, strict=True))
+    fields = (np.asarray(data, dtype=np.float64) for data in storage.data)
+    return _film(equation, state, zip(storage.times, fields, strict=True))
 
 
 def _film(equation: AnnularLongWavePDE, state: Any, fields: Iterable[tuple[float, Array]]) -> LayerFilm:

@@ -86,8 +86,8 @@ def test_what_is_shown_is_for_readers() -> None:
                 name
             )
     shown = inspect.signature(lb.layer).parameters
-    assert str(shown["speed"]) == "speed: float | str"
-    assert str(shown["friction"]) == "friction: Friction | str | dict = 'none'"
+    assert str(shown["speed"]) == "speed: float | str | None = None"
+    assert str(shown["friction"]) == "friction: Friction | str | dict | None = None"
     assert "ramp : time over which the whirl grows" in str(inspect.getdoc(lb.layer))
     mass = inspect.signature(lb.JeffcottRotor).parameters["mass"]
     assert str(mass) == "mass: float"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import math
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
@@ -138,6 +138,10 @@ def named_columns(
     given: Mapping[str, str] | Sequence[str] | None, field: str = "column"
 ) -> Mapping[str, str]:
     """Headers by quantities, from texts such as "amplitude=Schwingweg [um pp]" where they are none yet."""
+    texts = given.values() if isinstance(given, Mapping) else given
+    listed = texts is None or (isinstance(texts, Iterable) and all(isinstance(text, str) for text in texts))
+    if not listed or isinstance(given, str):
+        raise InputError(field, repr(given), 'headers by quantity, as {"amplitude": "Schwingweg [um pp]"}')
     if given is None or isinstance(given, Mapping):
         return given or {}
     found: dict[str, str] = {}

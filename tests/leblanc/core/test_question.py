@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -55,6 +56,36 @@ def test_liquids_and_files() -> None:
     for read, name in ((path_of, "mesh"), (liquid_of, "liquid")):
         with pytest.raises(InputError, match=name):
             read(3.0, name)  # type: ignore[operator]
+
+
+SCENE, MEASURED = lb.example("horizontal_rig"), "docs/examples/measured.csv"
+HUGE = 10**400  # beyond all floating-point numbers
+WAVE = {"radius": 0.15, "volume": 6.7e-4, "height": 0.05, "speed": 40.0, "whirl_speed": 32.0}
+
+
+@pytest.mark.parametrize(
+    ("ask", "field"),
+    [
+        (lambda: lb.layer(**WAVE | {"radius": 1e300}, whirl_amplitude=1e-4), "radius"),
+        (lambda: lb.layer(**WAVE | {"speed": HUGE}, whirl_amplitude=1e-4), "speed"),
+        (lambda: lb.layer(**WAVE, whirl_amplitude=1e-4, tolerance=HUGE), "tolerance"),
+        (lambda: lb.layer(**WAVE, whirl_amplitude=1e-4, cells="many"), "cells"),
+        (lambda: lb.compare(SCENE, models=3.0), "models"),
+        (lambda: lb.compare(SCENE, models=[1]), "models"),
+        (lambda: lb.fit(SCENE, MEASURED, unknown=[1]), "unknown.0"),
+        (lambda: lb.fit(SCENE, MEASURED, unknown=["rotor.mass"], column=3.0), "column"),
+        (lambda: lb.fit(SCENE, MEASURED, unknown=["rotor.mass"], column={"amplitude": 1}), "column"),
+        (lambda: lb.fit(SCENE, None, unknown=["rotor.mass"]), "measured"),
+        (lambda: lb.map_balls(lb.example("balls"), over=[1]), "over.0"),
+        (lambda: lb.load_scene(3.0), "path"),
+        (lambda: lb.example([1]), "example"),
+        (lambda: lb.validate([1]), "case"),
+    ],
+)
+def test_what_is_no_value_is_refused_by_its_name(ask: Callable[[], object], field: str) -> None:
+    with pytest.raises(InputError) as fault:
+        ask()
+    assert fault.value.field == field and len(str(fault.value)) < 400
 
 
 class _Code(NoteCode):
