@@ -14,6 +14,8 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
+from leblanc import registry
+
 PACKAGES = ("meshes", "fluid", "solvers", "leblanc", "validation")
 # Programs, and notebooks in text form, which are pages of their own.
 _LEFT_OUT = {"__main__", "notebooks"}
@@ -51,7 +53,12 @@ SECTIONS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
     ),
     ("Errors", "What is wrong with the input, in full.", ("InputError", "SceneError")),
 )
-_RESULT = "Result"  # class that all results inherit from
+# Modules besides, whose names stay.
+KEPT = (
+    *("fluid.fill", "fluid.liquid", "meshes.chamber", "solvers.rotor.jeffcott"),
+    *("solvers.synchronous.response", "solvers.liquid_model"),
+)
+_RESULT = "Answer"  # class that all results inherit from
 _CITED = re.compile(r"\s*\[[^\]]*(?:theory|\d\d)[^\]]*\]")
 
 
@@ -218,11 +225,35 @@ def _public_page(found: Iterable[Module], answers: list[Member]) -> str:
     """The public names of `leblanc` and its results, each with its docstring."""
     members = {member.full: member for module in found for member in module.members}
     title = "Public names"
-    lines = [title, "=" * len(title), "", "After ``import leblanc as lb``, each is ``lb.NAME``.", ""]
+    lines = [
+        title,
+        "=" * len(title),
+        "",
+        "After ``import leblanc as lb``, each is ``lb.NAME``.",
+        "",
+        *_promise(found),
+    ]
     for section, introduction, names in SECTIONS:
         lines += _section(section, introduction, [members[f"leblanc.{name}"] for name in names])
-    text = "What calls return. All inherit from :py:obj:`Result <leblanc.core.answer.Result>`."
+    text = "What calls return. All inherit from :py:obj:`Answer <leblanc.core.answer.Answer>`."
     return "\n".join(lines + _section("Results", text, answers))
+
+
+def _promise(found: Iterable[Module]) -> list[str]:
+    """What scripts may rely on, besides the names of the page."""
+    there = {module.name: module for module in found}
+    below = [(f":py:mod:`{name}`", there[name].summary) for name in KEPT]
+    groups = ", ".join(f"``{group}``" for group in (registry.COMMANDS, registry.LIQUIDS, registry.MACHINES))
+    return [
+        "Scripts may rely on the names of this page, their parameters and what answers carry by name; on options",
+        "and exit codes of commands; on keys of machine files, studies, JSON and data files; on the groups of",
+        f"entry points {groups}; and on what these modules hold:",
+        "",
+        *_table(below),
+        "What of this moves keeps its old path for a version, with a ``DeprecationWarning`` that says the new",
+        "one; the changelog says what scripts type instead. Everything else may move from version to version.",
+        "",
+    ]
 
 
 def _section(title: str, introduction: str, members: list[Member]) -> list[str]:
