@@ -245,13 +245,13 @@ def _promise(found: Iterable[Module]) -> list[str]:
     below = [(f":py:mod:`{name}`", there[name].summary) for name in KEPT]
     groups = ", ".join(f"``{group}``" for group in (registry.COMMANDS, registry.LIQUIDS, registry.MACHINES))
     return [
-        "Scripts may rely on the names of this page, their parameters and what answers carry by name; on options",
-        "and exit codes of commands; on keys of machine files, studies, JSON and data files; on the groups of",
-        f"entry points {groups}; and on what these modules hold:",
+        "Scripts may rely on the names of this page, their parameters and what answers carry by name; on",
+        "options and exit codes of commands; on keys of machine files, studies, JSON and data files; on the",
+        f"groups of entry points {groups}; and on what these modules hold:",
         "",
         *_table(below),
-        "What of this moves keeps its old path for a version, with a ``DeprecationWarning`` that says the new",
-        "one; the changelog says what scripts type instead. Everything else may move from version to version.",
+        "What of this moves keeps its old path for a version, with a ``DeprecationWarning`` that says the",
+        "new one; the changelog says what scripts type instead. Everything else may move with any version.",
         "",
     ]
 
