@@ -46,6 +46,7 @@ def as_typed(answer: Answer, scene: Any = None, study: Any = None, **_: Any) -> 
     if scene is not None and "typed" not in vars(answer):
         typed = Typed(scene.text, "" if study is None else study.text, path=scene.file)
         object.__setattr__(answer, "typed", typed)
+        object.__setattr__(answer, "scene_asked", scene)
 
 
 def versions(packages: Iterable[str] = ("leblanc", "numpy", "scipy")) -> dict[str, str]:
@@ -119,6 +120,7 @@ class Answer(ABC):
     data: ClassVar[str] = ""  #: file of its numbers; empty where there is none
     page: ClassVar[str] = ""  #: file of its report
     typed: Typed = Typed()  #: what was asked
+    scene_asked: Any = None  #: the machine; None of an answer that was read from a file
     unused: tuple[str, ...] = ()  #: tables of the scene on which its numbers do not depend
     task: Any = None  #: of an optimisation, in place of the scene's
     interrupted = False  #: it was ended before its time; what is there is whole

@@ -10,6 +10,7 @@ import json
 import lzma
 from base64 import b64decode, b64encode
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import MISSING, asdict, fields, is_dataclass, replace
 from enum import Enum
 from importlib import import_module
@@ -61,6 +62,13 @@ def drawing(answer: Answer, picture: Picture, folder: Path) -> Any:
 def save(answer: Answer, path: Path) -> None:
     """Write the data file of an answer, with what `opened` makes it from."""
     found, typed = answer.named_arrays(), asdict(answer.typed)
+    machine, about = answer.scene_asked, {}
+    if machine is None and answer.typed.machine_file:
+        scene: Any = called("leblanc.scene.scene:Scene")
+        with suppress(InputError, ValueError, OSError):  # a file that it names may have been elsewhere
+            machine = scene.from_toml(answer.typed.machine_file, answer.typed.path)
+    if machine is not None:
+        about = called("leblanc.scene.inputs:machine_variables")(machine)
     said = {
         "format": FORMAT,
         "leblanc": versions()["leblanc"],
@@ -69,7 +77,8 @@ def save(answer: Answer, path: Path) -> None:
     }
     packed = lzma.compress(json.dumps(said, separators=(",", ":")).encode())
     shown = {name: text for name, text in typed.items() if text and name != "path"}
-    write_netcdf(replace(found, attrs={**found.attrs, **shown}), path, packed)
+    found = replace(found, variables={**found.variables, **about}, attrs={**found.attrs, **shown})
+    write_netcdf(found, path, packed)
 
 
 def opened(path: str | PathLike[str]) -> Answer:

@@ -5,9 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+import numpy as np
+
 from fluid.fill import Fill
 from fluid.liquid import KNOWN_LIQUIDS, Liquid
 from fluid.temperature import Expansion, GivenLaw, PropertyLaw, Tabulated, Vogel, Walther
+from leblanc.core.netcdf import Variable, variable
 from leblanc.core.page import About
 from leblanc.core.units import (
     ANGULAR_SPEED,
@@ -29,11 +32,13 @@ from leblanc.core.units import (
 from leblanc.scene.cabinet import point_table
 from leblanc.scene.rotors import JeffcottRotor
 from leblanc.scene.rows import Row, RowTable, Value, curve_words, degrees, mm, row, rpm, three
-from leblanc.scene.scene import Model, Scene
+from leblanc.scene.scene import WITHOUT_CHAMBERS, Model, Scene
 from leblanc.scene.schema.load import escaped
 from leblanc.scene.tasks import BallRanges, Layout, Optimisation, Runup, pairs_of
 from meshes.baffles import Baffles
 from meshes.chamber_section import ChamberSection
+from solvers.rotor.system import moving_mass
+from solvers.rotor.vibration import critical_speeds
 
 MOST = 6  # speeds of a duty cycle that are listed one by one
 
@@ -73,6 +78,26 @@ def inputs_of(scene: Scene, optimise: Optimisation | None = None) -> SceneInputs
         for table in (*scene.rotor.tables(), *_around(scene), *_chambers(scene), *_races(scene))
     ]
     return SceneInputs(tuple(marked), tuple(tables))
+
+
+def machine_variables(scene: Scene) -> dict[str, Variable]:
+    """Masses, capacities, critical speeds without liquid: what a data file needs to be read alone."""
+    if isinstance(scene.rotor, WITHOUT_CHAMBERS) or not hasattr(scene.rotor, "machine"):
+        return {}
+    rotor, over = scene.rotor.machine(), ("machine_chamber",)
+    speed, critical = critical_speeds(rotor.system())[0], ("machine_critical",)
+    speed = speed[np.diff(speed, prepend=0.0) > 1e-9 * speed]  # of two directions that are alike one
+    found = {
+        "machine_mass": variable((), moving_mass(rotor), "kg", "mass that moves with the axis", "no liquid"),
+        "machine_critical_speed": variable(
+            critical, speed, "rad s-1", "critical speeds", "no liquid, undamped"
+        ),
+    }
+    if scene.fills:
+        masses, rooms = zip(*((fill.mass, fill.chamber.capacity) for fill in scene.fills), strict=True)
+        found["machine_liquid_mass"] = variable(over, np.array(masses), "kg", "mass of the liquid")
+        found["machine_capacity"] = variable(over, np.array(rooms), "m3", "capacity of the chamber")
+    return found
 
 
 def about(

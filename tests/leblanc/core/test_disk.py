@@ -113,6 +113,26 @@ def test_the_machine_file_is_kept_as_typed() -> None:
         assert lb.Scene.from_toml(kept).digest == found.digest
 
 
+@kills("leblanc.scene.inputs:machine_variables", "fill.mass, fill.chamber", "fill.volume, fill.chamber")
+@kills("leblanc.scene.inputs:machine_variables", "> 1e-9 * speed", ">= 0.0 * speed")
+def test_a_file_says_of_what_machine_it_is(tmp_path: Path) -> None:
+    """By hand: a mass on springs that are alike, a ring; the same from a file read and written again."""
+    scene = few("horizontal_rig", speeds__count=2)
+    rotor, path = scene.rotor.machine(), tmp_path / "a.nc"  # type: ignore[union-attr]
+    lb.run(scene).save(path)
+    lb.open(path).save(tmp_path / "b.nc")
+    for each in (path, tmp_path / "b.nc"):
+        with xr.open_dataset(each, engine="h5netcdf") as data:
+            assert data.machine_mass == rotor.mass and data.machine_mass.units == "kg"
+            speed = data.machine_critical_speed.values
+            np.testing.assert_allclose(speed, [np.sqrt(rotor.stiffness / rotor.mass)], rtol=1e-12)
+            for k, chamber in enumerate(scene.chambers):
+                room = np.pi * chamber.radius**2 * chamber.height
+                assert data.machine_capacity[k] == pytest.approx(room, rel=1e-12)
+                liquid = chamber.volume * chamber.liquid.density
+                assert data.machine_liquid_mass[k] == pytest.approx(liquid, rel=1e-12)
+
+
 @pytest.mark.parametrize(
     ("command", "name", "changes"),
     [
