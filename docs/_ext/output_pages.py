@@ -20,6 +20,10 @@ Units are SI, as data files write them; a quantity without one is a text, a trut
 the quantity b of the record a, `a[].b` that of each record in the list a. "Over" names the dimensions,
 "error" the quantity that is the error of this one, "equation" where it stands on the pages of theory.
 "(data file)" stands behind a name that the data file alone has.
+
+Data files of rotors with or without chambers say besides of what machine they are: `machine_mass` (kg, that
+moves with the axis, no liquid), `machine_critical_speed` (rad s-1, no liquid, undamped), and by chamber
+`machine_liquid_mass` (kg) and `machine_capacity` (m3).
 """
 
 

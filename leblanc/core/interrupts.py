@@ -89,25 +89,24 @@ def heard() -> Iterator[None]:
         timer.daemon = True
         timer.start()
 
-    before = {number: signal.getsignal(number) for number in _SAID}
-    for number in _SAID:
-        if before[number] is not signal.SIG_IGN:
-            signal.signal(number, note)
-    sys.unraisablehook = raise_again
     reader, writer = os.pipe()
     os.set_blocking(writer, False)
-    waker = signal.set_wakeup_fd(writer, warn_on_full_buffer=False)
-    ears.handler = note
-    threading.Thread(target=_watch, args=(reader, ears), daemon=True, name="interrupts").start()
     try:
-        yield
+        with given_back():
+            for number in _SAID:
+                if signal.getsignal(number) is not signal.SIG_IGN:
+                    signal.signal(number, note)
+            sys.unraisablehook = raise_again
+            signal.set_wakeup_fd(writer, warn_on_full_buffer=False)
+            ears.handler = note
+            threading.Thread(target=_watch, args=(reader, ears), daemon=True, name="interrupts").start()
+            try:
+                yield
+            finally:
+                ears.closed.set()
     finally:
-        ears.closed.set()
-        signal.set_wakeup_fd(waker)
         os.close(writer)  # ends the thread
         sys.unraisablehook = complain
-        for number, handler in before.items():
-            signal.signal(number, handler)
 
 
 @contextmanager

@@ -265,6 +265,7 @@ def add_windows(
     wide: Sequence[Sequence[Axes]],
     heights: Sequence[float],
     caption: Caption,
+    left: float = 0.72,
 ) -> None:
     """Lay out panels over all speeds and, below, those that show parts of them, linked by lines.
 
@@ -283,7 +284,7 @@ def add_windows(
             axes.set_ylabel("")
     gaps = (*[0.12] * (count - 1), 0.5, *[0.12] * (count - 1))
     rows = [[axes] for axes in whole] + [list(row) for row in wide]
-    frame = Frame(left=0.72, top=0.46, between=0.12, below=0.42, gaps=gaps)
+    frame = Frame(left=left, top=0.46, between=0.12, below=0.42, gaps=gaps)
     lay_out(figure, rows, list(heights), frame, caption, MOST_LINES + 1)
     for row in wide:
         for axes in row[1:]:

@@ -15,6 +15,7 @@ liquid area above its mean; both live on a `circle`. Importing an equation regis
 from __future__ import annotations
 
 import importlib
+import logging
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -37,6 +38,9 @@ __all__ = [
     "circle",
     "run",
 ]
+# It would warn users of the time that compiling takes within a tracker.
+logging.getLogger("pde.solvers.controller").setLevel(logging.ERROR)
+
 _HOMES = {
     "AnnularLongWavePDE": "long_wave",
     "FiniteVolumeSolver": "long_wave",

@@ -29,7 +29,7 @@ from meshes.arrays import Array
 Axes = Any  # matplotlib's, which no module that only draws imports
 Line = tuple[Array, Array]
 
-FRAME = Frame(left=0.72, top=0.46, between=0.12, below=0.42)
+FRAME = Frame(left=0.9, top=0.46, between=0.12, below=0.42)
 AMPLITUDE, DIFFERENCE = 2.6, 1.3  # inches
 _SWING = 1e-3  # of the largest amplitude: a narrower band looks like a line
 LEAST = 1e-3  # per cent: a smaller difference looks like none
@@ -66,7 +66,7 @@ def comparison_figure(found: CompareAnswer) -> Figure:
             wide = list(zip(*parts, strict=True))
             for axes in [*whole, *(axes for part in parts for axes in part)]:
                 axes.set_ylabel(_two_lines(axes.get_ylabel()))
-            add_windows(figure, whole, wide, [SHARE * height for height in heights] * 2, text)
+            add_windows(figure, whole, wide, [SHARE * height for height in heights] * 2, text, FRAME.left)
         else:
             whole[-1].set_xlabel("Speed (rpm)")
             lay_out(figure, [[axes] for axes in whole], heights, FRAME, _caption(found))

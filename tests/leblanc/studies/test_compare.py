@@ -68,6 +68,15 @@ def test_a_tub_fits_its_low_panels_and_no_error_is_thousands() -> None:
     assert found.answers[0].largest_error > 1.0 and "100 or more" in rows[0]  # type: ignore[operator]
 
 
+@kills("leblanc.studies.compare.figure:comparison_figure", "text, FRAME.left", "text")
+def test_small_differences_leave_their_ticks_room() -> None:
+    """0.005 per cent is a long word beside a low panel: its label stays on the figure."""
+    figure = comparison_figure(lb.compare(example("centrifuge"), ["linear", "statics"]))
+    FigureCanvasAgg(figure).draw()
+    labels = [axes.yaxis.label.get_window_extent() for axes in figure.axes if axes.get_ylabel()]
+    assert min(label.x0 for label in labels) >= 0.0
+
+
 def test_a_model_by_itself_has_no_difference() -> None:
     found = lb.compare(example("centrifuge"), ["linear"])
     assert found.reference == "linear" and found.largest_difference("linear") == 0.0

@@ -455,6 +455,9 @@ def test_a_wave_that_was_not_found_has_no_depths() -> None:
 RIG = {"whirl_speed": "1000 rpm", "whirl_amplitude": "0.1 mm"}
 
 
+@kills("leblanc.studies.layer.study:answer", "across_gravity(scene) if gravity", "0.0 if gravity")
+@kills("leblanc.studies.layer.study:answer", "scene.model.friction if model", "NO_FRICTION if model")
+@kills("leblanc.studies.layer.study:_of_machine", "1 if chamber is None else chamber", "1")
 def test_a_machine_says_what_is_in_its_chamber() -> None:
     """As typed one by one; what is typed besides stands in place of the machine's."""
     scene = lb.example("horizontal_rig")
