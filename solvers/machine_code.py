@@ -1,14 +1,16 @@
 """Compiled functions of numba, imported here alone, their machine code kept where nobody else can write.
 
 numba keys its cache by the file of a function, not by what that calls, and raises where neither the package
-nor HOME can be written. Here each state of the sources has a folder of its own below the user's caches;
-without one each process compiles for itself.
+nor HOME can be written. Here each state of a module and of all that it imports has a folder of its own below
+the user's caches; without one each process compiles for itself.
 """
 
 from __future__ import annotations
 
 import hashlib
+import inspect
 import os
+import re
 import shutil
 import stat
 import threading
@@ -23,6 +25,10 @@ import platformdirs
 
 # Options of what only compiled code calls: it needs no wrappers.
 BARE: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+_HERE = Path(__file__)
+# What a module imports of the layers up to this one, indented or not, in brackets or not.
+_OURS = r"((?:meshes|fluid|solvers)\b[\w.]*)"
+_IMPORT = re.compile(rf"^ *(?:from {_OURS} import (\([^)]*\)|.+)|import {_OURS})", re.MULTILINE)
 _UNUSED = 30.0 * 86400.0  # s, after which the folder of other sources is removed
 _choosing = threading.Lock()
 _config: Any = numba.config
@@ -37,7 +43,9 @@ def machine_code(**options: Any) -> Callable[[Callable[..., Any]], Any]:
 
     def compiled(function: Callable[..., Any]) -> Any:
         made = compile_it(function)
-        folder = None if "inline" in options or _config.DISABLE_JIT else cache_folder()
+        if "inline" in options or _config.DISABLE_JIT:
+            return made
+        folder = cache_folder(Path(inspect.getfile(function)))
         if folder is not None:
             with _choosing:
                 # Read as the cache is made, and for nobody else's functions.
@@ -54,15 +62,35 @@ def machine_code(**options: Any) -> Callable[[Callable[..., Any]], Any]:
 
 
 @cache
-def cache_folder() -> Path | None:
-    """Where machine code is kept: NUMBA_CACHE_DIR, or below the user's caches; None where neither can be."""
+def cache_folder(source: Path = _HERE) -> Path | None:
+    """Where a module's machine code is kept: NUMBA_CACHE_DIR, or below the user's caches; None: nowhere."""
     if _config.CACHE_DIR:
         folder = Path(_config.CACHE_DIR)
         return folder if _writable(folder) else None
-    root = Path(__file__).parent.parent
-    sources = sorted(path for name in ("fluid", "solvers") for path in (root / name).rglob("*.py"))
-    digest = hashlib.sha256(b"".join(path.read_bytes() for path in sources)).hexdigest()[:16]
-    return private_folder(f"machine-code-{digest}")
+    sources = b"".join(path.read_bytes() for path in sorted(_reached(source)))
+    return private_folder(f"machine-code-{hashlib.sha256(sources).hexdigest()[:16]}")
+
+
+def _reached(source: Path) -> set[Path]:
+    """A module's file and those of all of this package that it imports, directly or by others."""
+    met, left = {source}, [source]
+    while left:
+        new = _imported(left.pop()) - met
+        met |= new
+        left += new
+    return met
+
+
+@cache
+def _imported(source: Path) -> frozenset[Path]:
+    """Files of this package that a module names in its imports, modules and folders."""
+    found = set()
+    for package, names, module in _IMPORT.findall(source.read_text(encoding="utf-8")):
+        whole = package or module
+        for name in (whole, *(f"{whole}.{name}" for name in re.findall(r"\w+", names))):
+            place = _HERE.parent.parent.joinpath(*name.split("."))
+            found |= {path for path in (place.with_suffix(".py"), place / "__init__.py") if path.is_file()}
+    return frozenset(found)
 
 
 def private_folder(name: str) -> Path | None:

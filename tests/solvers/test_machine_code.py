@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
+import importlib
+import inspect
 import os
 import re
+import shutil
 import stat
 import time
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numba
 import pytest
 
 from leblanc.cli import main
+from solvers import machine_code as kept
 from solvers.machine_code import cache_folder, machine_code, private_folder
+from tests.mutants import kills
 
 posix = pytest.mark.skipif(os.name != "posix", reason="needs modes of folders")
 
@@ -80,12 +86,75 @@ def test_each_state_of_the_sources_has_its_own_and_old_ones_go(caches: Path) -> 
     assert old is not None and used is not None
     month = time.time() - 31 * 86400
     os.utime(old, (month, month))
-    folder = cache_folder()
+    folder = cache_folder(Path(__file__))
     assert folder is not None and re.fullmatch("machine-code-[0-9a-f]{16}", folder.name)
     assert sorted(caches.joinpath("leblanc").iterdir()) == sorted([used, folder])
     made = machine_code(error_model="numpy")(twice)
     assert made(4.0) == 8.0 and list(folder.rglob("*.nbc"))
     assert numba.config.CACHE_DIR == ""  # for nobody else's functions
+
+
+KERNELS = ("layer/step", "runup/kernel", "cycles/stretch", "statics/kernel", "rotor/exciter/tangent")
+
+
+CHANGED = {  # module: whose machine code that calls into question
+    "fluid/long_wave": {"layer/step", "runup/kernel", "cycles/stretch"},
+    "fluid/friction/laws": {"layer/step", "runup/kernel", "cycles/stretch"},
+    "solvers/runup/kernel": {"runup/kernel"},
+    "solvers/statics/wall": {"statics/kernel"},
+    "solvers/rotor/exciter/machine": {"rotor/exciter/tangent"},
+    "solvers/machine_code": set(KERNELS),
+    "fluid/lens": set(),
+}
+
+
+@kills("solvers.machine_code:_reached", "left += new", "left += []")
+@kills("solvers.machine_code:_reached", "met, left = {source}", "met, left = set()")
+@kills("solvers.machine_code:_imported", "package or module", "module")
+@kills("solvers.machine_code:_imported", "(whole, *(", '("fluid", *(')
+@kills("solvers.machine_code:_imported", 'f"{whole}.{name}"', "whole")
+def test_a_change_of_what_a_kernel_calls_asks_for_new_machine_code(
+    caches: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    root = Path(kept.__file__).parent.parent
+    for package in ("meshes", "fluid", "solvers"):
+        shutil.copytree(root / package, tmp_path / package, ignore=shutil.ignore_patterns("__pycache__"))
+    monkeypatch.setattr(kept, "_HERE", tmp_path / "solvers/machine_code.py")
+    sources = {kernel: tmp_path / "solvers" / f"{kernel}.py" for kernel in KERNELS}
+    for changed, kernels in CHANGED.items():
+        before = {kernel: cache_folder(source) for kernel, source in sources.items()}
+        with (tmp_path / f"{changed}.py").open("a") as file:
+            file.write("\n")
+        cache_folder.cache_clear()
+        after = {kernel: cache_folder(source) for kernel, source in sources.items()}
+        assert {kernel for kernel in KERNELS if after[kernel] != before[kernel]} == kernels
+
+
+def test_all_that_compiled_functions_call_is_in_their_digests() -> None:
+    root = Path(kept.__file__).parent.parent
+    sources = [path for path in root.glob("solvers/*/**/*.py") if "machine_code import" in path.read_text()]
+    assert len(sources) >= 12
+    calls = 0
+    for source in sources:
+        module = importlib.import_module(".".join(source.relative_to(root).with_suffix("").parts))
+        for function in filter(numba.extending.is_jitted, vars(module).values()):
+            own = Path(inspect.getfile(function.py_func))
+            called = _called(function.py_func)
+            calls += len(called)
+            assert called <= kept._reached(own)
+    assert calls > 100
+
+
+def _called(function: Any) -> set[Path]:
+    """Files of the compiled functions that one names, and of those that they name."""
+    met, left = {function}, [function]
+    while left:
+        one = left.pop()
+        named = (one.__globals__.get(name) for name in one.__code__.co_names)
+        new = {other.py_func for other in named if numba.extending.is_jitted(other)} - met
+        met |= new
+        left += new
+    return {Path(inspect.getfile(one)) for one in met}
 
 
 def test_the_users_own_choice_comes_first(
