@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 # Of each group the modules below `validation.cases`, and the function there, where it is not `cases`.
 GROUPS = {
-    "errata": "errata.tub errata.formulas errata.machines errata.statements",
+    "errata": "errata.tub errata.formulas errata.machines errata.machines:statements",
     "optimal_volume": "liquid.optimal_volume",
     "vector_model": "rotors.vector_model",
     "horizontal_rig": "rotors.rigs:horizontal_cases",

@@ -40,7 +40,7 @@ def test_a_case_that_is_broken_fails_the_notebook(tmp_path: Path) -> None:
     (claim,) = re.findall(r"^assert verdicts\(cases\) == \{.*?^\}$", text, re.MULTILINE | re.DOTALL)
     cells = (
         "from validation.cases.rotors import tub\nfrom validation.page import case_table, verdicts",
-        "cases = tub.cases()\ncase_table(cases)",
+        "cases = list(tub.cases())\ncase_table(cases)",
         claim,
     )
     fault = (

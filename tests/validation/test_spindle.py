@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import islice
+
 import pytest
 
 from tests.mutants import kills
@@ -25,7 +27,7 @@ def test_table_of_the_bearing() -> None:
 @kills("solvers.rotor.shaft.natural:natural_frequencies", "return _found", "return 1.05 * _found")
 def test_multiples_of_the_speed() -> None:
     """The example's first natural frequency is the 33 Hz of the table, and 660 rpm are a third of it."""
-    found = {case.name.partition("/")[2]: case.verdict for case in spindle._multiples()}
+    found = {case.name.partition("/")[2]: case.verdict for case in islice(spindle.cases(), 4)}
     assert found == dict.fromkeys(("harmonic-1", "harmonic-2", "harmonic-3", "speed"), "agrees")
 
 

@@ -116,7 +116,7 @@ picture(amplitude_figure(record))
 picture(liquid_figure(record))
 
 # %%
-vertical = rigs.vertical_cases()
+vertical = list(rigs.vertical_cases())
 case_table(vertical)
 
 # %% [markdown]

@@ -80,11 +80,11 @@ picture(draw(figures[5]))
 # follow from the energies.
 
 # %%
-cases = tub.cases()
+cases = list(tub.cases())
 case_table(cases)
 
 # %%
-equations = tub_errata.cases()
+equations = list(tub_errata.cases())
 case_table(equations)
 
 # %% [markdown]

@@ -7,28 +7,61 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from fluid.liquid import known_liquid
 from solvers.rotor.balls.stability import balanced_roots
-from solvers.rotor.balls.two_plane_balance import dynamic_balancing, of_two_planes
+from solvers.rotor.balls.two_plane_balance import RigidRotor, dynamic_balancing, of_two_planes
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.two_plane import TwoPlane
+from solvers.rotor.vector_model import balance_angles
 from solvers.rotor.vibration import unbalance_response
+from solvers.synchronous.response import response
 from validation.case import Case, Claims
+from validation.cases.rotors.rigs import horizontal_rig, horizontal_rotor
+from validation.cases.rotors.tub import suspended_tub
 from validation.cases.two_plane.damping import damped, lasting
 from validation.cases.two_plane.machine import BALLS, LONG, RACES
 
 CLAIMS = Claims("errata")
 
+_RPM = math.pi / 30.0
 
-def cases() -> list[Case]:
+
+def cases() -> Iterator[Case]:
     """Errata of the stability condition, the resonance peak, the spindle, the pump, the balancers."""
-    return [
-        _products_of_inertia(),
-        _peak_shift(),
-        *_bearing(),
-        *_housing(),
-        *_drag_number(),
-        _weak_supports(),
-    ]
+    yield from (_products_of_inertia(), _peak_shift(), *_bearing())
+    # Place of X_5 on the spindle's housing: eq. 14 and 16 against eq. 4 and 5.
+    (place,) = {row for row, _ in _ROWS["X_5"]}
+    for number in (14, 16):
+        yield CLAIMS.case("dr-eq-x5", float(place), number=number)
+    yield from _drag_number()
+    yield _weak_supports()
+
+
+def statements() -> Iterator[Case]:
+    """What the sources say of the liquid, of forces and of limits, and their own equations contradict."""
+    # The angle of the liquid below resonance, for an unbalance that outweighs the liquid.
+    angle = math.degrees(float(balance_angles(math.radians(30.0), 2.0)[0]))
+    within, off = 90.0 <= angle <= 180.0, f"{'below 90' if angle < 90.0 else 'above 180'} deg"
+    yield CLAIMS.case("dr-alpha-range", angle, within, difference="none" if within else off)
+    # What liquid leaves of the unbalance well below the resonance, where it lies along the deflection.
+    rotor, fills = horizontal_rotor(0.1, 1000.0 * _RPM), horizontal_rig()
+    answer = response(rotor, fills, np.array([500.0 * _RPM]), gravity=0.0)
+    wet, dry = (float(np.abs(w[0])) for w in (answer.deflection, answer.deflection_dry))
+    lag = -math.degrees(float(np.angle(answer.deflection[0])))
+    yield CLAIMS.case("dr-any-speed", wet / dry, wet < dry, lag=lag)
+    # The parameter of the paraboloid in words below eq. 16 and in eq. 17.
+    gravity, speed = 9.81, 90.0
+    weight = known_liquid("water").density * gravity
+    yield CLAIMS.case("dr-beta", speed**2 / (2.0 * gravity), printed=weight * speed**2 / (2.0 * gravity))
+    # Which forces a static unbalance in the middle of the tub exerts.
+    machine = suspended_tub().system()
+    names = ("x", "y", "z", "alpha", "beta", "gamma")
+    acting = [name for name, part in zip(names, machine.unbalance, strict=True) if abs(part) > 0.0]
+    yield CLAIMS.case("dg-forces", " and ".join(f"Q_{name}" for name in acting), acting == ["x", "y"])
+    # FF20, eq. 37: of a long rotor without coupling the limit of the tilt need not be the highest.
+    long = RigidRotor(mass=10.0, inertia=(0.5, 0.5, 0.1), stiffness=(1e4, 1e4), position=(0.05, -0.05))
+    limit = math.sqrt(long.support[2] / (0.5 - 0.1))
+    yield CLAIMS.case("ff-eq-37", dynamic_balancing(long, 1.0).above, printed=limit)
 
 
 def _products_of_inertia() -> Case:
@@ -93,12 +126,6 @@ def _bearing() -> list[Case]:
 # Where reactions act on the housing: indices of the compliances that eq. 5 multiplies with X_1 to X_4 in the
 # rows of X_5 and X_6, one row each.
 _ROWS = {"X_5": ((1, 2), (1, 3), (1, 4), (1, 5)), "X_6": ((6, 2), (6, 3), (6, 4), (6, 5))}
-
-
-def _housing() -> list[Case]:
-    """Place of X_5 on the spindle's housing: eq. 14 and 16 against eq. 4 and 5."""
-    (place,) = {row for row, _ in _ROWS["X_5"]}
-    return [CLAIMS.case("dr-eq-x5", float(place), number=number) for number in (14, 16)]
 
 
 def _drag_number() -> Iterator[Case]:

@@ -87,71 +87,6 @@ def tub_matrices() -> TubMatrices:
     )
 
 
-def cases() -> list[Case]:
-    """Every erratum of the suspended tub's equations [DR18, eq. 1-8]."""
-    matrices = tub_matrices()
-    return [
-        *_gyroscopic_cases(matrices),
-        *_stiffness_cases(matrices),
-        *_order_cases(matrices),
-        *_row_cases(matrices),
-        *_energy_cases(matrices),
-        _energy_of_unbalance(),
-        _energy_of_spin(matrices),
-        _groups(matrices),
-    ]
-
-
-def _gyroscopic_cases(matrices: TubMatrices) -> Iterator[Case]:
-    """The coupling of alpha and gamma by the drum's spin."""
-    import sympy as sp
-
-    unit = sp.symbols("J_b") * sp.symbols("omega")
-    for equation, rate, row, column, printed in (
-        ("alpha", "gamma", 3, 5, -2.0),
-        ("gamma", "alpha", 5, 3, 2.0),
-    ):
-        computed = float(sp.simplify(matrices.gyroscopic[row, column] / unit))
-        yield CLAIMS.case("dr-gyroscopic", computed, equation=equation, rate=rate, printed=printed)
-
-
-def _stiffness_cases(matrices: TubMatrices) -> list[Case]:
-    """The stiffness coefficients in which the printed list and the springs' energy part."""
-    import sympy as sp
-
-    wrong = []
-    for row, column in _PLACES:
-        printed = sp.sympify(_PRINTED_STIFFNESS.get((row, column), "0"))
-        computed = matrices.stiffness[row - 1, column - 1]
-        if sp.expand(printed - computed) != 0:
-            wrong.append((row, column, _written(printed), _written(computed)))
-    return [
-        CLAIMS.case(
-            "dr-a",
-            computed,
-            row=row,
-            column=column,
-            printed=printed,
-            same=len(_PLACES) - len(wrong),
-            all=len(_PLACES),
-        )
-        for row, column, printed, computed in wrong
-    ]
-
-
-def _order_cases(matrices: TubMatrices) -> Iterator[Case]:
-    """How often gamma is differentiated in the equation of y."""
-    import sympy as sp
-
-    unit = sp.symbols("m_2") * sp.symbols("x_D")
-    for which, order, matrix, printed in (
-        ("first", "gamma'", matrices.gyroscopic, 1.0),
-        ("second", "gamma''", matrices.mass, 0.0),
-    ):
-        words = {"which": which, "order": order, "printed": printed}
-        yield CLAIMS.case("dr-y-equation-derivative", float(sp.simplify(matrix[1, 5] / unit)), **words)
-
-
 @dataclass(frozen=True)
 class _Term:
     """A term of the equations below eq. 7 with another letter than the spring's energy has."""
@@ -173,33 +108,6 @@ _TERMS = (
 )
 
 
-def _row_cases(matrices: TubMatrices) -> Iterator[Case]:
-    """Springs and dampers in the equations of alpha, beta and gamma, term by term."""
-    import sympy as sp
-
-    for term in _TERMS:
-        computed = matrices.stiffness[term.row, term.column]
-        if not term.rate and sp.expand(sp.sympify(term.printed) - computed) == 0:
-            continue
-        of = _NAMES[term.column] + ("'" if term.damping else "")
-        shown, derived = (_as_damping(_written(text), term.damping) for text in (term.printed, computed))
-        kind = "rate" if term.rate else "damping" if term.damping else "stiffness"
-        words = {"of": of, "row": _NAMES[term.row], "kind": kind}
-        words["part"] = "damper (h_x, h_y, h_z)" if term.damping else "spring (c_x, c_y, c_z)"
-        words["printed"] = f"0, and {shown} of {of}'" if term.rate else shown
-        rate, symmetric = "a stiffness multiplies the angle, not its rate", "symmetric, as J^T c J is"
-        yield CLAIMS.case("dr-equation", derived, note=rate if term.rate else symmetric, **words)
-
-
-def _written(expression: object) -> str:
-    """An expression as on paper: `2 x y^2`."""
-    return str(expression).replace("**", "^").replace("*", " ")
-
-
-def _as_damping(text: str, damping: bool) -> str:
-    return text.replace("c_", "h_") if damping else text
-
-
 # Products of rates in eq. 4 and what they are printed and meant to go with.
 _PRODUCTS = (
     (1, 4, "m_2*z_D", -1.0, "the bracket with beta' z_D goes with -gamma' y_D, not with -y'"),
@@ -208,57 +116,74 @@ _PRODUCTS = (
 )
 
 
-def _energy_cases(matrices: TubMatrices) -> list[Case]:
-    """Eq. 4: products of rates in the kinetic energy, which are the places of the mass matrix."""
+def _written(expression: object) -> str:
+    """An expression as on paper: `2 x y^2`."""
+    return str(expression).replace("**", "^").replace("*", " ")
+
+
+def cases() -> Iterator[Case]:
+    """Every erratum of the suspended tub's equations [DR18, eq. 1-8]."""
     import sympy as sp
 
-    return [
-        CLAIMS.case(
-            "dr-eq-4",
-            float(sp.simplify(matrices.mass[first, second] / sp.sympify(unit))),
-            first=_NAMES[first],
-            second=_NAMES[second],
-            unit=_written(unit),
-            printed=printed,
-            why=why,
-        )
-        for first, second, unit, printed, why in _PRODUCTS
-    ]
+    matrices = tub_matrices()
 
+    def share(entry: Any, *units: str) -> float:
+        return float(sp.simplify(entry / sp.prod(sp.symbols(units))))
 
-def _energy_of_unbalance() -> Case:
-    """Eq. 4: the energy that the unbalanced mass has by its own circle alone."""
-    import sympy as sp
-
+    # The coupling of alpha and gamma by the drum's spin.
+    for equation, rate, row, column, printed in (
+        ("alpha", "gamma", 3, 5, -2.0),
+        ("gamma", "alpha", 5, 3, 2.0),
+    ):
+        computed = share(matrices.gyroscopic[row, column], "J_b", "omega")
+        yield CLAIMS.case("dr-gyroscopic", computed, equation=equation, rate=rate, printed=printed)
+    # Stiffness coefficients in which the printed list and the springs' energy part.
+    given = {place: sp.sympify(_PRINTED_STIFFNESS.get(place, "0")) for place in _PLACES}
+    stiffness = {(row, column): matrices.stiffness[row - 1, column - 1] for row, column in _PLACES}
+    wrong = [place for place in _PLACES if sp.expand(given[place] - stiffness[place]) != 0]
+    counts = {"same": len(_PLACES) - len(wrong), "all": len(_PLACES)}
+    for place in wrong:
+        at = {"row": place[0], "column": place[1], "printed": _written(given[place])}
+        yield CLAIMS.case("dr-a", _written(stiffness[place]), **at, **counts)
+    # How often gamma is differentiated in the equation of y.
+    for which, order, matrix, printed in (
+        ("first", "gamma'", matrices.gyroscopic, 1.0),
+        ("second", "gamma''", matrices.mass, 0.0),
+    ):
+        words = {"which": which, "order": order, "printed": printed}
+        yield CLAIMS.case("dr-y-equation-derivative", share(matrix[1, 5], "m_2", "x_D"), **words)
+    # Springs and dampers in the equations of alpha, beta and gamma, term by term.
+    for term in _TERMS:
+        found = matrices.stiffness[term.row, term.column]
+        if not term.rate and sp.expand(sp.sympify(term.printed) - found) == 0:
+            continue
+        letter = "h_" if term.damping else "c_"
+        shown, derived = (_written(text).replace("c_", letter) for text in (term.printed, found))
+        of = _NAMES[term.column] + ("'" if term.damping else "")
+        kind = "rate" if term.rate else "damping" if term.damping else "stiffness"
+        words = {"of": of, "row": _NAMES[term.row], "kind": kind}
+        words["part"] = "damper (h_x, h_y, h_z)" if term.damping else "spring (c_x, c_y, c_z)"
+        words["printed"] = f"0, and {shown} of {of}'" if term.rate else shown
+        why, symmetric = "a stiffness multiplies the angle, not its rate", "symmetric, as J^T c J is"
+        yield CLAIMS.case("dr-equation", derived, note=why if term.rate else symmetric, **words)
+    # Eq. 4: products of rates in the kinetic energy, which are the places of the mass matrix.
+    for first, second, unit, printed, why in _PRODUCTS:
+        computed = share(matrices.mass[first, second], *unit.split("*"))
+        of, other = _NAMES[first], _NAMES[second]
+        words = {"first": of, "second": other, "unit": _written(unit), "printed": printed, "why": why}
+        yield CLAIMS.case("dr-eq-4", computed, **words)
+    # The energy of the unbalanced mass by its own circle alone, and what the last bracket makes of spin.
     mass, radius, spin, time = sp.symbols("m_2 e omega t", positive=True)
-    place = sp.Matrix([-radius * sp.cos(spin * time), radius * sp.sin(spin * time)])
-    energy = sp.simplify(mass * place.diff(time).dot(place.diff(time)) / 2)
-    unit = mass * spin**2 * radius**2
-    return CLAIMS.case("dr-eq-4-unbalance", float(sp.simplify(energy / unit)))
-
-
-def _energy_of_spin(matrices: TubMatrices) -> Case:
-    """Eq. 4: what its last bracket makes of the coupling of alpha and gamma."""
-    import sympy as sp
-
-    unit = sp.symbols("J_b") * sp.symbols("omega")
-    return CLAIMS.case("dr-eq-4-gyroscopic", float(sp.simplify(matrices.gyroscopic[5, 3] / unit)))
-
-
-def _groups(matrices: TubMatrices) -> Case:
-    """Which coefficients of the stiffness matrix are static moments, linear in a place."""
-    import sympy as sp
-
-    place, scale = sp.symbols("x y z"), sp.Symbol("s")
-    static = []
-    for row, column in _PLACES:
-        entry = matrices.stiffness[row - 1, column - 1]
-        scaled = entry.subs({length: scale * length for length in place}, simultaneous=True)
-        if entry != 0 and sp.expand(scaled - scale * entry) == 0:
-            static.append((row, column))
+    circle = sp.Matrix([-radius * sp.cos(spin * time), radius * sp.sin(spin * time)])
+    energy = sp.simplify(mass * circle.diff(time).dot(circle.diff(time)) / 2)
+    yield CLAIMS.case("dr-eq-4-unbalance", float(sp.simplify(energy / (mass * spin**2 * radius**2))))
+    yield CLAIMS.case("dr-eq-4-gyroscopic", share(matrices.gyroscopic[5, 3], "J_b", "omega"))
+    # Which coefficients of the stiffness matrix are static moments, linear in a place.
+    scale, static = sp.Symbol("s"), []
+    lengths = {length: scale * length for length in sp.symbols("x y z")}
+    for place, entry in stiffness.items():
+        if entry != 0 and sp.expand(entry.subs(lengths, simultaneous=True) - scale * entry) == 0:
+            static.append(place)
     inside = sum(row <= 3 and column <= 3 for row, column in static)
-    return CLAIMS.case(
-        "dr-third-group",
-        f"i <= 3 < j: {len(static) - inside} of them, and {inside} with i, j <= 3",
-        inside >= len(static),
-    )
+    told = f"i <= 3 < j: {len(static) - inside} of them, and {inside} with i, j <= 3"
+    yield CLAIMS.case("dr-third-group", told, inside >= len(static))

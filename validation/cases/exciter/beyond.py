@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import math
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cache
@@ -32,12 +32,10 @@ from solvers.rotor.exciter.stability import (
     third_speed,
 )
 from solvers.rotor.exciter.tangent import follow
-from validation.case import Case, Claims
-from validation.cases.exciter.speeds import sample
+from validation.case import Case
+from validation.cases.exciter.speeds import CLAIMS, MACHINE, sample
 from validation.page import Figure, logarithmic, page
 from validation.study import data, launch, shown
-
-CLAIMS = Claims("exciter")
 
 DATA = Path(__file__).parents[2] / "data" / "exciter_beyond.json"
 # Smallness and damping of a map; the first that of the typical experiment, the other the corner of the
@@ -105,99 +103,61 @@ def three_frequencies() -> Three:
     return Three(found, seen, made((slow, fast, THREE_SPEED)), made((slow, THREE_SPEED)))
 
 
-def cases() -> list[Case]:
-    """How the stuck motion ends, and the motions beyond the critical speed."""
+def cases() -> Iterator[Case]:
+    """How the stuck motion ends, one ball at the third stuck speed, and what the runs of the maps end in."""
     kept = data(DATA.name)
-    return [*_stuck(kept["sweeps"]), *_third(), *_regimes(kept)]
-
-
-def _stuck(sweeps: list[dict[str, Any]]) -> list[Case]:
-    """Where the motion with the balls together loses its stability."""
-    machine = Dimensionless(smallness=0.01, drag=0.4, unbalance=0.25, damping=0.03)
-    through, parting = characteristic_speeds(machine).through_resonance, _slowest_parting()
-    typical = next(s for s in sweeps if s["smallness"] == 0.01 and s["unbalance"] == 0.25)
-    return [
-        CLAIMS.case(
-            "stuck-stable-up-to",
-            through,
-            abs(7.0 - through) <= 0.05,
-            difference=7.0 / through - 1.0,
-            **{"growing": _growing_roots(), "lost": typical["lost"]},
-        ),
-        CLAIMS.case("third-together", parting, parting <= 0.0),
-    ]
-
-
-def _third() -> list[Case]:
-    """One ball at the third stuck speed."""
+    through, parting = characteristic_speeds(MACHINE).through_resonance, _slowest_parting()
+    typical = next(s for s in kept["sweeps"] if s["smallness"] == 0.01 and s["unbalance"] == 0.25)
+    known = {"difference": 7.0 / through - 1.0, "growing": _growing_roots(), "lost": typical["lost"]}
+    yield CLAIMS.case("stuck-stable-up-to", through, abs(7.0 - through) <= 0.05, **known)
+    yield CLAIMS.case("third-together", parting, parting <= 0.0)
     found = three_frequencies()
-    fast = float(found.regime.ball_speed.max())
-    third = found.regime.kind is Kind.THIRD
-    all_told = all(made is not None for made in found.made_of)
+    third, all_told = found.regime.kind is Kind.THIRD, all(made is not None for made in found.made_of)
     beyond = sum(made is None for made in found.made_of_two)
-    return [
-        CLAIMS.case(
-            "third-speed",
-            fast,
-            printed=third_speed(THREE, THREE_SPEED, 0.5),
-            note="eq. 9 with chi = h/(2 b), one ball of two" + ("" if third else "; it did not stay there"),
-        ),
-        CLAIMS.case(
-            "third-lines",
-            ", ".join(f"{w:.3f}" for w in found.lines.frequency.tolist()),
-            third and all_told and beyond,
-            difference="none" if all_told else "other lines",
-            note=f"all are sums of the three speeds; {beyond} of {len(found.made_of)} are not sums of two",
-        ),
-    ]
-
-
-def _regimes(kept: dict[str, Any]) -> list[Case]:
-    """What the runs of the maps end in."""
+    yield CLAIMS.case(
+        "third-speed",
+        float(found.regime.ball_speed.max()),
+        printed=third_speed(THREE, THREE_SPEED, 0.5),
+        note="eq. 9 with chi = h/(2 b), one ball of two" + ("" if third else "; it did not stay there"),
+    )
+    yield CLAIMS.case(
+        "third-lines",
+        ", ".join(f"{w:.3f}" for w in found.lines.frequency.tolist()),
+        third and all_told and beyond,
+        difference="none" if all_told else "other lines",
+        note=f"all are sums of the three speeds; {beyond} of {len(found.made_of)} are not sums of two",
+    )
     runs = kept["runs"]
     counts = Counter(row["kind"] for row in runs)
     seen = ", ".join(f"{kind.value} {counts[kind.value]}" for kind in Kind if counts[kind.value])
     longest = max(row["chaos"] for row in [*runs, *kept["chaos"]])
-    chaotic = [row for row in runs if row["chaos"] * _decay(row) >= _PRINTED_TIME]
+    # Chaos is kept in decay times.
+    chaotic = [
+        row for row in runs
+        if row["chaos"] / min(row["smallness"] * row["drag"], row["damping"]) >= _PRINTED_TIME
+    ]  # fmt: skip
     note = "kept runs over the source's ranges of b and delta, four starts each"
-
-    def counted(key: str, what: str, number: int, more: str) -> Case:
-        return CLAIMS.case("beyond", float(number), number, key=key, runs=len(runs), what=what, note=more)
-
-    return [
-        counted("balancing", "balanced in the end", counts[Kind.BALANCED.value], f"{note}: {seen}"),
-        counted(
-            "third",
-            "at least one ball at the third stuck speed in the end",
-            counts[Kind.THIRD.value],
+    for key, what, number, more in (
+        ("balancing", "balanced in the end", counts[Kind.BALANCED.value], f"{note}: {seen}"),
+        (
+            *("third", "at least one ball at the third stuck speed in the end", counts[Kind.THIRD.value]),
             f"{note}; one ball there, the other at the resonance or with the shaft, or both swinging around "
             "opposite places",
         ),
-        counted(
-            "chaos",
-            "chaotic for as long as the source's figure 3 runs, 315 turns",
-            len(chaotic),
+        (
+            *("chaos", "chaotic for as long as the source's figure 3 runs, 315 turns", len(chaotic)),
             f"{note}; {counts[Kind.CHAOTIC.value]} still chaotic after {DECAYS:g} decay times; the longest "
             f"chaos seen lasts {longest:.0f} of them; most runs followed longer ended in another motion",
         ),
-    ]
-
-
-def _decay(row: dict[str, Any]) -> float:
-    """Decay time of the machine of a kept run."""
-    return 1.0 / float(min(row["smallness"] * row["drag"], row["damping"]))
-
-
-def _sample() -> list[Dimensionless]:
-    """196 machines over the source's ranges, as many as it integrated."""
-    return [Dimensionless(*row) for row in sample().tolist()]
+    ):
+        yield CLAIMS.case("beyond", float(number), number, key=key, runs=len(runs), what=what, note=more)
 
 
 @cache
 def _growing_roots() -> int:
     """Machines of the sample whose slowest stuck motion has a growing root below n2."""
     count = 0
-    for machine in _sample():
+    for machine in (Dimensionless(*row) for row in sample().tolist()):
         through = characteristic_speeds(machine).through_resonance
         speeds = 1.0 + (through - 1.0) * np.linspace(0.05, 0.999, 40)
         slowest = stuck_speeds(speeds, machine)[:, 0]
@@ -209,7 +169,7 @@ def _growing_roots() -> int:
 def _slowest_parting() -> float:
     """Smallest growth of the parting of two balls at the third stuck speed, over the sample."""
     found = []
-    for machine in _sample():
+    for machine in (Dimensionless(*row) for row in sample().tolist()):
         first = characteristic_speeds(machine).second_pair
         if math.isfinite(first):
             found.append(float(parting_roots(machine, third_speed(machine, 1.25 * first))[0].real))
@@ -304,32 +264,8 @@ def keep() -> None:
     DATA.write_text(f'{{\n "about": {json.dumps(about)},\n{rows}\n}}\n', encoding="utf-8")
 
 
-# Of a map: which runs are meant, the shift of the mark to the side, and its looks.
-_MARKS: tuple[tuple[str, Callable[[dict[str, Any]], bool], float, dict[str, Any]], ...] = (
-    (
-        "balanced",
-        lambda row: row["kind"] == Kind.BALANCED.value,
-        -0.045,
-        {"marker": "s", "s": 16, "color": "black", "linewidths": 0.0},
-    ),
-    (
-        "third speed",
-        lambda row: row["kind"] == Kind.THIRD.value,
-        0.0,
-        {"marker": "o", "s": 36, "facecolors": "none", "edgecolors": "C0", "linewidths": 1.2},
-    ),
-    (
-        "chaotic for 5 decay times or longer",
-        lambda row: row["chaos"] >= 5.0,
-        0.045,
-        {"marker": "x", "s": 28, "color": "C1", "linewidths": 1.2},
-    ),
-)
-
-
 def beyond_figure() -> Figure:
     """Spectra of three frequencies and of chaos, and two maps of what is reached over drag and unbalance."""
-    runs: list[dict[str, Any]] = data(DATA.name)["runs"]
     text = (
         "Above: spectrum of the platform with one ball at the resonance and one at the third stuck "
         "speed (eps = 0.01, b = 0.4, delta = 0.05, h = 0.03, n = 8.15), and in chaos over two decay "
@@ -338,69 +274,62 @@ def beyond_figure() -> Figure:
         "past which one ball of two can slip, the other at the resonance (theory: exciter, eq. 7)."
     )
     room = {"left": 0.6, "top": 0.25, "between": 0.75, "below": 0.45, "apart": 0.65}
-    with page([1.7, 2.4], text, (2, 2), **room) as (figure, [top, bottom]):
-        _three(top[0])
-        _chaos(top[1])
+    with page([1.7, 2.4], text, (2, 2), **room) as (figure, [[three, chaos], bottom]):
+        found = three_frequencies().regime
+        frequency, amplitude = spectrum(found.motion.samples, found.motion.sample_time)
+        three.plot(frequency, amplitude, color="black", linewidth=0.8)
+        places = (0.98, float(found.ball_speed.max()), THREE_SPEED)
+        for name, at, side in zip(
+            ("resonance", "third", "shaft"), places, ("left", "right", "left"), strict=True
+        ):
+            height = float(amplitude[np.abs(frequency - at) < 0.05].max())
+            shift = -3 if side == "right" else 3
+            three.annotate(name, (at, height), (shift, 2), textcoords="offset points", ha=side, fontsize=7)
+        state, time = start_state(CHAOTIC, CHAOTIC_SPEED, "both third"), 2.0 * decay_time(CHAOTIC)
+        run = follow(CHAOTIC, CHAOTIC_SPEED, state, time, samples=1 << 16, sampled=0.9)
+        chaos.plot(*spectrum(run.samples, run.sample_time), color="C1", linewidth=0.5)
+        for axes, end, title in (
+            (three, 10.0, "Three frequencies"),
+            (chaos, 60.0, f"Chaos, growth {run.growth.mean():.2f}"),
+        ):
+            logarithmic(axes, y=[1e-4, 1e-3, 1e-2, 0.1, 1.0, 10.0])
+            axes.set(ylim=(1e-4, 30.0), xlim=(0.0, end), xlabel="Frequency (\N{EN DASH})", title=title)
         for axes, (smallness, damping) in zip(bottom, MAPS, strict=True):
-            chosen = [row for row in runs if row["smallness"] == smallness and row["damping"] == damping]
-            _map(axes, chosen, smallness, damping)
-        top[0].set_ylabel("Amplitude (\N{EN DASH})")
+            _map(axes, smallness, damping)
+        three.set_ylabel("Amplitude (\N{EN DASH})")
         bottom[0].set_ylabel("Drag b (\N{EN DASH})")
     return figure
 
 
-def _three(axes: Any) -> None:
-    """Lines of three frequencies, each with its name."""
-    motion = three_frequencies().regime.motion
-    frequency, amplitude = spectrum(motion.samples, motion.sample_time)
-    axes.plot(frequency, amplitude, color="black", linewidth=0.8)
-    third = float(three_frequencies().regime.ball_speed.max())
-    names = (("resonance", 0.98, "left"), ("third", third, "right"), ("shaft", THREE_SPEED, "left"))
-    for name, at, side in names:
-        height = float(amplitude[np.abs(frequency - at) < 0.05].max())
-        shift = -3 if side == "right" else 3
-        axes.annotate(name, (at, height), (shift, 2), textcoords="offset points", ha=side, fontsize=7)
-    axes.set_title("Three frequencies")
-    _scales(axes, 10.0)
-
-
-def _chaos(axes: Any) -> None:
-    """Broad spectrum of a chaotic motion."""
-    state = start_state(CHAOTIC, CHAOTIC_SPEED, "both third")
-    time = 2.0 / (CHAOTIC.smallness * CHAOTIC.drag)
-    found = follow(CHAOTIC, CHAOTIC_SPEED, state, time, samples=1 << 16, sampled=0.9)
-    frequency, amplitude = spectrum(found.samples, found.sample_time)
-    axes.plot(frequency, amplitude, color="C1", linewidth=0.5)
-    axes.set_title(f"Chaos, growth {found.growth.mean():.2f}")
-    _scales(axes, 60.0)
-
-
-def _scales(axes: Any, end: float) -> None:
-    logarithmic(axes, y=[1e-4, 1e-3, 1e-2, 0.1, 1.0, 10.0])
-    axes.set(ylim=(1e-4, 30.0), xlim=(0.0, end), xlabel="Frequency (\N{EN DASH})")
-
-
-def _map(axes: Any, rows: list[dict[str, Any]], smallness: float, damping: float) -> None:
+def _map(axes: Any, smallness: float, damping: float) -> None:
     """Marks of what is reached from any of the starts, and the bounds of the third speed."""
-    for name, chosen, shift, look in _MARKS:
-        places = sorted({(row["unbalance"], row["drag"]) for row in rows if chosen(row)})
+    rows = [
+        row for row in data(DATA.name)["runs"] if (row["smallness"], row["damping"]) == (smallness, damping)
+    ]
+    balanced, third = (
+        [row for row in rows if row["kind"] == kind.value] for kind in (Kind.BALANCED, Kind.THIRD)
+    )
+    square = {"marker": "s", "s": 16, "color": "black", "linewidths": 0.0}
+    ring = {"marker": "o", "s": 36, "facecolors": "none", "edgecolors": "C0", "linewidths": 1.2}
+    cross = {"marker": "x", "s": 28, "color": "C1", "linewidths": 1.2}
+    for name, chosen, shift, look in (
+        ("balanced", balanced, -0.045, square),
+        ("third speed", third, 0.0, ring),
+        ("chaotic for 5 decay times or longer", [row for row in rows if row["chaos"] >= 5.0], 0.045, cross),
+    ):
+        places = sorted({(row["unbalance"], row["drag"]) for row in chosen})
         if places:
             unbalance, drag = np.array(places).T
             axes.scatter(unbalance + shift, drag, label=name, zorder=3, **look)
-    drags = sorted({row["drag"] for row in rows})
-    bound = np.array([_bound(rows, drag, smallness, damping) for drag in drags])
+    drags, bound = sorted({row["drag"] for row in rows}), []
+    for drag in drags:  # past which one of two balls can slip, at the runs' mean speed
+        speed = float(np.mean([row["speed"] for row in rows if row["drag"] == drag]))
+        bound.append(capture_unbalance(Dimensionless(smallness, drag, 0.0, damping), speed, 0.5))
     axes.plot(bound, drags, color="0.45", linewidth=1.0, label="bound of the third speed")
-    axes.set(xlim=(-0.1, 1.1), xticks=sorted({row["unbalance"] for row in rows}))
+    axes.set(xlim=(-0.1, 1.1), xticks=sorted({row["unbalance"] for row in rows}), ylim=(0.05, 0.65))
     axes.xaxis.set_major_formatter(lambda value, _place: f"{value:.2g}")
-    axes.set_ylim(0.05, 0.65)
     axes.set_xlabel("Unbalance \N{GREEK SMALL LETTER DELTA} (\N{EN DASH})")
     axes.set_title(f"\N{GREEK SMALL LETTER EPSILON} = {smallness:g}, h = {damping:g}")
-
-
-def _bound(rows: list[dict[str, Any]], drag: float, smallness: float, damping: float) -> float:
-    """Largest unbalance past which one of two balls can slip, at the runs' mean speed."""
-    speeds: Array = np.array([row["speed"] for row in rows if row["drag"] == drag])
-    return capture_unbalance(Dimensionless(smallness, drag, 0.0, damping), float(speeds.mean()), 0.5)
 
 
 if __name__ == "__main__":

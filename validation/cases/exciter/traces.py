@@ -11,22 +11,18 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from meshes.arrays import Array
 from solvers.rotor.exciter.machine import Dimensionless, characteristic_speeds, platform_motion, stuck_speeds
 from solvers.rotor.exciter.motion import Trace, critical_speeds, trace
-from validation.case import Case, Claims
-from validation.cases.exciter.speeds import vibratory_table
+from validation.case import Case
+from validation.cases.exciter.speeds import CLAIMS, MACHINE, vibratory_table
 from validation.page import Figure, logarithmic, page
 from validation.study import data, launch, shown, write
 
-CLAIMS = Claims("exciter")
-
 DATA = Path(__file__).parents[2] / "data" / "exciter_more.json"
-TYPICAL = Dimensionless(smallness=0.01, drag=0.4, unbalance=0.25, damping=0.03)
 SPEED = 5.0
 _PRINTED_GAP = 0.01105
 # Curves of a panel: what runs along it, its values, what tells the curves apart, its values, the rest.
@@ -38,7 +34,6 @@ PANELS: tuple[tuple[str, tuple[float, ...], str, tuple[float, ...], dict[str, fl
     ("unbalance", _UNBALANCES, "smallness", _SMALL, {"drag": 0.4, "damping": 0.03}),
 )
 FIGURES = ("5a", "5b", "6a", "6b")
-_RISES = {"damping": False, "drag": False, "unbalance": True}
 _SLACK = 0.03  # relative: a step against the trend up to this is the width of the search, 0.05 in speed
 
 
@@ -55,27 +50,21 @@ class Traces:
 @cache
 def traces() -> Traces:
     """The typical experiment at n = 5, over three turns of the balls [YF17, fig. 3]."""
-    motion = trace(TYPICAL, SPEED)
-    slowest = float(stuck_speeds(SPEED, TYPICAL)[0])
-    slow, fast = platform_motion(TYPICAL, SPEED, slowest)
+    motion = trace(MACHINE, SPEED)
+    slowest = float(stuck_speeds(SPEED, MACHINE)[0])
+    slow, fast = platform_motion(MACHINE, SPEED, slowest)
     # The constant of the balls' phase is free [YF17, eq. 8]: that of their mean over these turns.
     phase = float(np.mean(motion.ball_angle.mean(axis=1) - slowest * motion.time))
-    waves = np.stack(
-        [slow * np.exp(1j * (slowest * motion.time + phase)), fast * np.exp(1j * SPEED * motion.time)]
-    )
-    factors = np.array([1j * slowest, 1j * SPEED])[:, None]
+    turned = np.stack([slowest * motion.time + phase, SPEED * motion.time])
+    waves, factors = np.array([[slow], [fast]]) * np.exp(1j * turned), 1j * np.array([[slowest], [SPEED]])
     lowest = np.stack([(waves * factors**k).sum(axis=0).imag for k in range(3)])
     seen = np.stack([motion.position, motion.velocity, motion.acceleration])
     gap = np.abs(seen - lowest).max(axis=1) / np.abs(seen).max(axis=1)
     return Traces(motion, slowest * (motion.time - motion.time[0]) / (2.0 * math.pi), lowest, gap)
 
 
-def cases() -> list[Case]:
-    """Traces, critical speed in dimensions, trends."""
-    return [*_traces(), *_dimensional(), *_trends(data(DATA.name)["panels"])]
-
-
-def _traces() -> Iterator[Case]:
+def cases() -> Iterator[Case]:
+    """Traces, critical speed in dimensions (eq. 21), and whether the curves of figures 5 and 6 go one way."""
     found = traces()
     names = ("displacement", "velocity", "acceleration")
     worst = float(found.gap.max())
@@ -88,36 +77,19 @@ def _traces() -> Iterator[Case]:
     ):
         words = {"key": key, "words": key.replace("-", " "), "tolerance": tolerance}
         yield CLAIMS.case("trace", float(value), printed=printed, **words)
-
-
-def _dimensional() -> list[Case]:
-    """Eq. 21 with the data of the worked table against n2 from the exact roots."""
     table = vibratory_table()
-    own = table.natural_frequency
-    printed = own + table.ball_count * table.ball_mass**2 * own**3 / (
-        2.0 * table.damping * table.ball_damping
-    )
+    own, damping = table.natural_frequency, 2.0 * table.damping * table.ball_damping
     exact = characteristic_speeds(table.dimensionless()).through_resonance * own
-    return [CLAIMS.case("eq-21", exact, printed=printed)]
-
-
-def _trends(panels: list[dict[str, Any]]) -> Iterator[Case]:
-    """Whether each curve of figures 5 and 6 goes one way, as the source says."""
-    for figure, panel in zip(FIGURES, panels, strict=True):
-        rises, along = _RISES[panel["along"]], panel["along"]
+    given = own + table.ball_count * table.ball_mass**2 * own**3 / damping
+    yield CLAIMS.case("eq-21", exact, printed=given)
+    for figure, panel in zip(FIGURES, data(DATA.name)["panels"], strict=True):
+        rises, along = panel["along"] == "unbalance", panel["along"]
         steps = [np.diff(curve) / np.array(curve[:-1]) for curve in panel["curves"]]
-        against = [float(np.max(-step if rises else step)) for step in steps]
-        worst = max(against)
-        same = worst <= _SLACK
-        shape = "rises" if rises else "falls"
-        yield CLAIMS.case(
-            "fig",
-            f"{shape} all the way" if same else f"not all the way: {100 * worst:.0f} % against it",
-            same,
-            figure=figure,
-            quantity=f"critical speed over {along}, {len(steps)} curves",
-            shape=shape,
-        )
+        worst = max(float(np.max(-step if rises else step)) for step in steps)
+        same, shape = worst <= _SLACK, "rises" if rises else "falls"
+        computed = f"{shape} all the way" if same else f"not all the way: {100 * worst:.0f} % against it"
+        what = f"critical speed over {along}, {len(steps)} curves"
+        yield CLAIMS.case("fig", computed, same, figure=figure, quantity=what, shape=shape)
 
 
 def keep() -> None:

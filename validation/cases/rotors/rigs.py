@@ -9,7 +9,7 @@ compensates below, at and above resonance.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
@@ -73,13 +73,21 @@ def horizontal_cases() -> list[Case]:
     lag = _fit(lambda x: _lag(speed, x[0]), angle, [0.1])
     rotor = _fit(lambda x: _liquid_angle(speed, x[0], _RESONANCE), angle, [0.1])
     free = _fit(lambda x: _liquid_angle(speed, x[0], x[1] * _RESONANCE), angle, [0.1, 1.0])
-    return [
+    found = [
         _summary("lag-alone", "tan(delta) alone, resonance held at 1000 rpm", angle, *lag),
         _summary("rotor-and-liquid", "rotor with liquid, resonance held at 1000 rpm", angle, *rotor),
         _summary("resonance-free", f"the same, resonance free: {1000 * free[0][1]:.0f} rpm", angle, *free),
-        *_points(measured["speed_rpm"], angle, rotor[1]),
-        _gravity(speed),
     ]
+    for at, given, off in zip(measured["speed_rpm"], angle, rotor[1], strict=True):
+        told = {"at": at, "printed": float(given), "difference": f"{-off:+.1f} deg"}
+        found.append(HORIZONTAL.case("rpm", float(given + off), abs(off) <= _READING, **told))
+    # Gravity moves the surface, but backwards in the drum: nothing of it is synchronous.
+    shifts = []
+    for fill in horizontal_rig():
+        kappa = (fill.chamber.radius / fill.surface_radius) ** 2
+        shifts.append(np.asarray(gravity_displacement(kappa, speed, 9.81)) / fill.depth)
+    largest, slowest = float(np.max(np.abs(shifts))), speed[0] / _RPM
+    return [*found, HORIZONTAL.case("gravity", largest=largest, slowest=slowest)]
 
 
 def _fit(model: Callable[[Array], Array], angle: Array, start: list[float]) -> tuple[Array, Array]:
@@ -122,48 +130,13 @@ def _summary(name: str, what: str, angle: Array, parameters: Array, residual: Ar
     )
 
 
-def _points(rpm: list[float], angle: Array, residual: Array) -> list[Case]:
-    return [
-        HORIZONTAL.case(
-            "rpm",
-            float(given + off),
-            abs(off) <= _READING,
-            at=at,
-            printed=float(given),
-            difference=f"{-off:+.1f} deg",
-        )
-        for at, given, off in zip(rpm, angle, residual, strict=True)
-    ]
-
-
-def _gravity(speed: Array) -> Case:
-    """Gravity moves the surface, but backwards in the drum: nothing of it is synchronous."""
-    shifts = []
-    for fill in horizontal_rig():
-        kappa = (fill.chamber.radius / fill.surface_radius) ** 2
-        shifts.append(np.asarray(gravity_displacement(kappa, speed, 9.81)) / fill.depth)
-    largest, slowest = float(np.max(np.abs(shifts))), speed[0] / _RPM
-    return HORIZONTAL.case("gravity", largest=largest, slowest=slowest)
-
-
-def vertical_cases() -> list[Case]:
+def vertical_cases() -> Iterator[Case]:
     """Angle and gain at the three speeds of the photographs."""
-    measured = data("dr18_vertical_rig.json")
-    speed = np.array(measured["speed_rad_s"])
+    speed = np.array(data("dr18_vertical_rig.json")["speed_rad_s"])
     answer = response(vertical_rotor(), vertical_rig(), speed)
     wet = critical_speed(vertical_rotor(), vertical_rig())
     gain = np.abs(answer.deflection) / np.abs(answer.deflection_dry)
-    found = []
     for k, spin in enumerate(speed):
         lag = -math.degrees(answer.liquid_angle[k])
-        helps = lag > 90.0 and gain[k] < 1.0
-        found.append(
-            VERTICAL.case(
-                "rad-s",
-                f"{lag:.0f} deg behind the unbalance, amplitude times {gain[k]:.2f}",
-                helps,
-                spin=spin,
-                wet=wet,
-            )
-        )
-    return found
+        told = f"{lag:.0f} deg behind the unbalance, amplitude times {gain[k]:.2f}"
+        yield VERTICAL.case("rad-s", told, lag > 90.0 and gain[k] < 1.0, spin=spin, wet=wet)

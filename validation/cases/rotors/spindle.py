@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import cmath
 import math
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -24,21 +25,28 @@ FRAME = 33.0  # Hz, first natural frequency of the frame [DP18, figure 5c]
 PRINTED = {"ftf": 85.77, "bpfo": 9.55, "bpfi": 5.96, "bsf": 16.1}
 
 
-def cases() -> list[Case]:
+def cases() -> Iterator[Case]:
     """Table 1, then the compliance matrix and the equation with a wrong index."""
-    return [*_multiples(), *_bearing(), *_equations()]
-
-
-def _multiples() -> list[Case]:
-    """Of the spindle's frequency, at the example's first natural one, and of the speed run at."""
+    # Of the spindle's frequency, at the example's first natural one, and of the speed run at.
     turn = 2.0 * math.pi
     frame = float(natural_frequencies(_machine(), 10.0 * turn, 100.0 * turn)[0]) / turn
-    found = [
-        CLAIMS.case("harmonic", frame / k, k=k, printed=printed)
-        for k, printed in ((1, 33.0), (2, 16.5), (3, 11.0))
-    ]
-    found.append(CLAIMS.case("speed", parse("660 rpm", ANGULAR_SPEED) / turn))
-    return found
+    for k, printed in ((1, 33.0), (2, 16.5), (3, 11.0)):
+        yield CLAIMS.case("harmonic", frame / k, k=k, printed=printed)
+    yield CLAIMS.case("speed", parse("660 rpm", ANGULAR_SPEED) / turn)
+    known, cage = bearing(), FRAME / PRINTED["ftf"]
+    speeds = {name: FRAME / order for name, order in known.orders().items()}
+    fit = fit_bearing({name: FRAME / speed for name, speed in PRINTED.items()})
+    words = {"fit": fit, "residual": 100.0 * fit.residual_rms, "next": 100.0 * fit.next_rms}
+    balls = FRAME / PRINTED["bpfi"] / (1.0 - cage)
+    yield CLAIMS.case("balls", balls, printed=float(known.balls), **words)
+    ratio = {"bpfi": {"diameter_ratio": known.diameter_ratio}}
+    for name in ("bpfi", "bpfo", "bsf"):
+        yield CLAIMS.case(name, speeds[name], printed=PRINTED[name], **ratio.get(name, {}))
+    for degrees in (15.0, 25.0):
+        angle = math.radians(degrees)
+        tilted = Bearing(known.balls, known.diameter_ratio / math.cos(angle), angle).orders()["bsf"]
+        yield CLAIMS.case("bsf-degrees", FRAME / tilted, degrees=degrees, printed=PRINTED["bsf"])
+    yield from _equations()
 
 
 def _machine() -> Structure:
@@ -51,33 +59,6 @@ def bearing() -> Bearing:
     """From three of the four printed numbers: the cage gives d cos(theta)/D, the inner ring the balls."""
     ratio = 1.0 - 2.0 * FRAME / PRINTED["ftf"]
     return Bearing(round(FRAME / PRINTED["bpfi"] / (1.0 - FRAME / PRINTED["ftf"])), ratio, 0.0)
-
-
-def _bearing() -> list[Case]:
-    known = bearing()
-    cage = FRAME / PRINTED["ftf"]
-    speeds = {name: FRAME / order for name, order in known.orders().items()}
-    fit = fit_bearing({name: FRAME / speed for name, speed in PRINTED.items()})
-    found = [
-        CLAIMS.case(
-            "balls",
-            FRAME / PRINTED["bpfi"] / (1.0 - cage),
-            printed=float(known.balls),
-            **{"fit": fit, "residual": 100.0 * fit.residual_rms, "next": 100.0 * fit.next_rms},
-        ),
-        CLAIMS.case("bpfi", speeds["bpfi"], printed=PRINTED["bpfi"], diameter_ratio=known.diameter_ratio),
-        CLAIMS.case("bpfo", speeds["bpfo"], printed=PRINTED["bpfo"]),
-        CLAIMS.case("bsf", speeds["bsf"], printed=PRINTED["bsf"]),
-    ]
-    for degrees in (15.0, 25.0):
-        angle = math.radians(degrees)
-        tilted = Bearing(known.balls, known.diameter_ratio / math.cos(angle), angle)
-        found.append(
-            CLAIMS.case(
-                "bsf-degrees", FRAME / tilted.orders()["bsf"], degrees=degrees, printed=PRINTED["bsf"]
-            )
-        )
-    return found
 
 
 def printed_housing(machine: Structure, frequency: float) -> complex:

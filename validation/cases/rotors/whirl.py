@@ -46,7 +46,7 @@ def cases() -> list[Case]:
         for end, printed, edge in (("lower", low, band[0]), ("upper", high, band[1])):
             at = {"mu": mu, "depth": depth, "end": end, "tolerance": 1.2 * _STEP}
             found.append(CLAIMS.case("edge", edge / NATURAL, printed=printed, **at))
-    return [*found, *_peaks(), _weak(), *_limits(), *_in_time(), *_limit_cycles(), *_run_ups()]
+    return [*found, *_limits(), *_in_time(), *_limit_cycles(), *_run_ups()]
 
 
 def _in_time() -> Iterator[Case]:
@@ -169,33 +169,17 @@ def growth_over_speed(zeta: float, friction: Friction = NO_FRICTION) -> Array:
     return asynchronous_growth(rotor, [fill], RANGE * NATURAL, friction)[0] / NATURAL
 
 
-def _peaks() -> list[Case]:
-    return [
-        CLAIMS.case(
-            "peak-zeta",
-            float(growth_over_speed(zeta).max()),
-            zeta=zeta,
-            printed=printed,
-            tolerance=_DIGIT / printed,
-        )
-        for zeta, printed in _PEAKS
-    ]
-
-
-def _weak() -> Case:
-    """Damping of the support alone leaves every speed unstable; with laminar friction a band remains."""
-    alone, both = growth_over_speed(0.05), growth_over_speed(0.05, Friction(FrictionLaw.STOKES))
-    unstable = RANGE[both > 0.0]
-    return CLAIMS.case(
-        "damping-alone",
-        float(np.mean(alone > 0.0)),
-        np.all(alone > 0.0),
-        **{"least": alone.min(), "unstable": unstable, "last": unstable[-1]},
-    )
-
-
 def _limits() -> Iterator[Case]:
-    """No whirl grows without liquid, in a full chamber, and on supports of a thousand times the frequency."""
+    """Peaks, the weak growth that support damping alone leaves, and the limits in which no whirl grows."""
+    for zeta, printed in _PEAKS:
+        words = {"zeta": zeta, "printed": printed, "tolerance": _DIGIT / printed}
+        yield CLAIMS.case("peak-zeta", float(growth_over_speed(zeta).max()), **words)
+    # Damping of the support alone leaves every speed unstable; with laminar friction a band remains.
+    alone, both = growth_over_speed(0.05), growth_over_speed(0.05, Friction(FrictionLaw.STOKES))
+    unstable, share = RANGE[both > 0.0], float(np.mean(alone > 0.0))
+    band = {"unstable": unstable, "last": unstable[-1]}
+    yield CLAIMS.case("damping-alone", share, np.all(alone > 0.0), least=alone.min(), **band)
+    # None without liquid, in a full chamber, and on supports of a thousand times the frequency.
     rotor, fill = layered_rotor(0.1, 0.1, 0.0)
     chamber, water, speed = fill.chamber, fill.liquid, RANGE * NATURAL
     rigid = Jeffcott(rotor.mass, rotor.stiffness * 1e6, 0.0, 0.0)
@@ -206,13 +190,8 @@ def _limits() -> Iterator[Case]:
     ):
         growth, _ = asynchronous_growth(machine, [Fill(chamber, water, volume)], speed)
         largest = float(growth.max())
-        yield CLAIMS.case(
-            "limits",
-            largest,
-            largest == 0.0,
-            key=name,
-            difference="none" if math.isclose(largest, 0.0) else f"{largest:.3g} 1/s",
-        )
+        difference = "none" if math.isclose(largest, 0.0) else f"{largest:.3g} 1/s"
+        yield CLAIMS.case("limits", largest, largest == 0.0, key=name, difference=difference)
 
 
 def growth_figure(in_time: list[Case]) -> Figure:
