@@ -233,8 +233,8 @@ def _serve(machine: Scene, speed: float | None, factor: float | None, host: str,
     """Serve the page until interrupted."""
     from leblanc.studies.shapes.machine import drawn_liquid, dry_walls, machine_motion
     from leblanc.studies.shapes.scale import scale_at, scale_of
+    from leblanc.view.access import HERE
     from leblanc.view.files import frames_of_speeds, require_trame, serve
-    from leblanc.view.gate import HERE
 
     require_trame()
     motion = machine_motion(machine)

@@ -21,7 +21,7 @@ class Grade(IntEnum):
 
 @dataclass(frozen=True)
 class Cell:
-    """One value as printed."""
+    """One value in words."""
 
     text: str  #: with its unit
     assumed: bool = False  #: no source gives it
@@ -100,10 +100,10 @@ class Picture:
 
 @dataclass(frozen=True)
 class Notes:
-    """Sentences to bear in mind."""
+    """Notes to a result, a sentence each."""
 
     texts: Sequence[str]
-    title: str = "To bear in mind"
+    title: str = "Notes"
     shown: Shown = "both"
 
 

@@ -127,7 +127,7 @@ _CLAUSES = 2  # of the sentence of doubt
 # What weighs most in it first; what none of these begins follows.
 _WEIGHTS = (
     "Not converged",
-    "Not settled",
+    "Not converged in time",
     "Stopped before its end",
     "Amplitude infinite",
     "Constraints exceeded",
@@ -159,7 +159,7 @@ def doubt(checks: Iterable[Any], error: str = "") -> str:
         return f"No limit of the models is passed{f'; estimated error {error}' if error else ''}."
     told = "; ".join(f"{one.label[:1].lower()}{one.label[1:]}: {one.where}" for one in failed[:_CLAUSES])
     rest = len(failed) - _CLAUSES
-    return f"Doubtful: {told}{f' ({rest} more under the limits)' if rest > 0 else ''}."
+    return f"Caution: {told}{f' ({rest} more under the limits)' if rest > 0 else ''}."
 
 
 def _sections(blocks: Sequence[Block], figures: Mapping[str, Any]) -> list[dict[str, Any]]:

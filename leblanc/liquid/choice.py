@@ -16,8 +16,8 @@ from meshes.quantity import Q
 if TYPE_CHECKING:
     from solvers.synchronous.errors import GravityError, LinearError
 
-# Liquid models of motions held in time, with what goes round each wall, in words.
-HELD_MODELS = {"long_wave": ("long waves", "cells"), "potential": ("exact waves", "nodes")}
+# Liquid models of time-domain states, with what goes round each wall, in words.
+HELD_MODELS = {"long_wave": ("long waves", "cells"), "potential": ("fully nonlinear waves", "nodes")}
 
 
 _KNOWN, _RATE = ("linear", "statics", "kdv", "fem", *HELD_MODELS), "rad s-1"
@@ -71,7 +71,7 @@ class Choice:
     #: a ripple about them
     gravity: GravityError
     cut: bool = False  #: baffles cut the liquid of a chamber into compartments, or its section is no circle
-    held_model: str = "long_wave"  #: of the waves, where motions are held in time
+    held_model: str = "long_wave"  #: of the waves, where time-domain states are asked for
     #: processor time to hold rotor and waves in time at each speed, s; None where it was not asked for or no
     #: wave can be held
     holding: Array | None = None
@@ -191,7 +191,7 @@ def _reason(choice: Choice, model: str, part: Index) -> str:
         return "the scene asks for it; finite elements integrate the paraboloid and miss it by their mesh"
     why = _statics_reason(choice, part) if model == "statics" else _linear_reason(choice, part)
     if choice.prescribed and choice.held_model == "potential":
-        why = f"the scene asks for the exact wave, which is this one in a circle with the spin; {why}"
+        why = f"the scene asks for the fully nonlinear wave, in a circle with the spin this one; {why}"
     elif choice.prescribed:
         why = f"the scene asks for it; {why}"
     if not choice.missed[part[0]]:
@@ -203,22 +203,23 @@ def _reason(choice: Choice, model: str, part: Index) -> str:
 
 
 def _family_reason(choice: Choice, part: Index) -> str:
-    """How far one family of waves is from liquid that both hold."""
+    """Distance of unidirectional waves alone from liquid between both families."""
     worst = choice.error[part].max()
     size = percent(worst) if np.isfinite(worst) else "an amount that is not known"
     return (
-        "the scene asks for it; one family of waves stands for the two that hold liquid at rest in the drum, "
-        f"and is off the exact equilibrium by up to {size}"
+        "the scene asks for it; unidirectional waves stand for the two families that hold liquid at rest "
+        "in the drum, "
+        f"and are off the exact equilibrium by up to {size}"
     )
 
 
 def _held_reason(choice: Choice, part: Index) -> str:
-    """What a wave that was held in time rests on."""
+    """What a wave that was integrated in time rests on."""
     asked = "the scene asks for it; " if choice.prescribed else ""
     worst = choice.error[part].max()
     size = percent(worst) if np.isfinite(worst) else "an amount that is not known"
     parts = HELD_MODELS[choice.held_model][1]
-    return f"{asked}rotor and wave are held in time until they settle; half the {parts} change them by {size}"
+    return f"{asked}integrated in time until rotor and wave converge; half {parts} change them by {size}"
 
 
 def _linear_reason(choice: Choice, part: Index) -> str:
@@ -270,7 +271,7 @@ def _better(choice: Choice, model: str, part: Index) -> str:
         long = "seconds a speed"
         if choice.holding is not None:
             long = f"about {seconds_words(choice.holding[part].sum())} for all these speeds"
-        return f"long waves held in time ([model] held), {long}, for gravity's {percent(gravity)}"
+        return f"long waves integrated in time ([model] held), {long}, for gravity's {percent(gravity)}"
     if model != "statics":
         worst = choice.linear.worst[part].max()
         gives = "the same" if worst < EXACT else f"less than {percent(worst)} of change"

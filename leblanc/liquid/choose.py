@@ -216,7 +216,7 @@ differently in two directions"
 
 
 def _check_exact(scene: Scene) -> None:
-    """What the exact wave does not know."""
+    """What the fully nonlinear wave leaves out."""
     if scene.model.liquid != "potential":
         return
     if any(fill.uneven and fill.volume > 0.0 for fill in scene.fills):
@@ -224,14 +224,14 @@ def _check_exact(scene: Scene) -> None:
             "model.liquid", "potential", "auto, fem or long_wave where baffles stand in the liquid"
         )
     if scene.model.friction.law is FrictionLaw.QUADRATIC:
-        allowed = "none, linear, stokes or wall for exact waves, which take the drag on small waves"
+        allowed = "none, linear, stokes or wall for fully nonlinear waves, which take the drag on small waves"
         raise InputError("model.friction", "quadratic", allowed)
     if scene.model.cells % 2:
-        raise InputError("model.cells", scene.model.cells, "even, for exact waves")
+        raise InputError("model.cells", scene.model.cells, "even, for fully nonlinear waves")
 
 
 def may_hold(scene: Scene) -> bool:
-    """Whether a scene lets motions be held in time."""
+    """Whether a scene allows time-domain states."""
     model = scene.model
     return model.liquid in HELD_MODELS or (model.liquid == "auto" and model.held != "never")
 
@@ -242,10 +242,10 @@ def held_model(scene: Scene) -> str:
 
 
 def held_at(scene: Scene, choice: Choice, growth: Array) -> Flags:
-    """At which speeds the wave is held in time, shape (n,).
+    """At which speeds the wave is integrated in time, shape (n,).
 
     Auto needs it where no steady model is known to be within the tolerance, though the liquid rides with the
-    drum, and where a whirl grows by itself; exact waves are held there, and with gravity across the axis.
+    drum, and where whirl is self-excited; fully nonlinear waves there, and with transverse gravity.
     """
     across = scene.rotor.axis == "horizontal" and scene.gravity > 0.0
     if scene.model.liquid == "long_wave" or (scene.model.liquid == "potential" and across):
@@ -373,7 +373,7 @@ def _own_error(model: CheckedModel, machine: Prepared) -> Array:
 
 
 def _family_error(machine: Prepared) -> Array:
-    """Distance of the answer by one family of waves from the exact equilibrium, relative, shape (n,)."""
+    """Distance of the answer by unidirectional waves from the exact equilibrium, relative, shape (n,)."""
     rotor, fills, along = machine.rotor, machine.scene.fills, machine.axial_gravity
     own, exact = (
         response(rotor, fills, machine.speed, along, synchronous_model(name)) for name in ("kdv", "statics")

@@ -59,7 +59,7 @@ def _fem(friction: Friction, cells: int | None, dispersion: bool, solver: str | 
 def _potential(friction: Friction, cells: int | None, dispersion: bool, solver: str | None) -> WaveModel:
     from solvers.potential.model import Potential
 
-    _require_none(friction, "the exact wave, which is inviscid")
+    _require_none(friction, "the fully nonlinear wave, which is inviscid")
     return Potential() if cells is None else Potential(cells)
 
 
@@ -95,7 +95,8 @@ def wave_model(
 ) -> WaveModel:
     """The liquid model that `layer` names, for a prescribed whirl; statics feel no friction.
 
-    `cells` round the wall, points of one family, or most steps from crest to trough of the exact wave.
+    `cells` round the wall, points of unidirectional waves, or most steps from crest to trough of the
+    fully nonlinear wave.
     """
     if name not in _MAKE:
         raise InputError("model", name, "one of " + ", ".join(_MAKE))

@@ -89,8 +89,8 @@ def no_smooth_wave(whirl: float, largest: float, fold: bool) -> Note:
 
 
 def no_exact_wave(reason: str) -> Note:
-    """Why no exact wave was found where the closed form has a smooth one, so that another model answers."""
-    return Note(LayerCode.NO_EXACT_WAVE, {}, f"no smooth exact wave was found: {reason}")
+    """Another model answers: no fully nonlinear wave was found where the analytical check has one."""
+    return Note(LayerCode.NO_EXACT_WAVE, {}, f"no smooth fully nonlinear wave was found: {reason}")
 
 
 def two_grids(gap: float) -> Note:

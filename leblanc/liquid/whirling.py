@@ -30,8 +30,8 @@ TOLERANCE = 0.01  # of the force, relative; a layer alone is rarely wanted as we
 _SHARED = ("centrifuge", "wall_layer")  # numbers that bound all models that go with the whirl
 _WORDS = {
     "linear": "linear theory",
-    "kdv": "one family of waves",
-    "potential": "the exact wave",
+    "kdv": "unidirectional waves",
+    "potential": "the fully nonlinear wave",
     "fem": "finite elements",
 }
 
@@ -74,7 +74,7 @@ def choose_wave(asked: AutoWave, fill: Fill, whirl: Whirl) -> WaveChoice:
     """The cheapest model whose own error estimate for a steady whirl is within the tolerance.
 
     Long waves are not asked: they are what is left where friction or gravity acts, whose errors no estimate
-    has, and where the exact wave has no smooth answer.
+    has, and where the fully nonlinear wave has no smooth answer.
     """
     if whirl.gravity != 0.0:
         return _long(asked, fill, whirl, "gravity across the axis acts, whose waves they alone have")
@@ -90,7 +90,8 @@ def choose_wave(asked: AutoWave, fill: Fill, whirl: Whirl) -> WaveChoice:
         if model.name == "potential" and share > SMOOTH[1]:
             # To look for it all the same takes up to a minute.
             why = (
-                f"they have bores, and the whirl is {share:.2g} times the largest that a smooth wave follows"
+                f"they have hydraulic jumps, and the whirl is {share:.2g} times the largest that a "
+                f"smooth wave follows"
             )
             return _long(asked, fill, whirl, why, smooth=False)
         wave = model.wave(fill, whirl)
@@ -100,7 +101,7 @@ def choose_wave(asked: AutoWave, fill: Fill, whirl: Whirl) -> WaveChoice:
         against.append(refused)
     if wave.answer.converged[0]:
         return _long(asked, fill, whirl, against[-1])
-    found = _long(asked, fill, whirl, f"they have bores, and {against[-1]}", smooth=False)
+    found = _long(asked, fill, whirl, f"they have hydraulic jumps, and {against[-1]}", smooth=False)
     return replace(found, notes=(no_exact_wave(wave.reason),))
 
 
@@ -141,13 +142,13 @@ def choose_in_time(asked: AutoWave, fill: Fill, whirl: Whirl) -> WaveChoice:
         why = f"the layer is deeper than {LONG[1]:g} of the radius, where waves are not long"
     else:
         model = wave_model("long_wave", asked.friction, asked.cells, asked.dispersion)
-        why = "long waves go through time with friction, gravity and bores"
+        why = "long waves go through time with friction, gravity and hydraulic jumps"
     return WaveChoice(model, f"{why}; of the error in time there is no estimate")
 
 
 def choose_free(asked: AutoWave) -> WaveChoice:
-    """The model of free waves: the exact one, of which alone the speed goes with the height."""
-    why = "the speed of a free wave goes with its height, which linear theory does not have"
+    """The model of natural sloshing waves: the exact one, of which alone the speed goes with the height."""
+    why = "the speed of a natural sloshing wave goes with its height, which linear theory does not have"
     return WaveChoice(wave_model("potential", asked.friction, asked.cells), why)
 
 

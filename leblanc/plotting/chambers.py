@@ -15,7 +15,7 @@ import numpy as np
 from leblanc.core.units import DEGREE, LENGTH, MINUS, MM, TIMES, in_rpm, number, with_unit
 from leblanc.liquid.choice import HELD_MODELS
 from leblanc.liquid.filled import FilledChamber
-from leblanc.plotting.drawn import chord, rounded_down
+from leblanc.plotting.bodies import chord, rounded_down
 from leblanc.plotting.page import (
     MOST_LINES,
     RIGHT,

@@ -28,7 +28,7 @@ _MOST_WINDOWS = 3
 
 @dataclass(frozen=True)
 class HeldCurves:
-    """Motions held in time in the units of figures, by rising speed; n speeds, c chambers."""
+    """Time-domain states in the units of figures, by rising speed; n speeds, c chambers."""
 
     rpm: Array  #: of all speeds asked for, shape (n,)
     cycle: Array  #: amplitude of limit cycles on average, mm, nan elsewhere, shape (n,)
@@ -65,7 +65,7 @@ class Curves:
     dry_patch: list[Span]  #: spans of speed, rpm
     out_of_range: list[Span]
     not_converged: list[Span]
-    held: HeldCurves | None = None  #: motions held in time; None where none was
+    held: HeldCurves | None = None  #: time-domain states; None where none was
 
 
 def lag_degrees(angle: Array, size: Array) -> Array:
@@ -230,7 +230,7 @@ def _over_time(result: RunAnswer) -> tuple[Array, Array]:
 
 
 def _held_curves(result: RunAnswer, held: Held) -> HeldCurves:
-    """Motions held in time, ready for drawing."""
+    """Time-domain states, ready for drawing."""
     order = np.argsort(result.speed, kind="stable")
     mean, apart, drawn = result.amplitude[order], held.hysteresis[order], held.at[order]
     down = np.where(apart, held.amplitude_down[order], np.where(drawn, mean, np.nan))

@@ -19,7 +19,7 @@ ROLLING = ("ball_diameter", "pitch_diameter", "contact_angle")
 BallDiameter = Annotated[
     float | None,
     LENGTH,
-    Field(description="of its balls; the speed of its cage is told with this and pitch_diameter"),
+    Field(description="of its balls; the speed of its cage is reported with this and pitch_diameter"),
 ]
 PitchDiameter = Annotated[float | None, LENGTH, Field(description="of the circle of the balls' centres")]
 ContactAngle = Annotated[

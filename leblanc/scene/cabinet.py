@@ -77,7 +77,7 @@ class Cabinet(Part):
 
 
 class Point(Part):
-    """A named point whose orbit and clearance are told.
+    """A named point whose orbit and clearance are reported.
 
     Examples
     --------
@@ -93,7 +93,7 @@ class Point(Part):
     )
     position: Place = Field(description="x, y, z in the rotor's coordinates at rest")
     gap: Annotated[float | None, quantity(units.LENGTH, 0.0, 1e3)] = Field(
-        None, description="room to the housing at rest; no clearance is told if left out"
+        None, description="room to the housing at rest; no clearance is reported if left out"
     )
     direction: Annotated[
         tuple[_Number, _Number, _Number] | None, entries(3, 3, "pure numbers, along x, y, z")

@@ -321,10 +321,10 @@ def _study(scene: Scene) -> list[Row]:
 
 
 def _held(model: Model) -> list[Row]:
-    """How waves are held in time, where they are."""
+    """How waves are integrated in time, where they are."""
     if model.held == "never" and model.liquid not in ("long_wave", "potential"):
         return []
-    held = [row("Waves held in time", model.held, "model.held")] if model.held != "never" else []
+    held = [row("Time-domain states", model.held, "model.held")] if model.held != "never" else []
     return [*held, row("Cells of a held wave", str(model.cells), "model.cells")]
 
 
@@ -347,8 +347,8 @@ def _runup(plan: Runup) -> list[Row]:
         row("Run-up then", "down again" if plan.back else "held", "runup.back"),
         row("Run-up cells", f"{plan.cells} round each wall", "runup.cells"),
         row("Run-up dispersion", "with" if plan.dispersion else "without", "runup.dispersion"),
-        *([] if plan.bore == "none" else [row("Run-up bores", f"with {plan.bore}", "runup.bore")]),
-        *([] if plan.capture == "carried" else [row("Liquid captured", plan.capture, "runup.capture")]),
+        *([] if plan.bore == "none" else [row("Turbulence of jumps", f"with {plan.bore}", "runup.bore")]),
+        *([] if plan.capture == "carried" else [row("Centrifuged", plan.capture, "runup.capture")]),
         row("Run-up samples", f"{plan.samples}", "runup.samples"),
     ]
 

@@ -213,7 +213,7 @@ class TwoPlaneRotor(Part):
     pivot: Annotated[float | None, POSITION] = Field(
         None,
         description="place of a ball joint on a vertical axis, upwards from the centre of mass: whether the "
-        "rotor stands upright about it is told; the response moves on the supports alone",
+        "rotor stands upright about it is reported; the response moves on the supports alone",
     )
 
     @classmethod
@@ -406,7 +406,7 @@ class TubRotor(Part):
         (), description="between the tub and the ground, one table each"
     )
     bearings: Annotated[tuple[Bearing, ...], entries(2, 2, "tables headed [[rotor.bearings]]")] = Field(
-        (), description="of the drum in the tub, two of them; their forces are not told if left out"
+        (), description="of the drum in the tub, two of them; their forces are not reported if left out"
     )
     axis: Axis = Field("horizontal", description=_AXIS)
 

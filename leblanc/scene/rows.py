@@ -15,7 +15,7 @@ _UNIT = re.compile(r"(.*?)(?: \((.*)\))?")
 
 @dataclass(frozen=True)
 class Value:
-    """One value as printed."""
+    """One value in words."""
 
     text: str  #: the value, with its unit unless a table's head has it
     #: its own in the scene, then those of values that it is worked out from; none for a label

@@ -239,12 +239,12 @@ class Model(Part):
     held: Annotated[str, one_of(*HELD)] = Field(
         "never",
         description="where auto may hold rotor and long waves in time, which takes seconds a speed: never; "
-        "where no steady model is within the tolerance or a whirl grows by itself (auto); or always",
+        "where no steady model is within the tolerance or whirl is self-excited (auto); or always",
     )
     cells: Annotated[int, whole(16, MAX_CELLS)] = Field(
         128,
         description="finite volumes round each wall of a wave that is held; nodes of an exact one, even, of "
-        "which it takes more where it wants them",
+        "which it takes more where needed",
     )
 
 
@@ -283,10 +283,11 @@ class Scene(Part):
         Field((), description="each with its liquid or its balls; without chambers [model] has no effect")
     )
     cabinet: Cabinet | None = Field(
-        None, description="that stands on the floor around the rotor; forces under its feet are told if given"
+        None,
+        description="that stands on the floor around the rotor; forces under its feet are reported if given",
     )
     points: Annotated[tuple[Point, ...], entries(0, MAX_POINTS, "tables headed [[points]]")] = Field(
-        (), description="named points whose orbits and clearances are told, one table each"
+        (), description="named points whose orbits and clearances are reported, one table each"
     )
     speeds: Speeds = Field(description="at which the machine is studied")
     model: Model = Field(Model(), description="of the liquid")

@@ -177,7 +177,7 @@ class Spindle(Part):
     rotation: Annotated[float | None, SPEED] = Field(
         None,
         description="speed at which the spindle turns, which has no part in its vibration; the cages of "
-        "joints with ball_diameter and pitch_diameter are told at it",
+        "joints with ball_diameter and pitch_diameter are reported at it",
     )
 
     _POINTS: ClassVar = ("driven", "measured", "wanted")

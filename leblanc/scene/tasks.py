@@ -183,7 +183,7 @@ class Optimisation(Part):
     dry_patch: Truth = Field(True, description="whether the wall may be dry somewhere at the working speed")
     stable: Truth = Field(
         True,
-        description="whether every small whirl must die out where the machine stays: at the working speed "
+        description="whether every small whirl must decay where the machine stays: at the working speed "
         "and those of the duty cycle, or at all operating speeds where a margin or a range of them is given",
     )
     stability_margin: Annotated[float | None, quantity(units.RATE, 0.0, 1e6)] = Field(
@@ -321,12 +321,14 @@ class Runup(Part):
     dispersion: Truth = Field(False, description="whether the waves of the layers disperse")
     bore: Annotated[str, one_of(*BORES)] = Field(
         "none",
-        description="what the bores of the layers leave behind: nothing (none), or fluctuations that press "
-        "on the liquid, are carried along and decay (enstrophy)",
+        description="turbulence that hydraulic jumps of the layers leave behind: nothing (none), or "
+        "fluctuations that press "
+        "on the liquid, are spun up and decay (enstrophy)",
     )
     capture: Annotated[str, one_of(*CAPTURES)] = Field(
         "carried",
-        description="how liquid at the bottom of a lying chamber becomes a ring: dragged over the top by its "
+        description="how liquid at the bottom of a horizontal chamber becomes an annular layer: dragged "
+        "over the top by its "
         "walls (carried); taken along by the drum at once where their drag beats gravity (drum); or in any "
         "case where the drum's centrifugal field beats gravity (riding)",
     )

@@ -66,7 +66,7 @@ def with_unbalances(rotor: AnyRotor, sizes: Sequence[float]) -> AnyRotor:
 
 
 def left_in_the_end(rotor: AnyRotor) -> float:
-    """Share of the sizes of all unbalances that is left when all has left that does."""
+    """Share of the sizes of all unbalances that remains when all has left that does."""
     sizes, sheds = unbalances_of(rotor), sheds_of(rotor)
     gone = sum(size * part.share for size, part in zip(sizes, sheds, strict=True) if part is not None)
     return 1.0 - gone / sum(sizes) if sum(sizes) > 0.0 else 1.0

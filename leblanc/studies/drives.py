@@ -87,7 +87,7 @@ def numerics_of(
 
 
 def rotor_in_time(scene: Scene) -> RotorSystem:
-    """The dry rotor of a scene with what leaves of its unbalances."""
+    """The rotor of a scene without liquid, with what leaves of its unbalances."""
     system, sizes, found = dry_rotor(scene).system(), unbalances_of(scene.rotor), []
     for k, sheds in enumerate(sheds_of(scene.rotor)):
         if sheds is None:

@@ -10,7 +10,7 @@ import numpy as np
 
 from leblanc.core.notes import one_line
 from leblanc.core.units import DEGREE, LENGTH, MINUS, MM, unit_for
-from leblanc.plotting.drawn import BallView, DrawnRace
+from leblanc.plotting.bodies import BallView, DrawnRace
 from leblanc.view.parts import NO_CELLS, Instant, Label, Picture, Piece, Stage, placed, turned
 from leblanc.view.scene import compose, describe_speed, place_in_words
 from meshes.arrays import Array

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from leblanc.core.units import MM
-from leblanc.plotting.drawn import Spot
+from leblanc.plotting.bodies import Spot
 from leblanc.view.machine import cylinder, moved
 from leblanc.view.parts import Instant, Label, Piece, Stage, line, placed
 from meshes.arrays import Array

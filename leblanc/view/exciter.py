@@ -8,7 +8,7 @@ import numpy as np
 
 from leblanc.core.notes import one_line
 from leblanc.core.units import LENGTH, MM, in_rpm, unit_for
-from leblanc.plotting.drawn import TableView
+from leblanc.plotting.bodies import TableView
 from leblanc.view.machine import cylinder, damper, spring, tube
 from leblanc.view.parts import NO_CELLS, Label, Picture, Piece, bar_length, circle, line
 from meshes.arrays import Array, Indices

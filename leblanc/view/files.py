@@ -24,8 +24,9 @@ import numpy as np
 
 from leblanc.core.files import writing
 from leblanc.core.interrupts import given_back
-from leblanc.plotting.drawn import DrawnLiquid, MachineMotion, Scale
-from leblanc.view.gate import address_of, gate
+from leblanc.plotting.bodies import DrawnLiquid, MachineMotion, Scale
+from leblanc.view.access import address_of, gate
+from leblanc.view.camera import VIEWS, layout
 from leblanc.view.parts import Picture
 from leblanc.view.picture import (
     Plotter,
@@ -37,7 +38,6 @@ from leblanc.view.picture import (
     write_png,
 )
 from leblanc.view.scene import describe_speed, describe_state, stage_of, still
-from leblanc.view.sight import VIEWS, layout
 from meshes.errors import InputError
 
 ROOMIER = 1.2  # of a page's view, in which what is near looks larger

@@ -15,7 +15,7 @@ import numpy as np
 from leblanc.core.files import writing
 from leblanc.core.notes import one_line
 from leblanc.core.units import DEGREE, LENGTH, RPM, in_rpm, unit_for, with_unit
-from leblanc.plotting.drawn import (
+from leblanc.plotting.bodies import (
     BallView,
     DrawnLiquid,
     LiquidBodies,
@@ -26,11 +26,11 @@ from leblanc.plotting.drawn import (
     Scale,
 )
 from leblanc.view.balls import ball_still, with_balls
+from leblanc.view.camera import layout
 from leblanc.view.inset import with_inset
 from leblanc.view.parts import Inset, Instant, Picture, Stage
 from leblanc.view.picture import Pixels, fill, pixels, plotter, write_png
 from leblanc.view.scene import compose, stage_of, still
-from leblanc.view.sight import layout
 from meshes.arrays import Array, Complex
 from meshes.bodies.body import columns
 from meshes.errors import InputError

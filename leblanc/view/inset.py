@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from leblanc.view.camera import INSET, font_file, letters
 from leblanc.view.parts import Inset
-from leblanc.view.sight import INSET, font_file, letters
 from meshes.arrays import Array
 
 WIDE, FINER = 0.4, 3  # width over that of the frame; drawn so much finer, for smooth edges

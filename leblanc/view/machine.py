@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from leblanc.core.units import MM
-from leblanc.plotting.drawn import MachineParts, Shell, Strut
+from leblanc.plotting.bodies import MachineParts, Shell, Strut
 from leblanc.view.parts import Instant, Label, Piece, Stage, line, placed
 from meshes.arrays import Array, Complex, Indices
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from fluid.fill import Fill
 from leblanc.core.units import MM
-from leblanc.plotting.drawn import Liquid, MachineParts, Scale
+from leblanc.plotting.bodies import Liquid, MachineParts, Scale
 from meshes.arrays import Array, Complex, Indices
 
 ROUND = 181  # points of a circle

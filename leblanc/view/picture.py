@@ -15,8 +15,7 @@ from numpy.typing import NDArray
 
 from leblanc.core.files import writing
 from leblanc.core.interrupts import held
-from leblanc.view.parts import Label, Picture, Piece, line
-from leblanc.view.sight import (
+from leblanc.view.camera import (
     BOTTOM,
     LINE,
     TOP,
@@ -28,6 +27,7 @@ from leblanc.view.sight import (
     letters,
     words_of,
 )
+from leblanc.view.parts import Label, Picture, Piece, line
 from meshes.errors import InputError
 
 Plotter = Any  # pyvista's

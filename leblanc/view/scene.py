@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from leblanc.core.notes import one_line
 from leblanc.core.units import DEGREE, LENGTH, MINUS, Unit, in_rpm, unit_for
+from leblanc.plotting.bodies import DrawnLiquid, LiquidBodies, LiquidShape, MachineMotion, Scale, strips
 from leblanc.plotting.chambers import plates
-from leblanc.plotting.drawn import DrawnLiquid, LiquidBodies, LiquidShape, MachineMotion, Scale, strips
 from leblanc.plotting.page import zero_of
 from leblanc.studies.run.words import amplitude_place
 from leblanc.view.cabinet import around, corners

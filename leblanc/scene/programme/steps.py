@@ -77,7 +77,7 @@ def parse_step(text: object, field: str = "step") -> Step:
     if kind == "to":
         found = _TO.fullmatch(line)
         if found is None:
-            raise InputError(field, text, f'{ALLOWED}; "to" wants "in" and a time or "at" and a rate')
+            raise InputError(field, text, f'{ALLOWED}; "to" needs "in" and a time or "at" and a rate')
         speed = _value(found["speed"], SPEED, "speed", text, field)
         if found["how"].lower() == "in":
             return Step("to", speed, time=_value(found["what"], TIME, "time", text, field))

@@ -49,11 +49,11 @@ class Programme(Part):
     cells: Annotated[int, whole(8, 65536)] = Field(128, description="of each liquid layer round its wall")
     dispersion: Truth = Field(False, description="whether the waves of the layers disperse")
     bore: Annotated[str, one_of(*BORES)] = Field(
-        "none", description="what the bores of the layers leave behind, as in runup.bore"
+        "none", description="turbulence that hydraulic jumps of the layers leave behind, as in runup.bore"
     )
     capture: Annotated[str, one_of(*CAPTURES)] = Field(
         "carried",
-        description="how liquid at the bottom of a lying chamber becomes a ring, as in runup.capture",
+        description="pool-annulus transition of a horizontal chamber, as in runup.capture",
     )
     samples: Annotated[int, whole(10, 1_000_000)] = Field(2000, description="of the results over time, about")
 
@@ -108,7 +108,11 @@ class Programme(Part):
             *found,
             row("Programme cells", f"{self.cells} round each wall", "programme.cells"),
             row("Programme dispersion", "with" if self.dispersion else "without", "programme.dispersion"),
-            *([] if self.bore == "none" else [row("Programme bores", f"with {self.bore}", "programme.bore")]),
-            *([row("Liquid captured", self.capture, "programme.capture")] * (self.capture != "carried")),
+            *(
+                []
+                if self.bore == "none"
+                else [row("Turbulence of jumps", f"with {self.bore}", "programme.bore")]
+            ),
+            *([row("Centrifuged", self.capture, "programme.capture")] * (self.capture != "carried")),
             row("Programme samples", f"{self.samples}", "programme.samples"),
         ]

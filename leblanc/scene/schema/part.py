@@ -22,7 +22,7 @@ from leblanc.scene.schema.load import SceneError, SceneFault, field_path, meant,
 from leblanc.scene.schema.rules import OneOf, Refused
 from meshes.errors import InputError
 
-MAX_FAULTS = 100  # that are told; a file of another kind has millions
+MAX_FAULTS = 100  # that are reported; a file of another kind has millions
 _TOGETHER, _ABSENT = "together", "absent"  # names of faults that no single value has
 # Tag of tables of other packages; in the place of a fault the kind of the table follows it.
 ANNOUNCED = "announced"

@@ -1,4 +1,4 @@
-"""What `run` answers of a rotor with balls: where they rest in the drum at each speed, and what is left."""
+"""Answer of `run` with balls: their rest places in the drum at each speed, and the residual amplitude."""
 
 from __future__ import annotations
 
@@ -115,7 +115,7 @@ class BallsAnswer(Answer):
     balanced_bands: tuple[tuple[float, float], ...] | None = None
     #: forces and clearances of the state reported where it is stable; None where the scene asks for none
     loads: Annotated[MachineLoads | None, Q(part=True)] = None
-    #: what the sources' closed forms say of the rotor
+    #: analytical checks of the sources
     closed_forms: Annotated[ClosedForms, Q(part=True)] = field(default_factory=ClosedForms)
     liquid_model: str = ""  #: name of the liquid's model; empty without liquid
     #: relative, of the state reported, of amplitude and liquid the larger one; None without liquid
@@ -219,7 +219,7 @@ class BallsAnswer(Answer):
 
     @property
     def elsewhere(self) -> Flags:
-        """The member told is not stable, and others of its family are, shape (s,)."""
+        """The member reported is not stable, and others of its family are, shape (s,)."""
         if self.growth_range is None:
             return np.zeros(self.speed.shape, dtype=bool)
         return np.asarray(~self.stable & (self.growth_range[:, 0] <= GROWS * self.speed))
@@ -455,7 +455,7 @@ def checks(result: BallsAnswer) -> list[Check]:
         ("No state found", ~result.converged),
         ("No state is stable", result.unstable & result.converged),
         ("Stable only elsewhere in the family", result.elsewhere),
-        ("Several states are stable, the largest is told", several),
+        ("Several states are stable, the largest is reported", several),
         ("More amplitude than without balls", result.amplitude > result.amplitude_without),
     ]
     if result.liquid_model and result.tolerance is not None:

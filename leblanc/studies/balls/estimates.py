@@ -70,7 +70,7 @@ def _joined(kind: type[_Errors], parts: Sequence[_Errors]) -> _Errors:
 def gravity_on_balls(
     machine: Prepared, races: Sequence[BallRace], places: Array, coordinates: Complex, position: float
 ) -> GravityOnBalls | None:
-    """How balls that rest in a lying drum swing, and what that does [theory: races, eq. 11].
+    """How balls that rest in a horizontal drum swing, and what that does [theory: races, eq. 11].
 
     None where gravity does not act across the axis.
     """

@@ -89,10 +89,10 @@ def uneven_supports() -> Note:
 
 def liquid_in_step(model: str) -> Note:
     """How the liquid enters the growth."""
-    how = "linear theory, a full chamber's mass" if model == "linear" else "its exact equilibrium"
+    how = "linear theory, a reference mass" if model == "linear" else "its exact equilibrium"
     text = (
         f"In the states the liquid is in {how}. In the growth of small motions it is a mass "
-        "in step with the axis: whirls that the liquid itself excites are told by the scene without balls."
+        "in step with the axis: self-excited whirl is reported by the scene without balls."
     )
     return Note(BallCode.LIQUID_IN_STEP, {"model": model}, text)
 
@@ -178,7 +178,8 @@ def in_ratio(paths: Sequence[str]) -> Note:
 def loads_of_states() -> Note:
     """Of which motion forces and clearances are."""
     text = (
-        "Forces and clearances are those of the stable state that is told, at the speeds of the scene; where "
+        "Forces and clearances are those of the stable state that is reported, at the speeds of the "
+        "scene; where "
         "the balls run they are not known, and a run-up shows them."
     )
     return Note(BallCode.LOADS_OF_STATES, {}, text)

@@ -188,7 +188,7 @@ def _loads(scene: Scene, answer: BallsAnswer) -> MachineLoads | None:
 def _run_notes(
     scene: Scene, answer: BallsAnswer, alike: bool, waves: GravityError | None
 ) -> tuple[Note, ...]:
-    """What was assumed, and what is not told."""
+    """What was assumed, and what is not reported."""
     found = [notes.capacity(answer.can_balance, sum(answer.capacity)), notes.points()]
     if answer.unstable.any():
         first, last = answer.speed[answer.unstable][[0, -1]].tolist()
@@ -233,7 +233,7 @@ def _gravity(answer: BallsAnswer) -> Note:
 
 
 def _waves(answer: BallsAnswer, waves: GravityError) -> Note:
-    """What gravity's waves in the liquid do to the states that are told."""
+    """Effect of gravity's waves in the liquid on the states reported."""
     assert answer.in_range is not None
     worst = float(np.max(waves.amplitude[answer.stable & answer.in_range], initial=0.0))
     amplitude, ripple, liquid = (

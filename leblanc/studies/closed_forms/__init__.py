@@ -1,1 +1,1 @@
-"""Closed forms beside a scene's answer: `told` gathers those that the scene has the data for."""
+"""Analytical checks beside a scene's answer: `told` gathers those that the scene has the data for."""

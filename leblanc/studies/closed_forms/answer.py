@@ -1,4 +1,4 @@
-"""What closed forms say of a machine beside its solved answer: angles, stability, balancing, cages."""
+"""Analytical checks beside a machine's solved answer: angles, stability, balancing, cages."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Rows = list[tuple[str, str]]
 
 # Angles from the liquid to the unbalance, then what they follow from and what they leave.
 HEAD = (
-    *("speed (rpm)", "angle, solved (deg)", "alpha_0 (deg)", "as printed (deg)"),
+    *("speed (rpm)", "angle, solved (deg)", "alpha_0 (deg)", "as published (deg)"),
     *("lag delta (deg)", "k", "lambda_0"),
 )
 _SHOWN = 9  # speeds in the table of angles
@@ -67,7 +67,7 @@ class VectorModel:
     #: alpha_0 for this k, of two the one nearer to `angle`; nan where no angle balances
     balance_angle: Annotated[Array, Q("rad", "angle by the balance of angles", _LIQUID, _OVER)]
     #: alpha_0 by the formula of the source, whose cosine lost a factor 1/k [DR18, eq. 25]; nan if not real
-    printed_angle: Annotated[Array, Q("rad", "angle as printed", _LIQUID, _OVER)]
+    printed_angle: Annotated[Array, Q("rad", "angle as published", _LIQUID, _OVER)]
     unbalance_left: Annotated[Array, Q("1", "total unbalance over that of the rotor", "lambda_0", _OVER)]
 
     @property
@@ -90,7 +90,7 @@ class Cage:
 
 @dataclass(frozen=True)
 class ClosedForms:
-    """What closed forms say of a scene; None or empty where it lacks what they need."""
+    """Analytical checks of a scene; None or empty where it lacks what they need."""
 
     #: of a vertical rotor with a ball joint
     upright: Annotated[Upright | None, Q(prefix="upright", text="by the energy", when="upright")] = None
@@ -128,7 +128,7 @@ class ClosedForms:
 
 
 def closed_form_table(forms: ClosedForms) -> Table:
-    """What closed forms say, in a line each."""
+    """Analytical checks, in a line each."""
     rows = [
         *([] if forms.vector is None else [("Vector model", _vector(forms.vector))]),
         *([] if forms.upright is None else [("Upright rotation", _upright(forms.upright))]),
@@ -139,14 +139,18 @@ def closed_form_table(forms: ClosedForms) -> Table:
 
 
 def _vector(found: VectorModel) -> str:
-    """How well the balance of angles is met, and what is left of the unbalance."""
+    """How well the balance of angles is met, and the residual unbalance ratio."""
     if math.isnan(found.difference):
         return "no angle balances: no liquid is off the axis"
     met = "angles are the solved ones to rounding"
     if found.difference > EXACT:
         met = f"angles within {found.difference:.1g} rad of the solved ones"
     left = float(found.unbalance_left[-1])
-    last = f"; at the last speed lambda_0 = {left:.4g} of the unbalance is left" if np.isfinite(left) else ""
+    last = (
+        f"; at the last speed the residual unbalance ratio is lambda_0 = {left:.4g}"
+        if np.isfinite(left)
+        else ""
+    )
     return met + last
 
 

@@ -1,4 +1,4 @@
-"""What closed forms say of a scene: each where the scene has what it needs."""
+"""Analytical checks of a scene: each where the scene has what it needs."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from solvers.synchronous.response import Response
 
 
 def closed_forms(machine: Prepared, answer: Response | None = None) -> ClosedForms:
-    """Closed forms that a scene has the data for."""
+    """Analytical checks that a scene has the data for."""
     scene, speed = machine.scene, machine.speed
     balancing, why_not = _balancing(scene, speed)
     missing = [lacking(scene), why_not, _no_balls(scene)]
@@ -87,7 +87,7 @@ def _printed(lag: float, ratio: float) -> float:
 
 
 def _balancing(scene: Scene, speed: Array) -> tuple[Balancing | None, str | None]:
-    """Conditions of balancing in two planes of a rotor that tilts, or why they are not told."""
+    """Conditions of balancing in two planes of a rotor that tilts, or why they are not reported."""
     if not isinstance(scene.rotor, TwoPlaneRotor):
         return None, None
     refused = "Conditions of balancing in two planes"
@@ -105,7 +105,7 @@ def _balancing(scene: Scene, speed: Array) -> tuple[Balancing | None, str | None
 
 
 def _no_balls(scene: Scene) -> str | None:
-    """Why the speed of no cage is told, though there are bearings."""
+    """Why the speed of no cage is reported, though there are bearings."""
     rotor = scene.rotor
     if not isinstance(rotor, TubRotor) or not rotor.bearings or rotor.caged():
         return None

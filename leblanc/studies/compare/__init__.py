@@ -25,7 +25,7 @@ def compare(
     *,
     workers: Annotated[int, Option(same=True), "Processes that hold waves in time [default: all cores]."] = 1,
     fresh: Annotated[
-        bool, Option(same=True), "Hold anew what an earlier run has left, so that all its time counts."
+        bool, Option(same=True), "Recompute what an earlier run has left, so that all its time counts."
     ] = False,
     folder: Path | None = None,
 ) -> CompareAnswer:

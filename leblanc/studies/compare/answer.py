@@ -138,7 +138,7 @@ class ModelAnswer:
     def held(
         self,
     ) -> Annotated[
-        dict[str, int] | None, Q("1", "how many of the motions held in time are of each kind", data=False)
+        dict[str, int] | None, Q("1", "how many of the time-domain states are of each kind", data=False)
     ]:
         if self.result is None or self.result.held is None:
             return None
@@ -275,7 +275,7 @@ def comparison_head(found: CompareAnswer) -> tuple[str, ...]:
     """Headings of the table of models."""
     place = next((amplitude_place(result) for result in found.results.values()), "")
     amplitude = f"largest amplitude{f' {place}' if place else ''}, {ZERO_TO_PEAK} ({_unit(found).name})"
-    held = ("held states",) if _any_held(found) else ()
+    held = ("time-domain states",) if _any_held(found) else ()
     return (
         "model",
         amplitude,
@@ -289,7 +289,7 @@ def comparison_head(found: CompareAnswer) -> tuple[str, ...]:
 
 
 def _any_held(found: CompareAnswer) -> bool:
-    """Some model's motions were held in time."""
+    """Some model's motions were integrated in time."""
     return any(answer.held for answer in found.answers)
 
 
@@ -333,7 +333,7 @@ def _estimate(answer: ModelAnswer) -> str:
 
 
 def held_words(answer: ModelAnswer) -> str:
-    """How many motions held in time are of each kind; none where a model is steady."""
+    """How many time-domain states are of each kind; none where a model is steady."""
     if answer.held is None:
         return "none"
     return ", ".join(f"{count} {kind.replace('_', ' ')}" for kind, count in answer.held.items() if count)
@@ -357,7 +357,7 @@ def _fact(found: CompareAnswer, answer: ModelAnswer) -> str:
         size = difference(found, answer.model)
         parts.append(f"difference {size}{' %' if size[0].isdigit() else ''}")
     if answer.held:
-        parts.append(f"held states: {held_words(answer)}")
+        parts.append(f"time-domain states: {held_words(answer)}")
     return ", ".join([*parts, f"{answer.cpu_time:.2g} s of processor time"])
 
 
@@ -370,6 +370,6 @@ def comparison_alt(found: CompareAnswer) -> str:
     """What the figure shows and the numbers a reader would take from it."""
     peaks = [f"{answer.model} {_size(answer)}" for answer in found.answers if answer.answered]
     below = "; below, their differences" if len(peaks) > 1 else ""
-    held = [f"{a.model} held in time: {held_words(a)}" for a in found.answers if a.held]
+    held = [f"{a.model} integrated in time: {held_words(a)}" for a in found.answers if a.held]
     below += f"; largest: {', '.join(peaks)}"
     return f"Curves of the amplitude over speed by each liquid model{'; '.join([below, *held])}."

@@ -36,7 +36,7 @@ class Cycle(_Row):
     amplitude: Annotated[float, Q("m", "amplitude", "of the first chamber's axis")]
     whirl_speed: Annotated[float, Q(_RATE, "whirl speed", "in space")]
     lag: Annotated[float, Q(_RATE, "lag", "of the liquid behind the drum")]
-    stable: Annotated[bool, Q(name="stable", text="small disturbances die out", flags="no yes")]
+    stable: Annotated[bool, Q(name="stable", text="small disturbances decay", flags="no yes")]
     growth: Annotated[float, Q("s-1", "growth rate", "of a small disturbance of the whirl")]
     torque: Annotated[float, Q("N m", "torque", "that the drive has to supply on top")]
     power: Annotated[float, Q("W", "power", "that the drive has to supply on top")]

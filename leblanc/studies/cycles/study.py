@@ -52,7 +52,7 @@ def scene_cycles(machine: Prepared, friction: Friction) -> tuple[LimitCycles, tu
     if machine.scene.rotor.axis == "horizontal" and machine.scene.gravity > 0.0:
         text = (
             "Limit cycles are those without gravity across the axis, with which a whirl is no circle: ask "
-            "for a held state of `run` where the spin hardly outweighs it."
+            "for a time-domain state of `run` where the spin hardly outweighs it."
         )
         said.append(Note(CycleCode.NO_CIRCLE, {}, text))
     lag = max(float(np.nanmax(branch.lag / branch.speed[:, None])) for branch in found.branches)

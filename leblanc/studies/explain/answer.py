@@ -73,7 +73,7 @@ class LayerExplanation:
     optimal_volume: Annotated[
         float,
         Q(
-            *("m3", "optimal volume", "covers the wall at the dry rotor's deflection at the last speed"),
+            *("m3", "optimal volume", "wets the wall at the deflection without liquid at the last speed"),
             variable="optimal_volume",
         ),
     ]
@@ -82,7 +82,12 @@ class LayerExplanation:
     #: inf where they never do; None if the axis stands, or the section is no circle
     carried_from: Annotated[
         float | None,
-        Q(_RATE, "carried from", "the walls carry the liquid round from rest", variable="carried_from"),
+        Q(
+            _RATE,
+            "annulus from rest above",
+            "the walls drag the liquid round from rest",
+            variable="carried_from",
+        ),
     ] = None
     #: None under another law of friction, and where it does not know the walls
     spin_up: Annotated[SpinUp | None, Q(text="by the law of the wall")] = None
@@ -101,7 +106,7 @@ class WhirlOutlook:
     #: of the axis at the chambers there; mostly within a factor of 1.5
     amplitude: Annotated[float, Q("m", "amplitude", "by rule")]
     whirl_speed: Annotated[float, Q(_RATE, "whirl speed", "by rule, in space", variable="whirl_speed")]
-    lag: Annotated[float, Q(_RATE, "lag of the liquid", "by rule, behind the drum")]
+    lag: Annotated[float, Q(_RATE, "slip speed of the liquid", "by rule, behind the drum")]
 
 
 class Explained(Answer):
@@ -110,7 +115,7 @@ class Explained(Answer):
     command = "explain"
 
     def named_arrays(self) -> NamedArrays:
-        """Closed forms are told at every speed, the coordinate is the ends of the scene's range."""
+        """Closed forms are reported at every speed, the coordinate is the ends of the scene's range."""
         found = super().named_arrays()
         moved = {
             name: replace(each, dims=tuple("at" if dim == "speed" else dim for dim in each.dims))
@@ -138,14 +143,15 @@ class ExplainAnswer(Explained):
     critical_speed_dry: Annotated[float, Q(_RATE, "critical speed without liquid")]
     #: at small deflections; nan without chambers
     critical_speed_wet: Annotated[float, Q(_RATE, "critical speed with liquid")]
-    #: of several modes the one next to the dry critical speed, at that speed
+    #: of several modes the one next to the critical speed without liquid, at that speed
     damping_ratio: Annotated[float, Q("1", "damping ratio", "of the support")]
     speed_ratio: Annotated[
-        tuple[float, float], Q("1", "first and last speed over the dry critical speed", data=False)
+        tuple[float, float], Q("1", "first and last speed over the critical speed without liquid", data=False)
     ]
     #: None if at every speed
     captured_from: Annotated[
-        float | None, Q(_RATE, "capture speed", "the liquid rides with the drum", variable="capture_speed")
+        float | None,
+        Q(_RATE, "centrifuging speed", "the liquid rides with the drum", variable="capture_speed"),
     ]
     layers: Annotated[
         tuple[LayerExplanation | None, ...], Q(text="of each chamber, none of an empty one", rows="chamber")
@@ -155,13 +161,11 @@ class ExplainAnswer(Explained):
     ]
     tolerance: Annotated[float, Q("1", "tolerance", "relative error that is allowed")]
     #: none for a planar rotor, whose only one is the critical speed
-    modes: Annotated[tuple[RestMode, ...], Q(text="of the dry rotor at rest")] = ()
+    modes: Annotated[tuple[RestMode, ...], Q(text="of the rotor without liquid at rest")] = ()
     #: empty without one
     runup: Annotated[str, Q(text="which liquid model the run-up will take")] = ""
     #: None where none does, or nothing bounds it
-    whirl: Annotated[WhirlOutlook | None, Q(text="how large the whirl grows by itself", prefix="whirl")] = (
-        None
-    )
+    whirl: Annotated[WhirlOutlook | None, Q(text="size of the self-excited whirl", prefix="whirl")] = None
     #: None where steady models answer all
     held: Annotated[
         HeldCost | None, Q(text="cost of what steady models do not answer", prefix="held", data=False)
@@ -170,7 +174,7 @@ class ExplainAnswer(Explained):
     source: str = ""  #: of the scene
     assumed: tuple[str, ...] = ()
     digest: str = ""
-    #: what the sources' closed forms say of it without an answer
+    #: analytical checks of the sources, without an answer
     closed_forms: Annotated[ClosedForms, Q(part=True)] = field(default_factory=ClosedForms)
 
     @property
@@ -195,7 +199,9 @@ class ExplainAnswer(Explained):
         return 0.0 if self.held is None else self.held.seconds
 
     @property
-    def not_told(self) -> Annotated[tuple[str, ...], Q(text="closed forms for which the scene lacks values")]:
+    def not_told(
+        self,
+    ) -> Annotated[tuple[str, ...], Q(text="analytical checks for which the scene lacks values")]:
         return self.closed_forms.lacking
 
     def blocks(self) -> tuple[Block, ...]:
@@ -224,9 +230,9 @@ def described_blocks(answer: ExplainAnswer) -> list[Block]:
     if answer.models:
         found.append(Table(described(span.model for span in answer.models), indent=2))
     told = [*closed_form_table(answer.closed_forms).rows]
-    told += [("not told", text) for text in answer.closed_forms.lacking]
+    told += [("not reported", text) for text in answer.closed_forms.lacking]
     if told:
-        found += [Words("closed forms"), Table(told, indent=2)]
+        found += [Words("analytical checks"), Table(told, indent=2)]
     if answer.runup:
         found += [Words("liquid model of the run-up"), Table([(answer.runup,)], indent=2)]
     return found
@@ -240,7 +246,7 @@ def machine_rows(answer: ExplainAnswer) -> Rows:
     rows = [
         ("critical speed", f"{dry} without liquid{beside}"),
         ("damping ratio", f"{answer.damping_ratio:.4g}"),
-        ("speeds", f"{first:.3g} to {last:.3g} times the dry critical speed"),
+        ("speeds", f"{first:.3g} to {last:.3g} times the critical speed without liquid"),
     ]
     if math.isnan(answer.critical_speed_dry):
         free = [mode.moves for mode in answer.modes if mode.frequency == 0.0]
@@ -249,24 +255,24 @@ def machine_rows(answer: ExplainAnswer) -> Rows:
             ("critical speed", "none is given: the axis moves freely, and `leblanc run` refuses the machine"),
         ]
     if answer.captured_from is not None:
-        captured = f"above {in_rpm(answer.captured_from)} a ring of liquid stands against gravity"
-        rows.append(("captured", captured))
+        captured = f"exists above {in_rpm(answer.captured_from)}; gravity dominates below"
+        rows.append(("annular layer", captured))
     if answer.whirl is not None:
         size, speed = with_unit(answer.whirl.amplitude, LENGTH), in_rpm(answer.whirl.speed)
         turning = in_rpm(answer.whirl.whirl_speed)
-        text = f"grows by itself to about {size} at {speed}, the middle of its band, turning at {turning}"
+        text = f"self-excited, about {size} at {speed}, the middle of its band, turning at {turning}"
         rows.append(("whirl", f"{text}: an estimate, see `map --cycles`"))
     if answer.held is not None:
-        rows.append(("held in time", _held_words(answer.held, answer.tolerance)))
+        rows.append(("integrated in time", _held_words(answer.held, answer.tolerance)))
     return rows
 
 
 def _held_words(held: HeldCost, tolerance: float) -> str:
-    """What motions held in time take, and why they are held."""
+    """Steps of time-domain states, and why they are computed."""
     where = f"{held.speeds} speeds {over_rpm(held.first, held.last)}, {held.words}, good to a factor of two"
     if held.asked:
         return f"{where}; the cores share it"
-    why = f"no steady model is within {percent(tolerance)} there, or a whirl grows by itself"
+    why = f"no steady model is within {percent(tolerance)} there, or whirl is self-excited"
     return f'{where}, with [model] held = "auto": {why}'
 
 
@@ -291,10 +297,10 @@ def layer_rows(layer: LayerExplanation | None) -> Rows:
         steepness = "a cylinder: no gravity along the axis"
     covers = "not known for such a chamber"
     if not math.isnan(layer.optimal_volume):
-        covers = f"from {with_unit(layer.optimal_volume, VOLUME)} at the dry rotor's last deflection"
+        covers = f"from {with_unit(layer.optimal_volume, VOLUME)} at the last deflection without liquid"
     return [
         *([("walls", layer.walls)] if layer.walls else []),
-        *([("carried by baffles", carrying_words(layer.carrying))] if layer.carrying else []),
+        *([("baffles' torque", carrying_words(layer.carrying))] if layer.carrying else []),
         ("fill", f"{n.fill:.4g} of the capacity"),
         ("layer at fast spin", f"{with_unit(layer.depth, LENGTH)} deep, h0/R = {n.relative_depth:.4g}"),
         ("curvature", f"kappa = {n.curvature:.5g}"),
@@ -305,8 +311,8 @@ def layer_rows(layer: LayerExplanation | None) -> Rows:
         ("Reynolds number", _ends(n.reynolds)),
         ("wall layer", f"{_ends(n.skin)} of the depth"),
         *(_spin_up_rows(layer.spin_up) if layer.spin_up is not None else []),
-        ("covers the wall", covers),
-        *([] if layer.carried_from is None else [("carried from rest", _carried(layer.carried_from))]),
+        ("wetting volume", covers),
+        *([] if layer.carried_from is None else [("spin-up from rest", _carried(layer.carried_from))]),
     ]
 
 
@@ -322,14 +328,14 @@ def _spin_up_rows(found: SpinUp) -> Rows:
     asked = "that the ramp asks of the wall" if found.ramp else "of liquid at rest in space at the last speed"
     flow = f"{found.regime}, Re = {number(found.reynolds)} with a lag of {in_rpm(found.lag)}, {asked}"
     if math.isinf(found.time):
-        return [("flow at the wall", flow), ("carried along", "never: nothing drags on the liquid")]
+        return [("flow at the wall", flow), ("spun up", "never: nothing drags on the liquid")]
     carried = f"to a tenth of its lag in {number(found.time)} s at the last speed, without gravity"
     if found.ramp_time is not None:
         slow = found.time > found.ramp_time
         carried += f"; the ramp takes {number(found.ramp_time)} s: the liquid " + (
             "stays behind" if slow else "can follow"
         )
-    return [("flow at the wall", flow), ("carried along", carried)]
+    return [("flow at the wall", flow), ("spun up", carried)]
 
 
 def carrying_words(found: BaffleOutlook) -> str:
@@ -338,7 +344,7 @@ def carrying_words(found: BaffleOutlook) -> str:
     text = f"the ramp asks for {with_unit(found.asked, TORQUE)}, they can {able}"
     if not found.left_behind:
         return text
-    return f"{text}: the liquid is left behind up to {in_rpm(found.enough_from)}"
+    return f"{text}: the liquid slips up to {in_rpm(found.enough_from)}"
 
 
 def span_rows(span: ModelSpan) -> Rows:

@@ -108,7 +108,7 @@ def explain_scene(scene: Scene) -> ExplainAnswer:
 
 
 def _whirl(machine: Prepared) -> WhirlOutlook | None:
-    """How large a whirl grows by itself between the scene's first and last speed; None where none does."""
+    """Size of the self-excited whirl between the scene's first and last speed; None where there is none."""
     scene, range_ = machine.scene, (float(machine.speed.min()), float(machine.speed.max()))
     if not scene.fills or range_[0] == range_[1]:
         return None
@@ -148,7 +148,7 @@ def _rise(scene: Scene, above: float) -> _Rise | None:
     return max(found, key=lambda rise: rise.rate, default=None)
 
 
-# Share of the first lag at which the liquid counts as carried along.
+# Share of the first lag at which the liquid counts as spun up.
 _CARRIED = 0.1
 
 

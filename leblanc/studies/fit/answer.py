@@ -1,4 +1,4 @@
-"""What `fit` answers: unknown values of a scene, how well each is known, what is left."""
+"""What `fit` answers: unknown values of a scene, how well each is known, residuals."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Noise:
     kind: Annotated[
         str, Q(text="absolute, or relative to each reading; angles are always absolute", key="noise_kind")
     ]
-    stated: bool  #: it was given; otherwise estimated from what is left
+    stated: bool  #: it was given; otherwise estimated from residuals
     names: tuple[str, ...]  #: the quantities
     size: tuple[float, ...]  #: standard deviation of each, SI, or a share of each reading
 
@@ -104,7 +104,7 @@ class FitAnswer(Answer):
     signed: tuple[str, ...] = ()  #: unknowns that may have either sign
     #: degrees of freedom, measured values less those that were found; 0 where they are not known
     freedom: int = 0
-    accepted: Annotated[bool, Q(text="noise, or the error of the model, explains what is left")] = True
+    accepted: Annotated[bool, Q(text="noise, or the error of the model, explains the residuals")] = True
     noise: Annotated[Noise, Q(part=True)] = Noise("absolute", False, (), ())
     #: ends of the intervals of 95 %, where a profile gives them, SI, nan elsewhere,
     #: shape (p, 2)
@@ -207,9 +207,11 @@ class FitAnswer(Answer):
         value, std, unit = float(self.value[k]), float(self.std[k]), self.shown_in(k)
         known = not math.isnan(std)
         bare = path in self.signed  # a position or an angle has no size to compare with
-        share = "" if bare else f"{100.0 * std / abs(value):.2g} %" if known else "not told"
-        ends = [unit.number(end) if math.isfinite(end) else "not told" for end in self.interval[k].tolist()]
-        error = unit.number(std) if known else "not told"
+        share = "" if bare else f"{100.0 * std / abs(value):.2g} %" if known else "not reported"
+        ends = [
+            unit.number(end) if math.isfinite(end) else "not reported" for end in self.interval[k].tolist()
+        ]
+        error = unit.number(std) if known else "not reported"
         first = unit.number(float(self.first[k]))
         return (" = ".join((path, *also)), unit.name, first, unit.number(value), error, share, *ends)
 

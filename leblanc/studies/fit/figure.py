@@ -1,4 +1,4 @@
-"""Measured and fitted quantities of a machine, and what is left between them."""
+"""Measured and fitted quantities of a machine, and their residuals."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _HEIGHTS = 2.2, 0.9  # inches: the quantity, what is left of it
 
 
 def fit_figure(answer: FitAnswer) -> Figure:
-    """Each measured quantity with the fitted one over speed or time, and below it what is left."""
+    """Each measured quantity with the fitted one over speed or time, and below it the residuals."""
     factor, label = _OVER[answer.over]
     with style():
         figure = Figure()
@@ -37,7 +37,7 @@ def fit_figure(answer: FitAnswer) -> Figure:
         panels[-1][0].set_xlabel(label)
         lay_out(figure, panels, list(_HEIGHTS) * len(answer.measured), FRAME, _caption(answer))
         figure.alt = (
-            "Measured points and the fitted line, with what is left between them below; "
+            "Measured points and the fitted line, with their residuals below; "
             f"{100.0 * answer.residual_rms:.2g} % of the measured size."
         )
     return figure
@@ -51,7 +51,7 @@ def _draw(
     curve: tuple[Array, Array] | None,
     labelled: bool,
 ) -> None:
-    """One quantity with the fitted curve, and what is left of it."""
+    """One quantity with the fitted curve, and its residuals."""
     angle, bare = part.unit == "rad", part.unit == ""
     factor = 180.0 / np.pi if angle else 1.0 if bare else MM
     unit = "deg" if angle else "as measured" if bare else "mm"
@@ -76,7 +76,7 @@ def _caption(answer: FitAnswer) -> Caption:
     found = "; ".join(_found(answer, k) for k in range(len(answer.unknown)))
     over = "liquid added" if answer.over == "added" else answer.over
     return Caption(
-        f"Measured and fitted over {over}, and what is left between them.",
+        f"Measured and fitted over {over}, and their residuals.",
         f"Scene: {one_line(answer.name)}. Found, with standard errors: {found}. Left: "
         f"{100.0 * answer.residual_rms:.2g} % of the measured size.",
     )

@@ -159,7 +159,7 @@ def here(problem: Problem, x: Array, stated: tuple[str, float], kind: str) -> Ju
 
 
 def unexplained(problem: Problem, judged: Judged) -> Note | None:
-    """Why what is left is not noise; None where it may be [theory: fit, eq. 8, 9]."""
+    """Why the residuals are not noise; None where it may be [theory: fit, eq. 8, 9]."""
     found = problem.scaled(judged.x, judged.sigma)
     if found is None:
         return poor_note(1.0, "the scene has no answer with these values")
@@ -192,13 +192,13 @@ def unexplained(problem: Problem, judged: Judged) -> Note | None:
 
 
 def relative_rms(problem: Problem, left: Sequence[Array]) -> float:
-    """Root of the mean square of what is left over the sizes of the quantities."""
+    """Root of the mean square of the residuals over the sizes of the quantities."""
     parts = [rest / each for rest, each in zip(left, problem.plain(), strict=True)]
     return float(np.sqrt(np.mean(np.square(np.concatenate(parts)))))
 
 
 def is_exact(problem: Problem, left: Sequence[Array]) -> bool:
-    """Less is left than needs an explanation."""
+    """The residuals are smaller than what needs an explanation."""
     return all(
         float(np.abs(rest).max()) <= _EXACT * (1.0 if is_turn(name) else float(np.abs(value).max()))
         for rest, (name, value) in zip(left, problem.measurement.columns, strict=True)
@@ -206,7 +206,7 @@ def is_exact(problem: Problem, left: Sequence[Array]) -> bool:
 
 
 def _by_model(problem: Problem, x: Array, found: Sequence[Array], left: Sequence[Array]) -> bool:
-    """What is left is within the error that the scene's own answer has."""
+    """The residuals are within the error that the scene's own answer has."""
     if problem.measurement.over != "speed" or any(name not in SIZES for name in problem.names):
         return False
     speed, where = np.unique(problem.measurement.at, return_inverse=True)
@@ -235,7 +235,7 @@ def _replicates(problem: Problem) -> int:
 
 
 def _repeated(problem: Problem, white: Sequence[Array]) -> str:
-    """Rows of one speed scatter less than what is left: their noise is known without the scene."""
+    """Rows of one speed scatter less than the residuals: their noise is known without the scene."""
     from scipy.special import fdtrc
 
     _, where, counts = np.unique(problem.measurement.at, return_inverse=True, return_counts=True)
@@ -279,7 +279,7 @@ def alike_by_chance(basis: Array, size: int) -> tuple[float, float]:
 
 
 def _neighbours(problem: Problem, judged: Judged, white: Sequence[Array]) -> str:
-    """What is left of neighbours is alike, or opposite: their correlation beside that of noise."""
+    """Residuals of neighbours are alike, or opposite: their correlation beside that of noise."""
     from scipy.special import betainc
 
     basis = _basis(problem, judged)

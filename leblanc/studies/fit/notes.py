@@ -45,7 +45,7 @@ def poor_note(rms: float, reason: str) -> Note:
 
 
 def few_note(rms: float, freedom: int) -> Note:
-    """That so few values cannot show whether what is left is noise."""
+    """That so few values cannot show whether the residuals are noise."""
     more = f"{freedom} value{'' if freedom == 1 else 's'} more than unknowns"
     text = (
         f"{100.0 * rms:.2g} % of the data's size are left, and {more} cannot show whether that is noise: "
@@ -55,10 +55,10 @@ def few_note(rms: float, freedom: int) -> Note:
 
 
 def large_note(rms: float) -> Note:
-    """That what is left was taken for noise although it is much."""
+    """That the residuals were taken for noise although they are large."""
     text = (
         f"{100.0 * rms:.2g} % of the data's size are left and taken for noise, which is much; state the "
-        "error of the sensor (--noise) to have it judged."
+        "error of the sensor (--noise) to have it evaluated."
     )
     return Note(FitCode.LARGE, {"residual_rms": rms}, text)
 
@@ -136,7 +136,7 @@ def fit_notes(
             if abs(correlation[i, j]) > _BOTH:
                 way = "product" if correlation[i, j] < 0.0 else "ratio"
                 text = (
-                    f"{unknown[j]} and {unknown[i]} are told together only (correlation "
+                    f"{unknown[j]} and {unknown[i]} are identifiable together only (correlation "
                     f"{correlation[i, j]:.3f}): something like their {way} is known, not each of them."
                 )
                 data = {"paths": (unknown[j], unknown[i]), "correlation": float(correlation[i, j])}

@@ -1,4 +1,4 @@
-"""The scene's answer to a measurement over its unknowns, and what is left between them."""
+"""The scene's answer to a measurement over its unknowns, and their residuals."""
 
 from __future__ import annotations
 
@@ -209,7 +209,7 @@ class Problem:
         ]
 
     def weighted(self, sigma: Sequence[Array]) -> Residual:
-        """What is left of each value over its error sigma [theory: fit, eq. 1], shape (n columns,)."""
+        """Residual of each value over its error sigma [theory: fit, eq. 1], shape (n columns,)."""
 
         def residual(x: Array) -> Array:
             found = self.scaled(x, sigma)
@@ -221,7 +221,7 @@ class Problem:
         return residual
 
     def logarithmic(self, x: Array) -> Array:
-        """What is left of the logarithms of sizes, of others over their size; wider valleys for a search."""
+        """Residuals of the logarithms of sizes, of others over their size; wider valleys for a search."""
         found = self.scaled(x)
         if found is None:
             return np.full(self.count, NO_ANSWER)

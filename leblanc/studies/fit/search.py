@@ -85,7 +85,7 @@ def search(
 ) -> Searched:
     """Ends of searches until the best has been found again and hardly any are unseen [theory: fit, eq. 6].
 
-    The search goes on where what is left may not be noise (`explained`).
+    The search goes on where the residuals may not be noise (`explained`).
     """
     plain = problem.weighted(problem.plain())
     alone = problem.first.size == 1

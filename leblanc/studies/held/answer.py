@@ -1,4 +1,4 @@
-"""What an answer tells of motions held in time until they settled."""
+"""Quantities of time-domain states."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _AXES = ("along the unbalance", "90 deg ahead of it")
 
 @dataclass(frozen=True)
 class Held:
-    """What rotor and waves do at the speeds at which they were held in time until they settled.
+    """Rotor and waves at the speeds at which they were integrated in time until they converged.
 
     n speeds, c chambers. At the other speeds numbers are nan and states are "steady".
     """
@@ -27,7 +27,7 @@ class Held:
     at: Annotated[
         Flags,
         Q(
-            *("", "held", "the motion was held in time until it settled", _OVER),
+            *("", "held", "the motion was integrated in time until it converged", _OVER),
             flags="no yes",
             key="held_at",
         ),
@@ -63,7 +63,12 @@ class Held:
     reason: Annotated[
         NDArray[np.str_],
         Q(
-            *("1", "why the motion has not settled", "empty where it has, or was not held", _OVER),
+            *(
+                "1",
+                "why the motion has not converged in time",
+                "empty where it has, or was not integrated in time",
+                _OVER,
+            ),
             key="held_reason",
         ),
     ]
@@ -109,7 +114,7 @@ class Held:
     def hysteresis(self) -> Flags:
         """Where the motion depends on whether the speed rises or falls, shape (n,).
 
-        What has not settled on either way is no motion of its own.
+        A motion that has not converged in time on either way is none of its own.
         """
         settled = (self.state != "not_settled") & (self.state_down != "not_settled")
         return np.asarray(self.at & settled & ~np.isnan(self.amplitude_down))

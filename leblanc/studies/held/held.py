@@ -1,4 +1,4 @@
-"""The response of a scene with long waves held in time: where they begin, and what they say."""
+"""Response of a scene with time-domain states: speeds at which they begin, and their results."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from solvers.rotor.vibration import orbit
 from solvers.synchronous.response import Response, by_speed, joined, response
 from solvers.whirl.growth import asynchronous_growth
 
-OWN_STEPS = "dop853"  # of exact waves, which py-pde does not hold
+OWN_STEPS = "dop853"  # of fully nonlinear waves, which py-pde does not integrate
 _KICK = 0.1  # of the layer's depth times the spin: what a whirl that grows by itself begins with
 
 
@@ -36,7 +36,7 @@ def hold_answer(
     began: Began,
     holding: Holding,
 ) -> tuple[Choice, Response, Response, Held, dict[float, HeldState]]:
-    """The answer of a machine with the wave held in time where that is wanted.
+    """Answer of a machine with time-domain states where they are asked for.
 
     The choice with the wave as model where it was held; answers at the speeds asked for and between them; the
     held states; the motions by their speeds, rad/s.
@@ -53,7 +53,7 @@ def hold_answer(
     def told(count: int) -> None:
         nonlocal done
         done += count
-        what = f"waves held in time, {done} of {total} speeds" if done <= total else "waves carried on"
+        what = f"waves integrated in time, {done} of {total} speeds" if done <= total else "waves carried on"
         update(what=what)
 
     told(0)
@@ -136,7 +136,7 @@ def hold_speeds(
 ) -> HeldBranches:
     """Held states at the speeds of a steady response.
 
-    `growth` is that of the whirl that grows most, 1/s, nan where it is not known.
+    `growth` is that of the fastest-growing whirl, 1/s, nan where it is not known.
     """
     held = held_machine(machine)
     numerics = HoldNumerics(cells=machine.scene.model.cells, solver=holding.solver)
@@ -201,7 +201,7 @@ def _sizes(machine: Prepared, states: tuple[HeldState, ...]) -> Array:
 
 
 def _in_range(machine: Prepared, states: tuple[HeldState, ...]) -> Flags:
-    """Every layer rides with the drum, covers an upright wall, is long, and clear of its inner wall."""
+    """Every layer rides with the drum, covers a vertical wall, is long, and clear of its inner wall."""
     found, exact = [], held_model(machine.scene) == "potential"
     covers = max((covering_speed(f, machine.axial_gravity) for f in machine.scene.fills), default=0.0)
     for state in states:
@@ -236,7 +236,7 @@ def _liquid(machine: Prepared, states: tuple[HeldState, ...], coordinates: Compl
 
 
 def held_result(found: HeldBranches, machine: Prepared, at: Index, solver: str) -> Held:
-    """What a result tells of held states."""
+    """Record of the time-domain states of a result."""
     up, down, speeds = found.up, found.down, machine.speed.size
     model = held_model(machine.scene)
     apart = found.hysteresis

@@ -13,7 +13,7 @@ from solvers.synchronous.response import Response
 
 @dataclass(frozen=True)
 class Holding:
-    """How waves are held in time."""
+    """How waves are integrated in time."""
 
     workers: int = 0  #: processes; 0 or 1 for this one alone
     #: where states are kept, so that a run that was broken off goes on; None keeps none
@@ -37,5 +37,5 @@ class Began:
 
     answer: Response  #: at the speeds asked for
     refined: Response  #: between them
-    growth: Array  #: of the whirl that grows most, 1/s, shape (n,)
+    growth: Array  #: of the fastest-growing whirl, 1/s, shape (n,)
     at: Flags  #: at which speeds the wave is to be held, shape (n,)

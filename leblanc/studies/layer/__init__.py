@@ -35,9 +35,10 @@ def layer(
     ] = None,
     free: Annotated[
         float | None,
-        "In place of a whirl: the free wave whose crest is so many mean depths deep (linear, potential).",
+        "In place of a whirl: the natural sloshing wave whose crest is so many mean depths deep (linear, "
+        "potential).",
     ] = None,
-    mode: Annotated[int | None, "Crests of the free wave [default: 1]."] = None,
+    mode: Annotated[int | None, "Crests of the natural sloshing wave [default: 1]."] = None,
     model: Annotated[
         str, "statics, linear, long_wave, kdv, fem or potential; auto: the cheapest within the tolerance."
     ] = "linear",
@@ -75,10 +76,10 @@ def layer(
         "Solver of py-pde: runge-kutta, scipy ... [default: long_wave finite_volume, kdv steady_newton].",
     ] = None,
 ) -> AnyLayerAnswer:
-    """Force and centre of mass of a liquid layer under a prescribed whirl, in the plane; or its free wave.
+    """Force and centre of mass of a liquid layer under a prescribed whirl, in the plane; or its natural wave.
 
-    A free wave runs round the drum by itself; asked for is the speed at which it does. Friction is a text, a
-    table as in a machine file ({"linear": 0.5}) or a `Friction`; a liquid a known name or a `leblanc.Liquid`.
+    A natural sloshing wave runs round the drum without a whirl; the answer is its speed. Friction is a text,
+    a table as in a machine file ({"linear": 0.5}) or a `Friction`; a liquid a known name or a `Liquid`.
     Of a machine the chamber, baffles, liquid, law of friction and, where its axis lies, gravity are taken.
 
     Raises

@@ -31,10 +31,10 @@ MOST_ANGLES = 24  # of a profile on a terminal
 _HELP = {
     "statics": "less liquid or a smaller whirl may help",
     "linear": "friction takes the bound off: --model kdv or long_wave",
-    "fem": "a whirl speed off the free waves may help",
+    "fem": "a whirl speed off the natural sloshing waves may help",
     "kdv": "friction may help, or --model long_wave",
     "long_wave": "friction or --duration may help",
-    "potential": "a smaller wave or another speed may help; long_wave has bores",
+    "potential": "a smaller wave or another speed may help; long_wave has hydraulic jumps",
 }
 _RATE, _AXES, _ROUND, _OVER = "rad s-1", ("along the deflection", "90 deg ahead of it"), ("theta",), ("time",)
 Rows: TypeAlias = list[tuple[str, str]]
@@ -71,7 +71,7 @@ class LayerCase:
 
 @dataclass(frozen=True)
 class ExactWave:
-    """What the exact wave alone can tell."""
+    """Quantities of the fully nonlinear wave alone."""
 
     state: Annotated[str | None, Q(text="resolved; None where no wave was found")]
     branch: Annotated[str | None, Q(text="one_crest, many_crests, or lee_waves: shorter waves ride on it")]
@@ -88,7 +88,7 @@ class ExactWave:
 
 @dataclass(frozen=True)
 class ExactPeriods:
-    """What the exact wave in time alone can tell."""
+    """Quantities of the fully nonlinear wave in time alone."""
 
     state: Annotated[str, Q(text="resolved, short_waves that the nodes do not resolve, or broken")]
     crest: Annotated[float, Q("1", "greatest depth so far over the mean depth")]
@@ -198,12 +198,18 @@ class LayerAnswer(_Layered):
 
     force_ratio: Annotated[
         complex,
-        Q("1", "force ratio", "on the drum, over that of a full drum", axes=_AXES, error="error_estimate"),
+        Q(
+            "1",
+            "force coefficient",
+            "on the drum, over that of a full drum",
+            axes=_AXES,
+            error="error_estimate",
+        ),
     ]
     offset: Annotated[complex, Q("m", "centre of mass", "from the drum's axis", axes=_AXES)]
     #: nan where the model has none
     error_estimate: Annotated[
-        float, Q("1", "estimated error of the force ratio", "over the larger of its size and 1")
+        float, Q("1", "estimated error of the force coefficient", "over the larger of its size and 1")
     ]
     mass_error: Annotated[
         float, Q("1", "relative error of the liquid's volume", "of the surface that the model draws")
@@ -237,7 +243,7 @@ class LayerAnswer(_Layered):
 
     def facts(self) -> Rows:
         rate, error, exact = self.mean_rotation, self.error_estimate, self.exact
-        rows = [*self._model(), ("Force ratio", _at_angle(self.force_ratio))]
+        rows = [*self._model(), ("Force coefficient", _at_angle(self.force_ratio))]
         rows += [("Its estimated error", number(error))] if math.isfinite(error) else []
         rows += [("Centre of mass", _at_angle(self.offset, LENGTH))]
         rows += [("Mean rotation in the drum", _rate(rate))]
@@ -245,7 +251,7 @@ class LayerAnswer(_Layered):
             offset = f"{with_unit(self.gravity_offset, LENGTH)} in space"
             rows += [("Centre of mass under gravity", offset)]
         if not self.captured:
-            rows += [("Liquid not carried round", "gravity is stronger at its surface")]
+            rows += [("Annulus not reached from rest", "gravity is stronger at its surface")]
         if exact is not None and exact.state is not None:
             rows += _shape(exact)
         elif exact is not None and math.isfinite(exact.largest_whirl):
@@ -273,7 +279,7 @@ class FreeWaveAnswer(_Layered):
     crest: Annotated[float, Q("1", "greatest depth over the mean depth")]
     trough: Annotated[float, Q("1", "least depth over the mean depth")]
     crest_number: Annotated[float, Q("1", "speed of the liquid at the crest over its")]
-    branch: Annotated[str | None, Q(text="as of the exact wave; None of a model that tells none")]
+    branch: Annotated[str | None, Q(text="as of the fully nonlinear wave; None of a model without branches")]
     mass_error: Annotated[
         float, Q("1", "relative error of the liquid's volume", "of the surface that the model draws")
     ]
@@ -290,7 +296,9 @@ class FreeWaveAnswer(_Layered):
     def wave(self) -> Wave:
         """The wave behind the drum as figures show it; the one ahead has the same shape."""
         return Wave(
-            title="Free wave" if self.mode == 1 else f"Free wave of {self.mode} crests",
+            title="Natural sloshing wave"
+            if self.mode == 1
+            else f"Natural sloshing wave of {self.mode} crests",
             **shape_of(self.case),
             whirl_amplitude=0.0,
             whirl_speed=self.case.whirl_speed if self.converged else self.case.speed,
@@ -346,11 +354,15 @@ class PeriodsAnswer(_Layered):
         return self.history.time
 
     @property
-    def force_ratio(self) -> Annotated[Complex, Q("1", "force ratio by momentum", over=_OVER, axes=_AXES)]:
+    def force_ratio(
+        self,
+    ) -> Annotated[Complex, Q("1", "force coefficient by momentum", over=_OVER, axes=_AXES)]:
         return self.history.force_ratio
 
     @property
-    def pressure_ratio(self) -> Annotated[Complex, Q("1", "force ratio by pressure", over=_OVER, axes=_AXES)]:
+    def pressure_ratio(
+        self,
+    ) -> Annotated[Complex, Q("1", "force coefficient by pressure", over=_OVER, axes=_AXES)]:
         return self.history.pressure_ratio
 
     @property
@@ -411,12 +423,12 @@ class PeriodsAnswer(_Layered):
         if not self.time.size:
             return [*rows, ("Answer", self.history.reason), *self._exact()]
         rows += [("Whirl periods", f"{self.time.size}")]
-        rows += [("Force ratio of the last one", _at_angle(complex(self.force_ratio[-1])))]
+        rows += [("Force coefficient of the last one", _at_angle(complex(self.force_ratio[-1])))]
         rows += [("Mean rotation in the drum", _rate(float(self.mean_rotation[-1])))]
         return rows + self._exact() + self._verdict()
 
     def _exact(self) -> Rows:
-        """What only the exact wave in time tells."""
+        """Quantities of the fully nonlinear wave in time alone."""
         exact = self.exact
         if exact is None:
             return []
@@ -431,7 +443,7 @@ class PeriodsAnswer(_Layered):
     def tables(self) -> Iterator[Table]:
         unit = unit_for(LENGTH, *self.depth_max.tolist(), *np.abs(self.offset).tolist())
         head = (
-            "time (s)", "force ratio", "at (deg)", "by pressure", "rotation (rad/s)",
+            "time (s)", "force coefficient", "at (deg)", "by pressure", "rotation (rad/s)",
             f"deepest ({unit.name})", f"shallowest ({unit.name})", f"centre of mass ({unit.name})",
         )  # fmt: skip
         rows = [

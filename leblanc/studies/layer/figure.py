@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from leblanc.core.notes import one_line
 from leblanc.core.units import DEGREE, LENGTH, MINUS, MM, RPM, TIMES, with_unit
-from leblanc.plotting.drawn import FILLED, LARGEST_FACTOR, rounded_down
+from leblanc.plotting.bodies import FILLED, LARGEST_FACTOR, rounded_down
 from leblanc.plotting.page import (
     FILM_DPI,
     RIGHT,
@@ -300,7 +300,7 @@ def describe_force(wave: Wave) -> str:
         return "force not converged"
     sign, size = MINUS if force.imag < 0.0 else "+", f"{abs(force):.4g}{_at_angle(force)}"
     imaginary = f" {sign} {abs(force.imag):.4g}i ({size})" if force.imag != 0.0 else ""
-    return f"force ratio {signed(force.real)}{imaginary}"
+    return f"force coefficient {signed(force.real)}{imaginary}"
 
 
 def describe_offset(wave: Wave) -> str:
@@ -368,7 +368,7 @@ def _speed(rate: float) -> str:
 
 
 def draw_force(axes: Axes, _wave: Wave, history: WaveFrames) -> None:
-    """Both parts of the force ratio, a point for each period."""
+    """Both parts of the force coefficient, a point for each period."""
     if history.force_ratio is None or history.period_time is None:
         return
     force = np.where(np.isfinite(history.force_ratio), history.force_ratio, complex(math.nan, math.nan))
@@ -376,7 +376,7 @@ def draw_force(axes: Axes, _wave: Wave, history: WaveFrames) -> None:
     ahead = {"color": TURNED, "marker": "s", "linestyle": (0, (4, 1.5)), "markerfacecolor": "white"}
     axes.plot(history.period_time, force.imag, label=f"force 90{DEGREE} ahead of it", **ahead)
     axes.margins(y=0.12)
-    axes.set_ylabel("Force ratio (\N{EN DASH})")
+    axes.set_ylabel("Force coefficient (\N{EN DASH})")
 
 
 def draw_rotation(axes: Axes, _wave: Wave, history: WaveFrames) -> None:
@@ -518,7 +518,7 @@ def wave_figure(wave: Wave) -> Figure:
         right.yaxis.set_major_formatter(number)
         held = (
             "; arrows show directions, the place of the centre of mass is not exaggerated. "
-            "Force ratio: force over that of a full drum; angles from the deflection, "
+            "Force coefficient: force over that of a full drum; angles from the deflection, "
             "positive with the spin. "
         )
         said = held if wave.towards == "deflection" else "; no whirl holds it. "
@@ -621,7 +621,7 @@ def periods_figure(result: PeriodsAnswer) -> Figure:
         force, rotation, depths = (row[0] for row in rows)
         force.plot(h.time, h.force_ratio.real, marker="o", label="force along the deflection")
         force.plot(h.time, h.force_ratio.imag, marker="s", linestyle="--", label="force 90 deg ahead of it")
-        force.set_ylabel("Force ratio (-)")
+        force.set_ylabel("Force coefficient (-)")
         rotation.plot(h.time, h.mean_rotation, color="0.15", marker="^", label="mean rotation in the drum")
         rotation.set_ylabel("Rotation (rad/s)")
         depths.plot(h.time, h.depth_max * MM, label="crest")

@@ -98,7 +98,7 @@ def answer(
     ramp: float,
     solver: str | None,
 ) -> AnyLayerAnswer:
-    """Answer to a whirl, settled or from rest over a duration, or the free wave of a crest height."""
+    """Answer to a whirl, settled or from rest over a duration, or the natural wave of a crest height."""
     update(what="waves under the whirl")
     if scene is not None:
         walls = {"radius": radius, "height": height, "baffles": baffles or None}
@@ -289,7 +289,7 @@ def _with_baffles(model: WaveModel, fill: Fill) -> WaveModel:
 
 
 def _exact(wave: PotentialWave) -> ExactWave:
-    """What only the exact wave has."""
+    """Quantities of the fully nonlinear wave alone."""
     numbers = {name: wave.numbers.get(name, math.nan) for name in ("crest", "trough", "crest_number")}
     return ExactWave(
         state="resolved" if wave.answer.converged[0] else None,
@@ -463,7 +463,7 @@ def layer_film(
 
 
 def free_film(result: FreeWaveAnswer) -> tuple[Wave, WaveFrames]:
-    """A free wave in the drum frame for a film, twice round the drum."""
+    """A natural sloshing wave in the drum frame for a film, twice round the drum."""
     whirl = Whirl(result.case.speed, result.wave().whirl_speed, 0.0)
     frames = steady_film(result, whirl, 2.0 * whirl.period)
     # What the arrow points to is the crest: no whirl deflects the drum.

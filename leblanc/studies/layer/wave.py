@@ -67,7 +67,9 @@ class WaveFrames:
     time: Array  #: rising, s, shape (k,)
     theta: Array  #: angle from a mark on the drum, rad, shape (n,), n > 2
     depth: Array  #: m, shape (k, n)
-    deflection: Complex  #: complex, the mark on the real axis, m, shape (k,); of a free wave towards a crest
+    deflection: (
+        Complex  #: complex, the mark on the real axis, m, shape (k,); of a natural wave towards a crest
+    )
     #: means over periods of the whirl seen from the drum: force as in `Wave`, middle of the period, s, and
     #: the liquid's rotation in the drum, rad/s; shape (p,)
     force_ratio: Complex | None = None

@@ -1,1 +1,1 @@
-"""What a machine is judged by: forces under its feet, clearances, forces in its parts, its motor."""
+"""Loads and clearances of a machine: forces under its feet, clearances, forces in its parts, its motor."""

@@ -36,7 +36,7 @@ class Worst:
 
 @dataclass(frozen=True)
 class MachineLoads:
-    """What a machine is judged by at k speeds, or in k intervals of time; f feet, h holders, p points."""
+    """Loads and clearances at k speeds, or in k intervals of time; f feet, h holders, p points."""
 
     speed: Array  #: spin speed, rad/s, shape (k,)
     time: Array  #: s, and rad by which the drum has turned, shape (k,); empty over speed
@@ -170,7 +170,8 @@ class MachineLoads:
     def bearing_impulse(
         self,
     ) -> Annotated[
-        dict[str, Array] | None, Q("N s", text="of a hand-over of liquid", when="bearing_impulse", data=False)
+        dict[str, Array] | None,
+        Q("N s", text="of a pool-annulus transition", when="bearing_impulse", data=False),
     ]:
         if not self.in_time:
             return None
@@ -179,7 +180,7 @@ class MachineLoads:
     @property
     def bearing_impulse_time(
         self,
-    ) -> Annotated[Array | None, Q("s", "time of a hand-over of liquid", when="bearing_impulse")]:
+    ) -> Annotated[Array | None, Q("s", "time of a pool-annulus transition", when="bearing_impulse")]:
         return self.jumps if self.in_time else None
 
     @property
@@ -274,7 +275,7 @@ class MachineLoads:
                     text = f"{name} semi-axis of the orbit"
                     found[f"point_{name}"] = var((over, "point"), values[rows], "m", text)
         if self.in_time and self.bearings:
-            text = "of a hand-over of liquid"
+            text = "of a pool-annulus transition"
             found["handover_time"] = var(("handover",), self.jumps, "s", "time", text)
             found["bearing_impulse"] = var(
                 ("handover", "bearing"), self.impulse, "N s", "impulse on the bearing", text
@@ -341,14 +342,14 @@ def load_rows(loads: MachineLoads) -> list[LoadRow]:
 
 
 def _blow(loads: MachineLoads) -> list[LoadRow]:
-    """The hardest blow of liquid that is caught or falls on a bearing; nothing where there was none."""
+    """The largest impulse of liquid that is caught or falls on a bearing; nothing where there was none."""
     if not loads.bearings or not np.isfinite(loads.impulse).any():
         return []
     k, j = np.unravel_index(np.nanargmax(loads.impulse), loads.impulse.shape)
     time = float(loads.jumps[k])
     worst = Worst(float(loads.impulse[k, j]), float(np.interp(time, loads.time, loads.speed)), time)
     said = f"of liquid that is caught or falls, on {loads.bearings[j]}"
-    return [_row("Bearing, hardest blow", worst, f"{number(worst.value)} N s", said)]
+    return [_row("Bearing, largest impulse", worst, f"{number(worst.value)} N s", said)]
 
 
 def _share(loads: MachineLoads) -> str:
@@ -407,7 +408,7 @@ def verdict(loads: MachineLoads) -> str:
     """Whether the machine stays where it is and whole, in a sentence or two; empty where nothing tells."""
     told = []
     if loads.stands and not math.isnan(loads.walking.value):
-        left = f"{_percent(loads.walking.value)} of its hold left at {in_rpm(loads.walking.speed)}"
+        left = f"{_percent(loads.walking.value)} sliding margin at {in_rpm(loads.walking.speed)}"
         if loads.walking.value <= 0.0:
             told.append(f"The machine walks: a foot slips or lifts off at {in_rpm(loads.walking.speed)}.")
         elif loads.walking.value < LITTLE:

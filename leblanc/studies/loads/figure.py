@@ -24,7 +24,7 @@ ROOM = 0.08  # above and below what is drawn
 
 
 def machine_figure(loads: MachineLoads, caption: Callable[[str], Caption]) -> Figure:
-    """What a machine is judged by, panels above one another."""
+    """Loads and clearances of a machine, panels above one another."""
     panels: list[tuple[float, Callable[[Axes, MachineLoads, Array], None]]] = []
     if loads.points:
         panels.append((1.5, _draw_clearances if loads.clearances else _draw_movements))

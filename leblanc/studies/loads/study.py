@@ -1,4 +1,4 @@
-"""What a machine is judged by: loads and clearances of a scene's motion, over speed and over time."""
+"""Loads and clearances of a scene's motion, over speed and over time."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def loads_over_speed(
 ) -> MachineLoads:
     """Loads of steady motions, each over its turn [theory: loads, eq. 14-16 and 18-19].
 
-    `asked` are the speeds of the scene; `held` motions held in time, whose own turns and heat count there;
+    `asked` are the speeds of the scene; `held` time-domain states, whose own turns and heat count there;
     `lost` power besides what supports and liquid take, W; `counts` the speeds of which the worst is taken,
     all if None or none.
     """

@@ -38,7 +38,7 @@ MOST_BANDS = 4  # listed one by one
 LISTED = 11  # volumes of the table of bands
 LINEAR = (
     "Free whirls of rotor and liquid together, by the exact linear theory of the plane layer with laminar or "
-    "linear friction at its wall; shown is the whirl that grows most. Taken for granted: small whirls, a wet "
+    "linear friction at its wall; shown is the fastest-growing whirl. Taken for granted: small whirls, a wet "
     "wall all round, one depth along the axis."
 )
 CYCLES = (
@@ -47,7 +47,7 @@ CYCLES = (
 )
 REASON = "No other model answers this for any growth and any whirl speed."
 _OVER, _BANDS, _RATE = ("volume", "speed"), ("volume", "band"), "rad s-1"
-_MODE = "of the whirl that grows most"
+_MODE = "of the fastest-growing whirl"
 _EDGE = "of a band in which a whirl grows; the ends of the range of speeds count as edges"
 
 
@@ -169,18 +169,18 @@ def sentence(found: WhirlMap) -> str:
     """Where a whirl grows."""
     if not (found.growth > 0.0).any():
         if found.not_known == found.growth.size:
-            return "Whether a whirl grows by itself is not known at any speed with any volume of liquid."
+            return "It is not known whether whirl is self-excited at any speed with any volume of liquid."
         where = (
             "where it is known, which is not everywhere" if found.not_known else "with any volume of liquid"
         )
-        return f"No whirl grows by itself at any speed {where}."
+        return f"No self-excited whirl at any speed {where}."
     values = dict(facts(found))
     own = f"with the scene's {with_unit(found.scene_volume, VOLUME)}"
     bands = f"from {band_words(found.scene_edges)} rpm" if found.scene_edges else "nowhere"
     largest = _largest(found)
     grown = f", up to {largest}" if largest else ""
     return (
-        f"A whirl grows by itself at {values['A whirl grows at']}, fastest by {values['Fastest growth']}; "
+        f"Self-excited whirl at {values['A whirl grows at']}, fastest by {values['Fastest growth']}; "
         f"{own} it grows {bands}{grown}."
     )
 

@@ -28,7 +28,7 @@ Axes = Any  # matplotlib's, which no module that only draws imports
 FRAME = Frame(left=0.72, top=0.46, between=0.72, below=0.42)
 PANEL, BAR, BESIDE, ROOM = 2.3, 0.13, 0.55, 1.35  # inches: panel's height, bar's width, left of it, in all
 DARKEST = 2.0  # per cent of the decays that are faster than the colours tell apart
-SHALLOWEST = 0.05  # of the fastest decay: growth slower than that is told by outline and hatch alone
+SHALLOWEST = 0.05  # of the fastest decay: growth slower than that is reported by outline and hatch alone
 LINES = 9  # of the caption
 GROWTH, RATIO = "RdBu_r", "cividis"
 PALER = (0.1, 0.9)  # of the colours of growth: their ends would hide lines and dots
@@ -277,7 +277,7 @@ def _caption(result: WhirlMap) -> Caption:
     assumed = ", ".join(map(one_line, result.assumed)) or "nothing"
     notes = " ".join(one_line(note.text) for note in result.notes)
     return Caption(
-        "Whirl that grows most, infinitesimal, over speed and all liquid together; below, its speed in space "
+        "Fastest-growing whirl, infinitesimal, over speed and all liquid together; below, its speed in space "
         "over the spin's, where it grows.",
         f"Scene: {one_line(result.name)}. Liquid model: exact linear theory of the plane layer; liquid "
         f"friction: {result.friction}; support: {result.damping}. {notes} Assumed: {assumed}.",

@@ -127,7 +127,7 @@ def map_scene(
 
 
 def _critical_speed(machine: Prepared) -> float:
-    """Critical speed without liquid, as `run` tells it, rad/s; nan where there is none."""
+    """Critical speed without liquid, as of `run`, rad/s; nan where there is none."""
     if isinstance(machine.rotor, Jeffcott):
         return machine.rotor.natural_frequency
     system, dry = machine.system, critical_speeds(machine.system)
@@ -199,9 +199,9 @@ def _notes(
         found.append(Note(code, data, text))
 
     with_it = f"With the scene's {with_unit(volume := sum(fill.volume for fill in scene.liquids), VOLUME)}"
-    text = f"{with_it} no whirl grows by itself at these speeds."
+    text = f"{with_it} no self-excited whirl at these speeds."
     if own:
-        text = f"{with_it} a whirl grows by itself from {rpm_bands(own)}."
+        text = f"{with_it} self-excited whirl from {rpm_bands(own)}."
     note(MapCode.OWN_VOLUME, text, volume=volume, bands=tuple(own))
     if lost := int(np.count_nonzero(np.isnan(growth))):
         points = f"At {lost} of {thin.size} points the growth is not known"

@@ -56,7 +56,7 @@ class ModesAnswer(Answer):
     #: None where no closed form is known
     exact: Annotated[
         tuple[float | None, ...],
-        Q(_RATE, "frequency by the closed form of the ring", over=_OVER, by="waves, eq. 7"),
+        Q(_RATE, "analytical frequency of the ring", over=_OVER, by="waves, eq. 7"),
     ]
     damping: Annotated[Array, Q("s-1", "decay rate of the amplitude", "in laminar layers", over=_OVER)]
     damping_ratio: Annotated[Array, Q("1", "damping over the frequency", over=_OVER)]
@@ -75,7 +75,11 @@ class ModesAnswer(Answer):
     ]
     synchronous_force_ratio: Annotated[
         float,
-        Q("1", "force ratio of a synchronous whirl", "over all that the wall encloses, mean of directions"),
+        Q(
+            "1",
+            "force coefficient of a synchronous whirl",
+            "over all that the wall encloses, mean of directions",
+        ),
     ]
     surface_radius: Annotated[float, Q("m", "radius of the free surface")]
     circulations: Annotated[int, Q("1", "steady flows", "without a frequency")]
@@ -112,7 +116,7 @@ class ModesAnswer(Answer):
         return (
             Words(f"{self.chamber}; free surface at {surface}; {self.liquid}"),
             Table(tuple(_rows(self)), HEAD, right=True),
-            Words(f"force ratio of a synchronous whirl {self.synchronous_force_ratio:.6g}"),
+            Words(f"force coefficient of a synchronous whirl {self.synchronous_force_ratio:.6g}"),
             Notes(texts(self.notes)),
             Picture("modes", "Shapes of the liquid's modes", self.figure),
         )

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from leblanc.core.units import MM, RPM
-from leblanc.plotting.drawn import rounded_down
+from leblanc.plotting.bodies import rounded_down
 from leblanc.plotting.page import Figure, Frame, lay_out, number, style
 from leblanc.studies.modes.answer import ModesAnswer
 from meshes.arrays import Array

@@ -285,7 +285,7 @@ def _limits(damping: ModeDamping, depth: float, estimate: Array) -> list[Note]:
 
 
 def _exact(modes: SloshingModes, radius: float, surface_radius: float) -> tuple[float, ...]:
-    """Free waves of the ring with as many crests, running the same way [theory: waves, eq. 7]."""
+    """Natural sloshing waves of the ring with as many crests, running the same way [theory: waves, eq. 7]."""
     depth = math.log(radius / surface_radius)
     both = free_wave_frequencies(modes.crests, depth, modes.spin)
     return tuple(np.where(modes.frequency > 0.0, *both).tolist())

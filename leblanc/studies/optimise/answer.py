@@ -62,7 +62,7 @@ _MODEL = (
     "The search takes one model for all volumes, the exact equilibrium unless the scene names another: a "
     "change of model within its tolerance would look like a better volume."
 )
-_RUN_UP = "The objective itself is judged by run-ups in time with this model."
+_RUN_UP = "The objective itself is evaluated by run-ups in time with this model."
 LISTED, _POINTS = 7, 12  # conditions of a table, points of the front
 
 
@@ -147,7 +147,7 @@ def shown(value: float, unit: str) -> str:
 
 @dataclass(frozen=True)
 class WettingVolumes:
-    """Volumes of one chamber that wet its wall at a deflection and a speed, in closed form."""
+    """Volumes of one chamber that wet its wall at a deflection and a speed, analytical."""
 
     deflection: float  #: e, m
     speed: float  #: rad/s
@@ -211,7 +211,7 @@ class EmulatedAnswer:
 
 @dataclass(frozen=True)
 class ConditionTable:
-    """Amplitudes with the best volumes over temperature and unbalance; n conditions were judged.
+    """Amplitudes with the best volumes over temperature and unbalance; n conditions were evaluated.
 
     t temperatures and u steps of the unbalances from least to most, of p unbalances each.
     """
@@ -324,7 +324,7 @@ class OptimumAnswer(Best):
     chambers: tuple[CandidateChamber, ...]  #: whose volumes were looked for
     friction: Friction  #: of the liquid
     tolerance: float  #: relative error that the scene allows
-    in_time: bool  #: the objective is judged by run-ups in time
+    in_time: bool  #: the objective is evaluated by run-ups in time
     objective: Annotated[str, Q(text="what the volumes were chosen for")]
     meaning: Annotated[str, Q(text="what its value is")]
     unit: Annotated[str, Q(text="of its value")]
@@ -337,7 +337,7 @@ class OptimumAnswer(Best):
     mass: Annotated[float, Q("kg", "mass of the liquid", data=False)]
     growth: float  #: of the small whirl that grows most at the operating speeds, 1/s
     #: for each chamber, at the deflection that the answer itself has; empty where it has none
-    closed_form: Annotated[tuple[WettingVolumes, ...], Q(text="volumes that wet the walls, in closed form")]
+    closed_form: Annotated[tuple[WettingVolumes, ...], Q(text="volumes that wet the walls, analytical")]
     #: of such volumes those with the least liquid are the answer
     equal_within: Annotated[
         float, Q("1", name="relative difference below which values count as equal", data=False)
@@ -417,7 +417,7 @@ class OptimumAnswer(Best):
 
     @property
     def closing(self) -> str:
-        return f"{self.name}: {self.evaluations} sets of volumes judged"
+        return f"{self.name}: {self.evaluations} sets of volumes evaluated"
 
     @property
     def place(self) -> str:
@@ -461,7 +461,7 @@ class OptimumAnswer(Best):
         return f"With {liquid}{kept}, the {self.meaning} is {shown(self.value, self.unit)}{instead}"
 
     def _volumes(self) -> Table:
-        """The answer chamber by chamber, with the closed forms at the deflection it has."""
+        """The answer chamber by chamber, with the analytical checks at the deflection it has."""
         forms, rows = self.closed_form, []
         liquid = unit_for(VOLUME, *self.volume.tolist(), *(form.optimal_volume for form in forms))
         length = unit_for(LENGTH, *(form.deflection for form in forms))
@@ -477,7 +477,7 @@ class OptimumAnswer(Best):
         head = ["Chamber", f"best volume ({liquid.name})", "liquid", "% of what it holds"]
         if forms:
             head += [f"deflection at {in_rpm(forms[0].speed)} ({length.name})"]
-            head += [f"just covers the wall ({liquid.name})", "% of the effect"]
+            head += [f"wetting volume ({liquid.name})", "% of the effect"]
             head += [f"wet to the lid ({liquid.name})"]
         return Table(rows, head)
 
@@ -501,7 +501,7 @@ class OptimumAnswer(Best):
         if self.balance_quality is not None and self.balance_quality_dry is not None:
             both = quality_words(self.balance_quality), quality_words(self.balance_quality_dry)
             yield f"Balance quality at {in_rpm(self.working_speed)}", "; without liquid ".join(both)
-        yield "Sets of volumes judged", f"{self.evaluations}"
+        yield "Sets of volumes evaluated", f"{self.evaluations}"
         if self.unit == "m":
             yield "Equal values", f"within {number(100.0 * self.equal_within)} %, of them the least liquid"
 

@@ -80,7 +80,7 @@ def dry_wall(machine: FilledMachine, speed: float) -> Constraint:
 
 
 def whirl_friction(scene: Scene) -> Friction:
-    """Friction with which small whirls are judged: the scene's, or the laminar one where it has none.
+    """Friction with which small whirls are evaluated: the scene's, or the laminar one where it has none.
 
     Without any friction every layer makes some small whirl grow, however slowly: nothing could be told.
     """
@@ -89,7 +89,7 @@ def whirl_friction(scene: Scene) -> Friction:
 
 
 def growth(scene: Scene, volumes: Array, speed: Array) -> Array:
-    """Growth of the small whirl that grows most at any of some speeds [theory: optimum, eq. 5].
+    """Growth of the fastest-growing small whirl at any of some speeds [theory: optimum, eq. 5].
 
     1/s, below 0 where every whirl decays, nan where the whirls were not found, shape (m,).
     """

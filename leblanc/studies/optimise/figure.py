@@ -63,7 +63,7 @@ def conditions_figure(result: OptimumAnswer) -> Figure:
 
 
 _MARGIN = (
-    "Margin: decay of the small whirl that dies out slowest at the operating speeds, by the viscosity there; "
+    "Margin: decay of the slowest-decaying small whirl at the operating speeds, by the viscosity there; "
     "below 0 one grows. "
 )
 _MARKS = ("o", "s", "^")  # of the least, middle and largest unbalance
@@ -80,7 +80,7 @@ def _star(axes: Axes, x: float, y: float, label: str, size: float = 12.0) -> Non
 
 
 def _draw_over_temperature(axes: Axes, table: ConditionTable) -> None:
-    """A curve for each unbalance, the dry amplitude beside it."""
+    """A curve for each unbalance, the amplitude without liquid beside it."""
     celsius = table.temperature - CELSIUS
     for j, size in enumerate(table.unbalance.tolist()):
         label = load_words(size)
@@ -104,7 +104,7 @@ def _draw_margin(axes: Axes, table: ConditionTable) -> None:
 
 
 def _draw_over_unbalance(axes: Axes, table: ConditionTable) -> None:
-    """One curve over the largest of the unbalances, the dry amplitude beside it."""
+    """One curve over the largest of the unbalances, the amplitude without liquid beside it."""
     load = table.unbalance.max(axis=1)
     weight = unit_for(UNBALANCE, *load.tolist())
     unit, name = weight.count, weight.name
@@ -160,8 +160,8 @@ def front_figure(result: OptimumAnswer) -> Figure:
         _draw_front(axes, result)
         text = (
             "Of these points none is better than another in vibration, mass of liquid and stability margin "
-            "at once. The margin is the decay of the small whirl that dies out slowest at the operating "
-            "speeds; circles: all die out, the larger the faster; crosses: one grows, the larger the faster. "
+            "at once. The margin is the decay of the slowest-decaying small whirl at the operating "
+            "speeds; circles: all decay, the larger the faster; crosses: one grows, the larger the faster. "
         )
         lay_out(figure, [[axes]], [HEIGHT], FRAME, _caption(result, text, False), LINES)
         figure.alt = (
@@ -183,11 +183,11 @@ def _known(result: OptimumAnswer) -> tuple[Array, Array, list[str]]:
     if result.sweep is not None and result.volume.size == 1:
         points = np.concatenate((points, result.sweep.volume))
         vibration = np.concatenate((vibration, result.sweep.vibration))
-        exceeded += [_NOT_JUDGED] * result.sweep.mass.size
+        exceeded += [_NOT_EVALUATED] * result.sweep.mass.size
     return points, vibration, exceeded
 
 
-_NOT_JUDGED = "not judged"
+_NOT_EVALUATED = "not evaluated"
 # Marks of the points that were tried: those that keep to all, then those that exceed something, by its name.
 _TRIED, _OVER = "o", ("x", "+", "1", "2", "3", "4")
 _OVER_FILLED = ("s", "D", "^", "v", "<", ">")
@@ -197,7 +197,7 @@ def _groups(exceeded: list[str], marks: tuple[str, ...]) -> list[tuple[str, str,
     """Mark, label and points of those that keep to all, and of those that exceed each constraint most."""
     names = np.array(exceeded, dtype=object)
     found = [(_TRIED, "tried", names == "")]
-    over = sorted({name for name in exceeded if name not in ("", _NOT_JUDGED)})
+    over = sorted({name for name in exceeded if name not in ("", _NOT_EVALUATED)})
     for k, name in enumerate(over):
         found.append((marks[k % len(marks)], f"tried, limit of {name} exceeded", names == name))
     return [group for group in found if group[2].any()]
@@ -233,7 +233,7 @@ def _draw_section(axes: Axes, result: OptimumAnswer, k: int) -> None:
 
 
 def _marks(axes: Axes, result: OptimumAnswer, k: int) -> None:
-    """The best point, the baseline and the closed forms of one chamber."""
+    """The best point, the baseline and the analytical checks of one chamber."""
     baseline = result.vibration_baseline * MM
     axes.axhline(baseline, **BARE, label="without liquid")
     _star(axes, result.volume[k] * ML, result.vibration * MM, "best", 11.0)
@@ -241,10 +241,10 @@ def _marks(axes: Axes, result: OptimumAnswer, k: int) -> None:
         form = result.closed_form[k]
         dashes = {"color": FULL, "linewidth": 0.9, "zorder": 1.6}
         axes.axvline(
-            form.optimal_volume * ML, linestyle=(0, (6, 2)), label="closed form: wall just covered", **dashes
+            form.optimal_volume * ML, linestyle=(0, (6, 2)), label="analytical: wetting volume", **dashes
         )
         if math.isfinite(form.full_volume):
-            label = "closed form: wet up to the lid"
+            label = "analytical: wetting volume to the lid"
             axes.axvline(form.full_volume * ML, linestyle=(0, (1, 1)), label=label, **dashes)
 
 
@@ -274,7 +274,7 @@ def _draw_map(figure: Figure, axes: Axes, result: OptimumAnswer) -> None:
     _star(axes, first, second, "best")
     for form, line in zip(result.closed_form, (axes.axvline, axes.axhline), strict=False):
         dashes = {"color": FULL, "linewidth": 0.9, "linestyle": (0, (6, 2)), "zorder": 1.6}
-        line(form.optimal_volume * ML, **dashes, label="closed form: wall just covered")
+        line(form.optimal_volume * ML, **dashes, label="analytical: wetting volume")
     for k, scale in enumerate(("x", "y")):
         _symlog(axes, scale, least[k] * ML, (0.0, capacity[k] * ML))
     axes.set_xlabel("Liquid in chamber 1 (ml)")
@@ -360,7 +360,7 @@ def _caption(result: OptimumAnswer, text: str, forms: bool = True) -> Caption:
     notes = " ".join(map(one_line, texts(result.notes)))
     vibration = result.meaning if result.unit == "m" else "the amplitude that is limited"
     what = result.constraints["vibration"].meaning if "vibration" in result.constraints else vibration
-    at = f"Closed forms at the deflection of the best point at {in_rpm(result.working_speed)}. "
+    at = f"Analytical checks at the deflection of the best point at {in_rpm(result.working_speed)}. "
     at = at if forms and result.closed_form else ""
     place = f" {result.place}" if result.place else ""
     shown = f"{text}Vibration: {what}{place}. Objective: {result.objective}. {at}"

@@ -200,7 +200,7 @@ class FilledMachine:
         return reach
 
     def _planar(self, volumes: Array, speed: Array) -> tuple[Array, Flags, Array]:
-        """Amplitude, dry wall and deflections at m pairs; whirls that grow by themselves are judged apart."""
+        """Amplitude, dry wall and deflections at m pairs; self-excited whirls are evaluated apart."""
         different, owner = np.unique(volumes, axis=0, return_inverse=True)
         rotor, owner = jeffcott(self.scene), owner.reshape(-1)
         scenes = [with_volumes(self.scene, row) for row in different]

@@ -41,15 +41,15 @@ LAMINAR = Note(
     OptimumCode.LAMINAR,
     {},
     "The scene has no friction, without which every layer makes some small whirl grow: small whirls are "
-    "judged with the laminar friction of the liquid.",
+    "evaluated with the laminar friction of the liquid.",
 )
 
 
 def given_deflection(deflection: float, speed: float, gap: float) -> Note:
-    """The volumes are the least that wet the walls; `gap`: largest relative difference to closed forms."""
+    """Least volumes that wet the walls; `gap`: largest relative difference to the analytical check."""
     text = (
         f"The deflection is given, {with_unit(deflection, LENGTH)} at {in_rpm(speed)}: the volumes are the "
-        "least that leave no part of a wall dry over its whole height; search and closed form differ by "
+        "least that leave no part of a wall dry over its whole height; search and analytical check differ by "
         f"{gap:.1e}."
     )
     data = {"deflection": deflection, "speed": speed, "gap": gap}
@@ -111,7 +111,8 @@ def emulated(answer: EmulatedAnswer) -> Note:
     error = answer.error
     text = (
         f"The search asked an emulator of {error.samples} samples, off by {error.root_mean_square:.2g} on "
-        f"unseen ones (root mean square; largest {error.largest:.2g}); the best volumes it found were judged "
+        f"unseen ones (root mean square; largest {error.largest:.2g}); the best volumes it found were "
+        f"evaluated "
         f"by the solvers. By the emulator alone: {with_unit(answer.value, LENGTH)}, give or take "
         f"{with_unit(2.0 * answer.deviation, LENGTH)}."
     )
@@ -127,7 +128,7 @@ def at_edge(paths: tuple[str, ...]) -> Note:
 def slow(decay: float) -> Note:
     """Balls that have nothing in reserve come to rest slowly."""
     text = (
-        f"Small motions fade with {decay:.3g} 1/s only: balls with hardly more than the unbalance come to "
+        f"Small motions decay with {decay:.3g} 1/s only: balls with hardly more than the unbalance come to "
         "rest slowly. A stability_margin asks for more."
     )
     return Note(OptimumCode.SLOW, {"decay": decay}, text)

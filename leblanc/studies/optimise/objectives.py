@@ -68,7 +68,7 @@ class WorstLoads:
 
 @dataclass(frozen=True)
 class Passage:
-    """What a run-up is judged by."""
+    """What a run-up is evaluated by."""
 
     amplitude: float  #: largest, m; infinite for a run that did not come to its end
     loads: WorstLoads | None  #: None where nobody asks, or the run did not come to its end

@@ -62,7 +62,7 @@ class Problem:
     working_speed: float  #: rad/s
     speeds: tuple[float, ...]  #: that matter most, rad/s
     costly: bool  #: one answer takes tens of milliseconds and more
-    #: run-ups in time by which vibration, loads or both are judged; None where none are
+    #: run-ups in time by which vibration, loads or both are evaluated; None where none are
     runs: Passages | None = None
     notes: tuple[Note, ...] = ()  #: what was assumed
     by_mass: bool = False  #: the liquid's mass is to be small; the vibration is then one of the constraints

@@ -64,7 +64,7 @@ def best_volumes(scene: Scene, problem: Problem, low: Array, high: Array, part: 
     def say(more: int) -> None:
         nonlocal count
         count += more
-        update(done, 1.0, f"{count} sets of volumes judged")
+        update(done, 1.0, f"{count} sets of volumes evaluated")
 
     def stage(share: float) -> None:
         nonlocal done

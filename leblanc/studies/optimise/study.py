@@ -1,7 +1,7 @@
 """The best volumes of a scene's chambers for an objective the user names [theory: optimum].
 
-Beside them stand the closed forms and the front: a sweep from no liquid to the fullest, and what the search
-met by the way.
+Beside them stand the analytical checks and the front: a sweep from no liquid to the fullest, and what
+the search met by the way.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The volumes that just wet a chamber's wall at a deflection: in closed form and by the search."""
+"""The volumes that just wet a chamber's wall at a deflection: analytical and by the search."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from solvers.statics.hydrostatics import equilibrium, optimal_volume
 
 
 def wetting_volumes(chamber: Chamber, deflection: float, speed: float, gravity: float) -> WettingVolumes:
-    """The volumes that wet a wall, in closed form."""
+    """The volumes that wet a wall, analytical."""
     touching = float(optimal_volume(chamber, deflection, speed, gravity))
     full = full_volume(chamber, deflection, speed, gravity)
     filled = min(touching, chamber.capacity)

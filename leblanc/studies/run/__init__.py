@@ -20,7 +20,7 @@ def run(
     scene: Annotated[SceneOrPath, SCENE, "The machine, or the path of its file."],
     *,
     workers: Annotated[int, Option(same=True), "Processes that hold waves in time [default: all cores]."] = 1,
-    fresh: Annotated[bool, Option(same=True), "Hold anew what an earlier run has left."] = False,
+    fresh: Annotated[bool, Option(same=True), "Recompute what an earlier run has left."] = False,
     solver: Annotated[
         str | None, "Of py-pde, that holds waves in time: runge-kutta, scipy ... [default: coupled]."
     ] = None,

@@ -88,7 +88,7 @@ class RunAnswer(Answer):
     axis: str  #: "horizontal" or "vertical"
     chambers: tuple[FilledChamber, ...]  #: one for each chamber
     #: a ring of liquid can stand against gravity across the axis above it; None if at any
-    capture_speed: Annotated[float | None, Q(_RATE, "capture speed", "a ring can stand above it")]
+    capture_speed: Annotated[float | None, Q(_RATE, "centrifuging speed", "a ring can stand above it")]
     #: of several the one at which the unbalance moves the axis most
     critical_speed_dry: Annotated[float, Q(_RATE, "critical speed without liquid", "undamped")]
     critical_speed_wet: Annotated[float, Q(_RATE, "critical speed with liquid", "undamped, wall wet")]
@@ -119,7 +119,7 @@ class RunAnswer(Answer):
         Q("m s-1", "balance quality", f"{_QUALITY}; without liquid", _OVER, when="balance_quality"),
     ] = None
     axial_gravity: float = 0.0  #: gravity along the axis, m/s^2
-    #: of speeds at which the motion was held in time; None where it was at none
+    #: of speeds at which the motion was integrated in time; None where it was at none
     held: Annotated[Held | None, Q(part=True)] = None
     #: forces and clearances at the speeds of `curve`; None where the scene asks for none
     loads: Annotated[MachineLoads | None, Q(part=True)] = None
@@ -127,7 +127,7 @@ class RunAnswer(Answer):
     carried_from: Annotated[
         float | None, Q(_RATE, "speed of balance", "from rest the walls carry the liquid")
     ] = None
-    #: what the sources' closed forms say beside the answer; None where nobody asked
+    #: analytical checks of the sources beside the answer; None where nobody asked
     closed_forms: Annotated[ClosedForms | None, Q(part=True)] = None
 
     def __post_init__(self) -> None:
@@ -218,8 +218,8 @@ class RunAnswer(Answer):
             flags=" ".join(STABILITY),
         ),
     ]:
-        # Not known where no branch was found or the modes of the whirls were not. A motion held in time has
-        # shown its stability itself; one that has not settled has not.
+        # Not known where no branch was found or the modes of the whirls were not. A time-domain state has
+        # shown its stability itself; one that has not converged in time has not.
         kept = self.response.branch_stable.any(axis=1)
         growth = np.zeros(self.speed.shape) if self.whirl is None else self.whirl.growth
         lost = ~np.isfinite(self.response.deflection) | (kept & np.isnan(growth))
@@ -332,7 +332,7 @@ class RunAnswer(Answer):
                     )
                 ]
             ),
-            Section("Motions held in time", words.held_motions(self), shown="page"),
+            Section("Time-domain states", words.held_motions(self), shown="page"),
             *words.models_section(self),
             Notes((*said, *words.remarks(self)), shown="page"),
         )

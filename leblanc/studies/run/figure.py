@@ -1,4 +1,4 @@
-"""The figures of a response: amplitude, liquid and phase over speed; the dry rotor's Campbell diagram."""
+"""Figures of a response: amplitude, liquid and phase over speed; Campbell diagram without liquid."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ HZ = 60.0  # rpm in one hertz
 STYLES = (
     ("with the spin", 1.0, FORWARD, "solid", "^"),
     ("against the spin", -1.0, BACKWARD, (0, (5, 1.5)), "v"),
-    ("to and fro", 0.0, STRAIGHT, (0, (1, 1.2)), "o"),
+    ("straight-line", 0.0, STRAIGHT, (0, (1, 1.2)), "o"),
 )
 
 
@@ -113,7 +113,9 @@ def amplitude_figure(result: RunAnswer) -> Figure:
         text = f"Largest radius of the axis' orbit {amplitude_place(result)}."
     panels: list[tuple[float, Draw]] = [(2.75, draw_amplitude)]
     if result.held is not None:
-        text += " Held in time: lines are means over time, the band reaches from the least to the largest."
+        text += (
+            " Integrated in time: lines are means over time, the band reaches from the least to the largest."
+        )
         if result.held.limit_cycle.any():
             panels.append((1.3, draw_whirl))
             text += " Below: speed at which the axis whirls in space, beside the spin."
@@ -204,7 +206,7 @@ def wider_words() -> str:
 
 
 def _layers_held(result: RunAnswer) -> bool:
-    """Some layer was held in time."""
+    """Some layer has a time-domain state."""
     return result.held is not None and bool(np.isfinite(result.held.ripple).any())
 
 
@@ -415,7 +417,7 @@ def background(axes: Axes, curves: Curves, result: RunAnswer, lines: list[Array]
         ),
         (result.critical_speed_dry, (0, (6, 1.5, 1, 1.5)), DRY, "critical speed without liquid,"),
         (result.capture_speed, (0, (8, 3)), "0.3", "a ring can stand from"),
-        (result.carried_from, (0, (2, 2)), "0.3", "carried round from rest from"),
+        (result.carried_from, (0, (2, 2)), "0.3", "annulus reached from rest above"),
     ):
         if speed is not None and low <= speed * RPM <= high:
             text = f"{label} {in_rpm(speed)}"
@@ -511,7 +513,7 @@ def _say_empty(axes: Axes) -> None:
 
 
 def campbell_figure(result: RunAnswer) -> Figure:
-    """Natural frequencies of the dry rotor over its speed."""
+    """Natural frequencies of the rotor without liquid over its speed."""
     with style():
         figure = Figure()
         figure.alt = alts(result)["campbell"]

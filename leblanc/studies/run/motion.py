@@ -1,4 +1,4 @@
-"""What a response tells of motions that are no steady circle: tilt, self-excited whirl, held in time."""
+"""Motions of a response that are no steady circle: tilt, self-excited whirl, time-domain states."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _AGAINST, _SENSE = (
 
 @dataclass(frozen=True)
 class RestMode:
-    """Free vibration of the dry rotor at rest."""
+    """Free vibration of the rotor without liquid at rest."""
 
     frequency: float  #: damped, rad/s; 0 where overdamped
     damping_ratio: float  #: 1 where overdamped
@@ -54,8 +54,10 @@ class Motion:
             variable="chamber",
         ),
     ]
-    modes: tuple[RestMode, ...]  #: of the dry rotor at rest, by rising frequency
-    campbell: Annotated[Campbell, Q(part=True)]  #: natural frequencies of the dry rotor over its speed
+    modes: tuple[RestMode, ...]  #: of the rotor without liquid at rest, by rising frequency
+    campbell: Annotated[
+        Campbell, Q(part=True)
+    ]  #: natural frequencies of the rotor without liquid over its speed
     critical_speeds_dry: Annotated[Bands, Q("rad s-1", text=f"undamped, {_SENSE}", data=False)]
     critical_speeds_wet: Annotated[Bands, Q("rad s-1", text=f"the same with liquid, {_SENSE}", data=False)]
     zero: str  #: what angles count from, in words
@@ -77,11 +79,11 @@ class Motion:
 
 @dataclass(frozen=True)
 class SelfExcited:
-    """Whirl that grows by itself from the even layer, in linear theory."""
+    """Self-excited whirl from the even layer, in linear theory."""
 
     #: nan where it was not found
-    growth: Annotated[Array, Q("s-1", "growth rate", "of the whirl that grows most; above 0 unstable", _OVER)]
-    whirl_speed: Annotated[Array, Q(_RATE, "whirl speed", "of the whirl that grows most, in space", _OVER)]
+    growth: Annotated[Array, Q("s-1", "growth rate", "of the fastest-growing whirl; above 0 unstable", _OVER)]
+    whirl_speed: Annotated[Array, Q(_RATE, "whirl speed", "of the fastest-growing whirl, in space", _OVER)]
     #: the ends of the range of speeds count as edges
     bands: Annotated[
         Bands, Q("rad s-1", text="bands of speed in which some whirl grows", key="whirl_bands", data=False)

@@ -69,14 +69,14 @@ def liquid_models(choice: Choice) -> Note | None:
         return None
     held_model = choice.held_model
     exact, held = (int(np.count_nonzero(choice.models == name)) for name in ("statics", held_model))
-    count, told = choice.models.size, f"; long waves held in time at {held}" if held else ""
+    count, told = choice.models.size, f"; long waves integrated in time at {held}" if held else ""
     linear = count - exact - held
     text = (
         f"Liquid model: linear theory at {linear} of {count} speeds, where it is within "
         f"{percent(choice.tolerance)}; exact equilibrium at {exact}{told}."
     )
     if held == count:
-        text = f"Liquid model: long waves held in time at all {count} speeds."
+        text = f"Liquid model: long waves integrated in time at all {count} speeds."
     data = {"linear": linear, "statics": exact} | ({held_model: held} if held else {})
     return Note(RunCode.LIQUID_MODEL, data, text)
 
@@ -85,7 +85,7 @@ def unbalance_leaves(left: float) -> Note:
     """A steady answer has all of the unbalance, though some leaves with time; `left` is the last share."""
     text = (
         "A part of the unbalance leaves with time; the steady answer has all of it, and the drum its whole "
-        f"mass, as at the start. In the end {percent(left)} of the unbalance is left."
+        f"mass, as at the start. Residual unbalance ratio at the end: {percent(left)}."
     )
     return Note(RunCode.UNBALANCE_LEAVES, {"left": left}, text)
 
@@ -111,8 +111,8 @@ def tolerance_missed(choice: Choice, speed: Array, cost: HeldCost | None = None)
 def not_carried(stands: float, carried: float | None = None) -> Note:
     """Gravity across the axis holds the liquid back; speeds in rad/s.
 
-    A ring stands above `stands`; from `carried` on the walls carry it round from rest, inf where nothing
-    drags on it, None where that is not known.
+    An annular layer exists above `stands`; from `carried` on the walls drag the liquid round from rest, inf
+    where nothing drags on it, None where that is not known.
     """
     data: dict[str, Any] = {"below": stands}
     text = (
@@ -175,8 +175,8 @@ def slow_disturbances(held: Held | None = None) -> Note | None:
     """What the stability of branches of a planar rotor means; None where all motions have shown their own."""
     if held is not None and held.at.all():
         return None
-    where = "Branches" if held is None else "Where no motion was held in time branches"
-    text = f"{where} are judged against slow disturbances, the liquid always in equilibrium."
+    where = "Branches" if held is None else "Where no motion was integrated in time branches"
+    text = f"{where} are evaluated against slow disturbances, the liquid always in equilibrium."
     return Note(RunCode.SLOW_DISTURBANCES, {}, text)
 
 
@@ -190,13 +190,14 @@ def loads(obstructed: bool = False) -> Note:
 
 
 def held_motions(held: Held, speed: Array) -> list[Note]:
-    """How many motions were held in time, how well, and what they came to."""
+    """Number of time-domain states, their error, and their kinds."""
     count, cycles, apart = (int(np.count_nonzero(x)) for x in (held.at, held.limit_cycle, held.hysteresis))
     error, (waves, parts) = held.error[held.at], HELD_MODELS[held.model]
     worst = float(error[~np.isnan(error)].max(initial=0.0))
     size = f"estimated error at most {percent(worst)}" if not np.isnan(error).all() else "error not estimated"
     text = (
-        f"Rotor and {waves} held in time at {count} of {speed.size} speeds, {held.cells} {parts} round each "
+        f"Rotor and {waves} integrated in time at {count} of {speed.size} speeds, {held.cells} {parts} "
+        f"round each "
         f"wall, {size}. Their largest amplitude is one of the speeds held, among them the peaks of the "
         "steady answer and without liquid."
     )
@@ -220,7 +221,7 @@ def held_motions(held: Held, speed: Array) -> list[Note]:
     if lost.any():
         why = held.reason[lost][0] if held.reason.size else ""
         text = (
-            f"At {np.count_nonzero(lost)} of the speeds held the motion has not settled, "
+            f"At {np.count_nonzero(lost)} of the speeds held the motion has not converged in time, "
             f"{_between(speed[lost])}{f': {why}' if why else ''}. Do not rely on the numbers there."
         )
         found.append(Note(RunCode.NOT_SETTLED, {"speed": tuple(speed[lost].tolist())}, text))
@@ -249,12 +250,12 @@ def _between(speed: Array) -> str:
 
 
 def one_family(answer: Response) -> Note | None:
-    """What it means that one family of waves answers alone; None where other models do."""
+    """Meaning of an answer by unidirectional waves alone; None where other models answer."""
     alone = answer.model == "kdv"
     if not alone.any():
         return None
     text = (
-        "Liquid model: one family of waves alone. Liquid that goes with the drum is held by both families, "
+        "Liquid model: unidirectional waves alone. Liquid that goes with the drum is held by both families, "
         "so that this is out of range at every speed; the estimated error is the distance from the exact "
         "equilibrium."
     )
@@ -281,7 +282,7 @@ def plane_label(chambers: bool) -> str:
 def plane(position: float, zero: str, chambers: bool, held: bool = False) -> Note:
     """Where the motion of a rotor that tilts is measured."""
     start = "the unbalance" if zero == "unbalance" else zero
-    turns = ", of motions held in time as a mean over the turns" if held else ""
+    turns = ", of time-domain states as a mean over the turns" if held else ""
     text = (
         f"Amplitude: largest radius of the orbit {plane_words(position, chambers)}{turns}. "
         f"Angles: of its part that turns with the spin, from {start}."
@@ -295,14 +296,15 @@ def against_spin(share: float, speed: float, held: Held | None = None) -> Note:
     if held is not None:
         rest = f"; elsewhere {by}" if not held.at.all() else ""
         by = (
-            f"where motions were held in time the {HELD_MODELS[held.model][0]} answer that part as well{rest}"
+            f"where motions were integrated in time the {HELD_MODELS[held.model][0]} answer that part as "
+            f"well{rest}"
         )
     text = f"Up to {share:.2g} of the orbit goes against the spin, at {in_rpm(speed)}; {by}."
     return Note(RunCode.AGAINST_SPIN, {"share": share, "speed": speed}, text)
 
 
 def self_excited(whirl: SelfExcited) -> Note:
-    """Whether a whirl grows by itself, where, and how fast at most."""
+    """Self-excited whirl: at which speeds, and how fast it grows at most."""
     theory = f"linear theory of an even layer, liquid friction: {whirl.friction}"
     data: dict[str, object] = {"bands": whirl.bands, "not_known": whirl.not_known}
     lost, unknown = int(np.count_nonzero(np.isnan(whirl.growth))), ""
@@ -312,9 +314,9 @@ def self_excited(whirl: SelfExcited) -> Note:
         unknown = f" Not known at {lost} of {whirl.growth.size} speeds{where}: do not take it for stable."
     if not whirl.bands:
         elsewhere = "at the other speeds" if lost else "at these speeds"
-        text = f"No whirl grows by itself {elsewhere} ({theory}).{unknown}"
+        text = f"No self-excited whirl {elsewhere} ({theory}).{unknown}"
         if lost == whirl.growth.size:
-            text = f"Whether a whirl grows by itself is not known ({theory}): do not take it for stable."
+            text = f"It is not known whether whirl is self-excited ({theory}): do not take it for stable."
         return Note(RunCode.SELF_EXCITED, data, text)
     listed = ", ".join(rpm_range(low, high) for low, high in whirl.bands)
     most, fastest = int(np.nanargmax(whirl.growth)), ""
@@ -322,7 +324,7 @@ def self_excited(whirl: SelfExcited) -> Note:
         growth, turning = float(whirl.growth[most]), float(whirl.whirl_speed[most])
         data |= {"growth": growth, "whirl_speed": turning}
         fastest = f", fastest at {growth:.3g} 1/s, whirling at {in_rpm(turning)}"
-    text = f"A whirl grows by itself from {listed}{fastest}: unstable there ({theory}).{unknown}"
+    text = f"Self-excited whirl from {listed}{fastest}: unstable there ({theory}).{unknown}"
     return Note(RunCode.SELF_EXCITED, data, text)
 
 

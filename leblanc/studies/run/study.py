@@ -204,7 +204,7 @@ def run_scene(scene: Scene, holding: Holding = HERE, cycles: bool = False) -> Ru
     scene = scene.as_read()
     if holding.solver != COUPLED and not may_hold(scene):
         raise InputError(
-            "solver", holding.solver, "left out: the scene has no motion held in time ([model] held)"
+            "solver", holding.solver, "left out: the scene has no motion integrated in time ([model] held)"
         )
     machine = prepare(scene)
     update(what="choosing the liquid model")

@@ -100,7 +100,7 @@ def _aside(result: RunAnswer, index: int) -> str:
     return f" ({', '.join(found)})" if found else ""
 
 
-RIPPLE = 0.01  # of the amplitude, beyond which its change over time is told
+RIPPLE = 0.01  # of the amplitude, beyond which its change over time is reported
 
 
 def _on_average(result: RunAnswer, index: int) -> str:
@@ -112,7 +112,7 @@ def _on_average(result: RunAnswer, index: int) -> str:
 def _ends(result: RunAnswer, index: int) -> tuple[float, float] | None:
     """Least and largest amplitude over time at a place of the curve; None where it hardly changes.
 
-    Where an orbit is an ellipse its amplitude is that of each turn's largest distance: only more is told.
+    Where an orbit is an ellipse its amplitude is that of each turn's largest distance: only more is reported.
     """
     if result.held is None:
         return None
@@ -133,7 +133,9 @@ def _wrong(result: RunAnswer, index: int) -> list[str]:
     r = result.curve
     found = [] if r.in_range[index] else ["out of range"]
     if result.held is not None and r.model[index] in HELD_MODELS:
-        state = "limit cycle" if result.cycling[index] else "" if r.converged[index] else "not settled"
+        state = (
+            "limit cycle" if result.cycling[index] else "" if r.converged[index] else "not converged in time"
+        )
         return [*found, state] if state else found
     if not r.converged[index] and np.isfinite(r.deflection[index]):
         found.append("not converged")
@@ -143,7 +145,7 @@ def _wrong(result: RunAnswer, index: int) -> list[str]:
 
 
 def _unknown(result: RunAnswer, index: int) -> bool:
-    """Nothing tells whether the answer at a place of the curve is stable."""
+    """The stability of the answer at a place of the curve is not known."""
     r, whirl = result.curve, result.whirl
     if whirl is None or not r.branch_stable[index].any():
         return False
@@ -249,7 +251,7 @@ def _compared(label: str, result: RunAnswer, wet: int | None, dry: int | None) -
 
 
 def facts(result: RunAnswer) -> list[tuple[str, str]]:
-    """What else a reader wants to know: label and value."""
+    """Further results: label and value."""
     r = result.response
     where = NOT_FOUND if math.isnan(r.liquid_offset[-1]) else "none"
     if r.liquid_offset[-1] > 0.0:
@@ -266,7 +268,7 @@ def facts(result: RunAnswer) -> list[tuple[str, str]]:
 
 
 def _held_facts(result: RunAnswer) -> list[tuple[str, str]]:
-    """How much was held in time, and how much the liquid swings."""
+    """Number of time-domain states, and the swing of the liquid."""
     held = result.held
     if held is None:
         return []
@@ -274,7 +276,7 @@ def _held_facts(result: RunAnswer) -> list[tuple[str, str]]:
     error, (waves, parts) = _largest_known(held.error), HELD_MODELS[held.model]
     found = [
         (
-            f"Rotor and {waves} held in time",
+            f"Rotor and {waves} integrated in time",
             f"{'all' if count == every else f'{count} of'} {every} speeds, "
             f"{held.cells} {parts} round each wall"
             + ("" if math.isnan(error) else f", estimated error at most {percent(error)}"),
@@ -325,13 +327,15 @@ def checks(result: RunAnswer) -> list[Check]:
     if result.capture_speed is not None:
         loose = r.speed <= result.capture_speed
         edge = f" (below {in_rpm(result.capture_speed)})" if loose.any() else ""
-        found.append(check("No ring of liquid stands", f"{ranges(r.speed, loose)}{edge}", loose.any()))
+        found.append(
+            check("No annular layer (gravity dominates)", f"{ranges(r.speed, loose)}{edge}", loose.any())
+        )
     if result.carried_from is not None:
         loose, where = r.speed < result.carried_from, "by nothing: without friction"
         if math.isfinite(result.carried_from):
             where = f"below {in_rpm(result.carried_from)}"
         edge = f" ({where})" if loose.any() else ""
-        found.append(check("Not carried round from rest", f"{ranges(r.speed, loose)}{edge}", loose.any()))
+        found.append(check("Annulus not reached from rest", f"{ranges(r.speed, loose)}{edge}", loose.any()))
     if tolerance is not None and result.error_estimate is not None and not result.chamberless:
         missed = ~(result.error_estimate <= tolerance)
         found.append(failing(f"Error above {number(100.0 * tolerance)} % or unknown", r.speed, missed))
@@ -364,8 +368,8 @@ def failing(label: str, speed: Array, fails: Flags) -> Check:
 
 
 def _held_limits(result: RunAnswer, held: Held) -> list[Check]:
-    """What motions held in time are that did not settle to one that repeats."""
-    found = [failing("Not settled", result.speed, held.not_settled)]
+    """Time-domain states that did not converge to one that repeats."""
+    found = [failing("Not converged in time", result.speed, held.not_settled)]
     cycles = failing("Limit cycle", result.speed, held.limit_cycle)
     if cycles.grade:
         most = with_unit(float(held.largest[held.limit_cycle].max()), LENGTH)
@@ -380,15 +384,17 @@ def unanswered(result: RunAnswer) -> list[str]:
     if lost.any():
         dry = lost & (result.response.model == "kdv") & np.isfinite(result.response.deflection)
         found += _unfound(result, lost & ~dry, "no bounded deflection found")
-        found += _unfound(result, dry, "one family has no wave that leaves the wall wet")
+        found += _unfound(result, dry, "unidirectional waves leave the wall dry")
     if held is not None and held.not_settled.any():
         why = held.reason[held.not_settled].tolist() if held.reason.size else []
         places = [in_rpm(speed) for speed in result.speed[held.not_settled].tolist()]
         told = [f"{place} ({reason})" for place, reason in zip(places, why, strict=True)] if why else places
         count = f"{len(places)} of {np.count_nonzero(held.at)}"
         found += [
-            f"the motion has not settled at {count} speeds at which it was held: {_first(told)}",
-            "all files are written; what has not settled is marked not_settled, with the numbers of its last "
+            f"the motion has not converged in time at {count} speeds at which it was integrated in time: "
+            f"{_first(told)}",
+            "all files are written; a motion that has not converged in time is marked not_settled, with "
+            "the numbers of its last "
             "turns. The states are kept in the folder held beside them: another run takes them from there",
         ]
     return found
@@ -470,7 +476,7 @@ def alts(result: RunAnswer) -> dict[str, str]:
 
 
 def _held_alt(result: RunAnswer) -> str:
-    """What a figure of the amplitude shows of motions held in time."""
+    """Time-domain states in a figure of the amplitude."""
     held = result.held
     if held is None:
         return ""
@@ -480,8 +486,8 @@ def _held_alt(result: RunAnswer) -> str:
         parts.append(f"diamonds and, below, the speed of the whirl at limit cycles: {cycles.where}")
     if (differ := rows["Up and down differ"]).grade:
         parts.append(f"a thin line while the speed falls: {differ.where}")
-    if (lost := rows["Not settled"]).grade:
-        parts.append(f"not settled: {lost.where}")
+    if (lost := rows["Not converged in time"]).grade:
+        parts.append(f"not converged in time: {lost.where}")
     return f" {'; '.join(parts)}."
 
 
@@ -496,7 +502,7 @@ def _on_top_alt(result: RunAnswer) -> str:
 
 
 def _swing_alt(result: RunAnswer) -> str:
-    """What a figure of the liquid shows of layers held in time."""
+    """Layers with time-domain states in a figure of the liquid."""
     if result.held is None or not result.held.ripple.size:
         return ""
     most = with_unit(_largest_known(result.held.ripple), LENGTH)
@@ -517,16 +523,17 @@ MODELS = {
         "Taken for granted: a wet wall all round, small disturbances, one depth along the axis.",
     ),
     "long_wave": (
-        "Long waves of any height, bores included, that keep mass and angular momentum.",
+        "Long waves of any height, hydraulic jumps included, that keep mass and angular momentum.",
         "Taken for granted: a layer thin against its waves, one depth along the axis.",
     ),
     "potential": (
         "Exact plane waves of any height and any depth on a flow without vorticity, by a conformal map.",
-        "Left out: wall layers, bores and dry walls, surface tension, the liquid's lag; friction is a small "
+        "Left out: wall layers, hydraulic jumps and dry walls, surface tension, the liquid's lag; "
+        "friction is a small "
         "force on all the liquid that damps waves as the walls do.",
     ),
     "kdv": (
-        "One family of weakly nonlinear, dispersive waves that stand still as seen from the whirl.",
+        "Unidirectional, weakly nonlinear, dispersive waves that stand still as seen from the whirl.",
         "Taken for granted: whirl near the resonance of that family, low waves.",
     ),
     "fem": (

@@ -134,7 +134,7 @@ class RunupAnswer(Answer):
     frames: RunupFrames | None = None  #: the layers at regular times; None if they were not kept
     #: of the same rotor on the same way without liquid; None if it was not run
     history_dry: RunupHistory | None = None
-    #: over an ensemble of runs that rounding tells apart; None if it was not asked for
+    #: over an ensemble of runs that differ by rounding; None if it was not asked for
     spread: Annotated[Spread | None, Q(part=True, json=False)] = None
     #: forces and clearances of each interval; None where the scene asks for none
     loads: Annotated[MachineLoads | None, Q(part=True)] = None
@@ -215,7 +215,9 @@ class RunupAnswer(Answer):
     @property
     def amplitude_error(
         self,
-    ) -> Annotated[Array, Q("m", "error of the amplitude by cells, steps and hand-over", over=_OVER)]:
+    ) -> Annotated[
+        Array, Q("m", "error of the amplitude by cells, steps and pool-annulus transition", over=_OVER)
+    ]:
         """Nan if it was not estimated, shape (k,)."""
         band = self.history.band
         return np.full(self.history.time.shape, math.nan) if band is None else band

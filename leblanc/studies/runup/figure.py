@@ -42,7 +42,7 @@ BACK_DASHES = (0, (4.0, 1.2, 1.0, 1.2))
 ARROWS = 3  # along each way
 THIN = 0.015  # of the largest amplitude: a range that hides behind its line
 MARKS = 12  # along the run without liquid
-FAR = 2.5  # times the largest of the run: a steady peak above it is told in words and cut by the axes
+FAR = 2.5  # times the largest of the run: a steady peak above it is reported in words and cut by the axes
 _RATES = (lambda rpm: rpm / RPM, lambda rate: rate * RPM)  # from rpm to rad/s and back
 LAYERS = ((WET, "-"), (DRY, (0, (3.5, 1.5))), ("#009E73", (0, (1, 1.2))))  # colour and line of a chamber
 
@@ -130,13 +130,13 @@ def _draw_band(axes: Axes, result: RunupAnswer, over_time: bool = False) -> None
     spread, error = result.spread, result.amplitude_error
     if spread is not None:
         low, high, look = spread.amplitude_min, spread.amplitude_max, {"alpha": 0.7, "zorder": 2.8}
-        label = f"range over {spread.members} runs that rounding tells apart"
+        label = f"range over {spread.members} runs that differ by rounding"
         label += ", thinner than the line" if spread.largest_spread < THIN else ""
     elif np.isnan(error).all() or float(np.nanmax(error)) < THIN * float(result.amplitude.max()):
         return
     else:
         low, high = np.maximum(result.amplitude - error, 0.0), result.amplitude + error
-        label, look = "error by cells, steps and hand-over", {"alpha": 0.55, "zorder": 2.0}
+        label, look = "error by cells, steps and pool-annulus transition", {"alpha": 0.55, "zorder": 2.0}
         if math.isnan(result.handover_estimate):
             label = "error by cells and steps"
     across = result.time if over_time else result.speed * RPM
@@ -161,7 +161,7 @@ def _shade(axes: Axes, result: RunupAnswer, limits: tuple[float, float]) -> None
 def _steady(axes: Axes, result: RunupAnswer) -> float:
     """Draw branches of the steady response, thin, also without liquid; the largest value to hold, mm.
 
-    A peak far above the run's is told in words instead.
+    A peak far above the run's is given in words instead.
     """
     answer = result.steady
     if answer is None:
@@ -262,7 +262,7 @@ def _mark_time(axes: Axes, result: RunupAnswer) -> None:
         axes.axvspan(passage.begin, passage.end, zorder=0.2, label=label, **look)
     for each in result.transfers:
         dashes = (0, (8, 3)) if each.captured else (0, (2, 2))
-        label = "liquid captured" if each.captured else "liquid falls back"
+        label = "liquid centrifuged" if each.captured else "annulus collapses"
         axes.axvline(each.time, color="0.3", linewidth=0.9, linestyle=dashes, label=label, zorder=1)
 
 
@@ -401,7 +401,7 @@ def caption(result: RunupAnswer, text: str) -> Caption:
     error = result.error_estimate
     size = "not estimated" if math.isnan(error) else f"{error:.1%} of the largest"
     if not math.isnan(result.handover_estimate):
-        size += f" by cells and steps, {result.handover_estimate:.1%} by the hand-over of the liquid"
+        size += f" by cells and steps, {result.handover_estimate:.1%} by the pool-annulus transition"
     if result.spread is not None:
         size += f"; by rounding alone {percent(result.spread.largest_spread)}"
     assumed = ", ".join(map(one_line, result.assumed)) or "nothing"

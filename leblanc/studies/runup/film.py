@@ -11,7 +11,7 @@ import numpy as np
 
 from leblanc.core.units import LENGTH, MM, MM_PEAK, RPM, unit_for
 from leblanc.liquid.filled import FilledChamber
-from leblanc.plotting.drawn import film_factor, pool
+from leblanc.plotting.bodies import film_factor, pool
 from leblanc.plotting.page import (
     FILM_DPI,
     RIGHT,

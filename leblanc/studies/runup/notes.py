@@ -39,7 +39,7 @@ ERROR = 0.02  # of the largest amplitude: an error estimate to speak of
 # Round a wall: on front loaders with 0.2 to 1.4 l in each ring 32 cells change the largest amplitude by up to
 # 7 % beside 128 cells, 64 by up to 4 %.
 ENOUGH_CELLS = 64
-FEW = 4  # times that liquid is caught or falls and is told of one by one
+FEW = 4  # times that liquid is caught or falls, up to which each is reported
 BALLS_REST = 1e-3  # of the spin: balls that pass the drum by less are at rest in it
 _REACHED = 1e-4  # of a step's speed, that it counts as reached
 
@@ -209,7 +209,8 @@ def capture(transfer: Transfer, handover: str) -> Note:
         "lost": transfer.lost,
     }
     text = (
-        f"Chamber {chamber}: its liquid {'is captured' if transfer.captured else 'falls back'} at "
+        f"Chamber {chamber}: its liquid "
+        f"{'becomes an annular layer' if transfer.captured else 'falls back into a pool'} at "
         f"{transfer.time:.4g} s, {in_rpm(speed)}"
     )
     if handover != "riding":
@@ -236,13 +237,13 @@ def not_carried(chamber: int, speed: float, balance: float) -> Note:
 def self_excited_on_the_way(
     bands: tuple[tuple[float, float], ...], friction: Friction, whirl: tuple[float, float] | None
 ) -> Note:
-    """Speeds at which whirl grows by itself, rad/s.
+    """Speeds of self-excited whirl, rad/s.
 
     `whirl` is the estimated amplitude of the largest, m, and its spin speed, rad/s.
     """
     listed = rpm_bands(bands)
     law = small_whirl_friction(friction)
-    text = f"By linear theory with liquid friction {law}, some whirl grows by itself at {listed}."
+    text = f"By linear theory with liquid friction {law}, self-excited whirl at {listed}."
     found: dict[str, Any] = {"bands": bands}
     if whirl is not None:
         size, speed = whirl
@@ -310,9 +311,9 @@ def _limited_steps(history: RunupHistory, drive: Stages) -> Iterator[Note]:
 
 
 def unbalance_left(share: float) -> Note:
-    """How much of the unbalances is left at the end, over what they were at first."""
+    """Residual unbalance ratio at the end."""
     text = (
-        f"{percent(share)} of the unbalance is left at the end; the mass of what has left still counts as "
+        f"{percent(share)} residual unbalance ratio at the end; the mass of what has left still counts as "
         "the drum's, and what leaves takes its momentum along."
     )
     return Note(RunupCode.UNBALANCE_LEFT, {"share": share}, text)
@@ -385,5 +386,5 @@ WHIRL_BESIDE_BAFFLES = Note(
 LOADS = Note(
     RunupCode.LOADS,
     {},
-    f"{STANDS}; the blow of liquid that is caught or falls is told as an impulse on the bearings.",
+    f"{STANDS}; liquid that is caught or falls acts as an impulse on the bearings.",
 )

@@ -209,7 +209,7 @@ def chosen_run(
 
 
 def _by_steps(history: RunupHistory) -> float:
-    """Error by cells, steps and hand-over together, over the largest amplitude."""
+    """Error by cells, steps and pool-annulus transition together, over the largest amplitude."""
     handed = history.handover_estimate
     return history.error_estimate + (0.0 if math.isnan(handed) else handed)
 
@@ -401,7 +401,7 @@ def rounding_spread(
             members.append(member)
             update(share + (1.0 - share) * count / len(tasks), 1.0)
     except KeyboardInterrupt:
-        # What is there by now is told.
+        # What there is so far is reported.
         pass
     return spread_over(members, len(tasks) + 1, taken.history.time.size, seed)
 
@@ -464,7 +464,7 @@ def steady_response(scene: Scene, speed: Array) -> Response | None:
 
 
 def whirl_bands(scene: Scene, speed: Array) -> Bands | None:
-    """Bands of the speeds passed in which some whirl grows by itself, rad/s; None with baffles or balls."""
+    """Bands of the speeds passed in which whirl is self-excited, rad/s; None with baffles or balls."""
     from solvers.whirl.edges import unstable_bands
 
     passed = _passed(speed, BAND_SPEEDS)
@@ -476,7 +476,7 @@ def whirl_bands(scene: Scene, speed: Array) -> Bands | None:
 
 
 def whirl_on_the_way(scene: Scene, bands: Bands | None) -> tuple[float, float] | None:
-    """Estimated amplitude of the largest whirl that grows by itself, m, and its spin speed, rad/s.
+    """Estimated amplitude of the largest self-excited whirl, m, and its spin speed, rad/s.
 
     None where nothing grows, nothing bounds it, or it is no circle, as with gravity across the axis.
     """

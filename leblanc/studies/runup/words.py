@@ -56,7 +56,7 @@ IN_TABLES = (
     *(RunupCode.LIQUID_MODEL, RunupCode.ROUGH, RunupCode.ENERGY),
     *(RunupCode.PEAK_STEADY, RunupCode.SELF_EXCITED),
 )
-_ROUGH = 0.1  # of an amplitude: an error beyond this is told with its cause
+_ROUGH = 0.1  # of an amplitude: an error beyond this is reported with its cause
 _CAUSES = {"cells": "cells and steps", "handover": "how the liquid becomes a ring"}
 _HERE = "leblanc.studies.runup.figure"
 
@@ -110,11 +110,11 @@ def _several(count: int, what: str) -> str:
 
 
 def describe_model(answer: RunupAnswer) -> str:
-    """Liquid model of a run-up with its resolution and what bores leave behind."""
+    """Liquid model of a run-up with its resolution and the turbulence of hydraulic jumps."""
     if answer.model == "linear":
         return f"exact linear theory in time, steps as of {answer.cells} cells"
     shallow = "with dispersion" if answer.dispersion else "without dispersion"
-    behind = "" if answer.bore == "none" else f", bores with {answer.bore}"
+    behind = "" if answer.bore == "none" else f", jumps with {answer.bore}"
     return f"annular long waves in time, {answer.cells} cells, {shallow}{behind}"
 
 
@@ -342,7 +342,7 @@ def checks(answer: RunupAnswer) -> Iterator[Check]:
             continue
         name = "Liquid" if len(answer.chambers) == 1 else f"Liquid of chamber {k + 1}"
         loose, depth = ~history.captured[:, k], chamber.radius - chamber.mean_surface_radius
-        yield at_times(f"{name} not carried round", loose)
+        yield at_times(f"{name} not reached from rest", loose)
         dry = ~loose & (np.nan_to_num(history.depth_min[:, k], nan=math.inf) <= DRY * depth)
         yield at_times(f"{name} leaves a wall dry", dry)
     bands = "not examined" if answer.bands is None else rpm_bands(answer.bands) or "none"

@@ -8,14 +8,14 @@ from collections.abc import Sequence
 import numpy as np
 
 from leblanc.liquid.choose import axial_gravity
-from leblanc.plotting.drawn import BallView, DrawnRace
+from leblanc.plotting.bodies import BallView, DrawnRace
 from leblanc.scene.chambers import Chamber
 from leblanc.scene.races import BallRace
 from leblanc.scene.rotors import JeffcottRotor
 from leblanc.scene.scene import Scene, Speeds, dry_rotor
 from leblanc.studies.balls.study import run_balls
+from leblanc.studies.shapes.equilibrium import liquid_at, places_of
 from leblanc.studies.shapes.scale import choose_scale, given_scale
-from leblanc.studies.shapes.still import liquid_at, places_of
 from leblanc.studies.shapes.supports import machine_parts
 from meshes.arrays import Array
 from meshes.errors import InputError

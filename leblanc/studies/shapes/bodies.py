@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fluid.fill import Fill
-from leblanc.plotting.drawn import LiquidBodies
+from leblanc.plotting.bodies import LiquidBodies
 from meshes.bodies.paraboloid import paraboloid_body
 from meshes.chamber_section import liquid_of
 from meshes.clip import wall_loops

@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from leblanc.plotting.drawn import LiquidBodies, LiquidShape, chord, half_angle, pool
+from leblanc.plotting.bodies import LiquidBodies, LiquidShape, chord, half_angle, pool
 from meshes.arrays import Array
 from meshes.bodies.paraboloid import paraboloid_body
 from meshes.chamber import Chamber

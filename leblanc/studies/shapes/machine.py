@@ -9,7 +9,7 @@ from scipy.spatial import cKDTree
 
 from fluid.fill import Fill
 from leblanc.liquid.choose import across_gravity, axial_gravity, choose, liquid_models
-from leblanc.plotting.drawn import (
+from leblanc.plotting.bodies import (
     DrawnLiquid,
     Liquid,
     MachineMotion,
@@ -29,9 +29,9 @@ from leblanc.studies.runup.answer import RunupAnswer, RunupFrames
 from leblanc.studies.runup.study import runup_scene
 from leblanc.studies.shapes.balls import drawn_races, ringed, side_by_side
 from leblanc.studies.shapes.bodies import is_cut, wall_is_dry
+from leblanc.studies.shapes.equilibrium import liquid_at, places_of
 from leblanc.studies.shapes.layer import body_of_layer, body_of_pool
 from leblanc.studies.shapes.scale import SHOWN, THIN, drawn_volume, given_scale, scale_of, wave_scale
-from leblanc.studies.shapes.still import liquid_at, places_of
 from leblanc.studies.shapes.supports import machine_parts
 from meshes.arrays import Array, Complex
 from meshes.chamber_section import surface_is_whole

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fluid.fill import Fill
-from leblanc.plotting.drawn import MachineMotion, Scale, rounded_down
+from leblanc.plotting.bodies import MachineMotion, Scale, rounded_down
 from leblanc.studies.shapes.bodies import is_cut, meets_inner_wall
 from meshes.arrays import Array, Complex
 from meshes.chamber import Chamber

@@ -11,7 +11,7 @@ import math
 from collections.abc import Iterable
 from dataclasses import replace
 
-from leblanc.plotting.drawn import MachineParts, Shell, Spot, Strut
+from leblanc.plotting.bodies import MachineParts, Shell, Spot, Strut
 from leblanc.scene.rotors import JeffcottRotor, TubRotor, TwoPlaneRotor
 from leblanc.scene.scene import Scene
 

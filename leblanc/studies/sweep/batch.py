@@ -51,7 +51,7 @@ def _joined(parts: Sequence[Answers], order: Index | None = None) -> Answers:
 
 
 def _bare(scene: Scene) -> Answers:
-    """Answers of one scene; without chambers nothing is told of a liquid."""
+    """Answers of one scene; without chambers none of a liquid."""
     if scene.chambers:
         return answer_scenes([scene])
     found = _single(scene)

@@ -15,7 +15,7 @@ from meshes.quantity import Q
 
 _OVER = ("speed",)
 _LAG = "from the unbalance, positive with the spin, a lag is negative"
-_MOST = "of the whirl that grows most"
+_MOST = "of the fastest-growing whirl"
 _BALLS = "balanced_from"  # None without balls
 
 

@@ -21,7 +21,7 @@ def volume(
     gravity: Annotated[Quantity, ACCELERATION, "Gravity along the axis."] = 9.81,
     inner_radius: Annotated[Quantity, LENGTH, "Inner wall radius."] = 0.0,
 ) -> VolumeAnswer:
-    """Volume that just covers the wall at a deflection. Also the surface of a given volume.
+    """Wetting volume at a deflection: the least that covers the wall. Also the surface of a given volume.
 
     Raises
     ------

@@ -109,7 +109,7 @@ def facts(answer: VolumeAnswer) -> tuple[tuple[str, str], ...]:
         ("optimal volume", _volume(answer.optimal_volume, unit)),
         ("by finite elements", _volume(answer.optimal_volume_fem, unit)),
         ("relative difference", f"{answer.fem_error:.2g}"),
-        ("as printed, DR18 eq. 18", _volume(answer.printed_eq18, unit)),
+        ("as published, DR18 eq. 18", _volume(answer.printed_eq18, unit)),
         ("the same, corrected", _volume(answer.corrected_eq18, unit)),
     ]
     if surface := answer.surface:

@@ -26,7 +26,7 @@ def answer_volume(
     gravity: float = 9.81,
     inner_radius: float = 0.0,
 ) -> VolumeAnswer:
-    """Optimal volume, exact, by finite elements, and as printed [theory: statics, eq. 8]."""
+    """Optimal volume, exact, by finite elements, and as published [theory: statics, eq. 8]."""
     from solvers.statics.free_surface import optimal_volume_fem
 
     chamber = Chamber(radius, height, inner_radius)

@@ -8,7 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from leblanc.plotting.drawn import rounded_down
+from leblanc.plotting.bodies import rounded_down
 from leblanc.scene.scene import Scene
 from leblanc.wings.magnetic.study import loads_of, rotor_of
 from meshes.arrays import Array

@@ -123,7 +123,7 @@ def test_the_numbers_of_layer_are_those_of_its_json(capsys: pytest.CaptureFixtur
     words, answer = printed(capsys, *options), json.loads(printed(capsys, *options, "--json"))
     ratio, offset = (complex(*answer[name]) for name in ("force_ratio", "offset"))
     rows = {row[0]: row[1] for line in words.splitlines() if len(row := re.split(r"  +", line.strip())) == 2}
-    size, _, angle = rows["Force ratio"].partition(" at ")
+    size, _, angle = rows["Force coefficient"].partition(" at ")
     assert math.isclose(float(size), abs(ratio), rel_tol=5.1e-4)  # four digits
     assert angle == "0 deg from the deflection"
     assert math.isclose(float(rows["Centre of mass"].split()[0]), abs(offset) * 1e3, rel_tol=5.1e-4)

@@ -1,4 +1,4 @@
-"""Figures of motions held in time: range over time, limit cycles, the way down, the layers."""
+"""Figures of time-domain states: range over time, limit cycles, the way down, the layers."""
 
 from __future__ import annotations
 
@@ -149,7 +149,7 @@ def test_alternative_texts_tell_what_is_drawn() -> None:
     alt = run_figures.amplitude_figure(result).alt
     assert "A band from the least to the largest amplitude over time" in alt
     assert "limit cycles: 1145 to 1335 rpm, amplitude up to 0.6426 mm" in alt
-    assert "while the speed falls: 1430 rpm" in alt and "not settled: 195 rpm" in alt
+    assert "while the speed falls: 1430 rpm" in alt and "not converged in time: 195 rpm" in alt
     assert run_figures.liquid_figure(result).alt.endswith("at most 2 mm.")
     assert "band" not in run_figures.amplitude_figure(rig()).alt
 

@@ -89,7 +89,7 @@ def test_labels_and_numbers():
     low, high = right.get_ylim()
     assert low == 0.0 and 23.0 < high < 30.0
     assert numbers(figure) == (
-        "force ratio 0.49 + 3.12i (3.158 at 81\N{DEGREE SIGN})\n"
+        "force coefficient 0.49 + 3.12i (3.158 at 81\N{DEGREE SIGN})\n"
         "centre of mass 22.36 mm at \N{MINUS SIGN}27\N{DEGREE SIGN}"
     )
     np.testing.assert_allclose(labelled(right, "mean depth").get_ydata(), 15.0, rtol=1e-12)
@@ -101,7 +101,7 @@ def test_labels_and_numbers():
     factor = wave.depth_factor(bore(), float(bore().depth.max()))
     assert f"Depth of the layer drawn \N{MULTIPLICATION SIGN} {factor:g}, walls to scale" in text
     assert "Layer of water. Liquid model: long_wave. Wall 150 mm, " in text
-    assert text.endswith("Notes: mean rotation not settled.")
+    assert text.endswith("Notes: mean rotation not converged in time.")
 
 
 def test_drawn_liquid_is_the_record_times_the_factor():
@@ -150,7 +150,7 @@ def test_nothing_is_drawn_of_no_liquid():
     figure = wave.wave_figure(nothing())
     assert not figure.axes[0].patches
     assert "dry patch on the wall" in legend(figure)
-    assert numbers(figure) == "force ratio 0\ncentre of mass not found"
+    assert numbers(figure) == "force coefficient 0\ncentre of mass not found"
 
 
 def assert_apart(figure) -> None:
@@ -184,7 +184,7 @@ def test_history_without_periods_shows_depths_alone():
     assert [axes.get_ylabel() for axes in figure.axes] == ["Depth (mm)"]
     assert figure.axes[0].get_xlabel() == "Time (s)"
     labels = [axes.get_ylabel() for axes in wave.history_figure(bore(), running(bore())).axes]
-    assert labels == ["Force ratio (\N{EN DASH})", "Rotation (rad/s)", "Depth (mm)"]
+    assert labels == ["Force coefficient (\N{EN DASH})", "Rotation (rad/s)", "Depth (mm)"]
 
 
 def test_periods_without_a_force_leave_a_gap():

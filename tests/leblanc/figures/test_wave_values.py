@@ -52,7 +52,7 @@ def bore(whirl_speed: float = 30.0, count: int = 256) -> Wave:
         depth=0.015 + 0.016 * share,
         force_ratio=0.49 + 3.12j,
         offset=0.02 - 0.01j,
-        notes=("mean rotation not settled",),
+        notes=("mean rotation not converged in time",),
     )
 
 

@@ -129,7 +129,9 @@ def test_what_motions_held_in_time_would_take_is_told_in_seconds() -> None:
     assert held.speeds == np.count_nonzero(wanted) < machine.speed.size
     assert held.seconds == pytest.approx(seconds.sum(), rel=1e-12)
     assert (held.first, held.last) == tuple(machine.speed[wanted][[0, -1]])
-    assert f"{held.speeds} speeds" in (words := dict(machine_rows(explain_scene(lying)))["held in time"])
+    assert f"{held.speeds} speeds" in (
+        words := dict(machine_rows(explain_scene(lying)))["integrated in time"]
+    )
     assert seconds_words(held.seconds) in words and 'held = "auto"' in words
     (note,) = (each for each in run_scene(lying).notes if each.code is RunCode.TOLERANCE_MISSED)
     assert note.data["held_speeds"] == held.speeds and note.data["held_seconds"] == held.seconds

@@ -72,7 +72,7 @@ def test_synchronous_linear_waves_hold_up_to_the_dry_wall() -> None:
     assert outside(answer_layer(fill, SPIN, SPIN, 1.1 * fill.depth, LINEAR)) == {"wave_amplitude"}
 
 
-DEEP, RATIO, FOLD = 0.1, 1.1, 0.010372250  # of the exact wave, by another code for its equations
+DEEP, RATIO, FOLD = 0.1, 1.1, 0.010372250  # of the fully nonlinear wave, by another code for its equations
 
 
 def beside_the_fold(

@@ -49,7 +49,7 @@ DRAWS, SEED = 40, 11
 
 @kills("leblanc.liquid.whirling:_refused", "error <= tolerance", "error <= 30.0 * tolerance")
 def test_nineteen_in_twenty_answers_are_as_good_as_they_say() -> None:
-    """Beside exact waves that were followed from rest at whirls by chance, to which nothing was fitted."""
+    """Beside fully nonlinear waves followed from rest at random whirls, to which nothing was fitted."""
     drawn, rng = kept().drawn, np.random.default_rng(SEED)
     held, kinds = [], []
     for k in rng.choice(np.flatnonzero(drawn.smooth & (drawn.layer <= 0.5)), DRAWS, replace=False):
@@ -76,7 +76,7 @@ def test_cheaper_models_go_first_and_the_next_one_says_why() -> None:
     names = [chosen(**loose, tolerance=tolerance).model.name for tolerance in (0.5, 0.05, 0.01)]
     assert names == ["linear", "kdv", "potential"]
     reason = chosen(**loose, tolerance=0.01).reason
-    assert "linear theory may be off by" in reason and "one family of waves may be off by" in reason
+    assert "linear theory may be off by" in reason and "unidirectional waves may be off by" in reason
     assert "within 1 %" in reason
 
 
@@ -98,7 +98,7 @@ def test_beyond_smooth_waves_long_ones_answer(ratio: float) -> None:
 
 
 def test_an_exact_wave_that_is_not_found_is_said_where_the_closed_form_has_one() -> None:
-    """At a resonance of two crests on the way, between it and that of one no end is told."""
+    """At a resonance of two crests on the way, between it and that of one no end is reported."""
     layer, ratio, size = 0.45, 0.97, 0.2
     found = chosen(layer, at_ratio(layer, ratio), size, cells=16)
     assert float(largest_whirl(layer, detuning(layer, ratio))) == math.inf

@@ -132,7 +132,7 @@ def test_run_up_over_time() -> None:
 def test_the_table_tells_the_hardest_blow() -> None:
     """Of all hand-overs and bearings, with its time; nothing where no liquid was handed over."""
     plain = _tub_runup().loads
-    label = "Bearing, hardest blow"
+    label = "Bearing, largest impulse"
     jumps, impulse = plain.time[[100, 300]], np.array([[1.0, 2.0], [np.nan, 7.0]])
     (row,) = (row for row in load_rows(replace(plain, jumps=jumps, impulse=impulse)) if row.label == label)
     assert row.size == "7 N s" and "bearing 2" in row.remark

@@ -112,7 +112,7 @@ def test_order_of_the_parts(command: str, machine: str) -> None:
     """Chambers, supports and unbalances may come in any order."""
     table = MACHINES[machine]
     answer, found = COMMANDS[command](table), COMMANDS[command](reordered(table))
-    # A rotor that tilts is told at its first chamber, now at the other end; `chamber_deflection` has both.
+    # A rotor that tilts is given at its first chamber, now at the other end; `chamber_deflection` has both.
     moved = ["amplitude", "amplitude_dry", "phase", "deflection", "branches", "backward", "position",
              "error_estimate", "peak.speed", "peak.amplitude", "peak_dry.speed",
              "peak_dry.amplitude"] if machine == "two_plane" else []  # fmt: skip
@@ -124,7 +124,7 @@ def test_order_of_the_parts(command: str, machine: str) -> None:
 
 
 def test_order_of_supports_and_unbalances() -> None:
-    """With its chambers in their places a rotor that tilts is told at the same one, and so are its peaks."""
+    """With its chambers in their places a rotor that tilts is given at the same one, and so are its peaks."""
     table = reordered(TWO_PLANE)
     table["chambers"].reverse()
     assert_alike(run(table), run(TWO_PLANE), ROUNDING)

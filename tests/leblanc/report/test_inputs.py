@@ -156,7 +156,7 @@ OTHERS = {
     *(f"chambers.*.liquid.{key}" for key in ("temperature", "salt", "mass_fraction", "name")),
     *(f"chambers.*.liquid.{part}.{key}" for part, law in LAWS.items() for key in law.model_fields),
 }  # fmt: skip
-# What stands above the inputs, is their mark, or is told by the cell of another path.
+# What stands above the inputs, is their mark, or is reported by the cell of another path.
 ELSEWHERE = {"name", "source", "assumed"}
 TOLD_BY = {
     "rotor.kind": "rotor.axis",

@@ -265,7 +265,7 @@ def test_optimise_report_is_the_json() -> None:
     assert page.row("Objective") == [f"{printed(mass)} g", "0 g", ""]
     both = [f"{printed(one)} mm" for one in vibration]
     assert page.row("Vibration") == [*both, printed(vibration[0] / vibration[1])]
-    assert page.row("Sets of volumes judged") == [str(answer["evaluations"])]
+    assert page.row("Sets of volumes evaluated") == [str(answer["evaluations"])]
     limits = {row[0].partition(":")[0]: row[1:] for row in page.table("Constraint")}
     assert limits["vibration"][1] == f"{printed(answer['constraints']['vibration']['limit'] * 1e3)} mm"
     assert limits["vibration"][2] == "kept" and set(limits) == {
@@ -394,7 +394,7 @@ def test_runup_warnings() -> None:
     for heading, text, troubled in (
         ("Stopped before its end", "a reason", with_history(outcome=Outcome.STOPPED, reason="a reason")),
         ("Liquid model out of range", where, replace(record, in_range=~part)),
-        ("Liquid not carried round", where, with_history(captured=~part[:, None])),
+        ("Annulus not reached from rest", where, with_history(captured=~part[:, None])),
         ("Liquid leaves a wall dry", where, with_history(depth_min=np.where(part, 1e-7, 1e-3)[:, None])),
         (
             "Self-excited whirl, linear theory",
@@ -463,7 +463,7 @@ def test_runup_report_is_the_json() -> None:
         "Self-excited whirl, linear theory": bool(answer["bands"]),
         "Error above 2 % or unknown": not answer["error_estimate"] <= 0.02,
         "Energy lost above 0.1 %": energy["closure"] > 1e-3,
-        "Liquid not carried round": not captured.all(),
+        "Annulus not reached from rest": not captured.all(),
     }
     assert {heading for heading, flag in flags.items() if flag} == page.warnings() & set(flags)
     assert len(page.addresses) == 3

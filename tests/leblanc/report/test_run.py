@@ -118,10 +118,10 @@ def troubled() -> dict[str, tuple[RunAnswer, str]]:
     return {
         "Not converged": (replace(record, response=replace(r, converged=~part)), where),
         "Liquid model out of range": (replace(record, response=replace(r, in_range=~part)), where),
-        "No ring of liquid stands": (
+        "No annular layer (gravity dominates)": (
             replace(record, capture_speed=150.0 * RPM), "100 to 147.5 rpm (below 150 rpm)"
         ),
-        "Not carried round from rest": (
+        "Annulus not reached from rest": (
             replace(record, capture_speed=50.0 * RPM, carried_from=150.0 * RPM),
             "100 to 147.5 rpm (below 150 rpm)",
         ),
@@ -251,8 +251,8 @@ def test_numbers_are_those_of_the_json(name: str, tmp_path: Path, capsys) -> Non
         "Wall dry in part": any(answer["dry_patch"]),
         "Answer unstable": not all(answer["stable"]),
         "Self-excited whirl": bool(answer["whirl_bands"]),
-        "No ring of liquid stands": (answer["capture_speed"] or 0.0) >= answer["speed"][0],
-        "Not carried round from rest": (answer["carried_from"] or 0.0) > answer["speed"][0],
+        "No annular layer (gravity dominates)": (answer["capture_speed"] or 0.0) >= answer["speed"][0],
+        "Annulus not reached from rest": (answer["carried_from"] or 0.0) > answer["speed"][0],
         "Error above 0.1 % or unknown": not all(
             x is not None and x <= 1e-3 for x in answer["error_estimate"]
         ),

@@ -1,4 +1,4 @@
-"""Motions held in time: what a result says of them in numbers, notes, words, tables and exit codes."""
+"""Time-domain states: what a result says of them in numbers, notes, words, tables and exit codes."""
 
 from __future__ import annotations
 
@@ -99,7 +99,7 @@ def test_the_note_tells_how_far_long_waves_are_off_at_the_whirls_of_cycles() -> 
     ):
         told = notes.held_motions(replace(held, wave_error=some), result.speed)[0]
         assert said in told.text and told.data["waves_not_known"] >= 2
-    # Of exact waves nothing is said, nor where it was never asked.
+    # Of fully nonlinear waves nothing is said, nor where it was never asked.
     for other in (replace(held, model="potential", wave_error=errors * np.nan),):
         assert "waves are off" not in notes.held_motions(other, result.speed)[0].text
 
@@ -108,11 +108,13 @@ def test_limits_tell_cycles_from_what_is_unstable() -> None:
     rows = {limit.label: limit for limit in words.checks(held_rig())}
     largest = held_of(held_rig()).largest[held_of(held_rig()).limit_cycle].max() * 1e3
     assert rows["Limit cycle"].where == f"1145 to 1335 rpm, amplitude up to {largest:.4g} mm"
-    assert (rows["Not settled"].where, rows["Up and down differ"].where) == ("195 rpm", "1430 rpm")
+    assert (rows["Not converged in time"].where, rows["Up and down differ"].where) == ("195 rpm", "1430 rpm")
     assert not rows["Answer unstable"].grade
     assert not {"Not converged", "Stability not known"} & set(rows)
     # Nothing of all this where no motion was held.
-    assert not {"Limit cycle", "Not settled", "Up and down differ"} & {x.label for x in words.checks(rig())}
+    assert not {"Limit cycle", "Not converged in time", "Up and down differ"} & {
+        x.label for x in words.checks(rig())
+    }
 
 
 def test_the_answer_says_that_a_number_is_a_mean() -> None:
@@ -130,7 +132,7 @@ def test_the_answer_says_that_a_number_is_a_mean() -> None:
 
 
 def test_an_unsettled_number_is_said_to_be_one() -> None:
-    assert "(out of range, not settled)" in words.answer(cut(held_rig(), 195.0))
+    assert "(out of range, not converged in time)" in words.answer(cut(held_rig(), 195.0))
 
 
 def test_notes_count_what_was_held() -> None:
@@ -163,18 +165,18 @@ def test_what_has_not_settled_on_the_way_down_is_no_hysteresis() -> None:
 
 @kills("leblanc.studies.run.notes:plane", 'turns = ", of', 'turns = "" and ", of')
 def test_the_plane_says_that_an_amplitude_is_a_mean() -> None:
-    """Where motions are held in time every turn has a largest radius of its own."""
+    """Where motions are integrated in time every turn has a largest radius of its own."""
     for held in (False, True):
         assert ("mean over the turns" in notes.plane(0.1, "unbalance", True, held).text) is held
 
 
 def test_slow_disturbances_are_spoken_of_where_nothing_was_held() -> None:
-    """A motion held in time has met every disturbance, slow or not."""
+    """A motion integrated in time has met every disturbance, slow or not."""
     assert notes.slow_disturbances(held_of(held_rig())) is None
     some = notes.slow_disturbances(held_of(held_rig(at=SOME)))
-    assert some is not None and some.text.startswith("Where no motion was held in time")
+    assert some is not None and some.text.startswith("Where no motion was integrated in time")
     plain = notes.slow_disturbances()
-    assert plain is not None and plain.text.startswith("Branches are judged")
+    assert plain is not None and plain.text.startswith("Branches are evaluated")
 
 
 def test_report_tells_cycles_by_ranges_of_speed() -> None:
@@ -200,7 +202,7 @@ def test_exit_code_3_says_what_has_not_settled_and_what_is_kept(
     scene = Path(__file__).parents[3] / "examples/horizontal_rig.toml"
     assert main(["run", str(scene), "--out", str(tmp_path)]) == 3
     said = " ".join(capsys.readouterr().err.split())
-    assert "not settled at 1 of 21 speeds" in said
+    assert "not converged in time at 1 of 21 speeds" in said
     assert "195 rpm (the motion still changes after 1024 turns)" in said
     assert "held" in said and "no bounded deflection" not in said
     assert (tmp_path / "response.nc").exists() and (tmp_path / "summary.html").exists()

@@ -124,7 +124,7 @@ def test_every_value_is_found_at_its_line(
 
 @pytest.mark.parametrize("name", example_names())
 def test_the_examples_have_each_key_at_its_line(name: str) -> None:
-    """The last key of a path stands in the line that is told for it."""
+    """The last key of a path stands in the line that is reported for it."""
     text = example_path(name).read_text(encoding="utf-8")
     root, lines = places(text), text.splitlines()
     for path, _ in leaves(tomllib.loads(text)):

@@ -36,7 +36,7 @@ def scene(name: str, **changes: Any) -> lb.Scene:
 
 @pytest.fixture
 def no_curves(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Follow no curve, most of a small chart's work, where the growth or the band is judged alone."""
+    """Follow no curve, most of a small chart's work, where the growth or the band is evaluated alone."""
     monkeypatch.setattr(f"{CHARTS}._neighbours", lambda *_: ())
 
 

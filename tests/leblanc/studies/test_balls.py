@@ -54,7 +54,7 @@ def test_races_fit_rotors_that_tilt(name: str) -> None:
     assert run.ball_angle.shape == (run.time.size, 3)
     assert run.without == "without liquid and balls"
     assert run.energy.closure < 0.05
-    # Feet, springs and bearings are told as without balls.
+    # Feet, springs and bearings are reported as without balls.
     for told in (result.loads, run.loads):
         assert (told is None) == (name != "tub")
         if told is not None:

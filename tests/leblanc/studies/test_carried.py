@@ -95,7 +95,7 @@ def test_outlook() -> None:
     asked = 60.0 * fill.mass * (fill.chamber.radius**2 + inner**2) / 2.0
     assert found.asked == pytest.approx(asked, rel=1e-12) and most == pytest.approx(asked, rel=3e-3)
     assert found.left_behind and found.speed == 40.0
-    assert "left behind" in dict(layer_rows(layer))["carried by baffles"]
+    assert "slips" in dict(layer_rows(layer))["baffles' torque"]
     slow = explain_scene(ring(PLATES, 2.0)).layers[0]
     assert slow is not None and slow.carrying is not None and not slow.carrying.left_behind
     clear = explain_scene(ring(None)).layers[0]

@@ -110,7 +110,7 @@ def test_json_data_and_figures_carry_it(found: RunupAnswer) -> None:
     assert data.attrs["ensemble_members"] == told["members"] == 4
     for figure in (speed_figure(found), time_figure(found)):
         labels = {text for axes in figure.axes for text in axes.get_legend_handles_labels()[1]}
-        assert "range over 4 runs that rounding tells apart, thinner than the line" in labels
+        assert "range over 4 runs that differ by rounding, thinner than the line" in labels
     assert "ensemble" not in runup_scene(SHORT, check=False).to_json()
 
 

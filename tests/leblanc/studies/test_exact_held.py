@@ -1,4 +1,4 @@
-"""Scenes with exact waves: answered at once, held in time, or refused."""
+"""Scenes with fully nonlinear waves: answered at once, integrated in time, or refused."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def test_across_gravity_it_is_held() -> None:
     assert found.state.tolist() == ["periodic"]
     # Cells of the long waves, of second order, and the square of layers of 0.03 R.
     assert found.amplitude == pytest.approx(long.amplitude, rel=3e-3)
-    assert any("exact waves held in time" in str(note) for note in found.notes)
+    assert any("fully nonlinear waves integrated in time" in str(note) for note in found.notes)
 
 
 @pytest.mark.slow

@@ -35,7 +35,7 @@ def printed(capsys: pytest.CaptureFixture[str], *options: str, code: int = 0) ->
 
 
 def test_steady(capsys: pytest.CaptureFixture[str]) -> None:
-    """The keys of every model and those of the exact wave; the same from Python, in other units."""
+    """The keys of every model and those of the fully nonlinear wave; the same from Python, in other units."""
     found = printed(capsys, *WHIRL, "--profile")
     assert found["force_ratio"] == pytest.approx([2.042546357170, 0.0], abs=1e-11)
     assert (found["crest"], found["trough"]) == pytest.approx((1.0439750030, 0.9520102517), abs=1e-9)
@@ -50,7 +50,7 @@ def test_steady(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_no_wave_ends_with_code_3(capsys: pytest.CaptureFixture[str]) -> None:
-    """The largest whirl with a wave is told, in words and as a number."""
+    """The largest whirl with a wave is reported, in words and as a number."""
     larger = ["--whirl-speed", "29.5", "--whirl-amplitude", "0.5 mm", "--model", "potential"]
     found = printed(capsys, *larger, code=3)
     assert found["state"] is None and found["force_ratio"] == [None, None] and not found["in_range"]
@@ -158,7 +158,7 @@ def test_refused_from_python() -> None:
 
 
 def test_figures_and_films(tmp_path: Path) -> None:
-    """A figure of each kind; of a free wave the film's crest keeps its height wherever it is."""
+    """A figure of each kind; of a natural sloshing wave the film's crest keeps its height wherever it is."""
     free = called(free=1.5)
     assert isinstance(free, FreeWaveAnswer)
     _, frames = free_film(free)
@@ -175,7 +175,7 @@ def test_figures_and_films(tmp_path: Path) -> None:
         figure.savefig(tmp_path / f"{name}.png")
         text = " ".join(str(item.get_text()) for item in figure.findobj(lambda a: hasattr(a, "get_text")))
         assert ("Angle from the crest" in text) is (name == "free")
-        assert ("force ratio" in text) is (name == "held")
+        assert ("force coefficient" in text) is (name == "held")
     assert main([*LAYER, "--free", "1.2", "--mode", "3", "--model", "linear", "--out", str(tmp_path)]) == 0
     assert (tmp_path / "wave.png").is_file()
     assert free.to_dataset()["whirl_speed"].size == 2

@@ -174,7 +174,7 @@ def test_the_wall_is_told_how_it_carries_the_liquid_along() -> None:
     speed = found.lag * 0.15
     assert 0.01 < 2.0 * 0.15 * diameter / speed**2 < 0.02
     rows = dict(layer_rows(layer))
-    assert "turbulent" in rows["flow at the wall"] and "can follow" in rows["carried along"]
+    assert "turbulent" in rows["flow at the wall"] and "can follow" in rows["spun up"]
     del given["runup"]
     still = explain_scene(scene_from_table(given)).layers[0]
     assert still is not None and still.spin_up is not None and still.spin_up.lag == pytest.approx(200.0)

@@ -245,7 +245,7 @@ def test_likelihood_of_a_kind() -> None:
     whole = 2.0 * sum(float(np.log(each).sum()) for each in judged.sigma) - 2.0 * math.log(
         float(np.trapezoid(chance, places[:, 0]))
     )
-    # The value is told to 1e-3, over which the answer bends by some per cent at most.
+    # The value is reported to 1e-3, over which the answer bends by some per cent at most.
     assert judged.unlikely == pytest.approx(whole, abs=0.05)
 
 
@@ -349,7 +349,7 @@ def test_measured_angles_of_a_rig() -> None:
 @pytest.mark.usefixtures("one_valley")
 @kills("leblanc.studies.fit.study:_is_near", "[told]", "")
 def test_an_unknown_that_nothing_tells() -> None:
-    """An empty chamber's radius: not told; searches that differ in it alone are no other answer."""
+    """An empty chamber's radius: not reported; searches that differ in it alone are no other answer."""
     chamber = {"radius": 0.1, "height": 0.05, "volume": 0.0, "liquid": "water"}
     scene = scene_from_table({**DRY, "chambers": [chamber], "model": {"liquid": "linear"}})
     found = fit_scene(scene, measured(0.02, 2), ("rotor.stiffness", "chambers.0.radius"), starts=3)

@@ -1,4 +1,4 @@
-"""The front loader in time: what cells change of its peaks, its holds against motions held in time."""
+"""The front loader in time: what cells change of its peaks, its holds against time-domain states."""
 
 from __future__ import annotations
 

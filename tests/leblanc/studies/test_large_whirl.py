@@ -46,7 +46,7 @@ def test_the_largest_whirl_at_each_speed() -> None:
         assert found.self_excited_amplitude[k] / depth == pytest.approx(amplitude, rel=0.01)
         assert found.cycles and found.self_excited_whirl_speed[k] == pytest.approx(95.0, rel=0.02)
     assert found.self_excited_amplitude[0] == 0.0 and np.isnan(found.self_excited_whirl_speed[0])
-    # The band ends at 148.66 rad/s: beyond it a kick starts the whirl, which is told.
+    # The band ends at 148.66 rad/s: beyond it a kick starts the whirl, which is reported.
     assert found.whirl is not None and found.whirl.large is not None
     assert found.whirl.large.kicked[-2:].all() and not found.whirl.large.kicked[found.growth > 0.0].any()
     (said,) = (note for note in found.notes if note.code == RunCode.LARGE_WHIRL)

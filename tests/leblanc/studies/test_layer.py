@@ -157,7 +157,7 @@ def test_a_note_where_no_smooth_wave_follows_the_whirl(ratio: float) -> None:
     [("statics", SPIN, 1.0), ("linear", SPIN, 1.0), ("long_wave", 30.6, 0.0), ("kdv", 30.6, 0.0)],
 )
 def test_without_a_whirl_nothing_moves(model: str, whirl: float, force: float) -> None:
-    """The limit of the force ratio where theory has one, no force elsewhere; the layer stays as it is."""
+    """The limit of the force coefficient where theory has one, no force elsewhere; the layer is unchanged."""
     answer = answer_layer(FILL, SPIN, whirl, 0.0, wave_model(model))
     assert answer.converged and answer.force_ratio == pytest.approx(force, abs=1e-12)
     # Rounding, of which a layer in time keeps some.

@@ -1,4 +1,4 @@
-"""One family of waves answers `run` for every rotor, and says how far it is from the exact equilibrium."""
+"""Unidirectional waves answer `run` for every rotor, and says how far it is from the exact equilibrium."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ def test_small_waves_of_a_rotor_that_tilts() -> None:
 
 @pytest.mark.parametrize("name", [*ROTORS, *(pytest.param(name, marks=pytest.mark.slow) for name in MORE)])
 def test_every_rotor_is_answered(name: str) -> None:
-    """Force and centre of mass are Newton's; range and error are told at each speed."""
+    """Force and centre of mass are Newton's; range and error are reported at each speed."""
     scene = few(name)
     result, exact = run_scene(scene), run_scene(by(scene, "statics"))
     assert set(result.model.tolist()) == {"kdv"} and not result.in_range.any()
@@ -97,7 +97,7 @@ def test_every_rotor_is_answered(name: str) -> None:
     # About half of the liquid's answer is missing somewhere, and that is said.
     assert np.nanmax(told) > 0.2
     (note,) = [note for note in result.notes if note.code is RunCode.ONE_FAMILY]
-    assert "one family of waves alone" in str(note) and "out of range" in str(note)
+    assert "unidirectional waves alone" in str(note) and "out of range" in str(note)
     assert ("no wave" in str(note)) == (not result.converged.all())
     (span, *_) = explain_scene(scene).models[-1:]
     assert span.model == "kdv" and "off the exact equilibrium" in span.reason
@@ -124,7 +124,7 @@ def test_where_no_wave_stands_the_answer_says_so(tmp_path: Path, capsys: Capture
     assert main(["run", str(scene), "--json", "--out", str(tmp_path / "out")]) == 3
     printed = capsys.readouterr()
     answer = json.loads(printed.out)
-    assert "one family has no wave that leaves the wall wet at 2 of 20 speeds" in printed.err
+    assert "unidirectional waves leave the wall dry at 2 of 20 speeds" in printed.err
     assert answer["state"].count("not_settled") >= 2 and answer["dry_patch"].count(True) == 2
     assert (tmp_path / "out" / "response.nc").exists()
     assert main(["run", str(scene), "--out", str(tmp_path / "out")]) == 3

@@ -316,7 +316,7 @@ def test_one_curve_contains_its_peaks() -> None:
 
 @kills("leblanc.studies.held.held:_between", "in (wet, refined.amplitude_dry)", "in (wet,)")
 def test_a_dry_machine_has_one_peak_however_its_liquid_is_held() -> None:
-    """Held in time or not, the peak without liquid is one number; with liquid it is looked at there too."""
+    """The peak without liquid is the same one, integrated in time or not; the liquid is asked at it too."""
     own = lb.example("two_plane_rig").replace({"speeds.start": "400 rpm", "speeds.stop": "1200 rpm"})
     own = own.replace({"speeds.count": 4, "model.cells": 16, "model.friction": {"linear": 20.0}})
     steady, held = (run_scene(own.replace({"model.held": way})) for way in ("never", "always"))

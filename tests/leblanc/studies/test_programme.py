@@ -77,7 +77,7 @@ def test_curves_have_every_sample_once(result: RunupAnswer) -> None:
 
 
 def test_without_liquid_at_the_same_times(result: RunupAnswer) -> None:
-    """While the speed is given both have it; a coast of another length is told at the times of this one."""
+    """While the speed is given both have it; a coast of another length is given at the times of this one."""
     given = result.time <= result.passages[-1].begin
     np.testing.assert_allclose(result.speed_dry[given], result.speed[given], rtol=1e-9)
     dry = result.history_dry
@@ -113,7 +113,7 @@ def test_what_is_shown(result: RunupAnswer) -> None:
 
 
 def test_films_and_ensembles() -> None:
-    """Frames at regular times, to the end of a coast; runs that rounding tells apart, sample by sample."""
+    """Frames at regular times, to the end of a coast; runs that differ by rounding, sample by sample."""
     scene = machine(steps=STEPS[:2] + STEPS[4:], samples=200)
     found = lb.run_up(scene, check=False, frames=20, ensemble=2)
     frames, spread = found.frames, found.spread
@@ -166,7 +166,7 @@ def test_a_motor_limits_a_programme() -> None:
     assert limited.any() and not limited.all()
     np.testing.assert_array_equal(found.to_dataset()["motor_limited"].values, limited)
     assert found.loads is not None
-    # Between two samples the motor's own torque is told to what the sums over steps leave.
+    # Between two samples the motor's own torque is reported to what the sums over steps leave.
     np.testing.assert_allclose(found.loads.torque[limited], 9.0, rtol=0.03)
     assert "Motor's torque" in {label for label, *_ in found.inputs}
     assert found.speed[-1] == pytest.approx(60.0, rel=1e-4)

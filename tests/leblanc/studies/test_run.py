@@ -109,7 +109,7 @@ def test_a_model_that_does_not_answer_writes_nothing(
 
 
 def test_a_solver_for_motions_that_nobody_holds() -> None:
-    """A solver is named for motions held in time: where the scene forbids them it would go unheard."""
+    """A solver is named for time-domain states: where the scene forbids them it would go unheard."""
     with pytest.raises(InputError, match=r"solver.*scipy.*\[model\] held"):
         lb.run(lb.example("runup"), solver="scipy")
     asked = lb.example("runup").replace({"model.liquid": "long_wave", "speeds.count": 2})

@@ -22,7 +22,7 @@ from leblanc.cli import main
 from leblanc.core.blocks import Picture, flat
 from leblanc.core.netcdf import write_netcdf
 from leblanc.core.units import LENGTH, with_unit
-from leblanc.plotting.drawn import film_factor, half_angle
+from leblanc.plotting.bodies import film_factor, half_angle
 from leblanc.scene.scene import Scene, scene_from_table
 from leblanc.scene.schema.load import SceneError
 from leblanc.studies.drives import drive_of, planned
@@ -387,7 +387,7 @@ def test_where_the_layer_is_a_fair_picture() -> None:
 
 
 def test_gravity_captures_and_drops_the_liquid() -> None:
-    """Up through the speed of capture and back: both are told, and nothing below it is in range."""
+    """Up through the speed of capture and back: both are reported, and nothing below it is in range."""
     needed = math.sqrt(9.81 / lying().fills[0].surface_radius)
     ramp = {"start": 0.8 * needed, "stop": 4.0 * needed, "rate": 40.0, "duration": 0.6, "back": True}
     machine = lying(runup=ramp | {"capture": "riding"})
@@ -600,7 +600,7 @@ def test_capture_is_marked_over_time() -> None:
     events.append(Transfer(0, False, 0.9011, 80.0, (0.0, 0.0), (0.0, 0.0), 0.0))
     record = made_up(history_of(50, 1, captured=caught, transfers=tuple(events)))
     figure = figures.time_figure(record)
-    assert {"liquid captured", "liquid falls back", "model out of range"} <= set(labels(figure))
+    assert {"liquid centrifuged", "annulus collapses", "model out of range"} <= set(labels(figure))
     lines = [line for axes in figure.axes for line in axes.lines if str(line.get_label()).startswith("liq")]
     assert {float(line.get_xdata()[0]) for line in lines} >= {0.2011, 0.9011}
 

@@ -1,4 +1,4 @@
-"""What self-excited whirl makes of a study's stability, and how it is told."""
+"""What self-excited whirl makes of a study's stability, and how it is reported."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def test_stability() -> None:
 @kills("leblanc.studies.run.answer:RunAnswer.stability", "(kept & np.isnan(growth))", "False")
 @kills("leblanc.studies.run.study:self_excited", "bands_not_known(speed, growth)", "()")
 def test_what_is_not_known_is_not_stable(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A search that fails is told apart from a stable machine in every way out, and its bands are listed."""
+    """A search that fails differs from a stable machine in every way out; its bands are listed."""
     scene = load_scene("examples/two_plane_rig.toml").replace({"speeds.count": 13})
     whole = run_scene(scene)
     assert set(whole.stability.tolist()) == {"stable", "unstable"} and whole.whirl_bands_not_known == ()

@@ -1,4 +1,4 @@
-"""`leblanc volume`: exact, by finite elements, as printed; the extremes."""
+"""`leblanc volume`: exact, by finite elements, as published; the extremes."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ Seen = list[tuple[str, str, list[str]]]
 
 
 def held() -> Scene:
-    """Two speeds with waves held in time on few cells; friction lets them settle within some turns."""
+    """Two speeds with waves integrated in time on few cells; friction lets them settle within some turns."""
     change = {"speeds.start": 60.0, "speeds.count": 2, "model.cells": 16, "model.friction": {"linear": 5.0}}
     return by(example("vertical_rig").replace(change), "long_wave")
 

@@ -86,7 +86,7 @@ def test_record() -> None:
 
 @kills(f"{STUDY}:_held", "speed > max(needed", "speed > 2.0 * max(needed")
 def test_range() -> None:
-    """Held by the centrifugal field: a level axis from the capture speed, an upright one from covering."""
+    """Held by the centrifugal field: level from the centrifuging speed, vertical from covering."""
     record, machine = small(friction=Friction("none", 0.0)), scene()
     for k, fills in enumerate(fills_over_volume(machine.fills, 9)):
         free = 0 < k < 8

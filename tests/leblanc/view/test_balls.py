@@ -11,7 +11,7 @@ import pytest
 
 import leblanc as lb
 from leblanc.cli import main
-from leblanc.plotting.drawn import BallView, DrawnRace
+from leblanc.plotting.bodies import BallView, DrawnRace
 from leblanc.studies.balls.answer import BallsAnswer
 from leblanc.studies.shapes.balls import ball_radius, ball_view, drawn_races, ringed, side_by_side
 from leblanc.studies.shapes.machine import runup_view

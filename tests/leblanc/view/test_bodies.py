@@ -15,7 +15,7 @@ import pytest
 from fluid.fill import Fill
 from fluid.liquid import known_liquid
 from fluid.waves import free_wave_frequencies
-from leblanc.plotting.drawn import LiquidBodies
+from leblanc.plotting.bodies import LiquidBodies
 from leblanc.scene.scene import Speeds, scene_from_table
 from leblanc.studies.shapes.bodies import AROUND, bodies_at_rest, sections_of, surfaces, wall_is_dry
 from leblanc.studies.shapes.machine import drawn_liquid, machine_motion, mode_view

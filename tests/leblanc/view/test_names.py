@@ -117,7 +117,7 @@ def test_names_cover_nothing() -> None:
 
 @pytest.mark.parametrize("size", [(640, 900), pytest.param((800, 600), marks=pytest.mark.slow)])
 def test_names_cover_nothing_in_other_views(size: tuple[int, int]) -> None:
-    from leblanc.view.sight import VIEWS, layout
+    from leblanc.view.camera import VIEWS, layout
 
     for name in ("tub", "centrifuge", "two_plane_rig"):
         picture = working(name).picture

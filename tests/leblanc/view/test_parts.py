@@ -10,14 +10,14 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from leblanc.plotting.drawn import RunupView
+from leblanc.plotting.bodies import RunupView
 from leblanc.studies.shapes.machine import mode_view, runup_view, strobe
+from leblanc.view.camera import INSET, letters
 from leblanc.view.film import mode_film, runup_film
 from leblanc.view.inset import WIDE, point_at, with_inset
 from leblanc.view.machine import SIDES
 from leblanc.view.parts import Inset, Picture
 from leblanc.view.picture import fill, pixels, plotter
-from leblanc.view.sight import INSET, letters
 from tests.leblanc.view.test_picture import MACHINES, across, middle_of_circle, scene, short_film, working
 from tests.leblanc.view.views import show
 

@@ -10,19 +10,19 @@ import numpy as np
 import pytest
 
 from fluid.waves import free_wave_frequencies
-from leblanc.plotting.drawn import LiquidShape, Scale
+from leblanc.plotting.bodies import LiquidShape, Scale
 from leblanc.scene.scene import Scene, Speeds, load_scene
 from leblanc.studies.run.motion import SelfExcited
 from leblanc.studies.run.study import run_scene
 from leblanc.studies.shapes.machine import machine_motion, mode_view, table_view
 from leblanc.studies.shapes.scale import scale_of
+from leblanc.view.camera import VIEWS, layout
 from leblanc.view.exciter import table_picture
 from leblanc.view.files import write_picture
 from leblanc.view.film import Film, mode_film, mode_picture, shape_of, write_film
 from leblanc.view.parts import Picture
 from leblanc.view.picture import SIZE, fill, pixels, plotter, point_camera, prepare_off_screen
 from leblanc.view.scene import describe_state
-from leblanc.view.sight import VIEWS, layout
 from meshes.errors import InputError
 from tests.leblanc.view.test_surfaces import CHORD, centroid
 from tests.leblanc.view.views import Shown, film_over, picture_at, show

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from fluid.fill import Fill
 from fluid.liquid import known_liquid
-from leblanc.plotting.drawn import Scale
+from leblanc.plotting.bodies import Scale
 from leblanc.studies.shapes.scale import (
     DEEP,
     SHOWN,

@@ -14,7 +14,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from leblanc.plotting.drawn import LiquidShape, strips
+from leblanc.plotting.bodies import LiquidShape, strips
 from leblanc.studies.shapes.layer import RAYS, body_at_rest, body_of_layer, body_of_pool
 from meshes.chamber import Chamber
 from meshes.errors import InputError

@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 
 from leblanc.liquid.filled import FilledChamber
-from leblanc.plotting.drawn import MachineMotion, Scale, pool
+from leblanc.plotting.bodies import MachineMotion, Scale, pool
 from leblanc.scene.scene import scene_from_table
 from leblanc.studies.runup import film as films
 from leblanc.studies.runup.answer import RunupFrames

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from leblanc.plotting.drawn import DrawnLiquid, MachineMotion, Scale
+from leblanc.plotting.bodies import DrawnLiquid, MachineMotion, Scale
 from leblanc.scene.scene import Scene
 from leblanc.studies.shapes.machine import drawn_liquid, machine_view
 from leblanc.view.film import Film, sweep_film

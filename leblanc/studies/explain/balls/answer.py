@@ -32,7 +32,9 @@ class RaceNumbers:
     #: 0 where their diameter is not known
     crowding: Annotated[float, Q("1", "crowding", "share of the way round that they take side by side")]
     #: infinite without drag
-    fade_time: Annotated[float, Q("s", "fade time", "the speed of a free ball against its drum falls to 1/e")]
+    fade_time: Annotated[
+        float, Q("s", "decay time", "the speed of a free ball against its drum falls to 1/e")
+    ]
     drag: Annotated[float, Q("1", "drag", "over a ball's mass, rolling share and the critical speed")]
     sticking: Annotated[
         float, Q("m", "sticking", "deflection below which balls that resist to rolling stay where they are")
@@ -123,7 +125,7 @@ class BallExplainAnswer(Explained):
         text = described_blocks(self.machine)
         for k, race in enumerate(self.races):
             text += [Words(f"race {k + 1}"), Table(race_rows(race, last), indent=2)]
-        lacking = (("not told", each) for each in self.lacking)
+        lacking = (("not reported", each) for each in self.lacking)
         text += [Words("balls"), Table([*ball_rows(self), *lacking], indent=2)]
         return Table(facts(self), shown="page"), Section("", text, shown="text")
 
@@ -150,7 +152,7 @@ def _fades(race: RaceNumbers, last: float) -> str:
         return "never: nothing drags on them"
     turns = race.fade_time * last / (2.0 * math.pi)
     return (
-        f"their speed against it fades with {number(race.fade_time)} s, {number(turns)} turns at "
+        f"their speed against it decays with {number(race.fade_time)} s, {number(turns)} turns at "
         f"{in_rpm(last)}; drag {race.drag:.3g} of mass times critical speed"
     )
 
@@ -181,7 +183,7 @@ def _stable_from(answer: BallExplainAnswer) -> str:
     last += (
         "are not known"
         if math.isnan(rate)
-        else f"{'grow' if rate > 0.0 else 'fade'} with {number(abs(rate))} 1/s"
+        else f"{'grow' if rate > 0.0 else 'decay'} with {number(abs(rate))} 1/s"
     )
     if math.isnan(answer.balanced_from):
         return f"stable at none of the speeds to the end of the scene's; {last}"

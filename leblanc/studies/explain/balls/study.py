@@ -139,9 +139,9 @@ def _in_one_plane(scene: Scene, speed: Array) -> Flags | None:
 
 
 def _lacking(scene: Scene, turned: RotorWithBalls) -> Iterator[str]:
-    """What is not told."""
+    """What is not reported."""
     if scene.fills:
-        yield "Liquid models beside the balls: those told are of the scene without its balls."
+        yield "Liquid models beside the balls: those reported are of the scene without its balls."
     if scene.rotor.axis == "horizontal":
         yield "Gravity across the axis, which swings the balls: `leblanc runup` has it."
     if any(race.count > 2 for race in scene.balls):

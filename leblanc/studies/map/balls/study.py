@@ -235,7 +235,7 @@ def _told(family: Family, total: int) -> Family:
 
 
 def _notes(scene: Scene, answer: BallChart, alike: bool) -> tuple[Note, ...]:
-    """What was assumed, and what is not told."""
+    """What was assumed, and what is not reported."""
     found = []
     if answer.state == "balanced":
         found.append(notes.free_balls())

@@ -69,7 +69,7 @@ class DesignedRace:
 
 @dataclass(frozen=True)
 class TriedDesigns:
-    """All designs that were judged, m of them with v values each."""
+    """All designs that were evaluated, m of them with v values each."""
 
     #: in the order of the ranges
     values: Annotated[Array, Q("1", "values tried", "SI units", over=(*_TRIED, "varied"))]
@@ -222,7 +222,7 @@ class BallDesignAnswer(Best):
 
     @property
     def closing(self) -> str:
-        return f"{self.name}: {self.evaluations} designs judged"
+        return f"{self.name}: {self.evaluations} designs evaluated"
 
     def blocks(self) -> tuple[Block, ...]:
         lost = not math.isfinite(self.vibration)
@@ -295,7 +295,7 @@ class BallDesignAnswer(Best):
         yield "Small motions decay with", ", with the scene's balls ".join(decays)
         yield "Balanced state stable from", in_rpm(self.balanced_from)
         yield "Constraints", "every one is met" if self.feasible else f"not met: {self._nearest()}"
-        yield "Designs judged", f"{self.evaluations}"
+        yield "Designs evaluated", f"{self.evaluations}"
 
     def _nearest(self) -> str:
         """What is exceeded where no balls meet every constraint."""

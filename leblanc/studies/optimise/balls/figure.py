@@ -74,7 +74,7 @@ def _draw_designs(axes: Any, result: BallDesignAnswer) -> None:
 
 
 def _draw_decay(axes: Any, result: BallDesignAnswer) -> None:
-    """How quickly small motions of the same designs fade: what tells designs apart that balance alike."""
+    """Decay rate of small motions of the same designs, in which designs differ that balance alike."""
     tried = result.tried
     kept = np.isfinite(tried.vibration) & (tried.vibration <= _FAR * result.vibration_without)
     kept &= (tried.excess <= 1e-9) & np.isfinite(tried.growth)
@@ -121,7 +121,8 @@ def _draw_speeds(axes: Any, result: BallDesignAnswer) -> None:
 def _caption(result: BallDesignAnswer) -> Caption:
     assumed = ", ".join(map(one_line, result.assumed)) or "nothing"
     designs = (
-        f"Above, designs that were judged: {result.meaning}, and the decay of small motions; below, the best "
+        f"Above, designs that were evaluated: {result.meaning}, and the decay of small motions; below, "
+        f"the best "
         "over speed."
     )
     return Caption(

@@ -1,4 +1,4 @@
-"""What is searched of the balls of a scene, what a design is judged by, and what it must keep to.
+"""What is searched of the balls of a scene, what a design is evaluated by, and what it must keep to.
 
 [theory: races, eq. 13-15]
 """
@@ -43,7 +43,7 @@ OBJECTIVES = ("working_speed", "peak", "mean", "least_mass", "robust")
 # Fields of a task that say nothing of balls.
 _OF_LIQUID = ("deflection", "temperature", "dry_patch", "least_film", "whirl_limit", "spill", "loads_over")
 _OF_LOADS = ("floor_force", "walking_margin", "slip_margin", "point_clearance", "motor_torque", "volumes")
-_MOST_SPEEDS = 17  # of the scene's or a range's, at which a design is judged
+_MOST_SPEEDS = 17  # of the scene's or a range's, at which a design is evaluated
 _SLACK = 0.01  # default limit of the amplitude over that without balls
 _NEUTRAL = 1e-9  # of the speed: growth that is rounding
 _FADES = 0.01  # of the speed: a decay that is fast

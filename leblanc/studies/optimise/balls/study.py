@@ -59,7 +59,7 @@ _EDGE = 1e-3  # of a range: its end
 
 @dataclass
 class _Tried:
-    """All designs judged, each once, by processes that share them."""
+    """All designs evaluated, each once, by processes that share them."""
 
     problem: BallProblem  #: the search
     #: calls a function with every one of some points, as `map` does
@@ -81,7 +81,7 @@ class _Tried:
             self.known[row.tobytes()] = verdict
             self.points.append(row)
         if new:
-            update(self.share, 1.0, f"{len(self.points)} designs judged")
+            update(self.share, 1.0, f"{len(self.points)} designs evaluated")
         return [self.known[row.tobytes()] for row in rows]
 
     def one(self, point: Array) -> Verdict:
@@ -294,7 +294,7 @@ def _smallest(tried: _Tried, row: Array, k: int, drag: int | None) -> Array:
 
 
 def _quickest(tried: _Tried, row: Array, k: int, beside: float | None = None) -> Array:
-    """The drag at which small motions fade quickest, whatever else it does."""
+    """The drag at which small motions decay fastest, whatever else it does."""
     from scipy.optimize import minimize_scalar
 
     low, high = tried.problem.variables[k].bounds

@@ -21,7 +21,7 @@ _FIGURES = "leblanc.studies.optimise.layout.figure"
 _BOTH, _PLACES, _COUPLED = ("layout",), ("mount", "layout", "axis"), ("layout", "pair")
 _SHOWN = 5e-4  # couplings below are printed as 0
 _REMARKS = (
-    "A layout is judged at rest and without liquid: frequencies are those without damping and spin, "
+    "A layout is evaluated at rest and without liquid: frequencies are those without damping and spin, "
     "which couples alpha and gamma whatever the layout.",
     "A coupling is the term of the matrix about the common centre of mass of tub and drum over the root "
     "of the product of those on the diagonal: 0 where two motions are separate, 1 where they are one.",
@@ -137,7 +137,7 @@ class LayoutAnswer(Best):
 
     @property
     def closing(self) -> str:
-        return f"{self.name}: {self.evaluations} layouts judged"
+        return f"{self.name}: {self.evaluations} layouts evaluated"
 
     def blocks(self) -> tuple[Block, ...]:
         about = "for the least couplings of stiffness and damping"
@@ -149,7 +149,7 @@ class LayoutAnswer(Best):
         facts = (
             ("Sag under the weight", "{}, {} before, at most {}".format(*sizes)),
             ("Couplings of the mass", self._mass()),
-            ("Layouts judged", f"{self.evaluations}"),
+            ("Layouts evaluated", f"{self.evaluations}"),
         )
         held = check("Sag under the weight", f"{sizes[0]}, at most {sizes[2]}", not sag.satisfied)
         hertz = [

@@ -174,7 +174,7 @@ def _across(way: Array) -> tuple[Array, Array]:
 
 @dataclass(frozen=True)
 class _Judged:
-    """Layouts judged; m of them."""
+    """Layouts evaluated; m of them."""
 
     value: Array
     excess: Array
@@ -230,7 +230,7 @@ def optimise_layout(scene: Scene, task: Optimisation) -> LayoutAnswer:
         nonlocal count
         count += change.shape[0]
         share = min(count / (_POPULATION * most.size * _GENERATIONS), 1.0)
-        update(share, 1.0, f"{count} layouts judged")
+        update(share, 1.0, f"{count} layouts evaluated")
         return _penalised(judge(change))
 
     bounds = list(zip(-most, most, strict=True))

@@ -1,4 +1,4 @@
-"""Laundry along a drum: loads together are their sum, and what leaves of each is told."""
+"""Laundry along a drum: loads together are their sum, and what leaves of each is reported."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ def test_a_tub_has_an_unbalance() -> None:
 
 
 def test_digests_and_rows() -> None:
-    """A scene without loads keeps the digest it had; loads and what leaves are part of it, and are told."""
+    """A scene without loads keeps the digest it had; loads and what leaves are part of it."""
     load = {"position": 0.06, "size": 0.05}
     digests = {tub(load).digest, tub(load | {"sheds": SHEDS}).digest, tub(load, load).digest}
     assert (

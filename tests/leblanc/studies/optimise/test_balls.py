@@ -227,7 +227,7 @@ def test_workers_do_not_change_the_answer(monkeypatch: pytest.MonkeyPatch) -> No
 
 
 def test_liquid_beside_the_balls_stays() -> None:
-    """A design is judged with the scene's liquid: balanced, that stands evenly and does nothing."""
+    """A design is evaluated with the scene's liquid: balanced, that stands evenly and does nothing."""
     scene = lb.example("balls_and_liquid")
     problem = ball_problem(scene, Optimisation(balls={"drag": [0.1, 1.0]}))
     found = problem.judged(np.log([0.3, 0.4]))

@@ -88,7 +88,7 @@ def test_the_least_liquid_of_several_planes() -> None:
 
 
 def test_a_limit_at_the_operating_speeds() -> None:
-    """The amplitude that is judged is the largest, as `run` finds it, also where nothing keeps the limit."""
+    """The amplitude evaluated is the largest, as `run` finds it, also where nothing keeps the limit."""
     scene = load_scene(EXAMPLES / "runup.toml")
     scene = scene.altered(speeds=Speeds(start=5.0, stop=60.0, count=23))
     for limit in (0.026, 1e-3):
@@ -191,7 +191,7 @@ def test_small_whirls_die_out_where_the_machine_stays() -> None:
     assert note.data["forbidden"] == ["stability", "wetting"] and "stability or wetting" in note.text
     free = optimise_scene(scene, task=task.altered(stable=False), front=False)
     assert free.volume[0] > 0.0 and free.value < best.value
-    # A scene without friction is judged with that of its liquid: without any, nothing would be allowed.
+    # A scene without friction is evaluated with that of its liquid: without any, nothing would be allowed.
     still = scene.altered(model=scene.model.altered(friction=Friction()))
     calm = optimise_scene(still, front=False)
     assert calm.feasible and calm.volume[0] > 0.0
@@ -268,5 +268,5 @@ def test_progress_says_what_is_done(front: bool) -> None:
         best = optimise_scene(load_scene(EXAMPLES / "horizontal_rig.toml"), task=ALONE, front=front)
     assert (done[-1] > 0.99) == front
     assert np.all(np.diff(done) >= 0.0) and 0.0 < done[-1] <= 1.0
-    counts = [int(what.split()[0]) for what in words if what.endswith("sets of volumes judged")]
+    counts = [int(what.split()[0]) for what in words if what.endswith("sets of volumes evaluated")]
     assert np.all(np.diff(counts) >= 0) and counts[-1] >= best.evaluations

@@ -5,7 +5,7 @@ from __future__ import annotations
 import cmath
 
 from fluid.fill import Fill
-from leblanc.plotting.drawn import Liquid, Scale
+from leblanc.plotting.bodies import Liquid, Scale
 from leblanc.scene.rotors import JeffcottRotor
 from leblanc.scene.scene import Scene
 from leblanc.studies.shapes.bodies import bodies_at_rest, is_cut
