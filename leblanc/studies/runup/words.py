@@ -340,11 +340,11 @@ def checks(answer: RunupAnswer) -> Iterator[Check]:
     for k, chamber in enumerate(answer.chambers):
         if chamber.volume == 0.0:
             continue
-        name = "Liquid" if len(answer.chambers) == 1 else f"Liquid of chamber {k + 1}"
+        of = "" if len(answer.chambers) == 1 else f" of chamber {k + 1}"
         loose, depth = ~history.captured[:, k], chamber.radius - chamber.mean_surface_radius
-        yield at_times(f"{name} not reached from rest", loose)
+        yield at_times(f"Annulus{of} not reached from rest", loose)
         dry = ~loose & (np.nan_to_num(history.depth_min[:, k], nan=math.inf) <= DRY * depth)
-        yield at_times(f"{name} leaves a wall dry", dry)
+        yield at_times(f"Liquid{of} leaves a wall dry", dry)
     bands = "not examined" if answer.bands is None else rpm_bands(answer.bands) or "none"
     yield check("Self-excited whirl, linear theory", bands, bool(answer.bands))
     yield above("Error above {} or unknown", answer.error_estimate, ERROR)

@@ -91,7 +91,7 @@ def test_beyond_smooth_waves_long_ones_answer(ratio: float) -> None:
     layer = 0.1
     size = 4.0 * float(largest_whirl(layer, detuning(layer, ratio)))
     found = chosen(layer, at_ratio(layer, ratio), size, cells=64)
-    assert isinstance(found.model, LongWave) and "bores" in found.reason and found.wave is None
+    assert isinstance(found.model, LongWave) and "hydraulic jumps" in found.reason and found.wave is None
     assert "4 times the largest" in found.reason and found.notes == (), (
         "the number beside the largest whirl says so already"
     )

@@ -418,7 +418,7 @@ def test_events() -> None:
     notes = [note for note in record.notes if note.code in (RunupCode.CAPTURED, RunupCode.FALLS_BACK)]
     assert len(notes) == len(change) >= 2
     for note, k in zip(notes, change, strict=True):
-        assert ("is captured" if state[k] else "falls back") in note.text
+        assert ("becomes an annular layer" if state[k] else "falls back into a pool") in note.text
         time, speed = note.data["time"], note.data["speed"]
         assert isinstance(time, float) and h.time[k - 1] <= time <= h.time[k]
         assert speed == pytest.approx(float(np.interp(time, h.time, h.speed)), rel=1e-6)

@@ -48,7 +48,7 @@ def test_every_report_opens_with_result_doubt_and_date(
     (doubted,) = re.findall(r'<p class="doubt">(.+?)</p>', opening)
     assert said.endswith(".") and doubted.endswith(".")
     # What is doubted is what the table of limits marks.
-    assert doubted.startswith("Doubtful: ") == ('class="warning"' in page.partition("<section")[2])
+    assert doubted.startswith("Caution: ") == ('class="warning"' in page.partition("<section")[2])
     assert '<time datetime="2020-09-13">2020-09-13</time>' in opening  # 1 600 000 000 s after 1970, in UTC
 
 
@@ -59,7 +59,7 @@ def test_the_doubt_names_the_two_gravest_limits_and_counts_the_rest() -> None:
     failed = {check.label: check.where for check in checks(result) if check.grade}
     assert len(failed) > 3
     unstable, out = failed["Answer unstable"], failed["Liquid model out of range"]
-    wanted = f"Doubtful: answer unstable: {unstable}; liquid model out of range: {out} "
+    wanted = f"Caution: answer unstable: {unstable}; liquid model out of range: {out} "
     assert said == f"{wanted}({len(failed) - 2} more under the limits)."
 
 
@@ -69,8 +69,8 @@ def test_up_to_two_limits_are_all_told() -> None:
         ("100 rpm", Grade.WARNING),
     )
     rows = [Check(name, *(bad if k != 1 else ("none",))) for k, name in enumerate(names)]
-    assert doubt(rows[:2]) == "Doubtful: wall dry in part: 100 rpm."
-    assert doubt(rows) == "Doubtful: error above 1 %: 100 rpm; wall dry in part: 100 rpm."
+    assert doubt(rows[:2]) == "Caution: wall dry in part: 100 rpm."
+    assert doubt(rows) == "Caution: error above 1 %: 100 rpm; wall dry in part: 100 rpm."
 
 
 @pytest.mark.parametrize("volume", ["0 ml", "10 ml"])

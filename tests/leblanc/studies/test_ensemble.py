@@ -119,7 +119,7 @@ def test_a_scene_says_what_its_bores_leave() -> None:
     assert rolling.digest != SHORT.digest
     assert SHORT.replace({"runup.bore": "none"}).digest == SHORT.digest
     found = runup_scene(rolling, check=False)
-    assert found.bore == "enstrophy" and "bores with enstrophy" in describe_model(found)
+    assert found.bore == "enstrophy" and "jumps with enstrophy" in describe_model(found)
     assert "bores" not in describe_model(runup_scene(SHORT, check=False))
     assert found.named_arrays().attrs["bore"] == "enstrophy"
 

@@ -67,7 +67,7 @@ def test_same_scene_same_answer() -> None:
 
 def test_notes_say_what_the_model_leaves_out() -> None:
     notes = " ".join(map(str, run_scene(scene_from_table(table())).notes))
-    assert "gravity" in notes and "grows by itself" in notes
+    assert "gravity" in notes and "elf-excited whirl" in notes
     upright = " ".join(map(str, run_scene(scene_from_table(table(axis="vertical"))).notes))
     assert "gravity across" not in upright
 

@@ -90,7 +90,7 @@ def test_words() -> None:
     """Edges and the fastest whirl in rpm."""
     text = note_of(found([-1.0, 0.25, 0.5], ((20.0 * np.pi, 30.0 * np.pi),))).text
     assert "600 to 900 rpm" in text and "668.5 rpm" in text and "0.5 1/s" in text
-    assert note_of(found([-1.0, -1.0, 0.0], ())).text.startswith("No whirl")
+    assert note_of(found([-1.0, -1.0, 0.0], ())).text.startswith("No self-excited whirl")
     assert "Not known at 1 of 3 speeds" in note_of(found([np.nan, 0.0, 0.0], ())).text
     assert "is not known" in note_of(found([np.nan] * 3, ())).text
 

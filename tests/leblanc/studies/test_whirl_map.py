@@ -163,7 +163,7 @@ def test_words(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     command = ["map", str(EXAMPLES / "washing_machine.toml"), "--volumes", "3", "--speeds", "10"]
     assert main([*command, "--out", str(tmp_path)]) == 0
     printed = capsys.readouterr()
-    assert "laminar" in printed.out and "grows by itself" in printed.out
+    assert "laminar" in printed.out and "Self-excited whirl at" in printed.out
     assert "3 volumes by 10 speeds" in printed.err
 
 

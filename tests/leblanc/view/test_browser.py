@@ -47,6 +47,8 @@ def served(*options: str) -> Iterator[tuple[str, subprocess.Popen[str]]]:
         stderr=subprocess.PIPE,
         text=True,
         env=dict(os.environ),
+        # A shell that starts the tests in the background has Ctrl-C ignored, which would be passed on.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
     )
     try:
         assert process.stdout is not None

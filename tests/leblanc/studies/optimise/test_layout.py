@@ -263,7 +263,7 @@ def test_a_layout_that_sags_too_much_is_doubtful(tmp_path: Path) -> None:
     blocks = [block for block in sunk.blocks() if not isinstance(block, Picture)]
     write_page(sunk.title, blocks, what, {}, path)
     text = path.read_text(encoding="utf-8")
-    assert "Doubtful: sag under the weight" in text
+    assert "Caution: sag under the weight" in text
     assert "exceeds it least" in text
 
 
