@@ -31,6 +31,7 @@ _GONE = 0.5  # of the mean area: a layer this far from a standing wave does not 
 _FIRST, _LEAST, _MOST = 0.1, 2e-3, 0.4  # of the arc's steps
 _FINEST = 0.35  # largest relative change of a whirl's size in a step
 _FEW, _MANY = 5, 9  # rounds after which the next step is longer or shorter
+_TURN = 0.8  # cosine between two whirls' directions: beyond, the determinant tells which way is onward
 _SPREAD, _RANGE = 0.05, 0.1  # changes of whirl speed and of spin that count as a depth of the layer does
 _DIFFERENCE = 1e-6
 _RISE, _STAY = 0.05, 60  # of the whirl in a period, over the depth; most periods after it
@@ -50,6 +51,7 @@ class Cycle:
     state: Array  #: of each layer, the deflection of its axis pointing to the first cell, shape (l, 2 n)
     derivatives: tuple[Derivatives, ...]  #: of each layer's map there
     tangent: Array  #: direction of the branch, all unknowns of `Follower`, those of the rotor of length 1
+    sense: float  #: sign of the determinant of the equations' derivatives, bordered by the tangent
     arc: float  #: length of the branch up to it
 
 
@@ -203,7 +205,7 @@ class Follower:
         point = self._kept(_Point(cycle.state, origin).moved(length * cycle.tangent))
         towards = cycle.tangent[-origin.size :]
         found = self._corrected(point, point.vector, towards)
-        return None if found is None else self._cycle(found, towards, cycle.arc + length)
+        return None if found is None else self._cycle(found, towards, cycle.arc + length, cycle.sense)
 
     def at(self, cycle: Cycle, spin: float) -> Cycle | None:
         """The limit cycle at a spin, rad/s, next to one that is known; None where it is not found."""
@@ -215,7 +217,7 @@ class Follower:
         point = self._kept(_Point(cycle.state, origin).moved(length * cycle.tangent))
         found = self._corrected(point, point.vector, towards)
         way = cycle.tangent[-origin.size :]
-        return None if found is None else self._cycle(found, way, cycle.arc + length)
+        return None if found is None else self._cycle(found, way, cycle.arc + length, cycle.sense)
 
     def _kept(self, point: _Point) -> _Point:
         states = [wave.kept(state) for wave, state in zip(self.waves, point.state, strict=True)]
@@ -345,8 +347,12 @@ class Follower:
             matrix[rotor, rotor] += np.vstack([by_rotor.real, by_rotor.imag, none[:, :unknown]])
         return matrix
 
-    def _cycle(self, point: _Point, towards: Array, arc: float) -> Cycle | None:
-        """The limit cycle of a solution, with derivatives found there and the branch's direction."""
+    def _cycle(self, point: _Point, towards: Array, arc: float, sense: float = 0.0) -> Cycle | None:
+        """The limit cycle of a solution, with derivatives found there and the branch's direction.
+
+        Along a branch the sign of the determinant stays, even at a kink, where a short step may turn the
+        direction by any angle; next to one derivatives of both sides may be mixed: there small turns count.
+        """
         answers, derivatives = self._answers(point), self._derivatives(point)
         if answers is None or derivatives is None:
             return None
@@ -355,7 +361,11 @@ class Follower:
         ahead = np.zeros(len(matrix))
         ahead[-1] = 1.0
         tangent = np.linalg.solve(matrix, ahead)
-        tangent = np.asarray(tangent / float(np.linalg.norm(tangent[-point.vector.size :])), dtype=float)
+        size = float(np.linalg.norm(tangent[-point.vector.size :]))
+        found = float(np.linalg.slogdet(matrix)[0])
+        # `towards` is a unit vector across which the direction's component is 1.
+        if sense and size * _TURN > 1.0 and found != sense:
+            size, found = -size, sense
         moved, whirl_speed, spin = self.parts(point.vector)
         return Cycle(
             spin=spin,
@@ -366,7 +376,8 @@ class Follower:
             turning=spin * np.array([answer.turning for answer in answers]),
             state=point.state,
             derivatives=tuple(derivatives),
-            tangent=np.asarray(tangent, dtype=np.float64),
+            tangent=np.asarray(tangent / size, dtype=np.float64),
+            sense=sense or found,
             arc=arc,
         )
 

@@ -33,6 +33,7 @@ _FIRST, _SMALL = (0.05, 0.03, 0.1, 0.2), 0.02
 _STRAYED = 0.1  # relative: a first whirl this far from its edge belongs to another
 # Two whirls are one that are nearer in spin and whirl speed over that of the edge, and in the weighted size.
 _SAME, _THICK = 2e-3, 0.05
+_ON = 2e-4  # the same for parts of one branch that overlap: at a kink its two arms lie close together
 _BEYOND = 2.0  # of the last step of a branch: what it goes on to the edge
 _POINTS = 400
 _LENGTH = 0.1  # of the speed: what counts along a branch as much as its largest amplitude
@@ -310,7 +311,7 @@ class _Finder:
         for k, branch in enumerate(self.branches):
             if reason[1] == _BROKEN == branch.reason[1] and _lies_on(branch, follower, rows[-1].place):
                 first = self.rows.pop(k)
-                while len(rows) > 1 and _lies_on(branch, follower, rows[-1].place, beyond=0.0):
+                while len(rows) > 1 and _lies_on(branch, follower, rows[-1].place, 0.0, _ON):
                     rows.pop()
                 gap = np.subtract(first[-1].place, rows[-1].place) / follower.scales
                 end = first[-1].arc + float(np.linalg.norm(gap))
@@ -323,7 +324,8 @@ class _Finder:
     def _both_ways(self, follower: Follower, start: Cycle) -> tuple[list[_Row], tuple[str, str]]:
         parts, reasons = [], []
         for way in (-1.0, 1.0):
-            found, why = self._follow(follower, replace(start, tangent=way * start.tangent))
+            begin = replace(start, tangent=way * start.tangent, sense=way * start.sense)
+            found, why = self._follow(follower, begin)
             parts.append([replace(row, arc=way * row.arc) for row in found])
             reasons.append(why)
         rows = [*reversed(parts[0]), self._row(follower, start), *parts[1]]
@@ -355,6 +357,10 @@ class _Finder:
                 self.progress(self.count, cycle.spin)
             if not inside:
                 return rows, "end of the range of speeds"
+            place = rows[-1].place
+            if any(b.reason[1] == _BROKEN and _lies_on(b, follower, place, 0.0, _ON) for b in self.branches):
+                # Onto a branch that came to its end at a kink from the other side: `_add` joins the two.
+                return rows, _BROKEN
             if len(rows) >= _POINTS:
                 return rows, "so many whirls were found that the rest was left"
         return rows, _BROKEN
@@ -413,7 +419,11 @@ class _Row:
 
 
 def _lies_on(
-    branch: Branch, follower: Follower, place: tuple[float, float, float], beyond: float = _BEYOND
+    branch: Branch,
+    follower: Follower,
+    place: tuple[float, float, float],
+    beyond: float = _BEYOND,
+    same: float = _SAME,
 ) -> bool:
     """Whether a whirl lies on a branch, which goes on beyond its ends by so much of its last steps."""
     weights = np.array([1.0 / follower.speed, 1.0 / follower.speed, _THICK / follower.depth])
@@ -426,7 +436,7 @@ def _lies_on(
     least, most = np.zeros(len(way)), np.ones(len(way))
     least[0], most[-1] = -beyond, 1.0 + beyond
     gap = rows[:-1] + np.clip(part, least, most)[:, None] * way - point
-    return bool(np.sqrt(np.square(gap).sum(axis=1)).min() < _SAME)
+    return bool(np.sqrt(np.square(gap).sum(axis=1)).min() < same)
 
 
 def _branch(rows: list[_Row], reason: tuple[str, str]) -> Branch:

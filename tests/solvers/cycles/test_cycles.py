@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import replace
+from itertools import islice
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,11 +18,11 @@ from fluid.whirl import layer_rate, plane_layer
 from meshes.chamber import Chamber
 from meshes.errors import InputError
 from solvers.cycles.balance import circular
-from solvers.cycles.branch import Follower
+from solvers.cycles.branch import Cycle, Follower, _Point
 from solvers.cycles.cycles import _BROKEN, CELLS, Branch, LimitCycles, _Finder, _Row, limit_cycles
 from solvers.cycles.edges import small_whirl_edges
 from solvers.cycles.estimate import Estimate, _by_rule, _settling, undamped_bands
-from solvers.cycles.wave import StandingWave, Whirling
+from solvers.cycles.wave import Answer, StandingWave, Whirling
 from solvers.layer.state import Numerics
 from solvers.liquid_model import Whirl
 from solvers.pypde.settle import settle
@@ -347,6 +350,88 @@ def test_two_parts_of_a_branch_are_one(branches: tuple[LimitCycles, Fill], overl
     apart._add(follower, back[: len(back) // 2], ("edge of the band", _BROKEN))
     apart._add(follower, back, ("edge of the band", "end of the range of speeds"))
     assert len(apart.branches) == 3
+
+
+def from_edges(zeta: float, top: float, cells: int) -> tuple[Branch, ...]:
+    """Branches without the growth of disturbances."""
+    rotor, fill = machine(MU, 0.1, zeta)
+    pair = circular(rotor.system(), [fill], FRICTION)
+    finder = _Finder(pair, FRICTION, cells, (0.54 * NATURAL, top * NATURAL), None, judged=False)
+    finder.search(rotor, [fill])
+    return tuple(finder.branches)
+
+
+@kills("solvers.cycles.cycles:_Finder._follow", "b.reason[1] == _BROKEN and", "False and")
+@kills("solvers.cycles.cycles:_Finder._add", "rows[-1].place, 0.0, _ON", "rows[-1].place, 0.0, 9.0 * _SAME")
+def test_what_the_first_edge_does_not_lead_to_the_other_one_does(monkeypatch: pytest.MonkeyPatch) -> None:
+    # One branch from edge to edge. From the first edge no more than some whirls are found, as next to a kink
+    # that Newton's steps do not pass: those from the other edge go on to it, and all whirls are told once.
+    (whole,) = from_edges(0.04, 2.0, 32)
+    after = Follower.after
+    for most in (5, 20):
+        left = [most]
+
+        def some(self: Follower, cycle: Cycle, left: list[int] = left) -> Iterator[Cycle]:
+            yield from islice(after(self, cycle), left.pop() if left else None)
+
+        with monkeypatch.context() as changed:
+            changed.setattr(Follower, "after", some)
+            found = from_edges(0.04, 2.0, 32)
+        assert len(found) == 1
+        joined = found[0]
+        assert joined.reason == whole.reason == ("edge of the band", "edge of the band")
+        assert joined.fold_speed == pytest.approx(whole.fold_speed, rel=1e-3)
+        assert abs(joined.speed.size - whole.speed.size) < 6
+
+
+@kills("solvers.cycles.branch:Follower._cycle", "found != sense", "False")
+@kills("solvers.cycles.branch:Follower._cycle", "size * _TURN > 1.0", "True")
+@kills("solvers.cycles.branch:Follower.step", "length, cycle.sense", "length")
+def test_a_branch_goes_on_where_it_turns_in_a_corner() -> None:
+    # At a kink it may turn by more than a right angle: seen from a direction like this the way on leads back,
+    # and the determinant alone tells it. A determinant that rounding upset does not turn a straight branch.
+    rotor, fill = machine(MU, 0.1, 0.02)
+    pair = circular(rotor.system(), [fill], FRICTION)
+    follower = Follower(pair, FRICTION, 32, 1.3 * NATURAL)
+    start = follower.start(np.array([1.0 + 0.0j]), 0.95 * NATURAL, 1.3 * NATURAL, 0.5)
+    assert start is not None
+    point = _Point(start.state, follower.unknowns(start.moved, start.whirl_speed, start.spin))
+    ahead = start.tangent[-point.vector.size :]
+    across = np.linalg.qr(np.column_stack([ahead, np.eye(ahead.size)[:, 0]]))[0][:, 1]
+    for slope, onward in ((0.3, 1.0), (-0.3, 1.0), (-0.9, -1.0)):
+        towards = slope * ahead + math.sqrt(1.0 - slope**2) * across
+        found = follower._cycle(point, towards, 0.0, start.sense)
+        assert found is not None and found.sense == start.sense
+        assert found.tangent == pytest.approx(onward * start.tangent, rel=1e-6, abs=1e-9)
+    opposite = replace(start, sense=-start.sense)
+    found = follower.step(opposite, 0.01)
+    assert found is not None and found.sense == -start.sense
+    assert found.tangent[-ahead.size :] @ ahead > 0.9
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [1, 2])
+def test_branches_do_not_hang_on_rounding(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    # Newton's steps come to a kink of the limiter at 127.7 rad/s: with the noise of rounding on each of the
+    # layer's steps they pass it or not. The fold in it is found and the branch told once either way.
+    advance, noise = StandingWave._advance, np.random.default_rng(seed)
+
+    def rounded(self: StandingWave, *given: Any) -> Answer | None:
+        found = advance(self, *given)
+        if found is not None:
+            found.state[:] *= 1.0 + 1e-15 * noise.standard_normal(found.state.size)
+        return found
+
+    monkeypatch.setattr(StandingWave, "_advance", rounded)
+    rotor, fills = weakly_rubbed()
+    friction = Friction("stokes")
+    pair = circular(rotor.system(), fills, friction)
+    finder = _Finder(pair, friction, CELLS, (360.0 * RPM, 2000.0 * RPM), None, judged=False)
+    finder.search(rotor, fills)
+    assert finder.reason() == "" and len(finder.branches) == 2
+    (branch,) = (branch for branch in finder.branches if branch.fold_speed)
+    assert branch.fold_speed == pytest.approx((130.42, 127.69), rel=5e-4)
+    assert branch.speed.size < 70
 
 
 @pytest.mark.slow
