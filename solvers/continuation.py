@@ -42,7 +42,7 @@ class Curve:
     end: End  #: why there are no more
 
 
-Equations = Callable[[Array], Array]  # of the unknowns, shape (m + 1,), what is left, shape (m,)
+Equations = Callable[[Array], Array]  # of the unknowns, on a curve (m + 1,), what is left, shape (m,)
 
 
 def follow(
@@ -71,7 +71,7 @@ def follow(
     corners = np.asarray(low, dtype=float), np.asarray(high, dtype=float)
     if not np.all(np.isfinite(size) & (size > 0.0)) or way not in (1, -1):
         raise InputError("unit, way", (size.tolist(), way), "positive sizes, and 1 or -1")
-    slope = _slope(equations, begin, size)
+    slope = slopes(equations, begin, size)
     if not np.isfinite(slope).all():
         return Curve(begin[None], End.NOWHERE)
     tangent = way * _tangent(slope)
@@ -104,13 +104,10 @@ def follow(
     return Curve(np.array(points), End.LONG)
 
 
-def _slope(equations: Equations, point: Array, size: Array) -> Array:
-    """Derivatives by unknowns in their units, shape (m, m + 1)."""
-    columns = []
-    for k in range(point.size):
-        moved = np.zeros(point.size)
-        moved[k] = _DIFFERENCE * size[k]
-        columns.append((equations(point + moved) - equations(point - moved)) / (2.0 * _DIFFERENCE))
+def slopes(equations: Equations, point: Array, size: float | Array = 1.0) -> Array:
+    """Central differences by n unknowns in their units, shape (m, n)."""
+    moved = np.diag(np.full(point.size, _DIFFERENCE) * size)
+    columns = [(equations(point + row) - equations(point - row)) / (2.0 * _DIFFERENCE) for row in moved]
     return np.array(columns).T
 
 
@@ -144,7 +141,7 @@ def _corrected(
         left = equations(point)
         if not np.isfinite(left).all():
             return End.NOWHERE
-        slope = _slope(equations, point, size)
+        slope = slopes(equations, point, size)
         matrix = np.vstack((slope, tangent))
         away = np.append(left, tangent @ ((point - guess) / size))
         if not np.isfinite(matrix).all():

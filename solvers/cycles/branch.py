@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,6 +16,7 @@ from scipy.linalg import lu_factor, lu_solve
 
 from fluid.friction.laws import Friction
 from meshes.arrays import Array, Complex
+from solvers.continuation import slopes
 from solvers.cycles.balance import Circular
 from solvers.cycles.wave import Answer, Derivatives, StandingWave, Whirling
 
@@ -33,7 +34,6 @@ _FINEST = 0.35  # largest relative change of a whirl's size in a step
 _FEW, _MANY = 5, 9  # rounds after which the next step is longer or shorter
 _TURN = 0.8  # cosine between two whirls' directions: beyond, the determinant tells which way is onward
 _SPREAD, _RANGE = 0.05, 0.1  # changes of whirl speed and of spin that count as a depth of the layer does
-_DIFFERENCE = 1e-6
 _RISE, _STAY = 0.05, 60  # of the whirl in a period, over the depth; most periods after it
 _ROUGH = 0.01  # of the mean area: change in a period at which a layer has settled for a first whirl
 
@@ -329,8 +329,8 @@ class Follower:
         size, unknown = point.state.shape[1], vector.size
         matrix = np.zeros((layers * size + unknown - 1, layers * size + unknown))
         rotor = slice(layers * size, None)
-        matrix[rotor, rotor] = _differences(lambda v: self._balance(v, forces), vector)
-        drives = _differences(lambda v: np.ravel(self.given(v)), vector).reshape(layers, 3, unknown)
+        matrix[rotor, rotor] = slopes(lambda v: self._balance(v, forces), vector)
+        drives = slopes(lambda v: np.ravel(self.given(v)), vector).reshape(layers, 3, unknown)
         moved, whirl_speed, _ = self.parts(vector)
         scale = -(whirl_speed**2) / (self.unit * self.speed**2)
         for k, (place, found) in enumerate(zip(self.machine.places, derivatives, strict=True)):
@@ -380,14 +380,3 @@ class Follower:
             sense=sense or found,
             arc=arc,
         )
-
-
-def _differences(function: Callable[[Array], Array], vector: Array) -> Array:
-    """Central differences of a function of a vector, shape (m, n)."""
-    columns = []
-    for k in range(vector.size):
-        ahead, behind = vector.copy(), vector.copy()
-        ahead[k] += _DIFFERENCE
-        behind[k] -= _DIFFERENCE
-        columns.append((function(ahead) - function(behind)) / (2.0 * _DIFFERENCE))
-    return np.array(columns).T

@@ -12,7 +12,7 @@ from solvers.continuation import End, follow
 from tests.mutants import kills
 
 
-@kills("solvers.continuation:_slope", "/ (2.0 * _DIFFERENCE)", "/ _DIFFERENCE * size[k]")
+@kills("solvers.continuation:slopes", "/ (2.0 * _DIFFERENCE)", "/ _DIFFERENCE")
 @kills("solvers.continuation:follow", "travelled > 3.0 * step", "travelled > 1e9 * step")
 @kills("solvers.continuation:follow", "way * _tangent(slope)", "_tangent(slope)")
 @kills("solvers.continuation:_tangent", "np.sign(tangent[heavy])", "-np.sign(tangent[heavy])")
