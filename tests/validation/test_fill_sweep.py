@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from tests.mutants import kills
-from validation.cases.fill_sweep import contact, fitted, judged, machine
+from validation.cases.fill_sweep import fitted, judged, machine
 from validation.cases.fill_sweep.machine import Values
 from validation.study import data
 
@@ -59,13 +59,13 @@ def test_factors() -> None:
     np.testing.assert_allclose(judged.off(seen, own), [2.0, 2.0])
 
 
-@kills("validation.cases.fill_sweep.contact:touching", "(1.0 - clearance)", "clearance")
-@kills("validation.cases.fill_sweep.contact:touching", "np.maximum(", "np.minimum(")
+@kills("validation.cases.fill_sweep.judged:touching", "(1.0 - clearance)", "clearance")
+@kills("validation.cases.fill_sweep.judged:touching", "np.maximum(", "np.minimum(")
 def test_a_tub_that_touches() -> None:
     """The last fill is met; below the clearance shaking goes as the deflection, beyond more steeply."""
     passage = np.array([[1.0, 0.95, 0.9, 0.85, 0.8]] * 2)
     clearance = np.array([0.88, 0.97])
-    found = contact.touching(passage, clearance, 0.1)
+    found = judged.touching(passage, clearance, 0.1)
     np.testing.assert_allclose(found[:, [0, -1]], [[1.0, 0.1]] * 2, rtol=1e-12)
     np.testing.assert_allclose(found[:, 3] / found[:, 4], 0.85 / 0.8, rtol=1e-12)
     np.testing.assert_allclose(found[1, 1:] / found[1, -1], passage[1, 1:] / 0.8, rtol=1e-12)
@@ -77,7 +77,7 @@ def test_shares_of_what_a_clearance_allows() -> None:
     """Two curves, one with its step where it was measured, one a fill later."""
     seen = np.array([1.0, 0.9, 0.1, 0.1])
     curves = np.array([[1.0, 0.8, 0.12, 0.1], [1.0, 0.9, 0.9, 0.1]])
-    found = contact.Contact(curves, np.array([0, 1]), np.array([0.9, 0.9]))
+    found = judged.Contact(curves, np.array([0, 1]), np.array([0.9, 0.9]))
     np.testing.assert_allclose(found.steps(seen), [0.0, 0.0, 0.5, 0.5])
     assert found.within(seen, 1.25) == 0.5 and found.within(seen, 1.15) == 0.0
     assert found.closest(seen) == 0
@@ -118,7 +118,7 @@ def test_verdicts() -> None:
     draws, best = fitted.kept()
     last = fitted.ratios(draws)[0][:, -1]
     assert len(last) == 400 and last.min() > 0.6 and best.weaker.min() > 0.5
-    allowed, seen = contact.of_kept(), fitted.measured()[1]
+    allowed, seen = judged.of_kept(), fitted.measured()[1]
     assert allowed.shaking.shape == (56_200, 7)
     # What the page says of a clearance.
     np.testing.assert_allclose(100.0 * allowed.steps(seen)[1:3], [47.1, 17.5], atol=0.5)

@@ -7,6 +7,7 @@ eccentricity is assumed.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -48,45 +49,48 @@ def centred_tub(drum: Vector = (0.0, 0.0, 0.0), springs: float = 0.0, dampers: f
     )
 
 
-def cases() -> list[Case]:
+def cases() -> Iterator[Case]:
     """Each rule kept and broken, the drum's spin, and the two wordings of one rule."""
-    plain = centred_tub()
-    off_axis = centred_tub(drum=(_SHIFT, 0.0, _SHIFT))
-    along = centred_tub(drum=(0.0, _SHIFT, 0.0))
-    system = plain.system()
-    return [
-        _rule(
-            "1-axis",
-            "tub's centre of mass on the drum's axis: couplings of the mass",
-            _couplings(system.mass),
-            _couplings(off_axis.system().mass),
-            "the drum's centre off the tub's across the axis",
+    plain, along = centred_tub(), centred_tub(drum=(0.0, _SHIFT, 0.0))
+    system, turns = plain.system(), _turns(plain)
+    rules = (
+        (
+            *("1-axis", "tub's centre of mass on the drum's axis", "mass"),
+            *(centred_tub(drum=(_SHIFT, 0.0, _SHIFT)), "the drum's centre off the tub's across the axis"),
         ),
-        _dynamic_unbalance(plain),
-        _rule(
-            "3-centres",
-            "drum's centre of mass in the tub's: couplings of the mass",
-            _couplings(system.mass),
-            _couplings(along.system().mass),
-            f"along the axis; largest turn under the unbalance {_turns(plain):.2g} rad kept, "
-            f"{_turns(along):.2g} rad broken",
+        (
+            *("3-centres", "drum's centre of mass in the tub's", "mass", along),
+            f"along the axis; largest turn under the unbalance {turns:.2g} rad kept, {_turns(along):.2g} rad "
+            "broken",
         ),
-        _rule(
-            "4-rigidity",
-            "centre and axes of rigidity in those of mass: couplings of the stiffness",
-            _couplings(system.stiffness),
-            _couplings(centred_tub(springs=_SHIFT).system().stiffness),
-            "the springs above the centre and in front of it",
+        (
+            *("4-rigidity", "centre and axes of rigidity in those of mass", "stiffness"),
+            *(centred_tub(springs=_SHIFT), "the springs above the centre and in front of it"),
         ),
-        _rule(
-            "5-damping",
-            "axes of viscous friction in those of mass: couplings of the damping",
-            _couplings(system.damping),
-            _couplings(centred_tub(dampers=_SHIFT).system().damping),
-            "the dampers above the centre and in front of it",
+        (
+            *("5-damping", "axes of viscous friction in those of mass", "damping"),
+            *(centred_tub(dampers=_SHIFT), "the dampers above the centre and in front of it"),
         ),
-        _separate(plain),
-    ]
+    )
+    for rule, what, of, broken_tub, broken_by in rules:
+        # A rule must take every coupling away, and without it there are some.
+        kept, broken = (_couplings(getattr(each, of)) for each in (system, broken_tub.system()))
+        left = ", ".join(f"{pair} {size:.3f}" for pair, size in broken.items())
+        computed = ", ".join(kept) or f"none; broken: {left}"
+        words = {"rule": rule, "meaning": f"{what}: couplings of the {of}", "broken_by": broken_by}
+        yield CLAIMS.case("layout", computed, not kept and bool(broken), **words)
+        if rule == "1-axis":
+            # The drum's axis is one of its inertia: without the couple of an unbalance along its length.
+            size = 0.1 * plain.unbalance
+            loads = (PlaneUnbalance(0.06, size), PlaneUnbalance(-0.06, size, np.pi))
+            tilted = _turns(replace(plain, loads=loads))
+            holds = turns < _NONE < tilted
+            yield CLAIMS.case("layout-2-inertia", agrees=holds, kept=turns, broken=tilted)
+    # With all rules the free motions at rest are separate; the spin couples two turns.
+    rest = {**_couplings(system.mass), **_couplings(system.stiffness), **_couplings(system.damping)}
+    turning = [f"{NAMES[i]}-{NAMES[j]}" for i, j in PAIRS if abs(system.gyroscopic[i, j]) > 0.0]
+    told = f"none at rest; {', '.join(turning)} by J_b omega while it turns"
+    yield CLAIMS.case("layout-separate", told, not rest and turning == ["alpha-gamma"])
 
 
 def _couplings(matrix: Array) -> dict[str, float]:
@@ -99,34 +103,6 @@ def _couplings(matrix: Array) -> dict[str, float]:
     }
 
 
-def _rule(name: str, meaning: str, kept: dict[str, float], broken: dict[str, float], broken_by: str) -> Case:
-    """A rule that must take every coupling away, and without which there are some."""
-    holds = not kept and bool(broken)
-    left = ", ".join(f"{pair} {size:.3f}" for pair, size in broken.items())
-    computed = f"none; broken: {left}" if not kept else ", ".join(kept)
-    return CLAIMS.case("layout", computed, holds, rule=name, meaning=meaning, broken_by=broken_by)
-
-
 def _turns(machine: Tub) -> float:
     """Largest turn about x or z under the unbalance at any speed, rad."""
     return float(np.abs(unbalance_response(machine.system(), _SPEEDS)[:, [3, 5]]).max())
-
-
-def _dynamic_unbalance(plain: Tub) -> Case:
-    """The drum's axis is one of its inertia: without the couple of an unbalance along its length."""
-    size = 0.1 * plain.unbalance
-    couple = replace(plain, loads=(PlaneUnbalance(0.06, size), PlaneUnbalance(-0.06, size, np.pi)))
-    kept, broken = _turns(plain), _turns(couple)
-    holds = kept < _NONE < broken
-    return CLAIMS.case("layout-2-inertia", agrees=holds, kept=kept, broken=broken)
-
-
-def _separate(plain: Tub) -> Case:
-    """With all rules the free motions at rest are separate; the spin couples two turns."""
-    system = plain.system()
-    rest = {**_couplings(system.mass), **_couplings(system.stiffness), **_couplings(system.damping)}
-    turning = [f"{NAMES[i]}-{NAMES[j]}" for i, j in PAIRS if abs(system.gyroscopic[i, j]) > 0.0]
-    holds = not rest and turning == ["alpha-gamma"]
-    return CLAIMS.case(
-        "layout-separate", f"none at rest; {', '.join(turning)} by J_b omega while it turns", holds
-    )

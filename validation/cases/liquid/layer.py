@@ -102,59 +102,28 @@ def bore_reference() -> dict[str, Any]:
 
 
 def _bore(run: dict[str, Any]) -> Iterator[Case]:
-    """The near-resonant case period by period, by four variants of the model."""
+    """The near-resonant case by four variants; of all but the first periods only the trend is compared."""
     reference = np.array([complex(*pair) for pair in run["force_ratio"]])
     for name, history in bore_histories().items():
-        yield from _force_cases(run["name"], name, history.force_ratio, reference)
-        if name == "both":
-            yield _rotation_case(run, history.time, history.mean_rotation)
-
-
-def _force_cases(
-    run: str, variant: str, force: NDArray[np.complex128], reference: NDArray[np.complex128]
-) -> list[Case]:
-    """The first periods of the bore, which are held to the flow's, and the others, whose trend is."""
-    off = np.abs(force - reference) / np.abs(reference)
-    early, late = off[:_PERIODS], off[_PERIODS:]
-    sizes = [float(np.abs(each[_PERIODS:]).mean()) for each in (reference, force)]
-    return [
-        CLAIMS.case(
-            "force_cases",
-            float(np.max(early)),
-            bool(np.all(early <= _EARLY)),
-            run=run,
-            variant=variant,
-            difference=_percent(early),
-        ),
-        CLAIMS.case(
-            "late",
-            float(np.max(late)),
-            True,
-            run=run,
-            variant=variant,
-            difference=_percent(late),
-            effect=Effect("mean modulus of the force ratio", *sizes),
-        ),
-    ]
+        off = np.abs(history.force_ratio - reference) / np.abs(reference)
+        early, late = off[:_PERIODS], off[_PERIODS:]
+        sizes = (float(np.abs(each[_PERIODS:]).mean()) for each in (reference, history.force_ratio))
+        of = {"run": run["name"], "variant": name}
+        held, told = bool(np.all(early <= _EARLY)), _percent(early)
+        yield CLAIMS.case("force_cases", float(np.max(early)), held, **of, difference=told)
+        effect = Effect("mean modulus of the force ratio", *sizes)
+        yield CLAIMS.case("late", float(np.max(late)), True, **of, difference=_percent(late), effect=effect)
+    # Mean rotation of the last at the reference's times, which lie between the middles of our periods.
+    given = np.array(run["mean_rotation"])
+    inside = given[:, 0] <= history.time[-1]
+    ours = np.interp(given[inside, 0], history.time, history.mean_rotation)
+    off = np.abs(ours / given[inside, 1] - 1.0)
+    words = {"key": run["name"], "difference": _percent(off)}
+    yield CLAIMS.case("mean-rotation", float(off.max()), bool(np.all(off <= _ROTATION)), **words)
 
 
 def _percent(shares: NDArray[np.float64]) -> str:
     return ", ".join(f"{100 * share:.0f}" for share in shares) + " %"
-
-
-def _rotation_case(run: dict[str, Any], time: NDArray[np.float64], rotation: NDArray[np.float64]) -> Case:
-    """Mean rotation at the reference's times, which lie between the middles of our periods."""
-    given = np.array(run["mean_rotation"])
-    inside = given[:, 0] <= time[-1]
-    ours = np.interp(given[inside, 0], time, rotation)
-    off = np.abs(ours / given[inside, 1] - 1.0)
-    return CLAIMS.case(
-        "mean-rotation",
-        float(off.max()),
-        bool(np.all(off <= _ROTATION)),
-        key=run["name"],
-        difference=_percent(off),
-    )
 
 
 CELLS = (32, 64, 128)

@@ -33,13 +33,8 @@ from validation.study import launch, shown
 CLAIMS = Claims("two_plane")
 
 
-def cases() -> list[Case]:
-    """The conditions beside their potential, and balls in time."""
-    return [_hessian(), _special(), *_balls()]
-
-
-def _hessian() -> Case:
-    """Conditions 33 to 35 against the potential's second derivatives, over many rotors and speeds."""
+def cases() -> Iterator[Case]:
+    """The conditions beside their potential, over many rotors and speeds, and balls in time."""
     rng, wrong, count = np.random.default_rng(5), 0, 0
     for _ in range(200):
         c = float(rng.uniform(0.05, 0.5))
@@ -47,53 +42,31 @@ def _hessian() -> Case:
         if max(a, b, c) > a + b + c - max(a, b, c):
             continue
         stiffness, far = tuple(rng.uniform(1e3, 1e5, 2)), tuple(rng.uniform(0.05, 0.5, 2))
-        rotor = RigidRotor(float(rng.uniform(1.0, 50.0)), (a, b, c), stiffness, (far[0], -far[1]))
-        answer = dynamic_balancing(rotor, np.geomspace(1.0, 3e3, 40))
-        definite = [np.linalg.eigvalsh(potential_hessian(rotor, float(w)))[0] > 0.0 for w in answer.speed]
+        any_rotor = RigidRotor(float(rng.uniform(1.0, 50.0)), (a, b, c), stiffness, (far[0], -far[1]))
+        answer = dynamic_balancing(any_rotor, np.geomspace(1.0, 3e3, 40))
+        definite = [
+            np.linalg.eigvalsh(potential_hessian(any_rotor, w))[0] > 0.0 for w in answer.speed.tolist()
+        ]
         wrong += int(np.sum(answer.possible != np.array(definite)))
         count += answer.speed.size
-    return CLAIMS.case(
-        "potential", float(wrong), wrong == 0, count=count, difference="none" if wrong == 0 else f"{wrong}"
-    )
-
-
-def _special() -> Case:
-    """Without coupling the limit is a square root [FF20, eq. 37]."""
-    rotor = RigidRotor(10.0, (0.5, 0.5, 0.1), (1e4, 1e4), (0.2, -0.2))
-    printed, computed = math.sqrt(800.0 / 0.4), dynamic_balancing(rotor, 1.0).above
-    order = (
-        "of eq. 37 holds"
-        if printed >= math.sqrt(2e4 / 10.0)
-        else "of eq. 37 does not hold: tilt is the lower"
-    )
-    return CLAIMS.case(
-        "uncoupled",
-        computed,
-        math.isclose(printed, computed, rel_tol=1e-12),
-        printed=printed,
-        difference=printed / computed - 1.0,
-        order=order,
-    )
-
-
-def _balls() -> Iterator[Case]:
-    """A long and a short rotor, below and above the resonances, with two ball balancers."""
+    difference = "none" if wrong == 0 else f"{wrong}"
+    yield CLAIMS.case("potential", float(wrong), wrong == 0, count=count, difference=difference)
+    # Without coupling the limit is a square root [FF20, eq. 37].
+    uncoupled = RigidRotor(10.0, (0.5, 0.5, 0.1), (1e4, 1e4), (0.2, -0.2))
+    printed, computed = math.sqrt(800.0 / 0.4), dynamic_balancing(uncoupled, 1.0).above
+    same, highest = math.isclose(printed, computed, rel_tol=1e-12), printed >= math.sqrt(2e4 / 10.0)
+    order = "of eq. 37 holds" if highest else "of eq. 37 does not hold: tilt is the lower"
+    words = {"printed": printed, "difference": printed / computed - 1.0, "order": order}
+    yield CLAIMS.case("uncoupled", computed, same, **words)
     for name, rotor in (("long", LONG), ("short", SHORT)):
-        for speed in (30.0, 120.0):
+        for speed in _SPEEDS:
             answer = dynamic_balancing(of_two_planes(rotor, BALLS), speed)
             run = simulate(rotor.system(), RACES, speed, 60.0, places=SCATTERED)
             left = float(over_bare(rotor, run, speed)[-run.time.size // 10 :].max())
             said, balanced = bool(answer.possible[0]), left < 1e-6
-            yield CLAIMS.case(
-                "balls",
-                left,
-                run.converged and said == balanced,
-                rotor=name,
-                speed=speed,
-                printed="balanced" if said else "not balanced",
-                difference="none" if said == balanced else "the other way",
-                note=answer.why(),
-            )
+            told = {"rotor": name, "speed": speed, "printed": "balanced" if said else "not balanced"}
+            told["difference"] = "none" if said == balanced else "the other way"
+            yield CLAIMS.case("balls", left, run.converged and said == balanced, note=answer.why(), **told)
 
 
 _SPEEDS = (30.0, 120.0)

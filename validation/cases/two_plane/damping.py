@@ -6,7 +6,7 @@ validation.cases.two_plane.damping` makes them anew.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
@@ -159,32 +159,18 @@ def kept() -> list[dict[str, float]]:
 
 
 def cases() -> list[Case]:
-    """Edges of four dampings, each with motions in time on both sides, then the long runs."""
+    """Edges of four dampings, each with motions in time on both sides, then what minutes of a run leave."""
     printed = dynamic_balancing(of_two_planes(LONG, BALLS), 1.0).above
     found = []
     for damping in DAMPINGS:
         speed = edge(damping)
         sides = [side(damping, share * speed) for share in SIDES]
-        confirmed = sides[0].seen > 0.0 > sides[1].seen
-        away = printed / speed - 1.0
+        confirmed, away = sides[0].seen > 0.0 > sides[1].seen, printed / speed - 1.0
+        verdict = "differs" if not confirmed else "agrees" if abs(away) <= 0.02 else "erratum"
         told = ", ".join(f"{each.seen:+.2g} 1/s at {each.speed:.2f}" for each in sides)
-        found.append(
-            CLAIMS.case(
-                "damping",
-                speed,
-                damping=damping,
-                printed=printed,
-                difference=away,
-                verdict="differs" if not confirmed else "agrees" if abs(away) <= 0.02 else "erratum",
-                told=told,
-            )
-        )
-    return [*found, *_long(kept())]
-
-
-def _long(runs: list[dict[str, float]]) -> Iterator[Case]:
-    """What is left after minutes, beside what the conditions say."""
-    for run in runs:
+        words = {"damping": damping, "printed": printed, "difference": away, "told": told}
+        found.append(CLAIMS.case("damping", speed, verdict=verdict, **words))
+    for run in kept():
         balanced = run["rate"] < 0.0 and run["left"] < 1.0
         # Where the state is stable and this start does not lead to it, the source is not wrong.
         stable = run["root"] < 0.0
@@ -195,7 +181,8 @@ def _long(runs: list[dict[str, float]]) -> Iterator[Case]:
             "difference": "none" if balanced else _NOT_REACHED if stable else "it grows",
             "verdict": "agrees" if balanced else "differs" if stable else "erratum",
         }
-        yield CLAIMS.case("long-run", run["left"], **words)
+        found.append(CLAIMS.case("long-run", run["left"], **words))
+    return found
 
 
 def keep() -> None:
