@@ -61,47 +61,10 @@ class LinearCoupled(CoupledRotor):
         return slice(self.sloshing.stop, None)
 
     @property
-    def gravity(self) -> Array:
-        """See `CoupledRotor`."""
-        return self.machine.gravity
-
-    @property
-    def shaft(self) -> np.record:
-        """See `CoupledRotor`."""
-        found: np.record = self.machine.shaft[0]
-        return found
-
-    @property
-    def sums(self) -> np.record:
-        """See `CoupledRotor`."""
-        found: np.record = self.machine.sums[0]
-        return found
-
-    @property
-    def crest(self) -> np.record:
-        """See `CoupledRotor`."""
-        found: np.record = self.machine.crest[0]
-        return found
-
-    @property
     def theta(self) -> Array:
         """Angle of the cells' middles from the drum's zero mark, rad, shape (c,)."""
         angles = ring(self.cells)
         return np.asarray(np.arctan2(angles[1], angles[0]))
-
-    def drive(self, curve: Array, inertia: float) -> None:
-        """Set a motor's torque curve and moment of inertia; an empty curve leaves the spin to its ramp."""
-        self.machine = self.machine._replace(curve=curve)
-        self.shaft.inertia = inertia - self.lost_inertia
-
-    @property
-    def rotor_mass(self) -> Array:
-        """See `CoupledRotor`."""
-        return np.asarray(self.machine.matrices[0])
-
-    def load(self, unbalance: Complex) -> None:
-        """Set the unbalance from here on, kg m and kg m^2, shape (n,)."""
-        self.machine.unbalance[:] = unbalance
 
     def advance(self, stop: float, rate: float, courant: float, most: int) -> Outcome:
         """Advance to a time while the spin changes at a rate, in at most so many steps."""
@@ -317,6 +280,9 @@ def couple_linear(
         lean_rate=np.zeros(count),
         cells=cells,
         machine=machine,
+        shaft=machine.shaft[0],
+        sums=machine.sums[0],
+        crest=machine.crest[0],
     )
     found.position = position
     machine.active[:] = found.begins_as_layer(spin)

@@ -64,51 +64,14 @@ class Coupled(CoupledRotor):
     kept: list[Array] = field(default_factory=list)
 
     @property
-    def gravity(self) -> Array:
-        """See `CoupledRotor`."""
-        return self.machine.gravity
-
-    @property
     def pooled(self) -> Flags:
         """Which liquids are pools that swing now, shape (l,)."""
         return self.swings & ~self.active
 
     @property
-    def shaft(self) -> np.record:
-        """See `CoupledRotor`."""
-        found: np.record = self.state.shaft[0]
-        return found
-
-    @property
-    def sums(self) -> np.record:
-        """See `CoupledRotor`."""
-        found: np.record = self.state.sums[0]
-        return found
-
-    @property
-    def crest(self) -> np.record:
-        """See `CoupledRotor`."""
-        found: np.record = self.state.crest[0]
-        return found
-
-    @property
     def theta(self) -> Array:
         """Angle of the cells' middles from the drum's zero mark, rad, shape (c,)."""
         return np.asarray(np.arctan2(self.machine.angles[1], self.machine.angles[0]))
-
-    def drive(self, curve: Array, inertia: float) -> None:
-        """Set a motor's torque curve and moment of inertia; an empty curve leaves the spin to its ramp."""
-        self.machine = self.machine._replace(curve=curve)
-        self.shaft.inertia = inertia - self.lost_inertia
-
-    @property
-    def rotor_mass(self) -> Array:
-        """See `CoupledRotor`."""
-        return np.asarray(self.machine.matrices[0])
-
-    def load(self, unbalance: Complex) -> None:
-        """Set the unbalance from here on, kg m and kg m^2, shape (n,)."""
-        self.machine.unbalance[:] = unbalance
 
     def advance(self, stop: float, rate: float, courant: float, most: int) -> Outcome:
         """Advance to a time while the spin changes at a rate, in at most so many steps."""
@@ -394,7 +357,7 @@ def couple(
     `enstrophy`: bores carry fluctuations behind them [theory: long_wave, eq. 15-17]; `position` of the plane
     whose amplitude counts where there is no chamber, m.
     """
-    rest = at_rest(system, fills, spin, gravity, position)
+    rest, sums, crest = at_rest(system, fills, spin, gravity, position), records(SUMS), records(CREST)
     n, count = len(system.coordinates), len(fills)
     layers = records(LAYER, count)
     for j, fill in enumerate(fills):
@@ -412,6 +375,9 @@ def couple(
         pools=rest.pools,
         lean=np.zeros(count),
         lean_rate=np.zeros(count),
+        shaft=rest.shaft[0],
+        sums=sums[0],
+        crest=crest[0],
         area=area,
         momentum=-spin * np.square(area),
         rolling=np.zeros((count, cells if enstrophy else 0)),
@@ -446,8 +412,8 @@ def couple(
             lean_rate=np.zeros(0),
             push=np.zeros((0, 2, 2)),
             pace=_fresh_pace(),
-            sums=records(SUMS),
-            crest=records(CREST),
+            sums=sums,
+            crest=crest,
             trace=np.zeros((0, 2 + n)),
             roll=np.array(balls.places, dtype=float),
             roll_rate=spin * np.array(balls.shares, dtype=float),

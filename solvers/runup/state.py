@@ -11,7 +11,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +26,9 @@ from meshes.errors import require_not_negative
 from solvers.layer.records import Record, floats, records
 from solvers.rotor.system import RotorSystem
 from solvers.runup.machine import Handover, Transfer
+
+if TYPE_CHECKING:
+    from solvers.runup.linear_kernel import LinearMachine
 
 # A layer is let go at this share of the spin speed that captures it, lest it be caught and let go in turns.
 RELEASE = 0.98
@@ -296,6 +299,10 @@ class CoupledRotor(ABC):
     pools: tuple[Pool | None, ...]
     lean: Array  #: angle of each pool from the bottom, positive with the spin, rad, and its rate, (l,)
     lean_rate: Array
+    machine: Machine | LinearMachine  #: what the compiled steps take
+    shaft: np.record  #: record SHAFT of the moment
+    sums: np.record  #: record SUMS: works, heats and counts so far
+    crest: np.record  #: record CREST of the interval
     #: liquid that has become a layer or fallen so far
     transfers: list[Transfer] = field(default_factory=list, init=False)
     #: mass matrix of what has left the drum, and its moment of inertia about the axis
@@ -376,24 +383,9 @@ class CoupledRotor(ABC):
         return np.array([0.0 if pool is None else pool.inertia for pool in self.pools])
 
     @property
-    @abstractmethod
     def gravity(self) -> Array:
         """Acceleration across the axis, shape (2,)."""
-
-    @property
-    @abstractmethod
-    def shaft(self) -> np.record:
-        """Record SHAFT of the moment."""
-
-    @property
-    @abstractmethod
-    def sums(self) -> np.record:
-        """Record SUMS: works, heats and counts so far."""
-
-    @property
-    @abstractmethod
-    def crest(self) -> np.record:
-        """Record CREST of the interval."""
+        return self.machine.gravity
 
     @property
     def time(self) -> float:
@@ -410,10 +402,14 @@ class CoupledRotor(ABC):
         """Angle by which the drum has turned, rad."""
         return float(self.shaft["angle"])
 
-    @property
-    @abstractmethod
-    def rotor_mass(self) -> Array:
-        """Mass matrix that the steps take, to be changed in place, shape (n, n)."""
+    def drive(self, curve: Array, inertia: float) -> None:
+        """Set a motor's torque curve and moment of inertia; an empty curve leaves the spin to its ramp."""
+        self.machine = self.machine._replace(curve=curve)
+        self.shaft.inertia = inertia - self.lost_inertia
+
+    def load(self, unbalance: Complex) -> None:
+        """Set the unbalance from here on, kg m and kg m^2, shape (n,)."""
+        self.machine.unbalance[:] = unbalance
 
     @abstractmethod
     def energy(self) -> float:
@@ -423,7 +419,7 @@ class CoupledRotor(ABC):
         """See `solvers.runup.machine.RunupMachine.lighten`."""
         gone = np.zeros_like(self.system.mass) if self.lost_mass is None else self.lost_mass
         before = self.energy()
-        self.rotor_mass[:] -= mass - gone
+        self.machine.matrices[0] -= mass - gone
         self.shaft["inertia"] -= inertia - self.lost_inertia
         self.lost_mass, self.lost_inertia = mass, inertia
         return self.energy() - before

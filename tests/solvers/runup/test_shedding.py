@@ -61,7 +61,7 @@ def test_shares_that_are_left() -> None:
 
 
 @kills("solvers.runup.shedding:Shedding._gone", "1.0 - share", "share")
-@kills("solvers.runup.linear:LinearCoupled.load", "self.machine.unbalance[:] = unbalance", "pass")
+@kills("solvers.runup.state:CoupledRotor.load", "self.machine.unbalance[:] = unbalance", "pass")
 @pytest.mark.parametrize("samples", [20, 400])
 def test_the_rotor_feels_what_is_left(samples: int) -> None:
     """scipy with U(t) itself, through the resonance and held; the force has no part with the rate of U.
@@ -100,12 +100,12 @@ def all_of_it_leaves(model: RunupModel) -> None:
     assert found.audit.closure < 2e-3
 
 
-@kills("solvers.runup.linear:LinearCoupled.load", "self.machine.unbalance[:] = unbalance", "pass")
+@kills("solvers.runup.state:CoupledRotor.load", "self.machine.unbalance[:] = unbalance", "pass")
 def test_all_of_it_leaves_a_linear_layer() -> None:
     all_of_it_leaves(couple_linear)
 
 
-@kills("solvers.runup.long_wave:Coupled.load", "self.machine.unbalance[:] = unbalance", "pass")
+@kills("solvers.runup.state:CoupledRotor.load", "self.machine.unbalance[:] = unbalance", "pass")
 def test_all_of_it_leaves_long_waves() -> None:
     all_of_it_leaves(couple)
 
