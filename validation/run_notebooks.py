@@ -123,23 +123,19 @@ def execute(path: Path, out: Path) -> str:
     book.cells.insert(0, new_code_cell(_STRICT))
     # Of the kernel's own log the errors alone.
     options = {"kernel_name": "python3", "extra_arguments": ["--log-level=ERROR"]}
+    # Small matrices on one thread, modules from where this process takes them.
+    threads = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+    modules = os.pathsep.join(str(Path(entry).absolute()) for entry in sys.path if entry)
     wrong = ""
     with TemporaryDirectory() as folder:
         client = NotebookClient(book, timeout=_SECONDS, **options)
         try:
-            client.execute(cwd=folder, env=_settings())
+            client.execute(cwd=folder, env=os.environ | threads | {"PYTHONPATH": modules})
         except (CellExecutionError, CellTimeoutError, DeadKernelError) as error:
             wrong = str(error)
     _without_first(book)
     write_pages(book, path.stem, out)
     return wrong or _complaints(book)
-
-
-def _settings() -> dict[str, str]:
-    """Environment of a kernel: small matrices on one thread, modules from where this process takes them."""
-    threads = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
-    path = os.pathsep.join(str(Path(entry).absolute()) for entry in sys.path if entry)
-    return os.environ | threads | {"PYTHONPATH": path}
 
 
 def _without_first(book: Any) -> None:

@@ -101,29 +101,30 @@ def data(name: str) -> dict[str, Any]:
 def write(file: Path, found: object, digits: int | None = None, compact: bool = False) -> None:
     """Keep records as JSON, null for what is not finite; digits: how many of each number."""
     layout: dict[str, Any] = {"separators": (",", ":")} if compact else {"indent": 1}
-    text = json.dumps(_plain(found, digits), allow_nan=False, **layout)
+    text = json.dumps(plain(found, digits), allow_nan=False, **layout)
     file.write_text(text + "\n", encoding="utf-8")
 
 
-def _plain(value: Any, digits: int | None) -> Any:
+def plain(value: Any, digits: int | None = None) -> Any:
+    """What JSON can hold of records; null for what is not finite."""
     if isinstance(value, float):
         if not math.isfinite(value):
             return None
         return value if digits is None else float(f"{value:.{digits}g}")
     if is_dataclass(value):
-        return {field.name: _plain(getattr(value, field.name), digits) for field in fields(value)}
+        return {field.name: plain(getattr(value, field.name), digits) for field in fields(value)}
     if isinstance(value, Mapping):
-        return {key: _plain(entry, digits) for key, entry in value.items()}
+        return {key: plain(entry, digits) for key, entry in value.items()}
     if isinstance(value, list | tuple):
-        return [_plain(entry, digits) for entry in value]
+        return [plain(entry, digits) for entry in value]
     if hasattr(value, "tolist"):
-        return _plain(value.tolist(), digits)
+        return plain(value.tolist(), digits)
     return value
 
 
 def read(file: Path, kind: type[_Kept]) -> _Kept:
     """Records that `write` kept, built by the annotations of their fields; null for a float is nan."""
-    found: _Kept = _built(json.loads(file.read_text(encoding="utf-8")), kind)
+    found: _Kept = built(json.loads(file.read_text(encoding="utf-8")), kind)
     return found
 
 
@@ -134,18 +135,19 @@ def stored(
     return lambda: read(file, kind), lambda found: write(file, found, **layout)
 
 
-def _built(found: Any, kind: Any) -> Any:
+def built(found: Any, kind: Any) -> Any:
+    """The records again, by the annotations of their fields."""
     origin, parts = get_origin(kind), get_args(kind)
     if isinstance(kind, type) and is_dataclass(kind):
         hints = get_type_hints(kind)
-        return kind(**{name: _built(value, hints[name]) for name, value in found.items()})
+        return kind(**{name: built(value, hints[name]) for name, value in found.items()})
     if origin in (tuple, list):
-        return origin(_built(entry, parts[0]) for entry in found)
+        return origin(built(entry, parts[0]) for entry in found)
     if origin is not None and origin.__name__ == "ndarray":
         import numpy as np  # not above: studies set the number of threads before it is loaded
 
         values = [math.nan if value is None else value for value in found]
         return np.array(values, dtype=get_args(parts[1])[0])
     if origin is not None and issubclass(origin, Mapping):
-        return {key: _built(value, parts[1]) for key, value in found.items()}
+        return {key: built(value, parts[1]) for key, value in found.items()}
     return math.nan if kind is float and found is None else found

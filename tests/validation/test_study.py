@@ -34,8 +34,8 @@ class Whole:
     models: Mapping[str, Array]
 
 
-@kills("validation.study:_plain", "return None", "return 0.0")
-@kills("validation.study:_built", "math.nan if value is None else value for value", "value or 0.0 for value")
+@kills("validation.study:plain", "return None", "return 0.0")
+@kills("validation.study:built", "math.nan if value is None else value for value", "value or 0.0 for value")
 def test_records_come_back(tmp_path: Path) -> None:
     whole = Whole(
         (Part(1.0 / 3.0, None), Part(math.inf, "b")),

@@ -40,7 +40,10 @@ def breaking_figure() -> Figure:
     )
     with page([2.2, 1.5, 1.7], text, left=0.62, between=0.62) as (figure, [[ends], [crests], [times]]):
         _draw_ends(ends, results)
-        _draw_crests(crests, results)
+        highest = np.array([(row.depth, row.crest) for row in results.highest]).T
+        crests.plot(*highest, color="black", marker=".", label="highest free wave")
+        crests.set_ylim(bottom=1.0)
+        crests.set(xlabel="Depth h0/R", ylabel="Crest over h0")
         _draw_times(times, results)
         figure.alt = alternative(results)
     return figure
@@ -52,35 +55,17 @@ def _draw_ends(axes: Any, results: Kept) -> None:
         rows = [row for row in results.endings if row.depth == depth]
         broken = [row for row in rows if row.state == "broken"]
         others = [row for row in rows if row.state != "broken"]
-        axes.plot(
-            [row.whirl for row in broken], [row.periods for row in broken], label=f"h0/R = {depth:g}", **look
-        )
-        axes.plot(
-            [row.whirl for row in others],
-            [row.periods for row in others],
-            linestyle="none",
-            # Those of several depths lie on one another.
-            markersize=11.0 * (0.95 - depth),
-            markerfacecolor="none",
-            **look,
-        )
+        whirls, periods = ([getattr(row, name) for row in broken] for name in ("whirl", "periods"))
+        axes.plot(whirls, periods, label=f"h0/R = {depth:g}", **look)
+        whirls, periods = ([getattr(row, name) for row in others] for name in ("whirl", "periods"))
+        # Those of several depths lie on one another.
+        open_ones = {"linestyle": "none", "markersize": 11.0 * (0.95 - depth), "markerfacecolor": "none"}
+        axes.plot(whirls, periods, **open_ones, **look)
     axes.set_xticks([0.002, 0.005, 0.01, 0.02, 0.05, 0.1], ["0.002", "0.005", "0.01", "0.02", "0.05", "0.1"])
     axes.set_yticks([1, 2, 5, 10, 20], ["1", "2", "5", "10", "20"])
     axes.set_ylim(1.0, 32.0)
     axes.minorticks_off()
     axes.set(xlabel="Whirl over depth, w0/h0", ylabel="Whirl periods to breaking")
-
-
-def _draw_crests(axes: Any, results: Kept) -> None:
-    axes.plot(
-        [row.depth for row in results.highest],
-        [row.crest for row in results.highest],
-        color="black",
-        marker=".",
-        label="highest free wave",
-    )
-    axes.set_ylim(bottom=1.0)
-    axes.set(xlabel="Depth h0/R", ylabel="Crest over h0")
 
 
 def _draw_times(axes: Any, results: Kept) -> None:
@@ -117,7 +102,8 @@ def crest_figure(found: Sequence[Crest] | None = None) -> Figure:
         for axes, row in zip(drums, rows, strict=True):
             _draw_drum(axes, row)
         for row, colour in zip(rows, _COLOURS, strict=False):
-            _draw_crest(near, row, colour)
+            name = f"t = {row.time:.4g}: {row.slope:.0f} deg, B = {row.crest_number:.2f}"
+            near.plot(crests.angles(), _unrolled(row.depth), color=colour, label=name)
         depths = np.arange(0.0, 1.9, 0.5)
         near.set_yticks(_unrolled(crests.LAYER * depths), [number(depth) for depth in depths])
         near.set(xlim=(-_AHEAD, _BEHIND), ylim=(0.0, float(_unrolled(1.7 * crests.LAYER))))
@@ -144,12 +130,6 @@ def _draw_drum(axes: Any, row: Crest) -> None:
     axes.plot(wall.real, wall.imag, color="black", linewidth=1.2)
     axes.plot(free.real, free.imag, color="#0072B2", linewidth=0.9)
     axes.set_title(f"t = {row.time:.4g}", fontsize=7.5, pad=2.0)
-
-
-def _draw_crest(axes: Any, row: Crest, colour: str) -> None:
-    angle = crests.angles()
-    name = f"t = {row.time:.4g}: {row.slope:.0f} deg, B = {row.crest_number:.2f}"
-    axes.plot(angle, _unrolled(row.depth), color=colour, label=name)
 
 
 def crest_words(rows: Sequence[Crest]) -> str:

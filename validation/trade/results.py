@@ -4,19 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import asdict
+from dataclasses import fields
 from typing import Any
 
 from leblanc.core.answer import versions
 from leblanc.core.notes import one_line
+from validation.study import built, plain
 from validation.trade.judge import Comparison, Row
 from validation.trade.trade import TradeRecord
 
 _KILO, _MEGA = 1e3, 1e6  # milliseconds in a second, bytes in a megabyte
 _PER_CENT = 100.0
 _EXACT = 1e-11  # own error of the best answer, below which it is rounding
-# What a row need not have.
-_UNKNOWN = "error", "peak_error", "estimate", "ripple_error"
 
 REMARK = (
     "errors and peak errors belong to the scene; times are CPU seconds of one machine: their ratios to the "
@@ -26,7 +25,11 @@ REMARK = (
 
 def trade_json(record: TradeRecord) -> dict[str, Any]:
     """The record as an object for scripts: SI, null for what is not there."""
-    rows = [_row(row, comparison) for comparison in record.comparisons for row in comparison.rows]
+    rows = [
+        plain(row) | {"time_ratio": plain(row.time / comparison.default.time)}
+        for comparison in record.comparisons
+        for row in comparison.rows
+    ]
     return {
         "name": record.name,
         "digest": record.digest,
@@ -44,46 +47,23 @@ def record_of(content: Mapping[str, Any]) -> TradeRecord:
     found = []
     for question in content["questions"]:
         rows = [row for row in content["rows"] if row["question"] == question["question"]]
-        kept = {key: question[key] for key in ("question", "about", "reference", "reference_error")}
-        numbers: dict[str, Any] = {
-            key: math.nan if question[old] is None else question[old]
-            for key, old in (("order", "order"), ("ripple", "ripple"), ("overhead", "default_overhead"))
-        }
-        beaten = tuple(question["default_dominated_by"])
-        found.append(Comparison(**kept, **numbers, dominated_by=beaten, rows=tuple(map(_row_of, rows))))
+        known = question | {key: question[f"default_{key}"] for key in ("dominated_by", "overhead")}
+        known["rows"] = [{field.name: row[field.name] for field in fields(Row)} for row in rows]
+        found.append(built({field.name: known[field.name] for field in fields(Comparison)}, Comparison))
     told = content["name"], "", tuple(content["assumed"]), content["digest"], content["tolerance"]
     return TradeRecord(*told, tuple(found))
 
 
-def _row_of(values: Mapping[str, Any]) -> Row:
-    lost = {key: math.nan for key in _UNKNOWN if values[key] is None}
-    plain = {key: value for key, value in values.items() if key != "time_ratio"}
-    return Row(**(plain | lost | {"used": tuple(values["used"])}))
-
-
 def _question(comparison: Comparison, tolerance: float) -> dict[str, Any]:
-    advised = comparison.recommended
+    advised, whole = comparison.recommended, plain(comparison)
     return {
-        "question": comparison.question,
-        "about": comparison.about,
-        "reference": comparison.reference,
-        "reference_error": _number(comparison.reference_error),
-        "order": _number(comparison.order),
-        "ripple": _number(comparison.ripple),
-        "default_dominated_by": list(comparison.dominated_by),
-        "default_overhead": _number(comparison.overhead),
+        key: whole[key] for key in ("question", "about", "reference", "reference_error", "order", "ripple")
+    } | {
+        "default_dominated_by": whole["dominated_by"],
+        "default_overhead": whole["overhead"],
         "recommended": None if advised is None else advised.label,
         "recommendation": recommendation(comparison, tolerance),
     }
-
-
-def _row(row: Row, comparison: Comparison) -> dict[str, Any]:
-    values = {key: _number(x) if isinstance(x, float) else x for key, x in asdict(row).items()}
-    return values | {"used": list(row.used), "time_ratio": _number(row.time / comparison.default.time)}
-
-
-def _number(value: float) -> float | None:
-    return float(value) if math.isfinite(value) else None
 
 
 def recommendation(comparison: Comparison, tolerance: float) -> str:
@@ -126,12 +106,11 @@ def _undecided(comparison: Comparison, tolerance: float, kept: str) -> str:
         off += f", too much to tell whether the default is within {_share(tolerance)}"
     else:
         off += f", and nothing else is known to be within {_share(tolerance)}"
-    gap = (
-        f"the default is {_share(default.error)} away from it"
-        if default.resolved
-        else "no farther is the default"
-    )
-    gap = "the default has no answer" if math.isnan(default.error) else gap
+    gap = "no farther is the default"
+    if math.isnan(default.error):
+        gap = "the default has no answer"
+    elif default.resolved:
+        gap = f"the default is {_share(default.error)} away from it"
     cost = f"the default takes {_time(default.time)}, the reference {_time(best.time)}"
     return f"cannot decide at this cost: {kept}: {off}; {gap}; {cost}"
 
@@ -140,11 +119,8 @@ def error_words(row: Row, comparison: Comparison) -> str:
     """Error as a share, or that it cannot be distinguished from the best answer's own."""
     if not math.isfinite(row.error):
         return "unknown"
-    return (
-        _share(row.error)
-        if row.resolved
-        else f"below the best answer's own {_share(comparison.reference_error)}"
-    )
+    own = f"below the best answer's own {_share(comparison.reference_error)}"
+    return _share(row.error) if row.resolved else own
 
 
 def _time(seconds: float) -> str:
@@ -162,11 +138,8 @@ def trade_lines(record: TradeRecord) -> list[str]:
         own = f"best: {comparison.reference}"
         if comparison.reference_error > _EXACT:
             own += f", whose own error is some {_share(comparison.reference_error)}"
-            own += (
-                f" (order {comparison.order:.2g})"
-                if math.isfinite(comparison.order)
-                else " (it does not converge)"
-            )
+            converges = math.isfinite(comparison.order)
+            own += f" (order {comparison.order:.2g})" if converges else " (it does not converge)"
         rippled = math.isfinite(comparison.ripple)
         if rippled:
             own += f"; its ripple is up to {_share(comparison.ripple)} of the amplitude"
@@ -185,19 +158,11 @@ def trade_lines(record: TradeRecord) -> list[str]:
 
 def _line(row: Row, width: int, rippled: bool) -> str:
     """One row of a table; what stands out of the front, the default and the advised one marked."""
-    marks = [
-        word
-        for word, holds in (
-            ("front", row.on_front),
-            ("default", row.default),
-            ("recommended", row.recommended),
-            ("out of range", not row.in_range),
-        )
-        if holds
-    ]
+    standing = (row.on_front, row.default, row.recommended, not row.in_range)
+    names = ("front", "default", "recommended", "out of range")
+    marks = [word for word, holds in zip(names, standing, strict=True) if holds]
     error = f"{row.error:.2e}" if row.resolved else ("-" if math.isfinite(row.error) else "none")
-    peak = f"{row.peak_error:.2e}" if math.isfinite(row.peak_error) else "none"
-    ripple = f"{row.ripple_error:.2e}" if math.isfinite(row.ripple_error) else "none"
+    peak, ripple = (f"{x:.2e}" if math.isfinite(x) else "none" for x in (row.peak_error, row.ripple_error))
     peak = f"{peak:>12}" + (f"{ripple:>10}" if rippled else "")
     numbers = f"{error:>10}{peak}{row.time * _KILO:>11.4g}{row.spread:>8.0%}{row.memory / _MEGA:>8.2f}"
     text = "  " + ", ".join(marks) + (f"; {row.note}" if row.note else "")

@@ -223,7 +223,15 @@ def sweep_figure() -> Figure:
             panels[k].set_title(title, loc="left")
             panels[k].set_ylabel("Shaking over that\nwith 0 ml added (\N{EN DASH})")
             panels[k].tick_params(labelbottom=k == 1)
-        _draw_contact(panels[0], added)
+        low, middle, high = of_kept().bands()
+        shade: dict[str, Any] = {
+            "color": _TOUCHES,
+            "alpha": 0.15,
+            "linewidth": 0.0,
+            "label": "with a clearance",
+        }
+        panels[0].fill_between(added, low, high, **shade)
+        panels[0].plot(added, middle, color=_TOUCHES, linewidth=1.3, label="with a clearance, middle")
         panels[0].set(yscale="log", ylim=(0.07, 3.0))
         panels[0].set_yticks([0.1, 0.2, 0.5, 1.0, 2.0], ["0.1", "0.2", "0.5", "1", "2"])
         panels[0].yaxis.set_minor_locator(panels[0].yaxis.get_minor_locator().__class__(subs=()))
@@ -242,13 +250,6 @@ def _draw(axes: Any, added: Array, seen: Array, own: Array, band: Array) -> None
     axes.plot(added, seen, marker="s", markersize=4.5, label="measured", **look)
     ends = [0, -1]
     axes.plot(added[ends], seen[ends], marker="s", markersize=8.0, label="measured, fitted to", **look)
-
-
-def _draw_contact(axes: Any, added: Array) -> None:
-    """What a clearance makes of the same values: nine tenths of what two fills allow, and the middle."""
-    low, middle, high = of_kept().bands()
-    axes.fill_between(added, low, high, color=_TOUCHES, alpha=0.15, linewidth=0.0, label="with a clearance")
-    axes.plot(added, middle, color=_TOUCHES, linewidth=1.3, label="with a clearance, middle")
 
 
 if __name__ == "__main__":

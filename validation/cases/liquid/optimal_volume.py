@@ -36,26 +36,17 @@ def cases() -> list[Case]:
                     found.append(
                         CLAIMS.case(entry, answer.optimal_volume * _ML, printed=printed * _ML, **words)
                     )
-    return [*found, _double_thickness(), _bend()]
-
-
-def _double_thickness() -> Case:
-    """At fast spin the layer opposite the dry point is 2 e thick."""
+    # At fast spin the layer opposite the dry point is 2 e thick: a crescent between circles of radius R and
+    # R - e that touch, whose largest thickness is twice the mean one.
     chamber, e = Chamber(0.2, 0.05), 1e-3
     volume = float(optimal_volume(chamber, e, 1.0, gravity=0.0))
-    # A crescent between circles of radius R and R - e that touch: twice its mean thickness is its largest.
-    mean = volume / (3.141592653589793 * (2 * chamber.radius - e) * chamber.height)
-    return CLAIMS.case("thickness", 2.0 * mean / e)
-
-
-def _bend() -> Case:
-    """The deflection at which a volume stops to be enough is the one whose optimal volume it is."""
-    chamber, e = Chamber(0.2, 0.05), 3e-3
-    volume = float(optimal_volume(chamber, e, 1.0, gravity=0.0))
-    bend = Statics().linear_limit(
-        Fills.of([Fill(chamber, known_liquid("water"), volume)]), np.array([50.0]), np.zeros(1)
-    )
-    return CLAIMS.case("bend", float(bend[0]) * 1e3, printed=e * 1e3)
+    mean = volume / (np.pi * (2 * chamber.radius - e) * chamber.height)
+    found.append(CLAIMS.case("thickness", 2.0 * mean / e))
+    # The deflection at which a volume stops to be enough is the one whose optimal volume it is.
+    e = 3e-3
+    enough = Fill(chamber, known_liquid("water"), float(optimal_volume(chamber, e, 1.0, gravity=0.0)))
+    bend = Statics().linear_limit(Fills.of([enough]), np.array([50.0]), np.zeros(1))
+    return [*found, CLAIMS.case("bend", float(bend[0]) * 1e3, printed=e * 1e3)]
 
 
 CHAMBER, GRAVITY = Chamber(0.2, 0.05), 9.81

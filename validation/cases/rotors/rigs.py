@@ -70,7 +70,10 @@ def horizontal_cases() -> list[Case]:
     measured = data("dr18_fig24.json")
     speed = np.array(measured["speed_rpm"]) * _RPM
     angle = np.array(measured["angle_deg"], dtype=float)
-    lag = _fit(lambda x: _lag(speed, x[0]), angle, [0.1])
+    # Lag of the deflection behind the total unbalance of a rotor of unit mass.
+    lag = _fit(
+        lambda x: np.degrees(deflection_lag(speed, 1.0, 2.0 * x[0] * _RESONANCE, _RESONANCE**2)), angle, [0.1]
+    )
     rotor = _fit(lambda x: _liquid_angle(speed, x[0], _RESONANCE), angle, [0.1])
     free = _fit(lambda x: _liquid_angle(speed, x[0], x[1] * _RESONANCE), angle, [0.1, 1.0])
     found = [
@@ -96,12 +99,6 @@ def _fit(model: Callable[[Array], Array], angle: Array, start: list[float]) -> t
 
     found = least_squares(lambda x: model(x) - angle, start, x_scale=0.1, diff_step=1e-4)
     return np.asarray(found.x), np.asarray(found.fun)
-
-
-def _lag(speed: Array, damping_ratio: float) -> Array:
-    """Lag of the deflection behind the total unbalance of a rotor of unit mass, deg."""
-    damping = 2.0 * damping_ratio * _RESONANCE
-    return np.asarray(np.degrees(deflection_lag(speed, 1.0, damping, _RESONANCE**2)))
 
 
 def _liquid_angle(speed: Array, damping_ratio: float, resonance: float) -> Array:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from contextlib import suppress
+from typing import Any
 
 import numpy as np
 
@@ -36,26 +38,16 @@ def cases() -> list[Case]:
     residual = np.abs(np.asarray(balance_residual(angle, lag, ratio))) / np.maximum(1.0, ratio)
     left = np.asarray(unbalance_left(angle, ratio))
     total = np.abs(rotor.unbalance + liquid * np.exp(1j * answer.liquid_angle)) / rotor.unbalance
+    # Angle of eq. 25 as printed at 900 rpm, where the solved response has another.
+    k = int(np.argmin(np.abs(speed - 900.0 * _RPM)))
+    computed, printed = math.degrees(angle[k]), None
+    with suppress(InputError):
+        printed = math.degrees(liquid_angle_as_printed(float(lag[k]), float(ratio[k])))
+    same = printed is not None and abs(printed - computed) <= 1e-6
+    words: dict[str, Any] = {"rpm": speed[k] / _RPM, "k": ratio[k], "printed": printed}
+    words["difference"] = "no real angle" if printed is None else f"{printed - computed:+.1f} deg"
     return [
         CLAIMS.case("eq-24", float(residual.max()), residual.max() < 1e-10),
         CLAIMS.case("eq-26", float(np.max(np.abs(left - total))), np.max(np.abs(left - total)) < 1e-10),
-        _printed_angle(lag, ratio, angle, speed),
+        CLAIMS.case("eq-25", computed, same, **words),
     ]
-
-
-def _printed_angle(lag: np.ndarray, ratio: np.ndarray, angle: np.ndarray, speed: np.ndarray) -> Case:
-    """Angle of eq. 25 as printed at 900 rpm, where the solved response has another."""
-    k = int(np.argmin(np.abs(speed - 900.0 * _RPM)))
-    computed = math.degrees(angle[k])
-    try:
-        printed: float | None = math.degrees(liquid_angle_as_printed(float(lag[k]), float(ratio[k])))
-    except InputError:
-        printed = None
-    return CLAIMS.case(
-        "eq-25",
-        computed,
-        not (printed is None or abs(printed - computed) > 1e-6),
-        **{"rpm": speed[k] / _RPM, "k": ratio[k]},
-        printed=printed,
-        difference="no real angle" if printed is None else f"{printed - computed:+.1f} deg",
-    )
