@@ -199,9 +199,9 @@ def _notes(
         found.append(Note(code, data, text))
 
     with_it = f"With the scene's {with_unit(volume := sum(fill.volume for fill in scene.liquids), VOLUME)}"
-    text = f"{with_it} no self-excited whirl at these speeds."
+    text = f"{with_it} no whirl is self-excited at these speeds."
     if own:
-        text = f"{with_it} self-excited whirl from {rpm_bands(own)}."
+        text = f"{with_it} whirl is self-excited from {rpm_bands(own)}."
     note(MapCode.OWN_VOLUME, text, volume=volume, bands=tuple(own))
     if lost := int(np.count_nonzero(np.isnan(growth))):
         points = f"At {lost} of {thin.size} points the growth is not known"

@@ -243,7 +243,7 @@ def self_excited_on_the_way(
     """
     listed = rpm_bands(bands)
     law = small_whirl_friction(friction)
-    text = f"By linear theory with liquid friction {law}, self-excited whirl at {listed}."
+    text = f"By linear theory with liquid friction {law}, whirl is self-excited at {listed}."
     found: dict[str, Any] = {"bands": bands}
     if whirl is not None:
         size, speed = whirl

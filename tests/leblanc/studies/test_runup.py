@@ -601,8 +601,9 @@ def test_capture_is_marked_over_time() -> None:
     record = made_up(history_of(50, 1, captured=caught, transfers=tuple(events)))
     figure = figures.time_figure(record)
     assert {"liquid centrifuged", "annulus collapses", "model out of range"} <= set(labels(figure))
-    lines = [line for axes in figure.axes for line in axes.lines if str(line.get_label()).startswith(("liq", "annulus"))]
-    assert {float(line.get_xdata()[0]) for line in lines} >= {0.2011, 0.9011}
+    lines = [line for axes in figure.axes for line in axes.lines]
+    marked = [line for line in lines if str(line.get_label()).startswith(("liq", "annulus"))]
+    assert {float(line.get_xdata()[0]) for line in marked} >= {0.2011, 0.9011}
 
 
 @kills("solvers.runup.runup:EnergyAudit.faults_beside", "abs(left) <= OPEN", "abs(left) <= 2.0 * OPEN")
