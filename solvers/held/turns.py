@@ -258,8 +258,9 @@ class Watch:
         if len(sizes) < 2 * self.window:
             return False
         late, soon = sizes[-self.window :], sizes[-2 * self.window : -self.window]
-        weight = _bump(self.window)
-        means = abs(weight @ (late - soon)[:, 0]) / scale
+        # Weights that fade out at both ends: means of what repeats in no whole number come out fast.
+        weight = _taper((np.arange(self.window) + 0.5) / self.window)
+        means = abs((weight / weight.sum()) @ (late - soon)[:, 0]) / scale
         ends = max(abs(late[:, 1].min() - soon[:, 1].min()), abs(late[:, 2].max() - soon[:, 2].max())) / scale
         moves = np.ptp(late[:, 0]) < _DIES * np.ptp(soon[:, 0])
         # A whirl that is small beside the amplitude may still grow or die while the extremes look alike; one
@@ -397,12 +398,6 @@ def _limit(marks: list[Array], coordinates: int) -> Array | None:
     np.maximum(areas, 0.0, out=areas)
     areas *= whole / np.maximum(areas.sum(axis=1, keepdims=True), 1e-300)
     return np.asarray(found)
-
-
-def _bump(count: int) -> Array:
-    """Weights that fade out smoothly at both ends: means of what repeats in no whole number come out fast."""
-    weight = _taper((np.arange(count) + 0.5) / count)
-    return np.asarray(weight / weight.sum())
 
 
 def _taper(part: Array, flat: bool = False) -> Array:

@@ -35,6 +35,7 @@ from solvers.pypde.grid import CirclePDE, circle
 from solvers.pypde.terms import faded_velocity
 from solvers.rotor.system import RotorSystem
 from solvers.runup.long_wave import Coupled, couple
+from solvers.slices import step_budget
 
 _ROUNDS, _AGREED = 60, 1e-13
 _ROWS = 4096  # steps written down between two looks of Python
@@ -348,7 +349,7 @@ class CoupledSolver(SolverBase):  # type: ignore[no-untyped-call]
                 self._load(machine, state, start)
                 begun = machine.energy()
             steps, before = machine.sums.steps, machine.works()
-            most = _budget(machine, stop, self.courant)
+            most = step_budget(stop - machine.time, machine.spin, machine.theta.size, self.courant)
             outcome = machine.advance(stop, 0.0, self.courant, most)
             self.info["outcome"] = outcome
             if outcome is not Outcome.DONE:
@@ -380,13 +381,6 @@ class CoupledSolver(SolverBase):  # type: ignore[no-untyped-call]
         n = machine.state.place.size
         state.data[-2 * n : -n] = machine.state.place[:, None]
         state.data[-n:] = machine.state.rate[:, None]
-
-
-def _budget(machine: Coupled, stop: float, courant: float) -> int:
-    """Most steps up to a time."""
-    from solvers.slices import step_budget
-
-    return step_budget(stop - machine.time, machine.spin, machine.theta.size, courant)
 
 
 def run(

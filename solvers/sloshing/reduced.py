@@ -130,7 +130,9 @@ def section_layer(fill: Fill, friction: Friction) -> SectionLayer | None:
         return None
     chamber = fill.chamber
     density = fill.liquid.density * chamber.height
-    plain = plane_layer(_clear(fill), friction)
+    # Friction without walls is that of a clear ring of the same liquid about the same free surface.
+    radius = math.hypot(fill.surface_radius, math.sqrt(fill.volume / (math.pi * chamber.height)))
+    plain = plane_layer(Fill(Chamber(radius, chamber.height), fill.liquid, fill.volume), friction)
     assert plain is not None
     if not fill.uneven:
         liquid = clear_ring(chamber.radius, fill.surface_radius)
@@ -139,23 +141,13 @@ def section_layer(fill: Fill, friction: Friction) -> SectionLayer | None:
         stokes = math.sqrt(fill.liquid.viscosity) if friction.law.laminar else 0.0
         # Of a fluid layer of that thickness at the edges of baffles.
         cut = float(layer_thickness(fill.liquid.viscosity, _SLIP)) if stokes else 0.0
-        liquid, drag = _of_section(fill, cut) if chamber.baffles is None else _of_baffles(fill, cut)
+        if chamber.section is None:
+            liquid, drag = _of_baffles(fill, cut)
+        else:
+            liquid, drag = _any_section(chamber.section, fill.surface_radius, cut)
         walls = stokes * drag
     laminar = np.stack([walls, plain.lids * liquid.inertia, plain.lids * liquid.gyration])
     return SectionLayer(density, liquid, plain.rate, laminar)
-
-
-def _clear(fill: Fill) -> Fill:
-    """Clear ring of the same liquid about the same free surface; friction without walls is taken from it."""
-    radius = math.hypot(fill.surface_radius, math.sqrt(fill.volume / (math.pi * fill.chamber.height)))
-    return Fill(Chamber(radius, fill.chamber.height), fill.liquid, fill.volume)
-
-
-def _of_section(fill: Fill, cut: float) -> tuple[ReducedLiquid, Array]:
-    """Motions and wall drag of a fill whose chamber has a section of its own."""
-    section = fill.chamber.section
-    assert section is not None
-    return _any_section(section, fill.surface_radius, cut)
 
 
 def _of_baffles(fill: Fill, cut: float) -> tuple[ReducedLiquid, Array]:

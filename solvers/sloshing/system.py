@@ -369,7 +369,9 @@ class _Parts:
 def _parts(section: LiquidSection) -> _Parts:
     """Forms of the liquid, the inside factored."""
     unknown, count = _unknowns(section)
-    reduce = _selection(unknown, count)
+    # Values on nodes from unknowns.
+    row = np.flatnonzero(unknown >= 0)
+    reduce = csr_array(coo_array((np.ones(row.size), (row, unknown[row])), shape=(unknown.size, count)))
     k, c, b = (csr_array(reduce.T @ form @ reduce) for form in (stiffness(section), *surface_forms(section)))
     on_surface = np.zeros(count, dtype=bool)
     touched = unknown[section.surface.ravel()]
@@ -485,13 +487,6 @@ def _unknowns(section: LiquidSection) -> tuple[Indices, int]:
         unknown[section.wall[section.wall_piece == piece]] = count
         count += 1
     return unknown, count
-
-
-def _selection(unknown: Indices, count: int) -> csr_array:
-    """Values on nodes from unknowns, shape (N, count)."""
-    row = np.flatnonzero(unknown >= 0)
-    entries = (np.ones(len(row)), (row, unknown[row]))
-    return csr_array(coo_array(entries, shape=(len(unknown), count)))
 
 
 def _closed_parts(section: LiquidSection, unknown: Indices, outside: Indices) -> tuple[Array, int]:

@@ -270,7 +270,8 @@ def advance_adaptive(
         while t < stop:
             if steps + rejected >= control.most:
                 return Advance(v, t, "too many steps", steps, rejected, smallest, trial, largest)
-            rung, left = _on_rung(trial), stop - t
+            rung = math.exp(math.log(_RUNG) * math.floor(math.log(trial, _RUNG) + 1e-9))
+            left = stop - t
             # No sliver is left for the last step.
             h = left if rung >= left else min(rung, 0.5 * left)
             w = weights(h)
@@ -321,10 +322,6 @@ def _first_step(v: Complex, n: Complex, span: float) -> float:
     """A hundredth of the time in which N alone would renew the field, at most a tenth of the span."""
     size, rate = _norm(v), _norm(n)
     return min(0.1 * span, 0.01 * size / rate) if size > 0.0 and rate > 0.0 else 1e-3 * span
-
-
-def _on_rung(h: float) -> float:
-    return math.exp(math.log(_RUNG) * math.floor(math.log(h, _RUNG) + 1e-9))
 
 
 def _checked_span(span: tuple[float, float]) -> tuple[float, float]:

@@ -21,7 +21,6 @@ from solvers.rotor.balls.states import (
     quarter_turn,
     require_balance,
     turning,
-    without_unbalance,
 )
 from solvers.rotor.system import RotorSystem
 
@@ -274,7 +273,8 @@ def balanced_roots(system: RotorSystem, races: Sequence[BallRace], speed: float)
     for race in races:
         if len(race.masses) < 2 or len(set(race.masses)) > 1:
             raise InputError("races", race.masses, "two balls or more, all alike")
-    places = balanced_places(without_unbalance(system), races)
+    balanced = replace(system, unbalance=np.zeros_like(system.unbalance))
+    places = balanced_places(balanced, races)
     return linearised(system, races, speed, places).roots()
 
 

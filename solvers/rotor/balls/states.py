@@ -393,8 +393,3 @@ def require_balance(system: RotorSystem, races: Sequence[BallRace], places: Arra
     most = float(np.abs(moments).sum())
     if not left <= _BALANCED * most:
         raise InputError("places", places, f"such that the unbalance is balanced; {left:.3g} is left")
-
-
-def without_unbalance(system: RotorSystem) -> RotorSystem:
-    """Rotor balanced by itself."""
-    return replace(system, unbalance=np.zeros_like(system.unbalance))

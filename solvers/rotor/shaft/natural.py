@@ -71,7 +71,8 @@ def _mode(structure: Structure, nodes: Nodes, frequency: float, order: int, spin
 
 def _found(structure: Structure, low: float, high: float, spin: float) -> tuple[Array, Index]:
     """The frequencies, and which eigenvalue passes zero at each."""
-    _require_band(low, high)
+    if not (np.isfinite([low, high]).all() and 0.0 < low <= high):
+        raise InputError("band", (low, high), "two finite numbers above 0, the second at least the first")
     nodes = nodes_up_to(structure, high, spin)
     ends = np.sum(_eigenvalues(structure, nodes, np.array([low, high]), spin) < 0.0, axis=-1)
     order: Index = np.arange(ends[0], ends[1])
@@ -85,11 +86,6 @@ def _found(structure: Structure, low: float, high: float, spin: float) -> tuple[
     if not sure.all():
         raise InputError("structure", found[~sure].tolist(), "one whose natural frequencies can be bracketed")
     return found, order
-
-
-def _require_band(low: float, high: float) -> None:
-    if not (np.isfinite([low, high]).all() and 0.0 < low <= high):
-        raise InputError("band", (low, high), "two finite numbers above 0, the second at least the first")
 
 
 def _eigenvalues(structure: Structure, nodes: Nodes, frequency: Array, spin: float) -> Array:
