@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 import re
 import tomllib
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from importlib import resources
 from typing import Any, Literal, get_args
 
 from meshes.errors import InputError
+from validation.study import plain
 
 Verdict = Literal["agrees", "erratum", "trend", "differs"]
 Value = float | str | None
@@ -123,9 +124,10 @@ class Case:
         """The part of the name before the slash."""
         return self.name.partition("/")[0]
 
-    def record(self) -> dict[str, Any]:
-        """The case as a dictionary that JSON can hold."""
-        return asdict(self)
+    def to_json(self) -> dict[str, Any]:
+        """The case as `leblanc validate --json` prints it, for `json.dumps`."""
+        found: dict[str, Any] = plain(self)
+        return found
 
 
 def compare(

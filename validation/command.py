@@ -48,7 +48,7 @@ def validate(
     with working("cases") as update:
         found = all_cases(case, update)
     if json:
-        print_json({"cases": [result.record() for result in found]})
+        print_json({"cases": [result.to_json() for result in found]})
         return
     for result in found:
         print(f"{result.name}  [{result.source}]  {result.verdict.upper()}")

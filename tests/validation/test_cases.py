@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -94,6 +95,11 @@ def test_command(capsys: pytest.CaptureFixture[str]) -> None:
     assert set(answer["cases"][0]) >= {
         "name", "source", "quantity", "printed", "computed", "difference", "verdict",
     }  # fmt: skip
+    # What a script has of the cases is what is printed, numbers of numpy in it as well.
+    found = all_cases("vector_model")
+    assert json.loads(json.dumps([case.to_json() for case in found], allow_nan=False)) == answer["cases"]
+    counted = replace(found[0], computed=np.int64(3), difference=np.float32(0.5))  # type: ignore[arg-type]
+    assert json.loads(json.dumps(counted.to_json()))["computed"] == 3
     assert main(["validate", "vector_model"]) == 0
     assert "ERRATUM" in capsys.readouterr().out
 
@@ -118,7 +124,7 @@ def test_origins() -> None:
 def test_a_value_of_another_code_is_not_told_as_printed(capsys: pytest.CaptureFixture[str]) -> None:
     found = {case.name.partition("/")[2]: case for case in all_cases("optimal_volume")}
     for name, case in found.items():
-        assert case.origin.kind == ("printed" if name.startswith("eq") else case.record()["origin"]["kind"])
+        assert case.origin.kind == ("printed" if name.startswith("eq") else case.to_json()["origin"]["kind"])
         assert ("scikit-fem" in case.origin.name) == name.startswith("fem-")
     assert main(["validate", "turning"]) == 0
     shown = capsys.readouterr().out

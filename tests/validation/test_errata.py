@@ -30,7 +30,7 @@ def test_each_erratum_is_wrong_by_computation() -> None:
 
 
 def test_records_are_json() -> None:
-    records = json.loads(json.dumps([case.record() for case in by_name().values()], allow_nan=False))
+    records = json.loads(json.dumps([case.to_json() for case in by_name().values()], allow_nan=False))
     assert {"name", "source", "quantity", "printed", "computed", "difference", "verdict"} <= set(records[0])
 
 

@@ -72,4 +72,4 @@ def test_a_digit_that_is_wrong_is_seen() -> None:
     checked = [case for name, case in kept_group("exact_wave").items() if name.startswith("free-0.1-1.2")]
     assert checked and all(abs(case["computed"] - case["printed"]) < 1e-11 for case in checked)
     assert last_place("-0.248774599939") == 1e-12
-    json.dumps([case.record() for case in _circles()], allow_nan=False)
+    json.dumps([case.to_json() for case in _circles()], allow_nan=False)

@@ -23,6 +23,7 @@ from solvers.runup.runup import RunupHistory, RunupNumerics, run_up
 from solvers.whirl.growth import growth_map
 from validation.benchmarks.timing import Answer, Contestant, Go, Sample, measure, one_core
 from validation.cases.rotors.tub import suspended_tub
+from validation.page import Table
 from validation.study import launch
 
 _OURS = "leblanc"
@@ -121,15 +122,13 @@ def tub(repeats: int = 5) -> list[Sample]:
     return measure(rows, lambda found: _gap(found, exact), repeats)
 
 
-def table(samples: list[Sample]) -> str:
-    """Rows of a table in Markdown."""
-    lines = ["| code | setting | seconds | error | first call, s |", "|---|---|---:|---:|---:|"]
-    lines += [
-        f"| {sample.code} | {sample.setting} | {sample.seconds:.3g} | {sample.error:.1e} "
-        f"| {sample.first:.2g} |"
-        for sample in samples
+def table(samples: list[Sample]) -> Table:
+    """One row a sample."""
+    rows = [
+        (one.code, one.setting, f"{one.seconds:.3g}", f"{one.error:.1e}", f"{one.first:.2g}")
+        for one in samples
     ]
-    return "\n".join(lines)
+    return Table(("code", "setting", "seconds", "error", "first call, s"), tuple(rows))
 
 
 def main() -> Iterator[str]:
