@@ -88,7 +88,7 @@ class RunAnswer(Answer):
     axis: str  #: "horizontal" or "vertical"
     chambers: tuple[FilledChamber, ...]  #: one for each chamber
     #: a ring of liquid can stand against gravity across the axis above it; None if at any
-    capture_speed: Annotated[float | None, Q(_RATE, "centrifuging speed", "a ring can stand above it")]
+    capture_speed: Annotated[float | None, Q(_RATE, "centrifuging speed", "an annular layer exists above it")]
     #: of several the one at which the unbalance moves the axis most
     critical_speed_dry: Annotated[float, Q(_RATE, "critical speed without liquid", "undamped")]
     critical_speed_wet: Annotated[float, Q(_RATE, "critical speed with liquid", "undamped, wall wet")]

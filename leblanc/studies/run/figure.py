@@ -416,7 +416,7 @@ def background(axes: Axes, curves: Curves, result: RunAnswer, lines: list[Array]
             *((0, (6, 1.5, 1, 1.5, 1, 1.5)), WET, "critical speed with liquid,"),
         ),
         (result.critical_speed_dry, (0, (6, 1.5, 1, 1.5)), DRY, "critical speed without liquid,"),
-        (result.capture_speed, (0, (8, 3)), "0.3", "a ring can stand from"),
+        (result.capture_speed, (0, (8, 3)), "0.3", "annular layer from"),
         (result.carried_from, (0, (2, 2)), "0.3", "annulus reached from rest above"),
     ):
         if speed is not None and low <= speed * RPM <= high:

@@ -116,7 +116,7 @@ def not_carried(stands: float, carried: float | None = None) -> Note:
     """
     data: dict[str, Any] = {"below": stands}
     text = (
-        f"A ring of liquid can stand from {in_rpm(stands)} on: below, gravity across the axis keeps the "
+        f"An annular layer exists from {in_rpm(stands)} on: below, gravity across the axis keeps the "
         "liquid from riding with the drum: out of range, and it does not count."
     )
     if carried is not None:

@@ -61,7 +61,7 @@ def test_amplitude_in_mm_over_rpm():
         "model out of range",
         "critical speed with liquid, 968.4 rpm",
         "critical speed without liquid, 1000 rpm",
-        "a ring can stand from 350 rpm",
+        "annular layer from 350 rpm",
     ]
 
 
