@@ -70,7 +70,7 @@ case_table(runup)
 picture(sweep_figure())
 
 # %%
-sweep = judged.cases()
+sweep = list(judged.cases())
 case_table(sweep)
 
 # %% [markdown]

@@ -195,17 +195,10 @@ def _behind() -> Case:
     held = float(most.torque[most.froude <= SUPERCRITICAL].max())
     asked = abs(run["aDrive"]) * plane_ring(run).mass * run["r_mean"] ** 2
     effect = Effect("growth of the lag", float(lag[-1] - lag[0]), float(mine - lag[0]))
-    return CLAIMS.case(
-        "d6s",
-        mine,
-        bool(mine > lag[0]),
-        quantity=f"lag after {end:.2g} s of a spin-up of 40 rad/s^2, from {run['lag0']:g}; 6 mm",
-        printed=float(lag[-1]),
-        difference=f"{mine - lag[-1]:+.3f} of the spin",
-        held=held,
-        asked=asked,
-        effect=effect,
-    )
+    quantity = f"lag after {end:.2g} s of a spin-up of 40 rad/s^2, from {run['lag0']:g}; 6 mm"
+    words = {"printed": float(lag[-1]), "difference": f"{mine - lag[-1]:+.3f} of the spin"}
+    words |= {"quantity": quantity, "held": held, "asked": asked}
+    return CLAIMS.case("d6s", mine, bool(mine > lag[0]), effect=effect, **words)
 
 
 # Of each run: what it is, colour and line.

@@ -83,8 +83,7 @@ def growth_figure() -> Figure:
             growth, _ = asynchronous_growth(damped, [fill], NATURAL * SPEEDS, _LAW)
             look = {"color": color, "linestyle": dashes, "linewidth": 1.4, "label": label}
             axes.plot(SPEEDS, growth / NATURAL, **look)
-        axes.set_xlim(0.6, 2.4)
-        axes.set_xlabel("Spin speed over the natural frequency without liquid (\N{EN DASH})")
+        axes.set(xlim=(0.6, 2.4), xlabel="Spin speed over the natural frequency without liquid (\N{EN DASH})")
         axes.set_ylabel("Growth over the natural frequency (\N{EN DASH})")
     return figure
 

@@ -18,7 +18,7 @@ from leblanc.scene.examples import example
 from leblanc.scene.scene import Scene
 from leblanc.studies.run.study import run_scene
 from leblanc.studies.runup.study import runup_scene
-from validation.case import Case, Claims, Verdict, shape_verdict
+from validation.case import Case, Claims, shape_verdict
 from validation.page import Figure, page
 from validation.study import launch, shown
 
@@ -131,22 +131,14 @@ def _case(kind: Kind, measure: str, meaning: str) -> Case:
     """One measure of one kind of rings."""
     sizes = np.array([getattr(gain(count, kind), measure) for count in COUNTS])
     better = bool(np.all(sizes[1:] < sizes[0] * (1.0 - _EVEN)))
-    verdict: Verdict = shape_verdict(better)
     outcome = "the same"
     if not better:
         alike = bool(np.all(np.abs(sizes / sizes[0] - 1.0) <= _EVEN))
         outcome = "no effect" if alike else "not throughout" if sizes.min() < sizes[0] else "the opposite"
+    words = {"key": measure.replace("_", "-"), "meaning": meaning, "kind": kind, "difference": outcome}
     added = ", ".join(f"{gain(count, kind).added:.3g}" for count in COUNTS)
-    return CLAIMS.case(
-        "chambers",
-        ", ".join(f"{size:{'.2f' if measure == 'run_up' else '.4g'}}" for size in sizes),
-        key=measure.replace("_", "-"),
-        meaning=meaning,
-        kind=kind,
-        difference=outcome,
-        verdict=verdict,
-        added=added,
-    )
+    told = ", ".join(f"{size:{'.2f' if measure == 'run_up' else '.4g'}}" for size in sizes)
+    return CLAIMS.case("chambers", told, verdict=shape_verdict(better), added=added, **words)
 
 
 # Of each measure: what it is, colour and mark.
@@ -174,8 +166,7 @@ def rings_figure() -> Figure:
                     look |= {"linestyle": (0, (5, 1.5)), "markerfacecolor": "white"}
                 axes.plot(COUNTS, sizes, label=f"{kind}, {label}", **look)
         axes.axhline(1.0, color="0.45", linewidth=0.8)
-        axes.set_xticks(COUNTS)
-        axes.set(xlim=(0.8, 4.2), ylim=(0.6, 1.2))
+        axes.set(xticks=COUNTS, xlim=(0.8, 4.2), ylim=(0.6, 1.2))
         axes.set_xlabel("Number of rings that share one litre")
         axes.set_ylabel("Deflection over that without liquid (\N{EN DASH})")
     return figure

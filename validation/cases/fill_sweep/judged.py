@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -80,43 +81,78 @@ def of_kept() -> Contact:
 _FLAT = 0.02  # relative; a curve that changes by less says nothing of a best volume
 
 
-def cases() -> list[Case]:
+def cases() -> Iterator[Case]:
     """The comparisons, without a run: the answers are kept."""
-    added, passage, cruise = measured()
+    added, *seen = measured()
     draws, fitted = kept()
     own = [ratio[0] for ratio in ratios(fitted.answers)]
     band = bands(draws, fitted.answers)
-    return [
-        _curve("resonance-peak", "largest shaking at the resonance", added, passage, own[0], band[0]),
-        _curve("cruise", "largest shaking near the highest speed", added, cruise, own[1], band[1]),
-        _clearance(added, passage),
-        _coast(fitted.down),
-        _order(added, (passage, cruise), (own[0], own[1])),
-        _columns(),
-    ]
+    # Both are fitted at both ends, and judged between.
+    for k, (name, text) in enumerate(
+        (
+            ("resonance-peak", "largest shaking at the resonance"),
+            ("cruise", "largest shaking near the highest speed"),
+        )
+    ):
+        wide = band[k] * np.exp([[-SCATTER], [SCATTER]])
+        words, effect, inside = _between(added, seen[k], own[k], wide)
+        same = _least(added, seen[k]) == _least(added, own[k])
+        verdict = "agrees" if inside == added.size - 2 else shape_verdict(same, effect)
+        words |= {"key": name, "text": text, "volumes": ", ".join(f"{ml:g}" for ml in added[1:])}
+        yield CLAIMS.case("curve", _words(own[k]), verdict=verdict, effect=effect, **words)
+    # A tub that touches its cabinet with the first fill, and no longer with the last.
+    found, passage = of_kept(), seen[0]
+    low, middle, high = found.bands()
+    step, at = int(np.argmax(passage < np.sqrt(passage[-1]))), found.steps(passage)
+    words, effect, _ = _between(added, passage, middle, np.array([low, high]))
+    words |= {"pairs": found.draw.size, "at": at, "added": added, "within": found.within(passage, 1.5)}
+    words |= {"at_seen": at[step], "added_seen": added[step]}
+    same = _least(added, passage) == _least(added, middle)
+    yield CLAIMS.case("clearance", _words(middle), same, effect=effect, **words)
+    # The way down through the resonance beside the way up.
+    kept_data = data("fill_sweep.json")
+    logs, down = kept_data["logs"], fitted.down
+    rows = zip(kept_data["added_ml"], logs["passage_down_peak"], logs["passage_peak"], strict=True)
+    ways = {ml: back / up for ml, back, up in rows if back is not None}
+    effect = Effect("way down over way up, 0 ml", ways[0], down)
+    agrees, alike = abs(np.log(down / ways[0])) <= SCATTER, bool((down > 1.0) == (ways[0] > 1.0))
+    yield CLAIMS.case(
+        "coast-down",
+        down,
+        printed=float(ways[0]),
+        difference=float(ways[0] / down - 1.0),
+        verdict="agrees" if agrees else shape_verdict(alike, effect),
+        others=", ".join(f"{ratio:.2f} with {ml} ml" for ml, ratio in ways.items() if ml),
+        effect=effect,
+    )
+    # Which quantity wants more liquid.
+    best, wanted = ([_least(added, curve) for curve in pair] for pair in (seen, own))
+    told, given = (", ".join("any" if ml is None else f"{ml:g}" for ml in each) for each in (wanted, best))
+    yield CLAIMS.case("order", told, best == wanted, printed=given)
+    # What the source calls the resonance peak is not always at the resonance.
+    column, known = kept_data["resonance_peak"], logs["resonance_column_frequency_Hz"]
+    yield CLAIMS.case(
+        "columns",
+        ", ".join(f"{value}" for value in logs["passage_peak"][:3]) + ": largest at the resonance",
+        column[:3] == logs["passage_peak"][:3],
+        column=", ".join(f"{value}" for value in column[:3]),
+        hertz=", ".join(f"{hz:g}" for hz in known if hz is not None),
+    )
+
+
+def _between(added: Array, seen: Array, own: Array, band: Array) -> tuple[dict[str, Any], Effect, int]:
+    """Words on the fills between the fitted ones, the effect of the worst, how many are in a band (2, f)."""
+    factors = off(seen, own)
+    worst = int(np.argmax(factors)) + 1
+    effect = Effect(f"at {added[worst]:g} ml over that at 0 ml", float(seen[worst]), float(own[worst]))
+    inside = int(np.count_nonzero(((seen >= band[0]) & (seen <= band[1]))[1:-1]))
+    words = {"least": factors.min(), "most": factors.max(), "inside": inside, "printed": _words(seen)}
+    return words, effect, inside
 
 
 def off(measured: Array, computed: Array) -> Array:
     """Factor by which five fills between are off, at least 1, shape (f - 2,); both over the first fill."""
     return np.asarray(np.exp(np.abs(np.log(computed[1:-1] / measured[1:-1]))))
-
-
-def _curve(name: str, text: str, added: Array, seen: Array, own: Array, band: Array) -> Case:
-    """One quantity: fitted at both ends, judged between."""
-    factors = off(seen, own)
-    worst = int(np.argmax(factors)) + 1
-    low, high = band * np.exp([[-SCATTER], [SCATTER]])
-    inside = int(np.count_nonzero(((seen >= low) & (seen <= high))[1:-1]))
-    effect = Effect(f"at {added[worst]:g} ml over that at 0 ml", float(seen[worst]), float(own[worst]))
-    same = _least(added, seen) == _least(added, own)
-    return CLAIMS.case(
-        "curve",
-        _words(own),
-        **{"key": name, "text": text, "volumes": ", ".join(f"{ml:g}" for ml in added[1:])},
-        **{"least": factors.min(), "most": factors.max(), "inside": inside, "printed": _words(seen)},
-        verdict="agrees" if inside == factors.size else shape_verdict(same, effect),
-        effect=effect,
-    )
 
 
 def _words(curve: Array) -> str:
@@ -128,76 +164,6 @@ def _least(added: Array, curve: Array) -> float | None:
     if np.ptp(curve) < _FLAT * curve.max():
         return None
     return float(added[int(np.argmin(curve))])
-
-
-def _clearance(added: Array, seen: Array) -> Case:
-    """A tub that touches its cabinet with the first fill, and no longer with the last."""
-    found = of_kept()
-    low, own, high = found.bands()
-    factors, step = off(seen, own), int(np.argmax(seen < np.sqrt(seen[-1])))
-    worst = int(np.argmax(factors)) + 1
-    effect = Effect(f"at {added[worst]:g} ml over that at 0 ml", float(seen[worst]), float(own[worst]))
-    inside = int(np.count_nonzero(((seen >= low) & (seen <= high))[1:-1]))
-    at = found.steps(seen)
-    return CLAIMS.case(
-        "clearance",
-        _words(own),
-        _least(added, seen) == _least(added, own),
-        **{"least": factors.min(), "most": factors.max(), "inside": inside, "printed": _words(seen)},
-        **{
-            "pairs": found.draw.size,
-            "at": at,
-            "added": added,
-            "at_seen": at[step],
-            "added_seen": added[step],
-        },
-        within=found.within(seen, 1.5),
-        effect=effect,
-    )
-
-
-def _coast(computed: float) -> Case:
-    """The way down through the resonance beside the way up."""
-    found = data("fill_sweep.json")
-    logs = found["logs"]
-    rows = zip(found["added_ml"], logs["passage_down_peak"], logs["passage_peak"], strict=True)
-    seen = {added: down / up for added, down, up in rows if down is not None}
-    effect = Effect("way down over way up, 0 ml", seen[0], computed)
-    agrees = abs(np.log(computed / seen[0])) <= SCATTER
-    return CLAIMS.case(
-        "coast-down",
-        computed,
-        printed=float(seen[0]),
-        difference=float(seen[0] / computed - 1.0),
-        verdict="agrees" if agrees else shape_verdict(bool((computed > 1.0) == (seen[0] > 1.0)), effect),
-        others=", ".join(f"{ratio:.2f} with {added} ml" for added, ratio in seen.items() if added),
-        effect=effect,
-    )
-
-
-def _order(added: Array, seen: tuple[Array, Array], own: tuple[Array, Array]) -> Case:
-    """Which quantity wants more liquid."""
-    best, found = ([_least(added, curve) for curve in pair] for pair in (seen, own))
-    same = best == found
-    return CLAIMS.case("order", ", ".join(map(_volume, found)), same, printed=", ".join(map(_volume, best)))
-
-
-def _volume(best: float | None) -> str:
-    return "any" if best is None else f"{best:g}"
-
-
-def _columns() -> Case:
-    """What the source calls the resonance peak is not always at the resonance."""
-    found = data("fill_sweep.json")
-    column, logs = found["resonance_peak"], found["logs"]
-    known = [hz for hz in logs["resonance_column_frequency_Hz"] if hz is not None]
-    return CLAIMS.case(
-        "columns",
-        ", ".join(f"{value}" for value in logs["passage_peak"][:3]) + ": largest at the resonance",
-        column[:3] == logs["passage_peak"][:3],
-        column=", ".join(f"{value}" for value in column[:3]),
-        hertz=", ".join(f"{hz:g}" for hz in known),
-    )
 
 
 _LINE, _TOUCHES = "#0072B2", "#009E73"
