@@ -30,4 +30,4 @@ def explain(
     >>> lb.explain(lb.example("horizontal_rig")).critical_speed_dry > 0.0
     True
     """
-    return ask(explain, "leblanc.studies.explain.study:answer", locals())
+    return ask(explain, "leblanc.studies.kinds:explain", locals())

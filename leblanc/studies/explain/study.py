@@ -14,8 +14,6 @@ from fluid.friction.laws import FrictionLaw
 from fluid.friction.pipe import hydraulic_diameter, regime, spin_up_time, steady_lag
 from fluid.numbers import layer_numbers
 from fluid.whirl import is_full
-from leblanc.core.answer import Answer
-from leblanc.core.question import called
 from leblanc.liquid.choice import model_spans, speed_estimates
 from leblanc.liquid.choose import (
     Prepared,
@@ -28,7 +26,6 @@ from leblanc.liquid.choose import (
 )
 from leblanc.liquid.models import synchronous_model
 from leblanc.liquid.notes import closed_compartments
-from leblanc.registry import answerer
 from leblanc.scene.rows import baffle_words
 from leblanc.scene.scene import Runup, Scene
 from leblanc.studies.closed_forms.study import closed_forms
@@ -48,14 +45,6 @@ from solvers.rotor.vibration import axis_is_free, critical_speeds, modes, orbit,
 from solvers.statics.hydrostatics import optimal_volume
 from solvers.synchronous.response import critical_speed, main_critical_speeds, wet_critical_speeds
 from solvers.whirl.growth import asynchronous_growth
-
-
-def answer(scene: Scene) -> Answer:
-    """The numbers of a scene, by whoever answers for its kind of machine."""
-    if (address := answerer("explain", scene.kind)) is not None:
-        found: Answer = called(address)(scene)
-        return found
-    return explain_scene(scene)
 
 
 def explain_scene(scene: Scene) -> ExplainAnswer:

@@ -57,4 +57,4 @@ def run(
     >>> lb.run(lb.example("horizontal_rig"), speeds=["900 rpm", "1100 rpm"]).stable
     array([ True, False])
     """
-    return ask(run, "leblanc.studies.run.study:answer", locals())
+    return ask(run, "leblanc.studies.kinds:run", locals())

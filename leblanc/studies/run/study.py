@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fluid.fill import Fill
 from fluid.whirl import plane_layer, slower_slip
-from leblanc.core.answer import Answer, as_typed
 from leblanc.core.notes import Note
 from leblanc.core.progress import update
-from leblanc.core.question import called
 from leblanc.liquid.choice import HELD_MODELS, Choice, model_spans
 from leblanc.liquid.choose import (
     Prepared,
@@ -29,10 +25,9 @@ from leblanc.liquid.choose import (
     prepare,
 )
 from leblanc.liquid.filled import FilledChamber
-from leblanc.liquid.models import asked_with, element_model, synchronous_model
+from leblanc.liquid.models import element_model, synchronous_model
 from leblanc.liquid.notes import compartment_notes, smeared_baffles
 from leblanc.liquid.validity import doubts
-from leblanc.registry import answerer
 from leblanc.scene.inputs import input_rows
 from leblanc.scene.scene import Scene, TubRotor
 from leblanc.scene.unbalances import left_in_the_end, sheds_of
@@ -173,30 +168,6 @@ def _directed(
 ) -> tuple[tuple[float, float], ...]:
     sense = whirl_direction(system, shape)
     return tuple((float(critical), float(way)) for critical, way in zip(speed, sense, strict=True))
-
-
-def answer(
-    scene: Scene,
-    *,
-    workers: int,
-    fresh: bool,
-    solver: str | None,
-    cycles: bool,
-    model: object,
-    speeds: Sequence[str | float] | None,
-    folder: Path | None,
-) -> Answer:
-    """The answer of the kind of machine, as `leblanc.run` takes its parameters."""
-    if workers < 1:
-        raise InputError("workers", workers, "1 or more")
-    scene = scene if speeds is None else scene.replace({"speeds": speeds})
-    with asked_with(scene, model) as own:
-        if (address := answerer("run", own.kind)) is not None:
-            found: Answer = called(address)(own)
-        else:
-            found = run_scene(own, Holding(workers, folder, fresh, solver or COUPLED), cycles)
-    as_typed(found, scene)
-    return found
 
 
 def run_scene(scene: Scene, holding: Holding = HERE, cycles: bool = False) -> RunAnswer:

@@ -102,7 +102,7 @@ def test_a_horizontal_axis_needs_capture() -> None:
 
 @kills("leblanc.liquid.choose:carried_from", "max([stands", "min([stands")
 def test_run_tells_both_speeds_of_a_lying_drum() -> None:
-    """From where an annular layer exists, and from where the walls carry the liquid round: `fluid.pool` has both."""
+    """Speeds from which an annular layer exists and is reached from rest: `fluid.pool` has both."""
     lying = scene().replace({"model.friction": "stokes"})
     fill, found = lying.fills[0], run_scene(lying)
     stands, pool = math.sqrt(9.81 / fill.surface_radius), pool_of(fill)
