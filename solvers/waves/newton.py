@@ -279,11 +279,17 @@ def march(make: Callable[[int], System], first: Array, target: float, pace: Pace
 
     while len(points) < pace.most_steps and work < pace.most_work:
         # Steps are taken with the modes of the system, which may have changed since the last ones.
-        *behind, last = (_with_modes(point, system.modes) for point in points[-2:])
+        *behind, last = (
+            replace(point, here=widened(point.here, system.modes), ahead=widened(point.ahead, system.modes))
+            for point in points[-2:]
+        )
         guess = _predicted(behind[0] if behind else None, last, step)
         found, cost = _correct(system, guess, last.ahead, pace.tolerance)
         work += cost
-        stray = math.inf if found is None else _stray(found, guess, last.ahead, step)
+        # Correction over the step; infinite where the curve turns: it may be another one.
+        stray = math.inf
+        if found is not None and dot(found.ahead, last.ahead) >= _TURN:
+            stray = math.sqrt(dot(found.here - guess, found.here - guess)) / step
         if found is None or stray > _STRAY:
             step *= 0.5
             if step < pace.shortest:
@@ -312,13 +318,6 @@ def _begin(system: System, first: Array, sense: float) -> PathPoint:
     return PathPoint(first, _tangent(system, first, across, factors), 0, 0.0)
 
 
-def _with_modes(point: PathPoint, modes: int) -> PathPoint:
-    if point.here.size == 2 * modes + 1:
-        return point
-    here, ahead = widened(point.here, modes), widened(point.ahead, modes)
-    return PathPoint(here, ahead, point.corrections, point.error)
-
-
 def segment(begin: Array, end: Array, leaving: Array, arriving: Array) -> tuple[Array, float]:
     """Cubic between two points with their tangents, u^0 ... u^3 up to u = 1, and the curve's length."""
     modes = max(begin.size, end.size) // 2
@@ -345,12 +344,6 @@ def _predicted(behind: PathPoint | None, last: PathPoint, step: float) -> Array:
         return np.asarray(last.here + step * last.ahead)
     cubic, arc = segment(behind.here, last.here, behind.ahead, last.ahead)
     return np.asarray((1.0 + step / arc) ** np.arange(4) @ cubic)
-
-
-def _stray(found: PathPoint, guess: Array, ahead: Array, step: float) -> float:
-    """Correction over the step; infinite where the curve turns: it may be another one."""
-    gap = found.here - guess
-    return math.inf if dot(found.ahead, ahead) < _TURN else math.sqrt(dot(gap, gap)) / step
 
 
 def _modes_for(point: Array, fewest: int, most_tail: float) -> int:

@@ -266,7 +266,11 @@ def advance_adaptive(
     shortest = max(control.shortest * (stop - start), 4.0 * math.ulp(max(abs(start), abs(stop))))
     with np.errstate(over="ignore", invalid="ignore"):
         n = split.nonlinear(v, t)
-        trial = control.first or _first_step(v, n, stop - start)
+        # A hundredth of the time in which N alone would renew the field, at most a tenth of the span.
+        size, rate = _norm(v), _norm(n)
+        moving = size > 0.0 and rate > 0.0
+        guess = min(0.1 * (stop - start), 0.01 * size / rate) if moving else 1e-3 * (stop - start)
+        trial = control.first or guess
         while t < stop:
             if steps + rejected >= control.most:
                 return Advance(v, t, "too many steps", steps, rejected, smallest, trial, largest)
@@ -316,12 +320,6 @@ def _norm(spectrum: Complex) -> float:
     """Root of the sum of squares over all modes, each but the mean standing for its conjugate too."""
     power = np.square(spectrum.real) + np.square(spectrum.imag)
     return math.sqrt(2.0 * float(power.sum()) - float(power[0]))
-
-
-def _first_step(v: Complex, n: Complex, span: float) -> float:
-    """A hundredth of the time in which N alone would renew the field, at most a tenth of the span."""
-    size, rate = _norm(v), _norm(n)
-    return min(0.1 * span, 0.01 * size / rate) if size > 0.0 and rate > 0.0 else 1e-3 * span
 
 
 def _checked_span(span: tuple[float, float]) -> tuple[float, float]:
