@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from tests.mutants import kills
-from validation.benchmarks import ours, report, timing
+from validation.benchmarks import growth, ours, report, timing
 from validation.benchmarks import ours as layers
 from validation.benchmarks import report as table
 from validation.benchmarks.__main__ import PEERS
@@ -116,13 +116,12 @@ def test_a_peer_that_is_not_there_is_said_to_be_missing(monkeypatch: pytest.Monk
     short = lambda *_: Section("s", "t", "e", (), (), 1.0)  # noqa: E731
     named: dict[str, list[str]] = {}
 
-    def kept(here, missing, *_):  # type: ignore[no-untyped-def]
+    def kept(here, missing, *_, **__):  # type: ignore[no-untyped-def]
         named["missing"] = [module.CODE for module in missing]
         assert not here
         return short()
 
-    monkeypatch.setattr(report, "_steady", kept)
-    monkeypatch.setattr(report, "_travelling", short)
+    monkeypatch.setattr(report, "_wave", kept)
     monkeypatch.setattr(report, "_layers", lambda *_: ([short()], []))
     for name in ("over_cells", "over_speeds"):
         monkeypatch.setattr(report.growth, name, lambda _: [])
@@ -152,6 +151,13 @@ def test_what_is_written(tmp_path: Path) -> None:
     for name in ("one", "benchmark_cells", "benchmark_speeds"):
         assert f"({name}.png)" in text and (tmp_path / f"{name}.png").stat().st_size > 0
     json.dumps(results.versions)
+
+
+def test_first_calls_run(capsys: pytest.CaptureFixture[str]) -> None:
+    """The script that a fresh process is given for the first calls has all that it needs."""
+    exec(growth.FIRST, {})
+    loaded, first, again = map(float, capsys.readouterr().out.split())
+    assert loaded > 0.0 and first > 0.0 and again > 0.0
 
 
 @kills("validation.benchmarks.problems:spectrum", "np.exp(-1j * first *", "np.exp(1j * first *")
@@ -230,7 +236,7 @@ def test_force() -> None:
     assert problem.force(0.25 * whirl.ramp * 40.0) == pytest.approx(early)
 
 
-@kills("validation.benchmarks.peers.pypde:constants", '"c": problem.drift', '"c": -problem.drift - 1.0')
+@kills("validation.benchmarks.problems:SteadyProblem.constants", '"c": self.drift', '"c": -self.drift - 1.0')
 def test_equation_of_py_pde() -> None:
     """The text that py-pde is given, evaluated by hand, leaves the steady wave where it is."""
     problem = steady_problem()
@@ -243,7 +249,7 @@ def test_equation_of_py_pde() -> None:
     for k, (phrase, field) in enumerate(fields.items()):
         text = text.replace(phrase, f"field{k}")
         names[f"field{k}"] = field
-    consts = peer_pypde.constants(problem)
+    consts = problem.constants
     left = eval(text, {"u": u} | names | consts)
     # The wave's 511 points of derivative multiply rounding and the tail; 1e-8 of the largest term.
     assert np.max(np.abs(left)) < 1e-8 * np.max(np.abs(consts["a"] * u * first))

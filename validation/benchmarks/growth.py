@@ -70,7 +70,12 @@ def over_speeds(quick: bool = False) -> list[Growth]:
 
     def each(work: Callable[[float], object]) -> list[float]:
         rows = [np.linspace(low, high, n) if n > 1 else np.array([low]) for n in counts]
-        return [best(partial(_all, work, row)) for row in rows]
+
+        def all_of(row: NDArray[np.float64]) -> None:
+            for speed in row.tolist():
+                work(speed)
+
+        return [best(partial(all_of, row)) for row in rows]
 
     def periods(slip: float) -> object:
         whirl = Whirl(SPIN, SPIN + slip, AMPLITUDE)
@@ -90,11 +95,6 @@ def over_speeds(quick: bool = False) -> list[Growth]:
             f"long_wave, {_SWEEP_PERIODS} periods on {_SWEEP_CELLS} cells", "speeds", counts, each(periods)
         ),
     ]
-
-
-def _all(work: Callable[[float], object], row: NDArray[np.float64]) -> None:
-    for speed in row:
-        work(float(speed))
 
 
 def right_hand_side(cells: int) -> float:
@@ -124,10 +124,14 @@ def curve_time() -> tuple[float, bool]:
     return best(lambda: respond(problem, response_speeds()), 5), answer.complete
 
 
-_FIRST = """
+FIRST = """
 import time
 begin = time.perf_counter()
-import numba
+from solvers.layer.state import Numerics
+from solvers.liquid_model import Whirl
+from solvers.pypde.settle import simulate
+from validation.benchmarks.ours import AMPLITUDE, SPEED
+from validation.benchmarks.problems import SPIN, fill
 whirl = Whirl(SPIN, SPEED, AMPLITUDE)
 loaded = time.perf_counter()
 simulate(fill(), whirl, whirl.period, numerics=Numerics(16))
@@ -143,7 +147,7 @@ def first_calls() -> dict[str, float]:
         environment = os.environ | {"NUMBA_CACHE_DIR": folder}
         rows = []
         for _ in range(2):
-            command = [sys.executable, "-c", _FIRST]
+            command = [sys.executable, "-c", FIRST]
             done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
             rows.append([float(seconds) for seconds in done.stdout.split()])
     cold, warm = rows

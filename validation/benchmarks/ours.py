@@ -6,6 +6,7 @@ import cmath
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -76,7 +77,11 @@ class LayerProblem:
 
 def ours(problem: LayerProblem, cells: tuple[int, ...]) -> list[Contestant]:
     """The finite-volume solver on several grids."""
-    return [Contestant(CODE, f"{n} cells", _builder(problem, n), size=n) for n in cells]
+
+    def builder(n: int) -> Callable[[], Callable[[], Go]]:
+        return lambda: lambda: partial(answer, problem, n)
+
+    return [Contestant(CODE, f"{n} cells", builder(n), size=n) for n in cells]
 
 
 def answer(problem: LayerProblem, cells: int) -> Array:
@@ -91,10 +96,6 @@ def answer(problem: LayerProblem, cells: int) -> Array:
     return np.stack([history.theta, 0.5 * (1.0 - surface * surface)])
 
 
-def _builder(problem: LayerProblem, cells: int) -> Callable[[], Callable[[], Go]]:
-    return lambda: lambda: lambda: answer(problem, cells)
-
-
 def profile_error(found: Answer, reference: Answer) -> float:
     """L1 distance of two profiles, shapes (2, n) and (2, m), over the reference's departure from the mean.
 
@@ -103,11 +104,8 @@ def profile_error(found: Answer, reference: Answer) -> float:
     area = np.real(found[1])
     cells = area.size
     edges = np.real(found[0]) - math.pi / cells
-    exact = (
-        (_integral(reference, edges + 2.0 * math.pi / cells) - _integral(reference, edges))
-        * cells
-        / (2.0 * math.pi)
-    )
+    step = 2.0 * math.pi / cells
+    exact = (_integral(reference, edges + step) - _integral(reference, edges)) / step
     return float(np.sum(np.abs(area - exact)) / np.sum(np.abs(exact - np.mean(exact))))
 
 

@@ -79,6 +79,12 @@ class SteadyProblem:
         """lambda0 - s, rad/s."""
         return self.c.linear_speed - self.speed
 
+    @property
+    def constants(self) -> dict[str, float]:
+        """Numbers of the equation, as it is told to codes that take it as text."""
+        consts = {"c": self.drift, "a": self.c.steepening, "d": self.c.dispersion}
+        return consts | {"nu": self.waves.diffusion, "g": self.waves.decay, "q": self.waves.forcing}
+
     @cached_property
     def exact(self) -> Complex:
         """Modes of the converged wave, on 512 points."""

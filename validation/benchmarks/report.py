@@ -18,9 +18,15 @@ import numpy as np
 
 from leblanc.plotting.page import save_png
 from validation.benchmarks import growth, ours
-from validation.benchmarks import ours as layers
 from validation.benchmarks.growth import Growth
-from validation.benchmarks.problems import WANTED, distance, steady_problem, travelling_problem
+from validation.benchmarks.problems import (
+    WANTED,
+    SteadyProblem,
+    TravellingProblem,
+    distance,
+    steady_problem,
+    travelling_problem,
+)
 from validation.benchmarks.timing import Answer, Contestant, Sample, measure, version
 from validation.page import Figure, page, power
 from validation.study import launch, read, shown
@@ -221,15 +227,23 @@ def collect(peers: tuple[str, ...], quick: bool, repeats: int) -> Results:
     # Codes that tell what they do on the terminal.
     logging.disable(logging.WARNING)
     try:
-        steady = [_steady(here, missing, quick, repeats, tall) for tall in (False, True)]
-        travelling = _travelling(here, missing, quick, repeats)
+        waves = []
+        for word, tall in (("strongly", False), ("weakly", True)):
+            steady = steady_problem(tall)
+            title = f"Steady wave, {word} damped: from rest over {steady.time:g} s, or by Newton's method"
+            told = {"name": f"benchmark_steady_{word}_damped", "title": title, "target": WANTED}
+            waves.append(_wave(here, missing, "steady", steady, quick, repeats, **told))
+        turns = _QUICK_TURNS if quick else _TURNS
+        title = f"Cnoidal wave of the KdV equation after {turns:g} turns"
+        told = {"name": "benchmark_travelling", "title": title, "target": 1e-3}
+        waves.append(_wave(here, missing, "travelling", travelling_problem(turns), quick, repeats, **told))
         layers_found, remarks = _layers(here, missing, quick, repeats)
     finally:
         logging.disable(logging.NOTSET)
     seconds, complete = growth.curve_time()
     return Results(
         versions=versions,
-        sections=[*steady, travelling, *layers_found],
+        sections=[*waves, *layers_found],
         over_cells=growth.over_cells(quick),
         over_speeds=growth.over_speeds(quick),
         curve=seconds,
@@ -239,52 +253,38 @@ def collect(peers: tuple[str, ...], quick: bool, repeats: int) -> Results:
     )
 
 
-def _steady(
-    here: list[ModuleType], missing: list[ModuleType], quick: bool, repeats: int, tall: bool
+def _wave(
+    here: list[ModuleType],
+    missing: list[ModuleType],
+    kind: str,
+    problem: SteadyProblem | TravellingProblem,
+    quick: bool,
+    repeats: int,
+    **told: Any,
 ) -> Section:
-    problem = steady_problem(tall)
-    runs = ours.steady(problem, quick) + _of(here, "steady", lambda module: module.steady(problem, quick))
-    kind = "weakly" if tall else "strongly"
-    return Section(
-        name=f"benchmark_steady_{kind}_damped",
-        title=f"Steady wave, {kind} damped: from rest over {problem.time:g} s, or by Newton's method",
-        error="error (L2)",
-        samples=tuple(measure(runs, lambda answer: distance(answer, problem.exact), repeats, _tell)),
-        missing=_named(missing, "steady"),
-        target=WANTED,
-    )
-
-
-def _travelling(here: list[ModuleType], missing: list[ModuleType], quick: bool, repeats: int) -> Section:
-    turns = _QUICK_TURNS if quick else _TURNS
-    problem = travelling_problem(turns)
-    runs = ours.travelling(problem, quick) + _of(here, "travelling", lambda m: m.travelling(problem, quick))
-    return Section(
-        name="benchmark_travelling",
-        title=f"Cnoidal wave of the KdV equation after {turns:g} turns",
-        error="error (L2)",
-        samples=tuple(measure(runs, lambda answer: distance(answer, problem.exact), repeats, _tell)),
-        missing=_named(missing, "travelling"),
-        target=1e-3,
-    )
+    """Samples of all on a steady or a travelling wave."""
+    runs = getattr(ours, kind)(problem, quick)
+    runs += _of(here, kind, lambda module: list(getattr(module, kind)(problem, quick)))
+    samples = measure(runs, lambda answer: distance(answer, problem.exact), repeats, _tell)
+    return Section(error="error (L2)", samples=tuple(samples), missing=_named(missing, kind), **told)
 
 
 def _layers(
     here: list[ModuleType], missing: list[ModuleType], quick: bool, repeats: int
 ) -> tuple[list[Section], list[str]]:
     periods, cells = (_QUICK_PERIODS, _QUICK_CELLS) if quick else (_PERIODS, _CELLS)
-    problem = layers.LayerProblem(periods)
+    problem = ours.LayerProblem(periods)
     # The layer has settled long before the end: the reference need not run so far.
-    fine = layers.LayerProblem(periods if quick else _SETTLED)
-    reference = layers.answer(fine, _QUICK_REFERENCE if quick else _REFERENCE)
-    runs = layers.ours(problem, cells) + _of(
+    fine = ours.LayerProblem(periods if quick else _SETTLED)
+    reference = ours.answer(fine, _QUICK_REFERENCE if quick else _REFERENCE)
+    runs = ours.ours(problem, cells) + _of(
         here, "layers", lambda m: m.layers(problem, cells, () if quick else _SLOW)
     )
     forces: list[float] = []
 
     def error(found: Answer) -> float:
-        forces.append(layers.force_error(found, reference))
-        return layers.profile_error(found, reference)
+        forces.append(ours.force_error(found, reference))
+        return ours.profile_error(found, reference)
 
     samples = tuple(measure(runs, error, repeats, _tell))
     left = iter(forces)

@@ -18,8 +18,7 @@ CODE, PACKAGE = "Dedalus", "dedalus"
 
 def steady(problem: SteadyProblem, quick: bool = False) -> list[Contestant]:
     """Implicit-explicit steps from rest in the frame of the whirl, the linear terms implicit."""
-    names = {"c": problem.drift, "a": problem.c.steepening, "d": problem.c.dispersion}
-    names |= {"nu": problem.waves.diffusion, "g": problem.waves.decay, "q": problem.waves.forcing}
+    names = problem.constants
     settings = (
         (("RK443", 64, 0.03),)
         if quick

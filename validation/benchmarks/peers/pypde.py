@@ -23,15 +23,9 @@ _FREE = "- a * u * d_dx(u) - d * d_dx(laplace(u))"
 FORCED = f"-c * d_dx(u) {_FREE} + nu * laplace(u) - g * u - q * sin(x)"
 
 
-def constants(problem: SteadyProblem) -> dict[str, Any]:
-    """Numbers in the text of the equation."""
-    consts = {"c": problem.drift, "a": problem.c.steepening, "d": problem.c.dispersion}
-    return consts | {"nu": problem.waves.diffusion, "g": problem.waves.decay, "q": problem.waves.forcing}
-
-
 def steady(problem: SteadyProblem, quick: bool = False) -> list[Contestant]:
     """BDF, Radau and explicit Runge-Kutta from rest in the frame of the whirl."""
-    consts = constants(problem)
+    consts = problem.constants
 
     def implicit(method: str, points: int) -> Contestant:
         build = _builder(FORCED, consts, points, problem.time, _implicit(method, points, 1e-2, 1e-9))
