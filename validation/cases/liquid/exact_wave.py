@@ -65,18 +65,9 @@ _EARLIER = 0.02
 def cases() -> list[Case]:
     """Steady waves, free waves, ends of branches, twins and circles, computed flow, breaking."""
     table = data("exact_wave.json")
-    return [
-        *_forced(table),
-        *_models(table),
-        *_free(table),
-        *_ends_of_free(table),
-        *_folds(table),
-        *_twins(),
-        *_circles(),
-        *_in_time(),
-        *_flow(),
-        *_breaking(table),
-    ]
+    of_table = (_forced, _models, _free, _ends_of_free, _folds)
+    found = [case for part in of_table for case in part(table)]
+    return [*found, *_twins(), *_circles(), *_in_time(), *_flow(), *_breaking(table)]
 
 
 def last_place(text: str) -> float:
@@ -323,14 +314,10 @@ def _flow() -> Iterator[Case]:
         away = abs(pull - flow) / abs(pull)
         yield _case(
             *(f"{run['name']}-{k + 1}", _FLOW, f"force ratio at resonance, whirl period {k + 1}"),
-            (_complex(flow), _complex(pull), f"{100 * away:.2g} %"),
+            (f"{flow:.4f}".replace("j", "i"), f"{pull:.4f}".replace("j", "i"), f"{100 * away:.2g} %"),
             away <= _BORE_ERROR,
             "agrees within 3 %; the flow's wall does not slip",
         )
-
-
-def _complex(value: complex) -> str:
-    return f"{value.real:.4f}{value.imag:+.4f}i"
 
 
 def _breaking(table: dict[str, Any]) -> Iterator[Case]:
