@@ -5,8 +5,16 @@ The one place that names wings.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from importlib.metadata import EntryPoint, distributions
+from collections.abc import Callable, Collection, Iterator
+from contextlib import contextmanager
+from importlib.metadata import Distribution, EntryPoint, distributions
+from typing import Any
+
+from leblanc.core.answer import Answer, NotConverged
+from leblanc.core.interrupts import Terminated, behind
+from leblanc.core.question import called
+from leblanc.core.terminal import say
+from meshes.errors import InputError
 
 # Groups of entry points.
 COMMANDS, LIQUIDS, MACHINES = "leblanc.commands", "leblanc.liquids", "leblanc.machines"
@@ -34,17 +42,57 @@ WINGS: dict[str, dict[str, str]] = {
 }
 
 
-def answerer(question: str, kind: str) -> str | None:
+def answerer(question: str, kind: str) -> Callable[..., Any] | None:
     """What answers a question about a kind of machine; None where the core does."""
     if kind in CORE or kind in WINGS:
-        return WINGS.get(kind, {}).get(question)
+        address = WINGS.get(kind, {}).get(question)
+        return None if address is None else called(address)
     entry = announced(MACHINES).get(kind)
-    return None if entry is None else entry.load().ANSWERS.get(question)
+    if entry is None:
+        return None
+    with sound(kind, f"ANSWERS of {entry.value}"):
+        address = entry.load().ANSWERS.get(question)
+    if address is None:
+        return None
+
+    def answer(*asked: Any) -> Any:
+        with sound(kind, f"the answer to {question}, {address!r},"):
+            found = called(address)(*asked)
+            if question != "view" and not isinstance(found, Answer):
+                raise TypeError(f"it is {type(found).__name__}, no leblanc.core.answer.Answer")
+            return found
+
+    return answer
 
 
-def announced(group: str, failed: Callable[[str], object] = lambda _: None) -> dict[str, EntryPoint]:
-    """Entry points of a group by name; one that cannot be read announces none, `failed` says why."""
+@contextmanager
+def sound(kind: str, what: str) -> Iterator[None]:
+    """What fails in the code of a machine of another package, in one sentence; what it refuses stays."""
+    of_a_file: Any = called("leblanc.scene.schema.load:SceneError")
+    try:
+        yield
+    except (InputError, NotConverged, Terminated):
+        raise
+    except (Exception, SystemExit) as error:
+        if behind(error) is not None or isinstance(error, of_a_file):
+            raise
+        said = " ".join(str(error).split())
+        why = f"{type(error).__name__}{': ' * bool(said)}{said}"
+        raise InputError("rotor.kind", kind, f"of a package that works; {what} fails: {why}") from error
+
+
+_SAID: set[str] = set()  # of names that are announced in vain
+
+
+def announced(
+    group: str, taken: Collection[str] = (), failed: Callable[[str], object] = lambda _: None
+) -> dict[str, EntryPoint]:
+    """Entry points of a group by name; one that cannot be read announces none, `failed` says why.
+
+    A name that is `taken` by one of ours, or by a package before, announces nothing; stderr says so once.
+    """
     found: dict[str, EntryPoint] = {}
+    by: dict[str, Distribution] = {}
     for package in distributions():
         try:
             entries = [entry for entry in package.entry_points if entry.group == group]
@@ -52,5 +100,23 @@ def announced(group: str, failed: Callable[[str], object] = lambda _: None) -> d
             failed(str(error) or type(error).__name__)
             continue
         for entry in entries:
-            found.setdefault(entry.name, entry)  # of two versions on the path the first is the one imported
+            first = found.get(entry.name)
+            if entry.name in taken:
+                _say_once(f"{entry.value} is not used: {group} has {entry.name} of leblanc itself")
+            elif first is None:
+                found[entry.name], by[entry.name] = entry, package
+            elif not _same(package, by[entry.name]):
+                _say_once(f"{entry.value} is not used: {group} has {entry.name} of {first.value}")
     return found
+
+
+def _same(one: Distribution, other: Distribution) -> bool:
+    """Whether these are two versions on the path, of which the first is the one imported."""
+    first, second = (getattr(each, "name", None) for each in (one, other))
+    return one is other or (first is not None and first == second)
+
+
+def _say_once(text: str) -> None:
+    if text not in _SAID:
+        _SAID.add(text)
+        say(f"leblanc: {' '.join(text.split())}")

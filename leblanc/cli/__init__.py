@@ -185,7 +185,7 @@ def application(wanted: str = "") -> typer.Typer:
         own = getattr(MODULES[name], name) if name in MODULES else _asked(name)
         found.command(name)(_as_typed(own))
     if wanted not in NAMES:
-        others = {name: each for name, each in announced(ANNOUNCED, _unread).items() if name not in NAMES}
+        others = announced(ANNOUNCED, NAMES, _unread)
         for name in [wanted] if wanted in others else sorted(others):
             _add_announced(found, others[name])
     return found

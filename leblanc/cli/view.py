@@ -74,8 +74,8 @@ def view(
         screenshot = _target(machine, scene, screenshot, animate, out)
     wave = None  # what has a film of its own
     with working("solving"):
-        if (address := answerer("view", machine.rotor.kind)) is not None:
-            wave = called(address)(machine, mode, spin, factor)
+        if (special := answerer("view", machine.rotor.kind)) is not None:
+            wave = special(machine, mode, spin, factor)
         elif mode is not None:
             from leblanc.studies.shapes.machine import mode_view
 

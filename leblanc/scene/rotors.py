@@ -6,8 +6,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
-from functools import cached_property
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
+from functools import cached_property, wraps
+from importlib.metadata import EntryPoint
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import (
@@ -19,10 +21,11 @@ from pydantic import (
     ValidationError,
     model_validator,
 )
+from pydantic_core import InitErrorDetails
 
 from leblanc.core import units
 from leblanc.core.units import MASS, MM, in_rpm, number, with_unit
-from leblanc.registry import CORE, MACHINES, WINGS, announced
+from leblanc.registry import CORE, MACHINES, WINGS, announced, sound
 from leblanc.scene.bearings import (
     BallDiameter,
     CagedBearing,
@@ -642,7 +645,20 @@ class Machine(Part):
     @classmethod
     def alternatives(cls) -> tuple[type[Part], ...]:
         """In place of all kinds, each one that an installed package announces."""
-        return tuple(map(announced_machine, announced(MACHINES))) if cls is Machine else (cls,)
+        if cls is not Machine:
+            return (cls,)
+        found = []
+        for kind in _announced():
+            with suppress(InputError):  # one that is broken is no choice
+                found.append(announced_machine(kind))
+        return tuple(found)
+
+    @classmethod
+    def __pydantic_init_subclass__(cls, **kwargs: Any) -> None:
+        """Check what its `machine()` gives."""
+        super().__pydantic_init_subclass__(**kwargs)
+        if "machine" in vars(cls):
+            setattr(cls, "machine", _checked(vars(cls)["machine"]))  # noqa: B010 - of each subclass
 
     @model_validator(mode="wrap")
     @classmethod
@@ -651,25 +667,61 @@ class Machine(Part):
         if cls is not Machine or isinstance(given, Machine):
             return handler(given)
         try:
-            return announced_machine(given["kind"]).model_validate(given)
+            found = announced_machine(given["kind"])
+        except InputError as error:
+            fault = InitErrorDetails(
+                type="value_error", loc=("kind",), input=given["kind"], ctx={"error": error}
+            )
+            raise ValidationError.from_exception_data(cls.__name__, [fault]) from error
+        try:
+            return found.model_validate(given)
         except ValidationError as error:
             raise placed(error, given["kind"]) from None
 
 
+def _checked(machine: Callable[[Any], Any]) -> Callable[[Any], Any]:
+    """The method of a machine of another package; what it gives, or fails with, is told with its kind."""
+
+    @wraps(machine)
+    def checked(self: Any) -> Any:
+        from solvers.rotor.system import RotorSystem
+
+        with sound(self.kind, f"machine() of {type(self).__module__}:{type(self).__qualname__}"):
+            try:
+                found = machine(self)
+                equations = found.system()
+                if not isinstance(equations, RotorSystem):
+                    raise TypeError(f"system() gives {type(equations).__name__}, no RotorSystem")
+            except InputError as error:
+                if "." in error.field:  # of its table
+                    raise
+                raise ValueError(str(error)) from error
+        return found
+
+    return checked
+
+
+def _announced() -> dict[str, EntryPoint]:
+    """Kinds of machines of other packages."""
+    return announced(MACHINES, (*CORE, *WINGS))
+
+
 def announced_machine(kind: str) -> type[Machine]:
     """The class that an installed package announces for a kind of machine."""
-    entry = announced(MACHINES)[kind]
-    found = entry.load()
+    entry = _announced()[kind]
+    with sound(kind, f"loading {entry.value}"):
+        found = entry.load()
     if isinstance(found, type) and issubclass(found, Machine) and found.model_fields["kind"].default == kind:
         return found
-    raise InputError(MACHINES, f"{kind} = {entry.value}", f'a subclass of Machine with kind = "{kind}"')
+    allowed = f'of a package that works; {entry.value} is no subclass of Machine with kind = "{kind}"'
+    raise InputError("rotor.kind", kind, allowed)
 
 
 def rotor_tag(given: Any) -> Any:
     """Tag of a rotor in `AnyRotor`: its kind, or `ANNOUNCED` for a kind of another package."""
     kind = given.get("kind") if isinstance(given, Mapping) else getattr(given, "kind", None)
-    own = isinstance(kind, str) and kind not in CORE and kind not in WINGS and kind in announced(MACHINES)
-    return ANNOUNCED if own else kind
+    ours = not isinstance(kind, str) or kind in CORE or kind in WINGS
+    return ANNOUNCED if not ours and kind in _announced() else kind
 
 
 AnyRotor = (

@@ -30,8 +30,8 @@ def run(
     scene = scene if speeds is None else scene.replace({"speeds": speeds})
     with asked_with(scene, model) as own:
         found: Answer
-        if (address := answerer("run", own.kind)) is not None:
-            found = called(address)(own)
+        if (special := answerer("run", own.kind)) is not None:
+            found = special(own)
         else:
             from leblanc.studies.held.holding import Holding
             from leblanc.studies.run.study import COUPLED, run_scene
@@ -43,6 +43,6 @@ def run(
 
 def explain(scene: Scene) -> Answer:
     """Numbers of a machine before any speed is solved."""
-    address = answerer("explain", scene.kind) or "leblanc.studies.explain.study:explain_scene"
-    found: Answer = called(address)(scene)
+    answer = answerer("explain", scene.kind) or called("leblanc.studies.explain.study:explain_scene")
+    found: Answer = answer(scene)
     return found

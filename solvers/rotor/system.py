@@ -75,8 +75,14 @@ class RotorSystem:
         shapes |= dict.fromkeys(("mass", "damping", "gyroscopic", "stiffness"), (n, n))
         for name, shape in shapes.items():
             found = getattr(self, name)
-            if found.shape != shape or not np.isfinite(found).all():
-                raise InputError(name, found.shape, f"finite numbers of shape {shape}")
+            kinds, what = ("fiuc", "numbers") if name == "unbalance" else ("fiu", "real numbers")
+            allowed = f"an array of finite {what}, shape {shape}"
+            if not isinstance(found, np.ndarray):
+                raise InputError(name, type(found).__name__, allowed)
+            if found.dtype.kind not in kinds or found.shape != shape:
+                raise InputError(name, f"{found.dtype} of shape {found.shape}", allowed)
+            if not np.isfinite(found).all():
+                raise InputError(name, found[~np.isfinite(found)][0].item(), allowed)
         if not np.linalg.eigvalsh(0.5 * (self.mass + self.mass.T)).min() > 0.0:
             raise InputError("mass", "matrix", "positive definite")
 

@@ -218,8 +218,10 @@ def test_broken_packages_do_not_end_the_others(
     assert main(["--help"]) == 0
     printed = capsys.readouterr()
     assert printed.out.count("Not available.") == 3
-    (line,) = printed.err.splitlines()
-    assert "entry points of a package cannot be read" in line
+    unread, shadowed, second = printed.err.splitlines()
+    assert "entry points of a package cannot be read" in unread
+    assert shadowed == "leblanc: plugs:fails is not used: leblanc.commands has run of leblanc itself"
+    assert second == "leblanc: plugs:fails is not used: leblanc.commands has good of plugs:good"
 
     assert main(["good"]) == 0
     assert capsys.readouterr().out == "well\n"

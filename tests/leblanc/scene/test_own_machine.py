@@ -7,6 +7,7 @@ import shutil
 import sys
 import tomllib
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,7 @@ import numpy as np
 import pytest
 
 import leblanc as lb
+from leblanc import registry
 from leblanc.cli import main
 from leblanc.scene.scene import scene_from_table
 from tests.mutants import kills
@@ -114,3 +116,120 @@ def test_its_command_is_one_of_ours(
     assert np.shape(printed["acceleration"]) == (1, 91)
     assert main(["gforce", str(installed), "--depth", "70 mm", "--out", str(tmp_path / "out")]) == 2
     assert "--depth" in capsys.readouterr().err
+
+
+BROKEN = """
+import numpy as np
+from dataclasses import replace
+from typing import ClassVar, Literal
+from slender.machine import Uneven
+
+def raises(machine): return 1 / 0
+def nothing(machine): return None
+def other(name, value): return lambda machine: replace(machine, **{name: value})
+def made(kind, change):
+    def machine(self): return change(Uneven.machine(self))
+    return type(kind, (Uneven,), {
+        "__module__": __name__, "__annotations__": {"kind": Literal[kind]}, "kind": kind, "machine": machine,
+    })
+
+one = np.eye(2)
+raising, none = made("raising", raises), made("none", nothing)
+twisted = made("twisted", other("stiffness", 44e3 * (1.0 + 0.2j) * one))
+lossy = made("lossy", other("damping", 1j * one))
+heavy = made("heavy", other("mass", one + 0j))
+unknown = made("unknown", other("stiffness", np.nan * one))
+large = made("large", other("stiffness", np.eye(3)))
+bare = made("bare", other("stiffness", 44e3))
+listed = made("listed", other("stiffness", [[44e3, 0.0], [0.0, 44e3]]))
+number = 3
+unlike = Uneven
+
+class Astray(Uneven):
+    kind: Literal["astray"] = "astray"
+    ANSWERS: ClassVar = {"run": "slender.nowhere:answer"}
+
+class Counted(Uneven):
+    kind: Literal["counted"] = "counted"
+    ANSWERS: ClassVar = {"run": "builtins:id"}
+"""
+FAULTS = {
+    "raising": "machine() of slender.broken:raising fails: ZeroDivisionError: division by zero",
+    "none": "machine() of slender.broken:none fails: AttributeError: 'NoneType'",
+    "twisted": "stiffness = 'complex128 of shape (2, 2)': must be an array of finite real numbers",
+    "lossy": "damping = 'complex128 of shape (2, 2)': must be an array of finite real numbers",
+    "heavy": "mass = 'complex128 of shape (2, 2)': must be an array of finite real numbers",
+    "unknown": "stiffness = nan: must be an array of finite real numbers, shape (2, 2)",
+    "large": "stiffness = 'float64 of shape (3, 3)'",
+    "bare": "stiffness = 'float'",
+    "listed": "stiffness = 'list'",
+    "number": 'slender.broken:number is no subclass of Machine with kind = "number"',
+    "unlike": 'slender.broken:unlike is no subclass of Machine with kind = "unlike"',
+    "gone": "loading slender.nowhere:it fails: ModuleNotFoundError",
+    "astray": "the answer to run, 'slender.nowhere:answer', fails: ModuleNotFoundError",
+    "counted": "the answer to run, 'builtins:id', fails: TypeError: it is int",
+}
+
+
+@pytest.fixture
+def broken(installed: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Another package, of machines with a fault each, two of them with names that are taken."""
+    (tmp_path / "site" / "slender" / "broken.py").write_text(BROKEN, encoding="utf-8")
+    kinds = {kind: f"slender.broken:{kind}" for kind in FAULTS} | {
+        "gone": "slender.nowhere:it",
+        "astray": "slender.broken:Astray",
+        "counted": "slender.broken:Counted",
+        "jeffcott": "slender.broken:number",
+        "uneven": "slender.broken:number",
+    }
+    about = tmp_path / "later" / "thick-1.0.dist-info"
+    about.mkdir(parents=True)
+    monkeypatch.setattr(sys, "path", [*sys.path, str(tmp_path / "later")])
+    (about / "METADATA").write_text("Metadata-Version: 2.1\nName: thick\nVersion: 1.0\n", encoding="utf-8")
+    lines = ["[leblanc.machines]", *(f"{kind} = {at}" for kind, at in kinds.items())]
+    (about / "entry_points.txt").write_text("\n".join(lines) + "\n", encoding="utf-8")
+    return installed
+
+
+@kills("leblanc.registry:sound", "(Exception, SystemExit)", "SystemExit")
+def test_a_fault_of_a_machine_is_one_sentence(broken: Path) -> None:
+    for kind, said in FAULTS.items():
+        with pytest.raises((lb.InputError, lb.SceneError)) as refused:
+            lb.run(alike(kind=kind))
+        assert f"{kind}" in str(refused.value) and said in str(refused.value), refused.value
+        assert "rotor.kind = " in str(refused.value) and "\n" not in str(refused.value)
+
+
+def test_a_package_that_does_not_load_is_no_choice(broken: Path) -> None:
+    with pytest.raises(
+        lb.SceneError, match=r"one of: jeffcott.*, uneven.*; did you mean jeffcott\?"
+    ) as refused:
+        scene_from_table(alike(kind="jefcott"))
+    assert "gone" not in str(refused.value) and "number" not in str(refused.value)
+
+
+def test_a_name_that_is_taken_is_told_once(broken: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    registry._SAID.clear()
+    for _ in range(2):
+        assert scene_from_table(alike()).rotor.kind == "uneven"
+    assert sorted(capsys.readouterr().err.splitlines()) == [
+        "leblanc: slender.broken:number is not used: leblanc.machines has jeffcott of leblanc itself",
+        "leblanc: slender.broken:number is not used: leblanc.machines has uneven of slender.machine:Uneven",
+    ]
+
+
+@kills(
+    "solvers.rotor.system:RotorSystem.__post_init__", '("fiu", "real numbers")', '("fiuc", "real numbers")'
+)
+def test_equations_of_motion_have_real_matrices() -> None:
+    whole = lb.example("two_plane_rig").rotor.machine().system()
+    for name in ("mass", "damping", "gyroscopic", "stiffness", "centre", "lean"):
+        value = getattr(whole, name)
+        assert replace(whole, **{name: value}).coordinates == whole.coordinates
+        said = ""
+        try:
+            replace(whole, **{name: value * (1.0 + 0.2j)})
+        except lb.InputError as error:
+            said = str(error)
+        assert said.startswith(f"{name} = 'complex128 of shape"), name
+        assert "finite real numbers" in said
