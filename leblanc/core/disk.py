@@ -92,8 +92,8 @@ def opened(path: str | PathLike[str]) -> Answer:
 
     Raises
     ------
-    InputError : no data file of a command, a damaged one, one that another version wrote and this cannot read
-    OSError : it cannot be read
+    InputError : no file that can be read, no data file of a command, a damaged one, one that another version
+        wrote and this cannot read
 
     Examples
     --------
@@ -104,7 +104,11 @@ def opened(path: str | PathLike[str]) -> Answer:
     if not isinstance(path, str | PathLike):
         raise InputError("path", type(path).__name__, "the path of a data file")
     where, allowed = Path(path), "a data file that a command of leblanc wrote"
-    where.stat()  # an OSError names it
+    try:
+        where.stat()
+    except (OSError, ValueError) as error:
+        why = getattr(error, "strerror", None) or error
+        raise InputError("path", str(path), f"{allowed}, which can be read: {why}") from error
     packed = read_aside(where)
     if packed is None:
         raise InputError("path", str(path), f"{allowed}; this one holds no answer, or numbers alone")

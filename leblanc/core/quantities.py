@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import cmath
 import math
+import re
 import sys
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, is_dataclass, replace
@@ -17,6 +18,8 @@ import numpy as np
 from leblanc.core.netcdf import NamedArrays, Variable, finite, flags, variable
 from leblanc.core.notes import Note
 from leblanc.core.question import Names
+from leblanc.core.units import is_unit
+from meshes.errors import InputError
 from meshes.quantity import Q
 
 
@@ -54,11 +57,39 @@ def _declared(kind: type) -> dict[str, _Declared]:
             if get_origin(said) is Annotated:
                 what, *beside = get_args(said)
                 types = tuple(_types(what))
-                found |= [
-                    (each.key or name, _Declared(name, each, types)) for each in beside if isinstance(each, Q)
-                ]
+                for each in beside:
+                    if not isinstance(each, Q):
+                        continue
+                    key = each.key or name
+                    if key in found and found[key].attribute != name:
+                        other = f"{kind.__name__}.{found[key].attribute}"
+                        raise InputError(f"{kind.__name__}.{name}", key, f"a name of its own; {other} has it")
+                    found[key] = _Declared(name, each, types)
     _FOUND[kind] = found
+    try:
+        for key, declared in found.items():
+            _require_sound(kind, key, declared.q)
+    except InputError:
+        del _FOUND[kind]
+        raise
     return found
+
+
+_PATH = re.compile(r"\{0\.(\w+)")  # attribute that a text stands for
+
+
+def _require_sound(kind: type, key: str, q: Q) -> None:
+    """Raise `InputError` where a declaration has no unit that is one, no names, attributes that are none."""
+    at = f"{kind.__name__}.{key}"
+    if not isinstance(q.unit, str) or not ("{0." in q.unit or is_unit(q.unit)):
+        raise InputError(f"{at}.unit", q.unit, 'a unit as CF writes it, such as "m s-1"; "1" of a number')
+    if not isinstance(q.over, tuple) or not all(isinstance(dim, str) for dim in q.over):
+        raise InputError(f"{at}.over", q.over, 'a tuple of names of dimensions, such as ("speed",)')
+    paths = [*filter(None, (q.when,)), *_PATH.findall(f"{q.unit} {q.name} {q.text}")]
+    fields = {name for base in kind.__mro__ for name in vars(base).get("__annotations__", {})}
+    for name in paths:
+        if not (name in fields or hasattr(kind, name) or _has(kind, name)):
+            raise InputError(at, name, f"an attribute of {kind.__name__}")
 
 
 def _types(hint: Any) -> Iterator[type]:
@@ -158,7 +189,13 @@ def to_json(record: Any, only: Collection[str] = ()) -> dict[str, Any]:
             each, ends = plain(value[there]), np.cumsum(there.sum(axis=1)).tolist()
             found[key] = [each[start:end] for start, end in pairwise([0, *ends])]
         else:
-            found[key] = plain(value)
+            try:
+                found[key] = plain(value)
+            except TypeError as error:
+                at = f"{type(record).__name__}.{key}"
+                raise InputError(
+                    at, type(value).__name__, "numbers, texts, records, or lists of them"
+                ) from error
     return found
 
 
@@ -239,9 +276,14 @@ def _variables(name: str, q: Q, value: Any) -> dict[str, Variable]:
             meanings = q.flags.split()
             states = np.array([meanings.index(each) for each in states.tolist()], int) + 2 - len(meanings)
         return {name: flags(q.over, states, q.flags, q.name, q.text)}
+    values = np.asarray(value)
+    kinds, what = ("biufc", "numbers") if q.axes else ("biufU", "real numbers or texts")
+    texts = values.dtype.kind == "O" and all(isinstance(one, str) for one in values.ravel().tolist())
+    if values.ndim != len(q.over) or not (values.dtype.kind in kinds or texts):
+        over = f"({', '.join(q.over)})" if q.over else "nothing"
+        raise InputError(name, f"{values.dtype} of shape {values.shape}", f"{what} over {over}, as declared")
     if q.axes is None:
         return {name: variable(q.over, value, q.unit, q.name, q.text)}
-    values = np.asarray(value)
     values = np.where(np.isnan(values), complex(math.nan, math.nan), values)
     return {
         f"{name}_{end}": variable(

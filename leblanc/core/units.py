@@ -404,6 +404,8 @@ def _read(bound: str) -> float:
 
 def parse_option(text: str | float, dimension: Dimension, field: str) -> float:
     """Value of an option of a command, where a plain number is a text too, or of a keyword, as by `parse`."""
+    if type(text).__name__ in ("bool", "bool_", "bytes", "bytearray"):  # Python makes numbers of them
+        raise InputError(field, type(text).__name__, dimension.allowed)
     try:
         number = float(text)
     except (ValueError, TypeError, OverflowError):
@@ -494,6 +496,23 @@ def _base(unit: str) -> tuple[float | None, Any]:
     single, two = (registry.Quantity(size, parsed).to_base_units() for size in (1.0, 2.0))
     is_factor = math.isclose(two.magnitude, 2.0 * single.magnitude, rel_tol=1e-12)
     return single.magnitude if is_factor else None, single.units
+
+
+_CF_POWER = re.compile(r"([A-Za-z])(-?[1-9])(?![0-9])")
+# Of which the answers here are made; all others are left to pint.
+_USUAL_SINGLE = ("", "1", "m", "kg", "s", "rad", "N", "Pa", "J", "W", "A", "K")
+
+
+@functools.cache
+def is_unit(unit: str) -> bool:
+    """Whether a text is a unit as CF writes it, "m s-1"; that of a number is "1", of what has none ""."""
+    if all(_CF_POWER.sub(r"\1", part) in _USUAL_SINGLE for part in unit.split()):
+        return True
+    try:
+        _registry().parse_units(_CF_POWER.sub(r"\1**\2", "*".join(unit.split())))
+    except Exception:  # pint evaluates what it is given
+        return False
+    return True
 
 
 @functools.cache

@@ -14,6 +14,7 @@ from leblanc.core.netcdf import Variable, variable
 from leblanc.core.notes import Note, NoteCode
 from leblanc.core.quantities import named_arrays, names, plain, quantities, to_json
 from meshes.arrays import Array, Complex
+from meshes.errors import InputError
 from meshes.quantity import Q
 from tests.mutants import kills
 
@@ -126,7 +127,7 @@ def whole() -> Whole:
     )
 
 
-@kills(f"{AT}:_declared", "(each.key or name,", "(name,")
+@kills(f"{AT}:_declared", "key = each.key or name", "key = name")
 @kills(f"{AT}:to_json", "only and key not in only", "False")
 @kills(f"{AT}:plain", "return value.text", "return str(value.code)")
 def test_json_has_each_quantity_once_under_its_public_name() -> None:
@@ -209,3 +210,57 @@ def test_quantities_of_parts_are_the_answer_s() -> None:
 def test_what_has_no_form_in_json_is_refused() -> None:
     with pytest.raises(TypeError, match="object has no form in JSON"):
         plain(object())
+
+
+@dataclass(frozen=True)
+class Wall:
+    """A record whose declaration is changed below."""
+
+    speed: Annotated[float, Q("rad s-1", "spin speed")]
+    wall: Annotated[Array, Q("m s-1", "speed of the wall", over=("chamber",))]
+
+
+def wall_of(q: Q, value: object = TWO) -> Wall:
+    """A record like it with another declaration, and a value."""
+    said = {"speed": Wall.__annotations__["speed"], "wall": Annotated[Array, q]}
+    kind = type("Wall", (), {"__annotations__": said, "__module__": __name__})
+    return dataclass(frozen=True)(kind)(3.0, value)
+
+
+GOOD = Q("m s-1", "speed of the wall", over=("chamber",))
+UNREAD = [
+    (replace(GOOD, key="speed"), r"Wall\.wall = 'speed': must be a name of its own; Wall\.speed has it"),
+    (replace(GOOD, unit="banana"), r"Wall\.wall\.unit = 'banana': must be a unit"),
+    (replace(GOOD, unit="3 m"), r"Wall\.wall\.unit"),
+    (replace(GOOD, unit=3), r"Wall\.wall\.unit = 3: must be a unit"),  # type: ignore[arg-type]
+    (replace(GOOD, over="chamber"), r"Wall\.wall\.over = 'chamber'"),  # type: ignore[arg-type]
+    (replace(GOOD, when="nothing"), r"Wall\.wall = 'nothing': must be an attribute of Wall"),
+    (replace(GOOD, text="{0.nothing}"), r"Wall\.wall = 'nothing': must be an attribute of Wall"),
+]
+
+
+@pytest.mark.parametrize(("q", "said"), UNREAD)
+def test_a_declaration_that_cannot_hold_is_refused_as_the_class_is_read(q: Q, said: str) -> None:
+    made = wall_of(q)
+    for _ in range(2):  # the second time as well
+        with pytest.raises(InputError, match=said):
+            quantities(type(made))
+
+
+def test_units_are_those_that_pint_knows() -> None:
+    for unit in ("", "1", "m s-1", "m/s", "N m rad-1", "m4", "degC", "mm s-1", "{0.speed}"):
+        assert quantities(type(wall_of(replace(GOOD, unit=unit))))["wall"].unit == unit
+
+
+@kills(f"{AT}:_variables", "values.ndim != len(q.over) or not (", "not (")
+def test_a_value_unlike_its_declaration_is_named() -> None:
+    assert named_arrays(wall_of(GOOD)).sizes == {"chamber": 2}
+    for value in (3.0, np.ones((2, 2)), TWO * 1j, np.array([None, 1.0]), "text", {1, 2}):
+        said = ""
+        try:
+            named_arrays(wall_of(GOOD, value))
+        except InputError as error:
+            said = str(error)
+        assert said.startswith("wall = ") and "over (chamber)" in said, value
+    with pytest.raises(InputError, match=r"Wall\.wall = 'set'"):
+        to_json(wall_of(GOOD, {1, 2}))

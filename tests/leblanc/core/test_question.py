@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
 
 import leblanc as lb
@@ -94,3 +96,11 @@ class _Code(NoteCode):
 
 def test_a_note_is_its_sentence_in_json() -> None:
     assert plain({"notes": (Note(_Code.ONE, {"a": 1.0}, "a sentence"),)}) == {"notes": ["a sentence"]}
+
+
+@pytest.mark.parametrize("radius", [True, np.True_, b"65 mm", b"0.065", bytearray(b"0.065")])
+def test_a_truth_value_and_bytes_are_no_quantities(radius: Any) -> None:
+    with pytest.raises(InputError, match=r"radius = 'b.*': must be a length"):
+        lb.layer(
+            radius=radius, volume="10 ml", height="50 mm", speed=40.0, whirl_speed=30.0, whirl_amplitude=1e-4
+        )
