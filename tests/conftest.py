@@ -22,7 +22,7 @@ import pytest  # noqa: E402
 from hypothesis import HealthCheck, Phase, settings  # noqa: E402
 from pytest_rerunfailures import StatusDB  # noqa: E402
 
-from tests.mutants import CAUGHT, seeded  # noqa: E402
+from tests.mutants import CAUGHT, Mutant, seeded  # noqa: E402
 
 np.seterr(divide="raise", over="raise", invalid="raise")
 
@@ -50,6 +50,24 @@ def pytest_configure(config: pytest.Config) -> None:
     config.addinivalue_line("markers", "mutant: a run of an oracle with a mutant, which must fail")
 
 
+@pytest.hookimpl(trylast=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Of an oracle with several cases the first one meets the mutants."""
+    met = set()
+    kept = []
+    for item in items:
+        mutant = _mutant(item)
+        key = item.nodeid.partition("[")[0], mutant
+        if mutant is None or key not in met:
+            kept.append(item)
+        met.add(key)
+    items[:] = kept
+
+
+def _mutant(item: Any) -> Mutant | None:
+    return item.callspec.params.get("mutant") if hasattr(item, "callspec") else None
+
+
 def pytest_collection_finish() -> None:
     """What was imported and collected stays: the garbage collector need not look through it again."""
     gc.collect()
@@ -69,8 +87,7 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
 @pytest.hookimpl(wrapper=True)
 def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> Iterator[None]:
     """With its mutant in place the oracle must fail."""
-    params = pyfuncitem.callspec.params if hasattr(pyfuncitem, "callspec") else {}
-    mutant = params.get("mutant")
+    mutant = _mutant(pyfuncitem)
     if mutant is None:
         return (yield)
     with seeded(mutant), _noticed_once(pyfuncitem.function), pytest.raises(CAUGHT):
