@@ -35,6 +35,8 @@ _PLAIN = 10  # terms of a function that is rational
 _CLOSE = 1e-7  # of the largest value, is left of the samples where more terms are not worth their time
 _ALIKE = 1e-4  # relative, of frequencies seen from the drum that two fits give of one mode
 _ENDLESS = 1e-11  # of the largest: the inverse of a root that is at infinity
+_ENOUGH = 0.5  # of the samples, that the model must have found at a speed
+_HALVES = slice(0, None, 2), slice(1, None, 2)  # of the samples
 
 
 def _slips(reach: float) -> Array:
@@ -244,7 +246,7 @@ def _modes(
         left = np.max([fit.left for fit in own], axis=0)
         along, against = circles
         parts.append((at, root, noise + left[:, None], sense_of(along, against), left, own))
-    width = max(part[1].shape[1] for part in parts)
+    width = max((part[1].shape[1] for part in parts), default=0)
     whirl = np.full((spin.size, width), complex(np.nan, np.nan))
     noise, sense = np.full((spin.size, width), np.nan), np.ones((spin.size, width))
     left, terms = np.zeros(spin.size), np.zeros(spin.size, dtype=np.intp)
@@ -255,13 +257,26 @@ def _modes(
     return _Found(whirl, noise, sense, left, terms)
 
 
+def _spread(found: _Found, at: Index, count: int) -> _Found:
+    """Modes at some of so many points; none, and all of the samples left, at the others."""
+    width = max(found.whirl.shape[1], 1)
+    whirl = np.full((count, width), complex(np.nan, np.nan))
+    noise, sense = np.full((count, width), np.nan), np.ones((count, width))
+    left, terms = np.full(count, np.inf), np.zeros(count, dtype=np.intp)
+    if at.size:
+        whirl[at], noise[at], sense[at] = found.whirl, found.noise, found.sense
+    left[at], terms[at] = found.left, found.terms
+    return _Found(whirl, noise, sense, left, terms)
+
+
 def transfer_modes(
     rotor: Rotor, fills: Sequence[Fill], speed: Array, model: CheckedModel
 ) -> SystemModes | Modes:
     """All whirl modes of a rotor with liquid of any model that has a surface: planar of a Jeffcott rotor.
 
-    Growth is not known where no rational function stands for the model's answers. Of a function that has no
-    rational form, as with laminar layers, only modes count that half of the samples give as well.
+    Growth is not known where no rational function stands for the model's answers, or where it does not find
+    half of them. Of a function that has no rational form, as with laminar layers, only modes count that half
+    of the samples give as well.
     """
     wet = [fill for fill in fills if fill.volume > 0.0 and not is_full(fill)]
     full = [fill for fill in fills if is_full(fill)]
@@ -291,11 +306,13 @@ def transfer_modes(
             fits = _groups([_fitted(slip[part], *pair) for pair in pairs], at.size)  # noqa: B023
             return _modes(matrices, ways, masses, fits, spin[at])  # noqa: B023
 
-        modes = found(np.arange(spin.size), slice(None))
+        shares = [known[:, :, part].mean(axis=2) for part in _HALVES]
+        sure = np.flatnonzero((np.array(shares) >= _ENOUGH).all(axis=(0, 1)))
+        modes = _spread(found(sure, slice(None)), sure, spin.size)
         unsure = np.flatnonzero(modes.terms > _PLAIN)
         if unsure.size:
             own = modes.whirl[unsure]
-            for part in (slice(0, None, 2), slice(1, None, 2)):
+            for part in _HALVES:
                 off = np.abs(own[:, :, None] - found(unsure, part).whirl[:, None, :])
                 off = np.where(np.isnan(off), np.inf, off).min(axis=2)
                 own[~(off <= _ALIKE * np.abs(own - 1.0))] = np.nan

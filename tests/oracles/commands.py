@@ -11,7 +11,7 @@ import numpy as np
 
 from leblanc.cli import main
 from leblanc.scene.scene import scene_from_table
-from leblanc.studies.map.study import map_scene
+from leblanc.studies.map.study import answer
 from leblanc.studies.optimise.study import optimise_scene
 from leblanc.studies.run.study import run_scene
 from leblanc.studies.runup.study import runup_scene
@@ -24,7 +24,7 @@ def run(table: dict[str, Any]) -> Answer:
 
 
 def whirl_map(table: dict[str, Any], volumes: int = 4, speeds: int = 5) -> Answer:
-    return map_scene(scene_from_table(table), volumes, speeds).to_json()
+    return answer(scene_from_table(table), None, speeds, volumes=volumes).to_json()
 
 
 def optimum(table: dict[str, Any]) -> Answer:

@@ -50,27 +50,28 @@ class MapCode(NoteCode):
     NOT_KNOWN = "not_known"
 
 
-def answer(scene: Scene, model: object, **given: Any) -> WhirlMap:
+def answer(scene: Scene, model: object, speeds: int | Sequence[float], **given: Any) -> WhirlMap:
     """The map of a scene, its liquid as a model of one's own has it where one is given."""
+    # Before, as no scene that is read anew may name a model that only this question knows.
+    scene, speed = speeds_of(scene, speeds, MOST)
     with asked_with(scene, model) as own:
-        return map_scene(own, **given)
+        return map_scene(own, speed, **given)
 
 
 def map_scene(
     scene: Scene,
+    speed: Array,
     volumes: int | Sequence[float],
-    speeds: int | Sequence[float],
     max_volume: float | None = None,
     friction: Friction | None = None,
     cycles: bool = False,
 ) -> WhirlMap:
-    """Growth rate and whirl speed of self-excited whirl over the scene's speeds and over volume.
+    """Growth rate and whirl speed of self-excited whirl over speeds, rad/s, and over volume.
 
     With several chambers their volumes grow by a common factor; up to what fits where no largest volume is
     given. `cycles`: find how large the whirls of the scene as it stands grow.
     """
     few_points("volumes", volumes, MOST)
-    scene, speed = speeds_of(scene, speeds, MOST)
     require_whirl(scene)
     require_no_balls(scene, "a map over liquid; `lb.map_balls` charts balls")
     if not scene.fills:
@@ -94,6 +95,7 @@ def map_scene(
     growth, whirl_speed = (np.concatenate([part[k] for part in parts]) for k in (0, 1))
     edges = unstable_bands(rotor, rows, speed, law, growth)
     (own,) = unstable_bands(rotor, [scene.fills], speed, law)
+    here = growth_map(rotor, [scene.fills], speed, law)[0][0]
     carried = np.array([_held(scene, fills, speed) for fills in rows])
     large, said = scene_cycles(machine, law) if cycles and isinstance(law, Friction) else (None, ())
     pairs = zip(rows, whirl_speed - speed, strict=True)
@@ -117,7 +119,12 @@ def map_scene(
         else "damping as in the scene",
         scene_volume=sum(fill.volume for fill in scene.fills),
         scene_edges=own,
-        notes=(*_notes(machine, law, own, carried, thin, growth), *said, *doubts(scene)),
+        notes=(
+            _own_volume(scene, own, speed, here),
+            *_notes(machine, law, carried, thin, growth),
+            *said,
+            *doubts(scene),
+        ),
         edges_not_known=tuple(bands_not_known(speed, found) for found in growth),
         capacity=sum(fill.chamber.capacity for fill in rows[-1] if fill.volume > 0.0),
         critical_speed_dry=_critical_speed(machine),
@@ -189,20 +196,27 @@ def _thin_layers(fills: tuple[Fill, ...], slip: Array) -> Flags:
     return thin
 
 
-def _notes(
-    machine: Prepared, law: Waves, own: Bands, carried: Flags, thin: Flags, growth: Array
-) -> tuple[Note, ...]:
+def _own_volume(scene: Scene, bands: Bands, speed: Array, growth: Array) -> Note:
+    """Where whirl grows with the scene's own volume, and where that is not known; growth of shape (n,)."""
+    volume, lost = sum(fill.volume for fill in scene.liquids), bands_not_known(speed, growth)
+    text = f"no whirl is self-excited at {'the other' if lost else 'these'} speeds."
+    if bands:
+        text = f"whirl is self-excited from {rpm_bands(bands)}."
+    if np.isnan(growth).all():
+        text = "it is not known at any of these speeds whether whirl is self-excited."
+    elif lost:
+        text += f" Not known within {rpm_bands(lost)}: do not take it for stable."
+    data = {"volume": volume, "bands": tuple(bands), "not_known": lost}
+    return Note(MapCode.OWN_VOLUME, data, f"With the scene's {with_unit(volume, VOLUME)} {text}")
+
+
+def _notes(machine: Prepared, law: Waves, carried: Flags, thin: Flags, growth: Array) -> tuple[Note, ...]:
     """Limits of validity and findings."""
     scene, found = machine.scene, []
 
     def note(code: MapCode, text: str, **data: object) -> None:
         found.append(Note(code, data, text))
 
-    with_it = f"With the scene's {with_unit(volume := sum(fill.volume for fill in scene.liquids), VOLUME)}"
-    text = f"{with_it} no whirl is self-excited at these speeds."
-    if own:
-        text = f"{with_it} whirl is self-excited from {rpm_bands(own)}."
-    note(MapCode.OWN_VOLUME, text, volume=volume, bands=tuple(own))
     if lost := int(np.count_nonzero(np.isnan(growth))):
         points = f"At {lost} of {thin.size} points the growth is not known"
         note(

@@ -228,3 +228,71 @@ def test_it_is_known_only_while_it_is_asked_with() -> None:
         assert other.model.liquid == "my ring"
     with pytest.raises(InputError, match=r"model\.liquid = 'my ring'"):
         lb.run(other)
+
+
+class Failing(Ring):
+    """It finds no answer above a spin speed, as a solver that does not converge."""
+
+    name = "failing"
+
+    def __init__(self, above: float) -> None:
+        super().__init__()
+        self.above = above
+
+    def answer(self, fills: Fills, whirls: Whirls) -> Any:
+        return replace(super().answer(fills, whirls), converged=whirls.spin < self.above)
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("name", ["horizontal_rig", "tub"])
+@pytest.mark.parametrize("known", [3, 1, 0])
+def test_where_it_finds_no_answer_the_growth_is_not_known(name: str, known: int) -> None:
+    rig = scene(name, **{"speeds.count": 3})
+    speed = rig.speed_array()
+    above = 0.0 if known == 0 else 1.01 * speed[known - 1]
+    found, whole = lb.run(rig, model=Failing(above)), lb.run(rig, model=Ring())
+    assert np.array_equal(np.isnan(found.growth), speed > above)
+    assert np.array_equal(found.growth[:known], whole.growth[:known])
+    assert set(found.stability[known:].tolist()) <= {"not_known"}
+    assert bool(found.faults) == (known < 3)
+
+
+@kills("solvers.whirl.transfer:transfer_modes", "known[:, :, part].mean", "known[:, :, ::2].mean")
+@kills("solvers.whirl.transfer:transfer_modes", ">= _ENOUGH", ">= 0.1")
+def test_half_of_the_frequencies_must_be_found_in_each_half() -> None:
+    """What is left of a function is no function, however well one goes through it."""
+
+    class Some(Ring):
+        def answer(self, fills: Fills, whirls: Whirls) -> Any:
+            found = super().answer(fills, whirls)
+            return replace(found, converged=np.isin(np.arange(len(fills)) % 10, self.found))
+
+    rig, spin = scene("horizontal_rig"), np.array([150.0])
+    for some in ([0, 2, 4, 6, 8], [0, 1, 2, 3]):
+        model = Some()
+        model.found = some
+        growth, _ = growth_map(rig.rotor.machine(), [rig.fills], spin, CheckedModel(model))
+        assert np.isnan(growth).all()
+
+
+@kills("leblanc.studies.map.study:_own_volume", "np.isnan(growth).all()", "False")
+@kills("leblanc.studies.map.study:_own_volume", "elif lost:", "elif not lost:")
+@kills("leblanc.studies.map.study:_own_volume", "'the other' if lost", "'the other' if bands")
+def test_a_map_does_not_call_stable_what_it_does_not_know() -> None:
+    said = {
+        0.0: ("it is not known at any of these speeds whether whirl is self-excited.", ((80.0, 200.0),)),
+        150.0: (
+            "no whirl is self-excited at the other speeds. Not known within 1146 to 1910 rpm: do not take it "
+            "for stable.",
+            ((120.0, 200.0),),
+        ),
+        1e4: ("no whirl is self-excited at these speeds.", ()),
+    }
+    for above, (text, not_known) in said.items():
+        model = Failing(above)
+        model.friction = Friction(FrictionLaw.LINEAR, 200.0)
+        rig = scene("horizontal_rig")
+        found = lb.map_whirl(rig, model=model, speeds=[80.0, 120.0, 200.0], volumes=["5 ml", "9 ml"])
+        (own,) = (note for note in found.notes if note.code == "own_volume")
+        assert own.text == f"With the scene's 20 ml {text}"
+        assert own.data["not_known"] == not_known
