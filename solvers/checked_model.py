@@ -88,7 +88,7 @@ class CheckedModel(LiquidModel):
                 parts.insert(0, self._asked(fills.at(apart[0]), whirls.at(apart[0])))
             return LiquidAnswer.joined(parts).at(np.argsort(np.concatenate(apart)))
         try:
-            found = self.own.answer(fills, whirls)
+            found = self.own.answer(_kept(fills), _kept(whirls))
         except InputError:
             raise
         except Exception as error:
@@ -97,6 +97,20 @@ class CheckedModel(LiquidModel):
                 f"{_FIELD}.answer", said, "an answer to every whirl, out of its range as well"
             ) from error
         return _checked(found, len(fills))
+
+
+def _kept(part: Any) -> Any:
+    """The same dataclass of arrays, none of which may be written to; they are the solvers' own."""
+    new = {}
+    for each in fields(part):
+        value = getattr(part, each.name)
+        if isinstance(value, np.ndarray):
+            value = value.view()
+            value.flags.writeable = False
+        elif each.name == "chamber":
+            value = _kept(value)
+        new[each.name] = value
+    return replace(part, **new)
 
 
 def _solid(fills: Fills, whirls: Whirls) -> LiquidAnswer:

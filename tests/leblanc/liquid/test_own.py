@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from dataclasses import replace
 from importlib.metadata import EntryPoint
 from pathlib import Path
@@ -296,3 +297,31 @@ def test_a_map_does_not_call_stable_what_it_does_not_know() -> None:
         (own,) = (note for note in found.notes if note.code == "own_volume")
         assert own.text == f"With the scene's 20 ml {text}"
         assert own.data["not_known"] == not_known
+
+
+@kills("solvers.checked_model:_kept", "value.flags.writeable = False", "value.flags.writeable = True")
+@kills("solvers.checked_model:_kept", "value = _kept(value)", "pass")
+def test_it_cannot_change_what_it_is_asked_with() -> None:
+    """The solvers' own arrays, which others see as well."""
+
+    class Writes(Ring):
+        def answer(self, fills: Fills, whirls: Whirls) -> Any:
+            written(fills, whirls)[:] *= 2.0
+            return super().answer(fills, whirls)
+
+    fills = Fills.of(scene("horizontal_rig").fills)
+    whirls = Whirls.synchronous(np.array([100.0, 200.0]), np.full(2, 1e-6), np.zeros(2))
+    ways = [
+        lambda _, whirls: whirls.spin,
+        lambda _, whirls: whirls.deflection,
+        lambda fills, _: fills.density,
+        lambda fills, _: fills.chamber.radius,
+    ]
+    for written in ways:
+        before = written(fills, whirls).copy()
+        with suppress(InputError):
+            CheckedModel(Writes()).answer(fills, whirls)
+        assert np.array_equal(written(fills, whirls), before)
+        assert written(fills, whirls).flags.writeable
+    with pytest.raises(InputError, match="read-only"):
+        lb.run(scene("horizontal_rig"), model=Writes())
