@@ -80,7 +80,9 @@ def dynamic_stiffness(
     slip = w - omega
     rate = layer_rate(layer, omega, slip)
     if np.any(wave_function(layer.layer_tanh, omega, slip, rate) == 0.0):
-        raise InputError("whirl_speed", w.tolist(), "off the free waves of a layer without friction")
+        raise InputError(
+            "whirl_speed", w.tolist(), "off the natural sloshing waves of a layer without friction"
+        )
     offset = offset_with_friction(layer.layer_tanh, omega, w, rate)
     return np.asarray(-layer.mass * np.square(w) * (1.0 + offset))
 

@@ -161,6 +161,6 @@ def _circles(system: RotorSystem, mass: Array, planes: Sequence[Array]) -> Compl
     against = np.array([0.5 * _WAY @ plane @ basis for plane in planes])
     if np.abs(against).max() > 10.0 * _ROUND * np.abs(along).max():
         raise NotCircularError(
-            "the supports differ between directions: the whirl is an ellipse; ask for a held state of `run`"
+            "the supports are not equal, the whirl is an ellipse; ask for a time-domain state of `run`"
         )
     return np.asarray(basis)

@@ -238,7 +238,7 @@ class _Finder:
     def reason(self) -> str:
         """Why there are no branches, or what may be missing among them; empty if nothing is to be said."""
         if not self.tried:
-            return "no whirl grows by itself in this range"
+            return "no self-excited whirl in this range"
         if not self.branches:
             return "no limit cycle was found"
         said = []

@@ -17,7 +17,7 @@ _SHORTEST, _LONGEST = 32.0, 512.0  # turns of a window
 _THROWN = 0.15  # of gravity over the centrifugal acceleration, from which a motion hardly ever repeats
 # Measured, s: of a turn, and of a cell in a step.
 _TURN, _CELL = 2e-3, 1e-7
-# Of exact waves: of a step's rotor, of a layer's, and of each of its nodes.
+# Of fully nonlinear waves: of a step's rotor, of a layer's, and of each of its nodes.
 _ROTOR, _NODES, _NODE = 2e-3, 4e-3, 1e-5
 _HEAPED, _MOST = 80.0, 22.0  # by what a turn takes longer where gravity heaps the liquid up
 

@@ -1,4 +1,4 @@
-"""Held states with exact waves: a turn at a time, judged as long waves are [theory: held]."""
+"""Held states with fully nonlinear waves: a turn at a time, judged as long waves are [theory: held]."""
 
 from __future__ import annotations
 
@@ -121,11 +121,11 @@ def _moment(exact: ExactMachine, state: Array, spin: float, layers: Flags) -> Mo
 
 
 def require_own_steps(numerics: HoldNumerics) -> None:
-    """Raise `InputError` where a solver of py-pde is asked for, or nodes that the exact wave cannot have."""
+    """Raise `InputError` where a solver of py-pde is asked for, or a number of nodes that is not allowed."""
     if numerics.solver != COUPLED:
-        raise InputError("solver", numerics.solver, "left out: exact waves have their own steps")
+        raise InputError("solver", numerics.solver, "left out: fully nonlinear waves have their own steps")
     if numerics.cells < 16 or numerics.cells % 2:
-        raise InputError("cells", numerics.cells, "an even number from 16 for exact waves")
+        raise InputError("cells", numerics.cells, "an even number from 16 for fully nonlinear waves")
 
 
 def march(

@@ -95,7 +95,7 @@ _MESSAGES = {
     Outcome.STOPPED: "the motor stands",
     Outcome.INTERRUPTED: "interrupted",
     Outcome.RAN_AWAY: "a film beside a dry wall ran away, and the time steps shrank to nothing",
-    Outcome.BROKE: "a wave broke: the exact wave owes no force",
+    Outcome.BROKE: "a wave broke: the fully nonlinear wave owes no force",
     Outcome.WANTS_NODES: "a wave wants more than 512 nodes, and its crest does not break",
-    Outcome.DRIED: "a wave left a part of its wall dry, which the exact wave cannot",
+    Outcome.DRIED: "a wave left a part of its wall dry, which the fully nonlinear wave cannot",
 }

@@ -225,7 +225,9 @@ def coupled(
         require_not_negative("friction", rate)
         chamber, plane = fill.chamber, system.at(fill.chamber.plane)
         if fill.uneven and fill.volume > 0.0:
-            raise InputError(f"chambers.{j}", "baffles or a section", "a plain circle for the exact wave")
+            raise InputError(
+                f"chambers.{j}", "baffles or a section", "a plain circle for the fully nonlinear wave"
+            )
         if is_full(fill):
             heavy = replace(heavy, mass=heavy.mass + fill.mass * plane.T @ plane)
         elif fill.volume > 0.0:

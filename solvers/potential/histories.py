@@ -1,4 +1,4 @@
-"""A layer under a prescribed circular whirl by the exact wave in time; SI units.
+"""A layer under a prescribed circular whirl by the fully nonlinear wave in time; SI units.
 
 What `solvers.pypde.settle` does by long waves: from the uniform layer at rest in the drum, whirl period by
 whirl period, or as pictures. A wave that breaks ends it: beyond that the model has no force.
@@ -36,7 +36,7 @@ _UNMOVED = 1e-9
 
 @dataclass(frozen=True)
 class PotentialHistory:
-    """Whirl periods of the exact wave, and what is known of it."""
+    """Whirl periods of the fully nonlinear wave, and what is known of it."""
 
     periods: LayerHistory  #: means of the periods that it finished
     state: WaveState  #: what is known of the wave at the end
@@ -236,7 +236,7 @@ def _points(period: float) -> tuple[Array, Array]:
 
 def _start(fill: Fill, steps: Steps) -> Surface:
     """The uniform layer at rest in the drum."""
-    chamber, wanted = fill.chamber, "none for the exact wave, which wants a clear circular wall"
+    chamber, wanted = fill.chamber, "none for the fully nonlinear wave, which needs a clear circular wall"
     if chamber.section is not None:
         raise InputError("section", type(chamber.section).__name__, wanted)
     if chamber.baffles is not None:

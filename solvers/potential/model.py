@@ -99,7 +99,9 @@ class Potential(WaveModel):
 
     def __post_init__(self) -> None:
         if not FEWEST <= self.most <= _MOST_CELLS:
-            raise InputError("cells", self.most, f"from {FEWEST} to {_MOST_CELLS} for the exact wave")
+            raise InputError(
+                "cells", self.most, f"from {FEWEST} to {_MOST_CELLS} for the fully nonlinear wave"
+            )
 
     @property
     def most(self) -> int:
@@ -137,7 +139,9 @@ class Potential(WaveModel):
     def wave(self, fill: Fill, whirl: Whirl) -> PotentialWave:
         """See `WaveModel`; the error is the distance from the same wave on half as many nodes again."""
         if whirl.gravity != 0.0:
-            allowed = "0 for the steady exact wave: gravity across the axis turns in the frame of the whirl"
+            allowed = (
+                "0 for the steady fully nonlinear wave: transverse gravity turns in the frame of the whirl"
+            )
             raise InputError("gravity", whirl.gravity, allowed)
         _require_surface(fill)
         radius, layer = fill.chamber.radius, fill.depth / fill.chamber.radius
@@ -219,7 +223,7 @@ class Potential(WaveModel):
                 reason = f"{self.most} nodes from crest to trough do not carry a wave as sharp as this"
             found = finer
         else:
-            reason = f"no free wave as high was found: the last one has a crest of {found.crest:.4g} depths"
+            reason = f"no natural sloshing wave as high was found: the last crest is {found.crest:.4g} depths"
         if reason:
             return no_free_wave(fill, self.ranges, reason)
         theta, depth, drawn = _profile(found)
@@ -249,13 +253,15 @@ class Potential(WaveModel):
         """A circle about the axis of spin, or the layer that no whirl stirs."""
         radius, surface, size = fill.chamber.radius, fill.surface_radius, whirl.amplitude
         if size >= fill.depth:
-            reason = "the wall runs dry, which no exact wave here does; the statics do"
+            reason = "the wall runs dry, which no fully nonlinear wave here does; the statics do"
             return self._without(fill, whirl, reason, fill.depth)
         theta = angles()
         drawn = np.sqrt(surface**2 - np.square(size * np.sin(theta))) - size * np.cos(theta)
         still = complex(float(waves.force_ratio((radius / surface) ** 2, whirl.speed / whirl.spin)))
         if not math.isfinite(still.real):
-            return self._without(fill, whirl, "the whirl meets a free wave, whose force is unbounded", 0.0)
+            return self._without(
+                fill, whirl, "the whirl meets a natural sloshing wave, whose force is unbounded", 0.0
+            )
         return self._found(
             fill,
             whirl,
@@ -381,7 +387,7 @@ def _told(last: End, fill: Fill) -> tuple[str, float]:
     why = {
         EndKind.FOLD: f"waves of this speed end in a fold at a whirl of {share:.3g} of the depth",
         EndKind.CHOKING: f"the flow chokes at the trough, Froude number {froude:.2f}; {upto}",
-        EndKind.RESONANCE: f"the whirl meets the free wave of {last.crests} crests; {upto}",
+        EndKind.RESONANCE: f"the whirl meets the natural sloshing wave of {last.crests} crests; {upto}",
         EndKind.NODES: f"the nodes do not carry the short waves that come with it; {upto}",
     }
     return why[last.kind], last.whirl * fill.chamber.radius

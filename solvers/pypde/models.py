@@ -195,7 +195,7 @@ class OneFamily(WaveModel):
     def __post_init__(self) -> None:
         if self.friction.law is FrictionLaw.QUADRATIC:
             raise InputError(
-                "friction", self.friction.law, "none, linear, stokes or wall for one family of waves"
+                "friction", self.friction.law, "none, linear, stokes or wall for unidirectional waves"
             )
         if not 8 <= self.points <= _MOST_POINTS:
             raise InputError("cells", self.points, f"from 8 to {_MOST_POINTS}")
@@ -228,7 +228,7 @@ class OneFamily(WaveModel):
         )
 
     def added_mass(self, fills: Fills) -> Array:
-        """See `LiquidModel`: one family brings up a part of what the exact wave does."""
+        """See `LiquidModel`: one family brings up a part of what the fully nonlinear wave does."""
         found = self._standing(fills, np.zeros(len(fills)))
         return np.asarray(fills.mass + (fills.added_mass - fills.mass) * found.slope)
 
@@ -243,10 +243,10 @@ class OneFamily(WaveModel):
         return standing(fills, deflection, self.dispersion)
 
     def wave(self, fill: Fill, whirl: Whirl) -> LiquidWave:
-        """See `WaveModel`; the error is that beside exact waves [theory: model_error, eq. 36]."""
+        """See `WaveModel`; the error is that beside fully nonlinear waves [theory: model_error, eq. 36]."""
         chamber, surface = fill.chamber, fill.surface_radius
         if whirl.gravity != 0.0:
-            raise InputError("gravity", whirl.gravity, "0 for one family of waves")
+            raise InputError("gravity", whirl.gravity, "0 for unidirectional waves")
         if not chamber.inner_radius < surface < chamber.radius:
             allowed = "less than what fills the chamber, for a free surface"
             raise InputError("volume", fill.volume, allowed)

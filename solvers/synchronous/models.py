@@ -185,7 +185,7 @@ class Linear(WaveModel):
         return added_mass_answer(fills, whirls, error)
 
     def wave(self, fill: Fill, whirl: Whirl) -> LiquidWave:
-        """See `WaveModel`; the error is that beside exact waves [theory: model_error, eq. 34]."""
+        """See `WaveModel`; the error is that beside fully nonlinear waves [theory: model_error, eq. 34]."""
         chamber, surface, amplitude = fill.chamber, fill.surface_radius, whirl.amplitude
         if fill.depth >= chamber.radius * (1.0 - 1e-9) or surface <= chamber.inner_radius:
             allowed = "less than what fills the chamber, for a free surface"
@@ -220,7 +220,9 @@ class Linear(WaveModel):
             numbers=numbers,
             ranges=ranges,
             mass_error=0.5 * displacement**2 / (chamber.radius**2 - surface**2) if converged else math.nan,
-            reason="" if converged else "the whirl meets a free wave, the linear force is unbounded",
+            reason=""
+            if converged
+            else "the whirl meets a natural sloshing wave, the linear force is unbounded",
         )
 
     def free_wave(self, fill: Fill, spin: float, crest: float, crests: int = 1) -> FreeWave:

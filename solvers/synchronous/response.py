@@ -208,7 +208,9 @@ class Response:
     deflection_dry: Annotated[
         Complex, Q("m", "deflection without liquid", over=_OVER, axes=_AXES, json=False)
     ]
-    liquid_offset: Annotated[Array, Q("m", "liquid offset", "rotation axis to centre of mass", _OVER)]
+    liquid_offset: Annotated[
+        Array, Q("m", "liquid offset", "rotation axis to centre of mass", _OVER, error="error_estimate")
+    ]
     liquid_angle: Annotated[Array, Q("rad", "angle of the liquid's centre of mass", LAG, _OVER)]
     dry_patch: Annotated[Flags, Q(name="dry patch", text="the wall is dry somewhere", over=_OVER, flags=_YES)]
     #: against slow disturbances [theory: rotor, eq. 8 and 35]; an answer counts whirls as well
@@ -286,7 +288,7 @@ class Response:
     ) -> Annotated[
         Array,
         Q(
-            *("m", "amplitude", "of the axis about where it rests; its mean if held in time", _OVER),
+            *("m", "amplitude", "of the axis about where it rests; its mean if integrated in time", _OVER),
             error="error_estimate",
         ),
     ]:

@@ -7,7 +7,10 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
+import fluid
 import leblanc
+import meshes
+import solvers
 
 # Ours, and what the field says. Single words that a key or a name may be are not here.
 WORDS = {
@@ -56,9 +59,10 @@ def private(source: str) -> set[str]:
 
 
 def test_texts_have_the_terms_of_the_field() -> None:
-    """Console, reports, help and labels; docstrings of keys stay with their page."""
-    for path in sorted(Path(leblanc.__file__).parent.rglob("*.py")):
-        assert not private(path.read_text(encoding="utf-8")), path
+    """Console, reports, help and labels, and what solvers say of themselves in them."""
+    for package in (meshes, fluid, solvers, leblanc):
+        for path in sorted(Path(str(package.__file__)).parent.rglob("*.py")):
+            assert not private(path.read_text(encoding="utf-8")), path
 
 
 def test_our_own_words_are_seen() -> None:

@@ -49,7 +49,10 @@ class ModelAnswer:
     @property
     def amplitude(
         self,
-    ) -> Annotated[Array | None, Q("m", "amplitude", "of the branch reported", _OVER, variable="amplitude")]:
+    ) -> Annotated[
+        Array | None,
+        Q("m", "amplitude", "of the branch reported", _OVER, variable="amplitude", error="error_estimate"),
+    ]:
         return None if self.result is None else self.result.amplitude
 
     @property
@@ -57,7 +60,14 @@ class ModelAnswer:
         self,
     ) -> Annotated[
         Array | None,
-        Q("m", "liquid offset", "rotation axis to centre of mass", _OVER, variable="liquid_offset"),
+        Q(
+            "m",
+            "liquid offset",
+            "rotation axis to centre of mass",
+            _OVER,
+            variable="liquid_offset",
+            error="error_estimate",
+        ),
     ]:
         return None if self.result is None else self.result.liquid_offset
 

@@ -85,7 +85,7 @@ class FitAnswer(Answer):
     assumed: Annotated[tuple[str, ...], Q(text="values of the scene that no source gives")]
     digest: Annotated[str, Q(text="fingerprint of the scene")]
     unknown: Annotated[tuple[str, ...], Q("1", "path in the scene", over=_EACH, json=False)]
-    value: Annotated[Array, Q("1", "value found, SI", over=_EACH, json=False)]
+    value: Annotated[Array, Q("1", "value found, SI", over=_EACH, json=False, error="std")]
     #: nan where the data do not tell it
     std: Annotated[Array, Q("1", "its standard error, SI", over=_EACH, json=False)]
     first: Annotated[Array, Q("1", "value that the search began with, SI", over=_EACH)]

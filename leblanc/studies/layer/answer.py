@@ -275,7 +275,9 @@ class FreeWaveAnswer(_Layered):
     """
 
     mode: Annotated[int, Q("1", "crests round the drum")]
-    whirl_speed: Annotated[Array, Q(_RATE, "speed of the crests in space", over=("sense",))]
+    whirl_speed: Annotated[
+        Array, Q(_RATE, "speed of the crests in space", over=("sense",), error="error_estimate")
+    ]
     crest: Annotated[float, Q("1", "greatest depth over the mean depth")]
     trough: Annotated[float, Q("1", "least depth over the mean depth")]
     crest_number: Annotated[float, Q("1", "speed of the liquid at the crest over its")]

@@ -52,7 +52,9 @@ class ModesAnswer(Answer):
     chamber: str  #: in words
     liquid: str  #: its name
     speed: Annotated[float, Q(_RATE, "spin speed", json=False)]
-    frequency: Annotated[Array, Q(_RATE, "frequency in the drum, with the spin", over=_OVER)]
+    frequency: Annotated[
+        Array, Q(_RATE, "frequency in the drum, with the spin", over=_OVER, error="error_estimate")
+    ]
     #: None where no closed form is known
     exact: Annotated[
         tuple[float | None, ...],

@@ -94,7 +94,7 @@ class Balancing:
             return said
         growth = float(self.growth[index])
         if growth < 0.0:
-            return f"{said}; with these balls a disturbance dies out with {-growth:.3g} 1/s at least"
+            return f"{said}; with these balls a disturbance decays with {-growth:.3g} 1/s at least"
         return f"{said}; with these balls a disturbance grows with {growth:.3g} 1/s"
 
     def _conditions(self, index: int) -> str:

@@ -138,7 +138,7 @@ def test_held_states_have_a_column_of_their_own() -> None:
     kinds = {"steady": 13, "periodic": 5, "limit_cycle": 2, "not_settled": 0}
     assert [entry["held"] for entry in found.to_json()["models"]] == [None, kinds]
     head, (first, second) = comparison_head(found), comparison_rows(found)
-    column = head.index("held states")
+    column = head.index("time-domain states")
     assert (first[column], second[column]) == ("none", "13 steady, 5 periodic, 2 limit cycle")
     within = f"{100.0 * waves.in_range.mean():.3g}"
     assert second[head.index("estimate (%)")] == "2" and second[head.index("in range (%)")] == within
@@ -147,7 +147,7 @@ def test_held_states_have_a_column_of_their_own() -> None:
     np.testing.assert_array_equal(data.amplitude_max.sel(model="long_wave"), waves.amplitude_max)
     bands = [band for band in found.plot().axes[0].collections if "least to largest" in str(band.get_label())]
     assert len(bands) == 1 and "5 periodic" in found.plot().alt
-    assert "held states" not in comparison_head(three())
+    assert "time-domain states" not in comparison_head(three())
 
 
 def test_what_has_not_converged_is_no_difference() -> None:

@@ -200,7 +200,7 @@ def test_what_keeps_no_whirl_is_told() -> None:
     assert not found.branches and "ellipse" in found.reason
     assert "no chamber" in limit_cycles(rotor, [replace(fill, volume=0.0)], range_, FRICTION).reason
     calm = limit_cycles(rotor, [fill], (0.3 * NATURAL, 0.5 * NATURAL), FRICTION)
-    assert calm.reason == "no whirl grows by itself in this range"
+    assert calm.reason == "no self-excited whirl in this range"
     with pytest.raises(InputError, match="cells"):
         limit_cycles(rotor, [fill], range_, FRICTION, cells=8)
     with pytest.raises(InputError, match="speeds"):
