@@ -34,7 +34,8 @@ def run(
             found = special(own)
         else:
             from leblanc.studies.held.holding import Holding
-            from leblanc.studies.run.study import COUPLED, run_scene
+            from leblanc.studies.run.study import run_scene
+            from solvers.held.state import COUPLED
 
             found = run_scene(own, Holding(workers, folder, fresh, solver or COUPLED), cycles)
     as_typed(found, scene)
