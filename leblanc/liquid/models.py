@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 from fluid.friction.laws import NO_FRICTION, Friction, FrictionLaw
 from leblanc.registry import LIQUIDS, announced
 from leblanc.scene.scene import LIQUID_MODELS, Scene
+from leblanc.scene.schema.load import meant
 from meshes.errors import InputError
 from solvers.checked_model import CheckedModel
 from solvers.liquid_model import LiquidModel, WaveModel
@@ -139,11 +140,11 @@ def own_model(name: str) -> CheckedModel:
     for model in _GIVEN.get():
         if model.name == name:
             return model
-    entry = announced(LIQUIDS).get(name)
+    others = announced(LIQUIDS, LIQUID_MODELS)
+    entry = others.get(name)
     if entry is None:
-        raise InputError(
-            "model.liquid", name, "one of " + ", ".join(LIQUID_MODELS) + ", or an announced name"
-        )
+        known = (*LIQUID_MODELS, *others)
+        raise InputError("model.liquid", name, f"one of {', '.join(known)}{meant(name, known)}")
     try:
         found = entry.load()
         return CheckedModel(found() if isinstance(found, type) else found, name)

@@ -609,6 +609,11 @@ class Exciter(Part):
         return []
 
 
+def not_taken(kind: str, what: str = "") -> InputError:
+    """The refusal of a machine by a question that is not for its kind; `what` else there is to do."""
+    return InputError("rotor.kind", kind, f"of another kind: this command takes no machine of this one{what}")
+
+
 class Machine(Part):
     """A kind of machine of another package, which announces it by its kind under `leblanc.machines`.
 
@@ -625,7 +630,7 @@ class Machine(Part):
 
     def machine(self) -> Any:
         """The rotor without liquid; an `InputError` where the kind has none."""
-        raise InputError("rotor.kind", self.kind, "jeffcott, two_plane or tub for this")
+        raise not_taken(self.kind)
 
     def rows(self) -> list[Row]:
         """Kind and axis, and each value in SI units; a subclass may say it better."""
@@ -648,7 +653,7 @@ class Machine(Part):
         if cls is not Machine:
             return (cls,)
         found = []
-        for kind in _announced():
+        for kind in announced_machines():
             with suppress(InputError):  # one that is broken is no choice
                 found.append(announced_machine(kind))
         return tuple(found)
@@ -701,14 +706,14 @@ def _checked(machine: Callable[[Any], Any]) -> Callable[[Any], Any]:
     return checked
 
 
-def _announced() -> dict[str, EntryPoint]:
+def announced_machines() -> dict[str, EntryPoint]:
     """Kinds of machines of other packages."""
     return announced(MACHINES, (*CORE, *WINGS))
 
 
 def announced_machine(kind: str) -> type[Machine]:
     """The class that an installed package announces for a kind of machine."""
-    entry = _announced()[kind]
+    entry = announced_machines()[kind]
     with sound(kind, f"loading {entry.value}"):
         found = entry.load()
     if isinstance(found, type) and issubclass(found, Machine) and found.model_fields["kind"].default == kind:
@@ -721,7 +726,7 @@ def rotor_tag(given: Any) -> Any:
     """Tag of a rotor in `AnyRotor`: its kind, or `ANNOUNCED` for a kind of another package."""
     kind = given.get("kind") if isinstance(given, Mapping) else getattr(given, "kind", None)
     ours = not isinstance(kind, str) or kind in CORE or kind in WINGS
-    return ANNOUNCED if not ours and kind in _announced() else kind
+    return ANNOUNCED if not ours and kind in announced_machines() else kind
 
 
 AnyRotor = (

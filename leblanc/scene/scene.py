@@ -6,7 +6,7 @@ import hashlib
 import json
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from itertools import pairwise
 from os import PathLike
 from typing import TYPE_CHECKING, Annotated, Any
@@ -25,7 +25,7 @@ from leblanc.scene.magnetic import MagneticRotor as MagneticRotor
 from leblanc.scene.programme.table import Programme as Programme
 from leblanc.scene.races import BallRace as BallRace  # what a scene's chamber may be
 from leblanc.scene.rotors import WITHOUT_CHAMBERS as WITHOUT_CHAMBERS
-from leblanc.scene.rotors import AnyRotor, Machine, rotor_tag
+from leblanc.scene.rotors import AnyRotor, Machine, announced_machines, not_taken, rotor_tag
 from leblanc.scene.rotors import Exciter as Exciter  # what a scene's rotor may be
 from leblanc.scene.rotors import JeffcottRotor as JeffcottRotor
 from leblanc.scene.rotors import TubRotor as TubRotor
@@ -75,9 +75,9 @@ class LiquidName(OneOf):
 
     def __call__(self, value: object) -> str:
         """The name."""
-        if isinstance(value, str) and value not in self.names and value in announced(LIQUIDS):
+        if isinstance(value, str) and value in self.names:
             return value
-        return super().__call__(value)
+        return OneOf((*self.names, *announced(LIQUIDS, self.names)))(value)
 
 
 _Path = Annotated[str, PlainValidator(Text(200))]
@@ -553,8 +553,16 @@ def load_scene(path: str | PathLike[str]) -> Scene:
     """
     if not isinstance(path, str | PathLike):
         raise InputError("path", type(path).__name__, "the path of a scene file")
+    _tell_of_names()
     with with_lines(path):
         return Scene.from_toml(read_text(path), str(path))
+
+
+@cache
+def _tell_of_names() -> None:
+    """Say once of names of machines and liquids that packages announce in vain, which a file may mean."""
+    announced_machines()
+    announced(LIQUIDS, LIQUID_MODELS)
 
 
 def fault_in(path: str | PathLike[str], error: InputError) -> SceneError | None:
@@ -612,7 +620,7 @@ def require_whirl(scene: Scene, known: bool = False) -> None:
     `known`: machines of other packages as well, of which the parts and masses are not known.
     """
     if isinstance(scene.rotor, (MagneticRotor, Spindle, *((Machine,) if known else ()))):
-        raise InputError("rotor.kind", scene.rotor.kind, "jeffcott, two_plane or tub for this")
+        raise not_taken(scene.rotor.kind)
 
 
 def require_no_balls(scene: Scene, what: str) -> None:
@@ -633,7 +641,7 @@ def dry_rotor(scene: Scene) -> Jeffcott | TwoPlane | Tub:
     An `InputError` for a rotor without chambers: an exciter, a spindle, or in magnetic bearings.
     """
     if isinstance(scene.rotor, WITHOUT_CHAMBERS):
-        raise InputError("rotor.kind", scene.rotor.kind, "jeffcott, two_plane or tub for this")
+        raise not_taken(scene.rotor.kind)
     return scene.rotor.machine()
 
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from leblanc.scene.programme.steps import Step
-from leblanc.scene.rotors import AnyRotor
+from leblanc.scene.rotors import AnyRotor, not_taken
 from leblanc.scene.scene import MagneticRotor, Programme, Runup, Scene, dry_rotor, require_whirl
 from leblanc.scene.unbalances import (
     polar_inertia_of,
@@ -29,11 +29,11 @@ def planned(scene: Scene) -> Runup | Programme:
     """The run-up or the programme of a scene."""
     if isinstance(scene.rotor, MagneticRotor):
         missing = "" if scene.rotor.trial is not None else ", once the scene has that table"
-        allowed = (
-            "jeffcott, two_plane or tub for this; type `leblanc run` in place of `leblanc runup`: it follows "
-            f"[rotor.trial] in time, its pulsating speed and its start off the centre{missing}"
+        instead = (
+            "; type `leblanc run` in place of `leblanc runup`: it follows [rotor.trial] in time, its "
+            f"pulsating speed and its start off the centre{missing}"
         )
-        raise InputError("rotor.kind", scene.rotor.kind, allowed)
+        raise not_taken(scene.rotor.kind, instead)
     require_whirl(scene)
     if scene.speed_plan is None:
         allowed = (

@@ -21,7 +21,7 @@ from leblanc.plotting.bodies import (
     film_factor,
     rounded_down,
 )
-from leblanc.scene.rotors import Machine
+from leblanc.scene.rotors import Machine, not_taken
 from leblanc.scene.scene import Exciter, JeffcottRotor, Scene, Speeds, Spindle, dry_rotor
 from leblanc.studies.run.answer import RunAnswer
 from leblanc.studies.run.study import run_scene
@@ -82,10 +82,9 @@ def machine_motion(scene: Scene, speed: float | None = None) -> MachineMotion:
 def require_rotor(scene: Scene) -> None:
     """The scene has a rotor that whirls, and not a table with balls."""
     if isinstance(scene.rotor, Spindle | Machine):
-        raise InputError("rotor.kind", scene.rotor.kind, "jeffcott, two_plane or tub for this")
+        raise not_taken(scene.rotor.kind)
     if scene.rotor.kind == "exciter":
-        allowed = "jeffcott, two_plane or tub for this; of an exciter only --screenshot shows a picture"
-        raise InputError("rotor.kind", "exciter", allowed)
+        raise not_taken("exciter", "; only --screenshot shows a picture of it")
 
 
 def _lean(scene: Scene, result: RunAnswer) -> Complex:

@@ -233,3 +233,20 @@ def test_equations_of_motion_have_real_matrices() -> None:
             said = str(error)
         assert said.startswith(f"{name} = 'complex128 of shape"), name
         assert "finite real numbers" in said
+
+
+def test_what_takes_no_such_machine_says_so(installed: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for scene in (lb.load_scene(installed), lb.example("spindle")):
+        with pytest.raises(lb.InputError, match="this command takes no machine of this one"):
+            lb.optimise(scene, "peak")
+    assert main(["view", str(installed), "--out", "out"]) == 2
+    assert "this command takes no machine of this one" in capsys.readouterr().err
+
+
+def test_a_misspelt_liquid_is_told_with_all_that_are_installed(installed: Path, tmp_path: Path) -> None:
+    about = next((tmp_path / "site").glob("*.dist-info")) / "entry_points.txt"
+    about.write_text(
+        about.read_text(encoding="utf-8") + "[leblanc.liquids]\ncentring = slender.it:It\n", encoding="utf-8"
+    )
+    with pytest.raises(lb.SceneError, match=r"fem, centring; did you mean centring\?"):
+        lb.load_scene(installed).replace({"model.liquid": "centrng"})
