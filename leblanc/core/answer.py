@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import html
 import io
+import re
 from abc import ABC, abstractmethod
 from base64 import b64encode
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
+from hashlib import sha256
 from importlib import metadata
 from os import PathLike
 from pathlib import Path
@@ -30,6 +32,9 @@ class NotConverged(RuntimeError):  # noqa: N818 - it names a state, not a mistak
         self.failed = tuple(failed)
 
 
+_NO_ADDRESS = re.compile(r" at 0x[0-9A-Fa-f]+")
+
+
 @dataclass(frozen=True)
 class Typed:
     """What was asked, as it was typed."""
@@ -38,15 +43,35 @@ class Typed:
     study_file: str = ""  #: text of a sweep
     command: str = ""  #: that was typed; empty where it was asked in Python
     path: str = ""  #: of the machine file, beside which its sections are
+    #: liquid asked with in Python in place of the scene's: its name, or what a model of one's own is made of
+    liquid_model: str = ""
 
 
-def as_typed(answer: Answer, scene: Any = None, study: Any = None, **_: Any) -> None:
+def as_typed(answer: Answer, scene: Any = None, study: Any = None, model: Any = None, **_: Any) -> None:
     """Let an answer know what was asked, by its question; a study that changes the scene says so before."""
     scene = scene if study is None else study.scene
     if scene is not None and "typed" not in vars(answer):
-        typed = Typed(scene.text, "" if study is None else study.text, path=scene.file)
+        own = "" if model is None else model if isinstance(model, str) else _made_of(model)
+        typed = Typed(scene.text, "" if study is None else study.text, path=scene.file, liquid_model=own)
         object.__setattr__(answer, "typed", typed)
         object.__setattr__(answer, "scene_asked", scene)
+
+
+def _made_of(model: object) -> str:
+    """An object in words that tell it from others: its own, or its class with its attributes.
+
+    Arrays are told by their fingerprint, and addresses in memory are left out, which differ from run to run.
+    """
+    kind = type(model)
+    if kind.__repr__ is not object.__repr__:
+        return _NO_ADDRESS.sub("", repr(model))
+    said = []
+    for name, value in getattr(model, "__dict__", {}).items():
+        text = repr(value)
+        if hasattr(value, "tobytes"):
+            text = f"{value.dtype}{list(value.shape)} {sha256(value.tobytes()).hexdigest()[:12]}"
+        said.append(f"{name}={_NO_ADDRESS.sub('', text)}")
+    return f"{kind.__module__}.{kind.__qualname__}({', '.join(said)})"
 
 
 def versions(packages: Iterable[str] = ("leblanc", "numpy", "scipy")) -> dict[str, str]:

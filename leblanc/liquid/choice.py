@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 HELD_MODELS = {"long_wave": ("long waves", "cells"), "potential": ("fully nonlinear waves", "nodes")}
 
 
-_KNOWN, _RATE = ("linear", "statics", "kdv", "fem", *HELD_MODELS), "rad s-1"
+KNOWN, _RATE = ("linear", "statics", "kdv", "fem", *HELD_MODELS), "rad s-1"
 
 
 @dataclass(frozen=True)
@@ -75,6 +75,7 @@ class Choice:
     #: processor time to hold rotor and waves in time at each speed, s; None where it was not asked for or no
     #: wave can be held
     holding: Array | None = None
+    announced: bool = False  #: it is a model of one's own that a package announces and the scene names
 
     @property
     def missed(self) -> Flags:
@@ -185,8 +186,9 @@ def _reason(choice: Choice, model: str, part: Index) -> str:
         return _held_reason(choice, part)
     if model == "kdv":
         return _family_reason(choice, part)
-    if model not in _KNOWN:
-        return "a model of one's own, which the question was asked with"
+    if model not in KNOWN:
+        asked = "the scene asks for" if choice.announced else "the question was asked with"
+        return f"a model of one's own, which {asked}"
     if model == "fem" and not choice.cut:
         return "the scene asks for it; finite elements integrate the paraboloid and miss it by their mesh"
     why = _statics_reason(choice, part) if model == "statics" else _linear_reason(choice, part)
@@ -258,7 +260,7 @@ def _better(choice: Choice, model: str, part: Index) -> str:
     """What the next better model is, costs and gives."""
     if choice.cut:
         return "none: no other model knows such chambers"
-    if model not in _KNOWN:
+    if model not in KNOWN:
         return "unknown: it is compared with no other"
     if not choice.in_range[part[0]]:
         return "none that is steady: `leblanc runup` carries the liquid until it is caught"

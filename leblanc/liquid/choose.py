@@ -359,6 +359,7 @@ def _choice(machine: Prepared, linear: LinearError, gravity: GravityError) -> Ch
         gravity=gravity,
         cut=cut,
         held_model=held_model(scene),
+        announced=own is not None and bool(own.called),
     )
 
 

@@ -38,7 +38,7 @@ def run(
             from solvers.held.state import COUPLED
 
             found = run_scene(own, Holding(workers, folder, fresh, solver or COUPLED), cycles)
-    as_typed(found, scene)
+    as_typed(found, scene, model=model)
     return found
 
 

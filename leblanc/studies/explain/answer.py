@@ -14,7 +14,7 @@ from leblanc.core.blocks import Block, Section, Table, Words
 from leblanc.core.netcdf import NamedArrays
 from leblanc.core.notes import one_line, percent
 from leblanc.core.units import LENGTH, RPM, TORQUE, VOLUME, in_rpm, number, over_rpm, with_unit
-from leblanc.liquid.choice import HeldCost, ModelSpan, SpeedEstimate
+from leblanc.liquid.choice import KNOWN, HeldCost, ModelSpan, SpeedEstimate
 from leblanc.studies.closed_forms.answer import ClosedForms, closed_form_table
 from leblanc.studies.run.motion import RestMode
 from leblanc.studies.run.words import described, error_words, speeds_words
@@ -217,7 +217,7 @@ def described_blocks(answer: ExplainAnswer) -> list[Block]:
             Table(mode_rows(answer.modes), indent=2),
         ]
     for k, layer in enumerate(answer.layers):
-        found += [Words(f"chamber {k + 1}"), Table(layer_rows(layer), indent=2)]
+        found += [Words(f"chamber {k + 1}"), Table(layer_rows(layer, own_model_of(answer)), indent=2)]
     if answer.models:
         found.append(Words(f"liquid model, with a tolerance of {percent(answer.tolerance)}"))
     for span in answer.models:
@@ -236,6 +236,11 @@ def described_blocks(answer: ExplainAnswer) -> list[Block]:
     if answer.runup:
         found += [Words("liquid model of the run-up"), Table([(answer.runup,)], indent=2)]
     return found
+
+
+def own_model_of(answer: ExplainAnswer) -> str:
+    """Name of the model of one's own that answers; empty where a built-in one does."""
+    return next((span.model for span in answer.models if span.model not in KNOWN), "")
 
 
 def machine_rows(answer: ExplainAnswer) -> Rows:
@@ -262,6 +267,9 @@ def machine_rows(answer: ExplainAnswer) -> Rows:
         turning = in_rpm(answer.whirl.whirl_speed)
         text = f"self-excited, about {size} at {speed}, the middle of its band, turning at {turning}"
         rows.append(("whirl", f"{text}: an estimate, see `map --cycles`"))
+    if own := own_model_of(answer):
+        text = f"not estimated: the rule is that of an even layer, not of {own}; `run` and `map` ask it"
+        rows.append(("whirl", text))
     if answer.held is not None:
         rows.append(("integrated in time", _held_words(answer.held, answer.tolerance)))
     return rows
@@ -287,14 +295,17 @@ def mode_rows(modes: tuple[RestMode, ...]) -> Rows:
     ]
 
 
-def layer_rows(layer: LayerExplanation | None) -> Rows:
-    """One chamber; label and text."""
+def layer_rows(layer: LayerExplanation | None, own: str = "") -> Rows:
+    """One chamber, its liquid by a model of one's own where one is named; label and text."""
     if layer is None:
         return [("fill", "empty")]
     n = layer.numbers
     steepness = f"{_ends(n.steepness)}: rise of the surface over the radius in chamber heights"
     if math.isinf(n.steepness[0]):
         steepness = "a cylinder: no gravity along the axis"
+    added = f"{layer.added_mass_ratio:.4g} of the rotor's mass while the wall is wet"
+    if own:
+        added = f"as {own} has it, not that of an even layer"
     covers = "not known for such a chamber"
     if not math.isnan(layer.optimal_volume):
         covers = f"from {with_unit(layer.optimal_volume, VOLUME)} at the last deflection without liquid"
@@ -304,7 +315,7 @@ def layer_rows(layer: LayerExplanation | None) -> Rows:
         ("fill", f"{n.fill:.4g} of the capacity"),
         ("layer at fast spin", f"{with_unit(layer.depth, LENGTH)} deep, h0/R = {n.relative_depth:.4g}"),
         ("curvature", f"kappa = {n.curvature:.5g}"),
-        ("added mass", f"{layer.added_mass_ratio:.4g} of the rotor's mass while the wall is wet"),
+        ("added mass", added),
         ("mass of the liquid", f"{layer.liquid_mass_ratio:.4g} of the rotor's mass"),
         ("centrifuge number", f"{_ends(n.centrifuge)}: acceleration at the surface over gravity"),
         ("steepness", steepness),

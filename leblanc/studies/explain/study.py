@@ -38,6 +38,7 @@ from leblanc.studies.explain.answer import (
 )
 from leblanc.studies.run.motion import RestMode
 from leblanc.studies.run.study import rest_modes
+from solvers.checked_model import CheckedModel
 from solvers.cycles.estimate import largest_estimate
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import moving_mass
@@ -97,9 +98,12 @@ def explain_scene(scene: Scene) -> ExplainAnswer:
 
 
 def _whirl(machine: Prepared) -> WhirlOutlook | None:
-    """Size of the self-excited whirl between the scene's first and last speed; None where there is none."""
+    """Size of the self-excited whirl between the scene's first and last speed, of an even layer.
+
+    None where there is none; the rule knows no model of one's own.
+    """
     scene, range_ = machine.scene, (float(machine.speed.min()), float(machine.speed.max()))
-    if not scene.fills or range_[0] == range_[1]:
+    if not scene.fills or range_[0] == range_[1] or isinstance(machine.waves, CheckedModel):
         return None
     most = largest_estimate(machine.rotor, scene.fills, range_, scene.model.friction)
     if most is None:

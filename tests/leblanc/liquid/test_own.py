@@ -4,19 +4,21 @@ from __future__ import annotations
 
 import math
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from importlib.metadata import EntryPoint
 from pathlib import Path
 from typing import Any, ClassVar
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import leblanc as lb
 from fluid.fill import Fills
 from fluid.friction.laws import NO_FRICTION, Friction, FrictionLaw
 from fluid.whirl import layer_rate, offset_with_friction, plane_layer
 from leblanc.liquid.models import asked_with
+from leblanc.studies.explain.answer import described_blocks
 from meshes.errors import InputError
 from solvers.checked_model import CheckedModel
 from solvers.liquid_model import LiquidAnswer, Whirls
@@ -197,9 +199,8 @@ def test_a_machine_without_liquid_has_no_model() -> None:
         lb.run(lb.example("spindle"), model=Ring())
 
 
-def test_an_announced_model_is_named_in_a_machine_file(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def announce(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A package that announces a model, and two that cannot be loaded."""
     (tmp_path / "my_liquids.py").write_text(
         "from tests.leblanc.liquid.test_own import Ring\nring = Ring()\nbroken = None\n"
     )
@@ -209,6 +210,11 @@ def test_an_announced_model_is_named_in_a_machine_file(
     package = type("Package", (), {"entry_points": entries})
     monkeypatch.setattr("leblanc.registry.distributions", lambda: [package])
 
+
+def test_an_announced_model_is_named_in_a_machine_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    announce(tmp_path, monkeypatch)
     rig = scene("horizontal_rig", **{"model.liquid": "thin ring"})
     own, ours = lb.run(rig), lb.run(scene("horizontal_rig"))
     assert set(own.model.tolist()) == {"thin ring"}
@@ -325,3 +331,58 @@ def test_it_cannot_change_what_it_is_asked_with() -> None:
         assert written(fills, whirls).flags.writeable
     with pytest.raises(InputError, match="read-only"):
         lb.run(scene("horizontal_rig"), model=Writes())
+
+
+@kills("leblanc.studies.explain.study:_whirl", " or isinstance(machine.waves, CheckedModel)", "")
+@kills("leblanc.liquid.choose:_choice", "own is not None and bool(own.called)", "False")
+@kills(
+    "leblanc.studies.explain.answer:described_blocks",
+    "layer_rows(layer, own_model_of(answer))",
+    "layer_rows(layer)",
+)
+def test_explain_says_nothing_of_an_even_layer_where_the_scene_names_another(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    announce(tmp_path, monkeypatch)
+    linear = scene("horizontal_rig", **{"rotor.damping_ratio": 0.01, "model.friction": "wall"})
+    rig = scene(
+        "horizontal_rig",
+        **{"rotor.damping_ratio": 0.01, "model.friction": "wall", "model.liquid": "thin ring"},
+    )
+    ours, own = lb.explain(linear), lb.explain(rig)
+    assert ours.whirl is not None
+    assert own.whirl is None
+    assert {span.reason for span in own.models if span.in_range} == {
+        "a model of one's own, which the scene asks for"
+    }
+    told, plain = (repr(described_blocks(each)) for each in (own, ours))
+    assert "not of thin ring; `run` and `map` ask it" in told
+    assert "added mass" in told and "as thin ring has it" in told
+    assert "even layer" not in plain
+
+
+@kills("leblanc.core.answer:_made_of", "{', '.join(said)}", "")
+@kills("leblanc.core.answer:_made_of", "is not object.__repr__", "is object.__repr__")
+@kills("leblanc.core.answer:as_typed", ", liquid_model=own", "")
+def test_an_answer_and_its_file_tell_models_apart(tmp_path: Path) -> None:
+    """Which have the same name, as does the scene."""
+
+    @dataclass
+    class Given(Ring):
+        friction: Friction
+        spoilt: Any = field(default_factory=dict)
+
+    light, heavy = (Friction(FrictionLaw.LINEAR, rate) for rate in (2.0, 200.0))
+    asked = scene("horizontal_rig"), [100.0, 200.0]
+    said = []
+    for model in (Ring(light), Ring(heavy), Given(light), "statics", None):
+        answer = lb.run(asked[0], speeds=asked[1], model=model)
+        answer.save(tmp_path / "it.nc")
+        said.append(answer.typed.liquid_model)
+        assert lb.open(tmp_path / "it.nc").typed.liquid_model == said[-1]
+        with xr.open_dataset(tmp_path / "it.nc") as data:
+            assert data.attrs.get("liquid_model", "") == said[-1]
+    assert len(set(said)) == len(said)
+    assert said[0].startswith("tests.leblanc.liquid.test_own.Ring(friction=Friction(")
+    assert "Given(friction=" in said[2] and "spoilt={}" in said[2]
+    assert said[3:] == ["statics", ""]
