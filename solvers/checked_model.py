@@ -14,6 +14,7 @@ from meshes.errors import InputError
 from solvers.liquid_model import ROUNDING, LiquidAnswer, LiquidModel, Whirls
 
 _SMALL = 1e-6  # of the depth: a whirl that stands for one without end small
+_STILL = 0.1  # of the force in that whirl, that may be left without a deflection
 _STEP = 1e-6  # relative, of the deflection, by which a slope is found
 _FIELD = "model"
 _FLAGS = "dry_patch", "converged"
@@ -165,9 +166,17 @@ def _checked(found: Any, size: int) -> LiquidAnswer:
 
 
 def require_outwards(model: CheckedModel, fills: Fills, whirls: Whirls) -> None:
-    """Raise `InputError` where liquid is pulled against a small synchronous whirl, as by a wrong sign."""
+    """Raise `InputError` where liquid is pulled against a small synchronous whirl, as by a wrong sign.
+
+    And where it is pulled without a deflection, as those whirls are: the response is that to the unbalance.
+    """
     if not len(fills):
         return
+    still = model.answer(fills, whirls)
+    pulled = still.converged & (np.abs(still.unbalance) > _STILL * fills.mass * _SMALL * fills.depth)
+    if pulled.any():
+        value = f"{complex(still.unbalance[pulled][0]):g} kg m without a deflection"
+        raise InputError("model.answer.unbalance", value, "0 there: what pulls without one is an unbalance")
     mass, known = model.transfer(fills, whirls)
     wrong = known & (mass.real < 0.0)
     if wrong.any():

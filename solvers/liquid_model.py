@@ -100,14 +100,22 @@ def grown(time: Array | float, ramp: float) -> Array:
 
 @dataclass(frozen=True)
 class Whirls:
-    """n circular whirls, one for each of the fills that are asked about; all shapes (n,)."""
+    """n circular whirls, one for each of the fills that are asked about; all shapes (n,).
 
-    spin: Array  #: Omega, rad/s, above 0
-    speed: Array  #: omega in space, rad/s, other than 0
-    #: of the chamber's axis, m, complex or real; 0 asks for the limit of a small one
+    Attributes
+    ----------
+    spin : spin speed of the drum Omega, rad/s, above 0
+    speed : whirl speed omega in space, rad/s, positive with the spin, other than 0
+    deflection : of the chamber's axis, m, complex or real; 0 asks for the limit of a small one
+    axial_gravity : gravity along the axis, m/s^2
+    gravity : gravity across the axis, m/s^2
+    """
+
+    spin: Array
+    speed: Array
     deflection: Array | Complex
-    axial_gravity: Array  #: along the axis, m/s^2
-    gravity: Array  #: across the axis, m/s^2
+    axial_gravity: Array
+    gravity: Array
 
     @classmethod
     def synchronous(cls, spin: Array, deflection: Array | Complex, axial_gravity: Array) -> Whirls:
@@ -142,19 +150,28 @@ class Whirls:
 
 @dataclass(frozen=True)
 class LiquidAnswer:
-    """The liquid's answer to n whirls; all shapes (n,), complex numbers along the deflection."""
+    """The liquid's answer to n whirls; all shapes (n,), complex numbers along the deflection.
 
-    #: U, the force over the whirl speed squared, kg m: where the liquid stands still in the whirl's frame its
-    #: first moment about the rotation axis
+    Attributes
+    ----------
+    unbalance : U, the force over the whirl speed squared, kg m: where the liquid stands still in the whirl's
+        frame its first moment about the rotation axis; 0 without a deflection
+    slope : derivative of U with respect to the deflection at fixed volume, kg; nan where it is not known
+    offset : liquid's centre of mass from the chamber's axis, m; told of a prescribed whirl, while the
+        response takes the centre of mass from U over the liquid's mass
+    dry_patch : whether the wall is dry over its whole height somewhere
+    converged : whether the answer was found; elsewhere its numbers do not count
+    limits : by its name each limit of the model, and where it is kept
+    error : estimated error of U, at rest relative, of waves over the larger of U and a full chamber's; nan
+        where the model has no estimate
+    """
+
     unbalance: Complex
-    #: derivative of U with respect to the deflection at fixed volume, kg; nan where it is not known
     slope: Array | Complex
-    offset: Complex  #: liquid's centre of mass from the chamber's axis, m
-    dry_patch: Flags  #: the wall is dry over its whole height somewhere
-    converged: Flags  #: the answer was found
-    limits: Mapping[str, Flags]  #: by its name each limit of the model, and where it is kept
-    #: estimated error of U, at rest relative, of waves over the larger of U and a full chamber's; nan where
-    #: the model has no estimate
+    offset: Complex
+    dry_patch: Flags
+    converged: Flags
+    limits: Mapping[str, Flags]
     error: Array
 
     @classmethod
@@ -266,7 +283,8 @@ class LiquidModel(Protocol):
     {'frozen'}
     """
 
-    #: Its liquid may pull across the deflection in a synchronous whirl, its law bend as it likes.
+    #: Its liquid may pull across the deflection in a synchronous whirl, its law bend as it likes: branches
+    #: are then followed from speed to speed. Of a model of one's own it is always taken for true.
     across: ClassVar[bool] = False
 
     @property

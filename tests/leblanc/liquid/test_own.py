@@ -162,6 +162,31 @@ def test_a_force_of_the_wrong_sign_is_refused() -> None:
         lb.run(scene("horizontal_rig"), model=Inwards())
 
 
+@kills("solvers.checked_model:require_outwards", "_STILL * fills.mass", "1e9 * fills.mass")
+@kills("solvers.checked_model:require_outwards", "still.converged & ", "True & ")
+def test_a_force_without_a_deflection_is_refused() -> None:
+    class Offset(Ring):
+        name = "offset"
+        share = 1e-3
+
+        def answer(self, fills: Fills, whirls: Whirls) -> Any:
+            found = super().answer(fills, whirls)
+            return replace(
+                found,
+                unbalance=found.unbalance + self.share * fills.mass * fills.depth,
+                converged=whirls.amplitude >= self.least,
+            )
+
+    model = Offset()
+    model.least = 1e-12
+    lb.run(scene("horizontal_rig"), speeds=[100.0, 200.0], model=model)
+    model.least = 0.0
+    refused = None
+    with suppress(InputError):
+        refused = lb.run(scene("horizontal_rig"), speeds=[100.0, 200.0], model=model)
+    assert refused is None
+
+
 class Fails(Ring):
     """It raises."""
 
