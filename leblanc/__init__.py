@@ -120,7 +120,7 @@ def __getattr__(name: str) -> object:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     module, attribute = _HOMES[name]
     found = globals()[name] = getattr(import_module(module), attribute)
-    if name in _QUESTIONS or name.startswith("map_"):
+    if module.startswith("leblanc.studies."):
         from leblanc.core.question import readable
 
         readable(found)

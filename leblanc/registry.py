@@ -8,6 +8,8 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager
 from importlib.metadata import Distribution, EntryPoint, distributions
+from pathlib import Path
+from traceback import extract_tb
 from typing import Any
 
 from leblanc.core.answer import Answer, NotConverged
@@ -66,19 +68,27 @@ def answerer(question: str, kind: str) -> Callable[..., Any] | None:
 
 
 @contextmanager
-def sound(kind: str, what: str) -> Iterator[None]:
-    """What fails in the code of a machine of another package, in one sentence; what it refuses stays."""
+def sound(
+    name: str, what: str, field: str = "rotor.kind", passed: tuple[type[BaseException], ...] = ()
+) -> Iterator[None]:
+    """What fails in the code of another package, in one sentence about what the user named.
+
+    What it refuses stays as it is, and what is `passed`.
+    """
+    refusals: tuple[type[BaseException], ...] = (InputError, NotConverged, Terminated, *passed)
     of_a_file: Any = called("leblanc.scene.schema.load:SceneError")
     try:
         yield
-    except (InputError, NotConverged, Terminated):
+    except refusals:
         raise
     except (Exception, SystemExit) as error:
         if behind(error) is not None or isinstance(error, of_a_file):
             raise
         said = " ".join(str(error).split())
-        why = f"{type(error).__name__}{': ' * bool(said)}{said}"
-        raise InputError("rotor.kind", kind, f"of a package that works; {what} fails: {why}") from error
+        places = [one for one in extract_tb(error.__traceback__)[1:] if not one.filename.startswith("<")]
+        at = f" ({Path(places[-1].filename).name}, line {places[-1].lineno})" if places else ""
+        why = f"{type(error).__name__}{': ' * bool(said)}{said}{at}"
+        raise InputError(field, name, f"of a package that works; {what} fails: {why}") from error
 
 
 _SAID: set[str] = set()  # of names that are announced in vain

@@ -25,7 +25,7 @@ from leblanc.core.contents import recording
 from leblanc.core.interrupts import INTERRUPTED, TERMINATED, Terminated, behind, heard, leave, said
 from leblanc.core.terminal import drop, ready_streams, say
 from leblanc.registry import COMMANDS as ANNOUNCED
-from leblanc.registry import announced
+from leblanc.registry import announced, sound
 from leblanc.scene.schema.load import SceneError, escaped
 from meshes.errors import InputError
 
@@ -244,10 +244,22 @@ def _words(error: BaseException) -> str:
     return str(error) or type(error).__name__
 
 
+def _of_another(name: str, command: Callable[..., object]) -> Callable[..., object]:
+    """The command of another package; what fails in it is one sentence."""
+    passed = (OSError, SystemExit, typer.Exit, typer.Abort, *_UsageError.__mro__[:-3])
+
+    @wraps(command)
+    def asked(**options: Any) -> object:
+        with sound(name, "its answer", "command", passed):
+            return command(**options)
+
+    return asked
+
+
 def _add_announced(application: typer.Typer, entry: EntryPoint) -> None:
     """Add a command of another package; one that does not load says so when it is called."""
     try:
-        function = _as_typed(entry.load())
+        function = _of_another(entry.name, _as_typed(entry.load()))
         alone = typer.Typer()
         alone.command(entry.name)(function)
         get_command(alone)  # whatever is wrong with it shows here, not in the help of all commands

@@ -28,6 +28,7 @@ from leblanc.core.question import (
     called,
     parameters,
     read,
+    readable,
 )
 from leblanc.core.terminal import print_json, say, show
 from meshes.errors import InputError
@@ -48,6 +49,8 @@ def command(question: Callable[..., Any]) -> Callable[..., None]:
     The module of the question may name the `FILES` that its answer writes, the last being the data, and have
     a function `present` of the answer and of further options, which gives back what is shown.
     """
+    if not question.__module__.startswith("leblanc."):
+        readable(question)  # as `leblanc` does for its own, when Python asks for them
     everything = {one.name: one for one in parameters(question)}
     films = {name: one.option.film for name, one in everything.items() if one.option.film}
     apart = {*_FOLDER, "progress", *films, *(name for name, one in everything.items() if one.option.alone)}

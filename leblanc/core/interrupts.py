@@ -150,8 +150,11 @@ def given_back() -> Iterator[None]:
 def behind(error: BaseException) -> KeyboardInterrupt | Terminated | None:
     """The interrupt that compiled code has made another error of, if there is one."""
     found: BaseException | None = error
+    seen: set[int] = set()  # errors that are raised again may stand behind each other
     while found is not None and not isinstance(found, KeyboardInterrupt | Terminated):
+        seen.add(id(found))
         found = found.__cause__ or found.__context__
+        found = None if id(found) in seen else found
     return found
 
 

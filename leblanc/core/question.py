@@ -8,6 +8,7 @@ takes up, and `progress`.
 from __future__ import annotations
 
 import builtins
+import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import nullcontext, suppress
 from dataclasses import dataclass
@@ -262,7 +263,10 @@ def readable(question: Callable[..., Any]) -> None:
             said += " | None"
         made.append(own.parameters[one.name].replace(annotation=_Text(said)))
         if one.text:
-            lines.append(f"{one.name} : {one.text[:1].lower()}{one.text[1:].rstrip('.')}")
+            text = f"{one.text[:1].lower()}{one.text[1:].rstrip('.')}"
+            if one.name == "workers":  # of which a command takes as many as there are cores
+                text = re.sub(r"\[default: .*\]", f"[default: {one.default}]", text)
+            lines.append(f"{one.name} : {text}")
     result = own.return_annotation
     question.__asked__ = own  # type: ignore[attr-defined]  # what the command is made from
     question.__signature__ = own.replace(  # type: ignore[attr-defined]

@@ -51,6 +51,11 @@ class OutputsAnswer(Answer):
     quantities: Annotated[tuple[Output, ...], Q(text="every quantity, by answer")]
     titles: dict[str, str]  #: of the classes, in their order
 
+    def __repr__(self) -> str:
+        """How many, and of which commands."""
+        of = ", ".join(dict.fromkeys(one.question for one in self.quantities))
+        return f"<OutputsAnswer: {len(self.quantities)} quantities of {of}>"
+
     def blocks(self) -> tuple[Block, ...]:
         sections = []
         for kind, title in self.titles.items():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator
 from importlib import import_module
+from importlib.metadata import EntryPoint
 from inspect import isabstract
 from pathlib import Path
 from typing import Any
@@ -12,6 +13,7 @@ import leblanc
 from leblanc.core.answer import Answer
 from leblanc.core.quantities import quantities, types_of
 from leblanc.core.units import with_peak
+from leblanc.registry import COMMANDS, announced, sound
 from leblanc.studies.outputs.answer import Output, OutputsAnswer
 from meshes.errors import InputError
 
@@ -21,7 +23,10 @@ def answer(question: str) -> OutputsAnswer:
     kinds = answers()
     names = list(dict.fromkeys(kind.command for kind in kinds))
     if question and question not in names:
-        raise InputError("question", question, f"one of: {', '.join(names)}")
+        others = announced(COMMANDS)
+        kinds = _announced_answers(others[question]) if question in others else []
+        if not kinds:
+            raise InputError("question", question, f"one of: {', '.join((*names, *others))}")
     chosen = [kind for kind in kinds if question in ("", kind.command)]
     found: dict[tuple[str, str], Output] = {}
     for one in (each for kind in chosen for each in _outputs(kind, kind)):
@@ -43,6 +48,16 @@ def answers() -> list[type[Answer]]:
         if kind.__module__.startswith("leblanc.") and not (kind.__name__.startswith("_") or isabstract(kind))
     }
     return sorted(kinds - {OutputsAnswer}, key=lambda kind: (kind.command, kind.__name__))
+
+
+def _announced_answers(entry: EntryPoint) -> list[type[Answer]]:
+    """The classes of the answers of a command of another package, in the order of their names."""
+    with sound(entry.name, f"loading {entry.value}", "question"):
+        entry.load()
+    found = (
+        kind for kind in _below(Answer) if getattr(kind, "command", "") == entry.name and not isabstract(kind)
+    )
+    return sorted(found, key=lambda kind: kind.__name__)
 
 
 def _below(kind: Any) -> Iterator[type[Answer]]:

@@ -8,6 +8,8 @@ import sys
 import tomllib
 from collections.abc import Iterator
 from dataclasses import replace
+from importlib import import_module
+from inspect import cleandoc, signature
 from pathlib import Path
 from typing import Any
 
@@ -121,6 +123,8 @@ def test_its_command_is_one_of_ours(
 BROKEN = """
 import numpy as np
 from dataclasses import replace
+from importlib import import_module
+from inspect import cleandoc, signature
 from typing import ClassVar, Literal
 from slender.machine import Uneven
 
@@ -250,3 +254,38 @@ def test_a_misspelt_liquid_is_told_with_all_that_are_installed(installed: Path, 
     )
     with pytest.raises(lb.SceneError, match=r"fem, centring; did you mean centring\?"):
         lb.load_scene(installed).replace({"model.liquid": "centrng"})
+
+
+def test_its_command_fails_in_one_sentence(installed: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    dry = Path("dry.toml")
+    table = {key: value for key, value in lb.load_scene(installed).table().items() if key != "chambers"}
+    dry.write_text(scene_from_table(table).to_toml(), encoding="utf-8")
+    assert main(["gforce", str(dry), "--out", "out"]) == 2
+    assert "chambers" in capsys.readouterr().err
+    gforce = import_module("slender.gforce")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(gforce.GforceAnswer, "blocks", lambda self: 1 / 0)
+        assert main(["gforce", str(installed), "--out", "out"]) == 2
+    *_, said = capsys.readouterr().err.splitlines()
+    assert said.startswith("leblanc: command = 'gforce': must be of a package that works; its answer fails: ")
+    assert "ZeroDivisionError: division by zero (test_own_machine.py, line " in said
+    assert main(["gforce", "none.toml"]) == 2 and main(["gforce", "--nothing"]) == 2
+    assert "a package that works" not in capsys.readouterr().err
+
+
+def test_its_command_has_help_and_outputs(installed: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    gforce = import_module("slender.gforce").gforce
+    assert "depth : distance from the wall, inwards" in gforce.__doc__
+    assert "Annotated" not in str(signature(gforce))
+    assert main(["outputs", "gforce"]) == 0
+    assert "acceleration at the wall" in capsys.readouterr().out
+    assert repr(lb.outputs("gforce")) == "<OutputsAnswer: 3 quantities of gforce>"
+    with pytest.raises(lb.InputError, match=r"one of: .*run.*, gforce"):
+        lb.outputs("gforse")
+
+
+def test_help_of_a_call_says_its_parameters() -> None:
+    for call in (lb.run, lb.run_up, lb.map_whirl):
+        assert "Parameters\n----------\nscene : " in cleandoc(call.__doc__ or "")
+        assert "Annotated" not in str(signature(call))
+    assert "[default: 1]" in (lb.run.__doc__ or "")

@@ -12,7 +12,7 @@ from leblanc.core.answer import Answer
 from leblanc.core.blocks import Block, Headline, Table
 from leblanc.core.question import SCENE, Quantity, ask
 from leblanc.core.units import LENGTH
-from leblanc.scene.scene import Scene
+from leblanc.scene.scene import Scene, require_chambers
 from meshes.arrays import Array
 from meshes.errors import InputError
 from meshes.quantity import Q
@@ -53,6 +53,7 @@ def gforce(
 
 def answer_gforce(scene: Scene, depth: float) -> GforceAnswer:
     """What the study answers: Omega^2 (R - d)."""
+    require_chambers(scene, "the acceleration at their walls")
     radius = np.array([fill.chamber.radius for fill in scene.fills]) - depth
     if not (radius > 0.0).all():
         raise InputError("depth", depth, "less than the radius of every chamber")
