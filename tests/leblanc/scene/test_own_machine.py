@@ -239,11 +239,13 @@ def test_equations_of_motion_have_real_matrices() -> None:
         assert "finite real numbers" in said
 
 
-def test_what_takes_no_such_machine_says_so(installed: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_what_takes_no_such_machine_says_so(
+    installed: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     for scene in (lb.load_scene(installed), lb.example("spindle")):
         with pytest.raises(lb.InputError, match="this command takes no machine of this one"):
             lb.optimise(scene, "peak")
-    assert main(["view", str(installed), "--out", "out"]) == 2
+    assert main(["view", str(installed), "--out", str(tmp_path / "out")]) == 2
     assert "this command takes no machine of this one" in capsys.readouterr().err
 
 
@@ -256,7 +258,10 @@ def test_a_misspelt_liquid_is_told_with_all_that_are_installed(installed: Path, 
         lb.load_scene(installed).replace({"model.liquid": "centrng"})
 
 
-def test_its_command_fails_in_one_sentence(installed: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_its_command_fails_in_one_sentence(
+    installed: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
     dry = Path("dry.toml")
     table = {key: value for key, value in lb.load_scene(installed).table().items() if key != "chambers"}
     dry.write_text(scene_from_table(table).to_toml(), encoding="utf-8")
