@@ -95,7 +95,7 @@ def test_free(capsys: pytest.CaptureFixture[str]) -> None:
 def test_too_high_a_free_wave_ends_with_code_3(capsys: pytest.CaptureFixture[str]) -> None:
     assert main([*LAYER, "--free", "1.9", "--model", "potential"]) == 3
     out, err = capsys.readouterr()
-    assert "the last one has a crest of 1.6" in err and "Converged       no" in out
+    assert "the last crest is 1.6" in err and "Converged       no" in out
 
 
 def test_words(capsys: pytest.CaptureFixture[str]) -> None:

@@ -168,7 +168,7 @@ def test_without_a_whirl() -> None:
     ("layer", "speed", "share", "said", "largest"),
     [
         (0.1, 1.3, 0.06, "chokes", 0.0559),
-        (0.3, 0.7, 0.02, "free wave of 4 crests", 0.0127),
+        (0.3, 0.7, 0.02, "natural sloshing wave of 4 crests", 0.0127),
         (0.05, 1.3, 0.02, "fold", 0.001957),
         (0.1, 1.0, 1.2, "dry", 1.0),
     ],

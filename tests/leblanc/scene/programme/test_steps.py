@@ -73,7 +73,7 @@ def test_steps_as_people_write_them() -> None:
     [
         ("hodl 10 s", "did you mean hold?"),
         ("cost to 0", "did you mean coast?"),
-        ("to 90 rpm", '"to" wants "in" and a time or "at" and a rate'),
+        ("to 90 rpm", '"to" needs "in" and a time or "at" and a rate'),
         ("to 90 rpm in 4 rpm", "its time must be a time"),
         ("to 90 rpn in 4 s", "there is no unit rpn"),
         ("to 90 in 4 s", "this text has no unit"),
