@@ -693,11 +693,11 @@ def test_kept_measurements_are_those_that_the_page_tables(tmp_path: Path) -> Non
 
 
 def test_kept_comparisons_are_read_as_they_were_written() -> None:
-    from validation.trade import again, kept, names
+    from validation.trade import kept, names, recompute
     from validation.trade.results import trade_json
 
     for name in names():
-        read, before = trade_json(again.record(name)), kept(name)
+        read, before = trade_json(recompute.record(name)), kept(name)
         # A file may say more: where errors of some rows are newer than their times.
         assert before["remark"].startswith(read["remark"])
         same = [key for key in read if key not in ("versions", "remark")]

@@ -10,8 +10,8 @@ import numpy as np
 from fluid.whirl import body_force_rate
 from meshes.arrays import Array, Complex, Flags
 from meshes.errors import InputError
+from solvers.held.convergence import Watch
 from solvers.held.state import COUPLED, HeldMachine, HoldNumerics, Moment
-from solvers.held.turns import Watch
 from solvers.layer.records import Outcome
 from solvers.potential.coupled import (
     Course,

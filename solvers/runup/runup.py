@@ -21,7 +21,6 @@ from meshes.errors import InputError
 from meshes.quantity import Q
 from solvers.layer.records import Outcome
 from solvers.rotor.system import RotorSystem
-from solvers.runup.course import highest, legs, marked
 from solvers.runup.long_wave import couple
 from solvers.runup.machine import (
     Drive,
@@ -33,6 +32,7 @@ from solvers.runup.machine import (
     Transfer,
 )
 from solvers.runup.path import Recorder, RotorPath, fastest_frequency
+from solvers.runup.samples import highest, legs, marked
 from solvers.runup.shedding import Shedding
 from solvers.runup.state import WORKS
 from solvers.slices import step_budget

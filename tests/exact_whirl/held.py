@@ -12,7 +12,7 @@ from leblanc.liquid.choose import choose_all, costed, liquid_models, prepare
 from leblanc.scene.examples import example
 from leblanc.studies.held.held import held_machine, hold_speeds
 from leblanc.studies.held.holding import HERE
-from solvers.held.hold import compile_kernels, start
+from solvers.held.integrate import compile_kernels, start
 from solvers.held.state import HoldNumerics
 from solvers.synchronous.response import response
 from solvers.whirl.growth import asynchronous_growth

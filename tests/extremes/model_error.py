@@ -15,7 +15,7 @@ from fluid.friction.laws import Friction, FrictionLaw
 from fluid.liquid import KNOWN_LIQUIDS
 from meshes.arrays import Array, Flags
 from meshes.chamber import Chamber
-from solvers.held.hold import hold, start
+from solvers.held.integrate import hold, start
 from solvers.held.state import HeldKind, HeldMachine, HeldState, HoldNumerics
 from solvers.layer.state import Numerics
 from solvers.liquid_model import Whirl, Whirls

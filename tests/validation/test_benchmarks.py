@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from tests.mutants import kills
-from validation.benchmarks import growth, ours, report, timing
-from validation.benchmarks import ours as layers
+from validation.benchmarks import growth, leblanc_codes, report, timing
+from validation.benchmarks import leblanc_codes as layers
 from validation.benchmarks import report as table
 from validation.benchmarks.__main__ import PEERS
 from validation.benchmarks.growth import Growth
@@ -169,30 +169,36 @@ def test_distance() -> None:
     assert distance(modes[:2], modes) == pytest.approx(0.25 / math.hypot(0.5, 0.25))
 
 
-@kills("validation.benchmarks.ours:_run", "done, problem.c.linear_speed", "done, -problem.c.linear_speed")
+@kills(
+    "validation.benchmarks.leblanc_codes:_run",
+    "done, problem.c.linear_speed",
+    "done, -problem.c.linear_speed",
+)
 def test_errors_fall() -> None:
     """Newton's wave and the stepper's come to the converged and to the exact one; both from rest and free."""
     problem = steady_problem()
     errors = [
-        distance(one.prepare()()(), problem.exact) for one in ours.steady(problem) if "Newton" in one.setting
+        distance(one.prepare()()(), problem.exact)
+        for one in leblanc_codes.steady(problem)
+        if "Newton" in one.setting
     ]
     # Each step in points divides by far more than 10; the last is rounding.
     assert all(after < 0.1 * before for before, after in pairwise(errors))
     assert errors[0] < 1e-2 and errors[3] < 1e-8
     assert 5.0 < problem.time < 50.0
-    stepped = next(one for one in ours.steady(problem) if "64 points, dt" in one.setting)
+    stepped = next(one for one in leblanc_codes.steady(problem) if "64 points, dt" in one.setting)
     assert distance(stepped.prepare()()(), problem.exact) < WANTED
     free = travelling_problem(1.0)
-    ends = [distance(one.prepare()()(), free.exact) for one in ours.travelling(free, quick=True)]
+    ends = [distance(one.prepare()()(), free.exact) for one in leblanc_codes.travelling(free, quick=True)]
     assert ends[1] < 0.1 * ends[0] and ends[1] < 1e-5
 
 
 @kills(
-    "validation.benchmarks.ours:offset",
+    "validation.benchmarks.leblanc_codes:offset",
     "np.power(1.0 - 2.0 * area, 1.5)",
     "np.power(1.0 - 2.0 * area, 0.5)",
 )
-@kills("validation.benchmarks.ours:_integral", "+ turns * sums[-1]", "")
+@kills("validation.benchmarks.leblanc_codes:_integral", "+ turns * sums[-1]", "")
 def test_layer_problem() -> None:
     """A shifted profile has the offset and the error of its shift; a finer grid is nearer to a fine one."""
     theta = 2.0 * np.pi * (np.arange(256) + 0.5) / 256
@@ -218,9 +224,13 @@ def test_layer_problem() -> None:
     assert errors[1] < 0.5 * errors[0] and errors[2] < 0.5 * errors[1]
 
 
-@kills("validation.benchmarks.ours:LayerProblem.force", "grown * cmath.exp(1j *", "grown * cmath.exp(-1j *")
 @kills(
-    "validation.benchmarks.ours:LayerProblem.force",
+    "validation.benchmarks.leblanc_codes:LayerProblem.force",
+    "grown * cmath.exp(1j *",
+    "grown * cmath.exp(-1j *",
+)
+@kills(
+    "validation.benchmarks.leblanc_codes:LayerProblem.force",
     "/ (2.0 * math.pi)\n        size",
     "/ math.pi\n        size",
 )

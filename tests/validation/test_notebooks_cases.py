@@ -24,7 +24,7 @@ from validation.cases.rotors import runup as runup_given
 from validation.cases.rotors.runup import GIVEN, Point
 from validation.page import Table, case_table, picture, verdicts
 from validation.study import data
-from validation.trade import again, kept, names
+from validation.trade import kept, names, recompute
 from validation.trade.answers import Case as TradeCase
 from validation.trade.cases import Question, response_question
 
@@ -205,34 +205,37 @@ def test_run_up_given(share: float, verdict: str) -> None:
 def test_kept_errors_made_again(factor: float, verdict: str) -> None:
     """A kept error that moves by a hundred-thousandth is noticed."""
     scene = example("runup")
-    kept_rows = next(one for one in again.record("runup").comparisons if one.question == "response").rows
+    kept_rows = next(one for one in recompute.record("runup").comparisons if one.question == "response").rows
     errors = {row.label: row.error for row in kept_rows}
 
     def table(question: Question, cases: list[TradeCase]) -> dict[str, tuple[float, float]]:
         return {case.label: (factor * errors[case.label], 0.0) for case in cases}
 
     with (
-        mock.patch.object(again, "error_table", table),
-        mock.patch.object(again, "questions", lambda _: [response_question(scene)]),
-        mock.patch.object(again, "_SCENES", ("runup",)),
+        mock.patch.object(recompute, "error_table", table),
+        mock.patch.object(recompute, "questions", lambda _: [response_question(scene)]),
+        mock.patch.object(recompute, "_SCENES", ("runup",)),
     ):
-        found = {case.name: case.verdict for case in again.cases()}
+        found = {case.name: case.verdict for case in recompute.cases()}
     assert found["trade/runup-response-linear"] == found["trade/runup-response-long_wave-16"] == verdict
 
 
 def test_a_default_that_is_beaten_is_told() -> None:
-    whole = again.record("runup")
+    whole = recompute.record("runup")
     beaten = replace(whole.comparisons[0], dominated_by=("linear",))
-    records = {name: whole if name == "runup" else again.record(name) for name in names()}
+    records = {name: whole if name == "runup" else recompute.record(name) for name in names()}
     records["runup"] = replace(whole, comparisons=(beaten, whole.comparisons[1]))
-    with mock.patch.object(again, "_SCENES", ()), mock.patch.object(again, "record", records.__getitem__):
-        found = verdicts(again.cases())
+    with (
+        mock.patch.object(recompute, "_SCENES", ()),
+        mock.patch.object(recompute, "record", records.__getitem__),
+    ):
+        found = verdicts(recompute.cases())
     assert found["differs"] == {"runup-response-default"} and len(found["agrees"]) == 16
 
 
 def test_kept_records_are_read_whole() -> None:
     for name in names():
-        record, content = again.record(name), kept(name)
+        record, content = recompute.record(name), kept(name)
         assert record.tolerance == content["tolerance"]
         assert sum(len(one.rows) for one in record.comparisons) == len(content["rows"])
         assert [one.default.default for one in record.comparisons] == [True] * len(record.comparisons)

@@ -18,7 +18,7 @@ from validation.trade.__main__ import overview
 from validation.trade.answers import FAMILY, WAVES, answer, lone_layer
 from validation.trade.cases import layer_questions, refined_to, response_question, runup_question
 from validation.trade.cases import questions as all_questions
-from validation.trade.judge import Row, dominates, errors
+from validation.trade.evaluate import Row, dominates, errors
 from validation.trade.results import record_of, trade_json
 from validation.trade.trade import error_table
 

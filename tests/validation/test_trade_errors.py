@@ -45,8 +45,7 @@ from validation.trade.cases import (
     telling_speeds,
 )
 from validation.trade.command import trade as trade_command
-from validation.trade.figure import trade_figure
-from validation.trade.judge import (
+from validation.trade.evaluate import (
     Row,
     Run,
     compare,
@@ -56,6 +55,7 @@ from validation.trade.judge import (
     recommend,
     reference_error,
 )
+from validation.trade.figure import trade_figure
 from validation.trade.results import recommendation, trade_json, trade_lines
 from validation.trade.trade import REPEATS, TradeRecord, alone, error_table, refine
 
@@ -79,15 +79,21 @@ def row(error: float, time: float, spread: float = 0.1, **more: object) -> Row:
     return Row(**(given | more))  # type: ignore[arg-type]
 
 
-@kills("validation.trade.judge:dominates", "row.error <= other.error + own", "row.error <= other.error - own")
-@kills("validation.trade.judge:dominates", "row.time + noise < other.time", "row.time - noise < other.time")
 @kills(
-    "validation.trade.judge:_noise",
+    "validation.trade.evaluate:dominates", "row.error <= other.error + own", "row.error <= other.error - own"
+)
+@kills(
+    "validation.trade.evaluate:dominates", "row.time + noise < other.time", "row.time - noise < other.time"
+)
+@kills(
+    "validation.trade.evaluate:_noise",
     "row.spread * row.time, other.spread * other.time,",
     "row.spread * row.time, 0.0 * other.time,",
 )
-@kills("validation.trade.judge:_noise", "_REPRODUCED * min(", "0.0 * min(")
-@kills("validation.trade.judge:dominates", "row.used, row.error, row.work", "row.used, row.error, row.model")
+@kills("validation.trade.evaluate:_noise", "_REPRODUCED * min(", "0.0 * min(")
+@kills(
+    "validation.trade.evaluate:dominates", "row.used, row.error, row.work", "row.used, row.error, row.model"
+)
 def test_dominates() -> None:
     """As accurate, closer than the reference being equal, and cheaper by more than the times spread."""
     rival = row(1e-3, 1.0)
@@ -126,12 +132,14 @@ def ladder_question(name: str = RUNUP) -> Question:
     return Question(name, scene(), "made up", cases, cases[0], cases)
 
 
-@kills("validation.trade.judge:reference_error", "_SAFETY * fine", "fine")
-@kills("validation.trade.judge:reference_error", "min(order, _MOST_ORDER) - 1.0)", "min(order, _MOST_ORDER))")
-@kills("validation.trade.judge:reference_error", "min(order, _MOST_ORDER)", "order")
-@kills("validation.trade.judge:reference_error", "math.log2(coarse / fine)", "math.log2(fine / coarse)")
+@kills("validation.trade.evaluate:reference_error", "_SAFETY * fine", "fine")
 @kills(
-    "validation.trade.judge:reference_error",
+    "validation.trade.evaluate:reference_error", "min(order, _MOST_ORDER) - 1.0)", "min(order, _MOST_ORDER))"
+)
+@kills("validation.trade.evaluate:reference_error", "min(order, _MOST_ORDER)", "order")
+@kills("validation.trade.evaluate:reference_error", "math.log2(coarse / fine)", "math.log2(fine / coarse)")
+@kills(
+    "validation.trade.evaluate:reference_error",
     "return max(coarse, fine), math.nan",
     "return min(coarse, fine), math.nan",
 )
@@ -158,13 +166,13 @@ def test_reference_error() -> None:
 
 
 @kills(
-    "validation.trade.judge:errors",
+    "validation.trade.evaluate:errors",
     "np.linalg.norm(gap) / np.linalg.norm(size)",
     "np.linalg.norm(gap) / largest",
 )
-@kills("validation.trade.judge:errors", "gap / np.where(size > 0.0, size, largest)", "gap / largest")
+@kills("validation.trade.evaluate:errors", "gap / np.where(size > 0.0, size, largest)", "gap / largest")
 @kills(
-    "validation.trade.judge:errors",
+    "validation.trade.evaluate:errors",
     "float(np.abs(found.values).max()) / largest - 1.0",
     "float(np.abs(found.values[-1])) / largest - 1.0",
 )
@@ -185,18 +193,18 @@ BEST = "long_wave 512"
 
 
 @kills(
-    "validation.trade.judge:recommend",
+    "validation.trade.evaluate:recommend",
     "if rows[k].error + own <= tolerance]",
     "if rows[k].error <= tolerance]",
 )
-@kills("validation.trade.judge:recommend", "best = min(chosen,", "best = max(chosen,")
-@kills("validation.trade.judge:recommend", "least - own <= tolerance", "least + own <= tolerance")
-@kills("validation.trade.judge:recommend", "any(row.label == reference and row.selectable", "any(False")
-@kills("validation.trade.judge:_cheaper", "_WORTH * work < most", "work < most")
-@kills("validation.trade.judge:effort", "row.work + _BESIDES if", "row.work if")
-@kills("validation.trade.judge:effort", "row.variant != default.variant", "False")
-@kills("validation.trade.judge:recommend", "known and own <= tolerance", "known")
-@kills("validation.trade.judge:advisable", " and row.label != reference", "")
+@kills("validation.trade.evaluate:recommend", "best = min(chosen,", "best = max(chosen,")
+@kills("validation.trade.evaluate:recommend", "least - own <= tolerance", "least + own <= tolerance")
+@kills("validation.trade.evaluate:recommend", "any(row.label == reference and row.selectable", "any(False")
+@kills("validation.trade.evaluate:_cheaper", "_WORTH * work < most", "work < most")
+@kills("validation.trade.evaluate:effort", "row.work + _BESIDES if", "row.work if")
+@kills("validation.trade.evaluate:effort", "row.variant != default.variant", "False")
+@kills("validation.trade.evaluate:recommend", "known and own <= tolerance", "known")
+@kills("validation.trade.evaluate:advisable", " and row.label != reference", "")
 def test_recommend() -> None:
     """The cheapest within the tolerance; the default if it costs no more; the best if nothing is within.
 
@@ -270,7 +278,7 @@ def horizontal_rig_by_answers(
 @kills("validation.trade.trade:refine", "not decided(found, tolerance)", "False")
 @kills("validation.trade.trade:refine", "> most", "> 0.0 * most")
 @kills("validation.trade.cases:finer", "resolution=2 * first.resolution)", "resolution=4 * first.resolution)")
-@kills("validation.trade.judge:decided", "return False", "return True")
+@kills("validation.trade.evaluate:decided", "return False", "return True")
 @kills("validation.trade.trade:refine", "answer.in_range > run.answer.in_range", "answer.in_range < False")
 def test_a_reference_is_refined_until_it_decides(monkeypatch: pytest.MonkeyPatch) -> None:
     """The default is 8e-5 off; the reference on 64 cells 3.75e-3, which says nothing of a tolerance of 1e-3.
@@ -317,7 +325,7 @@ def test_a_reference_is_refined_until_it_decides(monkeypatch: pytest.MonkeyPatch
     assert found.recommended is None and found.reference == "long_wave 4096, held"
 
 
-@kills("validation.trade.judge:decided", "tolerance - own < row.error", "tolerance < row.error")
+@kills("validation.trade.evaluate:decided", "tolerance - own < row.error", "tolerance < row.error")
 def test_a_cheaper_row_that_may_be_within_is_looked_at_more_closely() -> None:
     """Advised is a row that is surely within; another one at a tenth of its cost may be within as well."""
     rows = (row(2e-3, 5.0, default=True), row(9e-4, 0.1, resolution=32), row(1e-4, 1.0, recommended=True))
@@ -356,10 +364,12 @@ def record() -> TradeRecord:
 
 
 @kills(
-    "validation.trade.judge:_spread", "np.median(times) / min(times) - 1.0", "max(times) / min(times) - 1.0"
+    "validation.trade.evaluate:_spread",
+    "np.median(times) / min(times) - 1.0",
+    "max(times) / min(times) - 1.0",
 )
 @kills(
-    "validation.trade.judge:_judged",
+    "validation.trade.evaluate:_judged",
     "overhead=rows[0].time / twin - 1.0",
     "overhead=twin / rows[0].time - 1.0",
 )
@@ -467,7 +477,7 @@ def test_held_answers_are_those_of_run() -> None:
     assert still.estimate > 1e-3 and math.isnan(found.estimate)
 
 
-@kills("validation.trade.judge:_ripple_error", "found.ripple - best.ripple", "found.ripple + best.ripple")
+@kills("validation.trade.evaluate:_ripple_error", "found.ripple - best.ripple", "found.ripple + best.ripple")
 def test_what_ripples_is_told_beside_the_mean() -> None:
     """Largest share of the amplitudes by which a half-swing is off; here of 0.2 in 4, and none of itself."""
     still, best = (replace(said([2.0, 4.0]), ripple=np.array(each)) for each in ([0.0, 0.0], [0.04, 0.2]))

@@ -20,7 +20,7 @@ from solvers.liquid_model import Whirl
 from solvers.pypde.settle import simulate
 from solvers.synchronous.models import LINEAR, STATICS
 from solvers.waves.steady import respond, solve
-from validation.benchmarks.ours import AMPLITUDE, SPEED
+from validation.benchmarks.leblanc_codes import AMPLITUDE, SPEED
 from validation.benchmarks.problems import SPIN, fill, response_speeds, steady_problem
 
 # Cells of the waves in a sweep over speeds, and the whirl periods that each speed is given.
@@ -130,7 +130,7 @@ begin = time.perf_counter()
 from solvers.layer.state import Numerics
 from solvers.liquid_model import Whirl
 from solvers.pypde.settle import simulate
-from validation.benchmarks.ours import AMPLITUDE, SPEED
+from validation.benchmarks.leblanc_codes import AMPLITUDE, SPEED
 from validation.benchmarks.problems import SPIN, fill
 whirl = Whirl(SPIN, SPEED, AMPLITUDE)
 loaded = time.perf_counter()

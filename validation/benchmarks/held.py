@@ -24,7 +24,7 @@ from leblanc.scene.examples import example  # noqa: E402
 from leblanc.studies.held.held import held_machine, hold_speeds  # noqa: E402
 from leblanc.studies.held.holding import HERE  # noqa: E402
 from meshes.arrays import Array  # noqa: E402
-from solvers.held.hold import compile_kernels, start  # noqa: E402
+from solvers.held.integrate import compile_kernels, start  # noqa: E402
 from solvers.held.state import HoldNumerics  # noqa: E402
 from solvers.synchronous.response import response  # noqa: E402
 from solvers.whirl.growth import asynchronous_growth  # noqa: E402

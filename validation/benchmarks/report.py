@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from leblanc.plotting.page import save_png
-from validation.benchmarks import growth, ours
+from validation.benchmarks import growth, leblanc_codes
 from validation.benchmarks.growth import Growth
 from validation.benchmarks.problems import (
     WANTED,
@@ -220,7 +220,10 @@ def collect(peers: tuple[str, ...], quick: bool, repeats: int) -> Results:
     """Run everything, beside the other codes `peers`."""
     modules = {name: importlib.import_module(_MODULE + name) for name in peers}
     found = {name: version(module.PACKAGE) for name, module in modules.items()}
-    versions = {"Python": platform.python_version(), ours.CODE: version(ours.CODE) or "from its folder"}
+    versions = {
+        "Python": platform.python_version(),
+        leblanc_codes.CODE: version(leblanc_codes.CODE) or "from its folder",
+    }
     versions |= {modules[name].CODE: found[name] or "not installed" for name in peers}
     here = [module for name, module in modules.items() if found[name]]
     missing = [module for name, module in modules.items() if not found[name]]
@@ -263,7 +266,7 @@ def _wave(
     **told: Any,
 ) -> Section:
     """Samples of all on a steady or a travelling wave."""
-    runs = getattr(ours, kind)(problem, quick)
+    runs = getattr(leblanc_codes, kind)(problem, quick)
     runs += _of(here, kind, lambda module: list(getattr(module, kind)(problem, quick)))
     samples = measure(runs, lambda answer: distance(answer, problem.exact), repeats, _tell)
     return Section(error="error (L2)", samples=tuple(samples), missing=_named(missing, kind), **told)
@@ -273,18 +276,18 @@ def _layers(
     here: list[ModuleType], missing: list[ModuleType], quick: bool, repeats: int
 ) -> tuple[list[Section], list[str]]:
     periods, cells = (_QUICK_PERIODS, _QUICK_CELLS) if quick else (_PERIODS, _CELLS)
-    problem = ours.LayerProblem(periods)
+    problem = leblanc_codes.LayerProblem(periods)
     # The layer has settled long before the end: the reference need not run so far.
-    fine = ours.LayerProblem(periods if quick else _SETTLED)
-    reference = ours.answer(fine, _QUICK_REFERENCE if quick else _REFERENCE)
-    runs = ours.ours(problem, cells) + _of(
+    fine = leblanc_codes.LayerProblem(periods if quick else _SETTLED)
+    reference = leblanc_codes.answer(fine, _QUICK_REFERENCE if quick else _REFERENCE)
+    runs = leblanc_codes.ours(problem, cells) + _of(
         here, "layers", lambda m: m.layers(problem, cells, () if quick else _SLOW)
     )
     forces: list[float] = []
 
     def error(found: Answer) -> float:
-        forces.append(ours.force_error(found, reference))
-        return ours.profile_error(found, reference)
+        forces.append(leblanc_codes.force_error(found, reference))
+        return leblanc_codes.profile_error(found, reference)
 
     samples = tuple(measure(runs, error, repeats, _tell))
     left = iter(forces)
@@ -315,7 +318,7 @@ def _tell(text: str) -> None:
 
 def _equal_error(samples: tuple[Sample, ...], name: str) -> list[str]:
     """Ratios of the long-wave runs where both codes have the same error."""
-    mine = [sample for sample in samples if sample.code == ours.CODE]
+    mine = [sample for sample in samples if sample.code == leblanc_codes.CODE]
     found = []
     for kernel in ("Fortran", "Python"):
         theirs = [sample for sample in samples if sample.setting.startswith(kernel)]
@@ -331,7 +334,7 @@ def write(results: Results, directory: Path, sharing: str) -> None:
     text = ["# Results of one run", "", f"On {sharing}. {versions}", ""]
     for section in results.sections:
         picture = save_png(accuracy_figure(section), directory, section.name, section.title)
-        text += [markdown(section, ours.CODE), f"![{section.title}]({picture.name})", ""]
+        text += [markdown(section, leblanc_codes.CODE), f"![{section.title}]({picture.name})", ""]
     text += ["## Single figures", "", *(f"* {line}" for line in [*_figures(results), *results.remarks]), ""]
     for name, rows in (("benchmark_cells", results.over_cells), ("benchmark_speeds", results.over_speeds)):
         title = "Growth with the number of " + " and ".join(dict.fromkeys(row.over for row in rows))

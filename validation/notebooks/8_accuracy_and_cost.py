@@ -29,7 +29,7 @@
 
 # %%
 from validation.page import case_table, picture, verdicts
-from validation.trade import again, names
+from validation.trade import names, recompute
 from validation.trade.__main__ import overview
 from validation.trade.figure import trade_figure
 
@@ -47,10 +47,10 @@ overview()
 # On the front is what nothing beats in both error and time.
 
 # %%
-picture(trade_figure(again.record("runup")))
+picture(trade_figure(recompute.record("runup")))
 
 # %%
-picture(trade_figure(again.record("horizontal_rig")))
+picture(trade_figure(recompute.record("horizontal_rig")))
 
 # %% [markdown]
 # ## Number by number
@@ -59,7 +59,7 @@ picture(trade_figure(again.record("horizontal_rig")))
 # time.
 
 # %%
-cases = again.cases()
+cases = recompute.cases()
 case_table(cases)
 
 # %% [markdown]
@@ -77,7 +77,7 @@ case_table(cases)
 over = [
     f"{name}, {comparison.question}: {comparison.default.error:.1e} of {found.tolerance:g}"
     for name in names()
-    for found in (again.record(name),)
+    for found in (recompute.record(name),)
     for comparison in found.comparisons
     if comparison.default.error > found.tolerance
 ]
@@ -89,6 +89,6 @@ print("\n".join(over))
 # %%
 assert set(verdicts(cases)) == {"agrees"}
 defaults = {name for name in verdicts(cases)["agrees"] if name.endswith("-default")}
-assert len(defaults) == sum(len(again.record(name).comparisons) for name in names()) == 17
+assert len(defaults) == sum(len(recompute.record(name).comparisons) for name in names()) == 17
 # Where the default misses the tolerance it is a run-up with the scene's own cells, or the exciter's formulas.
 assert all(", runup" in question or question.startswith("vibratory_table") for question in over)

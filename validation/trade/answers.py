@@ -159,7 +159,7 @@ def _held(scene: Scene, cells: int) -> Answer:
     """Rotor and long waves at constant speed until they settle, each speed from its synchronous motion."""
     from leblanc.studies.held.held import held_machine
     from leblanc.studies.held.whirls import wave_errors
-    from solvers.held.hold import hold, start
+    from solvers.held.integrate import hold, start
     from solvers.held.state import HoldNumerics
     from solvers.synchronous.models import STATICS
     from solvers.synchronous.response import response

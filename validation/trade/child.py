@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from validation.trade.judge import Run
+    from validation.trade.evaluate import Run
 
 _STATUS, _RESET = Path("/proc/self/status"), Path("/proc/self/clear_refs")
 
@@ -47,7 +47,7 @@ def run(scene: Any, case: Any) -> Run:
     found = answer(scene, case)
     taken = time.process_time() - begin
     memory = max(0, resident()[1] - before)
-    from validation.trade.judge import Run
+    from validation.trade.evaluate import Run
 
     return Run(found, (taken,), first, memory)
 

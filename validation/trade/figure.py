@@ -14,7 +14,7 @@ from leblanc.plotting.page import style
 from validation.page import Figure, page, power
 
 if TYPE_CHECKING:
-    from validation.trade.judge import Comparison, Row
+    from validation.trade.evaluate import Comparison, Row
     from validation.trade.trade import TradeRecord
 
 PICTURED = ("runup", "horizontal_rig")  # scenes whose kept comparison is drawn
@@ -214,6 +214,6 @@ if __name__ == "__main__":
     from functools import partial
 
     from validation.study import launch, shown
-    from validation.trade.again import record
+    from validation.trade.recompute import record
 
     launch(shown(**{f"trade_{name}": partial(trade_figure, record(name)) for name in PICTURED}))

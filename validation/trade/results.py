@@ -10,7 +10,7 @@ from typing import Any
 from leblanc.core.answer import versions
 from leblanc.core.notes import one_line
 from validation.study import built, plain
-from validation.trade.judge import Comparison, Row
+from validation.trade.evaluate import Comparison, Row
 from validation.trade.trade import TradeRecord
 
 _KILO, _MEGA = 1e3, 1e6  # milliseconds in a second, bytes in a megabyte

@@ -15,7 +15,7 @@ from leblanc.core.notes import one_line
 from leblanc.scene.scene import Scene, require_chambers, require_clear
 from validation.trade.answers import Case, answer, taste
 from validation.trade.cases import Question, finer, questions
-from validation.trade.judge import Comparison, Run, compare, decided, errors
+from validation.trade.evaluate import Comparison, Run, compare, decided, errors
 
 Progress = Callable[[str, float], object]
 

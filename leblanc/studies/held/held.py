@@ -20,7 +20,7 @@ from leblanc.studies.held.whirls import wave_errors
 from leblanc.studies.held.workers import runner
 from meshes.arrays import Array, Complex, Flags, Index
 from solvers.held.branch import HeldBranches, HeldTask, held_branches
-from solvers.held.hold import require_known_solver, start
+from solvers.held.integrate import require_known_solver, start
 from solvers.held.state import HeldKind, HeldMachine, HeldState, HoldNumerics
 from solvers.rotor.vibration import orbit
 from solvers.synchronous.response import Response, by_speed, joined, response

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 
 from leblanc.studies.processes import processes
 from solvers.held.branch import HeldTask, Runner
-from solvers.held.hold import compile_kernels, hold_with_error
+from solvers.held.integrate import compile_kernels, hold_with_error
 from solvers.held.state import HeldMachine, HeldState, HoldNumerics
 
 

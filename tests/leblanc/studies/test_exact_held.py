@@ -14,10 +14,10 @@ from leblanc.studies.held.held import held_machine
 from leblanc.studies.run.study import run_scene
 from leblanc.studies.runup.study import runup_scene
 from meshes.errors import InputError
+from solvers.held.convergence import Watch
 from solvers.held.exact import march
-from solvers.held.hold import start
+from solvers.held.integrate import start
 from solvers.held.state import HoldNumerics
-from solvers.held.turns import Watch
 from solvers.layer.records import Outcome
 from solvers.synchronous.response import response
 from tests.exact_whirl.held import CASES, pair

@@ -11,7 +11,7 @@ import pytest
 from leblanc.liquid.choose import Prepared, prepare
 from leblanc.scene.examples import example
 from leblanc.studies.held.whirls import own_whirl, wave_errors
-from solvers.held.hold import start
+from solvers.held.integrate import start
 from solvers.held.state import HeldKind, HeldMachine, HeldState, HoldNumerics
 from solvers.wave_error import long_wave_error
 from tests.mutants import kills

@@ -12,7 +12,7 @@ from fluid.friction.laws import Friction
 from fluid.liquid import Liquid
 from meshes.chamber import Chamber
 from solvers.held.cost import hold_seconds, settling_turns
-from solvers.held.hold import hold, start
+from solvers.held.integrate import hold, start
 from solvers.held.state import HeldKind, HeldMachine, HoldNumerics
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.synchronous.response import response

@@ -11,10 +11,10 @@ import pytest
 from fluid.friction.laws import Friction
 from fluid.whirl import body_force_rate, layer_rate, plane_layer
 from meshes.errors import InputError
+from solvers.held.convergence import Watch
 from solvers.held.exact import begin, exact_machine, march, riding
-from solvers.held.hold import hold, hold_with_error, start
+from solvers.held.integrate import hold, hold_with_error, start
 from solvers.held.state import HeldKind, HeldMachine, HeldState, HoldNumerics
-from solvers.held.turns import Watch
 from solvers.layer.records import Outcome
 from solvers.synchronous.response import response
 from solvers.whirl.growth import asynchronous_growth

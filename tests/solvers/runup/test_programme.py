@@ -34,7 +34,7 @@ def run(rotor: Jeffcott, drive: Programme | Ramp, *fills: Fill, **changes: objec
     return run_up(rotor.system(), fills, drive, Friction("linear", 3.0), 0.0, numerics, model=couple_linear)
 
 
-@kills("solvers.runup.course:_programme", "(stop - spin) / lasts", "(spin - stop) / lasts")
+@kills("solvers.runup.samples:_programme", "(stop - spin) / lasts", "(spin - stop) / lasts")
 @kills("solvers.runup.programme:Stage.lasts", "abs(stop - spin) / self.rate", "abs(stop) / self.rate")
 def test_a_ramp_and_a_hold_are_a_ramp() -> None:
     """The same speeds in other words, and down again: the same answer to rounding, which 1e4 steps gather."""
@@ -74,7 +74,7 @@ def test_viscous_drag_is_an_exponential() -> None:
 @kills("solvers.runup.programme:Programme._coast", "steady + rate * stop", "steady + stop")
 @kills("solvers.runup.programme:Programme._coast", "(spin + steady / rate)", "spin")
 @kills("solvers.runup.programme:Programme._coast", "spin - steady * stage.duration", "spin")
-@kills("solvers.runup.course:_coast", "machine.spin > stop", "machine.spin < stop")
+@kills("solvers.runup.samples:_coast", "machine.spin > stop", "machine.spin < stop")
 def test_a_coast_ends_where_it_is_said_to() -> None:
     """To a speed, then for a time; the estimate of its corners is exact here, nothing else brakes.
 
@@ -218,9 +218,9 @@ def test_what_is_no_programme(field: str, make: object) -> None:
 FLAT = ((0.0, 200.0), (2.0, 2.0))
 
 
-@kills("solvers.runup.course:_limited", "inertia * asked + load.torque() > given", "False")
+@kills("solvers.runup.samples:_limited", "inertia * asked + load.torque() > given", "False")
 @kills("solvers.runup.programme:Programme.net", "np.interp(speeds, *drag)", "0.0")
-@kills("solvers.runup.course:_limited", "gap * rate < 0.0", "gap * rate > 0.0")
+@kills("solvers.runup.samples:_limited", "gap * rate < 0.0", "gap * rate > 0.0")
 def test_a_motor_that_gives_less_than_is_asked() -> None:
     """Spin-up by a constant torque is a straight line, with viscous drag an exponential; then the hold."""
     up, hold = Stage(20.0, rate=100.0), Stage(duration=1.0)
@@ -238,7 +238,7 @@ def test_a_motor_that_gives_less_than_is_asked() -> None:
     np.testing.assert_allclose(found.speed, last + (5.0 - last) * np.exp(-0.05 * found.time), rtol=1e-6)
 
 
-@kills("solvers.runup.course:_limited", "max(lasts, drive.limit)", "lasts")
+@kills("solvers.runup.samples:_limited", "max(lasts, drive.limit)", "lasts")
 def test_a_motor_that_never_gets_there() -> None:
     """Its torque ends at 40 rad/s, an exponential on the way; the stage ends with its limit of time."""
     falling = ((0.0, 40.0), (4.0, 0.0))
@@ -259,7 +259,7 @@ def test_a_strong_motor_changes_nothing() -> None:
     )
 
 
-@kills("solvers.runup.course:_Load._now", 'sums["unbalance"] + sums["drive"]', 'sums["unbalance"]')
+@kills("solvers.runup.samples:_Load._now", 'sums["unbalance"] + sums["drive"]', 'sums["unbalance"]')
 def test_what_a_limited_motor_gives_goes_into_the_drum_and_the_liquid() -> None:
     """Its work is what the drum gains and what whirl and liquid take; what the liquid takes limits it."""
     motor = ((0.0, 200.0), (6.0, 6.0))

@@ -401,7 +401,7 @@ def test_reading() -> None:
     "self.start + 0.9 * self.rate * rise",
 )
 @kills("solvers.runup.machine:Ramp.corners", "self.duration + rise, self.start", "self.duration + rise, top")
-@kills("solvers.runup.course:_times", "np.diff(corners[1]) / np.diff(corners[0])", "np.diff(corners[1])")
+@kills("solvers.runup.samples:_times", "np.diff(corners[1]) / np.diff(corners[0])", "np.diff(corners[1])")
 @kills(
     "solvers.runup.runup:EnergyAudit.remainder",
     "self.gravity + self.captured",

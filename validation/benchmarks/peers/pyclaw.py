@@ -21,7 +21,7 @@ from typing import Any
 
 import numpy as np
 
-from validation.benchmarks.ours import LayerProblem
+from validation.benchmarks.leblanc_codes import LayerProblem
 from validation.benchmarks.timing import Contestant, Go
 
 CODE, PACKAGE = "PyClaw", "clawpack"

@@ -8,7 +8,7 @@ import pytest
 from fluid.fill import Fill
 from fluid.friction.laws import Friction
 from fluid.pool import pool_of, wall_torque
-from solvers.held.hold import hold, start
+from solvers.held.integrate import hold, start
 from solvers.held.state import HeldKind, HeldMachine, HeldState, HoldNumerics
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.loads.machine import LoadedMachine, Point
@@ -106,7 +106,7 @@ def _held(spin: float, gravity: float, cells: int, growth: float) -> HeldState:
     return hold(machine, start(machine, spin, numerics, steady), numerics, growth)
 
 
-@kills("solvers.held.turns:Watch._balance", "dissipated * spin /", "dissipated /")
+@kills("solvers.held.convergence:Watch._balance", "dissipated * spin /", "dissipated /")
 @kills("solvers.pypde.coupled:TurnTracker.handle", 'told["balance"] - self._balance', 'told["balance"]')
 def test_heat_of_a_held_motion() -> None:
     """Dampers by the motion, liquid by the closed form of small waves that gravity drives."""
@@ -122,7 +122,7 @@ def test_heat_of_a_held_motion() -> None:
 
 
 @kills("solvers.runup.loads:held_extremes", "worst = np.min if name in LEAST else np.max", "worst = np.min")
-@kills("solvers.held.turns:Watch._path", "range(2, 2 + n)", "range(1, 1 + n)")
+@kills("solvers.held.convergence:Watch._path", "range(2, 2 + n)", "range(1, 1 + n)")
 def test_the_worst_of_a_held_motion_is_that_of_its_own_turns() -> None:
     """A limit cycle goes farther than its mean motion with the spin, and presses harder on the support."""
     points = (Point("axis", (0.0, 0.0, 0.0), gap=1e-2),)

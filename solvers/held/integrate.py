@@ -12,8 +12,8 @@ import numpy as np
 from fluid.fill import Fill
 from meshes.arrays import Array, Complex, Flags
 from meshes.errors import require_positive
+from solvers.held.convergence import Watch
 from solvers.held.state import COUPLED, HeldKind, HeldMachine, HeldState, HoldNumerics, Moment
-from solvers.held.turns import Watch
 from solvers.layer.baffles import FACE, table_of
 from solvers.layer.places import fewest_cells, is_smeared
 from solvers.layer.records import Outcome

@@ -16,7 +16,7 @@ from meshes.baffles import Baffles
 from meshes.chamber import Chamber
 from meshes.errors import InputError
 from solvers.held.branch import HeldTask, held_branches
-from solvers.held.hold import _resampled, hold, hold_with_error, start
+from solvers.held.integrate import _resampled, hold, hold_with_error, start
 from solvers.held.state import HeldKind, HeldMachine, HeldState, HoldNumerics
 from solvers.layer.inside import full_area
 from solvers.rotor.jeffcott import Jeffcott
@@ -65,7 +65,7 @@ def test_upright_and_stable_it_is_the_statics() -> None:
     assert errors[2] < 0.45 * errors[1] < 0.45 * 0.45 * errors[0]
 
 
-@kills("solvers.held.hold:_march", '"solver": numerics.solver', '"solver": "coupled"')
+@kills("solvers.held.integrate:_march", '"solver": numerics.solver', '"solver": "coupled"')
 def test_another_solver_comes_to_the_same_motion(monkeypatch: pytest.MonkeyPatch) -> None:
     """py-pde's Runge-Kutta steps share neither the time scheme nor the coupling with the compiled ones."""
     import solvers.pypde.coupled as road
@@ -86,8 +86,8 @@ def test_another_solver_comes_to_the_same_motion(monkeypatch: pytest.MonkeyPatch
         held(RIG, SMALL, 150.0, friction, HoldNumerics(cells=8, solver="implicit"))
 
 
-@kills("solvers.held.turns:Watch._left", "each / -math.expm1(self.slowest)", "0.0")
-@kills("solvers.held.turns:Watch._repeating", " and not ripples", "")
+@kills("solvers.held.convergence:Watch._left", "each / -math.expm1(self.slowest)", "0.0")
+@kills("solvers.held.convergence:Watch._repeating", " and not ripples", "")
 def test_gravity_across_leaves_the_mean() -> None:
     """With gravity across the axis the mean of the amplitude is that without, and the liquid ripples.
 
@@ -103,8 +103,8 @@ def test_gravity_across_leaves_the_mean() -> None:
     assert found.ripple[0] > 100.0 * plain.ripple[0]
 
 
-@kills("solvers.held.turns:Watch._lies", "full, self.lying + 1, 0", "full, 0, 0")
-@kills("solvers.held.turns:Watch._lies", " < -_LIES * spin", " < _LIES * spin")
+@kills("solvers.held.convergence:Watch._lies", "full, self.lying + 1, 0", "full, 0, 0")
+@kills("solvers.held.convergence:Watch._lies", " < -_LIES * spin", " < _LIES * spin")
 def test_between_two_walls_a_layer_falls_as_without_an_inner_one() -> None:
     """Where it lies at the bottom, and fills its gap there, it is the mass that never turned with the drum.
 
@@ -145,9 +145,11 @@ KNOWN = {1.2: (0.4147, 0.94461), 1.3: (0.5664, 0.95072)}
 
 
 @kills(
-    "solvers.held.turns:_other_speed", "float(speeds[k]) - width, float(speeds[k]) + width", "-width, width"
+    "solvers.held.convergence:_other_speed",
+    "float(speeds[k]) - width, float(speeds[k]) + width",
+    "-width, width",
 )
-@kills("solvers.held.turns:Watch._elsewhere", "> _ELSEWHERE *", "< _ELSEWHERE *")
+@kills("solvers.held.convergence:Watch._elsewhere", "> _ELSEWHERE *", "< _ELSEWHERE *")
 @pytest.mark.parametrize("ratio", KNOWN)
 def test_a_whirl_that_excites_itself(ratio: float) -> None:
     """Where a small whirl grows the motion is a limit cycle of the size that marching in time has found."""
@@ -218,8 +220,8 @@ def test_bad_numerics() -> None:
         HoldNumerics(tolerance=0.0)
 
 
-@kills("solvers.held.hold:_levelled", 'side="right"', 'side="left"')
-@kills("solvers.held.hold:_levelled", "area + (area.mean() - mean)[where]", "area")
+@kills("solvers.held.integrate:_levelled", 'side="right"', 'side="left"')
+@kills("solvers.held.integrate:_levelled", "area + (area.mean() - mean)[where]", "area")
 def test_compartments_answer_as_their_elements() -> None:
     """Every compartment begins with its own liquid, however it is resampled, and the mean motion is theirs.
 

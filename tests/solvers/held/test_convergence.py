@@ -11,9 +11,9 @@ from fluid.fill import Fill
 from fluid.liquid import Liquid
 from meshes.arrays import Array
 from meshes.chamber import Chamber
-from solvers.held.hold import start
+from solvers.held.convergence import _NUDGE, _PROBED, Watch, _limit, _Probe
+from solvers.held.integrate import start
 from solvers.held.state import HeldKind, HeldMachine, HoldNumerics
-from solvers.held.turns import _NUDGE, _PROBED, Watch, _limit, _Probe
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.runup.state import WORKS
 from tests.mutants import kills
@@ -37,8 +37,8 @@ def turns(found: Watch, count: int, lag: float) -> None:
     found.count = count
 
 
-@kills("solvers.held.turns:Watch._bounded", "if repeats or moves", "if moves")
-@kills("solvers.held.turns:Watch._elsewhere", "ends[1] - ends[0]", "ends[1]")
+@kills("solvers.held.convergence:Watch._bounded", "if repeats or moves", "if moves")
+@kills("solvers.held.convergence:Watch._elsewhere", "ends[1] - ends[0]", "ends[1]")
 def test_what_repeats_is_no_limit_cycle() -> None:
     """A circle that ends where it began waits for its whirl to have grown; one that does not is a whirl."""
     for lag, bounded in ((0.0, False), (0.7, True)):
@@ -48,7 +48,7 @@ def test_what_repeats_is_no_limit_cycle() -> None:
         assert found._bounded(sizes, SIZE) is bounded
 
 
-@kills("solvers.held.turns:Watch._bounded", "swings[0] - swings[1]", "0.0")
+@kills("solvers.held.convergence:Watch._bounded", "swings[0] - swings[1]", "0.0")
 def test_a_small_whirl_that_still_grows_is_no_cycle_yet() -> None:
     """Its swing is 1e-3 of the amplitude, so that the extremes of two windows look alike within 2 %."""
     for rate, bounded in ((0.0, True), (0.01, False)):
@@ -61,7 +61,7 @@ def test_a_small_whirl_that_still_grows_is_no_cycle_yet() -> None:
         assert found._bounded(sizes, SIZE) is bounded
 
 
-@kills("solvers.held.turns:Watch._left", "self.slowest * self.count <", "0.0 <")
+@kills("solvers.held.convergence:Watch._left", "self.slowest * self.count <", "0.0 <")
 def test_a_whirl_that_has_had_its_time() -> None:
     """Linear growth of more than e^8 that moves nothing: the motion is settled, by a circle or by a whirl."""
     for lag, kind in ((0.0, HeldKind.PERIODIC), (0.7, HeldKind.LIMIT_CYCLE)):
@@ -73,7 +73,7 @@ def test_a_whirl_that_has_had_its_time() -> None:
         assert found.kind is (HeldKind.STEADY if kind is HeldKind.PERIODIC else kind)
 
 
-@kills("solvers.held.turns:Watch._died", "return late <= ", "return late < 0.0 * ")
+@kills("solvers.held.convergence:Watch._died", "return late <= ", "return late < 0.0 * ")
 def test_a_whirl_that_decays_against_linear_theory_has_died() -> None:
     """A beat of a millionth of the amplitude that falls to e^-4 of it in a window; one that stays has not."""
     for rate, died in ((-4.0, True), (0.0, False)):
@@ -96,8 +96,8 @@ def marks(modes: int, count: int = 10) -> tuple[list[Array], Array]:
     return [end + np.tensordot(share**k, shapes, axes=1) for k in range(count)], end
 
 
-@kills("solvers.held.turns:_limit", "states[0] + ", "states[1] + ")
-@kills("solvers.held.turns:_limit", "np.diff(states[:-1], axis=0)", "np.diff(states[1:], axis=0)")
+@kills("solvers.held.convergence:_limit", "states[0] + ", "states[1] + ")
+@kills("solvers.held.convergence:_limit", "np.diff(states[:-1], axis=0)", "np.diff(states[1:], axis=0)")
 @pytest.mark.parametrize("modes", [1, 2, 4])
 def test_where_a_linear_motion_is_bound_for(modes: int) -> None:
     """Reduced rank extrapolation is exact for fewer modes than marks; no liquid is lost."""
@@ -126,7 +126,7 @@ def nudged(share: float) -> tuple[Watch, SimpleNamespace, bool]:
     return found, pushed, enough
 
 
-@kills("solvers.held.turns:Watch._probed", "late > soon * _SURE and", "late < soon and")
+@kills("solvers.held.convergence:Watch._probed", "late > soon * _SURE and", "late < soon and")
 def test_a_guessed_orbit_that_is_left() -> None:
     """A nudge that grows leaves the orbit for good: the motion goes on by itself, without guesses."""
     found, pushed, enough = nudged(1.05)
@@ -137,7 +137,7 @@ def test_a_guessed_orbit_that_is_left() -> None:
     assert (pushed.data == 2.0).all()
 
 
-@kills("solvers.held.turns:Watch._probed", "state.data[...] = probe.state", "pass")
+@kills("solvers.held.convergence:Watch._probed", "state.data[...] = probe.state", "pass")
 def test_a_guessed_orbit_that_is_kept() -> None:
     """A nudge that dies leads back to the orbit."""
     found, pushed, enough = nudged(0.8)
@@ -146,11 +146,11 @@ def test_a_guessed_orbit_that_is_kept() -> None:
     assert (pushed.data == 1.0).all()
 
 
-@kills("solvers.held.turns:Watch._balance", "self.balances[-turns:]", "self.balances")
-@kills("solvers.held.turns:Watch._balance", 'max(known["bores"], 0.0)', 'known["bores"]')
-@kills("solvers.held.turns:Watch._balance", "max(audit.scale, ", "max(")
-@kills("solvers.held.turns:Watch._balance", "_ROUNDING * turning", "0.0 * turning")
-@kills("solvers.held.turns:Watch._beyond", "size <= wall", "size >= 0.0")
+@kills("solvers.held.convergence:Watch._balance", "self.balances[-turns:]", "self.balances")
+@kills("solvers.held.convergence:Watch._balance", 'max(known["bores"], 0.0)', 'known["bores"]')
+@kills("solvers.held.convergence:Watch._balance", "max(audit.scale, ", "max(")
+@kills("solvers.held.convergence:Watch._balance", "_ROUNDING * turning", "0.0 * turning")
+@kills("solvers.held.convergence:Watch._beyond", "size <= wall", "size >= 0.0")
 def test_the_balance_of_the_last_turns() -> None:
     """What comes in goes out: gaps, heats below zero and deflections beyond the wall are violations."""
     found = watch(-0.1)
