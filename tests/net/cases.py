@@ -177,6 +177,13 @@ def _maps() -> Iterator[Case]:
     )
     yield _case("map-balls_light", f"{typed} --out out")
     wall = "--friction wall --max-volume 20ml"
+    # Where on a branch its points lie hangs on the steps of the continuation: folds are held, points by type.
+    cycles = "amplitude branch growth in_range lag power speed stable thinnest torque whirl_speed"
+    yield _case(
+        "map-cycles",
+        "map docs/examples/self_excited.toml --cycles --volumes 3 --speeds 11 --json --out out",
+        measured=frozenset(["cycles", *(f"cycle_{name}" for name in cycles.split())]),
+    )
     yield _case("map-wall", f"map small/horizontal_rig.toml {_GRID} {wall} --json --out out")
 
 

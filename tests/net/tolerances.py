@@ -195,12 +195,20 @@ TABLE: tuple[tuple[str, str, Tolerance, str], ...] = (
         *("validate-whirl", "*.cases[].*", Tolerance(relative=2e-7, absolute=1e-6)),
         "growth rates from long waves in time: 1.4e-8, against what is printed 7e-8",
     ),
+    (
+        *("map-cycles", "*fold*", Tolerance(relative=0.1)),
+        "the outermost of the points that a branch was followed by: amplitudes 1.5e-2, speeds 2e-5",
+    ),
     ("validate-baffles", "*.cases[].*", Tolerance(2e-9, 2e-9), "layers in time, less the print: 3e-11"),
     (
         *("validate-exact_wave", "*.cases[].*", Tolerance(1e-9, 1e-9)),
         "rounding of waves of some hundred nodes; the largest whirl and the fastest wave are searched for",
     ),
     ("validate-runup", "*.cases[].*", Tolerance(relative=2e-10, absolute=1e-12), "a run-up"),
+    (
+        *("validate-spindle", "*.difference", Tolerance(absolute=1e-13)),
+        "relative difference of two frequencies: 1e-15 on another processor",
+    ),
     # Finite elements
     (
         *("layer-fem-baffles", "*", Tolerance(relative=1e-6)),
