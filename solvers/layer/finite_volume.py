@@ -270,8 +270,10 @@ def side(
         push[i] += 0.5 * stiff * (a - full) * (a + full)
         flow[i] = _momentum(u, log, a, inverse) + push[i]
         mean, half = _celerity(u * inverse, log, spin)
-        # Where the gap fills and empties from step to step the waves in it count twice as fast.
-        half = np.sqrt(half * half + 4.0 * log * stiff) if stiff > 0.0 else half
+        # Where the gap fills and empties from step to step the waves in it count twice as fast. A cell with
+        # less than half of a full gap fills it at no face: its state there is deep by the steep bed alone.
+        quick = stiff if 2.0 * cell_area[i] > full else 0.0
+        half = np.sqrt(half * half + 4.0 * log * quick) if quick > 0.0 else half
         back[i], ahead[i] = mean - half, mean + half
 
 

@@ -18,9 +18,12 @@ from tests.oracles.random_machines import lying_drum
 PHYSICAL = (Outcome.DONE, Outcome.STOPPED)
 
 
-def run(seed: int) -> RunupAnswer:
-    """The run of a seed's drum, without its estimate of the error."""
-    return runup_scene(scene_from_table(lying_drum(seed), f"seed {seed}"), check=False)
+def run(seed: int, off: float = 0.0) -> RunupAnswer:
+    """The run of a seed's drum, without its estimate of the error; mass and volume off by a share."""
+    table = lying_drum(seed)
+    table["rotor"]["mass"] *= 1.0 + off
+    table["chambers"][0]["volume"] *= 1.0 + off
+    return runup_scene(scene_from_table(table, f"seed {seed}"), check=False)
 
 
 def outcome(result: RunupAnswer) -> str:
