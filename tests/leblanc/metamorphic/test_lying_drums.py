@@ -23,7 +23,7 @@ from tests.oracles.random_balls import machine_with_balls
 # (190).
 SEEDS = (11, 13, 17, 19, 25, 33, 42, 45, 61, 149, 190, 238, 278, 293)
 # Mass and volume of drum 190 off by these shares: a cell that holds an eighth of what fills its gap filled it
-# at its face, was emptied in a step by the waves of a full gap, and kept its momentum (8 to 62 % left).
+# at its face, was emptied in a step by the waves of a full gap, and kept its momentum (8 to 37 % left).
 OFF = (
     0.0,
     1e-10,
