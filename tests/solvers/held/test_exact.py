@@ -19,7 +19,7 @@ from solvers.layer.records import Outcome
 from solvers.synchronous.response import response
 from solvers.whirl.growth import asynchronous_growth
 from tests.mutants import kills
-from tests.solvers.held.test_hold import RIG, SMALL
+from tests.solvers.held.test_integrate import RIG, SMALL
 
 FRICTION, NODES = Friction("linear", 6.0), HoldNumerics(cells=32)
 

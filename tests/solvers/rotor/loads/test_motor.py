@@ -20,7 +20,7 @@ from solvers.runup.machine import Handover, Ramp
 from solvers.runup.runup import EnergyAudit, RunupNumerics, run_up
 from solvers.synchronous.response import response
 from tests.mutants import kills
-from tests.solvers.held.test_hold import KNOWN, LAG, RIG, SCALE, SMALL, held, whirler
+from tests.solvers.held.test_integrate import KNOWN, LAG, RIG, SCALE, SMALL, held, whirler
 from tests.solvers.rotor.loads.test_loads import FILLS, TUB
 
 FRICTION = Friction("linear", 2.0)
