@@ -206,8 +206,8 @@ TABLE: tuple[tuple[str, str, Tolerance, str], ...] = (
     ),
     ("validate-runup", "*.cases[].*", Tolerance(relative=2e-10, absolute=1e-12), "a run-up"),
     (
-        *("validate-spindle", "*.difference", Tolerance(absolute=1e-13)),
-        "relative difference of two frequencies: 1e-15 on another processor",
+        *("validate-spindle", "*.cases[].*", Tolerance(1e-11, 1e-11)),
+        "eigenvalues of long shafts beside what is printed: 6e-13 on another processor",
     ),
     # Finite elements
     (
