@@ -246,7 +246,7 @@ def _words(error: BaseException) -> str:
 
 def _of_another(name: str, command: Callable[..., object]) -> Callable[..., object]:
     """The command of another package; what fails in it is one sentence."""
-    passed = (OSError, SystemExit, typer.Exit, typer.Abort, *_UsageError.__mro__[:-3])
+    passed = (OSError, SystemExit, typer.Exit, typer.Abort, _UsageError)
 
     @wraps(command)
     def asked(**options: Any) -> object:

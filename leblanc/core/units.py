@@ -219,14 +219,7 @@ def unit_for(dimension: Dimension, *values: float) -> Unit:
 
 
 def unit_typed(value: object, dimension: Dimension) -> Unit:
-    """Unit in which a value free of faults stands in a file, its SI unit where it is a plain number.
-
-    Examples
-    --------
-    >>> unit = unit_typed("15 N/mm", STIFFNESS)
-    >>> unit.text(15e3), unit_typed(15e3, STIFFNESS).name
-    ('15 N/mm', 'N/m')
-    """
+    """Unit in which a value free of faults stands in a file, its SI unit where it is a plain number."""
     match = _QUANTITY.fullmatch(value.translate(_SPELLINGS)) if isinstance(value, str) else None
     if match is None or not match[2] or dimension is TEMPERATURE:
         return Unit(dimension.unit, 1.0)
@@ -234,13 +227,7 @@ def unit_typed(value: object, dimension: Dimension) -> Unit:
 
 
 def with_unit(value: float, dimension: Dimension) -> str:
-    """An SI value for print in the unit that a person would write.
-
-    Examples
-    --------
-    >>> with_unit(5.636e-6, LENGTH), with_unit(0.115, UNBALANCE), with_unit(1047.2, ANGULAR_SPEED)
-    ('5.636 um', '115 kg mm', '10000 rpm')
-    """
+    """An SI value for print in the unit that a person would write."""
     return unit_for(dimension, value).text(value)
 
 
@@ -256,13 +243,7 @@ def rpm_range(low: float, high: float) -> str:
 
 
 def over_rpm(low: float, high: float, before: str = "from", between: str = "to") -> str:
-    """Where a range of speeds in rad/s is, as a part of a sentence: "from 1 to 2 rpm", or "at 2 rpm".
-
-    Examples
-    --------
-    >>> over_rpm(10.0, 20.0, "between", "and"), over_rpm(20.0, 20.0)
-    ('between 95.49 and 191 rpm', 'at 191 rpm')
-    """
+    """Where a range of speeds in rad/s is, as a part of a sentence: "from 1 to 2 rpm", or "at 2 rpm"."""
     last = in_rpm(high)
     return f"at {last}" if last == in_rpm(low) else f"{before} {number(low * RPM)} {between} {last}"
 
@@ -349,11 +330,6 @@ def allowed_as_typed(allowed: str, typed: object) -> str:
     """What is allowed, its bounds in the unit that the user typed, all of them written out.
 
     Of a list its first text counts; without a unit the text stays as it is.
-
-    Examples
-    --------
-    >>> allowed_as_typed("below the radius, 0.065 m", "300 mm")
-    'below the radius, 65 mm'
     """
     return _POWERED.sub(lambda found: written_out(float(found[0])), _in_unit_typed(allowed, typed))
 

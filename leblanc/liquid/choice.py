@@ -42,13 +42,7 @@ class HeldCost:
 
 
 def seconds_words(seconds: float) -> str:
-    """A processor time in s that is known to a factor of two, for print.
-
-    Examples
-    --------
-    >>> seconds_words(123.4), seconds_words(0.0123)
-    ('120 s', '12 ms')
-    """
+    """A processor time in s that is known to a factor of two, for print."""
     return with_unit(float(f"{seconds:.2g}"), TIME)
 
 

@@ -17,6 +17,7 @@ from leblanc.core.units import (
     LENGTH,
     MASS,
     MINUS,
+    STIFFNESS,
     TIME,
     UNBALANCE,
     VOLUME,
@@ -28,9 +29,11 @@ from leblanc.core.units import (
     parse,
     rpm_range,
     unit_for,
+    unit_typed,
     with_unit,
     written_out,
 )
+from leblanc.liquid.choice import seconds_words
 from leblanc.scene.scene import Scene
 from leblanc.scene.schema.part import Part, allowed_at, parts_of, rule_of
 from leblanc.scene.schema.rules import Quantity
@@ -218,3 +221,15 @@ def test_a_bound_in_groups_is_told_in_the_unit_typed() -> None:
     said = "from 0 to 1 000 000 000 kg*m, and below twice 0.000 000 001 5 kg*m"
     wanted = "from 0 to 1 000 000 000 000 kg*mm, and below twice 0.0000015 kg*mm"
     assert allowed_as_typed(said, "3 kg*mm") == wanted
+
+
+def test_texts_are_what_a_person_would_write() -> None:
+    """The unit typed comes back; without one, and of a time known to a factor of two, the usual one."""
+    typed = unit_typed("15 N/mm", STIFFNESS)
+    assert (typed.text(15e3), unit_typed(15e3, STIFFNESS).name) == ("15 N/mm", "N/m")
+    shown = with_unit(5.636e-6, LENGTH), with_unit(0.115, UNBALANCE), with_unit(1047.2, ANGULAR_SPEED)
+    assert shown == ("5.636 um", "115 kg mm", "10000 rpm")
+    assert over_rpm(10.0, 20.0, "between", "and") == "between 95.49 and 191 rpm"
+    assert over_rpm(20.0, 20.0) == "at 191 rpm"
+    assert allowed_as_typed("below the radius, 0.065 m", "300 mm") == "below the radius, 65 mm"
+    assert (seconds_words(123.4), seconds_words(0.0123)) == ("120 s", "12 ms")
