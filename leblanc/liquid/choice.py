@@ -187,7 +187,8 @@ def _reason(choice: Choice, model: str, part: Index) -> str:
         return "the scene asks for it; finite elements integrate the paraboloid and miss it by their mesh"
     why = _statics_reason(choice, part) if model == "statics" else _linear_reason(choice, part)
     if choice.prescribed and choice.held_model == "potential":
-        why = f"the scene asks for the fully nonlinear wave, in a circle with the spin this one; {why}"
+        asked = "the scene asks for the fully nonlinear wave, which in a circle with the spin is this one"
+        why = f"{asked}; {why}"
     elif choice.prescribed:
         why = f"the scene asks for it; {why}"
     if not choice.missed[part[0]]:
@@ -204,8 +205,7 @@ def _family_reason(choice: Choice, part: Index) -> str:
     size = percent(worst) if np.isfinite(worst) else "an amount that is not known"
     return (
         "the scene asks for it; unidirectional waves stand for the two families that hold liquid at rest "
-        "in the drum, "
-        f"and are off the exact equilibrium by up to {size}"
+        f"in the drum, and are off the exact equilibrium by up to {size}"
     )
 
 
@@ -215,7 +215,7 @@ def _held_reason(choice: Choice, part: Index) -> str:
     worst = choice.error[part].max()
     size = percent(worst) if np.isfinite(worst) else "an amount that is not known"
     parts = HELD_MODELS[choice.held_model][1]
-    return f"{asked}integrated in time until rotor and wave converge; half {parts} change them by {size}"
+    return f"{asked}integrated in time with the rotor until converged; half the {parts} change it by {size}"
 
 
 def _linear_reason(choice: Choice, part: Index) -> str:

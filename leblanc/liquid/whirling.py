@@ -91,7 +91,7 @@ def choose_wave(asked: AutoWave, fill: Fill, whirl: Whirl) -> WaveChoice:
             # To look for it all the same takes up to a minute.
             why = (
                 f"they have hydraulic jumps, and the whirl is {share:.2g} times the largest that a "
-                f"smooth wave follows"
+                "smooth wave follows"
             )
             return _long(asked, fill, whirl, why, smooth=False)
         wave = model.wave(fill, whirl)
