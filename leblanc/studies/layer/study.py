@@ -70,6 +70,7 @@ from solvers.wave_error import detuning_ratio
 _EVEN = 720  # angles of a film
 _SMOOTH = "smooth_whirl"  # has a note of its own, which says why
 _GRIDS = "grid_gap"  # likewise
+_SLOWEST = 1e-9  # whirl over the spin
 _ONE_WAY = 1e-6  # part of the answer that may go the other way round before it is worth a note
 
 
@@ -220,8 +221,6 @@ def answer_layer(
     require_not_negative("whirl_amplitude", whirl_amplitude)
     require_positive("volume", fill.volume)
     require_not_negative("gravity", gravity)
-    if not math.isfinite(whirl_speed) or whirl_speed == 0.0:
-        raise InputError("whirl_speed", whirl_speed, "a finite number other than 0")
     begin = time.perf_counter()
     whirl = _driven(Whirl(speed, whirl_speed, whirl_amplitude, gravity=gravity))
     choice = choose_wave(model, fill, whirl) if isinstance(model, AutoWave) else WaveChoice(model)
@@ -262,6 +261,10 @@ def answer_layer(
 
 def _driven(whirl: Whirl) -> Whirl:
     """Under gravity alone nothing whirls: the answer is that of the drum's own frame."""
+    # Forces are over the whirl speed squared.
+    if not _SLOWEST * whirl.spin <= abs(whirl.speed) < math.inf:
+        allowed = f"a finite number other than 0, at least {_SLOWEST:g} of the spin"
+        raise InputError("whirl_speed", whirl.speed, allowed)
     return replace(whirl, speed=whirl.spin) if whirl.gravity and whirl.amplitude == 0.0 else whirl
 
 

@@ -498,6 +498,15 @@ def test_what_a_machine_says_is_not_typed_again(asked: dict[str, object], field:
     assert fault.value.field == field
 
 
+@pytest.mark.parametrize("whirl", [0.0, 1e-300, -1e-9])
+@pytest.mark.parametrize("more", [{}, {"duration": "1 s", "cells": 16}])
+def test_a_whirl_that_stands_is_refused(whirl: float, more: dict[str, object]) -> None:
+    asked = {"radius": R, "height": H, "volume": VOLUME, "speed": SPIN, "whirl_amplitude": 1e-4}
+    with pytest.raises(InputError) as fault:
+        layer(**asked, whirl_speed=whirl, **more)
+    assert fault.value.field == "whirl_speed"
+
+
 def held_over_time(folder: Path, model: str, **cells: int) -> None:
     """At the start an even layer; at the end of each period its volume, the last one the answer's own."""
     asked = {"radius": R, "height": H, "volume": VOLUME, "speed": SPIN, "whirl_speed": 32.0}
