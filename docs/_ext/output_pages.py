@@ -21,6 +21,10 @@ the quantity b of the record a, `a[].b` that of each record in the list a. "Over
 "error" the quantity that is the error of this one, "equation" where it stands on the pages of theory.
 "(data file)" stands behind a name that the data file alone has.
 
+What does not exist, is not known, or is not finite is null in JSON and nan in data files and in Python. The
+JSON does not say which of the three it is: where an answer tells them apart, a quantity beside it does, such
+as `stable` or `converged`. A complex number is [real, imaginary] in JSON and two variables in a data file.
+
 Data files of rotors with or without chambers say besides of what machine they are: `machine_mass` (kg, that
 moves with the axis, no liquid), `machine_critical_speed` (rad s-1, no liquid, undamped), and by chamber
 `machine_liquid_mass` (kg) and `machine_capacity` (m3).

@@ -7,13 +7,14 @@ import io
 import re
 from abc import ABC, abstractmethod
 from base64 import b64encode
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
-from functools import cache
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, fields, is_dataclass
+from functools import cache, wraps
 from hashlib import sha256
 from importlib import metadata
 from os import PathLike
 from pathlib import Path
+from types import CodeType
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from leblanc.core.blocks import Block, Headline, Table, flat
@@ -54,24 +55,41 @@ def as_typed(answer: Answer, scene: Any = None, study: Any = None, model: Any = 
         own = "" if model is None else model if isinstance(model, str) else _made_of(model)
         typed = Typed(scene.text, "" if study is None else study.text, path=scene.file, liquid_model=own)
         object.__setattr__(answer, "typed", typed)
+        if own and not isinstance(model, str):
+            told = f"{vars(answer)['digest']} {own} {_code_of(type(model))}"
+            object.__setattr__(answer, "digest", sha256(told.encode()).hexdigest())
         object.__setattr__(answer, "scene_asked", scene)
 
 
-def _made_of(model: object) -> str:
+def _made_of(model: Any, within: tuple[int, ...] = ()) -> str:
     """An object in words that tell it from others: its own, or its class with its attributes.
 
     Arrays are told by their fingerprint, and addresses in memory are left out, which differ from run to run.
     """
     kind = type(model)
-    if kind.__repr__ is not object.__repr__:
+    if id(model) in within:
+        return "..."
+    if kind.__module__ == "numpy" and hasattr(model, "tobytes"):
+        return f"{model.dtype}{list(model.shape)} {sha256(model.tobytes()).hexdigest()[:12]}"
+    name, told = f"{kind.__module__}.{kind.__qualname__}", getattr(model, "__dict__", {})
+    if is_dataclass(model):
+        name, told = kind.__qualname__, {each.name: getattr(model, each.name) for each in fields(model)}
+    elif kind.__repr__ is not object.__repr__:
         return _NO_ADDRESS.sub("", repr(model))
-    said = []
-    for name, value in getattr(model, "__dict__", {}).items():
-        text = repr(value)
-        if hasattr(value, "tobytes"):
-            text = f"{value.dtype}{list(value.shape)} {sha256(value.tobytes()).hexdigest()[:12]}"
-        said.append(f"{name}={_NO_ADDRESS.sub('', text)}")
-    return f"{kind.__module__}.{kind.__qualname__}({', '.join(said)})"
+    within = (*within, id(model))
+    return f"{name}({', '.join(f'{key}={_made_of(value, within)}' for key, value in told.items())})"
+
+
+def _code_of(part: Any) -> str:
+    """What a class with its bases, a method, its code or a constant in it does, wherever it stands."""
+    if isinstance(part, type):
+        own = [(name, _code_of(each)) for kind in part.__mro__[:-1] for name, each in vars(kind).items()]
+        return "".join(name + code for name, code in own if "(" in code or not name.startswith("__"))
+    part = getattr(part, "fget", getattr(part, "__func__", part))
+    code = getattr(part, "__code__", part)
+    if isinstance(code, CodeType):
+        return f"({code.co_code.hex()}{code.co_names}{[*map(_code_of, code.co_consts)]})"
+    return _NO_ADDRESS.sub("", repr(sorted(code, key=repr) if isinstance(code, frozenset) else code))
 
 
 def versions(packages: Iterable[str] = ("leblanc", "numpy", "scipy")) -> dict[str, str]:
@@ -136,6 +154,17 @@ def _read_only(value: Any) -> Any:
     return value
 
 
+def _plain(to_json: Callable[[Any], dict[str, Any]]) -> Callable[[Any], dict[str, Any]]:
+    """A `to_json` of a kind of answer, whose values are made such as JSON knows."""
+
+    @wraps(to_json)
+    def made(answer: Any) -> dict[str, Any]:
+        found: dict[str, Any] = called("leblanc.core.quantities:plain")(to_json(answer))
+        return found
+
+    return made
+
+
 class Answer(ABC):
     """Base of a frozen dataclass whose fields and properties are declared by `Q`."""
 
@@ -156,6 +185,8 @@ class Answer(ABC):
         for name in ("__eq__", "__hash__", "__repr__"):
             if name not in vars(cls) or (name == "__hash__" and cls.__hash__ is None):
                 setattr(cls, name, getattr(Answer, name))
+        if "to_json" in vars(cls):
+            cls.to_json = _plain(cls.to_json)  # type: ignore[method-assign]
 
     def __eq__(self, other: object) -> bool:
         """Of the same kind with the same values, arrays element by element, nan equal to nan."""

@@ -159,8 +159,9 @@ def plain(value: Any) -> Any:
         return value.text
     if is_dataclass(value) and not isinstance(value, type):
         return plain(value.to_json()) if hasattr(value, "to_json") else to_json(value)
-    if isinstance(value, np.ndarray) and value.dtype.kind in "fc" and value.ndim:
-        return finite(value)
+    if isinstance(value, np.ndarray | np.generic) and value.dtype.kind in "fc":
+        wide = np.asarray(value, complex if value.dtype.kind == "c" else float)
+        return finite(wide) if wide.ndim else plain(wide.item())
     if hasattr(value, "tolist"):  # arrays and their scalars
         return plain(value.tolist())
     if isinstance(value, Path):

@@ -615,11 +615,11 @@ def require_clear(scene: Scene, what: str, baffles: bool = False) -> None:
 
 
 def require_whirl(scene: Scene, known: bool = False) -> None:
-    """Refuse a spindle and a rotor in magnetic bearings where one that whirls with liquid is asked for.
+    """Refuse an exciter, a spindle and a rotor in magnetic bearings: the question is for one that whirls.
 
     `known`: machines of other packages as well, of which the parts and masses are not known.
     """
-    if isinstance(scene.rotor, (MagneticRotor, Spindle, *((Machine,) if known else ()))):
+    if isinstance(scene.rotor, (*WITHOUT_CHAMBERS, *((Machine,) if known else ()))):
         raise not_taken(scene.rotor.kind)
 
 
@@ -640,8 +640,7 @@ def dry_rotor(scene: Scene) -> Jeffcott | TwoPlane | Tub:
 
     An `InputError` for a rotor without chambers: an exciter, a spindle, or in magnetic bearings.
     """
-    if isinstance(scene.rotor, WITHOUT_CHAMBERS):
-        raise not_taken(scene.rotor.kind)
+    require_whirl(scene)
     return scene.rotor.machine()
 
 

@@ -7,8 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from leblanc.core.progress import update
-from leblanc.scene.rotors import not_taken
-from leblanc.scene.scene import LIQUID_MODELS, WITHOUT_CHAMBERS, Scene, require_chambers, require_no_balls
+from leblanc.scene.scene import LIQUID_MODELS, Scene, require_chambers, require_no_balls, require_whirl
 from leblanc.studies.compare.answer import CompareAnswer, ModelAnswer
 from leblanc.studies.held.holding import Holding
 from leblanc.studies.run.study import run_scene
@@ -35,8 +34,7 @@ def answer(
 
 def _check(scene: Scene, models: Sequence[str]) -> None:
     require_no_balls(scene, "a comparison of liquid models, as balls have one model; `leblanc run` answers")
-    if isinstance(scene.rotor, WITHOUT_CHAMBERS):
-        raise not_taken(scene.rotor.kind)
+    require_whirl(scene)
     require_chambers(scene, "a comparison of liquid models")
     known = ", ".join(LIQUID_MODELS)
     if not models:

@@ -47,7 +47,7 @@ from leblanc.liquid.whirling import (
     watched,
 )
 from leblanc.scene.chambers import round_chamber
-from leblanc.scene.scene import Scene, liquid_of
+from leblanc.scene.scene import Scene, liquid_of, require_whirl
 from leblanc.studies.layer.answer import (
     AnyLayerAnswer,
     ExactPeriods,
@@ -157,6 +157,7 @@ def _of_machine(scene: Scene, chamber: int | None, walls: Mapping[str, float | N
     for name, value in walls.items():
         if value is not None:
             raise InputError(name, value, "left out where a machine is given")
+    require_whirl(scene)
     number = 1 if chamber is None else chamber
     if not 1 <= number <= len(scene.fills):
         allowed = f"1 to {len(scene.fills)}" if scene.fills else "of a machine with chambers"

@@ -11,8 +11,7 @@ from functools import cached_property
 import numpy as np
 
 from fluid.liquid import expansion, liquid_at
-from leblanc.scene.rotors import not_taken
-from leblanc.scene.scene import WITHOUT_CHAMBERS, Scene
+from leblanc.scene.scene import Scene, require_whirl
 from leblanc.scene.tasks import Optimisation, pairs_of
 from leblanc.scene.unbalances import with_unbalances
 from leblanc.studies.optimise.answer import ConditionTable
@@ -151,8 +150,7 @@ class Conditions:
 
 def in_condition(scene: Scene, condition: OperatingCondition) -> tuple[Scene, list[float]]:
     """The scene in a condition, and by what factor the volume of each chamber's liquid grows."""
-    if isinstance(scene.rotor, WITHOUT_CHAMBERS):
-        raise not_taken(scene.rotor.kind)
+    require_whirl(scene)
     rotor = with_unbalances(scene.rotor, condition.unbalance)
     if condition.temperature is None:
         return scene.altered(rotor=rotor), [1.0] * len(scene.fills)

@@ -17,7 +17,7 @@ from pydantic import Field, PlainValidator, ValidationError
 from leblanc.core import units
 from leblanc.core.files import native, path_text
 from leblanc.core.units import allowed_as_typed
-from leblanc.scene.scene import WITHOUT_CHAMBERS, Scene, scene_from_table
+from leblanc.scene.scene import Scene, fault_in, require_whirl, scene_from_table
 from leblanc.scene.schema.load import (
     SceneError,
     SceneFault,
@@ -342,9 +342,10 @@ def _sweep_of(given: Mapping[str, Any], path: str | PathLike[str]) -> Sweep:
         content = scene_table(scene_text, scene_path)
         with with_lines(scene_path):
             scene = scene_from_table(content, str(scene_path), scene_text)
-    if isinstance(scene.rotor, WITHOUT_CHAMBERS):
-        allowed = "a scene whose rotor answers at its speeds: jeffcott, two_plane or tub"
-        raise SceneError([SceneFault(file, "scene", shown(table.scene), allowed)])
+    try:
+        require_whirl(scene)
+    except InputError as error:
+        raise ((fault_in(scene.file, error) if scene.file else None) or error) from error
     fields = _fields(table.vary, content, table.method, file)
     points = table.samples
     if points is None:

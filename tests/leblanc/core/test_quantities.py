@@ -149,6 +149,30 @@ def test_json_has_each_quantity_once_under_its_public_name() -> None:
     }
 
 
+@kills(f"{AT}:plain", "finite(wide)", "finite(value)")
+@kills("leblanc.core.answer:Answer.__init_subclass__", "_plain(cls.to_json)", "cls.to_json")
+def test_json_of_an_answer_of_another_package_is_json_whatever_its_numbers_are() -> None:
+    """Also what its `to_json` adds: complex numbers in two parts, None for what is not finite."""
+
+    def own(answer: Whole) -> dict[str, object]:
+        added = {"of_its_own": 1j, "missing": math.nan, "long": np.clongdouble(2.0 + 3.0j)}
+        return added | {"longs": np.array([1j, np.inf], np.clongdouble), "real": np.longdouble(0.5)}
+
+    class Longer(Whole):
+        to_json = own
+
+    parts = {name: getattr(whole(), name) for name in Whole.__dataclass_fields__}
+    found = Longer(**parts).to_json()
+    assert isinstance(found["longs"], list) and type(found["longs"][0][1]) is float
+    assert found == {
+        "of_its_own": [0.0, 1.0],
+        "missing": None,
+        "long": [2.0, 3.0],
+        "longs": [[0.0, 1.0], [None, None]],
+        "real": 0.5,
+    }
+
+
 @kills(f"{AT}:_with_parts", 'f"{q.prefix}_{dim}" if dim in dims', "dim if dim in dims")
 @kills(f"{AT}:_columns", "each.q.variable or ", "")
 @kills(f"{AT}:_columns", "(dim, *each.q.over)", "(*each.q.over, dim)")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from contextlib import suppress
+from copy import copy
 from dataclasses import dataclass, field, replace
 from importlib.metadata import EntryPoint
 from pathlib import Path
@@ -17,6 +18,7 @@ import leblanc as lb
 from fluid.fill import Fills
 from fluid.friction.laws import NO_FRICTION, Friction, FrictionLaw
 from fluid.whirl import layer_rate, offset_with_friction, plane_layer
+from leblanc.core.answer import as_typed
 from leblanc.liquid.models import asked_with
 from leblanc.studies.explain.answer import described_blocks
 from meshes.errors import InputError
@@ -386,7 +388,63 @@ def test_explain_says_nothing_of_an_even_layer_where_the_scene_names_another(
     assert "even layer" not in plain
 
 
-@kills("leblanc.core.answer:_made_of", "{', '.join(said)}", "")
+@kills("leblanc.core.answer:as_typed", " {own} {", " {")
+@kills("leblanc.core.answer:as_typed", "{_code_of(type(model))}", "")
+@kills("leblanc.core.answer:_code_of", "{[*map(_code_of, code.co_consts)]}", "")
+@kills("leblanc.core.answer:_made_of", "={_made_of(value, within)}", "={value!r}")
+def test_digests_tell_models_of_one_name_apart() -> None:
+    """By their attributes, arrays element by element, those of objects in them, and by their code."""
+
+    def made(share: str) -> Any:
+        """Class with a method that differs in a number."""
+        space: dict[str, Any] = {"Ring": Ring, "replace": replace}
+        body = f"found, slope = super().answer(fills, whirls), {share}"
+        text = f"class Sloped(Ring):\n def answer(self, fills, whirls):\n  {body}\n  return found"
+        exec(text, space)
+        return space["Sloped"]()
+
+    @dataclass
+    class Tabled(Ring):
+        table: Any
+        friction: Friction = NO_FRICTION
+        spoilt: Any = field(default_factory=dict)
+
+    class Held:
+        def __init__(self, value: float) -> None:
+            self.value, self.itself = value, self
+
+    peaks = [np.eye(1, 2000, k)[0] for k in (700, 800)]
+    rates = [Ring(Friction(FrictionLaw.LINEAR, rate)) for rate in (2.0, 200.0)]
+    models = [
+        *rates,
+        *map(Tabled, peaks),
+        *(Tabled(Held(value)) for value in (1.0, 2.0)),
+        made("1"),
+        made("2"),
+    ]
+    asked, speeds = scene("horizontal_rig"), [100.0, 200.0]
+    answer = lb.run(asked, speeds=speeds, model=rates[0])
+
+    def digest(model: Any) -> str:
+        found = copy(answer)
+        del vars(found)["typed"]
+        vars(found)["digest"] = asked.digest
+        as_typed(found, asked, model=model)
+        return found.digest
+
+    digests = [*map(digest, models)]
+    assert len({*digests}) == len(models)
+    assert [digest(Tabled(peaks[0].copy())), digest(Tabled(Held(1.0)))] == [digests[2], digests[4]]
+    assert answer.digest != lb.run(asked, speeds=speeds, model=rates[1]).digest
+    own = lb.run(asked.replace({"model.liquid": "statics", "speeds": speeds})).digest
+    assert lb.run(asked, speeds=speeds, model="statics").digest == own
+
+
+@kills(
+    "leblanc.core.answer:_made_of",
+    "{', '.join(f'{key}={_made_of(value, within)}' for key, value in told.items())}",
+    "",
+)
 @kills("leblanc.core.answer:_made_of", "is not object.__repr__", "is object.__repr__")
 @kills("leblanc.core.answer:as_typed", ", liquid_model=own", "")
 def test_an_answer_and_its_file_tell_models_apart(tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import shutil
 import sys
 import tomllib
@@ -247,6 +248,30 @@ def test_what_takes_no_such_machine_says_so(
             lb.optimise(scene, "peak")
     assert main(["view", str(installed), "--out", str(tmp_path / "out")]) == 2
     assert "this command takes no machine of this one" in capsys.readouterr().err
+
+
+@kills("leblanc.scene.scene:require_whirl", "*WITHOUT_CHAMBERS, ", "*WITHOUT_CHAMBERS[1:], ")
+@kills("leblanc.studies.layer.study:_of_machine", "require_whirl(scene)", "pass")
+@kills("leblanc.studies.sweep.plan:_sweep_of", "require_whirl(scene)", "pass")
+@pytest.mark.parametrize("name", ["vibratory_table", "spindle", "blood_pump"])
+def test_a_machine_that_does_not_whirl_is_refused_alike(
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """With the line of its kind in its own file, by every command that is not for it."""
+    file, study, data = (tmp_path / each for each in ("it.toml", "study.toml", "data.csv"))
+    file.write_text(lb.example(name).to_toml(), encoding="utf-8")
+    study.write_text(
+        'scene = "it.toml"\nmethod = "grid"\n[vary]\n"speeds.stop" = { choice = ["10 Hz", "20 Hz"] }\n',
+        encoding="utf-8",
+    )
+    data.write_text("speed,amplitude\nrpm,mm\n100,1\n200,1\n300,2\n", encoding="utf-8")
+    others = (["compare", "it", "--models", "linear"], ["fit", "it", str(data), "--unknown", "rotor.mass"])
+    for command in (*([each, "it"] for each in ("map", "runup", "layer", "optimise")), *others, ["sweep"]):
+        files = [str(file) if part == "it" else part for part in command]
+        assert main([*files, *([str(study)] if command == ["sweep"] else [])]) == 2
+        said = capsys.readouterr().err
+        assert re.match(re.escape(str(file)) + r":\d+: rotor.kind = ", said), command
+        assert "must be of another kind: this command takes no machine of this one" in said, command
 
 
 def test_a_misspelt_liquid_is_told_with_all_that_are_installed(installed: Path, tmp_path: Path) -> None:

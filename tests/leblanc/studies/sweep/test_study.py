@@ -168,7 +168,7 @@ def test_a_latin_hypercube_that_would_not_fit_the_memory_is_refused(tmp_path: Pa
 
 def test_an_exciter_is_refused(tmp_path: Path) -> None:
     scene = (EXAMPLES / "vibratory_table.toml").read_text(encoding="utf-8")
-    with pytest.raises(SceneError, match="scene whose rotor answers at its speeds"):
+    with pytest.raises(SceneError, match="this command takes no machine of this one"):
         study_in(tmp_path, STUDY, scene)
 
 
