@@ -66,7 +66,7 @@ def _made_of(model: Any, within: tuple[int, ...] = ()) -> str:
 
     Arrays are told by their fingerprint, and addresses in memory are left out, which differ from run to run.
     """
-    kind = type(model)
+    kind: Any = type(model)
     if id(model) in within:
         return "..."
     if kind.__module__ == "numpy" and hasattr(model, "tobytes"):
@@ -154,7 +154,7 @@ def _read_only(value: Any) -> Any:
     return value
 
 
-def _plain(to_json: Callable[[Any], dict[str, Any]]) -> Callable[[Any], dict[str, Any]]:
+def _plain(to_json: Callable[[Any], dict[str, Any]]) -> Any:
     """A `to_json` of a kind of answer, whose values are made such as JSON knows."""
 
     @wraps(to_json)

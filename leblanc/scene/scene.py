@@ -640,7 +640,8 @@ def dry_rotor(scene: Scene) -> Jeffcott | TwoPlane | Tub:
 
     An `InputError` for a rotor without chambers: an exciter, a spindle, or in magnetic bearings.
     """
-    require_whirl(scene)
+    if isinstance(scene.rotor, WITHOUT_CHAMBERS):
+        raise not_taken(scene.rotor.kind)
     return scene.rotor.machine()
 
 
