@@ -58,6 +58,11 @@ $(BIN)/.installed-docs: pyproject.toml | $(BIN)/python
 	$(BIN)/python -m pip install --quiet --editable ".[docs]"
 	touch $@
 
+# All of these by one look at the packages.
+$(BIN)/.installed-all: pyproject.toml | $(BIN)/python
+	$(BIN)/python -m pip install --quiet --editable ".[test,browser,cad,lint,notebooks,docs]"
+	touch $(BIN)/.installed $(addprefix $(BIN)/.installed,-test -lint -notebooks -docs -all)
+
 # The comparisons with measurements, prints and other codes, executed: a notebook whose claims fail stops the make.
 notebooks: $(BIN)/.installed-notebooks
 	$(BIN)/leblanc notebooks
