@@ -247,7 +247,7 @@ def stands(own: Scene) -> float:
 
 
 @kills("solvers.synchronous.response:Response.holds", "self.converged & self.in_range", "self.converged")
-@kills("leblanc.studies.peaks:_holding", "0.5 * (here + known.speed[k])", "here + 0.0 * k")
+@kills("leblanc.studies.peaks:_holding", "np.outer(wide, _EDGE_PARTS)", "0.0 * np.outer(wide, _EDGE_PARTS)")
 @kills("leblanc.studies.peaks:_holding", "not known.holds[k]]", "known.holds[k]]")
 def test_the_largest_amplitude_is_that_of_speeds_at_which_the_answer_holds() -> None:
     """An edge or a lower resonance above the speed of an annular layer, from few speeds as from many.
