@@ -30,7 +30,7 @@ def by(scene: Scene, model: str) -> Scene:
 
 @pytest.mark.parametrize("name", ["horizontal_rig", "centrifuge", "tub"])
 def test_a_comparison_is_the_difference_of_two_runs(name: str) -> None:
-    scene = example(name).replace({"speeds.count": 41})
+    scene = example(name).replace({"speeds.count": 5})
     found = lb.compare(scene, ["linear", "statics"])
     linear, statics = (run_scene(by(scene, model)) for model in ("linear", "statics"))
     difference, largest = linear.amplitude - statics.amplitude, statics.peak["amplitude"]
@@ -58,7 +58,7 @@ def test_an_empty_machine_is_the_same_by_every_model() -> None:
 @kills("leblanc.studies.compare.answer:_estimate", "error >= WHOLE", "error < 0.0")
 def test_a_tub_fits_its_low_panels_and_no_error_is_thousands() -> None:
     """Resonances drawn wider halve the panels: no label reaches the next one. 100 % and more are words."""
-    found = lb.compare(example("tub"), ["linear", "statics"])
+    found = lb.compare(example("tub").replace({"speeds.count": 61}), ["linear", "statics"])
     figure = comparison_figure(found)
     FigureCanvasAgg(figure).draw()
     labels = [axes.yaxis.label.get_window_extent() for axes in figure.axes if axes.get_ylabel()]
@@ -89,7 +89,7 @@ def test_the_scenes_own_model_does_not_count() -> None:
 
 
 def test_a_refusal_is_an_entry() -> None:
-    cut = example("horizontal_rig").replace({"chambers.0.baffles": {"count": 4}})
+    cut = example("horizontal_rig").replace({"chambers.0.baffles": {"count": 4}, "speeds.count": 5})
     found = lb.compare(cut, ["fem", "kdv"])
     assert [one.answered for one in found.answers] == [True, False]
     assert found.reference == "fem"
