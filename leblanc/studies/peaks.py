@@ -35,7 +35,7 @@ _TWIN = 1e-12  # relative distance of two resonances that are one
 _ASIDE = 3e-9  # relative distance of a speed that is taken for the resonance
 _EDGE = 1e-9  # relative distance of two speeds, one on each side of where an answer begins to hold
 _EDGE_ROUNDS = 14  # in which such two come together
-_EDGE_PARTS = np.arange(1, 8) / 8.0  # of the interval, asked at once: the answer costs little more than at one
+_EDGE_PARTS = np.arange(1, 8) / 8.0  # asked at once: which costs little more than one
 
 
 @dataclass(frozen=True)
