@@ -79,6 +79,8 @@ class StandingWave:
             self._table = drag_table(diameter, fill.liquid.viscosity, friction.roughness)
         self._step, self._angles, self._scratch = 2.0 * math.pi / cells, ring(cells), scratch(cells)
         self._parts, self._fastest = 1, 0.0
+        # Where each cell comes from when a layer is moved by one.
+        self._back = {way: np.roll(np.arange(cells), way) for way in (-1, 1)}
         area = np.full(cells, self.mean)
         self.state = np.concatenate([area, -np.square(area)])
 
@@ -104,7 +106,7 @@ class StandingWave:
     def period(self, given: Whirling) -> Answer | None:
         """Go on for one turn of the whirl in the drum; None where the layer breaks down."""
         state = self.state.copy()
-        found = self._advance(state, given, 2.0 * math.pi / abs(given.ratio - 1.0), 0, 0.0)
+        found = self._advance(state, given, 2.0 * math.pi / abs(given.ratio - 1.0))
         if found is not None:
             self.state = found.state
         return found
@@ -133,15 +135,15 @@ class StandingWave:
 
         The forcing is ahead of the state's frame by `turned`, rad.
         """
-        slip, n = given.ratio - 1.0, self.cells
+        slip = given.ratio - 1.0
         if not abs(slip) > _SLOWEST:
             return None
-        found = self._advance(state.copy(), given, self._step / abs(slip), self._parts, turned / slip)
+        time = self._step / abs(slip)
+        found = self._all_through(state[None], given, time, turned / slip)
         if found is None:
             return None
-        way = 1 if slip < 0.0 else -1
-        moved = np.concatenate([np.roll(found.state[:n], way), np.roll(found.state[n:], way)])
-        return found._replace(state=moved)
+        states, forces, loads = found
+        return Answer(states[0], complex(forces[0]), float(loads["turning"][0]) / time)
 
     def linearise(self, given: Whirling) -> Derivatives | None:
         """Derivatives of the map at the present state; None where the layer breaks down."""
@@ -150,7 +152,7 @@ class StandingWave:
             return None
         time = self._step / abs(slip)
         # How many steps it takes: their number stays while the state changes, which keeps the map smooth.
-        if self._advance(self.state.copy(), given, time, 0, 0.0) is None:
+        if self._advance(self.state.copy(), given, time) is None:
             return None
         self._parts = max(1, math.ceil(self._fastest * time / (_COURANT * self._step)))
         base = self.cell(self.state, given)
@@ -161,7 +163,7 @@ class StandingWave:
         found = self._all_through(moved, given, time)
         if found is None:
             return None
-        states, forces = found
+        states, forces, _ = found
         by_state = (states - base.state).T / step
         force = (forces - base.force) / step
         by_given, force_given = np.empty((size, 3)), np.empty(3, dtype=complex)
@@ -174,45 +176,48 @@ class StandingWave:
             force_given[k] = (ahead.force - base.force) / step
         return Derivatives(by_state, by_given, force, force_given)
 
-    def _all_through(self, moved: Array, given: Whirling, time: float) -> tuple[Array, Complex] | None:
-        """What `cell` finds from each of some states, shape (m, 2 n); None where one breaks down."""
+    def _all_through(
+        self, moved: Array, given: Whirling, time: float, start: float = 0.0
+    ) -> tuple[Array, Complex, Array] | None:
+        """States, shape (m, 2 n), after the time of a cell, moved back by it, with G and loads of each.
+
+        None where one breaks down.
+        """
         from solvers.cycles.stretch import advance_each
 
         n = self.cells
         areas, momenta = moved[:, :n].copy(), moved[:, n:].copy()
-        loads = records(LOADS, len(moved))
+        loads = np.zeros(len(moved), LOADS)
         drive, wall, most = self._posed(given, time, _LONGEST)
         done = compiled(
-            *(advance_each, areas, momenta, records(PACE), 0.0, time, self._parts, drive, wall),
-            *(self._angles, NOTHING, _LONGEST, most, self._scratch, loads),
+            *(advance_each, areas, momenta, records(PACE), start, time, self._parts, drive, wall),
+            *(self._angles, NOTHING, _LONGEST, most, self._scratch, loads.view(np.recarray)),
         )
         if not done:
             return None
-        way = 1 if given.ratio < 1.0 else -1
-        states = np.concatenate([np.roll(areas, way, axis=1), np.roll(momenta, way, axis=1)], axis=1)
-        offset = (loads.offset_x + 1j * loads.offset_y) / time
-        return states, self._force(offset, drive.amplitude)
+        states, way = np.empty_like(moved), 1 if given.ratio < 1.0 else -1
+        for first, part in ((0, areas), (n, momenta)):
+            states[:, first : first + n] = part[:, self._back[way]]
+        offset = (loads["offset_x"] + 1j * loads["offset_y"]) / time
+        return states, self._force(offset, drive.amplitude), loads
 
     def kept(self, state: Array) -> Array:
         """A state without areas below nothing, of the layer's volume."""
         area = np.maximum(state[: self.cells], 0.0)
         return np.concatenate([area * (self.mean / area.mean()), state[self.cells :]])
 
-    def _advance(self, state: Array, given: Whirling, time: float, parts: int, start: float) -> Answer | None:
-        """Advance a state, in place, in so many equal steps or, if 0, in as long ones as it allows."""
+    def _advance(self, state: Array, given: Whirling, time: float) -> Answer | None:
+        """Advance a state, in place, in as long steps as it allows."""
         from solvers.layer.step import advance
 
         n, pace, loads = self.cells, records(PACE), records(LOADS)
-        courant, pace[0].time = _LONGEST if parts else _COURANT, start
-        drive, wall, most = self._posed(given, time, courant)
-        for part in range(max(parts, 1)):
-            stop = start + time * (part + 1) / max(parts, 1)
-            outcome, _ = compiled(
-                *(advance, state[:n], state[n:], np.empty(0), pace, stop, drive, wall, self._angles),
-                *(NOTHING, courant, most, self._scratch, loads),
-            )
-            if outcome != Outcome.DONE:
-                return None
+        drive, wall, most = self._posed(given, time, _COURANT)
+        outcome, _ = compiled(
+            *(advance, state[:n], state[n:], np.empty(0), pace, time, drive, wall, self._angles),
+            *(NOTHING, _COURANT, most, self._scratch, loads),
+        )
+        if outcome != Outcome.DONE:
+            return None
         self._fastest = float(pace[0].fastest)
         sums = loads[0]
         offset = complex(sums.offset_x, sums.offset_y) / time

@@ -360,6 +360,8 @@ class _Bordered:
         self.left, self.right = np.zeros(0, dtype=complex), np.zeros(0, dtype=complex)
         # Fixed between two points of the curve: another number of steps is another function.
         self.steps: int | None = None
+        # Speed and small motions next to the last point, by the two parameters: the frequency leaves them.
+        self._known: dict[tuple[float, float], tuple[float, Linearised | HalfTurn]] = {}
 
     def _rest(self, point: Array) -> tuple[Rest, Array] | None:
         """The state, and the pulls that are left on its balls where their places are unknowns."""
@@ -376,9 +378,19 @@ class _Bordered:
         rest = self.state.at(machine, None if self.state.places is None else self.near)
         return None if rest is None else (rest, np.zeros(0))
 
-    def _matrix(self, rest: Rest, point: Array) -> Complex:
-        frequency = float(point[2]) if self.swings else 0.0
-        return rest.motions(self.steps).lasting(frequency, rest.speed)
+    def _matrix(self, point: Array) -> tuple[Complex, Array] | None:
+        """The matrix that is singular on the curve, and the pulls that are left; None without a state."""
+        if not self.swings:
+            found = self._rest(point)
+            return found and (found[0].motions(self.steps).lasting(0.0, found[0].speed), found[1])
+        at = float(point[0]), float(point[1])
+        if at not in self._known:
+            found = self._rest(point)
+            if found is None:
+                return None
+            self._known[at] = found[0].speed, found[0].motions(self.steps)
+        speed, motions = self._known[at]
+        return motions.lasting(float(point[2]), speed), np.zeros(0)
 
     def renew(self, point: Array) -> None:
         """Take the directions that the matrix maps to least as the border, and this state's places."""
@@ -388,20 +400,21 @@ class _Bordered:
         rest, self.near = found[0], found[0].places
         motions = rest.motions()
         self.steps = motions.steps if isinstance(motions, HalfTurn) else None
-        before, _, after = np.linalg.svd(self._matrix(rest, point))
+        self._known.clear()
+        before, _, after = np.linalg.svd(motions.lasting(float(point[2]) if self.swings else 0.0, rest.speed))
         self.left, self.right = before[:, -1], after[-1].conj()
 
     def __call__(self, point: Array) -> Array:
-        found, size = self._rest(point), self.left.size
-        matrix = None if found is None else self._matrix(found[0], point)
-        if found is None or matrix is None or len(matrix) != size:
+        found, size = self._matrix(point), self.left.size
+        if found is None or len(found[0]) != size:
             return np.full(point.size - 1, np.nan)
+        matrix, pulls = found
         whole = np.zeros((size + 1, size + 1), dtype=complex)
         whole[:size, :size], whole[:size, size], whole[size, :size] = matrix, self.left, self.right.conj()
         unit = np.zeros(size + 1, dtype=complex)
         unit[size] = 1.0
         left = np.linalg.solve(whole, unit)[size]
-        return np.array([*found[1], left.real, *([left.imag] if self.swings else [])])
+        return np.array([*pulls, left.real, *([left.imag] if self.swings else [])])
 
 
 def _roots(state: State, machine: Machine) -> Complex | None:

@@ -81,17 +81,17 @@ class RotorWithBalls:
         """Mass, radius, drag, rolling inertia of each, shape (N, 4)."""
         return self._arrays[1]
 
-    @property
+    @cached_property
     def moment(self) -> Array:
         """m R of each ball, kg m, shape (N,)."""
         return np.asarray(self.balls[:, 0] * self.balls[:, 1])
 
-    @property
+    @cached_property
     def push(self) -> Complex:
         """Unbalance of each ball at angle 0, as that of a rotor, shape (N, n)."""
         return np.asarray(self.moment[:, None] * (self.axes[:, 0] - 1j * self.axes[:, 1]))
 
-    @property
+    @cached_property
     def mass(self) -> Array:
         """Mass matrix with the balls, shape (n, n)."""
         added = np.einsum("j,jin,jim->nm", self.balls[:, 0], self.axes, self.axes)
