@@ -1,25 +1,354 @@
-"""Stability boundaries: edges of the bands of speed in which a rotor with liquid layers whirls by itself."""
+"""Stability boundaries: edges of the bands of speed in which a rotor with liquid layers whirls by itself.
+
+No band may be lost between two speeds. A mode changes fast only where another meets it. From modes and their
+slopes over the spin at a few speeds of its own choice each interval is refined until its modes are followed
+from end to end, no growth can have changed its sign inside, and every meeting of two modes has been gone to
+[theory: whirl, eq. 32 and 33]. With laminar friction and baffles only the modes that grow most are known and
+followed.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from fluid.fill import Fill
 from fluid.friction.laws import NO_FRICTION
-from meshes.arrays import Array, Flags, Index
-from solvers.rotor.system import Rotor
-from solvers.whirl.growth import Waves, growth_at
-from solvers.whirl.looks import looks
+from fluid.whirl import plane_layer
+from meshes.arrays import Array, Complex, Flags, Index
+from solvers.rotor.system import Rotor, RotorSystem
+from solvers.rotor.vibration import critical_speeds
+from solvers.whirl.growth import Waves, growth_at, modes_at
+
+_APART = 0.08  # first distance of speeds, relative
+_FEWEST = 9
+_BESIDE = 1e-6  # relative, of the second speed by which slopes are found
+_FOLLOWED = 0.02  # of the change of the spin: how far a mode may be from where its slopes lead
+_LEAP = 0.05  # of the spin: a mode does not go so far over that second speed
+_SIDE_BY_SIDE = 0.1  # of the spread of slopes: below it modes go side by side and do not cross
+_HIDDEN = 1e-4  # of the spin: rounding of a root, which hides its growth and its slope
+_HALVINGS = 7
+_NARROW, _AT_EDGE = 1e-6, 0.01  # relative width of intervals that are not split further, at edges
+_FLOOR = 1e-10  # of the spin: growth that is not looked for
+_DAMPED = 0.1  # of the spin: decay beyond which a mode is not followed
+_WITHIN = 2.0  # of the change of the spin: decay that no meeting makes growth within it
+_SLOW = 1.1  # of the spin: frequency up to which it is
+_STEPS = 6  # towards a meeting
+_MET = 1e-10  # of the spin: how near a meeting is gone to
+
+
+@dataclass(frozen=True)
+class Looks:
+    """Points (row, speed) and what is known there, shape (n,) and (n, m)."""
+
+    row: Index
+    speed: Array
+    growth: Array  #: of the mode that grows most, 1/s, nan where it is not known
+    root: Complex  #: of the modes, growth + i frequency, nan where there is none
+    slope: Complex  #: over the spin
+
+    def at(self, which: Index | Flags) -> Looks:
+        """Those at some indices."""
+        return Looks(*(getattr(self, part.name)[which] for part in fields(self)))
+
+
+def looks(
+    rotor: Rotor, rows: Sequence[Sequence[Fill]], first: float, last: float, friction: Waves
+) -> tuple[Index, Array, Array]:
+    """Points by rising row and speed from which every change of the sign of the growth is seen.
+
+    Rows, speeds, and growth rates, nan where they are not known.
+    """
+
+    def at(row: Index, speed: Array) -> Looks:
+        return _looked(rotor, rows, row, speed, friction)
+
+    own = [_first_speeds(rotor.system(), fills, first, last) for fills in rows]
+    row, speed = np.repeat(np.arange(len(rows)), [part.size for part in own]), np.concatenate(own)
+    seen = at(row, speed)
+    inside = seen.row[1:] == seen.row[:-1]
+    low, high = seen.at(np.flatnonzero(inside)), seen.at(np.flatnonzero(inside) + 1)
+    found, meetings = [seen], []
+    for _ in range(_HALVINGS):
+        split, share = _unsure(low, high)
+        meetings.append(_meetings(low.at(~split), high.at(~split)))
+        if not split.any():
+            break
+        low, high = low.at(split), high.at(split)
+        middle = at(low.row, low.speed + share[split] * (high.speed - low.speed))
+        found.append(middle)
+        low, high = _joined([low, middle]), _joined([middle, high])
+    else:
+        meetings.append(_meetings(low, high))
+    found += _gone_to(at, [np.concatenate(part) for part in zip(*meetings, strict=True)])
+    row, speed, growth = (
+        np.concatenate([getattr(part, n) for part in found]) for n in ("row", "speed", "growth")
+    )
+    order = np.lexsort((speed, row))
+    return row[order], speed[order], growth[order]
+
+
+def _first_speeds(system: RotorSystem, fills: Sequence[Fill], first: float, last: float) -> Array:
+    """Ends of the range, speeds between at even ratios, and those where a wave meets a rotor's mode.
+
+    A wave of a clear ring goes round at c = 1 + T -+ sqrt(T^2 + T) times the spin in space: it meets a mode,
+    without or with the liquid's mass, at a critical speed of a rotor of mass c^2 M and gyroscopic matrix c G
+    [theory: whirl, eq. 32].
+    """
+    count = max(_FEWEST, 1 + int(np.ceil(np.log(last / first) / _APART)))
+    found = [np.geomspace(first, last, count)]
+    found[0][[0, -1]] = first, last
+    layers = [(fill.chamber.plane, plane_layer(fill, NO_FRICTION)) for fill in fills]
+    waves = [(plane, layer) for plane, layer in layers if layer is not None]
+    heavy = sum((x.mass * system.at(z).T @ system.at(z) for z, x in waves), np.zeros(system.mass.shape))
+    for ratio in {
+        sense * (1.0 + x.layer_tanh + way * np.sqrt(x.layer_tanh * (x.layer_tanh + 1.0)))
+        for _, x in waves
+        for way in (1.0, -1.0)
+        for sense in (1.0, -1.0)
+    }:
+        for mass in (system.mass, system.mass + heavy):
+            turned = replace(system, mass=ratio**2 * mass, gyroscopic=ratio * system.gyroscopic)
+            found.append(critical_speeds(turned)[0])
+    every = np.unique(np.concatenate(found))
+    return every[(every >= first) & (every <= last)]
+
+
+def _looked(rotor: Rotor, rows: Sequence[Sequence[Fill]], row: Index, speed: Array, friction: Waves) -> Looks:
+    """Modes and growth at points, and slopes by a second speed close by."""
+    size = speed.size
+    both, spins = np.concatenate([row, row]), np.concatenate([speed, speed * (1.0 + _BESIDE)])
+    roots, rounding, rates = modes_at(rotor, rows, both, spins, friction)
+    roots = np.where(rounding <= _HIDDEN * spins[:, None], roots, complex(np.nan, np.nan))
+    root, beside, growth = roots[:size], roots[size:], rates[:size]
+    change = _changes(root, beside)
+    change = np.where(np.abs(change) <= _LEAP * speed[:, None], change, complex(np.nan, np.nan))
+    return Looks(row, speed, growth, root, change / (_BESIDE * speed[:, None]))
+
+
+def _changes(root: Complex, beside: Complex) -> Complex:
+    """Change of each mode to a second speed close by, the nearest taken for the same, shape (n, m).
+
+    Two that keep side by side, closer than they change, are told apart by their common change.
+    """
+
+    def paired(led: Complex) -> tuple[Index, Complex]:
+        gap = np.abs(beside[:, None, :] - led[:, :, None])
+        to = _pairing(np.where(np.isnan(gap), np.inf, gap))
+        return to, np.take_along_axis(beside, to, axis=1) - root
+
+    to, change = paired(root)
+    near = np.abs(root[:, :, None] - root[:, None, :]) <= np.abs(change)[:, :, None]
+    if near.sum() <= np.isfinite(change).sum():
+        return change
+    count = np.maximum(near.sum(axis=2), 1)
+    common = np.where(near, change[:, None, :], 0.0).sum(axis=2) / count
+    other, common_change = paired(root + common)
+    spread = [
+        np.where(near & (to != other)[:, :, None], np.abs(part[:, :, None] - part[:, None, :]), 0.0).sum(
+            axis=(1, 2)
+        )
+        for part in (change, common_change)
+    ]
+    return np.where((spread[1] < _SIDE_BY_SIDE * spread[0])[:, None], common_change, change)
+
+
+def _joined(parts: Sequence[Looks]) -> Looks:
+    """Points one after the other, with as many places for modes as the widest has."""
+    width = max(part.root.shape[1] for part in parts)
+
+    def wide(table: Complex) -> Complex:
+        more = ((0, 0), (0, width - table.shape[1]))
+        return np.pad(table, more, constant_values=complex(np.nan, np.nan))
+
+    return Looks(
+        *(np.concatenate([getattr(part, name) for part in parts]) for name in ("row", "speed", "growth")),
+        *(np.concatenate([wide(getattr(part, name)) for part in parts]) for name in ("root", "slope")),
+    )
+
+
+@dataclass(frozen=True)
+class _Followed:
+    """Modes from the lower end of intervals to the upper one, shape (k, m)."""
+
+    start: Complex  #: root and slope at the lower end, and at the upper one
+    leaves: Complex
+    end: Complex
+    comes: Complex
+    sure: Flags  #: the slopes of both ends lead from one to the other
+    counts: Flags  #: the mode may grow: it is no heavily damped one
+
+
+def _follow(low: Looks, high: Looks) -> _Followed:
+    """Modes that the mean of both slopes leads from the lower to the upper end, each way the nearest."""
+    width = (high.speed - low.speed)[:, None, None]
+    led = low.root[:, :, None] + 0.5 * width * (low.slope[:, :, None] + high.slope[:, None, :])
+    off = np.abs(high.root[:, None, :] - led)
+    off = np.where(np.isnan(off), np.inf, off)
+    there = _pairing(off)
+    near = np.take_along_axis(off, there[:, :, None], axis=2)[:, :, 0] <= _FOLLOWED * width[:, :, 0]
+    end, comes = (np.take_along_axis(part, there, axis=1) for part in (high.root, high.slope))
+    rate = np.where(np.isnan(low.root), -np.inf, low.root.real)
+    spin = low.speed[:, None]
+    heavily = np.minimum(_DAMPED * spin, _WITHIN * width[:, :, 0])
+    counts = (rate > -heavily) & (np.abs(low.root.imag) < _SLOW * spin)
+    return _Followed(low.root, low.slope, end, comes, near, counts)
+
+
+def _pairing(off: Array) -> Index:
+    """For each of m places one of p others, nearest first, by distances of shape (k, m, p); shape (k, m)."""
+    count, places, others = off.shape
+    left, there = off.copy(), np.zeros((count, places), dtype=np.intp)
+    every = np.arange(count)
+    for _ in range(min(places, others)):
+        one, other = np.divmod(np.argmin(left.reshape(count, places * others), axis=1), others)
+        free = np.isfinite(left[every, one, other])
+        there[every[free], one[free]] = other[free]
+        left[every, one], left[every, :, other] = np.inf, np.inf
+    return there
+
+
+def _unsure(low: Looks, high: Looks) -> tuple[Flags, Array]:
+    """Intervals to be looked into, and where: as a share of their width, shape (k,).
+
+    Modes that cannot be followed, growth that passes to another mode, and growths and distances of two modes
+    whose tangents meet beyond zero.
+    """
+    width, modes = high.speed - low.speed, _follow(low, high)
+    lost = (modes.counts & ~modes.sure).any(axis=1)
+    # At the edge of a band two modes end as square roots, which no slope follows; the edge is solved later.
+    edge = (low.growth > 0.0) != (high.growth > 0.0)
+    split = lost & (width > np.where(edge, _AT_EDGE, _NARROW) * high.speed)
+    share = np.full(width.shape, 0.5)
+    kept = modes.sure & modes.counts
+    floor = (_FLOOR * high.speed)[:, None]
+    values = modes.start.real, modes.end.real, modes.leaves.real, modes.comes.real
+    at, turn = _tangents(*values, width[:, None])
+    rises = kept & (values[0] <= 0.0) & (values[1] <= 0.0) & (values[2] > values[3]) & (turn > floor)
+    falls = kept & (values[0] > 0.0) & (values[1] > 0.0) & (values[2] < values[3]) & (turn < -floor)
+    pairs = _pairs(modes)
+    near = np.zeros((width.size, 0)), np.zeros((width.size, 0), dtype=bool)
+    if pairs is not None:
+        gap, reach = pairs
+        beyond, least = _tangents(*gap, width[:, None])
+        twice = (
+            (gap[0] * gap[1] > 0.0)
+            & (least * gap[0] < 0.0)
+            & (gap[2] * gap[0] < 0.0)
+            & (gap[3] * gap[0] > 0.0)
+        )
+        near = beyond, twice & (reach < width[:, None] * np.abs(gap[2] - gap[3]))
+    between, gap_there = _handed_over(low, high, modes)
+    wanted = np.concatenate([gap_there[:, None], rises | falls, near[1]], axis=1)
+    places = np.concatenate([between[:, None], at, near[0]], axis=1)
+    which = np.argmax(wanted, axis=1)
+    asked = wanted.any(axis=1) & (width > 1e-8 * high.speed)
+    place = np.take_along_axis(places, which[:, None], axis=1)[:, 0]
+    share = np.where(asked, np.clip(place, 0.1, 0.9), share)
+    return split | asked, share
+
+
+def _handed_over(low: Looks, high: Looks, modes: _Followed) -> tuple[Array, Flags]:
+    """Where none of the modes that grow at the ends may grow, as a share of the width; which intervals.
+
+    In the middle between the zeros of the chords of the last that ceases and of the first that begins.
+    """
+    start, end = modes.start.real, modes.end.real
+    first, last = modes.sure & (start > 0.0), modes.sure & (end > 0.0)
+    zero = np.divide(start, start - end, out=np.full(start.shape, np.nan), where=first != last)
+    ceases = np.where(first & ~last, zero, 0.0).max(axis=1, initial=0.0)
+    begins = np.where(last & ~first, zero, 1.0).min(axis=1, initial=1.0)
+    return 0.5 * (ceases + begins), (low.growth > 0.0) & (high.growth > 0.0) & ~(first & last).any(axis=1)
+
+
+def _tangents(first: Array, last: Array, rise: Array, fall: Array, width: Array) -> tuple[Array, Array]:
+    """Where the tangents at both ends of intervals meet, as a share of the width, and their value there."""
+    bend = rise - fall
+    at = np.divide(last - first - fall * width, bend, out=np.full(first.shape, -1.0), where=bend != 0.0)
+    inside = (at > 0.0) & (at < width)
+    return np.where(inside, at / width, 0.5), np.where(inside, first + rise * at, 0.0)
+
+
+def _pairs(modes: _Followed) -> tuple[tuple[Array, Array, Array, Array], Array] | None:
+    """Distances in frequency of all pairs of modes at both ends, both slopes, and the decay to be overcome.
+
+    Two modes that decay at rates a and b make each other grow only by a coupling above sqrt(a b); one as wide
+    as the interval is seen without going there.
+    """
+    count = modes.start.shape[1]
+    if count < 2:
+        return None
+    one, other = np.triu_indices(count, 1)
+    sure = modes.sure & modes.counts
+    both = sure[:, one] & sure[:, other]
+    gap = tuple(
+        np.where(both, part.imag[:, one] - part.imag[:, other], np.nan)
+        for part in (modes.start, modes.end, modes.leaves, modes.comes)
+    )
+    decay = np.maximum(-np.maximum(modes.start.real, modes.end.real), 0.0)
+    return (gap[0], gap[1], gap[2], gap[3]), np.sqrt(decay[:, one] * decay[:, other])
+
+
+def _meetings(low: Looks, high: Looks) -> tuple[Any, ...]:
+    """Meetings of two modes inside intervals: row, speed, both ends, rad/s, and the root that they share."""
+    modes = _follow(low, high)
+    pairs = _pairs(modes)
+    if pairs is None or low.row.size == 0:
+        return (np.zeros(0, dtype=np.intp), *np.zeros((3, 0)), np.zeros(0, dtype=complex))
+    (first, last, rise, fall), reach = pairs
+    width = (high.speed - low.speed)[:, None]
+    crossed = (first * last < 0.0) & (reach < width * np.maximum(np.abs(rise), np.abs(fall)))
+    where, which = np.nonzero(crossed)
+    at = first[where, which] / (first - last)[where, which]
+    one, other = (part[which] for part in np.triu_indices(modes.start.shape[1], 1))
+    root = sum((1.0 - at) * modes.start[where, own] + at * modes.end[where, own] for own in (one, other))
+    speed = low.speed[where] + at * width[where, 0]
+    return low.row[where], speed, low.speed[where], high.speed[where], np.asarray(0.5 * root)
+
+
+def _gone_to(at: Callable[[Index, Array], Looks], meetings: Sequence[Any]) -> list[Looks]:
+    """Points on the way to meetings of two modes, by Newton's method on the distance of frequencies.
+
+    In a band both have one frequency; from outside a distance as sqrt(x^2 - w^2) leads into it, to w^2/x.
+    """
+    row, speed, low, high, root = meetings
+    found: list[Looks] = []
+    before = np.full(row.shape, np.inf)
+    for _ in range(_STEPS):
+        if row.size == 0:
+            break
+        here = at(row, speed)
+        # At a meeting that is no band, rounding makes one of no width.
+        found.append(
+            replace(
+                here, growth=np.where(here.growth > _FLOOR * speed, here.growth, np.minimum(here.growth, 0.0))
+            )
+        )
+        off = np.abs(here.root - root[:, None])
+        two = np.argsort(np.where(np.isnan(off), np.inf, off), axis=1)[:, :2]
+        pair, slope = (np.take_along_axis(part, two, axis=1) for part in (here.root, here.slope))
+        gap, rate = (part.imag[:, 0] - part.imag[:, 1] for part in (pair, slope))
+        step = np.divide(-gap, rate, out=np.full(gap.shape, np.nan), where=np.abs(rate) > 1e-9)
+        on = np.isfinite(step) & (here.growth <= 0.0) & (np.abs(step) > _MET * speed)
+        # What does not come nearer to a meeting has none.
+        on &= (speed + step > low) & (speed + step < high) & (np.abs(step) < 0.5 * before)
+        row, low, high, step = row[on], low[on], high[on], step[on]
+        before = np.abs(step)
+        root = (pair.mean(axis=1) + 0.0)[on] + step * slope.mean(axis=1)[on]
+        speed = speed[on] + step
+    return found
+
 
 Bands = tuple[tuple[float, float], ...]
 
 _WIDTH = 1e-10  # relative, of the bracket an edge is left in
-_BESIDE = 1e-8  # relative, of speeds at an edge
+_AT_BOUND = 1e-8  # relative, of speeds at an edge
 _NEAR = 1e-3  # of a bracket: how closely the secant's zero is looked at
-_STEPS = 60
+_BISECTIONS = 60
 
 
 def unstable_bands(
@@ -60,7 +389,7 @@ def _contradicts(bands: Bands, speed: Array, growth: Array) -> Flags:
     inside, edge = np.zeros(speed.shape, dtype=bool), np.zeros(speed.shape, dtype=bool)
     for low, high in bands:
         inside |= (speed >= low) & (speed <= high)
-        edge |= np.minimum(np.abs(speed - low), np.abs(speed - high)) <= _BESIDE * speed
+        edge |= np.minimum(np.abs(speed - low), np.abs(speed - high)) <= _AT_BOUND * speed
     return np.asarray(~edge & ~np.isnan(growth) & (inside != (growth > 0.0)))
 
 
@@ -115,7 +444,7 @@ def _refine(
     """
     low, high = low.copy(), high.copy()
     first = low[1] > 0.0
-    for _ in range(_STEPS):
+    for _ in range(_BISECTIONS):
         active = np.flatnonzero(high[0] - low[0] > _WIDTH * high[0])
         if active.size == 0:
             break

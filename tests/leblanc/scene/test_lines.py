@@ -16,8 +16,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from leblanc.scene.examples import example_names, example_path
-from leblanc.scene.schema.lines import line_of, places
-from leblanc.scene.schema.load import field_path
+from leblanc.scene.schema.load import field_path, line_of, places
 
 KEYS = st.one_of(
     st.text("abcxyz_-09", min_size=1, max_size=4),

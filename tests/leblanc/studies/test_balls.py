@@ -155,8 +155,8 @@ def error_beside_held(model: str) -> None:
         assert result.amplitude[k] == pytest.approx(alone.amplitude[0], rel=1e-6)
 
 
-@kills("leblanc.studies.balls.estimates:liquid_errors", "law.worst if linear", "0.0 if linear")
-@kills("leblanc.studies.balls.estimates:_errors", "np.full(count, across)", "np.full(count, 0.0)")
+@kills("leblanc.studies.balls.study:liquid_errors", "law.worst if linear", "0.0 if linear")
+@kills("leblanc.studies.balls.study:_errors", "np.full(count, across)", "np.full(count, 0.0)")
 def test_the_error_is_that_of_the_rotor_with_its_balls_held() -> None:
     for model in ("statics", "linear"):
         error_beside_held(model)

@@ -13,8 +13,7 @@ import pytest
 from leblanc.plotting.bodies import RunupView
 from leblanc.studies.shapes.machine import mode_view, runup_view, strobe
 from leblanc.view.camera import INSET, letters
-from leblanc.view.film import mode_film, runup_film
-from leblanc.view.inset import WIDE, point_at, with_inset
+from leblanc.view.film import WIDE, mode_film, point_at, runup_film, with_inset
 from leblanc.view.machine import SIDES
 from leblanc.view.parts import Inset, Picture
 from leblanc.view.picture import fill, pixels, plotter

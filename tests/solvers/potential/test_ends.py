@@ -9,13 +9,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as some
 
-from solvers.potential.ends import EndKind, end, froude
+from solvers.potential.model import EndKind, end, froude
 from solvers.potential.steady import SteadyWave, at_rest, forced, linear_detuning
 from solvers.potential.strip import nodes
 from tests.mutants import kills
 
 
-@kills("solvers.potential.ends:froude", "2.0 * radius - speed", "radius - speed")
+@kills("solvers.potential.model:froude", "2.0 * radius - speed", "radius - speed")
 @settings(max_examples=60, deadline=None)
 @given(layer=some.floats(0.02, 0.9), share=some.floats(0.1, 3.0))
 def test_the_froude_number_of_a_layer_at_rest(layer: float, share: float) -> None:
@@ -59,8 +59,8 @@ FOLDS = (
 )
 
 
-@kills("solvers.potential.ends:_fold", "slope**2 / (4.0 * bend)", "slope**2 / (2.0 * bend)")
-@kills("solvers.potential.ends:end", "> linear_detuning", "< linear_detuning")
+@kills("solvers.potential.model:_fold", "slope**2 / (4.0 * bend)", "slope**2 / (2.0 * bend)")
+@kills("solvers.potential.model:end", "> linear_detuning", "< linear_detuning")
 def test_folds() -> None:
     """A parabola through heights of 4 % apart: its error is of the fourth power of these."""
     for layer, apart, largest in FOLDS:

@@ -18,10 +18,9 @@ from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import Rotor
 from solvers.rotor.tub import Mount, Tub
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
-from solvers.whirl import looks as whirl_looks
-from solvers.whirl.edges import unstable_bands
+from solvers.whirl import edges as whirl_edges
+from solvers.whirl.edges import _changes, _first_speeds, looks, unstable_bands
 from solvers.whirl.growth import asynchronous_growth, planar_layers
-from solvers.whirl.looks import _changes, _first_speeds, looks
 from solvers.whirl.system import coupled_matrices, linear_modes
 from tests.mutants import kills
 from tests.oracles.edges import undamped_edges
@@ -114,9 +113,9 @@ def test_no_band_lost_in_200() -> None:
     no_band_lost(range(200))
 
 
-@kills("solvers.whirl.looks:_unsure", "[gap_there[:, None], rises", "[gap_there[:, None] & False, rises")
-@kills("solvers.whirl.looks:_handed_over", "0.5 * (ceases + begins)", "0.0 * begins")
-@kills("solvers.whirl.looks:_handed_over", "~(first & last).any(axis=1)", "(first & last).any(axis=1)")
+@kills("solvers.whirl.edges:_unsure", "[gap_there[:, None], rises", "[gap_there[:, None] & False, rises")
+@kills("solvers.whirl.edges:_handed_over", "0.5 * (ceases + begins)", "0.0 * begins")
+@kills("solvers.whirl.edges:_handed_over", "~(first & last).any(axis=1)", "(first & last).any(axis=1)")
 def test_gap_between_two_modes() -> None:
     """Growth goes over from one mode to another within 0.4 % of the speed: between them nothing grows."""
     rotor, fills, friction, first, last = drawn(88)
@@ -175,13 +174,13 @@ def test_films() -> None:
         np.testing.assert_allclose(np.ravel(bands), undamped_edges(mass, 6e4, layers), rtol=1e-7)
 
 
-@kills("solvers.whirl.looks:_gone_to", "for _ in range(_STEPS)", "for _ in range(0)")
-@kills("solvers.whirl.looks:_meetings", "first * last < 0.0", "first * last < -np.inf")
-@kills("solvers.whirl.looks:_pairs", "np.where(both, ", "np.where(~both, ")
+@kills("solvers.whirl.edges:_gone_to", "for _ in range(_STEPS)", "for _ in range(0)")
+@kills("solvers.whirl.edges:_meetings", "first * last < 0.0", "first * last < -np.inf")
+@kills("solvers.whirl.edges:_pairs", "np.where(both, ", "np.where(~both, ")
 def test_films_from_even_speeds(monkeypatch: pytest.MonkeyPatch) -> None:
     """Where no speed at which a wave meets a mode is known before, each meeting is gone to from between."""
     rotor = Jeffcott(6.0, 6e4, 0.0, 0.0)
-    monkeypatch.setattr(whirl_looks, "_first_speeds", lambda *_: np.geomspace(31.0, 401.0, 33))
+    monkeypatch.setattr(whirl_edges, "_first_speeds", lambda *_: np.geomspace(31.0, 401.0, 33))
     for depth in (1e-4, 1e-6):
         fill = Fill(Chamber(0.1, 0.02), WATER, math.pi * 0.02 * (0.1**2 - (0.1 - 0.1 * depth) ** 2))
         (bands,) = unstable_bands(rotor, [[fill]], np.array([31.0, 401.0]))
@@ -191,9 +190,9 @@ def test_films_from_even_speeds(monkeypatch: pytest.MonkeyPatch) -> None:
         np.testing.assert_allclose(np.ravel(bands), edges, rtol=1e-7)
 
 
-@kills("solvers.whirl.looks:_first_speeds", "mass=ratio**2 * mass", "mass=ratio * mass")
-@kills("solvers.whirl.looks:_first_speeds", "gyroscopic=ratio * system", "gyroscopic=system")
-@kills("solvers.whirl.looks:_first_speeds", "way * np.sqrt(x.layer_tanh", "way * np.sqrt(2.0 * x.layer_tanh")
+@kills("solvers.whirl.edges:_first_speeds", "mass=ratio**2 * mass", "mass=ratio * mass")
+@kills("solvers.whirl.edges:_first_speeds", "gyroscopic=ratio * system", "gyroscopic=system")
+@kills("solvers.whirl.edges:_first_speeds", "way * np.sqrt(x.layer_tanh", "way * np.sqrt(2.0 * x.layer_tanh")
 def test_meetings_of_waves() -> None:
     """Where a wave meets a mode both have one frequency, that of the layer alone and of the rotor alone."""
     system = GAPPED.system()
@@ -218,8 +217,8 @@ def test_meetings_of_waves() -> None:
         assert off <= 1e-9 * speed
 
 
-@kills("solvers.whirl.looks:_changes", "spread[1] < _SIDE_BY_SIDE", "spread[1] < 0.0")
-@kills("solvers.whirl.looks:_changes", "paired(root + common)", "paired(root - common)")
+@kills("solvers.whirl.edges:_changes", "spread[1] < _SIDE_BY_SIDE", "spread[1] < 0.0")
+@kills("solvers.whirl.edges:_changes", "paired(root + common)", "paired(root - common)")
 def test_modes_side_by_side_keep_their_slopes() -> None:
     """Two that are nearer to one another than they change go on beside each other; two that cross do."""
     gap, change = 3e-8, 1e-6
@@ -229,7 +228,7 @@ def test_modes_side_by_side_keep_their_slopes() -> None:
     np.testing.assert_allclose(_changes(root, beside)[0, :3].imag, [0.0, -change, 0.0], atol=1e-14)
 
 
-@kills("solvers.whirl.looks:_looked", "rounding <= _HIDDEN * spins", "rounding <= np.inf * spins")
+@kills("solvers.whirl.edges:_looked", "rounding <= _HIDDEN * spins", "rounding <= np.inf * spins")
 def test_what_rounding_hides_is_not_followed() -> None:
     """On supports 1e9 times as stiff as the spin asks for, waves of a film are known to no digit."""
     supports = (Support(-0.1, 4e18, 1e4), Support(0.1, 3e18, 1e4))
