@@ -95,12 +95,18 @@ def exaggeration(
     g/Omega^2 at each, by which the surface's squared radius grows along the axis, m.
     """
     found = _visible(chambers, tuple(abs(w) for w in deflections))
+    plain = Exaggeration(min(found.deflection, 1.0), 1.0)
+    if found == plain:
+        return plain
+    instants = list(zip_longest(deflections or (0j,), bends, fillvalue=0.0))
+    if any(meets_inner_wall(chamber, w, 1.0, bend) for chamber in chambers for w, bend in instants):
+        return plain
     for share in np.linspace(1.0, 0.0, SHARES):
         scale = Exaggeration(_part(found.deflection, share), _part(found.depth, share))
-        if all(
-            _as_it_is(chamber, w, scale, bend)
+        if scale == plain or not any(
+            meets_inner_wall(chamber, scale.deflection * w, scale.depth, bend, GAP)
             for chamber in chambers
-            for w, bend in zip_longest(deflections or (0j,), bends, fillvalue=0.0)
+            for w, bend in instants
         ):
             break
     return scale
@@ -133,15 +139,6 @@ def _visible(chambers: tuple[FilledChamber, ...], deflections: tuple[float, ...]
         film = min(SEEN * c.radius / depth for depth, c in layers)
         depth_factor = rounded_down(max(factor, min(film, 0.5 * min(dry))))
     return Exaggeration(factor, depth_factor)
-
-
-def _as_it_is(chamber: FilledChamber, moved: complex, scale: Exaggeration, bend: float) -> bool:
-    """Nothing is enlarged, or the surface meets no inner wall, as drawn and in truth."""
-    if scale.deflection <= 1.0 and scale.depth == 1.0:
-        return True
-    if meets_inner_wall(chamber, scale.deflection * moved, scale.depth, bend, GAP):
-        return False
-    return not meets_inner_wall(chamber, moved, 1.0, bend)
 
 
 def meets_inner_wall(

@@ -106,8 +106,10 @@ def layout(picture: Picture, size: tuple[int, int], view: str = VIEWS[0]) -> Lay
     """
     sight, room = _camera(picture, size, view)
     points = np.concatenate([picture.frame, *(piece.points for piece in picture.pieces)])
+    # A camera that only sees more has the same outline.
+    outline = points[ConvexHull(sight.project(points)).vertices]
     for _ in range(TRIES):
-        names = _names(picture.labels, sight, sight.project(points), room)
+        names = _names(picture.labels, sight, sight.project(outline), room)
         if all(name.box[0] >= EDGE and name.box[2] <= size[0] - EDGE for name in names):
             break
         sight = _farther(sight, room)
@@ -161,14 +163,16 @@ def _direction(picture: Picture, view: str) -> tuple[tuple[float, ...], tuple[fl
 
 
 def _names(
-    labels: tuple[Label, ...], sight: Sight, points: Array, room: tuple[float, float]
+    labels: tuple[Label, ...], sight: Sight, edge: Array, room: tuple[float, float]
 ) -> tuple[Placed, ...]:
-    """Names on both sides of the machine, as high as what they name, pushed apart."""
+    """Names on both sides of the machine, as high as what they name, pushed apart.
+
+    `edge`: the machine's convex outline, pixels, shape (n, 2).
+    """
     if not labels:
         return ()
     size = letters(sight.size)
     anchors = sight.project(np.array([label.place for label in labels]))
-    edge = points[ConvexHull(points).vertices]
     middle = 0.5 * (edge[:, 0].max() + edge[:, 0].min())
     high = 1.35 * size + 2.0 * PAD * size
     boxes: dict[int, Placed] = {}

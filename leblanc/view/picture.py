@@ -143,16 +143,17 @@ def fill(plot: Plotter, picture: Picture, placed: Layout | None = None) -> None:
     import pyvista
 
     plot.clear_actors()
-    for piece in _joined(picture.pieces):
-        _add(plot, piece, pyvista)
+    leaders = []
     if placed is not None:
         for label, name in zip(picture.labels, placed.names, strict=True):
-            _name(plot, label, name, placed.sight, pyvista)
+            leaders += _name(plot, label, name, placed.sight, pyvista)
+    for piece in _joined([*picture.pieces, *leaders]):
+        _add(plot, piece, pyvista)
     _words(plot, picture, pyvista)
 
 
-def _name(plot: Plotter, label: Label, name: Placed, sight: Sight, pyvista: Any) -> None:
-    """A name beside the machine, and a line from it to what it names."""
+def _name(plot: Plotter, label: Label, name: Placed, sight: Sight, pyvista: Any) -> list[Piece]:
+    """Write a name beside the machine; the line from it to what it names, if that is not next to it."""
     anchor = np.array(label.place)
     drawn = pyvista.Label(label.text, position=sight.lift(name.middle, anchor), size=letters(sight.size))
     _write(drawn.prop)
@@ -162,9 +163,9 @@ def _name(plot: Plotter, label: Label, name: Placed, sight: Sight, pyvista: Any)
     left, _, right, _ = name.box
     there = sight.project(anchor[None])[0]
     start = np.array([right if there[0] > right else left if there[0] < left else there[0], name.middle[1]])
-    if np.linalg.norm(there - start) > letters(sight.size):
-        ends = np.stack([sight.lift(start, anchor), anchor])
-        _add(plot, Piece("leader", ends, line(2), "leader"), pyvista)
+    if np.linalg.norm(there - start) <= letters(sight.size):
+        return []
+    return [Piece("leader", np.stack([sight.lift(start, anchor), anchor]), line(2), "leader")]
 
 
 def _write(prop: Any) -> None:
@@ -203,11 +204,12 @@ def _add(plot: Plotter, piece: Piece, pyvista: Any) -> None:
 
 
 def _joined(pieces: Sequence[Piece]) -> list[Piece]:
-    """Faces of one look as one piece, which is drawn faster; each keeps its own normals."""
+    """Faces and lines of one look as one piece, which is drawn faster; each face keeps its own normals."""
     groups: dict[tuple[str, int], list[Piece]] = {}
     rest = []
     for piece in pieces:
-        if piece.cells.shape[1] > 2 and piece.cells.size and piece.ball == 0.0:
+        tipped = piece.cells.shape[1] == 2 and LOOKS[piece.look].tip
+        if piece.cells.size and piece.ball == 0.0 and not tipped:
             groups.setdefault((piece.look, piece.cells.shape[1]), []).append(piece)
         else:
             rest.append(piece)
@@ -268,8 +270,10 @@ def point_camera(plot: Plotter, picture: Picture, placed: Layout) -> None:
 @held()
 def pixels(plot: Plotter) -> Pixels:
     """What the plotter, off the screen, shows, shape (height, width, 3)."""
-    plot.render_window.Render()  # what was put in since the last time is not drawn by itself
-    return np.asarray(plot.screenshot(return_img=True), dtype=np.uint8)
+    from pyvista.plotting.utilities import image_from_window
+
+    plot.render_window.Render()  # PyVista's screenshot would draw the first picture once more
+    return np.asarray(image_from_window(plot.render_window, ignore_alpha=True), dtype=np.uint8)
 
 
 def write_png(shown: Pixels, path: Path) -> None:

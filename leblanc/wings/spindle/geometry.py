@@ -115,13 +115,13 @@ def spindle_view(
         raise InputError("rotor.kind", rotor.kind, "spindle for this")
     if factor is not None and not (math.isfinite(factor) and factor > 0.0):
         raise InputError("--factor", factor, "a finite number above 0")
+    if speed is not None and not (math.isfinite(speed) and speed > 0.0):
+        raise InputError("--speed", speed, "a finite number above 0")
     machine, band = rotor.machine(), scene.speed_array()
     found = modes(machine, float(band[0]), float(band[-1]))
     if not found:
         raise InputError("speeds.stop", float(band[-1]), "such that a natural frequency lies in the band")
     if speed is not None:
-        if not (math.isfinite(speed) and speed > 0.0):
-            raise InputError("--speed", speed, "a finite number above 0")
         number = 1 + int(np.argmin([abs(mode.frequency - speed) for mode in found]))
     chosen = 1 if number is None else number
     if not 1 <= chosen <= len(found):

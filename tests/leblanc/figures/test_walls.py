@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 import pytest
 from matplotlib.path import Path as Lines
+from scipy.spatial import cKDTree
 
 from fluid.liquid import known_liquid
 from leblanc.liquid.filled import FilledChamber
@@ -129,18 +130,23 @@ def outside(chamber: FilledChamber, points: np.ndarray) -> float:
     lines = np.concatenate([np.append(line, np.nan) for line in walls_of(chamber)])
     start, end = lines[:-1], lines[1:]
     ok = np.isfinite(start) & np.isfinite(end)
-    start, end = start[ok][None], end[ok][None]
+    start, end = start[ok], end[ok]
     # By the number of walls that a ray crosses to the right.
-    z = points[:, None]
-    crossed = (start.imag > z.imag) != (end.imag > z.imag)
-    at = start.real + (z.imag - start.imag) * np.divide(
-        end.real - start.real, end.imag - start.imag, where=crossed, out=np.zeros(crossed.shape)
-    )
-    inside = np.sum(crossed & (at > z.real), axis=1) % 2 == 1
-    # Those inside are on the right side; of the others, how far they are.
-    along, z = end - start, z[~inside]
-    share = np.clip(((z - start) * along.conj()).real / np.abs(along) ** 2, 0.0, 1.0)
-    return float(np.abs(z - start - share * along).min(axis=1).max(initial=0.0))
+    height = points.imag.copy()[:, None]
+    point, side = np.nonzero((start.imag.copy() > height) != (end.imag.copy() > height))
+    along = (end - start)[side]
+    at = start[side].real + (points[point] - start[side]).imag * along.real / along.imag
+    crossed = np.bincount(point[at > points[point].real], minlength=points.size)
+    # Those inside are on the right side; of the others, how far they are from the nearest of eight sides.
+    z = points[crossed % 2 == 0]
+    if not z.size:
+        return 0.0
+    middle = 0.5 * (start + end)
+    tree = cKDTree(np.column_stack([middle.real, middle.imag]))
+    near = tree.query(np.column_stack([z.real, z.imag]), 8)[1]
+    along, z = (end - start)[near], z[:, None] - start[near]
+    share = np.clip((z * along.conj()).real / np.abs(along) ** 2, 0.0, 1.0)
+    return float(np.abs(z - share * along).min(axis=1).max())
 
 
 def check(chambers: tuple[FilledChamber, ...], *deflections: complex, slowest: float = 0.0) -> None:

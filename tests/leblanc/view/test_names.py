@@ -12,13 +12,13 @@ from PIL import ImageFont
 
 import leblanc.view.film as film_module
 from leblanc.scene.scene import load_scene
-from leblanc.studies.shapes.machine import mode_view, runup_view, table_view
+from leblanc.studies.shapes.machine import mode_view, table_view
 from leblanc.view.exciter import table_picture
 from leblanc.view.film import Film, mode_film, mode_picture, runup_film, write_film
 from leblanc.view.parts import Picture
 from leblanc.view.picture import fill, plotter, point_camera
-from tests.leblanc.view.test_picture import EXAMPLES, MACHINES, scene, working
-from tests.leblanc.view.views import show
+from tests.leblanc.view.test_picture import MACHINES
+from tests.leblanc.view.views import EXAMPLES, scene, short_runup, show, working
 
 Box = tuple[float, float, float, float]
 
@@ -49,12 +49,11 @@ def overlap(one: Box, other: Box) -> bool:
 
 def projected(plot: Any, points: np.ndarray) -> np.ndarray:
     """Where points of the picture stand, pixels, shape (n, 2)."""
-    found = []
-    for point in points:
-        plot.renderer.SetWorldPoint(*point, 1.0)
-        plot.renderer.WorldToDisplay()
-        found.append(plot.renderer.GetDisplayPoint()[:2])
-    return np.array(found)
+    wide, high = plot.window_size
+    matrix = plot.camera.GetCompositeProjectionTransformMatrix(wide / high, -1.0, 1.0)
+    whole = np.array([[matrix.GetElement(j, k) for k in range(4)] for j in range(4)])
+    x, y, _, w = whole @ np.column_stack([points, np.ones(len(points))]).T
+    return np.column_stack([0.5 * wide * (x / w + 1.0), 0.5 * high * (y / w + 1.0)])
 
 
 def texts(plot: Any) -> tuple[float, float]:
@@ -145,15 +144,9 @@ def names_of_film(film: Film, monkeypatch: pytest.MonkeyPatch, folder: Path) -> 
     return seen
 
 
-def short_runup(name: str) -> Film:
-    machine = scene(name)
-    short = machine.replace({"runup.duration": "4 s", "runup.cells": 32, "runup.samples": 250})
-    return runup_film(runup_view(short, 13))
-
-
 @pytest.mark.parametrize("name", ["washing_machine", pytest.param("runup", marks=pytest.mark.slow)])
 def test_names_stay_in_a_film(name: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    frames = names_of_film(short_runup(name), monkeypatch, tmp_path)
+    frames = names_of_film(runup_film(short_runup(name)), monkeypatch, tmp_path)
     check_film(frames)
 
 

@@ -10,15 +10,14 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from leblanc.plotting.bodies import RunupView
-from leblanc.studies.shapes.machine import mode_view, runup_view, strobe
+from leblanc.studies.shapes.machine import mode_view, strobe
 from leblanc.view.camera import INSET, letters
 from leblanc.view.film import WIDE, mode_film, point_at, runup_film, with_inset
 from leblanc.view.machine import SIDES
 from leblanc.view.parts import Inset, Picture
 from leblanc.view.picture import fill, pixels, plotter
-from tests.leblanc.view.test_picture import MACHINES, across, middle_of_circle, scene, short_film, working
-from tests.leblanc.view.views import show
+from tests.leblanc.view.test_picture import MACHINES, across, middle_of_circle, short_film
+from tests.leblanc.view.views import scene, short_runup, show, working
 
 MORE = ("washing_machine", "two_plane_rig")
 
@@ -126,12 +125,6 @@ def test_one_unit_in_a_picture() -> None:
 # -- films ---------------------------------------------------------------------------------------------------
 
 
-def run_up(name: str, frames: int = 13) -> RunupView:
-    return runup_view(
-        scene(name).replace({"runup.duration": "4 s", "runup.cells": 32, "runup.samples": 250}), frames
-    )
-
-
 def test_spin_is_slowed_down_evenly() -> None:
     time, speed = np.linspace(0.0, 10.0, 41), np.linspace(5.0, 105.0, 41)
     turn, slower = strobe(time, speed)
@@ -144,7 +137,7 @@ def test_spin_is_slowed_down_evenly() -> None:
 
 
 def test_a_film_of_a_run_up_shows_motion() -> None:
-    view = run_up("washing_machine")
+    view = short_runup("washing_machine")
     film = runup_film(view)
     shown = [film.picture(k) for k in range(film.count)]
     assert f"{view.slower:g} times slower" in shown[0].caption
@@ -171,7 +164,7 @@ def test_a_film_of_a_run_up_shows_motion() -> None:
 
 
 def test_a_pool_lies_at_the_bottom_of_every_frame() -> None:
-    view = run_up("washing_machine", 25)
+    view = short_runup("washing_machine")
     film = runup_film(view)
     pools = [k for k in range(film.count) if np.isnan(view.frames.depth[k, 0]).any()]
     assert len(pools) > 1

@@ -11,7 +11,7 @@ import pytest
 
 from fluid.waves import free_wave_frequencies
 from leblanc.plotting.bodies import LiquidShape, Scale
-from leblanc.scene.scene import Scene, Speeds, load_scene
+from leblanc.scene.scene import Speeds, load_scene
 from leblanc.studies.run.motion import SelfExcited
 from leblanc.studies.run.study import run_scene
 from leblanc.studies.shapes.machine import machine_motion, mode_view, table_view
@@ -25,10 +25,9 @@ from leblanc.view.picture import SIZE, fill, pixels, plotter, point_camera, prep
 from leblanc.view.scene import describe_state
 from meshes.errors import InputError
 from tests.leblanc.view.test_surfaces import CHORD, centroid
-from tests.leblanc.view.views import Shown, film_over, picture_at, show
+from tests.leblanc.view.views import EXAMPLES, Shown, film_over, picture_at, scene, show, working
 from tests.mutants import kills
 
-EXAMPLES = Path(__file__).parents[3] / "examples"
 MACHINES = sorted(
     path.stem
     for path in EXAMPLES.glob("*.toml")
@@ -43,15 +42,6 @@ MACHINES = sorted(
         "long_rotor",
     )
 )
-
-
-def scene(name: str) -> Scene:
-    return load_scene(EXAMPLES / f"{name}.toml")
-
-
-def working(name: str) -> Shown:
-    """An example at its working speed."""
-    return show(scene(name))
 
 
 def across(picture: Picture, name: str) -> np.ndarray:
@@ -147,7 +137,7 @@ def test_spin_and_unbalance() -> None:
 )
 def test_axis_of_the_drum() -> None:
     # It runs through the middles of the chambers as they are drawn, in both planes of the rotor.
-    view = working("two_plane_rig")
+    view = show(scene("two_plane_rig"))
     line = next(one for one in view.picture.pieces if one.name == "axis of the drum").points
     for k, place in enumerate(view.motion.places):
         share = (place * 1e3 - line[0, 0]) / (line[1, 0] - line[0, 0])
@@ -178,11 +168,11 @@ def test_same_answer_as_run() -> None:
 @kills("leblanc.studies.shapes.machine:places_of", "behind -= height", "behind -= 0.0 * height - behind")
 def test_chambers_apart() -> None:
     # Chambers of a planar rotor that do not nest are drawn one behind the other; rings that nest stay.
-    apart = working("horizontal_rig")
+    apart = show(scene("horizontal_rig"))
     assert apart.motion.moved
     assert abs(apart.motion.places[0] - apart.motion.places[1]) > 0.02
     assert "one behind the other" in apart.picture.caption
-    nested = working("vertical_rig")
+    nested = show(scene("vertical_rig"))
     assert not nested.motion.moved
     assert len(set(nested.motion.places)) == 1
 
@@ -284,18 +274,19 @@ def test_the_picture_is_not_empty_and_always_the_same() -> None:
 
 
 def test_every_view_shows_the_whole_machine() -> None:
+    small = (SIZE[0] // 2, SIZE[1] // 2)
     for name in ("two_plane_rig", "runup"):
         view = working(name)
-        plot = plotter(view.picture)
+        plot = plotter(view.picture, small)
         try:
             for way in VIEWS:
-                placed = layout(view.picture, SIZE, way)
+                placed = layout(view.picture, small, way)
                 fill(plot, view.picture, placed)
                 point_camera(plot, view.picture, placed)
                 seen = pixels(plot).astype(int)
                 # Nothing but white at the left and right edges: nothing is cut off.
                 assert seen[:, [0, -1]].min() == 255, (name, way)
-                assert np.mean(np.any(seen[200:760] < 250, axis=2)) > 0.02
+                assert np.mean(np.any(seen[100:380] < 250, axis=2)) > 0.02
         finally:
             plot.close()
 

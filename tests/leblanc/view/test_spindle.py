@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -13,12 +14,18 @@ import leblanc as lb
 from leblanc.cli import main
 from leblanc.view.parts import Picture
 from leblanc.view.spindle import SIDES, revolved, spindle_film, spindle_picture
-from leblanc.wings.spindle.geometry import DrawnSection, levels_of, spindle_view
+from leblanc.wings.spindle.geometry import DrawnSection, SpindleView, levels_of, spindle_view
 from meshes.arrays import Array, Indices
 from meshes.errors import InputError
 from tests.mutants import kills
 
 SPINDLE = Path(__file__).parents[3] / "examples" / "spindle.toml"
+
+
+@cache
+def drawn(number: int) -> SpindleView:
+    """The example in a natural motion."""
+    return spindle_view(lb.load_scene(SPINDLE), number)
 
 
 def volume(points: Array, faces: list[Indices]) -> float:
@@ -75,10 +82,9 @@ def test_beams_stand_where_the_scene_says() -> None:
 @kills("leblanc.view.spindle:_centre", "swing * moved", "-swing * moved")
 def test_the_motion_is_the_natural_one_as_large_as_the_factor() -> None:
     """The tool holder's free end moves as the mode of `run` says, beside the station that moves most."""
-    machine = lb.load_scene(SPINDLE)
-    found = lb.run(machine.replace({"speeds.count": 2}))
+    found = lb.run(lb.load_scene(SPINDLE).replace({"speeds.count": 2}))
     for number in (1, 2):
-        view = spindle_view(machine, number)
+        view = drawn(number)
         mode = found.modes[number - 1]
         assert view.frequency == pytest.approx(mode.frequency, rel=1e-9) and view.count == len(found.modes)
         moved, rest = (spindle_picture(view, phase) for phase in (0.0, 0.5 * math.pi))
@@ -90,7 +96,7 @@ def test_the_motion_is_the_natural_one_as_large_as_the_factor() -> None:
 
 
 def test_masses_are_discs_of_steel() -> None:
-    view = spindle_view(lb.load_scene(SPINDLE))
+    view = drawn(1)
     for mass, (size, inertia) in zip(view.masses, ((0.15, 4e-5), (0.3, 2e-4)), strict=True):
         own = 7850.0 * math.pi * mass.radius**2 * mass.thickness
         assert own == pytest.approx(size) and 0.25 * own * mass.radius**2 == pytest.approx(inertia)
@@ -116,7 +122,7 @@ def test_the_command_draws_a_spindle(tmp_path: Path, capsys: pytest.CaptureFixtu
     assert found["frequency"] == pytest.approx(2.0 * math.pi * 335.0, rel=1e-3)
     assert main(["view", str(SPINDLE), "--mode", "9"]) == 2
     assert "--mode = 9: must be a whole number from 1 to 5" in capsys.readouterr().err
-    film = spindle_film(spindle_view(lb.load_scene(SPINDLE)), 4)
+    film = spindle_film(drawn(1), 4)
     up, down = film.picture(0).piece("wanted").points, film.picture(2).piece("wanted").points
     rest = film.picture(1).piece("wanted").points
     np.testing.assert_allclose(0.5 * (up + down), rest, atol=1e-9)

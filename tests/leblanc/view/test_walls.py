@@ -83,9 +83,11 @@ def liquid_points(picture: Picture) -> np.ndarray:
     """Of all meshes in the colours of the liquid, mm, shape (n, 3)."""
     import pyvista
 
-    plot = plotter(picture)
+    liquid = {LOOKS[look].colour for look in ("surface", "liquid")}
+    shown = tuple(piece for piece in picture.pieces if LOOKS[piece.look].colour in liquid)
+    plot = plotter(replace(picture, pieces=shown, labels=()))
     try:
-        colours = {pyvista.Color(LOOKS[look].colour).int_rgb for look in ("surface", "liquid")}
+        colours = {pyvista.Color(colour).int_rgb for colour in liquid}
         found = []
         for actor in plot.actors.values():
             if not hasattr(actor, "mapper") or not hasattr(actor.prop, "color"):

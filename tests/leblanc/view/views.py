@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
 
-from leblanc.plotting.bodies import DrawnLiquid, MachineMotion, Scale
-from leblanc.scene.scene import Scene
-from leblanc.studies.shapes.machine import drawn_liquid, machine_view
+from leblanc.plotting.bodies import DrawnLiquid, MachineMotion, RunupView, Scale
+from leblanc.scene.scene import Scene, load_scene
+from leblanc.studies.shapes.machine import drawn_liquid, machine_view, runup_view
 from leblanc.view.film import Film, sweep_film
 from leblanc.view.parts import Picture
 from leblanc.view.scene import still
+
+EXAMPLES = Path(__file__).parents[3] / "examples"
+FRAMES = 13  # of a short run-up
 
 
 @dataclass(frozen=True)
@@ -39,3 +44,21 @@ def picture_at(motion: MachineMotion, index: int, scale: Scale) -> Picture:
 def film_over(motion: MachineMotion, scale: Scale, frames: int) -> Film:
     """Film over the speeds."""
     return sweep_film(motion, scale, lambda k: drawn_liquid(motion, k, scale), frames)
+
+
+def scene(name: str) -> Scene:
+    """An example."""
+    return load_scene(EXAMPLES / f"{name}.toml")
+
+
+@cache
+def working(name: str) -> Shown:
+    """An example at its working speed."""
+    return show(scene(name))
+
+
+@cache
+def short_runup(name: str) -> RunupView:
+    """An example run up in 4 s."""
+    short = {"runup.duration": "4 s", "runup.cells": 32, "runup.samples": 250}
+    return runup_view(scene(name).replace(short), FRAMES)
