@@ -51,7 +51,9 @@ def on_terminal(answer: Answer) -> str:
 
 def nothing(_: Answer) -> Figure:
     """A picture of nothing, which takes no time."""
-    return Figure(figsize=(1.0, 1.0))
+    figure = Figure(figsize=(1.0, 1.0))
+    figure.alt = "A picture of nothing."
+    return figure
 
 
 @pytest.fixture

@@ -103,6 +103,6 @@ def test_modules_of_the_current_folder_are_not_taken(folder: Path, arguments: tu
 def test_nor_are_they_by_the_name_of_the_package(folder: Path) -> None:
     """Of modules that Python loads before ours, such as one called leblanc, it alone can decide."""
     (folder / "leblanc.py").unlink()
-    done = leblanc(folder, "run", "horizontal_rig.toml", module=True)
+    done = leblanc(folder, "explain", "horizontal_rig.toml", module=True)
     assert done.returncode == 0, done.stderr
     assert "was taken" not in done.stdout + done.stderr

@@ -15,7 +15,7 @@ from leblanc.cli import main
 from leblanc.core import units
 from leblanc.core.blocks import Picture, flat
 from leblanc.core.question import called
-from leblanc.plotting.page import save
+from leblanc.plotting.page import save_png
 from leblanc.scene.scene import load_scene, scene_from_table
 from leblanc.scene.schema.load import SceneError
 from leblanc.scene.tasks import Optimisation
@@ -209,7 +209,7 @@ def _optimum(name: str, **task: object) -> OptimumAnswer:
 def _drawn(best: OptimumAnswer, folder: Path) -> list[bytes]:
     folder.mkdir(exist_ok=True)
     pictures = (block for block in flat(best.blocks(), "page") if isinstance(block, Picture))
-    return [save(called(one.draw)(best), folder, one.name, one.title).png.read_bytes() for one in pictures]
+    return [save_png(called(one.draw)(best), folder, one.name, one.title).read_bytes() for one in pictures]
 
 
 @pytest.mark.parametrize("name", ["runup", "horizontal_rig"])

@@ -38,6 +38,7 @@ def run(
     return printed(capsys, "run", str(path), "--out", str(folder))
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_run_prints_every_limit_below_its_table(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Unstable from ... to ..., error, out of range: those of the JSON."""
     words = run(capsys, "horizontal_rig", tmp_path, "count = 20", "count = 201")

@@ -50,9 +50,18 @@ CHILD = """if True:
     import os, sys, traceback
     from leblanc.cli import main
     import leblanc.studies.run.figure, leblanc.studies.run.study, leblanc.core.page, leblanc.core.netcdf
-    import leblanc.studies.sweep.study, leblanc.studies.explain, numpy.random, rich.table
+    import numpy.random, rich.table
 
     commands, told = eval(sys.argv[1]), os.open("codes", os.O_WRONLY | os.O_CREAT)
+    if sys.argv[2:]:
+        from dataclasses import replace
+        from leblanc.core import disk
+        from leblanc.plotting.page import Figure
+
+        draw, nothing = disk.drawing, lambda _: Figure(figsize=(1.0, 1.0))
+        disk.drawing = lambda answer, picture, folder: draw(
+            answer, replace(picture, draw="__main__:nothing"), folder
+        )
     os.dup2(told, 100)  # above the streams, of which some are closed here
     os.close(told)
     for name, arguments in commands.items():
@@ -95,13 +104,13 @@ def write_inputs(folder: Path) -> None:
     )
 
 
-def codes_of(folder: Path, terminal: str, names: tuple[str, ...]) -> dict[str, int]:
-    """Exit codes of some commands on a terminal."""
+def codes_of(folder: Path, terminal: str, names: tuple[str, ...], *undrawn: str) -> dict[str, int]:
+    """Exit codes of some commands on a terminal; `undrawn`, a word, for pictures of nothing."""
     write_inputs(folder)
     settings, streams = TERMINALS[terminal]
     commands = {name: [word.encode() for word in COMMANDS[name]] for name in names}
     subprocess.run(
-        ["bash", "-c", f'"$@" {streams}', "bash", sys.executable, "-c", CHILD, repr(commands)],
+        ["bash", "-c", f'"$@" {streams}', "bash", sys.executable, "-c", CHILD, repr(commands), *undrawn],
         cwd=folder,
         env={key: value for key, value in os.environ.items() if not key.startswith("LC_")}
         | {"PYTHONPATH": str(ROOT)}
@@ -125,7 +134,8 @@ def expected(name: str, terminal: str) -> int:
 @pytest.mark.parametrize("terminal", ["ascii", "stderr closed", "all closed", "stdout left"])
 def test_no_terminal_ends_a_command(terminal: str, tmp_path: Path) -> None:
     names = (*QUICK, *MORE.get(terminal, ()))
-    assert codes_of(tmp_path, terminal, names) == {name: expected(name, terminal) for name in names}
+    codes = codes_of(tmp_path, terminal, names, "undrawn")
+    assert codes == {name: expected(name, terminal) for name in names}
     assert (tmp_path / "out" / NAME / "summary.html").exists()
     assert (tmp_path / "ä.toml").exists()
     if terminal == "stderr closed":  # messages do not go where the answer goes

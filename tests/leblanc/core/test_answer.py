@@ -17,6 +17,7 @@ from meshes.errors import InputError
 from tests.leblanc.core.answers import ASKED, answer
 
 
+@pytest.mark.usefixtures("_exciter_once")
 @pytest.mark.parametrize("kind", ASKED)
 def test_an_answer_is_a_value(kind: str) -> None:
     found = answer(kind)

@@ -76,6 +76,7 @@ def own_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
 
 
+@pytest.mark.usefixtures("_exciter_once")
 @pytest.mark.parametrize("kind", [*ASKED, *MORE])
 def test_a_file_gives_the_answer_back(kind: str, capsys: pytest.CaptureFixture[str]) -> None:
     found = answer(kind) if kind in ASKED else MORE[kind]()

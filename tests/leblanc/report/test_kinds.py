@@ -299,6 +299,7 @@ def test_a_search_that_names_its_model_says_so() -> None:
     assert "scene asks" in record.models[-1].reason
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_given_deflection_has_its_report() -> None:
     found = told(
         example("vertical_rig", 5), "optimise", "optimise.html", "--deflection", "1 mm", "--no-front"
@@ -478,6 +479,7 @@ def test_runup_report_is_the_json() -> None:
     check_command(page, "runup", "runup.nc")
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_run_that_stopped_says_so(tmp_path: Path) -> None:
     record = calm_run()
     stopped = replace(
@@ -496,6 +498,7 @@ def exciter() -> ExciterAnswer:
     return run_exciter(scene_from_table(example("vibratory_table", 6)))
 
 
+@pytest.mark.usefixtures("_exciter_once")
 def test_exciter_numbers() -> None:
     record = exciter()
     found = dict(facts(record))
@@ -528,6 +531,7 @@ def test_exciter_numbers() -> None:
             assert [row[3], row[4]] == [printed(one.slow * 1e3), printed(one.fast * 1e3)]
 
 
+@pytest.mark.usefixtures("_exciter_once")
 def test_exciter_warnings() -> None:
     record = exciter()
     calm = replace(record, dual_frequency=np.ones_like(record.dual_frequency))
@@ -545,6 +549,7 @@ def test_exciter_warnings() -> None:
         assert failed == [(heading, text)]
 
 
+@pytest.mark.usefixtures("undrawn", "_exciter_once")
 def test_exciter_report_is_the_json(tmp_path: Path) -> None:
     record = exciter()
     answer = json.loads(json.dumps(record.to_json()))

@@ -33,6 +33,7 @@ def scene(name: str, folder: Path) -> str:
     return str(path)
 
 
+@pytest.mark.usefixtures("undrawn", "_exciter_once")
 @pytest.mark.parametrize("command", COMMANDS)
 def test_every_report_opens_with_result_doubt_and_date(
     command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

@@ -203,7 +203,11 @@ def test_what_is_not_known_of_the_peak_is_not_called_unstable() -> None:
         ),
     ],
 )
-def test_numbers_are_those_of_the_json(name: str, tmp_path: Path, capsys) -> None:
+def test_numbers_are_those_of_the_json(
+    name: str, tmp_path: Path, capsys, request: pytest.FixtureRequest
+) -> None:
+    if name != "horizontal_rig":  # what figures are called is alike
+        request.getfixturevalue("undrawn")
     assert main(["run", f"examples/{name}.toml", "--json", "--out", str(tmp_path)]) == 0
     answer = json.loads(capsys.readouterr().out)
     page = read_page(tmp_path / "summary.html")

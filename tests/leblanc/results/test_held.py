@@ -195,6 +195,7 @@ def test_report_tells_cycles_by_ranges_of_speed() -> None:
     assert words.held_motions(rig()) == ()
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_exit_code_3_says_what_has_not_settled_and_what_is_kept(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

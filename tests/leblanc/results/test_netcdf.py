@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import leblanc as lb
 from leblanc.core.netcdf import NamedArrays, Variable, read_values, variable, write_netcdf
 from meshes.errors import InputError
 from tests.oracles.data_files import assert_read_back
@@ -77,23 +76,6 @@ def test_what_netcdf_does_not_know_is_refused() -> None:
         variable(("x",), np.zeros((3, 2)), "m", "deflection")
     with pytest.raises(InputError, match="along x"):
         NamedArrays({"a": numbers("x", shape=(2,)), "b": numbers("x", shape=(3,))}, {}, {})
-
-
-# Results of the other commands are read back where they are tested.
-WHIRL = {"radius": 0.065, "volume": 2e-5, "height": 0.02, "speed": 105.0}
-RESULTS = {
-    "layer": lambda: lb.layer(**WHIRL, whirl_speed=94.0, whirl_amplitude=1e-4),
-    "layer in time": lambda: lb.layer(
-        **WHIRL, whirl_speed=94.0, whirl_amplitude=1e-4, model="long_wave", duration=0.2, cells=32
-    ),
-    "modes": lambda: lb.modes(**WHIRL, count=4, segments=24, layers=2),
-    "optimise": lambda: lb.optimise(lb.example("horizontal_rig")),
-}
-
-
-@pytest.mark.parametrize("name", RESULTS)
-def test_a_result_is_read_back(name: str, tmp_path: Path) -> None:
-    assert_read_back(RESULTS[name]().named_arrays(), tmp_path)
 
 
 def test_a_file_that_is_none_is_refused(tmp_path: Path) -> None:

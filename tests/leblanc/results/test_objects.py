@@ -43,6 +43,7 @@ def scene(name: str) -> Scene:
     return load_scene(ROOT / f"examples/{name}.toml")
 
 
+FEW = {"speeds.count": 12}
 RUNUP = scene("runup").replace({"runup.duration": "1 s", "runup.cells": 16})
 
 
@@ -51,21 +52,21 @@ WARM = Optimisation(objective="robust", temperature=(280.0, 330.0), volumes=((0.
 
 @cache
 def run() -> RunAnswer:
-    return run_scene(scene("tub"))
+    return run_scene(scene("tub").replace(FEW))
 
 
 SELF_EXCITED = {"speeds.start": 120.0, "speeds.stop": 155.0, "speeds.count": 4}
 
 RESULTS = {
     "runup": lambda: run_up(RUNUP, samples=50, check=False),
-    "optimise": lambda: optimise(scene("horizontal_rig")),
+    "optimise": lambda: optimise(scene("horizontal_rig").replace(FEW)),
     "optimise robust": lambda: optimise(scene("runup").altered(optimise=WARM), front=False),
     "run": run,
     "run with cycles": lambda: run_scene(
         load_scene(ROOT / "docs/examples/self_excited.toml").replace(SELF_EXCITED), cycles=True
     ),
     "map": lambda: lb.map_whirl(scene("horizontal_rig"), volumes=5, speeds=21),
-    "compare": lambda: lb.compare(scene("horizontal_rig"), ["kdv", "linear", "statics"]),
+    "compare": lambda: lb.compare(scene("horizontal_rig").replace(FEW), ["kdv", "linear", "statics"]),
     "explain": lambda: explain_scene(scene("runup")),
     "explain an exciter": lambda: explain_exciter(scene("vibratory_table")),
     "layer": lambda: lb.layer(**LAYER, whirl_speed=32.0, whirl_amplitude="0.15 mm"),
@@ -74,7 +75,7 @@ RESULTS = {
     ),
     "modes": lambda: lb.modes(**LAYER, count=3, segments=32),
     "volume": lambda: volume(**CHAMBER, eccentricity=1e-3, speed=20.0, volume=3e-5),
-    "exciter": lambda: run_exciter(scene("vibratory_table")),
+    "exciter": lambda: run_exciter(scene("vibratory_table").replace(FEW)),
     "magnetic": lambda: run_magnetic(
         scene("blood_pump").replace({"speeds.count": 3, "rotor.trial.duration": 0.02})
     ),
@@ -99,6 +100,7 @@ class Cells(HTMLParser):
         self.texts.append(data)
 
 
+@pytest.mark.usefixtures("_exciter_once")
 @pytest.mark.parametrize("name", RESULTS)
 def test_every_result_has_every_way_out(
     name: str, capsys: pytest.CaptureFixture[str], tmp_path: Path
@@ -174,7 +176,8 @@ def test_models_are_chosen_once_a_command(command: str, tmp_path: Path) -> None:
     """
     counted = (choose_all.__code__, prepare.__code__, Scene.speed_array.__code__)
     options = ["--out", str(tmp_path)] if command == "run" else []
-    path = ROOT / "examples/centrifuge.toml"
+    path = tmp_path / "scene.toml"
+    path.write_text(scene("centrifuge").replace(FEW).to_toml(), encoding="utf-8")
     found = calls(lambda: main([command, str(path), *options]), *counted)
     chosen, *once = (found[code] for code in counted)
     assert [len(given) for given in once] == [1, 1]
