@@ -105,16 +105,20 @@ def test_each_is_what_run_gives(alone: list[dict[str, np.ndarray]]) -> None:
     assert answers.dry_patch.any() and not answers.stable.all() and not answers.in_range.all()
 
 
-def test_same_scenes_same_bits() -> None:
-    first, again = answer_scenes(mixed()), answer_scenes(mixed())
+@pytest.fixture(scope="module")
+def together() -> Answers:
+    return answer_scenes(mixed())
+
+
+def test_same_scenes_same_bits(together: Answers) -> None:
+    first, again = together, answer_scenes(mixed())
     for field in fields(Answers):
         one, other = getattr(first, field.name), getattr(again, field.name)
         assert (one is None and other is None) or one.tobytes() == other.tobytes()
 
 
-def test_order_is_kept() -> None:
-    scenes = mixed()
-    forward, backward = answer_scenes(scenes), answer_scenes(scenes[::-1])
+def test_order_is_kept(together: Answers) -> None:
+    forward, backward = together, answer_scenes(mixed()[::-1])
     np.testing.assert_array_equal(forward.speed, backward.speed[::-1])
     np.testing.assert_allclose(forward.amplitude, backward.amplitude[::-1], rtol=1e-12)
 

@@ -6,6 +6,7 @@ import json
 import math
 import tomllib
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +19,7 @@ from leblanc.cli import main
 from leblanc.plotting.chambers import chamber_figure, side_by_side
 from leblanc.scene.scene import Scene, dry_rotor, load_scene, scene_from_table
 from leblanc.studies.explain.study import explain_scene
+from leblanc.studies.run.answer import RunAnswer
 from leblanc.studies.run.figure import amplitude_figure, campbell_figure
 from leblanc.studies.run.study import run_scene
 from leblanc.studies.run.words import comparisons, facts
@@ -56,6 +58,12 @@ supports = [
 ]
 unbalances = [{ position = 0, size = 3e-3 }]
 """
+
+
+@cache
+def answered(name: str) -> RunAnswer:
+    """What `run` says of an example."""
+    return run_scene(load_scene(f"examples/{name}.toml"))
 
 
 def read(rotor: str) -> Scene:
@@ -210,7 +218,7 @@ def test_examples(name: str, capsys: pytest.CaptureFixture[str], tmp_path: Path)
     assert answer.keys() >= KEYS
     speeds = len(answer["speed"])
     assert all(len(answer[key]) == speeds for key in (*KEYS, "backward", "chamber_deflection"))
-    record = run_scene(load_scene(f"examples/{name}.toml"))
+    record = answered(name)
     motion = record.motion
     assert motion is not None
     forward, backward = (np.array(answer[key]) @ [1.0, 1j] for key in ("deflection", "backward"))
@@ -242,14 +250,14 @@ def test_explain(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_chambers_in_different_planes_are_drawn_apart() -> None:
-    record = run_scene(load_scene("examples/two_plane_rig.toml"))
+    record = answered("two_plane_rig")
     assert len(side_by_side(record.chambers)) == 2
     texts = [text.get_text() for axes in chamber_figure(record).axes for text in (axes.title,)]
     assert len(set(texts)) == 2
 
 
 def test_the_campbell_diagram_marks_every_crossing() -> None:
-    record = run_scene(load_scene("examples/two_plane_rig.toml"))
+    record = answered("two_plane_rig")
     assert record.motion is not None
     axes = campbell_figure(record).axes[0]
     marks = [line for line in axes.lines if line.get_marker() not in ("None", None, "")]
@@ -260,7 +268,7 @@ def test_the_campbell_diagram_marks_every_crossing() -> None:
 
 
 def test_amplitude_figure_says_where() -> None:
-    record = run_scene(load_scene("examples/tub.toml"))
+    record = answered("tub")
     assert any("115 mm" in text.get_text() for text in amplitude_figure(record).texts)
 
 
