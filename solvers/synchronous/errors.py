@@ -210,7 +210,10 @@ def _most(
     most = np.where(single & above, np.minimum(most, beside), most)
     for _ in range(_ROUNDS):
         larger = _largest(spring, damping, force, squared * laws.defect(most))
-        most = np.where(hardening, most, np.minimum(most, larger))
+        bound = np.where(hardening, most, np.minimum(most, larger))
+        if (bound == most).all():
+            break
+        most = bound
     return most
 
 
@@ -369,8 +372,15 @@ def _largest_coupled(
     less.
     """
     most = frozen + _carried(far, np.square(speed)[:, None] * dead)
+    left = np.arange(speed.size)  # whose bound still falls
     for _ in range(_COUPLED_ROUNDS):
-        most = np.minimum(most, linear + _carried(spread, _missing(surfaces, speed, most)))
+        missing = _missing([own.at(left) for own in surfaces], speed[left], most[left])
+        bound = np.minimum(most[left], linear[left] + _carried(spread[left], missing))
+        falls = (bound < most[left]).any(axis=1)
+        most[left] = bound
+        left = left[falls]
+        if not left.size:
+            break
     return most
 
 

@@ -268,9 +268,7 @@ def test_several_branches_have_no_narrow_bounds() -> None:
     assert (error.amplitude > 0.1).all()
 
 
-@kills(
-    "solvers.synchronous.errors:_largest_coupled", "linear + _carried(spread,", "linear - _carried(spread,"
-)
+@kills("solvers.synchronous.errors:_largest_coupled", "+ _carried(spread[left]", "- _carried(spread[left]")
 @kills(
     "solvers.synchronous.errors:_missing",
     "np.square(speed)[:, None] * np.stack(bounds",
