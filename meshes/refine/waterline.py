@@ -161,11 +161,20 @@ def _crossing(arcs: Arcs, level: float) -> Array:
     crossed = np.flatnonzero((arcs.near_square < level) & (level < arcs.far_square))
     curve = arcs.curve[:, :, crossed]
     low, high = arcs.near[crossed], arcs.far[crossed]
-    for _ in range(54):  # one bit of t at a time
-        middle = 0.5 * (low + high)
-        inside = _square(curve, middle) < level
-        low, high = np.where(inside, middle, low), np.where(inside, high, middle)
-    t[crossed] = 0.5 * (low + high)
+    at = 0.5 * (low + high)
+    for _ in range(54):  # by Newton's method, or one bit of t at a time where that leaves the bracket
+        x, y = _position(curve, at)
+        dx, dy = curve[1] + 2.0 * at * curve[2]
+        excess, slope = x * x + y * y - level, 2.0 * (x * dx + y * dy)
+        inside = excess < 0.0
+        low, high = np.where(inside, at, low), np.where(inside, high, at)
+        newton = at - np.divide(excess, slope, out=np.full_like(at, math.inf), where=slope != 0.0)
+        fits = (newton >= np.minimum(low, high)) & (newton <= np.maximum(low, high))
+        before, at = at, np.where(fits, newton, 0.5 * (low + high))
+        # The error of a step of Newton's is of the order of its square.
+        if np.all(np.where(fits, np.abs(at - before) < 1e-9, np.abs(high - low) < 1e-15)):
+            break
+    t[crossed] = at
     return t
 
 

@@ -6,13 +6,14 @@ import math
 from contextlib import suppress
 from copy import copy
 from dataclasses import dataclass, field, replace
+from functools import cache
 from importlib.metadata import EntryPoint
 from pathlib import Path
 from typing import Any, ClassVar
 
+import h5py
 import numpy as np
 import pytest
-import xarray as xr
 
 import leblanc as lb
 from fluid.fill import Fills
@@ -277,6 +278,12 @@ class Failing(Ring):
         return replace(super().answer(fills, whirls), converged=whirls.spin < self.above)
 
 
+@cache
+def by_ring(name: str) -> Any:
+    """The answer of the ring, which finds one at every speed."""
+    return lb.run(scene(name, **{"speeds.count": 3}), model=Ring())
+
+
 @pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize("name", ["horizontal_rig", "tub"])
 @pytest.mark.parametrize("known", [3, 1, 0])
@@ -284,7 +291,7 @@ def test_where_it_finds_no_answer_the_growth_is_not_known(name: str, known: int)
     rig = scene(name, **{"speeds.count": 3})
     speed = rig.speed_array()
     above = 0.0 if known == 0 else 1.01 * speed[known - 1]
-    found, whole = lb.run(rig, model=Failing(above)), lb.run(rig, model=Ring())
+    found, whole = lb.run(rig, model=Failing(above)), by_ring(name)
     assert np.array_equal(np.isnan(found.growth), speed > above)
     assert np.array_equal(found.growth[:known], whole.growth[:known])
     assert set(found.stability[known:].tolist()) <= {"not_known"}
@@ -456,14 +463,14 @@ def test_an_answer_and_its_file_tell_models_apart(tmp_path: Path) -> None:
         spoilt: Any = field(default_factory=dict)
 
     light, heavy = (Friction(FrictionLaw.LINEAR, rate) for rate in (2.0, 200.0))
-    asked = scene("horizontal_rig"), [100.0, 200.0]
+    asked = scene("horizontal_rig"), [100.0]
     said = []
     for model in (Ring(light), Ring(heavy), Given(light), "statics", None):
         answer = lb.run(asked[0], speeds=asked[1], model=model)
         answer.save(tmp_path / "it.nc")
         said.append(answer.typed.liquid_model)
         assert lb.open(tmp_path / "it.nc").typed.liquid_model == said[-1]
-        with xr.open_dataset(tmp_path / "it.nc") as data:
+        with h5py.File(tmp_path / "it.nc") as data:
             assert data.attrs.get("liquid_model", "") == said[-1]
     assert len(set(said)) == len(said)
     assert said[0].startswith("tests.leblanc.liquid.test_own.Ring(friction=Friction(")

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import copy
 import math
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -49,11 +50,37 @@ def upright(table: dict[str, Any]) -> dict[str, Any]:
     return found
 
 
+@cache
+def as_given(command: str, machine: str) -> Any:
+    """What a command answers to a machine as it stands."""
+    return COMMANDS[command](MACHINES[machine])
+
+
+ONE_CHAMBER = JEFFCOTT | {"chambers": JEFFCOTT["chambers"][:1]}
+
+
+@cache
+def one_chamber() -> Any:
+    """Its best volume."""
+    return optimum(ONE_CHAMBER)
+
+
+def rubbing(liquid: str) -> dict[str, Any]:
+    """A standing machine without walls to rub on."""
+    return upright(with_model(JEFFCOTT, liquid=liquid, friction=NO_WALLS))
+
+
+@cache
+def run_up_of(liquid: str) -> Any:
+    """Its run-up."""
+    return runup(rubbing(liquid))
+
+
 @pytest.mark.parametrize("machine", MACHINES)
 @pytest.mark.parametrize("command", COMMANDS)
 def test_units(command: str, machine: str) -> None:
     """What is written in millimetres and rpm is read to a few roundings."""
-    answer = COMMANDS[command](MACHINES[machine])
+    answer = as_given(command, machine)
     assert_alike(COMMANDS[command](in_other_units(MACHINES[machine])), answer, ROUNDING)
 
 
@@ -62,7 +89,7 @@ def test_units(command: str, machine: str) -> None:
 @pytest.mark.parametrize("command", COMMANDS)
 def test_similar_machines(command: str, machine: str, scales: tuple[float, float, float]) -> None:
     """Buckingham: equal numbers without dimension, equal answers without dimension."""
-    answer = COMMANDS[command](MACHINES[machine])
+    answer = as_given(command, machine)
     assert_alike(COMMANDS[command](scaled(MACHINES[machine], scales)), answer, ROUNDING, scales)
 
 
@@ -111,7 +138,7 @@ def test_a_chamber_split_in_two(command: str, machine: str) -> None:
 def test_order_of_the_parts(command: str, machine: str) -> None:
     """Chambers, supports and unbalances may come in any order."""
     table = MACHINES[machine]
-    answer, found = COMMANDS[command](table), COMMANDS[command](reordered(table))
+    answer, found = as_given(command, machine), COMMANDS[command](reordered(table))
     # A rotor that tilts is given at its first chamber, now at the other end; `chamber_deflection` has both.
     moved = ["amplitude", "amplitude_dry", "phase", "deflection", "branches", "backward", "position",
              "error_estimate", "peak.speed", "peak.amplitude", "peak_dry.speed",
@@ -127,7 +154,7 @@ def test_order_of_supports_and_unbalances() -> None:
     """With its chambers in their places a rotor that tilts is given at the same one, and so are its peaks."""
     table = reordered(TWO_PLANE)
     table["chambers"].reverse()
-    assert_alike(run(table), run(TWO_PLANE), ROUNDING)
+    assert_alike(run(table), as_given("run", "two_plane"), ROUNDING)
 
 
 def complex_numbers(values: Any) -> np.ndarray:
@@ -139,7 +166,7 @@ def complex_numbers(values: Any) -> np.ndarray:
 def test_the_unbalance_turned() -> None:
     """Everything turns with the unbalance: deflections by its angle, sizes and speeds by nothing."""
     angle = 0.7
-    answer, found = run(TWO_PLANE), run(turned(TWO_PLANE, angle))
+    answer, found = as_given("run", "two_plane"), run(turned(TWO_PLANE, angle))
     turning = ["phase", "liquid_angle", "deflection", "branches", "backward", "chamber_deflection"]
     assert_alike(found, answer, ROUNDING, without=turning)
     for key in ("deflection", "branches", "chamber_deflection"):
@@ -158,8 +185,7 @@ def test_the_unbalance_turned() -> None:
 @pytest.mark.parametrize("scales", SCALES, ids=["large", "small"])
 def test_similar_machines_have_similar_optima(scales: tuple[float, float, float]) -> None:
     """The search asks the same questions of both, so it takes the same way."""
-    table = JEFFCOTT | {"chambers": JEFFCOTT["chambers"][:1]}
-    answer, found = optimum(table), optimum(scaled(table, scales))
+    answer, found = one_chamber(), optimum(scaled(ONE_CHAMBER, scales))
     assert found["evaluations"] == answer["evaluations"]
     assert_alike(found, answer, ROUNDING, scales)
 
@@ -177,7 +203,6 @@ def test_similar_run_ups(liquid: str) -> None:
 @pytest.mark.parametrize("liquid", ["linear", "long_wave"])
 def test_run_up_of_the_same_machine(liquid: str, change: Any) -> None:
     """Some 1e4 steps of rounding, one after the other, in a machine that forgets: 1e-10."""
-    table = upright(with_model(JEFFCOTT, liquid=liquid, friction=NO_WALLS))
-    answer, found = runup(table), runup(change(table))
+    answer, found = run_up_of(liquid), runup(change(rubbing(liquid)))
     each = ["captured", "depth_max", "depth_min", "mean_rotation"]  # of each layer
     assert_alike(found, answer, 1e-10, without=each)

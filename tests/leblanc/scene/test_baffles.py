@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,7 @@ from leblanc.liquid.notes import BaffleCode
 from leblanc.scene.scene import Scene, jeffcott, load_scene, scene_from_table
 from leblanc.scene.schema.load import SceneError, read_toml
 from leblanc.studies.explain.study import explain_scene
+from leblanc.studies.run.answer import RunAnswer
 from leblanc.studies.run.study import run_scene
 from leblanc.studies.runup.study import runup_scene
 from leblanc.studies.sweep.batch import answer_scenes
@@ -51,6 +53,15 @@ def scene(baffles: dict[str, Any] | None = None, **more: Any) -> Scene:
     return scene_from_table(BASE | {"chambers": [chamber]} | more)
 
 
+@cache
+def answered(kind: str) -> RunAnswer:
+    """Of a chamber that is clear, with baffles that liquid can pass, or cut into compartments."""
+    return run_scene(scene({"clear": None, "low": LOW, "cut": CUT}[kind]))
+
+
+ONE = {"speeds": {"start": 100.0, "stop": 100.0, "count": 1}}
+
+
 def test_the_keys_of_baffles_reach_the_chamber() -> None:
     assert scene(LOW).fills[0].chamber.baffles == Baffles(3, 0.097, 0.0, math.radians(10.0))
     assert scene().fills[0].chamber.baffles is None
@@ -74,7 +85,7 @@ def test_wrong_baffles_are_named(baffles: dict[str, Any], told: str) -> None:
 
 
 def test_baffles_that_the_liquid_can_pass_change_no_steady_answer() -> None:
-    clear, low = (run_scene(one) for one in (scene(), scene(LOW)))
+    clear, low = answered("clear"), answered("low")
     np.testing.assert_array_equal(low.response.deflection, clear.response.deflection)
     assert clear.whirl is not None
     assert low.whirl is not None
@@ -83,7 +94,7 @@ def test_baffles_that_the_liquid_can_pass_change_no_steady_answer() -> None:
 
 
 def test_compartments_add_less_mass() -> None:
-    record = run_scene(scene(CUT))
+    record = answered("cut")
     fill, rotor = record.response, jeffcott(scene(CUT))
     # That of the elements, which the closed form has to 2e-6 [theory: sections, eq. 8].
     added = SmallWaves().added_mass(Fills.of(scene(CUT).fills))[0]
@@ -112,9 +123,7 @@ def test_compartments_that_hardly_balance_are_told() -> None:
     surface = 0.01 - CHAMBER["volume"] / (math.pi * CHAMBER["height"])  # its radius squared
     left = 1.0 - surface / 0.01 * 2.0 * float(np.mean(np.cos(angle).mean(axis=1) ** 2))
     chamber = CHAMBER | {"baffles": {"count": 4, "tip_radius": 0.05}}
-    own = scene_from_table(
-        BASE | {"chambers": [chamber, chamber]} | {"speeds": BASE["speeds"] | {"count": 3}}
-    )
+    own = scene_from_table(BASE | {"chambers": [chamber, chamber]} | ONE)
     found = [note for note in run_scene(own).notes if note.code == BaffleCode.CLOSED_COMPARTMENTS]
     assert len(found) == 1
     note = found[0]
@@ -123,7 +132,7 @@ def test_compartments_that_hardly_balance_are_told() -> None:
     assert f"its balancing mass is {percent(left)} of that in a clear ring" in note.text
     assert all(note.text[18:100] in layer.walls for layer in explain_scene(own).layers)
     passes = chamber | {"baffles": {"count": 4, "tip_radius": 0.095}}
-    low = scene_from_table(BASE | {"chambers": [passes]} | {"speeds": BASE["speeds"] | {"count": 3}})
+    low = scene_from_table(BASE | {"chambers": [passes]} | ONE)
     assert not [note for note in run_scene(low).notes if note.code == BaffleCode.CLOSED_COMPARTMENTS]
 
 
@@ -146,8 +155,7 @@ def test_a_film_thinner_than_molecules_is_no_liquid() -> None:
 def test_many_scenes_at_once_are_those_alone() -> None:
     several = [scene(), scene(LOW), scene(CUT)]
     answers = answer_scenes(several)
-    for k, one in enumerate(several):
-        record = run_scene(one)
+    for k, record in enumerate(map(answered, ("clear", "low", "cut"))):
         np.testing.assert_allclose(answers.amplitude[k], record.amplitude, rtol=1e-12)
         assert record.whirl is not None
         np.testing.assert_allclose(answers.growth[k], record.whirl.growth, atol=1e-9)
@@ -155,7 +163,7 @@ def test_many_scenes_at_once_are_those_alone() -> None:
 
 
 def test_the_map_runs_from_empty_to_full() -> None:
-    record = lb.map_whirl(scene(LOW), volumes=4, speeds=5)
+    record = lb.map_whirl(scene(LOW), volumes=3, speeds=3)
     assert np.isfinite(record.growth).all()
     # Empty and full there is nothing that could slosh.
     assert np.all(record.growth[[0, -1]] <= 0.0)
@@ -185,7 +193,8 @@ def test_compartments_are_held_in_time_where_long_waves_are_asked_for() -> None:
 
 def test_fem_of_a_clear_chamber_runs_the_elements() -> None:
     """Near linear theory, as near as its own estimate says, but not the same numbers under another name."""
-    fem, linear = (run_scene(scene(model={"liquid": name})) for name in ("fem", "linear"))
+    ends = BASE["speeds"] | {"count": 2}
+    fem, linear = (run_scene(scene(model={"liquid": name}, speeds=ends)) for name in ("fem", "linear"))
     apart = np.abs(fem.deflection / linear.deflection - 1.0)
     assert apart.min() > 0.0 and apart.max() < 1e-6
     assert fem.error_estimate is not None and linear.error_estimate is not None
@@ -198,7 +207,7 @@ def test_fem_of_a_clear_chamber_runs_the_elements() -> None:
 def test_a_tilting_rotor_takes_baffles_as_well() -> None:
     table = read_toml(EXAMPLES / "two_plane_rig.toml")
     table["chambers"][0]["baffles"] = {"count": 3, "tip_radius": "1 mm"}
-    table["speeds"]["count"] = 4
+    table["speeds"]["count"] = 2
     record = run_scene(scene_from_table(table))
     assert set(record.response.model) == {"fem"}
     assert record.whirl is not None
@@ -291,7 +300,7 @@ def test_wrong_sections_are_named(tmp_path: Path, change: dict[str, Any], told: 
 def test_a_section_from_a_drawing(tmp_path: Path) -> None:
     circle_drawing(tmp_path / "circle.dxf")
     chamber = {"section": str(tmp_path / "circle.dxf"), "height": 0.02, "volume": 2e-4, "liquid": "water"}
-    machine = scene_from_table(BASE | {"chambers": [chamber]})
+    machine = scene_from_table(BASE | ONE | {"chambers": [chamber]})
     shape = machine.fills[0].chamber.section
     assert shape is not None and shape.cell_size == pytest.approx(3e-3, rel=1e-3)
     # Parabolas of 3 mm on a circle of 150 mm.

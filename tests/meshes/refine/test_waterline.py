@@ -58,8 +58,8 @@ def test_hole() -> None:
 
 @kills(
     "meshes.refine.waterline:_crossing",
-    "_square(curve, middle) < level",
-    "_square(curve, middle) < 0.9 * level",
+    "x * x + y * y - level",
+    "x * x + y * y - 0.9 * level",
 )
 @kills("meshes.refine.waterline:beyond", "np.sqrt(np.minimum(origin, square)", "(np.minimum(origin, square)")
 def test_half_plane() -> None:
