@@ -1,11 +1,11 @@
-"""One family of long waves in the layer: coefficients of the KdV-Burgers and Whitham equations.
+"""Unidirectional long waves in the layer: coefficients of the KdV-Burgers and Whitham equations.
 
     eta_t + lambda0 eta_theta + alpha eta eta_theta + delta eta_theta_theta_theta
         = nu_b eta_theta_theta - gamma eta - q sin(theta - s t)          [theory: kdv, eq. 1]
 
 eta = A - A0 is the liquid area per radian above its mean, m^2 (positive: a thicker layer). theta and the
 whirl speed s are seen from the drum, positive with the spin; the deflection lies at theta = s t. These signs
-live here alone: a free wave is eta ~ exp(i n theta - i omega t).
+live here alone: a natural sloshing wave is eta ~ exp(i n theta - i omega t).
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from meshes.errors import InputError, require_positive
 
 @dataclass(frozen=True)
 class KdvCoefficients:
-    """One family of waves on a layer at one spin speed."""
+    """Unidirectional waves on a layer at one spin speed."""
 
     family: int  #: +1 prograde, -1 retrograde
     linear_speed: float  #: lambda0, angular speed of long waves of vanishing height, rad/s
@@ -97,7 +97,7 @@ def decay(c: KdvCoefficients, friction_rate: ArrayLike) -> Array:
 
 
 def wave_frequency(mode: ArrayLike, c: KdvCoefficients, whitham: bool) -> Array:
-    """Frequency omega(n) of a free wave eta ~ exp(i n theta - i omega t) of vanishing height, odd in n.
+    """Frequency omega(n) of a natural wave eta ~ exp(i n theta - i omega t) of vanishing height, odd in n.
 
     KdV: n lambda0 - delta n^3 [theory: kdv, eq. 10]; Whitham: the exact sigma(n) [theory: waves, eq. 7].
     """
@@ -136,7 +136,7 @@ def force_ratio(c: KdvCoefficients, liquid_offset: ArrayLike, whirl_amplitude: A
 
 @dataclass(frozen=True)
 class Validity:
-    """What decides whether one family of weakly nonlinear waves is enough; shapes (...,)."""
+    """What decides whether weakly nonlinear unidirectional waves suffice; shapes (...,)."""
 
     amplitude: Array  #: largest |eta|/A0; the coefficients are right to that order
     #: smallest depth of the layer, as area over A0; 0 or below is a dry patch that the model ignores

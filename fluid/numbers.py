@@ -78,8 +78,8 @@ class WhirlNumbers:
 
     relative_depth: float  #: mean depth over radius, h0/R
     deflection: float  #: whirl amplitude over mean depth, w0/h0
-    detuning: float  #: distance of the whirl from the nearer free wave over the distance of the two
-    froude: float  #: whirl speed seen from the drum over the nearer free wave's
+    detuning: float  #: distance of the whirl from the nearer natural wave over the distance of the two
+    froude: float  #: whirl speed seen from the drum over the nearer natural sloshing wave's
     #: centrifugal acceleration at the free surface over gravity across the axis, Omega^2 a/g
     centrifuge: float
     reynolds: float  #: Omega R^2/nu

@@ -15,14 +15,14 @@ from meshes.errors import InputError, require_not_negative, require_positive
 
 
 def dry_radius_as_printed(chamber: Chamber, eccentricity: float) -> float:
-    """Radius R - e of the floor's waterline that touches the near wall, right as printed [DR18, eq. 19]."""
+    """Radius R - e of the floor's waterline that touches the near wall, right as published [DR18, eq. 19]."""
     _require_plain(chamber)
     _require_axis_inside(chamber, eccentricity)
     return chamber.radius - eccentricity
 
 
 def optimal_volume_as_printed(chamber: Chamber, eccentricity: float, speed: float, gravity: float) -> float:
-    """Optimal volume as printed, m^3: far too large [DR18, eq. 18].
+    """Optimal volume as published, m^3: far too large [DR18, eq. 18].
 
     The polar moment of the air's section at the lid is about a point of its rim, not the rotation axis.
     """
@@ -42,7 +42,7 @@ def optimal_volume_disc_corrected(
 def dry_volume_as_printed(
     chamber: Chamber, surface_constant: float, eccentricity: float, speed: float, gravity: float
 ) -> float:
-    """Volume of liquid whose surface leaves a part of the wall dry, as printed [DR18, eq. 20].
+    """Volume of liquid whose surface leaves a part of the wall dry, as published [DR18, eq. 20].
 
     A square root is missing, a tangent stands for an arctangent, the sector's angle is halved and taken on
     the wet side.
@@ -77,7 +77,7 @@ def dry_volume_frozen_angle(
 def liquid_volume_by_lens(
     chamber: Chamber, surface_constant: float, eccentricity: float, speed: float, gravity: float
 ) -> float:
-    """Volume of liquid under the paraboloid, exact, in closed form [theory: statics, eq. 7].
+    """Volume of liquid under the paraboloid, exact and analytical [theory: statics, eq. 7].
 
     Chamber minus air: digits are lost as beta R^2/h grows and as the fill shrinks.
     """
@@ -100,7 +100,7 @@ def optimal_volume_by_lens(chamber: Chamber, eccentricity: float, speed: float, 
 
 
 def liquid_angle_as_printed(lag: float, ratio: float) -> float:
-    """Angle from the liquid to the rotor's unbalance as printed, rad [DR18, eq. 25; DG21, eq. 4].
+    """Angle from the liquid to the rotor's unbalance as published, rad [DR18, eq. 25; DG21, eq. 4].
 
     Of delta and k, the rotor's unbalance over the liquid's; right for k = 1 only: the cosine has lost a
     factor 1/k, the right form is in `solvers.rotor.vector_model`.

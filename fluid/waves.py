@@ -16,7 +16,7 @@ from meshes.errors import InputError
 
 
 def free_wave_frequencies(mode: ArrayLike, layer_log: ArrayLike, spin: ArrayLike) -> tuple[Array, Array]:
-    """Frequencies of the layer's prograde and retrograde free waves of n crests, seen from the drum, rad/s.
+    """Frequencies of the prograde and retrograde natural waves of n crests, seen from the drum, rad/s.
 
     sigma = Omega [T +- sqrt(T^2 + n T)], T = tanh(n L) [theory: waves, eq. 7]; L = ln(R/a) is inf for a full
     drum.
@@ -35,7 +35,7 @@ def free_wave_frequencies(mode: ArrayLike, layer_log: ArrayLike, spin: ArrayLike
 
 
 def free_wave_speeds(mode: ArrayLike, layer_log: ArrayLike, spin: ArrayLike) -> tuple[Array, Array]:
-    """Angular speeds at which the crests of both free waves run around the drum, relative to it, rad/s.
+    """Angular speeds at which the crests of both natural waves run around the drum, relative to it, rad/s.
 
     sigma/n [theory: waves, eq. 7]; in a thin layer the same for every mode.
     """
@@ -47,7 +47,7 @@ def free_wave_speeds(mode: ArrayLike, layer_log: ArrayLike, spin: ArrayLike) -> 
 def force_ratio(curvature: ArrayLike, whirl_ratio: ArrayLike) -> Array:
     """Force of a liquid layer on its whirling drum, over that of a full drum [theory: waves, eq. 5].
 
-    G = 1 - 2 (q - 1)^2/D: 1 for synchronous whirl, infinite at the free wave.
+    G = 1 - 2 (q - 1)^2/D: 1 for synchronous whirl, infinite at the natural sloshing wave.
     """
     kappa, q = _checked(curvature, whirl_ratio)
     return np.asarray(1.0 - _over_resonance(2.0 * np.square(q - 1.0), kappa, q))
@@ -56,7 +56,7 @@ def force_ratio(curvature: ArrayLike, whirl_ratio: ArrayLike) -> Array:
 def offset_ratio(curvature: ArrayLike, whirl_ratio: ArrayLike) -> Array:
     """Offset of the liquid's centre of mass over the whirl radius [theory: waves, eq. 6].
 
-    -q^2/D, along the deflection: 1/(kappa - 1) for synchronous whirl, infinite at the free wave.
+    -q^2/D, along the deflection: 1/(kappa - 1) for synchronous whirl, infinite at the natural sloshing wave.
     """
     kappa, q = _checked(curvature, whirl_ratio)
     return np.asarray(-_over_resonance(np.square(q), kappa, q))
@@ -66,7 +66,7 @@ def displacement_ratio(curvature: ArrayLike, whirl_ratio: ArrayLike) -> Array:
     """Displacement of the free surface along the deflection, over the whirl radius [theory: waves, eq. 4].
 
     xi/w0 = (kappa - 1) q^2/D, positive where the layer is thinner on the side of the deflection: -1 for
-    synchronous whirl, infinite at the free wave.
+    synchronous whirl, infinite at the natural sloshing wave.
     """
     kappa, q = _checked(curvature, whirl_ratio)
     return np.asarray(_over_resonance((kappa - 1.0) * np.square(q), kappa, q))

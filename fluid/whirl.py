@@ -1,4 +1,4 @@
-"""Linear layer with friction on a whirling drum: offset, force, free waves, neutral whirl.
+"""Linear layer with friction on a whirling drum: offset, force, natural sloshing waves, neutral whirl.
 
 Plane flow with a drag against the velocity relative to the drum. Everything is a function of T = tanh(L) =
 (R^2 - a^2)/(R^2 + a^2), from 0 (no liquid) to 1 (full), of which no formula here loses digits. The whirl
@@ -87,14 +87,14 @@ def layer_rate(layer: Layer, spin: ArrayLike, slip: ArrayLike) -> Complex:
 def steady_rate(layer: Layer, spin: ArrayLike) -> Complex:
     """Friction that does not depend on the frequency, from which the search for modes starts, 1/s.
 
-    Linear friction, and floor and lid as they drag on the slower free wave, next to which whirls grow.
+    Linear friction, and floor and lid as they drag on the slower natural wave, next to which whirls grow.
     """
     plates = layer.lids * complex(plate_rate(layer.layer_tanh, 1.0, -slower_slip(layer.layer_tanh)))
     return np.asarray(layer.rate + plates * np.sqrt(np.asarray(spin)))
 
 
 def body_force_rate(fill: Fill, friction: Friction, spin: float) -> float:
-    """Rate k of a force -k u on all the liquid that damps its slower free wave as its walls do, 1/s.
+    """Rate k of a force -k u on all the liquid that damps its slower natural wave as its walls do, 1/s.
 
     It makes no vorticity, unlike walls: it has their drag on waves, not their layers
     [theory: potential, eq. 30]. 0 without liquid or without a free surface.
@@ -106,7 +106,7 @@ def body_force_rate(fill: Fill, friction: Friction, spin: float) -> float:
 
 
 def slower_slip(layer_tanh: float) -> float:
-    """Size of the slower free wave's frequency seen from the drum over the spin, sqrt(T^2 + T) - T."""
+    """Size of the slower natural wave's frequency seen from the drum over the spin, sqrt(T^2 + T) - T."""
     # Without the difference of what is nearly alike.
     return layer_tanh / (math.sqrt(layer_tanh * (layer_tanh + 1.0)) + layer_tanh)
 
@@ -126,7 +126,7 @@ def stokes_rate(stokes: ArrayLike, slip: ArrayLike) -> Complex:
 
 
 def wave_function(layer_tanh: ArrayLike, spin: ArrayLike, slip: ArrayLike, rate: ArrayLike) -> Complex:
-    """E = s^2 - 2 T Omega s - T Omega^2 - i k s, zero at the free waves [theory: whirl, eq. 3]."""
+    """E = s^2 - 2 T Omega s - T Omega^2 - i k s, zero at the natural waves [theory: whirl, eq. 3]."""
     s, t, omega = np.asarray(slip, dtype=complex), np.asarray(layer_tanh), np.asarray(spin)
     return np.asarray(s * (s - 2.0 * t * omega - 1j * np.asarray(rate)) - t * np.square(omega))
 
@@ -153,7 +153,7 @@ def drag_power(layer: Layer, spin: ArrayLike, whirl_speed: float | Array, force:
 
 
 def damped_waves(layer_tanh: ArrayLike, spin: ArrayLike, rate: ArrayLike) -> tuple[Complex, Complex]:
-    """Slips of the free waves with one crest under linear friction, prograde first [theory: whirl, eq. 9].
+    """Slips of the natural waves with one crest under linear friction, prograde first [theory: whirl, eq. 9].
 
     b +- sqrt(b^2 + T Omega^2), b = T Omega + i k/2, rad/s; the waves decay with the imaginary part.
     """

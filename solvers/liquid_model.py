@@ -60,7 +60,7 @@ class Whirl:
 
     @property
     def detuning(self) -> float:
-        """p^2 = (1 - Omega/omega_w)^2: all an exact wave knows of the speeds [theory: potential, eq. 9]."""
+        """p^2 = (1 - Omega/omega_w)^2: what nonlinear waves take of the speeds [theory: potential, eq. 9]."""
         return (self.slip / self.speed) ** 2
 
     @property
@@ -441,7 +441,7 @@ class WaveModel(LiquidModel, Protocol):
         return None
 
     def answer(self, fills: Fills, whirls: Whirls) -> LiquidAnswer:
-        """See `LiquidModel`: in closed form where the liquid is at rest in the drum, else whirl by whirl."""
+        """See `LiquidModel`: analytically where the liquid is at rest in the drum, else whirl by whirl."""
         still = (whirls.slip == 0.0) & (whirls.gravity == 0.0)
         if still.all() and (known := self.at_rest(fills, whirls)) is not None:
             return known
@@ -489,7 +489,7 @@ def whirl_answer(
 
 
 def require_crest(fill: Fill, crest: float, crests: int) -> None:
-    """Raise `InputError` unless a free wave may have such crests, of a depth over the mean depth."""
+    """Raise `InputError` unless a natural wave may have such crests, of a depth over the mean depth."""
     most = fill.chamber.radius / fill.depth
     if not 1.0 < crest < most:
         raise InputError("free", crest, f"above 1 and below {most:g}, where the crest reaches the axis")
@@ -498,7 +498,7 @@ def require_crest(fill: Fill, crest: float, crests: int) -> None:
 
 
 def no_free_wave(fill: Fill, ranges: Mapping[str, Range], reason: str) -> FreeWave:
-    """A free wave that was not found, and why."""
+    """A natural sloshing wave that was not found, and why."""
     theta = angles()
     return FreeWave(
         whirl_speed=(math.nan, math.nan),
@@ -546,5 +546,5 @@ def wave_amplitude(depth: Array, mean: float) -> float:
 
 
 def angles() -> Array:
-    """Angles from the deflection all round at which waves in closed form are drawn, rad."""
+    """Angles from the deflection all round at which analytical waves are drawn, rad."""
     return np.linspace(-math.pi, math.pi, 360, endpoint=False)

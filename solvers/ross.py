@@ -71,7 +71,7 @@ def dynamic_stiffness(
 
     Raises
     ------
-    InputError : a speed that is not finite, a whirl at a free wave without friction
+    InputError : a speed that is not finite, a whirl at a natural sloshing wave without friction
     """
     omega, w = np.broadcast_arrays(_finite("spin", spin), _finite("whirl_speed", whirl_speed))
     layer = plane_layer(fill, friction)

@@ -1,10 +1,10 @@
 """What the height of a wave does to the force of a layer, and how far each model of the layer is off.
 
-Weakly nonlinear theory in closed form, to second order in the whirl: by the exact equations, by long waves
-and by one family of waves. Their differences are the errors of the models; a growth with the height, fitted
-to exact waves, does for the higher orders [theory: model_error, eq. 24-36]. `layer` is h_0/R, `detuning` p^2
-= (1 - Omega/omega_w)^2, `whirl` w_0/h_0, shapes (...,); errors are over the larger of |G| and 1, nan where
-there is no smooth wave.
+Analytical weakly nonlinear theory, to second order in the whirl: by the exact equations, by long waves and
+by unidirectional waves. Their differences are the errors of the models; a growth with the height, fitted to
+nonlinear waves, does for the higher orders [theory: model_error, eq. 24-36]. `layer` is h_0/R, `detuning`
+p^2 = (1 - Omega/omega_w)^2, `whirl` w_0/h_0, shapes (...,); errors are over the larger of |G| and 1, nan
+where there is no smooth wave.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from fluid import kdv
 from meshes.arrays import Array
 
 # Nonlinearity at the fold of waves that hardly disperse, its growth with the detuning, and how dispersion
-# raises it: to 4/27 of a spring with a cubic term. Fitted to folds of exact waves.
+# raises it: to 4/27 of a spring with a cubic term. Fitted to folds of fully nonlinear waves.
 _FOLD, _FOLD_GROWTH, _DISPERSED, _DISPERSED_POWER = 0.0456, 1.10, 0.584, 0.616
 _CUBIC_SPRING = 4.0 / 27.0
 # Whirl at which a thin layer chokes over (1 - p/p_1)^2.
@@ -42,7 +42,7 @@ def layer_tanh(layer: ArrayLike) -> Array:
 
 
 def detuning_ratio(layer: ArrayLike, detuning: ArrayLike) -> Array:
-    """p/p_1 to small free waves of one crest [theory: potential, eq. 15]."""
+    """p/p_1 to small natural sloshing waves of one crest [theory: potential, eq. 15]."""
     t = layer_tanh(layer)
     return np.asarray(np.sqrt(np.asarray(detuning, dtype=float) * (1.0 + t) / t))
 
@@ -83,7 +83,7 @@ def nonlinearity(layer: ArrayLike, detuning: ArrayLike, whirl: ArrayLike) -> Arr
 def largest_whirl(layer: ArrayLike, detuning: ArrayLike) -> Array:
     """w_0/h_0 beyond which no smooth steady wave follows a whirl that grows [theory: model_error, eq. 32-33].
 
-    Above the resonance, p > p_1, the fold; below the free waves of two crests the choking of a thin layer,
+    Above the resonance, p > p_1, the fold; below the natural waves of two crests the choking of a thin layer,
     which a thick one comes to earlier; between the resonances of one and of two crests inf.
     """
     t, x = np.broadcast_arrays(layer_tanh(layer), np.asarray(detuning, dtype=float))

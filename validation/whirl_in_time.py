@@ -118,7 +118,7 @@ def large_whirl_in_time(
 
 
 def _at_slip(fill: Fill, spin: float, slip: float) -> Fill:
-    """With the viscosity that has at a free wave's slip the laminar friction of the liquid at this slip."""
+    """With the viscosity that has at a natural wave's slip the liquid's laminar friction at this slip."""
     log = math.log(fill.chamber.radius / fill.surface_radius)
     free = float(free_wave_frequencies(1, log, spin)[1])
     viscosity = fill.liquid.viscosity * abs(slip / free)

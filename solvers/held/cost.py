@@ -25,8 +25,8 @@ _HEAPED, _MOST = 80.0, 22.0  # by what a turn takes longer where gravity heaps t
 def settling_turns(spin: Array, growth: Array, strength: Array, numerics: HoldNumerics) -> Array:
     """Turns that motions take to converge, about, shape (2, n) [theory: held, eq. 11].
 
-    With all cells, and with half of them. `growth`: rate of the small whirl that grows most or decays last,
-    1/s, nan where it is not known; `strength`: gravity across the axis over the centrifugal acceleration at
+    With all cells, and with half of them. `growth`: rate of the fastest-growing small whirl, 1/s,
+    nan where it is not known; `strength`: gravity across the axis over the centrifugal acceleration at
     the surface.
     """
     change = np.abs(np.where(np.isnan(growth), math.inf, growth)) * 2.0 * math.pi / spin

@@ -192,7 +192,7 @@ def _march(
 ) -> tuple[Moment, Outcome]:
     """Advance on py-pde until the watch has seen enough, the turns have run out or the steps have failed.
 
-    Exact waves by `solvers.held.exact`.
+    Fully nonlinear waves by `solvers.held.exact`.
     """
     if machine.exact:
         from solvers.held import exact

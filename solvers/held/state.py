@@ -32,7 +32,7 @@ class HeldKind(StrEnum):
 class HoldNumerics:
     """How a state is held."""
 
-    #: finite volumes round each wall, from 8; nodes of the surface of an exact wave, even, from 16
+    #: finite volumes round each wall, from 8; nodes of the surface of a fully nonlinear wave, even, from 16
     cells: int = 128
     dispersion: bool = False  #: add the finite depth's dispersion to the layers
     courant: float = 0.8  #: Courant number of the layers, above 0, at most 0.9
@@ -62,7 +62,7 @@ class Moment:
     area: Array  #: A, m^2, and q, m^4/s, of the layers' cells, shape (l, c)
     momentum: Array
     layers: Flags  #: which chambers hold a layer
-    #: y and phi of exact waves, lengths over R and times in 1/Omega, of which area and momentum are what is
+    #: y and phi of nonlinear waves, lengths over R and times in 1/Omega, of which area and momentum are
     #: seen, shape (l, 2m); none of others
     wave: Array = field(default_factory=lambda: np.zeros((0, 0)))
 
@@ -128,8 +128,8 @@ class HeldMachine:
 
     system: RotorSystem  #: the dry rotor
     fills: tuple[Fill, ...]  #: its chambers with their liquid
-    #: on the walls; the laminar law takes the frequency of the slower free wave; exact waves take a force on
+    #: on the walls; the laminar law at the slower natural wave's frequency; nonlinear waves take a force on
     #: all the liquid that damps that wave as much
     friction: Friction = NO_FRICTION
     gravity: float = 0.0  #: across the axis, m/s^2
-    exact: bool = False  #: the layers are exact waves instead of long ones
+    exact: bool = False  #: the layers are fully nonlinear waves instead of long ones

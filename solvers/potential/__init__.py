@@ -1,4 +1,4 @@
-"""The exact wave of a layer: any height, any depth, no friction [theory: potential].
+"""The fully nonlinear wave of a layer: any height, any depth, no friction [theory: potential].
 
 A conformal map turns the layer into a strip (`strip`); `steady` solves for waves that stand in the frame of
 their whirl, free ones among them, and follows them in any parameter, folds included; `unsteady` has the

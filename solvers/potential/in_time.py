@@ -1,4 +1,4 @@
-"""The exact wave through time: limited steps, nodes as its spectrum needs them, and where it breaks.
+"""The nonlinear wave through time: limited steps, nodes as its spectrum needs them, and where it breaks.
 
 A wave is `resolved`, or carries `short_waves` that its nodes do not resolve, or is `broken`. Its spectrum
 alone never shows that it is broken: short waves fill it while the crest may be falling. Its crest does, where

@@ -1,4 +1,4 @@
-"""The exact wave as a liquid model: steady waves of one whirl, and free waves.
+"""The fully nonlinear wave as a liquid model: steady waves of one whirl, and natural sloshing waves.
 
 In SI units; the solvers below count lengths in radii and times in 1/Omega.
 """
@@ -66,7 +66,7 @@ _EPSILON = 1e-15
 
 @dataclass(frozen=True)
 class PotentialWave(LiquidWave):
-    """An exact wave; nan and empty where none was found."""
+    """A fully nonlinear wave; nan and empty where none was found."""
 
     branch: str = ""  #: "one_crest", or "lee_waves" where shorter waves ride on it
     nodes: int = 0  #: steps from crest to trough that it was solved on; 0 where it has a closed form
@@ -77,7 +77,7 @@ class PotentialWave(LiquidWave):
 
 @dataclass(frozen=True)
 class Potential(WaveModel):
-    """Exact wave of a layer without friction, at any height and depth [theory: potential, eq. 7].
+    """Fully nonlinear wave of a layer without friction, at any height and depth [theory: potential, eq. 7].
 
     Parameters
     ----------
@@ -218,7 +218,7 @@ class Potential(WaveModel):
         )
 
     def free_wave(self, fill: Fill, spin: float, crest: float, crests: int = 1) -> FreeWave:
-        """Free wave of so many crests, `crest` being the depth there over the mean depth, above 1.
+        """Natural wave of so many crests, `crest` being the depth there over the mean depth, above 1.
 
         Its error is the distance from the same one on half as many nodes again.
         """
@@ -429,7 +429,7 @@ class End:
     kind: EndKind  #: what it comes of
     whirl: float  #: largest |w_0|/R of a wave that was found on it
     froude: float  #: square of the largest local Froude number of that wave
-    crests: int  #: of the free wave that the whirl's speed is nearest to, but for that of one crest
+    crests: int  #: of the natural wave that the whirl's speed is nearest to, but for that of one crest
 
 
 def froude(wave: SteadyWave) -> Array:

@@ -1,4 +1,4 @@
-"""Exact waves that stand in the frame of their whirl, by Newton's method with an analytic Jacobian.
+"""Fully nonlinear waves that stand in the frame of their whirl, by Newton's method with an analytic Jacobian.
 
 Lengths over R, times in 1/Omega; `layer` is h_0/R, `crest` the depth there over h_0, `most` the steps from
 crest to trough that nodes may have. Unknown are the surface y at the nodes, Bernoulli's constant, the
@@ -166,7 +166,7 @@ class SteadyWave:
 
 
 def linear_detuning(layer: float, crests: int = 1) -> float:
-    """p^2 of small free waves [theory: potential, eq. 15]."""
+    """p^2 of small natural sloshing waves [theory: potential, eq. 15]."""
     ring = (1.0 - layer) ** (2 * crests)
     share = (1.0 - ring) / (1.0 + ring)
     return share / (crests + share)
@@ -193,7 +193,7 @@ def solve(begin: SteadyWave, wanted: Mapping[str, float], same: bool = False) ->
     if not all(math.isfinite(value) for value in wanted.values()):
         raise InputError("wanted", str(dict(wanted)), "finite numbers")
     m = begin.surface.size
-    # What is given is given at once: from a free wave's own detuning no step leads away.
+    # What is given is given at once: from a natural sloshing wave's own detuning no step leads away.
     given = wanted.get("detuning", begin.detuning), wanted.get("whirl", begin.whirl)
     state = np.concatenate((begin.surface, [0.0, *given]))
     first = float(begin.at.mean @ begin.surface)
@@ -241,7 +241,7 @@ def follow(
 ) -> SteadyWave:
     """The wave that meets two conditions, in steps from another: each that fails is halved.
 
-    For a free wave a step that puts shorter waves on it fails too: it has come to another branch. A whirl
+    For a natural wave a step that puts shorter waves on it fails too: it has come to another branch. A whirl
     brings such waves along in its lee; there a step fails that leaves the tangent. Nodes follow the spectrum,
     up to `most` (0: those of `begin` stay). Where it is not reached, the last wave found, not converged.
     """
@@ -302,7 +302,7 @@ def forced(layer: float, detuning: float, whirl: float, most: int = MOST) -> Ste
 
 
 def free(layer: float, crest: float, crests: int = 1, most: int = MOST) -> SteadyWave:
-    """The free wave with a crest of this depth, followed from small ones."""
+    """The natural sloshing wave with a crest of this depth, followed from small ones."""
     if not crest > 1.0:
         raise InputError("crest", crest, "above 1")
     rest = at_rest(layer, nodes(min(_FIRST, most), crests))

@@ -1,4 +1,4 @@
-"""The exact wave in time: rates of change of its surface, the force that it exerts, what it conserves.
+"""The nonlinear wave in time: rates of change of its surface, the force that it exerts, what it conserves.
 
 A state is y and phi on n even nodes all round the drum, n even, shape (2n,); by Fourier transforms
 [theory: potential, eq. 16-27]. Lengths over R, times in 1/Omega, with the spin Omega that the liquid had when

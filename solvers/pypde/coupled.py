@@ -48,7 +48,7 @@ class RotorLayersPDE(CirclePDE):  # type: ignore[no-untyped-call]
     then the coordinates of the rotor by their names and their rates, uniform fields. At time 0 the drum's
     zero mark lies along the first direction; gravity, m/s^2, acts across the axis, against it. Liquid of a
     full chamber, or where no annular layer exists, is a mass; `layers` says which chambers hold a layer,
-    None: those whose liquid rides with the drum. The laminar law takes the frequency of the slower free wave.
+    None: those whose liquid rides with the drum. The laminar law takes the slower natural wave's frequency.
     """
 
     def __init__(

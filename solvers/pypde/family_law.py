@@ -1,4 +1,4 @@
-"""What one family of waves does to a synchronous whirl: its pull as a law of the deflection alone.
+"""What unidirectional waves do to a synchronous whirl: its pull as a law of the deflection alone.
 
 In a synchronous whirl the wave stands still in the drum. Nothing rubs on the wall then, and every term of the
 equation goes with the spin: over the depth and the wall's radius the wave depends on the deflection and on

@@ -84,7 +84,7 @@ def settle(
 
 def settled_at(friction: Friction) -> float:
     """Relative difference of two means at which a layer has settled."""
-    # Without friction free waves never die: the means carry what little the ramp has stirred.
+    # Without friction natural sloshing waves never die: the means carry what little the ramp has stirred.
     return 10.0 * SETTLED if friction.law is FrictionLaw.NONE else SETTLED
 
 

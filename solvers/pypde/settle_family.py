@@ -20,7 +20,7 @@ from solvers.waves.modes import WaveTerms
 from solvers.waves.newton import SteadyWave
 
 NEWTON = SteadyNewtonSolver.name
-# Relative change of the mean offset: of a wave that has settled; without damping, where free waves stay.
+# Relative change of the mean offset: of a wave that has settled; without damping, where natural waves stay.
 _SETTLED, _STIRRED = 1e-6, 1e-3
 
 

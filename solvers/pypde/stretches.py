@@ -62,7 +62,7 @@ class Stretches:
 
 def gently(whirl: Whirl) -> Whirl:
     """A whirl with a ramp, its own if it has one."""
-    # The slowest free wave turns in some 30/Omega: a ramp of ten of them hardly stirs it.
+    # The slowest natural sloshing wave turns in some 30/Omega: a ramp of ten of them hardly stirs it.
     return whirl if whirl.ramp else replace(whirl, ramp=max(6.0 * whirl.period, 300.0 / whirl.spin))
 
 

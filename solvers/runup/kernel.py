@@ -442,7 +442,7 @@ def _move_layers(machine, state, room, dt):
             force[2 * end], force[2 * end + 1] = x * cosine + y * sine, y * cosine - x * sine
         coefficient, thin = layer.coefficient, layer.thin
         if layer.law == STOKES or layer.law == WALL:
-            # Stokes' friction at the frequency of a free wave goes with the root of the spin.
+            # Stokes' friction at the frequency of a natural sloshing wave goes with the root of the spin.
             root = np.sqrt(0.5 * (spins[0] + spins[1]))
             coefficient, thin = coefficient * root, thin / root
         status, speed = layer_step(

@@ -253,7 +253,7 @@ def run_up(
 
     Gravity acts across the axis, against the first direction; liquid that it holds at the bottom is a pool
     that the walls carry round or, under the rule `riding`, a mass that moves with the axis. The laminar law
-    takes the frequency of the slower free wave. `model` makes the liquid: long waves, or
+    takes the frequency of the slower natural sloshing wave. `model` makes the liquid: long waves, or
     `solvers.runup.linear.couple_linear` at a hundredth of the cost. Layers are kept cell by cell at the
     recorded times next to `snapshots`, s; `follow` keeps the rotor's path; neither changes the run. If the
     run ends early, what was reached.

@@ -64,7 +64,7 @@ LAYER = np.dtype([(name, _KINDS.get(name, np.float64)) for name in LayerProperti
 
 
 def layer_properties(fill: Fill, friction: Friction, dispersion: bool) -> LayerProperties:
-    """Properties of a chamber's layer for the steps; the laminar law at the slower free wave's frequency."""
+    """Properties of a chamber's layer for the steps; the laminar law is at the slower natural wave."""
     chamber, slip = fill.chamber, unit_slip(fill)
     law, coefficient = friction.at(fill.liquid.viscosity, slip, chamber.radius)
     laminar = friction.law.laminar and slip > 0.0
@@ -78,7 +78,7 @@ def layer_properties(fill: Fill, friction: Friction, dispersion: bool) -> LayerP
 
 
 def unit_slip(fill: Fill) -> float:
-    """Frequency of the slower free wave seen from the drum over the spin; 0 without a layer."""
+    """Frequency of the slower natural sloshing wave seen from the drum over the spin; 0 without a layer."""
     log = math.log(fill.chamber.radius / fill.surface_radius) if fill.surface_radius > 0.0 else math.inf
     return abs(float(free_wave_frequencies(1, log, 1.0)[1])) if 0.0 < log < math.inf else 0.0
 

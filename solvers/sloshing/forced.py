@@ -130,7 +130,7 @@ def forced_response(
 ) -> ForcedResponse:
     """Force of the liquid on a whirling drum, a sum over all modes [theory: sloshing, eq. 14-16].
 
-    Whirl speeds in space, rad/s: 0 is gravity across the axis, the spin synchronous; inf at a free wave.
+    Whirl speeds in space, rad/s: 0 is gravity across the axis, the spin synchronous; inf at a natural wave.
     """
     require_positive("spin", spin)
     omega = np.asarray(whirl_speed, dtype=float)

@@ -70,7 +70,7 @@ class SmallWaves(WaveModel):
             raise InputError("cells", self.cells, f"8 to {_MOST_CELLS} for finite elements")
 
     def at_rest(self, fills: Fills, whirls: Whirls) -> LiquidAnswer:
-        """See `WaveModel`; the error is that of the elements, the added mass being known in closed form."""
+        """See `WaveModel`; the error is that of the elements, the added mass being known analytically."""
         added = self.added_mass(fills)
         known = fills.added_mass
         error = np.divide(np.abs(added - known), known, out=np.zeros_like(known), where=known > 0.0)

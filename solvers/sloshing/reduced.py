@@ -124,7 +124,7 @@ class SectionLayer:
 def section_layer(fill: Fill, friction: Friction) -> SectionLayer | None:
     """Layer of a fill under a law of friction; None without liquid or without a free surface.
 
-    A clear ring is known in closed form, baffles and other sections are computed by finite elements.
+    A clear ring is known analytically, baffles and other sections are computed by finite elements.
     """
     if fill.volume == 0.0 or is_full(fill):
         return None

@@ -27,7 +27,7 @@ from solvers.synchronous.pairs import Pairs, pair_machines
 # Found from long-wave layers held at a speed: most have less, the median a third of it.
 _SIZE = 0.15
 _THIN = 1.25
-# Ripple of the amplitude over the square of gravity's share, from held states: 95 in 100 have less.
+# Ripple of the amplitude over the square of gravity's share, from time-domain states: 95 in 100 have less.
 _RIPPLE = 1.0
 
 

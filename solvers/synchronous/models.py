@@ -177,7 +177,7 @@ class Linear(WaveModel):
     }  # fmt: skip
 
     def at_rest(self, fills: Fills, whirls: Whirls) -> LiquidAnswer:
-        """See `WaveModel`; the error is a bound in closed form [theory: model_error, eq. 7]."""
+        """See `WaveModel`; the error is an analytical bound [theory: model_error, eq. 7]."""
         size = whirls.amplitude
         line = fills.added_mass * size
         missing = defect_bound(upright_surfaces(fills, whirls.spin, whirls.axial_gravity), size)
@@ -226,7 +226,7 @@ class Linear(WaveModel):
         )
 
     def free_wave(self, fill: Fill, spin: float, crest: float, crests: int = 1) -> FreeWave:
-        """The free wave of n crests, whose speed does not depend on its height [theory: waves, eq. 7]."""
+        """The natural wave of n crests, whose speed does not depend on its height [theory: waves, eq. 7]."""
         radius, surface = fill.chamber.radius, fill.surface_radius
         if fill.depth >= radius * (1.0 - 1e-9) or surface <= fill.chamber.inner_radius:
             raise InputError("volume", fill.volume, "less than what fills the chamber, for a free surface")

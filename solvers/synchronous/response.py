@@ -48,7 +48,7 @@ def critical_speed(
         slope = pairs.liquid(np.zeros_like(speed), np.arange(speed.size)).slope
         return np.asarray(rotor.stiffness - (rotor.mass + slope) * np.square(speed))
 
-    # The slope of the unbalance never exceeds a full chamber's mass; a little more holds the rounding.
+    # The slope of the unbalance never exceeds the reference mass; a little more holds the rounding.
     heaviest = rotor.mass + float(model.added_mass(Fills.of(wet)).sum())
     ends = np.sqrt(rotor.stiffness / np.array([heaviest, rotor.mass])) * np.array([1.0 - 1e-9, 1.0 + 1e-9])
     root, _ = bracketed_root(stiffness, ends[:1], ends[1:])
@@ -248,8 +248,8 @@ class Response:
     fold_speed: Array
     residual: Array  #: what is left of the balance of forces over the largest of them, shape (n,)
     position: float = 0.0  #: along the axis of the plane whose motion is reported, m
-    #: mean over time of the distance of the axis from where it rests, of motions held in time, m, else nan,
-    #: shape (n,); empty where none was
+    #: mean over time of the distance of the axis from where it rests, of motions integrated in time, m, else
+    #: nan, shape (n,); empty where none was
     over_time: Array = field(default_factory=lambda: np.zeros(0))
 
     @property

@@ -79,10 +79,10 @@ _NO_MEAN = np.zeros(1, dtype=complex)
 class WaveProblem:
     """Steady waves eta(xi), xi = theta - s t, of mean 0 [theory: kdv, eq. 18]."""
 
-    #: omega(n) of free waves of vanishing height, rad/s, odd; takes n = 1, 2, ... as an array
+    #: omega(n) of natural sloshing waves of vanishing height, rad/s, odd; takes n = 1, 2, ... as an array
     frequency: Callable[[Array], Array]
     steepening: float  #: alpha, rad/(s m^2), not 0
-    forcing: float  #: q, m^2/s; 0 for a free wave
+    forcing: float  #: q, m^2/s; 0 for a natural sloshing wave
     decay: float = 0.0  #: gamma, 1/s, 0 or above
     diffusion: float = 0.0  #: nu_b, rad^2/s, 0 or above
 

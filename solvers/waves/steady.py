@@ -87,7 +87,7 @@ def solve(
     arrive from there, the one that grows out of a strongly damped wave as the extra damping is taken away;
     `respond` finds the others. Points, at least 12, are doubled until the spectrum's tail falls below `TAIL`;
     a wave that needs more than `most_points` is not converged. Without forcing it is rest; a guess is refused
-    there, since a free wave is defined up to a shift only.
+    there, since a natural sloshing wave is defined up to a shift only.
     """
     if not math.isfinite(speed):
         raise InputError("speed", speed, "a finite number")

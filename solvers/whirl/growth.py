@@ -34,7 +34,7 @@ Waves = Friction | CheckedModel
 def asynchronous_growth(
     rotor: Rotor, fills: Sequence[Fill], speed: ArrayLike, friction: Waves = NO_FRICTION
 ) -> tuple[Array, Array]:
-    """Growth rate and whirl speed of the whirl that grows most [theory: whirl, eq. 7], shape (n,).
+    """Growth rate and whirl speed of the fastest-growing whirl [theory: whirl, eq. 7], shape (n,).
 
     1/s, unstable above 0, 0 where rounding cannot tell it from 0, nan where modes were not found; rad/s in
     the standing frame, positive with the spin. The laminar law takes each liquid's viscosity, the quadratic

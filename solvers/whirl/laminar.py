@@ -168,7 +168,7 @@ def _groups(system: RotorSystem, layers: Sequence[Placed]) -> list[tuple[list[in
 
 
 def _layer_waves(layer: Layer, speed: Array) -> Complex:
-    """Free waves lambda of a layer with laminar friction, nan for what has no wave, shape (n, 4).
+    """Natural sloshing waves lambda of a layer with laminar friction, nan for what has no wave, shape (n, 4).
 
     Zeros of E in p = sqrt(i s/Omega) with a positive real part [theory: whirl, eq. 13]; floor and lid drag as
     on the slower one.

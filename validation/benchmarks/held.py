@@ -1,4 +1,4 @@
-"""What motions held in time take beside what is foretold: `python -m validation.benchmarks.held`.
+"""What motions integrated in time take beside what is foretold: `python -m validation.benchmarks.held`.
 
 The motions that `held = "auto"` asks for on the shipped scenes, in one process. From them come the numbers of
 `solvers.held.cost`.
@@ -56,7 +56,7 @@ class Cost:
 def cost(name: str, stride: int = 1, cells: int | None = None, liquid: str | None = None) -> Cost:
     """Compute the time-domain states that `auto` would compute on a scene.
 
-    Of every `stride`-th speed; `cells` and `liquid` ("potential" for exact waves) are the scene's if None.
+    Of every `stride`-th speed; `cells` and `liquid` ("potential": nonlinear waves) are the scene's if None.
     """
     scene = example(name)
     given = {"cells": cells, "liquid": liquid}

@@ -1,4 +1,4 @@
-"""This package on the benchmarks' problems: one family of waves, and the layer's long waves under a whirl."""
+"""This package on the benchmarks' problems: unidirectional waves, and long waves under a whirl."""
 
 from __future__ import annotations
 

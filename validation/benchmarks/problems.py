@@ -162,7 +162,7 @@ def settling_time(
 
 @dataclass(frozen=True)
 class TravellingProblem:
-    """A free wave of permanent form that runs for some turns in the frame of long waves."""
+    """A natural sloshing wave of permanent form that runs for some turns in the frame of long waves."""
 
     c: KdvCoefficients  #: the family
     wave: TravellingWave  #: exact

@@ -1,4 +1,4 @@
-"""When the exact wave breaks, how high free waves are at most, and how far long waves go with it until then.
+"""When the nonlinear wave breaks, how high natural waves are at most, how far long waves go with it.
 
 `python -m tests.breaking` computes it again; `kept` reads what it left.
 """
@@ -15,7 +15,7 @@ KEPT = Path(__file__).parent / "results.json"
 
 @dataclass(frozen=True)
 class Ending:
-    """The exact wave under a whirl as fast as the backward free wave, grown over 0.9 whirl periods."""
+    """The nonlinear wave under a whirl as fast as the backward natural wave, grown over 0.9 whirl periods."""
 
     depth: float  #: h_0/R
     whirl: float  #: w_0/h_0
@@ -30,7 +30,7 @@ class Ending:
 
 @dataclass(frozen=True)
 class Highest:
-    """The highest free wave of one crest at a depth."""
+    """The highest natural sloshing wave of one crest at a depth."""
 
     depth: float  #: h_0/R
     #: its depth over h_0, continued to a crest at which the liquid stands still, seen from the wave
@@ -47,10 +47,10 @@ class Beside:
     depth: float  #: h_0/R, w_0/h_0
     whirl: float
     dispersion: bool  #: of the long waves
-    #: of each whirl period that the exact wave finished, how far off the mean force is, relative
+    #: of each whirl period that the fully nonlinear wave finished, how far off the mean force is, relative
     force: tuple[float, ...]
     time: tuple[float, ...]  #: of the crests, whirl periods
-    exact: tuple[float, ...]  #: greatest depth over h_0 then, of the exact wave and of the long one
+    exact: tuple[float, ...]  #: greatest depth over h_0 then, of the fully nonlinear wave and of the long one
     crest: tuple[float, ...]
     #: whirl periods until a front stands in the long wave; None: there is none until then
     front: float | None

@@ -1,4 +1,4 @@
-"""The kept endings of the exact wave, the highest free waves, long waves beside them and a crest, drawn.
+"""The kept endings of the nonlinear wave, the highest natural waves, long waves beside them and a crest.
 
 `python -m validation.breaking.figure --out docs/images`; `python -m tests.breaking` computes them anew.
 """

@@ -1,7 +1,7 @@
-"""The exact wave as the measure of the other models of a layer: their errors, kept as JSON.
+"""The fully nonlinear wave as the measure of the other models of a layer: their errors, kept as JSON.
 
 `python -m tests.exact` measures again; `kept` reads what it left. Depths are over R, whirls over h_0,
-detunings are ratios p/p_1 to that of small free waves.
+detunings are ratios p/p_1 to that of small natural sloshing waves.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ class Cases:
     layer: Array  #: h_0/R, p/p_1, w_0/h_0
     ratio: Array
     whirl: Array
-    exact: Array  #: G of the exact wave; nan where no smooth one was found
+    exact: Array  #: G of the fully nonlinear wave; nan where no smooth one was found
     crest: Array  #: of that wave: depths over h_0, and lee waves over its height
     trough: Array
     ripple: Array
@@ -50,7 +50,7 @@ class Cases:
 
     @property
     def smooth(self) -> Flags:
-        """Whether there is an exact wave to compare with."""
+        """Whether there is a fully nonlinear wave to compare with."""
         return np.isfinite(self.exact)
 
     def error(self, model: str) -> Array:
@@ -64,7 +64,7 @@ class Ends:
 
     layer: Array  #: h_0/R, p/p_1
     ratio: Array
-    whirl: Array  #: largest w_0/h_0 of a smooth exact wave
+    whirl: Array  #: largest w_0/h_0 of a smooth fully nonlinear wave
     fold: Flags  #: there the branch turns back
     choked: Array  #: largest w_0/h_0 of a smooth long wave without dispersion
 

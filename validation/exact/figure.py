@@ -1,4 +1,4 @@
-"""The kept errors of the models beside the exact wave, drawn: maps, and where smooth waves end.
+"""The kept errors of the models beside the fully nonlinear wave, drawn: maps, and where smooth waves end.
 
 `python -m validation.exact.figure --out docs/images`; `python -m tests.exact` measures them anew.
 """

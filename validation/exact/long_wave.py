@@ -2,7 +2,7 @@
 
 Without bore and friction what `LongWave` ends at obeys ordinary equations, solved by Newton's method: the
 error of the model alone, without its cells' [theory: model_error, eq. 24-27]. Lengths over R, times in
-1/Omega, velocities over s; of the whirl speed only p^2 counts, as for the exact wave.
+1/Omega, velocities over s; of the whirl speed only p^2 counts, as for the fully nonlinear wave.
 """
 
 from __future__ import annotations

@@ -185,7 +185,7 @@ def _held(scene: Scene, cells: int) -> Answer:
 
 
 def whirl_growth(scene: Scene) -> Array:
-    """Growth of the small whirl that grows most, or dies last, at the speeds of a scene, 1/s, shape (n,)."""
+    """Growth of the fastest-growing small whirl at the speeds of a scene, 1/s, shape (n,)."""
     from solvers.whirl.growth import asynchronous_growth
 
     return asynchronous_growth(dry_rotor(scene), scene.fills, scene.speed_array(), scene.model.friction)[0]

@@ -47,7 +47,7 @@ def hold_answer(
     """Answer of a machine with time-domain states where they are asked for.
 
     The choice with the wave as model where it was held; answers at the speeds asked for and between them; the
-    held states; the motions by their speeds, rad/s.
+    time-domain states; the motions by their speeds, rad/s.
     """
     rows = np.flatnonzero(began.at)
     between = _between(began)
@@ -129,7 +129,7 @@ def _placed(whole: Response, part: Response, rows: Index) -> Response:
 
 
 def held_machine(machine: Prepared) -> HeldMachine:
-    """The machine as held states take it."""
+    """The machine as time-domain states take it."""
     fills = tuple(machine.scene.fills)
     exact = machine.scene.model.liquid == "potential"
     return HeldMachine(machine.system, fills, machine.friction, machine.across_gravity, exact)
@@ -167,7 +167,7 @@ def hold_speeds(
 def held_response(
     machine: Prepared, steady: Response, found: HeldBranches, position: float | None = None
 ) -> Response:
-    """The steady response with held states in the place of its own answers, all speeds.
+    """The steady response with time-domain states in the place of its own answers, all speeds.
 
     Angles, the rotor without liquid and the plane reported are those of the steady response.
     """

@@ -33,7 +33,7 @@ def cores() -> int:
 
 @dataclass(frozen=True)
 class Began:
-    """The steady answer with which held states begin; n speeds."""
+    """The steady answer with which time-domain states begin; n speeds."""
 
     answer: Response  #: at the speeds asked for
     refined: Response  #: between them

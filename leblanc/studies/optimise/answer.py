@@ -335,7 +335,7 @@ class OptimumAnswer(Best):
     vibration: Annotated[float, Q("m", "vibration", "zero to peak", data=False)]
     vibration_baseline: Annotated[float, Q("m", "vibration without liquid", "zero to peak", data=False)]
     mass: Annotated[float, Q("kg", "mass of the liquid", data=False)]
-    growth: float  #: of the small whirl that grows most at the operating speeds, 1/s
+    growth: float  #: of the fastest-growing small whirl at the operating speeds, 1/s
     #: for each chamber, at the deflection that the answer itself has; empty where it has none
     closed_form: Annotated[tuple[WettingVolumes, ...], Q(text="volumes that wet the walls, analytical")]
     #: of such volumes those with the least liquid are the answer

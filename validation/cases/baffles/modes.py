@@ -33,7 +33,7 @@ class BaffleRow:
     along: float
     damping_against: float  #: decay rates in water, 1/s
     damping_along: float
-    synchronous: float  #: force ratio of a synchronous whirl
+    synchronous: float  #: force coefficient of a synchronous whirl
     error: float  #: largest relative error of the frequencies, estimated
 
 

@@ -1,4 +1,4 @@
-"""Wrong formulas of liquids and balancers, evaluated as printed and as derived [theory: errata]."""
+"""Wrong formulas of liquids and balancers, evaluated as published and as derived [theory: errata]."""
 
 from __future__ import annotations
 

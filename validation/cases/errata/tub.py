@@ -93,7 +93,7 @@ class _Term:
 
     row: int  #: of the coordinate whose equation it is, and of the one that it multiplies, from 0
     column: int
-    printed: str  #: coefficient as printed, of one spring or damper
+    printed: str  #: coefficient as published, of one spring or damper
     damping: bool = False  #: it multiplies the rate, with the dampers' h in the place of the springs' c
     rate: bool = False  #: printed with a rate where the coordinate itself belongs
 

@@ -1,1 +1,1 @@
-"""Liquid alone: layers under a whirl, the exact wave, the volumes that are best."""
+"""Liquid alone: layers under a whirl, the fully nonlinear wave, the volumes that are best."""

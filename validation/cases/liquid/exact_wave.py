@@ -1,4 +1,4 @@
-"""The exact wave against two other codes of its equations, its closed forms and computed two-phase flow."""
+"""The nonlinear wave against two other codes of its equations, analysis and computed two-phase flow."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ _EARLIER = 0.02
 
 
 def cases() -> list[Case]:
-    """Steady waves, free waves, ends of branches, twins and circles, computed flow, breaking."""
+    """Steady waves, natural sloshing waves, ends of branches, twins and circles, computed flow, breaking."""
     table = data("exact_wave.json")
     of_table = (_forced, _models, _free, _ends_of_free, _folds)
     found = [case for part in of_table for case in part(table)]
@@ -138,7 +138,7 @@ def _forced(table: dict[str, Any]) -> Iterator[Case]:
 
 
 def _models(table: dict[str, Any]) -> Iterator[Case]:
-    """The models that the exact wave measures, where it is smooth and next to the resonance."""
+    """The models that the fully nonlinear wave measures, where it is smooth and next to the resonance."""
     for row in table["linear"]:
         found = float(waves.force_ratio(1.0 / (1.0 - row["depth"]) ** 2, row["whirl_speed"]))
         yield _digits(f"linear-{_named(row)}", "force ratio, small waves", row["force"], found)
@@ -233,7 +233,7 @@ def _twins() -> Iterator[Case]:
 
 
 def _after(wave: SteadyWave, speed: float) -> complex:
-    """Force ratio, by the pressure on the wall, of a wave that a whirl has held for a while."""
+    """Force coefficient, by the pressure on the wall, of a wave that a whirl has held for a while."""
     slip, size = speed - 1.0, abs(wave.whirl) * speed**2
     begin, steps = started(wave, slip, 256), Steps(256, 256)
     end = advance(begin, _HELD, lambda time: size * cmath.exp(1j * slip * time), steps).surface
@@ -351,7 +351,7 @@ _RATIOS = np.concatenate(
     )
 )
 _HIGH, _LEAST = 4.5, 1e-6  # of the force that is drawn, and of the differences
-# Depths of free waves, and the last crest of the one whose highest is not known.
+# Depths of natural sloshing waves, and the last crest of the one whose highest is not known.
 _DEPTHS, _THINNEST = (0.05, 0.1, 0.2, 0.3, 0.5), 1.70
 _COLOURS = ("0.45", "#0072B2", "#E69F00", "#D55E00", "#009E73")
 NEAR = 0.99  # of the highest crest, how far free waves are followed
@@ -362,7 +362,7 @@ _NEAR_CREST, _EVERY = 0.12, 8  # what is drawn of its crest, rad, and of its nod
 
 
 def force_figure() -> Figure:
-    """Force ratio of a whirl over its speed: exact, linear and by long waves."""
+    """Force coefficient of a whirl over its speed: exact, linear and by long waves."""
     exact, plain, dispersive = _forces()
     curves = (
         ("exact", exact, {"color": "black", "linewidth": 1.6}),
@@ -426,7 +426,7 @@ def _forces() -> tuple[Array, Array, Array]:
 
 
 def last_crests() -> dict[float, float]:
-    """Crest over h_0, by h_0/R, of the last free wave that is drawn."""
+    """Crest over h_0, by h_0/R, of the last natural sloshing wave that is drawn."""
     highest = {round(row.depth, 6): row.crest for row in kept().highest}
     return {depth: NEAR * highest[depth] if depth in highest else _THINNEST for depth in _DEPTHS}
 

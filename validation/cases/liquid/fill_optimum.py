@@ -1,7 +1,7 @@
 """The searched fill volumes against closed forms [theory: optimum, eq. 1; theory: statics, eq. 8].
 
 At the working speed nothing is gained beyond the volume that wets the whole wall at the deflection that the
-machine has with a full chamber's mass added to it: both follow without a search.
+machine has with the reference mass added to it: both follow without a search.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ def cases() -> list[Case]:
 
 
 def closed_forms(scene: Scene) -> tuple[float, float]:
-    """Amplitude of a planar rotor with a full chamber's mass added, m, and volume that it takes, m^3.
+    """Amplitude of a planar rotor with the reference mass added, m, and volume that it takes, m^3.
 
     Of one chamber, at the last of the scene's speeds.
     """

@@ -1,8 +1,8 @@
 """The layer under a whirl against computed two-phase flow (interFoam, volume of fluid) and exact theory.
 
 The reference solves the full plane equations with a gas of density 1 inside the layer; its own accuracy is in
-the data file. Case C runs at the retrograde free wave, where a bore goes round. Of a rotor with its layer two
-codes of the same equations stand side by side: py-pde's Runge-Kutta and the compiled steps of run-ups.
+the data file. Case C runs at the retrograde natural wave, where a bore goes round. Of a rotor with its layer
+two codes of the same equations stand side by side: py-pde's Runge-Kutta and the compiled steps of run-ups.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ def plane_layer(run: dict[str, Any]) -> Fill:
 
 
 def _steady(run: dict[str, Any]) -> Case:
-    """Force ratio of a smooth layer; the wall of these runs is frictionless."""
+    """Force coefficient of a smooth layer; the wall of these runs is frictionless."""
     fill = plane_layer(run)
     whirl = Whirl(run["speed"], run["whirl_speed"], run["whirl_amplitude"])
     reference = complex(*run["force_ratio"])
@@ -191,7 +191,7 @@ _SURE, _UNSURE, _UNTIL = 0.03, 0.15, 1.33
 
 
 def force_figure(cells: int = 64) -> Figure:
-    """Force ratio over whirl ratio where the layer is smooth."""
+    """Force coefficient over whirl ratio where the layer is smooth."""
     runs = [run for run in data("openfoam_layer.json")["cases"] if "time" not in run]
     fill = plane_layer(runs[0])
     kappa = (fill.chamber.radius / fill.surface_radius) ** 2
@@ -204,7 +204,7 @@ def force_figure(cells: int = 64) -> Figure:
         "fluid, two meshes at 1 and 1.3; without friction on the wall."
     )
     with page([2.9], text) as (figure, [[axes]]):
-        # The two free waves, where the linear force has no bound, cut the line.
+        # The two natural sloshing waves, where the linear force has no bound, cut the line.
         line = np.where(np.abs(exact) < 8.0, exact, np.nan)
         axes.plot(ratio, line, color="#0072B2", label="exact linear theory")
         for run in runs:
@@ -221,7 +221,7 @@ def force_figure(cells: int = 64) -> Figure:
 
 
 def bore_figure() -> Figure:
-    """Force, crests and mean rotation of the bore that a whirl at the free wave's speed drives."""
+    """Force, crests and mean rotation of the bore that a whirl at the natural wave's speed drives."""
     text = (
         "A layer of a tenth of the wall's radius of 150 mm, spin 40 rad/s, under a whirl at its "
         "retrograde free wave, whose amplitude rises to a twentieth of the depth in 0.6 s. Means over "

@@ -1,4 +1,4 @@
-"""Optimal volume: exact, by finite elements, as printed; and what the source says of it [DR18, eq. 18-19]."""
+"""Optimal volume: exact, by finite elements, as published; what the source says of it [DR18, eq. 18-19]."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ _MARKS = "os^"
 
 
 def volume_figure() -> Figure:
-    """Optimal volume over deflection: exact, by finite elements, as printed, as corrected."""
+    """Optimal volume over deflection: exact, by finite elements, as published, as corrected."""
     fine, few = np.geomspace(0.3e-3, 30e-3, 61), (1e-3, 3e-3, 10e-3)
     text = (
         "Volume whose paraboloid just touches the near wall at the floor. Chamber of 200 mm radius and "

@@ -22,7 +22,7 @@ _RPM = 2.0 * math.pi / 60.0
 
 
 def cases() -> list[Case]:
-    """Equation 24 at every speed of the solved response, equation 25 as printed, equation 26."""
+    """Equation 24 at every speed of the solved response, equation 25 as published, equation 26."""
     rotor, fills = horizontal_rotor(0.1, 1000.0 * _RPM), horizontal_rig()
     speed = np.linspace(100.0, 2000.0, 201) * _RPM
     answer = response(rotor, fills, speed, gravity=0.0)
@@ -38,7 +38,7 @@ def cases() -> list[Case]:
     residual = np.abs(np.asarray(balance_residual(angle, lag, ratio))) / np.maximum(1.0, ratio)
     left = np.asarray(unbalance_left(angle, ratio))
     total = np.abs(rotor.unbalance + liquid * np.exp(1j * answer.liquid_angle)) / rotor.unbalance
-    # Angle of eq. 25 as printed at 900 rpm, where the solved response has another.
+    # Angle of eq. 25 as published at 900 rpm, where the solved response has another.
     k = int(np.argmin(np.abs(speed - 900.0 * _RPM)))
     computed, printed = math.degrees(angle[k]), None
     with suppress(InputError):
