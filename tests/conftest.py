@@ -23,6 +23,7 @@ from hypothesis import HealthCheck, Phase, settings  # noqa: E402
 from pytest_rerunfailures import StatusDB  # noqa: E402
 
 from tests.mutants import CAUGHT, Mutant, seeded  # noqa: E402
+from tests.oracles.browser import tab as tab  # noqa: E402
 
 np.seterr(divide="raise", over="raise", invalid="raise")
 

@@ -14,7 +14,6 @@ import shutil
 import subprocess
 import sys
 import tomllib
-from collections.abc import Iterator
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -22,7 +21,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tests.oracles.browser import Browser, browser, found
+from tests.oracles.browser import Browser, found
 
 ROOT = Path(__file__).parent.parent
 DOCS = ROOT / "docs"
@@ -429,15 +428,6 @@ class TestDocstrings:
         assert found[0]["source"] == "as [{cite:label}`DR18`, eq. 8] says\nand *more*"
         assert found[1] == cells[1]
         assert found[2]["metadata"] == {"mystnb": {"image": {"alt": "a"}}}
-
-
-@pytest.fixture(scope="module")
-def tab() -> Iterator[Browser]:
-    chromium = found()
-    if chromium is None:
-        pytest.skip("no Chromium on the path")
-    with browser(chromium) as tab:
-        yield tab
 
 
 def _notebook() -> Any:

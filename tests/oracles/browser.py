@@ -17,6 +17,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
+import pytest
+
 NAMES = ("chromium", "chromium-browser", "google-chrome", "chrome")
 FLAGS = (
     "--headless",
@@ -176,6 +178,16 @@ def browser(path: str) -> Iterator[Browser]:
             except subprocess.TimeoutExpired:
                 process.kill()
                 process.wait()
+
+
+@pytest.fixture(scope="session")
+def tab() -> Iterator[Browser]:
+    """One tab for all tests, empty between them."""
+    path = found()
+    if path is None:
+        pytest.skip("no Chromium found; Debian: apt install chromium")
+    with browser(path) as one:
+        yield one
 
 
 def _tab(one: Browser) -> Browser:

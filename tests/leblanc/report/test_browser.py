@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -13,20 +12,12 @@ from leblanc.core.disk import drawing, write
 from leblanc.core.page import write_page
 from leblanc.scene.scene import load_scene
 from leblanc.studies.run.study import run_scene
-from tests.oracles.browser import Browser, browser, found
+from tests.oracles.browser import Browser, found
 from tests.oracles.pages import about_record
 from tests.oracles.records import awkward_texts, many_chambers, nothing_found
 
 ROOT = Path(__file__).parents[3]
-CHROMIUM = found()
-pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="no Chromium on the path")
-
-
-@pytest.fixture(scope="module")
-def tab() -> Iterator[Browser]:
-    assert CHROMIUM is not None
-    with browser(CHROMIUM) as one:
-        yield one
+pytestmark = pytest.mark.skipif(found() is None, reason="no Chromium on the path")
 
 
 @pytest.fixture(scope="module")

@@ -14,7 +14,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from http.client import HTTPConnection
 from pathlib import Path
 from typing import Any
@@ -27,7 +27,7 @@ from leblanc import cli
 from leblanc.cli import main
 from leblanc.view.picture import prepare_off_screen
 from meshes.errors import InputError
-from tests.oracles.browser import Browser, browser, found
+from tests.oracles.browser import Browser
 
 ROOT = Path(cli.__file__).parents[2]
 RUNUP = str(ROOT / "examples" / "runup.toml")
@@ -63,6 +63,27 @@ def served(*options: str) -> Iterator[tuple[str, subprocess.Popen[str]]]:
         process.communicate()
 
 
+Page = Callable[[], tuple[str, subprocess.Popen[str]]]
+
+
+@pytest.fixture(scope="module")
+def page() -> Iterator[Page]:
+    """The page of a process that serves, the same one as long as it lives."""
+    try:
+        prepare_off_screen()
+    except InputError as error:
+        pytest.skip(str(error))
+    up: list[tuple[str, subprocess.Popen[str]]] = []
+    with ExitStack() as stack:
+
+        def served_by() -> tuple[str, subprocess.Popen[str]]:
+            if not up or up[-1][1].poll() is not None:
+                up.append(stack.enter_context(served("--speed", "90 rad/s")))
+            return up[-1]
+
+        yield served_by
+
+
 def wait_for(what: Callable[[], Any], words: str) -> Any:
     """The first true value, asked for again and again until patience ends."""
     until = time.monotonic() + PATIENCE
@@ -70,6 +91,7 @@ def wait_for(what: Callable[[], Any], words: str) -> Any:
         value = what()
         if value:
             return value
+        time.sleep(0.1)
     raise AssertionError(f"never: {words}")
 
 
@@ -110,75 +132,64 @@ def is_still(tab: Browser) -> np.ndarray | None:
     return again if np.array_equal(first, again) else None
 
 
-def test_the_slider_moves_the_liquid() -> None:
-    path = found()
-    if path is None:
-        pytest.skip("no Chromium found; Debian: apt install chromium")
-    try:
-        prepare_off_screen()
-    except InputError as error:
-        pytest.skip(str(error))
-    with served("--speed", "90 rad/s") as (address, _), browser(path) as tab:
-        tab.open(address)
-        said = "(document.querySelector('#value') || {}).textContent || ''"
-        wait_for(lambda: "(90 rad/s)" in tab.value(said), "the speed asked for is shown")
-        shown = wait_for(lambda: np.ptp(machine(seen(tab))) > 100, "a picture")
-        assert shown
-        before = wait_for(lambda: is_still(tab) is not None and [seen(tab)], "a picture at rest")[0]
-        # The machine is there, blue liquid with it, on white.
-        body = machine(before)
-        assert 0.05 < np.mean(np.any(body < 240, axis=2)) < 0.95
-        assert np.mean(body[..., 2] > body[..., 0] + 40) > 0.01
+def test_the_slider_moves_the_liquid(page: Page, tab: Browser) -> None:
+    address, _ = page()
+    tab.open(address)
+    said = "(document.querySelector('#value') || {}).textContent || ''"
+    wait_for(lambda: "(90 rad/s)" in tab.value(said), "the speed asked for is shown")
+    shown = wait_for(lambda: np.ptp(machine(seen(tab))) > 100, "a picture")
+    assert shown
+    before = wait_for(lambda: is_still(tab) is not None and [seen(tab)], "a picture at rest")[0]
+    # The machine is there, blue liquid with it, on white.
+    body = machine(before)
+    assert 0.05 < np.mean(np.any(body < 240, axis=2)) < 0.95
+    assert np.mean(body[..., 2] > body[..., 0] + 40) > 0.01
 
-        move(tab, "#speed", "e.value = 76")  # 24 rad/s: at resonance, the wall dry in part
-        wait_for(lambda: "(24 rad/s)" in tab.value(said), "the speed chosen is shown")
-        words = tab.value("document.querySelector('#words').textContent")
-        assert "dry in part" in words
-        assert "mm at" in words
+    move(tab, "#speed", "e.value = 76")  # 24 rad/s: at resonance, the wall dry in part
+    wait_for(lambda: "(24 rad/s)" in tab.value(said), "the speed chosen is shown")
+    words = tab.value("document.querySelector('#words').textContent")
+    assert "dry in part" in words
+    assert "mm at" in words
 
-        def changed() -> bool:
-            now = machine(seen(tab))
-            return now.shape == body.shape and bool(np.mean(np.abs(now - body).max(axis=2) > 60) > 0.02)
+    def changed() -> bool:
+        now = machine(seen(tab))
+        return now.shape == body.shape and bool(np.mean(np.abs(now - body).max(axis=2) > 60) > 0.02)
 
-        wait_for(changed, "the slider moves the liquid")
+    wait_for(changed, "the slider moves the liquid")
 
-        # Buttons turn the machine, the box changes the factor.
-        oblique = machine(seen(tab))
-        tab.value("document.querySelectorAll('button.view')[1].click()")
-        wait_for(
-            lambda: np.mean(np.abs(machine(seen(tab)) - oblique).max(axis=2) > 60) > 0.05, "another view"
-        )
+    # Buttons turn the machine, the box changes the factor.
+    oblique = machine(seen(tab))
+    tab.value("document.querySelectorAll('button.view')[1].click()")
+    wait_for(lambda: np.mean(np.abs(machine(seen(tab)) - oblique).max(axis=2) > 60) > 0.05, "another view")
 
-        # Nothing is asked for elsewhere, and nothing goes wrong on the page.
-        own = (address.partition("?")[0], "blob:", "data:", "about:")
-        assert all(one.startswith(own) for one in tab.requests()), tab.requests()
-        assert not [one for one in tab.complaints() if "exception" in one.lower()]
+    # Nothing is asked for elsewhere, and nothing goes wrong on the page.
+    own = (address.partition("?")[0], "blob:", "data:", "about:")
+    assert all(one.startswith(own) for one in tab.requests()), tab.requests()
+    assert not [one for one in tab.complaints() if "exception" in one.lower()]
+    tab.open("about:blank")  # or it goes on drawing
 
 
-def test_a_page_without_a_server(tmp_path: Path) -> None:
+def test_a_page_without_a_server(tmp_path: Path, tab: Browser) -> None:
     pytest.importorskip("trame_pyvista")
-    path = found()
-    if path is None:
-        pytest.skip("no Chromium found; Debian: apt install chromium")
     try:
         prepare_off_screen()
     except InputError as error:
         pytest.skip(str(error))
-    page, heard = tmp_path / "page.html", [signal.getsignal(one) for one in (signal.SIGINT, signal.SIGTERM)]
-    assert main(["view", RUNUP, "--speed", "24 rad/s", "--screenshot", str(page)]) == 0
+    file, heard = tmp_path / "page.html", [signal.getsignal(one) for one in (signal.SIGINT, signal.SIGTERM)]
+    assert main(["view", RUNUP, "--speed", "24 rad/s", "--screenshot", str(file)]) == 0
     assert [signal.getsignal(one) for one in (signal.SIGINT, signal.SIGTERM)] == heard
     assert signal.set_wakeup_fd(-1) == -1  # of nobody who is gone
-    with browser(path) as tab:
-        tab.open(page.as_uri())
+    tab.open(file.as_uri())
 
-        def drawn() -> bool:
-            box = "[0, 0, innerWidth, innerHeight]"
-            body = machine(seen(tab, box))
-            return bool(np.mean(body[..., 2] > body[..., 0] + 40) > 0.01)
+    def drawn() -> bool:
+        box = "[0, 0, innerWidth, innerHeight]"
+        body = machine(seen(tab, box))
+        return bool(np.mean(body[..., 2] > body[..., 0] + 40) > 0.01)
 
-        wait_for(drawn, "blue liquid")
-        assert "dry in part" in tab.value("document.querySelector('#words').textContent")
-        assert all(one.startswith(("file:", "blob:")) for one in tab.requests()), tab.requests()
+    wait_for(drawn, "blue liquid")
+    assert "dry in part" in tab.value("document.querySelector('#words').textContent")
+    assert all(one.startswith(("file:", "blob:")) for one in tab.requests()), tab.requests()
+    tab.open("about:blank")
 
 
 def status(address: str, **headers: str) -> tuple[int, dict[str, str]]:
@@ -193,52 +204,35 @@ def status(address: str, **headers: str) -> tuple[int, dict[str, str]]:
         connection.close()
 
 
-def test_who_has_no_token_sees_nothing() -> None:
-    try:
-        prepare_off_screen()
-    except InputError as error:
-        pytest.skip(str(error))
+def test_who_has_no_token_sees_nothing(page: Page) -> None:
     upgrade = {
         "Connection": "Upgrade",
         "Upgrade": "websocket",
         "Sec-WebSocket-Version": "13",
         "Sec-WebSocket-Key": base64.b64encode(bytes(16)).decode(),
     }
-    with served() as (address, _):
-        page, _, token = address.partition("?token=")
-        socket = f"{page}ws"
-        assert len(token) >= 32
-        for asked in (page, f"{page}index.html", socket, f"{page}?token=", f"{page}?token={token[:-1]}"):
-            assert status(asked)[0] == 403, asked
-        assert status(socket, **upgrade)[0] == 403
+    address, _ = page()
+    place, _, token = address.partition("?token=")
+    socket = f"{place}ws"
+    assert len(token) >= 32
+    for asked in (place, f"{place}index.html", socket, f"{place}?token=", f"{place}?token={token[:-1]}"):
+        assert status(asked)[0] == 403, asked
+    assert status(socket, **upgrade)[0] == 403
 
-        code, headers = status(address)
-        assert (code, headers["Location"]) == (302, "/index.html")
-        assert {"HttpOnly", "SameSite=Lax"} <= set(headers["Set-Cookie"].split("; "))
-        cookie = headers["Set-Cookie"].partition(";")[0]
-        own = page.rstrip("/")
-        assert status(f"{page}index.html", Cookie=cookie)[0] == 200
-        assert status(socket, Cookie=cookie, Origin=own, **upgrade)[0] == 101
+    code, headers = status(address)
+    assert (code, headers["Location"]) == (302, "/index.html")
+    assert {"HttpOnly", "SameSite=Lax"} <= set(headers["Set-Cookie"].split("; "))
+    cookie = headers["Set-Cookie"].partition(";")[0]
+    own = place.rstrip("/")
+    assert status(f"{place}index.html", Cookie=cookie)[0] == 200
+    assert status(socket, Cookie=cookie, Origin=own, **upgrade)[0] == 101
 
-        # With the token, but from another page, or by a name that came to mean this machine.
-        assert status(socket, Cookie=cookie, Origin="http://evil.example", **upgrade)[0] == 403
-        assert status(socket, Cookie=cookie, Origin="null", **upgrade)[0] == 403
-        port = urlsplit(page).port
-        for host in (f"evil.example:{port}", f"localhost.evil.example:{port}", "[", ""):
-            assert status(f"{page}index.html", Cookie=cookie, Host=host)[0] in (400, 403), host
-
-
-def test_ctrl_c_ends_the_page_quietly() -> None:
-    try:
-        prepare_off_screen()
-    except InputError as error:
-        pytest.skip(str(error))
-    with served() as (_, process):
-        process.send_signal(signal.SIGINT)
-        _, said = process.communicate(timeout=PATIENCE)
-        assert process.returncode == 130, said
-        assert "Traceback" not in said
-        assert said.splitlines()[-1] == "leblanc: interrupted"
+    # With the token, but from another page, or by a name that came to mean this machine.
+    assert status(socket, Cookie=cookie, Origin="http://evil.example", **upgrade)[0] == 403
+    assert status(socket, Cookie=cookie, Origin="null", **upgrade)[0] == 403
+    port = urlsplit(place).port
+    for host in (f"evil.example:{port}", f"localhost.evil.example:{port}", "[", ""):
+        assert status(f"{place}index.html", Cookie=cookie, Host=host)[0] in (400, 403), host
 
 
 def test_a_port_that_is_taken(capsys: pytest.CaptureFixture[str]) -> None:
@@ -256,3 +250,12 @@ def test_a_port_that_is_taken(capsys: pytest.CaptureFixture[str]) -> None:
     last = capsys.readouterr().err.splitlines()[-1]
     assert "Traceback" not in last
     assert port in last
+
+
+def test_ctrl_c_ends_the_page_quietly(page: Page) -> None:
+    _, process = page()
+    process.send_signal(signal.SIGINT)
+    _, said = process.communicate(timeout=PATIENCE)
+    assert process.returncode == 130, said
+    assert "Traceback" not in said
+    assert said.splitlines()[-1] == "leblanc: interrupted"
