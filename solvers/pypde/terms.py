@@ -11,7 +11,7 @@ from __future__ import annotations
 import cmath
 import math
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from types import SimpleNamespace
 from typing import NamedTuple
 
@@ -49,16 +49,19 @@ class LongWaveTerms:
         if not math.isfinite(self.spin_rate):
             raise InputError("spin_rate", self.spin_rate, "a finite number")
 
+    @cached_property
+    def _frequency(self) -> float:
+        return drag_frequency(self.fill, self.whirl)
+
     def drag(self) -> tuple[int, float]:
         """Law and coefficient of the friction as `fluid.friction.laws.damping_rate` takes them."""
-        frequency = drag_frequency(self.fill, self.whirl)
-        return self.friction.at(self.fill.liquid.viscosity, frequency, self.fill.chamber.radius)
+        return self.friction.at(self.fill.liquid.viscosity, self._frequency, self.fill.chamber.radius)
 
     def wall_drag(self) -> WallDrag | None:
         """The law of the wall at the spin at time 0, rates in 1/s; None under another law."""
         if self.friction.law is not FrictionLaw.WALL:
             return None
-        return _wall_drag(self.friction, self.fill, drag_frequency(self.fill, self.whirl), self.whirl.spin)
+        return _wall_drag(self.friction, self.fill, self._frequency, self.whirl.spin)
 
     def wall(self) -> Wall:
         """What the compiled steps know of the wall, rates in 1/s."""
