@@ -96,6 +96,11 @@ class LinearCoupled(CoupledRotor):
         """Always 0: the layer keeps its mass by construction."""
         return 0.0
 
+    @property
+    def velocity(self) -> Array:
+        """Rates of change of the rotor's coordinates, shape (n,)."""
+        return np.asarray(self.machine.rate[: len(self.system.coordinates)])
+
     def energy(self) -> float:
         """Energy of rotor and layers, J [theory: coupling, eq. 12]."""
         m, n = self.machine, len(self.system.coordinates)

@@ -112,6 +112,11 @@ class Coupled(CoupledRotor):
             self.kept.append(trace[: int(pace.kept)].copy())
             pace.kept = 0.0
 
+    @property
+    def velocity(self) -> Array:
+        """Rates of change of the rotor's coordinates, shape (n,)."""
+        return np.asarray(self.state.rate)
+
     def energy(self) -> float:
         """Kinetic and elastic energy of rotor and liquid, J [theory: coupling, eq. 9]."""
         x, v = self.state.place, self.state.rate

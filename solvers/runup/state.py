@@ -411,6 +411,11 @@ class CoupledRotor(ABC):
         """Set the unbalance from here on, kg m and kg m^2, shape (n,)."""
         self.machine.unbalance[:] = unbalance
 
+    @property
+    @abstractmethod
+    def velocity(self) -> Array:
+        """Rates of change of the rotor's coordinates, shape (n,)."""
+
     @abstractmethod
     def energy(self) -> float:
         """Of rotor and liquid, J."""
@@ -418,11 +423,10 @@ class CoupledRotor(ABC):
     def lighten(self, mass: Array, inertia: float) -> float:
         """See `solvers.runup.machine.RunupMachine.lighten`."""
         gone = np.zeros_like(self.system.mass) if self.lost_mass is None else self.lost_mass
-        before = self.energy()
         self.machine.matrices[0] -= mass - gone
         self.shaft["inertia"] -= inertia - self.lost_inertia
         self.lost_mass, self.lost_inertia = mass, inertia
-        return self.energy() - before
+        return -0.5 * float(self.velocity @ (mass - gone) @ self.velocity)
 
     def watch(self) -> None:
         """From here on look for the largest amplitude anew."""

@@ -23,7 +23,13 @@ def blocked_inertia(section: LiquidSection) -> float:
     unknown[section.cells] = True
     unknown[section.surface] = False
     own = np.flatnonzero(unknown)
-    potential = splu(stiffness(section)[own][:, own].tocsc()).solve(push[own])
+    factors = splu(
+        stiffness(section)[own][:, own].tocsc(),
+        permc_spec="MMD_AT_PLUS_A",
+        diag_pivot_thresh=0.0,
+        options={"SymmetricMode": True},
+    )
+    potential = factors.solve(push[own])
     return float(push[own] @ potential)
 
 

@@ -28,8 +28,8 @@ def test_closed_baffles() -> None:
 
     The layer's curvature changes that by some h/R: 2 % and 1 %.
     """
-    for depth in (0.02, 0.01):
-        inertia = blocked_inertia(ring(1.0, 1.0 - depth, 1500, 6, baffles=Baffles(4)))
+    for depth, around in ((0.02, 800), (0.01, 1500)):
+        inertia = blocked_inertia(ring(1.0, 1.0 - depth, around, 4, baffles=Baffles(4)))
         assert inertia / (4 * 2 * 14 * ZETA_3 / math.pi**3 * depth**2) == pytest.approx(1.0, abs=depth)
 
 
@@ -37,10 +37,10 @@ def test_closed_baffles() -> None:
 def test_low_baffles() -> None:
     """A low plate on the wall takes half of a flat plate's added mass along, pi b^2/2; a wall nothing."""
     radius, height = 1.0, 0.01
-    inertia = blocked_inertia(ring(radius, 0.8, 300, 12, baffles=Baffles(3, radius - height)))
+    inertia = blocked_inertia(ring(radius, 0.8, 120, 6, baffles=Baffles(3, radius - height)))
     # The arm of the plate's middle, and the surface twenty heights away.
     assert inertia == pytest.approx(3 * 0.5 * math.pi * height**2, rel=0.02)
-    assert abs(blocked_inertia(ring(radius, 0.8, 300, 12))) < 1e-9
+    assert abs(blocked_inertia(ring(radius, 0.8, 120, 6))) < 1e-9
 
 
 @kills("solvers.sloshing.blocked:blocked_share", "0.5 * np.pi", "np.pi")
@@ -53,10 +53,11 @@ def test_share_of_the_layer() -> None:
     section = ring(0.24, 0.24 - depth, 192, 12, baffles=walls.baffles)
     weight = 1000.0 * 0.06
     whole = 0.5 * fill.mass * (0.24**2 + fill.surface_radius**2)
-    assert blocked_share(fill) == pytest.approx(weight * blocked_inertia(section) / whole, rel=1e-6)
+    share = blocked_share(fill)
+    assert share == pytest.approx(weight * blocked_inertia(section) / whole, rel=1e-6)
     # The free surface is 1.3 heights of a plate above it.
     deep = 8 * 0.5 * math.pi * 0.006**2 * 0.237**2 * weight / whole
-    assert 0.9 * deep < blocked_share(fill) < deep
+    assert 0.9 * deep < share < deep
 
 
 @pytest.mark.parametrize("share", [0.2, 0.56, 0.8])
