@@ -23,7 +23,7 @@ from scipy.spatial import cKDTree
 from meshes.arrays import Array, Indices
 from meshes.errors import InputError, require_positive
 from meshes.liquid_section import LiquidSection, liquid_section
-from meshes.quality import edge_polynomials
+from meshes.quality import edge_polynomials, triangle_areas
 from meshes.refine.bisection import edge_numbers, quadratic_triangles
 from meshes.refine.circle_cut import Circle, cut_along
 from meshes.section import Section, section_area
@@ -211,20 +211,35 @@ def area_outside(section: Section, radius: float, axis: tuple[float, float] = (0
     """Area of the part of a section outside a circle, m^2, exact on the mesh to about 1e-9."""
     if not (math.isfinite(radius) and radius >= 0.0):
         raise InputError("radius", radius, "a finite number, 0 or above")
-    arcs = monotone_arcs(section, axis)
-    least, largest = distance_range(arcs, len(section.triangles))
-    square = radius * radius
-    if square <= least.min():
-        return section_area(section)
-    # Whole triangles are added as they are; only those that the circle crosses are integrated.
-    crossed = (least < square) & (square < largest)
-    whole = Section(section.points, section.triangles[least >= square]) if np.any(least >= square) else None
-    total = section_area(whole) if whole else 0.0
-    if crossed.any():
-        cut = arcs.take(crossed[arcs.triangle])
-        of = cut.triangle
-        total += float(beyond(cut, least[of], largest[of], square, square * (1.0 + 1e-12))[2].sum())
-    return total
+    return _Split.of(section, axis).outside(radius)
+
+
+@dataclass(frozen=True)
+class _Split:
+    """A section as circles about one axis cut it."""
+
+    areas: Array  #: of its triangles, m^2, shape (M,)
+    arcs: Arcs
+    least: Array  #: and largest: squared distance of each triangle from the axis, shape (M,)
+    largest: Array
+
+    @classmethod
+    def of(cls, section: Section, axis: tuple[float, float]) -> _Split:
+        """Of a section about an axis."""
+        arcs = monotone_arcs(section, axis)
+        areas = triangle_areas(section.points, section.triangles)
+        return cls(areas, arcs, *distance_range(arcs, len(section.triangles)))
+
+    def outside(self, radius: float) -> float:
+        """Area beyond the circle, m^2: whole triangles as they are, those that it crosses integrated."""
+        square = radius * radius
+        crossed = (self.least < square) & (square < self.largest)
+        total = float(self.areas[self.least >= square].sum())
+        if crossed.any():
+            cut = self.arcs.take(crossed[self.arcs.triangle])
+            far = self.least[cut.triangle], self.largest[cut.triangle]
+            total += float(beyond(cut, *far, square, square * (1.0 + 1e-12))[2].sum())
+        return total
 
 
 def surface_radius_of(section: Section, liquid_area: float) -> float:
@@ -233,12 +248,11 @@ def surface_radius_of(section: Section, liquid_area: float) -> float:
     whole = section_area(section)
     if liquid_area >= whole:
         raise InputError("liquid_area", liquid_area, f"below the area of the section ({whole:.9g} m^2)")
-    farthest = math.sqrt(
-        float(distance_range(monotone_arcs(section, (0.0, 0.0)), len(section.triangles))[1].max())
-    )
+    split = _Split.of(section, (0.0, 0.0))
+    farthest = math.sqrt(float(split.largest.max()))
 
     def excess(depth: float) -> float:
-        return area_outside(section, farthest - depth) - liquid_area
+        return split.outside(farthest - depth) - liquid_area
 
     # By the depth, so that a thin layer keeps its digits.
     depth = brentq(excess, 0.0, farthest, xtol=1e-15 * farthest, rtol=1e-14)

@@ -139,7 +139,7 @@ class StandingWave:
         if not abs(slip) > _SLOWEST:
             return None
         time = self._step / abs(slip)
-        found = self._all_through(state[None], given, time, turned / slip)
+        found = self._all_through(state.reshape(1, -1), given, time, turned / slip)
         if found is None:
             return None
         states, forces, loads = found

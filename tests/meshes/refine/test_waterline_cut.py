@@ -65,7 +65,7 @@ def slide_slack(section: Section) -> float:
     return float(6.0 * np.abs(turn).max() * 0.3 * np.max(np.sum((end - start) ** 2, axis=1)))
 
 
-@kills("meshes.refine.waterline:area_outside", "square = radius * radius", "square = radius")
+@kills("meshes.refine.waterline:_Split.outside", "square = radius * radius", "square = radius")
 def test_area_outside() -> None:
     """A square beyond a circle within it, beyond one that cuts its sides, beyond one about its corner."""
     section = square(1.0)

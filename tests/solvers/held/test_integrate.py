@@ -174,7 +174,7 @@ def test_unbalance_may_hold_what_would_whirl() -> None:
     critical = 1051.0 * math.pi / 30.0
     rotor = Jeffcott(40.0, 40.0 * critical**2, 2.0 * 0.1 * 40.0 * critical, 6e-3)
     fills = tuple(Fill(Chamber(radius, 0.2), WATER, 1e-4) for radius in (0.065, 0.05))
-    friction, spin, numerics = Friction("stokes"), 1031.0 * math.pi / 30.0, HoldNumerics(cells=32)
+    friction, spin, numerics = Friction("stokes"), 1031.0 * math.pi / 30.0, HoldNumerics(cells=24)
     growth = float(asynchronous_growth(rotor, list(fills), np.array([spin]), friction)[0][0])
     assert growth > 0.0
     machine = HeldMachine(rotor.system(), fills, friction, 9.81)
@@ -189,7 +189,7 @@ def test_unbalance_may_hold_what_would_whirl() -> None:
 def test_the_way_down_is_another_one() -> None:
     """Beyond the linear edge, 1.4866, the whirl lives on if it is carried up; none starts from rest."""
     rotor, fill = whirler(0.02)
-    friction, numerics = Friction("linear", LAG * SCALE), HoldNumerics(cells=32)
+    friction, numerics = Friction("linear", LAG * SCALE), HoldNumerics(cells=24)
     machine = HeldMachine(rotor.system(), (fill,), friction)
     spins = SCALE * np.array([1.3, 1.45, 1.55])
     growth = asynchronous_growth(rotor, [fill], spins, friction)[0]

@@ -191,7 +191,9 @@ def _settle(rotor: Jeffcott, fill: Fill, spin: float, start: complex) -> complex
         a = (force - (2j * spin * mass + rotor.damping) * v) / mass
         return np.array([v.real, v.imag, a.real, a.imag])
 
-    end = solve_ivp(rate, (0.0, 40.0), [start.real, start.imag, 0.0, 0.0], rtol=1e-6, atol=1e-9).y[:, -1]
+    end = solve_ivp(rate, (0.0, 40.0), [start.real, start.imag, 0.0, 0.0], "DOP853", rtol=1e-6, atol=1e-9).y[
+        :, -1
+    ]
     return complex(end[0], end[1])
 
 
