@@ -178,7 +178,7 @@ class StandingWave:
 
     def _all_through(
         self, moved: Array, given: Whirling, time: float, start: float = 0.0
-    ) -> tuple[Array, Complex, Array] | None:
+    ) -> tuple[Array, Complex, Any] | None:
         """States, shape (m, 2 n), after the time of a cell, moved back by it, with G and loads of each.
 
         None where one breaks down.
@@ -187,7 +187,7 @@ class StandingWave:
 
         n = self.cells
         areas, momenta = moved[:, :n].copy(), moved[:, n:].copy()
-        loads = np.zeros(len(moved), LOADS)
+        loads: Any = np.zeros(len(moved), LOADS)
         drive, wall, most = self._posed(given, time, _LONGEST)
         done = compiled(
             *(advance_each, areas, momenta, records(PACE), start, time, self._parts, drive, wall),
