@@ -5,8 +5,10 @@ The one place that names wings.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator
+import sys
+from collections.abc import Callable, Collection, Iterable, Iterator
 from contextlib import contextmanager
+from functools import lru_cache
 from importlib.metadata import Distribution, EntryPoint, distributions
 from pathlib import Path
 from traceback import extract_tb
@@ -103,13 +105,11 @@ def announced(
     """
     found: dict[str, EntryPoint] = {}
     by: dict[str, Distribution] = {}
-    for package in distributions():
-        try:
-            entries = [entry for entry in package.entry_points if entry.group == group]
-        except Exception as error:
-            failed(str(error) or type(error).__name__)
+    for package, entries in _read(distributions, tuple((folder, _changed(folder)) for folder in sys.path)):
+        if isinstance(entries, str):
+            failed(entries)
             continue
-        for entry in entries:
+        for entry in (entry for entry in entries if entry.group == group):
             first = found.get(entry.name)
             if entry.name in taken:
                 _say_once(f"{entry.value} is not used: {group} has {entry.name} of leblanc itself")
@@ -118,6 +118,28 @@ def announced(
             elif not _same(package, by[entry.name]):
                 _say_once(f"{entry.value} is not used: {group} has {entry.name} of {first.value}")
     return found
+
+
+@lru_cache(maxsize=1)
+def _read(
+    packages: Callable[[], Iterable[Distribution]], path: tuple[tuple[str, int], ...]
+) -> tuple[tuple[Distribution, tuple[EntryPoint, ...] | str], ...]:
+    """Packages with their entry points, or why these cannot be read; anew where a folder has changed."""
+    found: list[tuple[Distribution, tuple[EntryPoint, ...] | str]] = []
+    for package in packages():
+        try:
+            found.append((package, tuple(package.entry_points)))
+        except Exception as error:
+            found.append((package, str(error) or type(error).__name__))
+    return tuple(found)
+
+
+def _changed(folder: str) -> int:
+    """When a folder of the path changed last, ns; 0 for none."""
+    try:
+        return Path(folder).stat().st_mtime_ns
+    except OSError:
+        return 0
 
 
 def _same(one: Distribution, other: Distribution) -> bool:

@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import leblanc as lb
 from fluid.friction.laws import Friction, FrictionLaw
-from leblanc.cli import main
 from leblanc.core.notes import percent
 from leblanc.liquid.choice import model_spans, seconds_words
 from leblanc.liquid.choose import axial_gravity, choose, choose_all, prepare, runup_outlook
@@ -29,6 +29,7 @@ from solvers.whirl.growth import asynchronous_growth
 from tests.leblanc.studies.test_explain import scene as small_scene
 from tests.leblanc.studies.test_runup import scene as upright_scene
 from tests.mutants import kills
+from tests.oracles.blocks import on_terminal
 
 WITHOUT_LIQUID = ('kind = "exciter"', 'kind = "magnetic"', 'kind = "spindle"', 'kind = "balls"')
 EXAMPLES = sorted(
@@ -205,16 +206,15 @@ def test_the_estimate_is_written() -> None:
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
-def test_every_example_is_explained(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_every_example_is_explained(name: str) -> None:
     """Words and numbers for each range of speeds, without gaps, and nothing that was not filled in."""
     file = f"examples/{name}.toml"
-    assert main(["explain", file]) == 0
-    words = capsys.readouterr().out
+    found = lb.explain(file)
+    words = on_terminal(found)
     assert "estimated error" in words and "next better" in words and "tolerance of 0.1 %" in words
     assert "nan" not in words.split() and "inf" not in words.split() and "{" not in words
     assert max(map(len, words.splitlines())) <= 140
-    assert main(["explain", file, "--json"]) == 0
-    spans = json.loads(capsys.readouterr().out)["models"]
+    spans = json.loads(json.dumps(found.to_json()))["models"]
     speed = load_scene(file).speed_array()
     assert spans[0]["first"] == pytest.approx(speed[0]) and spans[-1]["last"] == pytest.approx(speed[-1])
     assert all(one["reason"] and one["better"] for one in spans)
