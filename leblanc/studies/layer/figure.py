@@ -1,4 +1,4 @@
-"""Figures of a layer's answers: its wave, its curves over time, its film, its whirl periods."""
+"""Figures of a layer's answers: its wave, its film, its whirl periods."""
 
 from __future__ import annotations
 
@@ -53,14 +53,11 @@ Show = Callable[[int], None]
 
 TURNED = "#D55E00"
 
-DrawTime = Callable[[Axes, Wave, WaveFrames], None]
-
 WAVE_FRAME = Frame(left=0.1, top=0.1, between=0.0, below=0.44)
 FILM_FRAME = Frame(left=0.1, top=0.28, between=0.0, below=0.26)
 TIME_FRAME = Frame(left=0.72, top=0.12, between=0.12, below=0.4)
 WAVE_HEIGHT, PROFILE_LEFT, PROFILE_BELOW, ASIDE = 2.75, 3.55, 0.15, 0.15  # inches
 NOTED_LINES = 10  # of a caption with notes
-RPM_ROOM = 0.42  # for a second axis on the right, inches
 
 
 def unrolled(theta: Array, depth: Array) -> tuple[Array, Array]:
@@ -367,44 +364,6 @@ def _speed(rate: float) -> str:
     return f"{signed(rate)}{BOUND}rad/s ({signed(rate * RPM)}{BOUND}rpm)"
 
 
-def draw_force(axes: Axes, _wave: Wave, history: WaveFrames) -> None:
-    """Both parts of the force coefficient, a point for each period."""
-    if history.force_ratio is None or history.period_time is None:
-        return
-    force = np.where(np.isfinite(history.force_ratio), history.force_ratio, complex(math.nan, math.nan))
-    axes.plot(history.period_time, force.real, color=SURFACE, marker="o", label="force along the deflection")
-    ahead = {"color": TURNED, "marker": "s", "linestyle": (0, (4, 1.5)), "markerfacecolor": "white"}
-    axes.plot(history.period_time, force.imag, label=f"force 90{DEGREE} ahead of it", **ahead)
-    axes.margins(y=0.12)
-    axes.set_ylabel("Force coefficient (\N{EN DASH})")
-
-
-def draw_rotation(axes: Axes, _wave: Wave, history: WaveFrames) -> None:
-    """Mean rotation of the liquid in the drum, a point for each period."""
-    if history.mean_rotation is None or history.period_time is None:
-        return
-    rotation = np.where(np.isfinite(history.mean_rotation), history.mean_rotation, math.nan)
-    style = {"color": "0.15", "marker": "^", "linewidth": 1.2}
-    axes.plot(history.period_time, rotation, label="mean rotation in the drum", **style)
-    axes.margins(y=0.15)
-    axes.set_ylabel("Rotation (rad/s)")
-    beside = axes.secondary_yaxis("right", functions=(lambda rate: rate * RPM, lambda rpm: rpm / RPM))
-    beside.set_ylabel("(rpm)")
-
-
-def draw_depths(axes: Axes, wave: Wave, history: WaveFrames) -> None:
-    """Deepest and shallowest place at each time."""
-    crest, trough = history.depth.max(axis=1) * MM, history.depth.min(axis=1) * MM
-    mark = "o" if history.time.size == 1 else None
-    axes.plot(history.time, crest, color=SURFACE, linewidth=1.2, marker=mark, label="crest")
-    style = {"color": TURNED, "linewidth": 1.2, "linestyle": (0, (3.5, 1.5)), "marker": mark}
-    axes.plot(history.time, trough, label="trough", **style)
-    axes.axhline(wave.mean_depth * MM, **MEAN_LINE | {"linewidth": 0.8, "linestyle": (0, (1, 1.2))})
-    top = max(float(crest.max()), wave.mean_depth * MM)
-    axes.set_ylim(-0.04 * top if top > 0.0 else -0.04, 1.12 * top if top > 0.0 else 1.0)
-    axes.set_ylabel("Depth (mm)")
-
-
 def film(left: Axes, right: Axes, wave: Wave, history: WaveFrames) -> Show:
     """Both drawings of a film in the frame of the drum.
 
@@ -529,43 +488,6 @@ def wave_figure(wave: Wave) -> Figure:
             "The layer seen along the axis and its depth around the wall, "
             f"from {_length(float(np.min(wave.depth)))} to {_length(deepest)}."
         )
-    return figure
-
-
-def history_figure(wave: Wave, history: WaveFrames) -> Figure:
-    """Force, mean rotation and depths over time; the first two only if the history has periods."""
-    wave.require_room(history)
-    panels: list[tuple[float, DrawTime]] = [(1.2, draw_depths)]
-    text = "Largest and smallest depth around the wall."
-    if history.period_time is not None:
-        panels = [(1.5, draw_force), (1.0, draw_rotation), *panels]
-        text = (
-            "Force on the drum over that of a full drum and the liquid's mean rotation in the drum, each the "
-            f"mean over a period of the whirl seen from the drum. {text}"
-        )
-    with style():
-        figure = Figure()
-        rows = [[figure.add_axes((0, 0, 1, 1), label=str(i))] for i in range(len(panels))]
-        first, last = float(history.time[0]), float(history.time[-1])
-        margin = 0.02 * (last - first) if last > first else 0.5
-        for (axes,), (_, draw) in zip(rows, panels, strict=True):
-            draw(axes, wave, history)
-            axes.set_xlim(first - margin, last + margin)
-            for scale in (axes, *axes.child_axes):
-                scale.yaxis.set_major_formatter(number)
-            axes.tick_params(labelbottom=axes is rows[-1][0])
-        rows[-1][0].set_xlabel("Time (s)")
-        shown = f"{text} {describe_case(wave)}{describe_notes(wave)}"
-        lay_out(figure, rows, [height for height, _ in panels], TIME_FRAME, shown, NOTED_LINES)
-        for (axes,) in rows:
-            box = axes.get_position()
-            axes.set_position((box.x0, box.y0, box.width - RPM_ROOM / WIDTH, box.height))
-        curves = (
-            "depths"
-            if history.period_time is None
-            else "force on the drum, the liquid's rotation, its depths"
-        )
-        figure.alt = f"Curves over time of the {curves}."
     return figure
 
 

@@ -70,11 +70,6 @@ class WaveFrames:
     deflection: (
         Complex  #: complex, the mark on the real axis, m, shape (k,); of a natural wave towards a crest
     )
-    #: means over periods of the whirl seen from the drum: force as in `Wave`, middle of the period, s, and
-    #: the liquid's rotation in the drum, rad/s; shape (p,)
-    force_ratio: Complex | None = None
-    period_time: Array | None = None
-    mean_rotation: Array | None = None
 
     def __post_init__(self) -> None:
         count = self.time.size
@@ -86,10 +81,6 @@ class WaveFrames:
         _require_depth(self.depth, (count, self.theta.size), math.inf)
         if self.deflection.shape != (count,) or not np.isfinite(self.deflection).all():
             raise InputError("deflection", self.deflection.shape, f"finite and of shape {(count,)}")
-        means = (self.force_ratio, self.period_time, self.mean_rotation)
-        shapes = {None if mean is None else mean.shape for mean in means}
-        if len(shapes) > 1:
-            raise InputError("force_ratio", str(shapes), "of the shape of period_time and mean_rotation")
 
 
 def _require_angles(theta: Array) -> None:

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from leblanc.core.units import MM, MM_PEAK, RPM, in_rpm
-from leblanc.plotting.chambers import chamber_figure
 from leblanc.plotting.curves import (
     NARROW,
     Curves,
@@ -26,7 +24,6 @@ from leblanc.plotting.curves import (
 )
 from leblanc.plotting.page import (
     Figure,
-    FigureFiles,
     Frame,
     MultipleLocator,
     add_rate_axis,
@@ -34,7 +31,6 @@ from leblanc.plotting.page import (
     caption,
     lay_out,
     number,
-    save,
     style,
     zero_of,
 )
@@ -78,26 +74,6 @@ STYLES = (
     ("against the spin", -1.0, BACKWARD, (0, (5, 1.5)), "v"),
     ("straight-line", 0.0, STRAIGHT, (0, (1, 1.2)), "o"),
 )
-
-
-def write_figures(result: RunAnswer, directory: Path) -> tuple[FigureFiles, ...]:
-    """Draw all figures of a study and write each as PNG and SVG.
-
-    One result gives the same files byte for byte, as long as the version of matplotlib stays the same.
-    """
-    figures = [
-        ("amplitude", "Amplitude over speed", amplitude_figure),
-        ("liquid", "Liquid's centre of mass over speed", liquid_figure),
-        ("phase", "Phase of the deflection over speed", phase_figure),
-        ("chamber", "Chamber seen along the axis", chamber_figure),
-    ]
-    if result.chamberless:
-        figures = [figures[0], figures[2]]
-    if result.motion is not None:
-        figures.append(("campbell", "Natural frequencies over speed", campbell_figure))
-    if result.loads is not None:
-        figures.append(("machine", "Clearances and forces on the floor", loads_figure))
-    return tuple(save(draw(result), directory, name, title) for name, title, draw in figures)
 
 
 def loads_figure(result: RunAnswer) -> Figure:

@@ -172,26 +172,9 @@ def test_texts_stay_on_the_page_and_apart(name: str):
     record = EXTREMES[name]()
     history = running(record, count=5)
     assert_apart(wave.wave_figure(record))
-    assert_apart(wave.history_figure(record, history))
     figure, show = wave_page._film(record, history)
     show(3)
     assert_apart(figure)
-
-
-def test_history_without_periods_shows_depths_alone():
-    without = replace(running(bore()), force_ratio=None, period_time=None, mean_rotation=None)
-    figure = wave.history_figure(bore(), without)
-    assert [axes.get_ylabel() for axes in figure.axes] == ["Depth (mm)"]
-    assert figure.axes[0].get_xlabel() == "Time (s)"
-    labels = [axes.get_ylabel() for axes in wave.history_figure(bore(), running(bore())).axes]
-    assert labels == ["Force coefficient (\N{EN DASH})", "Rotation (rad/s)", "Depth (mm)"]
-
-
-def test_periods_without_a_force_leave_a_gap():
-    history = running(bore())
-    force = np.where(np.arange(4) == 1, complex(math.nan, 1.0), history.force_ratio)
-    axes = wave.history_figure(bore(), replace(history, force_ratio=force)).axes[0]
-    assert [np.isnan(line.get_ydata()).tolist() for line in axes.lines] == [[False, True, False, False]] * 2
 
 
 def test_film_has_its_frames(tmp_path: Path):
@@ -312,8 +295,6 @@ def test_bad_record_is_refused(field: str, values: dict[str, object]):
         ("depth", {"depth": np.full((3, 360), -1.0)}),
         ("deflection", {"deflection": np.zeros(2, dtype=complex)}),
         ("deflection", {"deflection": np.full(3, complex(math.nan))}),
-        ("force_ratio", {"force_ratio": None}),
-        ("force_ratio", {"mean_rotation": np.zeros(3)}),
     ],
 )
 def test_bad_history_is_refused(field: str, values: dict[str, object]):
@@ -325,7 +306,5 @@ def test_bad_history_is_refused(field: str, values: dict[str, object]):
 
 def test_history_deeper_than_the_drum_is_refused():
     history = replace(running(bore(), count=3), depth=np.full((3, 360), 0.2))
-    with pytest.raises(InputError, match="depth"):
-        wave.history_figure(bore(), history)
     with pytest.raises(InputError, match="depth"):
         wave.animate(bore(), history, Path("never.gif"))

@@ -63,15 +63,11 @@ def running(record: Wave, count: int = 50, duration: float = 0.5) -> WaveFrames:
     place = math.pi / 6.0 + record.seen_from_the_drum * time
     angle, depth = wave.unrolled(record.theta, record.depth)
     from_deflection = np.mod(theta - place[:, None] + math.pi, 2.0 * math.pi) - math.pi
-    period = np.linspace(0.1, 0.4, 4) * duration
     return WaveFrames(
         time=time,
         theta=theta,
         depth=np.interp(from_deflection, angle, depth),
         deflection=record.whirl_amplitude * np.exp(1j * place),
-        force_ratio=(0.5 + period) + 1j * (2.0 - 3.0 * period),
-        period_time=period,
-        mean_rotation=-period,
     )
 
 
@@ -210,24 +206,6 @@ def test_frames_can_be_followed() -> None:
         assert turn < math.pi / 4.0 + abs(whirl - SPIN) * time[1]
         shown = time[-1] - time[chosen[0]]
         assert shown == duration or shown > 0.9 * 119.0 * math.pi / 4.0 / abs(whirl - SPIN)
-
-
-def test_history_has_its_values() -> None:
-    record = bore()
-    history = running(record)
-    force, rotation, depths = wave.history_figure(record, history).axes[:3]
-    along, ahead = (
-        labelled(force, f"force {name}") for name in ("along the deflection", "90\N{DEGREE SIGN} ahead of it")
-    )
-    np.testing.assert_array_equal(along.get_ydata(), 0.5 + history.period_time)
-    np.testing.assert_array_equal(ahead.get_ydata(), 2.0 - 3.0 * history.period_time)
-    np.testing.assert_array_equal(rotation.lines[0].get_ydata(), history.mean_rotation)
-    rotation.figure.draw_without_rendering()
-    # 60 / (2 pi) rpm in a rad/s
-    expected = np.array(rotation.get_ylim()) * 9.549296585513721
-    np.testing.assert_allclose(rotation.child_axes[0].get_ylim(), expected, rtol=1e-9)
-    np.testing.assert_allclose(labelled(depths, "crest").get_ydata(), history.depth.max(axis=1) * 1e3)
-    np.testing.assert_allclose(labelled(depths, "trough").get_ydata(), history.depth.min(axis=1) * 1e3)
 
 
 def test_caption_converts() -> None:
