@@ -10,7 +10,6 @@ import numpy as np
 
 from fluid.fill import Fill
 from fluid.friction.laws import Friction
-from fluid.waves import free_wave_frequencies
 from meshes.arrays import Array
 from meshes.errors import InputError, require_positive
 from solvers.layer.records import Outcome
@@ -92,16 +91,12 @@ def large_whirl_in_time(
     friction: Friction,
     kick: float,
     cells: int = 64,
-    whirl_speed: float | None = None,
 ) -> LargeWhirl:
     """Kick a rotor with uniform layers sideways at a constant speed and wait [theory: coupling].
 
-    `kick`: deflection of the first chamber's axis at first, m; `whirl_speed`, rad/s: the laminar friction is
-    taken at its slip, None: at that of a natural wave. LargeWhirl is nan where the machine does not get so
-    far.
+    `kick`: deflection of the first chamber's axis at first, m. LargeWhirl is nan where the machine does not
+    get so far.
     """
-    if whirl_speed is not None:
-        fills = [_at_slip(fill, spin, whirl_speed - spin) for fill in fills]
     machine = couple(rotor.system(), fills, spin, friction, 0.0, cells, False)
     plane = rotor.system().at(fills[0].chamber.plane)
     machine.state.place[:] = kick * np.linalg.pinv(plane)[:, 0]
@@ -115,14 +110,6 @@ def large_whirl_in_time(
     size, turned = np.abs(deflection[last]), np.unwrap(np.angle(deflection[last]))
     turning = np.polyfit(times[last], turned, 1)[0]
     return LargeWhirl(float(size.mean()), float(turning), float(np.ptp(size) / size.mean()))
-
-
-def _at_slip(fill: Fill, spin: float, slip: float) -> Fill:
-    """With the viscosity that has at a natural wave's slip the liquid's laminar friction at this slip."""
-    log = math.log(fill.chamber.radius / fill.surface_radius)
-    free = float(free_wave_frequencies(1, log, spin)[1])
-    viscosity = fill.liquid.viscosity * abs(slip / free)
-    return replace(fill, liquid=replace(fill.liquid, viscosity=viscosity))
 
 
 @dataclass(frozen=True)

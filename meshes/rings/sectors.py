@@ -19,8 +19,6 @@ def compartment(
     radius: float,
     inner_radius: float = 0.0,
     segments: int = 32,
-    *,
-    order: int = 2,
 ) -> Section:
     """Section between a baffle, counted from 0, and the next one, taken as walls from circle to circle.
 
@@ -30,7 +28,7 @@ def compartment(
         raise InputError("number", number, f"0 to {baffles.count - 1}")
     angle = 2.0 * math.pi / baffles.count
     start = baffles.first_angle + number * angle
-    return sector(radius, start, angle, inner_radius, segments, order=order)
+    return sector(radius, start, angle, inner_radius, segments)
 
 
 def sector(

@@ -29,7 +29,7 @@ _FEW = 3  # degrees of freedom up to which no pattern is seen, nor noise told fr
 _PASSES = 4  # of weights by the fitted values
 
 
-def parse_noise(text: str, field: str = "noise") -> tuple[str, float]:
+def parse_noise(text: str) -> tuple[str, float]:
     """Kind of the noise and its size: "estimate", 0; "relative", a share; "length" or "angle", SI."""
     if text.strip() == ESTIMATE:
         return ESTIMATE, 0.0
@@ -39,12 +39,12 @@ def parse_noise(text: str, field: str = "noise") -> tuple[str, float]:
     else:
         for name, dimension in (("length", units.LENGTH), ("angle", units.ANGLE)):
             try:
-                kind, size = name, units.parse(text, dimension, field)
+                kind, size = name, units.parse(text, dimension, "noise")
                 break
             except InputError:
                 continue
     if not kind or not 0.0 < size < 1e4 or (kind == "relative" and size >= 1.0):
-        raise InputError(field, text, _ALLOWED)
+        raise InputError("noise", text, _ALLOWED)
     return kind, size
 
 

@@ -71,10 +71,10 @@ def span_of(path: str) -> float | None:
     return _SPANS.get(names[-1]) if names else None
 
 
-def require_scale(scale: str, name: str = "scale") -> str:
+def require_scale(scale: str) -> str:
     """What is known of the scale of the measured lengths."""
     if scale not in SCALES:
-        raise InputError(name, scale, "one of " + ", ".join(SCALES))
+        raise InputError("scale", scale, "one of " + ", ".join(SCALES))
     return scale
 
 

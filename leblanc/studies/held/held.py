@@ -164,18 +164,15 @@ def hold_speeds(
         return held_branches(tasks, run, several, progress)
 
 
-def held_response(
-    machine: Prepared, steady: Response, found: HeldBranches, position: float | None = None
-) -> Response:
+def held_response(machine: Prepared, steady: Response, found: HeldBranches) -> Response:
     """The steady response with time-domain states in the place of its own answers, all speeds.
 
     Angles, the rotor without liquid and the plane reported are those of the steady response.
     """
     system, fills = machine.system, machine.scene.fills
-    place = steady.position if position is None else position
     up = found.up
     coordinates = np.array([state.coordinates for state in up])
-    motion = orbit(system, coordinates, place)
+    motion = orbit(system, coordinates, steady.position)
     offset, angle = _liquid(machine, up, coordinates)
     settled = np.array([state.settled for state in up])
     circles = settled & np.array([state.kind is not HeldKind.LIMIT_CYCLE for state in up])

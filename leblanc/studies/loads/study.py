@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
 
-from fluid.fill import Fill
 from fluid.friction.laws import Friction
 from leblanc.scene.scene import JeffcottRotor, Scene, TubRotor, dry_rotor
 from leblanc.studies.drives import rotor_in_time
@@ -21,14 +20,14 @@ from solvers.runup.loads import bearing_impulses, drive_torque, held_extremes, p
 from solvers.runup.runup import RunupHistory
 
 
-def loaded_machine(scene: Scene, fills: Sequence[Fill] | None = None) -> LoadedMachine | None:
+def loaded_machine(scene: Scene) -> LoadedMachine | None:
     """The machine of a scene with its cabinet, points and bearings; None where it has none of them."""
     bearings = scene.rotor.bearings if isinstance(scene.rotor, TubRotor) else ()
     if scene.cabinet is None and not scene.points and not bearings:
         return None
     return LoadedMachine(
         dry_rotor(scene),
-        tuple(scene.fills if fills is None else fills),
+        tuple(scene.fills),
         scene.gravity,
         scene.rotor.axis == "vertical",
         None if scene.cabinet is None else scene.cabinet.standing(),

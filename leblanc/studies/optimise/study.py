@@ -483,7 +483,7 @@ class EmulatedVibration:
         return least, most
 
 
-def emulated_vibration(store: Path, scene: Scene, task: Optimisation, seed: int = 0) -> EmulatedVibration:
+def emulated_vibration(store: Path, scene: Scene, task: Optimisation) -> EmulatedVibration:
     """Emulator of the vibration that an optimisation is after, from a sweep over the volumes."""
     found = read_store(store)
     if found.attributes()["scene_digest"] != scene.digest:
@@ -492,7 +492,7 @@ def emulated_vibration(store: Path, scene: Scene, task: Optimisation, seed: int 
     chambers = tuple(int(match[1]) for match in matches if match is not None)
     if len(chambers) != len(matches):
         raise InputError("emulator", str(store), "a sweep that varies volumes and nothing else")
-    return EmulatedVibration(emulate_store(found, _output(scene, task), seed), chambers)
+    return EmulatedVibration(emulate_store(found, _output(scene, task)), chambers)
 
 
 def _output(scene: Scene, task: Optimisation) -> str:

@@ -44,9 +44,7 @@ def full_volume(chamber: Chamber, deflection: float, speed: float, gravity: floa
     return math.pi * chamber.height * (ring + 0.5 * fall)
 
 
-def optimal_volume_by_search(
-    fill: Fill, deflection: float, speed: float, gravity: float, plan: SearchPlan | None = None
-) -> Found:
+def optimal_volume_by_search(fill: Fill, deflection: float, speed: float, gravity: float) -> Found:
     """The least volume that leaves no part of the wall dry over its whole height, found by the search.
 
     The one that comes nearest where none will do.
@@ -62,4 +60,4 @@ def optimal_volume_by_search(
         return Judgement(amount.copy(), over)
 
     low, high = np.zeros(1), np.array([chamber.capacity])
-    return search(judge, low, high, np.array([fill.liquid.density]), plan=plan or SearchPlan(edge=1e-11))
+    return search(judge, low, high, np.array([fill.liquid.density]), plan=SearchPlan(edge=1e-11))

@@ -568,15 +568,10 @@ def models_section(result: RunAnswer) -> Iterator[Section]:
 WHY = ("Speeds (rpm)", "Model", "Estimated error", "Why")
 
 
-def of_models(
-    names: Iterable[str],
-    reasons: Table | None = None,
-    held: bool = False,
-    title: str = "Liquid model, and why",
-) -> Section:
+def of_models(names: Iterable[str], reasons: Table, held: bool = False) -> Section:
     """Each liquid model once, with what it does and takes for granted, below the reasons why it was taken."""
     shown = [Words(text, name=name, small=True) for name, text in described(names, held) if text]
-    return Section(title, (*([] if reasons is None else [reasons]), *shown), shown="page")
+    return Section("Liquid model, and why", (reasons, *shown), shown="page")
 
 
 def described(names: Iterable[str], held: bool = False) -> list[tuple[str, str]]:

@@ -72,7 +72,6 @@ def _known(machine: Exciter) -> dict[str, Any]:
 def answer_exciter(
     machine: Exciter,
     speed: ArrayLike,
-    start: Start | None = None,
     checks: int = CHECKS,
     of: Mapping[str, Any] | None = None,
 ) -> ExciterAnswer:
@@ -84,7 +83,7 @@ def answer_exciter(
     spin = np.array(speed, dtype=float).reshape(-1)
     if not np.all(np.isfinite(spin) & (spin > 0.0)):
         raise InputError("speed", spin.tolist(), "finite numbers above 0")
-    numbers, unit, start = machine.dimensionless(), machine.natural_frequency, start or Start()
+    numbers, unit, start = machine.dimensionless(), machine.natural_frequency, Start()
     stuck = stuck_speeds(spin / unit, numbers)
     motions = [platform_motion(numbers, n, q) for n, q in zip(spin / unit, stuck[:, 0], strict=True)]
     slow, fast = np.abs(np.array(motions)).T * machine.length

@@ -277,14 +277,12 @@ def _on_axis(middle: Array, rise: Array, bend: Array) -> Array:
     return np.unique(np.concatenate(found))
 
 
-def existence_bounds(
-    family: Family, first: float, second: ArrayLike, state: State | None = None
-) -> list[float]:
-    """Values of the second parameter between which the state begins or ends to exist, by halving."""
-    y, chosen = np.asarray(second, dtype=float), state or State()
+def existence_bounds(family: Family, first: float, second: ArrayLike) -> list[float]:
+    """Values of the second parameter between which balance begins or ends to exist, by halving."""
+    y = np.asarray(second, dtype=float)
 
     def exists(at: float) -> bool:
-        return chosen.at(family(first, at)) is not None
+        return State().at(family(first, at)) is not None
 
     there, found = [exists(at) for at in y.tolist()], []
     for k in [k for k in range(y.size - 1) if there[k] != there[k + 1]]:

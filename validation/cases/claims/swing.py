@@ -41,12 +41,12 @@ def rig(mass: float, place: float, damping_ratio: float, load: float = LOAD) -> 
     return Jeffcott(mass, mass * unit**2, 2.0 * damping_ratio * mass * unit, load * place)
 
 
-def damping_that_swings(mass: float, place: float = PLACE) -> float:
+def damping_that_swings(mass: float) -> float:
     """Damping ratio with which the load swings the rig by 35 mm.
 
     U/(2 M zeta sqrt(1 - zeta^2)) is the largest deflection [theory: rotor, eq. 34].
     """
-    double = LOAD * place / (mass * SWING)  # 2 zeta sqrt(1 - zeta^2) = sin(2 asin(zeta))
+    double = LOAD * PLACE / (mass * SWING)  # 2 zeta sqrt(1 - zeta^2) = sin(2 asin(zeta))
     return math.sin(0.5 * math.asin(double))
 
 

@@ -57,7 +57,7 @@ def reference(
     return system, races
 
 
-def reference_charts(values: int = 21) -> tuple[Chart, Chart]:
+def reference_charts() -> tuple[Chart, Chart]:
     """Reference machine over speed and unbalance, and over speed and damping of the supports."""
 
     def unbalanced(speed: float, share: float) -> Machine:
@@ -66,14 +66,14 @@ def reference_charts(values: int = 21) -> tuple[Chart, Chart]:
     def held(speed: float, damping: float) -> Machine:
         return Machine(*reference(damping=damping), speed)
 
-    speeds = np.linspace(0.4, 4.0, 2 * values - 1)
+    speeds = np.linspace(0.4, 4.0, 41)
     return (
-        stability_chart(unbalanced, speeds, np.linspace(0.1, 1e5 * _MOST, values)),
-        stability_chart(held, speeds, np.linspace(1e-3, 0.2, values)),
+        stability_chart(unbalanced, speeds, np.linspace(0.1, 1e5 * _MOST, 21)),
+        stability_chart(held, speeds, np.linspace(1e-3, 0.2, 21)),
     )
 
 
-def state_charts(values: int = 25) -> tuple[Chart, Chart, Chart]:
+def state_charts() -> tuple[Chart, Chart, Chart]:
     """Rotor of `examples/balls.toml` over speed, rad/s, and what two balls hold over the unbalance.
 
     The balanced state, both balls together behind the unbalance, and both together near its other side.
@@ -84,10 +84,10 @@ def state_charts(values: int = 25) -> tuple[Chart, Chart, Chart]:
         race = BallRace(0.0, 0.065, (mass, mass), 0.1)
         return Machine(Jeffcott(4.0, 4.4e4, 84.0, 6e-4).system(), (race,), speed)
 
-    ratios, enough = np.linspace(0.21, 2.17, 2 * values // 3), np.linspace(1.0, 2.17, values // 2)
-    slow, fast = np.linspace(40.0, 104.0, values), np.linspace(104.0, 250.0, values)
+    ratios, enough = np.linspace(0.21, 2.17, 16), np.linspace(1.0, 2.17, 12)
+    slow, fast = np.linspace(40.0, 104.0, 25), np.linspace(104.0, 250.0, 25)
     return (
-        stability_chart(family, np.linspace(40.0, 250.0, 2 * values), enough),
+        stability_chart(family, np.linspace(40.0, 250.0, 50), enough),
         stability_chart(family, slow, ratios, State([-1.1, -1.1])),
         stability_chart(family, fast, ratios, State([-2.3, -2.3])),
     )
