@@ -56,7 +56,9 @@ def wave_findings(liquid: LiquidSection, mode: int) -> tuple[Finding, ...]:
     sides = liquid.points[liquid.surface[:, :2]]
     if error > _WAVE_ERROR:
         longest = int(np.argmax(np.hypot(*(sides[:, 1] - sides[:, 0]).T)))
-        wanted = _points_for(liquid.order)
+        # Nodes on a wavelength that bring `wave_error` to the limit.
+        step = math.sqrt(12.0 * _WAVE_ERROR) if liquid.order == 1 else (720.0 * _WAVE_ERROR) ** 0.25
+        wanted = 2.0 * math.pi * liquid.order / step
         found.append(
             Finding(
                 f"{points:.1f} nodes per wave of mode {mode} on the free surface, "
@@ -165,12 +167,6 @@ def _uneven(points: Array, cells: Indices) -> tuple[Finding, ...]:
             "a smaller growth from cell to cell",
         ),
     )
-
-
-def _points_for(order: int) -> float:
-    """Nodes on a wavelength that bring `wave_error` to the limit."""
-    step = math.sqrt(12.0 * _WAVE_ERROR) if order == 1 else (720.0 * _WAVE_ERROR) ** 0.25
-    return 2.0 * math.pi * order / step
 
 
 def _check_mode(mode: int) -> None:

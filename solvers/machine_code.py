@@ -110,7 +110,9 @@ def private_folder(name: str) -> Path | None:
             return None
         os.utime(folder)
         if new:
-            _remove_unused(caches)
+            for other in caches.glob("machine-code-*"):
+                if other.lstat().st_mtime < time.time() - _UNUSED and not other.is_symlink():
+                    shutil.rmtree(other, ignore_errors=True)
     except OSError:
         return None
     return folder
@@ -128,10 +130,3 @@ def _is_private(found: os.stat_result) -> bool:
     """Whether a folder is this user's, and nobody else may write into it."""
     own = not hasattr(os, "getuid") or found.st_uid == os.getuid()
     return own and stat.S_ISDIR(found.st_mode) and not (os.name == "posix" and found.st_mode & 0o022)
-
-
-def _remove_unused(caches: Path) -> None:
-    """Remove machine code of sources that are no longer in use."""
-    for folder in caches.glob("machine-code-*"):
-        if folder.lstat().st_mtime < time.time() - _UNUSED and not folder.is_symlink():
-            shutil.rmtree(folder, ignore_errors=True)

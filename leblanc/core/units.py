@@ -443,8 +443,9 @@ def _factor(unit: str, dimension: Dimension) -> float | str:
     try:
         factor, base = _base("rpm" if _TURNS_A_MINUTE.fullmatch(unit) else unit)
     except pint.UndefinedUnitError as error:
-        names = error.unit_names
-        return _no_unit([names] if isinstance(names, str) else list(names))
+        names = [error.unit_names] if isinstance(error.unit_names, str) else list(error.unit_names)
+        said, small = f"there is no unit {' or '.join(names)}", names[0].lower()
+        return f"{said}, but {small}" if small != names[0] and small in _registry() else said
     except (pint.PintError, ArithmeticError):
         return f"{unit} cannot be used as a unit"
     if factor is None or not 1e-30 < factor < 1e30:
@@ -456,13 +457,6 @@ def _factor(unit: str, dimension: Dimension) -> float | str:
     if not math.isclose(factor, 1.0, rel_tol=1e-12):
         return f"{unit} may mean turns or radians"
     return 1.0
-
-
-def _no_unit(names: list[str]) -> str:
-    """Names that are no units, and what may have been meant."""
-    said = f"there is no unit {' or '.join(names)}"
-    small = names[0].lower()
-    return f"{said}, but {small}" if small != names[0] and small in _registry() else said
 
 
 def _base(unit: str) -> tuple[float | None, Any]:

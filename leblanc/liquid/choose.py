@@ -129,7 +129,10 @@ def choose_all(machines: Sequence[Prepared]) -> list[Choice]:
     planar = [machine for machine in machines if isinstance(machine.rotor, Jeffcott)]
     found = iter(_planar_errors(planar) if planar else ())
     errors = [
-        next(found) if isinstance(machine.rotor, Jeffcott) else _other_errors(machine) for machine in machines
+        next(found)
+        if isinstance(m.rotor, Jeffcott)
+        else error_estimate(m.rotor, m.scene.fills, m.speed, m.axial_gravity, m.across_gravity)
+        for m in machines
     ]
     return [_choice(machine, *pair) for machine, pair in zip(machines, errors, strict=True)]
 
@@ -313,12 +316,6 @@ def _planar_errors(machines: Sequence[Prepared]) -> list[tuple[LinearError, Grav
         )
         for part in parts
     ]
-
-
-def _other_errors(machine: Prepared) -> tuple[LinearError, GravityError]:
-    """The same of a rotor that tilts, or moves differently in two directions."""
-    along, across = machine.axial_gravity, machine.across_gravity
-    return error_estimate(machine.rotor, machine.scene.fills, machine.speed, along, across)
 
 
 def _choice(machine: Prepared, linear: LinearError, gravity: GravityError) -> Choice:

@@ -368,7 +368,8 @@ def chamber_figure(result: RunAnswer) -> Figure:
         if any(result.curve.model[index] in HELD_MODELS for index in views.instants):
             part += " The liquid is drawn at rest in the mean motion, without its waves."
         text = caption(result, f"Chamber seen along the axis. {describe_scale(result, views)}{part}")
-        more = HEADING_ROW * more_heading_rows(result, views)
+        out_of_range = not result.curve.in_range[views.instants].all()
+        more = HEADING_ROW * ((len(views.drawings) > 1) + int(out_of_range))
         below = 0.0 if result.motion is None else HEADING_ROW
         frame = replace(FRAME, top=FRAME.top + more, between=BETWEEN + more + below, below=BELOW + below)
         lay_out(figure, rows, sides, frame, text, MOST_LINES if result.motion is None else NOTED_LINES)
@@ -469,12 +470,6 @@ def describe_view(result: RunAnswer, index: int) -> str:
     name = "Working speed" if index == r.speed.size - 1 else "Largest deflection"
     text = f"{name}, {in_rpm(r.speed[index])}"
     return text if r.in_range[index] else f"{text}\n(model out of range)"
-
-
-def more_heading_rows(result: RunAnswer, views: Views) -> int:
-    """Lines above the drawings besides the first."""
-    out_of_range = not result.curve.in_range[views.instants].all()
-    return int(len(views.drawings) > 1) + int(out_of_range)
 
 
 def describe_state(result: RunAnswer, index: int) -> str:

@@ -112,7 +112,9 @@ def layout(picture: Picture, size: tuple[int, int], view: str = VIEWS[0]) -> Lay
         names = _names(picture.labels, sight, sight.project(outline), room)
         if all(name.box[0] >= EDGE and name.box[2] <= size[0] - EDGE for name in names):
             break
-        sight = _farther(sight, room)
+        # The camera that sees more, the middle of the room where it was.
+        shift = (sight.size[1] - sum(room)) / sight.size[1] * sight.half * (FARTHER - 1.0)
+        sight = replace(sight, half=FARTHER * sight.half, focus=sight.focus + shift * sight.over)
     return Layout(sight, names)
 
 
@@ -144,12 +146,6 @@ def _camera(picture: Picture, size: tuple[int, int], view: str) -> tuple[Sight, 
     shift = (size[1] - low - high) * half / size[1]
     focus = middle + away[0] * right + (away[1] + shift) * over
     return Sight(focus, right, over, back, float(half), size), (low, high)
-
-
-def _farther(sight: Sight, room: tuple[float, float]) -> Sight:
-    """The camera that sees more, the middle of the room where it was."""
-    shift = (sight.size[1] - sum(room)) / sight.size[1] * sight.half * (FARTHER - 1.0)
-    return replace(sight, half=FARTHER * sight.half, focus=sight.focus + shift * sight.over)
 
 
 def _direction(picture: Picture, view: str) -> tuple[tuple[float, ...], tuple[float, ...]]:

@@ -115,15 +115,12 @@ def _pole(
     low_in, low_out, high_in, high_out = rings
     pairs = [(low_in, high_in), (high_out, low_out), (low_out, low_in), (high_in, high_out)]
     walls = [Piece(name, np.concatenate(pair), _strip(_ARC), "bearing") for pair in pairs]
+    face = np.arange(4, dtype=np.int64)[None]
     sides = [
-        Piece(name, np.stack([ring[k] for ring in (low_in, low_out, high_out, high_in)]), _face(), "bearing")
+        Piece(name, np.stack([ring[k] for ring in (low_in, low_out, high_out, high_in)]), face, "bearing")
         for k in (0, -1)
     ]
     return [*walls, *sides]
-
-
-def _face() -> Indices:
-    return np.arange(4, dtype=np.int64)[None]
 
 
 def _strip(count: int) -> Indices:

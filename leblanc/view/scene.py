@@ -74,7 +74,9 @@ def outline(section: Section) -> Outline:
     nodes = np.stack([start, middle, end], axis=1)
     points, along = nodes @ at, nodes @ slope
     out = -1j * along / np.abs(along)
-    double = _double(start, end, _SAME * float(np.abs(plane).max()))
+    same = _SAME * float(np.abs(plane).max())
+    pair = _pairs(start, end, same)
+    double = np.bincount(pair)[pair] == 2  # sides at the place of another one: the two faces of a baffle
     # One direction where two sides meet.
     total = np.zeros(plane.size, dtype=complex)
     for k, column in ((0, 0), (1, -1)):
@@ -82,7 +84,7 @@ def outline(section: Section) -> Outline:
     size = np.abs(total)
     mean = np.divide(total, size, out=np.zeros_like(total), where=size > 0.0)
     out[:, 0], out[:, -1] = mean[sides[:, 0]], mean[sides[:, 1]]
-    first = double & (np.arange(len(sides)) == _first(start, end, _SAME * float(np.abs(plane).max())))
+    first = double & (np.arange(len(sides)) == _first(start, end, same))
     walls, outwards, plates = (
         np.asarray(values, dtype=complex) for values in (points[~double], out[~double], points[first])
     )
@@ -96,12 +98,6 @@ def _pairs(start: Complex, end: Complex, same: float) -> NDArray[np.int64]:
     swap = (cells[:, 0] > cells[:, 2]) | ((cells[:, 0] == cells[:, 2]) & (cells[:, 1] > cells[:, 3]))
     cells[swap] = cells[swap][:, [2, 3, 0, 1]]
     return np.unique(cells, axis=0, return_inverse=True)[1].ravel().astype(np.int64)
-
-
-def _double(start: Complex, end: Complex, same: float) -> NDArray[np.bool_]:
-    """Sides at the place of another one: the two faces of a baffle."""
-    number = _pairs(start, end, same)
-    return np.asarray(np.bincount(number)[number] == 2)
 
 
 def _first(start: Complex, end: Complex, same: float) -> NDArray[np.int64]:

@@ -73,7 +73,10 @@ def require_harmless_xml(path: str | Path) -> None:
             raise InputError("path", str(path), "XML that is well formed")
         _require_own_data(path, ElementTree.parse(path).getroot(), size)
     elif not whole:
-        _require_short_end(path)
+        raw = Path(path).read_bytes()
+        # Behind raw binary data nothing but the last closing tags may stand.
+        if len(raw) - raw.find(b"</AppendedData>") > _LONGEST_END and b"</AppendedData>" in raw:
+            raise InputError("path", str(path), "XML that ends behind its binary data")
 
 
 def _scan(path: str | Path, most: int) -> bool:
@@ -101,13 +104,6 @@ def _scan(path: str | Path, most: int) -> bool:
         except expat.ExpatError:
             return False
     return True
-
-
-def _require_short_end(path: str | Path) -> None:
-    """Behind raw binary data nothing but the last closing tags may stand."""
-    raw = Path(path).read_bytes()
-    if len(raw) - raw.find(b"</AppendedData>") > _LONGEST_END and b"</AppendedData>" in raw:
-        raise InputError("path", str(path), "XML that ends behind its binary data")
 
 
 def _require_own_data(path: str | Path, root: Any, size: int) -> None:

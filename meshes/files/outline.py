@@ -82,7 +82,9 @@ def outline_section(
     """
     file = _check(path, wall_size, inside_size, growth, order)
     drawn = file.suffix.lower() == ".dxf"
-    curves, unit = read_drawing(file) if drawn else ([], _model_unit(file))
+    # OpenCASCADE turns what has a unit into millimetres.
+    unit_of_model = None if file.suffix.lower() == ".brep" else 1e-3
+    curves, unit = read_drawing(file) if drawn else ([], unit_of_model)
     if not drawn and unit is not None and scale is not None:
         raise InputError("scale", scale, "left out: the file names its unit")
     metre = scale if scale is not None else unit
@@ -125,11 +127,6 @@ def _check(path: str | Path, wall_size: float | None, inside_size: float, growth
     if order not in (1, 2):
         raise InputError("order", order, "1 (straight edges) or 2 (quadratic edges)")
     return file
-
-
-def _model_unit(file: Path) -> float | None:
-    """OpenCASCADE turns what has a unit into millimetres."""
-    return None if file.suffix.lower() == ".brep" else 1e-3
 
 
 @contextlib.contextmanager

@@ -80,19 +80,15 @@ def bisect(points: Array, triangles: Indices, marked: NDArray[np.bool_]) -> tupl
         raise InputError("size", len(points) + 4 * int(marked.sum()), "coarser: above a million nodes")
     triangles = np.take_along_axis(triangles, TURNED[longest], axis=1)
     number = np.take_along_axis(number, TURNED[longest, :3], axis=1)
-    points, quarters = _quarter_nodes(points, edges, marked)
+    # New nodes at a quarter and at three quarters of each marked edge, from its lower end.
+    made = _at_quarters(points, edges[marked])
+    quarters = np.full((len(edges), 2), -1, dtype=np.int64)
+    quarters[marked] = len(points) + np.arange(len(made)).reshape(-1, 2)
+    points = np.concatenate([points, made])
     # First across the longest edge; then each half across the old edge that it kept.
     for _ in range(2):
         points, triangles, number = _halve(points, triangles, number, marked, quarters)
     return points, triangles
-
-
-def _quarter_nodes(points: Array, edges: Indices, marked: NDArray[np.bool_]) -> tuple[Array, Indices]:
-    """New nodes at a quarter and at three quarters of each marked edge, from its lower end."""
-    made = _at_quarters(points, edges[marked])
-    quarters = np.full((len(edges), 2), -1, dtype=np.int64)
-    quarters[marked] = len(points) + np.arange(len(made)).reshape(-1, 2)
-    return np.concatenate([points, made]), quarters
 
 
 def _at_quarters(points: Array, edges: Indices) -> Array:

@@ -9,9 +9,8 @@ import numpy as np
 
 from fluid.whirl import body_force_rate
 from meshes.arrays import Array, Complex, Flags
-from meshes.errors import InputError
 from solvers.held.convergence import Watch
-from solvers.held.state import COUPLED, HeldMachine, HoldNumerics, Moment
+from solvers.held.state import HeldMachine, HoldNumerics, Moment
 from solvers.layer.records import Outcome
 from solvers.potential.coupled import (
     Course,
@@ -118,14 +117,6 @@ def _moment(exact: ExactMachine, state: Array, spin: float, layers: Flags) -> Mo
         area[j] = layer.radius**2 * over
         momentum[j] = layer.radius**4 * spin * over * (velocity - over)
     return Moment(spin, parts.place.copy(), parts.rate.copy(), area, momentum, layers, parts.waves.copy())
-
-
-def require_own_steps(numerics: HoldNumerics) -> None:
-    """Raise `InputError` where a solver of py-pde is asked for, or a number of nodes that is not allowed."""
-    if numerics.solver != COUPLED:
-        raise InputError("solver", numerics.solver, "left out: fully nonlinear waves have their own steps")
-    if numerics.cells < 16 or numerics.cells % 2:
-        raise InputError("cells", numerics.cells, "an even number from 16 for fully nonlinear waves")
 
 
 def march(

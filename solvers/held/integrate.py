@@ -11,7 +11,7 @@ import numpy as np
 
 from fluid.fill import Fill
 from meshes.arrays import Array, Complex, Flags
-from meshes.errors import require_positive
+from meshes.errors import InputError, require_positive
 from solvers.held.convergence import Watch
 from solvers.held.state import COUPLED, HeldKind, HeldMachine, HeldState, HoldNumerics, Moment
 from solvers.layer.baffles import FACE, table_of
@@ -131,9 +131,11 @@ def compile_kernels(machine: HeldMachine, begin: Moment) -> None:
 def require_known_solver(machine: HeldMachine, spin: float, numerics: HoldNumerics) -> None:
     """Raise `InputError` unless py-pde has a solver of that name that can hold the machine."""
     if machine.exact:
-        from solvers.held.exact import require_own_steps
-
-        require_own_steps(numerics)
+        if numerics.solver != COUPLED:
+            text = "left out: fully nonlinear waves have their own steps"
+            raise InputError("solver", numerics.solver, text)
+        if numerics.cells < 16 or numerics.cells % 2:
+            raise InputError("cells", numerics.cells, "an even number from 16 for fully nonlinear waves")
         return
     if numerics.solver == COUPLED:
         return

@@ -235,11 +235,6 @@ def _parts_in(annotation: Any) -> Iterator[type[Part]]:
             yield from _parts_in(inside)
 
 
-def is_list_of_parts(field: FieldInfo) -> bool:
-    """Whether a field holds tables one after the other."""
-    return get_origin(field.annotation) is tuple and bool(parts_of(field))
-
-
 def allowed_at(field: FieldInfo) -> str:
     """What may stand at a field, in words."""
     rule = rule_of(field)

@@ -9,7 +9,7 @@ from typing import Annotated, Any, get_args, get_origin
 from pydantic.fields import FieldInfo
 
 from leblanc.scene.schema.load import field_path, meant
-from leblanc.scene.schema.part import Part, is_list_of_parts, parts_of, rule_of
+from leblanc.scene.schema.part import Part, parts_of, rule_of
 from leblanc.scene.schema.rules import Entries, Refused, Several
 
 Keys = tuple[str | int, ...]
@@ -30,7 +30,7 @@ def tables_of(root: type[Part], kind: str) -> dict[tuple[str, ...], type[Part]]:
     for name, field in root.model_fields.items():
         parts = parts_of(field)
         inside: dict[tuple[str, ...], type[Part]]
-        if is_list_of_parts(field):
+        if get_origin(field.annotation) is tuple and parts:
             inside = {(name, "*" if part.USUAL_KIND else f"*{key}"): part for key, part in parts.items()}
         else:
             part = parts.get(kind) or parts.get("")

@@ -23,7 +23,7 @@ from leblanc.studies.closed_forms.study import closed_forms
 from leblanc.studies.loads.answer import MachineLoads
 from leblanc.studies.loads.study import loaded_machine, loads_over_speed
 from leblanc.studies.run import notes as response_notes
-from meshes.arrays import Array, Complex, Flags, Index
+from meshes.arrays import Array, Complex, Index
 from meshes.errors import InputError
 from solvers.liquid_model import ROUNDING, LiquidModel
 from solvers.rotor.balls.balancers import BallRace as Race
@@ -166,7 +166,8 @@ def _estimated(
         linear = answer.liquid_model == "linear"
         error, waves = liquid_errors(machine, races, answer.ball_angle, answer.position, linear)
     if machine.across_gravity > 0.0:
-        in_range = carried_balls(machine, races)
+        # Where balls are pressed to their races all round in spite of gravity.
+        in_range = np.square(machine.speed) * min(race.radius for race in races) > machine.across_gravity
         if answer.liquid_model:
             (choice,) = choose_all([replace(machine, scene=machine.scene.without_balls())])
             in_range, captured_from = in_range & choice.in_range, choice.captured_from
@@ -318,9 +319,3 @@ def gravity_on_balls(
         moved[k] = abs(turning @ found.coordinates) + abs(back @ found.coordinates)
     least = min(race.radius for race in races)
     return GravityOnBalls(gravity / (least * np.square(speed)), swing, moved, power)
-
-
-def carried_balls(machine: Prepared, races: Sequence[Race]) -> Flags:
-    """Where balls are pressed to their races all round in spite of gravity, shape (s,)."""
-    least = min(race.radius for race in races)
-    return np.asarray(np.square(machine.speed) * least > machine.across_gravity)

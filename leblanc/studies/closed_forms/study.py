@@ -30,11 +30,12 @@ def closed_forms(machine: Prepared, answer: Response | None = None) -> ClosedFor
     vector = None
     if answer is not None and scene.fills and isinstance(machine.rotor, Jeffcott):
         vector = vector_model(machine.rotor, answer, sum(fill.mass for fill in scene.fills))
+    bearings = scene.rotor.caged() if isinstance(scene.rotor, TubRotor | TwoPlaneRotor) else ()
     return ClosedForms(
         upright=upright(scene, speed),
         vector=vector,
         balancing=balancing,
-        cages=_cages(scene, speed),
+        cages=cages_of(bearings, speed),
         lacking=tuple(text for text in missing if text is not None),
     )
 
@@ -112,12 +113,6 @@ def _no_balls(scene: Scene) -> str | None:
     return (
         "Speed of the bearings' cages: ball_diameter and pitch_diameter are not given in [[rotor.bearings]]."
     )
-
-
-def _cages(scene: Scene, speed: Array) -> tuple[Cage, ...]:
-    """Speeds of the cages of the bearings whose balls are given."""
-    bearings = scene.rotor.caged() if isinstance(scene.rotor, TubRotor | TwoPlaneRotor) else ()
-    return cages_of(bearings, speed)
 
 
 def cages_of(bearings: Sequence[CagedBearing], speed: Array) -> tuple[Cage, ...]:

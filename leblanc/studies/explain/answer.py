@@ -221,11 +221,13 @@ def described_blocks(answer: ExplainAnswer) -> list[Block]:
     if answer.models:
         found.append(Words(f"liquid model, with a tolerance of {percent(answer.tolerance)}"))
     for span in answer.models:
-        found += [Words(f"  {span_heading(span)}"), Table(span_rows(span), indent=4)]
-    if rows := estimate_rows(answer):
+        beyond = "" if span.in_range else " (out of range)"
+        rows = [("estimated error", error_words(span)), ("why", span.reason), ("next better", span.better)]
+        found += [Words(f"  {speeds_words(span)} rpm: {span.model}{beyond}"), Table(rows, indent=4)]
+    if estimates := estimate_rows(answer):
         found += [
             Words("  estimated: error of the means, ripple about them once a turn by gravity"),
-            Table(rows, ESTIMATES, indent=4),
+            Table(estimates, ESTIMATES, indent=4),
         ]
     if answer.models:
         found.append(Table(described(span.model for span in answer.models), indent=2))
@@ -358,11 +360,6 @@ def carrying_words(found: BaffleOutlook) -> str:
     return f"{text}: the liquid slips up to {in_rpm(found.enough_from)}"
 
 
-def span_rows(span: ModelSpan) -> Rows:
-    """One range of speeds: its error, why that model, and what the next better one gives."""
-    return [("estimated error", error_words(span)), ("why", span.reason), ("next better", span.better)]
-
-
 _SHOWN = 9  # speeds in the table of estimates
 
 
@@ -389,11 +386,6 @@ def _share(value: float) -> str:
     if math.isnan(value):
         return "not known"
     return percent(value) if math.isfinite(value) else "no bound"
-
-
-def span_heading(span: ModelSpan) -> str:
-    """Range of speeds and its model."""
-    return f"{speeds_words(span)} rpm: {span.model}{'' if span.in_range else ' (out of range)'}"
 
 
 def facts(answer: ExplainAnswer) -> Rows:

@@ -185,7 +185,8 @@ def _rows(path: str | PathLike[str], text: str) -> tuple[list[tuple[int, list[st
             # No cell of a table of numbers holds a line break: a quote ends on its line.
             (cells,) = csv.reader([line], delimiter=delimiter, skipinitialspace=True, strict=True)
         except (csv.Error, ValueError) as fault:
-            allowed = f"a row whose quotes are closed, {_sign(delimiter)} between its cells"
+            signs = {",": "commas", ";": "semicolons", "\t": "tabs"}[delimiter]
+            allowed = f"a row whose quotes are closed, {signs} between its cells"
             raise InputError(f"{path}:{number}", line[:60], allowed) from fault
         cells = [cell.strip() for cell in cells]
         while cells and not cells[-1]:
@@ -193,10 +194,6 @@ def _rows(path: str | PathLike[str], text: str) -> tuple[list[tuple[int, list[st
         if cells:
             found.append((number, cells))
     return found, delimiter
-
-
-def _sign(delimiter: str) -> str:
-    return {",": "commas", ";": "semicolons", "\t": "tabs"}[delimiter]
 
 
 def _is_units(row: Sequence[str]) -> bool:

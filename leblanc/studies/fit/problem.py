@@ -285,7 +285,8 @@ def answer(scene: Scene, over: str, at: Array, names: Sequence[str]) -> list[Arr
         found = steady(scene, speed)
         return [np.asarray(_quantity(found, name))[where] for name in names]
     if over == "added":
-        filled = [_with_more(scene, volume) for volume in at.tolist()]
+        first = scene.liquids[0].volume
+        filled = [scene.replace({"chambers.0.volume": first + volume}) for volume in at.tolist()]
         return [np.array([_of_fill(each, name) for each in filled]) for name in names]
     history = _history(scene)
     own = {name: history.coordinates[:, k] for k, name in enumerate(dry_rotor(scene).system().coordinates)}
@@ -294,11 +295,6 @@ def answer(scene: Scene, over: str, at: Array, names: Sequence[str]) -> list[Arr
         if name not in own:
             raise InputError(FIELD, name, "measured over speed or liquid added, or one of " + ", ".join(own))
     return [np.interp(at, history.time, own[name], right=np.nan) for name in names]
-
-
-def _with_more(scene: Scene, volume: float) -> Scene:
-    """The scene with more liquid in its first chamber, m^3."""
-    return scene.replace({"chambers.0.volume": scene.liquids[0].volume + volume})
 
 
 def _of_fill(scene: Scene, name: str) -> float:

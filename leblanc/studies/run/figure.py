@@ -104,10 +104,10 @@ def liquid_figure(result: RunAnswer) -> Figure:
     """Distance and angle of the liquid's centre of mass over speed."""
     panels = [(1.55, draw_offset), (1.55, draw_angle)]
     text = f"Centre of mass of the liquid: distance from the rotation axis, angle from {zero_of(result)}."
-    if _layers_held(result):
+    if result.held is not None and np.isfinite(result.held.ripple).any():
         panels.append((1.55, draw_layers))
         text += " Below: each layer's from its chamber's axis, mean and swing, as seen from the drum"
-        few = result.held is not None and result.held.ripple.shape[1] > len(LAYERS)
+        few = result.held.ripple.shape[1] > len(LAYERS)
         text += f" (the {len(LAYERS)} that swing most)." if few else "."
     return _over_speed(result, "liquid", panels, text)
 
@@ -150,20 +150,16 @@ def _over_speed(result: RunAnswer, name: str, panels: Sequence[tuple[float, Draw
         rows[-1][0].set_xlabel("")
         if len(rows) > 1:
             for axes in [axes for row in (*rows, *wide) for axes in row]:
-                _make_low(axes)
+                # For a low panel a label of two lines and no upright names of ranges, which the legend has.
+                axes.set_ylabel(axes.get_ylabel().replace(" (", "\n("))
+                for upright in [part for part in axes.texts if part.get_rotation() == 90.0]:
+                    upright.remove()
         heights = [SHARE * height for height in heights] * 2
         whole = [axes for (axes,) in rows]
         parts = ", ".join(f"{number(round(low))} to {number(round(high))} rpm" for low, high in spans)
         figure.alt += f" Drawn once more below, wider: {parts}."
         add_windows(figure, whole, wide, heights, caption(result, f"{text} {wider_words()}"))
     return figure
-
-
-def _make_low(axes: Axes) -> None:
-    """Label of two lines and no upright names of ranges, which the legend has, for a low panel."""
-    axes.set_ylabel(axes.get_ylabel().replace(" (", "\n("))
-    for text in [text for text in axes.texts if text.get_rotation() == 90.0]:
-        text.remove()
 
 
 def _number_axes(axes: Axes) -> None:
@@ -179,11 +175,6 @@ def _number_axes(axes: Axes) -> None:
 def wider_words() -> str:
     """What the panels below the whole range are, for the caption."""
     return f"Below, wider: resonances under {100.0 * NARROW:g} % of the axis (half-power band)."
-
-
-def _layers_held(result: RunAnswer) -> bool:
-    """Some layer has a time-domain state."""
-    return result.held is not None and bool(np.isfinite(result.held.ripple).any())
 
 
 def draw_amplitude(axes: Axes, curves: Curves, result: RunAnswer) -> None:

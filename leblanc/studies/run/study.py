@@ -98,14 +98,6 @@ def self_excited(machine: Prepared) -> SelfExcited:
     return SelfExcited(growth, whirl_speed, bands, machine.drag, bands_not_known(speed, growth))
 
 
-def _grown_whirl(machine: Prepared) -> tuple[SelfExcited, tuple[Note, ...]]:
-    """Growth of small whirls, how large they become, and what is to be said of that."""
-    whirl = self_excited(machine)
-    update(what="limit cycles")
-    large, said = large_whirl(machine, whirl.growth)
-    return replace(whirl, large=large), said
-
-
 def motion_response(machine: Prepared, choice: Choice) -> tuple[Response, Motion, tuple[float, float]]:
     """Response of a rotor that is not planar, its motion, and the excited critical speeds, rad/s.
 
@@ -196,7 +188,12 @@ def run_scene(scene: Scene, holding: Holding = HERE, cycles: bool = False) -> Ru
         update(what="finite elements")
         choice, answer, refined = element_answers(machine, choice, answer, refined)
     update(what="self-excited whirl")
-    whirl, grown = _grown_whirl(machine) if cycles else (self_excited(machine), ())
+    whirl = self_excited(machine)
+    grown: tuple[Note, ...] = ()
+    if cycles:
+        update(what="limit cycles")
+        large, grown = large_whirl(machine, whirl.growth)
+        whirl = replace(whirl, large=large)
     choice = costed(machine, choice, whirl.growth)
     at, held, stable = held_at(scene, choice, whirl.growth), None, whirl.leaves_stable(answer.stable)
     states: dict[float, HeldState] = {}

@@ -229,13 +229,9 @@ def comparisons(result: RunAnswer) -> list[Comparison]:
 
 def quality_words(quality: float) -> str:
     """A balance quality with the grade of ISO 21940-11 that it keeps."""
-    return f"{number(quality * 1e3)} mm/s ({grade_words(quality)})"
-
-
-def grade_words(quality: float) -> str:
-    """The finest grade of ISO 21940-11 that a balance quality, m/s, keeps, in words."""
     finest = grade_of(quality)
-    return f"above {grade_name(GRADES[-1])}" if finest is None else grade_name(finest)
+    grade = f"above {grade_name(GRADES[-1])}" if finest is None else grade_name(finest)
+    return f"{number(quality * 1e3)} mm/s ({grade})"
 
 
 def _compared(label: str, result: RunAnswer, wet: int | None, dry: int | None) -> Comparison:

@@ -376,7 +376,8 @@ def energy_figure(result: RunupAnswer) -> Figure:
         largest = max(abs(value) for *_, value in rows) or 1.0
         least = min(0.0, *(value for *_, value in rows))
         for row, (*_, value) in enumerate(rows):
-            axes.text(max(value, 0.0) + 0.01 * largest, row, f" {_joule(value)} J", va="center", fontsize=7)
+            text = f" {value:.3g} J".replace("-", "\N{MINUS SIGN}")
+            axes.text(max(value, 0.0) + 0.01 * largest, row, text, va="center", fontsize=7)
         axes.axvline(0.0, color="0.15", linewidth=0.8)
         axes.set_xlim(1.1 * least - 0.01 * largest, 1.2 * largest)
         axes.set_ylim(len(rows) - 0.4, -0.6)
@@ -390,10 +391,6 @@ def energy_figure(result: RunupAnswer) -> Figure:
             "Bars of the work done on rotor and liquid and of where it went, as in the table of the energy."
         )
     return figure
-
-
-def _joule(value: float) -> str:
-    return f"{value:.3g}".replace("-", "\N{MINUS SIGN}")
 
 
 def caption(result: RunupAnswer, text: str) -> Caption:

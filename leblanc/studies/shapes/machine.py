@@ -60,7 +60,10 @@ AROUND_MODE, ACROSS = 120, 4  # elements around and across the layer
 
 def machine_motion(scene: Scene, speed: float | None = None) -> MachineMotion:
     """Answer of a scene at one speed, or at all its own."""
-    require_rotor(scene)
+    if isinstance(scene.rotor, Spindle | Machine):
+        raise not_taken(scene.rotor.kind)
+    if scene.rotor.kind == "exciter":
+        raise not_taken("exciter", "; only --screenshot shows a picture of it")
     if speed is not None:
         if not (math.isfinite(speed) and speed > 0.0):
             raise InputError("--speed", speed, "a finite number above 0")
@@ -77,14 +80,6 @@ def machine_motion(scene: Scene, speed: float | None = None) -> MachineMotion:
     gravity, lean = axial_gravity(scene), _lean(scene, result)
     parts = machine_parts(scene, places)
     return MachineMotion(result, scene.fills, places, moved, gravity, deflection, lean, parts)
-
-
-def require_rotor(scene: Scene) -> None:
-    """The scene has a rotor that whirls, and not a table with balls."""
-    if isinstance(scene.rotor, Spindle | Machine):
-        raise not_taken(scene.rotor.kind)
-    if scene.rotor.kind == "exciter":
-        raise not_taken("exciter", "; only --screenshot shows a picture of it")
 
 
 def _lean(scene: Scene, result: RunAnswer) -> Complex:

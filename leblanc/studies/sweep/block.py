@@ -99,12 +99,9 @@ def make_scenes(make: Maker, rows: Iterable[Sequence[Any]]) -> tuple[list[Scene 
             reasons.append("")
         except SceneError as error:
             scenes.append(None)
-            reasons.append("; ".join(_without_file(str(fault), fault.file) for fault in error.faults))
+            said = (str(fault).removeprefix(f"{escaped(fault.file)}: ") for fault in error.faults)
+            reasons.append("; ".join(said))
     return scenes, reasons
-
-
-def _without_file(line: str, file: str) -> str:
-    return line.removeprefix(f"{escaped(file)}: ")
 
 
 _LONGEST = 2000  # characters of a reason

@@ -247,6 +247,7 @@ def _output_attributes(output: Q) -> dict[str, Any]:
 
 def _attributes(sweep: Sweep) -> dict[str, Any]:
     """What the store says of itself; two runs of one sweep say the same."""
+    used = versions(("leblanc", "numpy", "scipy", "zarr"))
     return {
         "Conventions": "CF-1.11",
         "title": one_line(sweep.scene.name),
@@ -259,15 +260,8 @@ def _attributes(sweep: Sweep) -> dict[str, Any]:
         "seed": str(sweep.seed),
         "vary": "\n".join(f"{field.path}: {field.distribution}" for field in sweep.fields),
         "history": "written by leblanc sweep",
-        **{f"version_{package}": version for package, version in _versions().items()},
+        **{f"version_{package}": version for package, version in used.items()},
     }
-
-
-def _versions() -> dict[str, str]:
-    """Versions of what makes the numbers and of what writes them."""
-    from importlib import metadata
-
-    return versions() | {"zarr": metadata.version("zarr")}
 
 
 def _same(path: Path, found: Mapping[str, Any], own: Mapping[str, Any]) -> None:

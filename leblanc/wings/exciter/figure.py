@@ -70,7 +70,11 @@ def _draw_stuck(axes: Any, result: ExciterAnswer) -> None:
         result.machine.natural_frequency * RPM, color="0.45", linewidth=0.7, label="natural frequency"
     )
     _draw_checks(axes, result, "stuck_speed", RPM)
-    _draw_lost(axes, result)
+    # Crosses on the slowest branch where the balls leave it or do not come to it.
+    lost = [check.speed for check in result.checks if not check.holds]
+    if lost:
+        places = np.interp(lost, result.speed, result.stuck_speeds[:, 0])
+        axes.plot(np.array(lost) * RPM, places * RPM, label="time integration, balls leave", **_LOST)
     axes.set_ylabel("Speed of the balls (rpm)")
 
 
@@ -97,14 +101,6 @@ def _draw_checks(axes: Any, result: ExciterAnswer, quantity: str, unit: float) -
         axes.plot(
             [check.speed * RPM for check in mine], values, label="time integration, balls stay", **_HELD
         )
-
-
-def _draw_lost(axes: Any, result: ExciterAnswer) -> None:
-    """Crosses on the slowest branch where the balls leave it or do not come to it."""
-    lost = [check.speed for check in result.checks if not check.holds]
-    if lost:
-        places = np.interp(lost, result.speed, result.stuck_speeds[:, 0])
-        axes.plot(np.array(lost) * RPM, places * RPM, label="time integration, balls leave", **_LOST)
 
 
 def _mark_critical(axes: Any, result: ExciterAnswer) -> None:
