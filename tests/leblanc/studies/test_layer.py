@@ -489,7 +489,7 @@ def test_a_machine_says_what_is_in_its_chamber() -> None:
             "chamber",
         ),
         ({"scene": None, "radius": 0.1, "height": 0.1, "speed": 9.0}, "volume"),
-        ({"scene": lb.example("vibratory_table")}, "chamber"),
+        ({"scene": lb.example("vibratory_table")}, "rotor.kind"),
     ],
 )
 def test_what_a_machine_says_is_not_typed_again(asked: dict[str, object], field: str) -> None:

@@ -419,7 +419,7 @@ def test_what_does_not_fit_is_refused() -> None:
         (scene, Optimisation(volumes=((0.0, 1.0), (0.0, 1.0))), "optimise.volumes"),
         (scene, Optimisation(volumes=((1.0, 2.0),)), "optimise.volumes.0"),
         (scene.altered(chambers=()), Optimisation(), "chambers"),
-        (table, Optimisation(), "chambers"),
+        (table, Optimisation(), "rotor.kind"),
     ):
         with pytest.raises(InputError, match=field):
             optimise_scene(one, task=task, front=False)
