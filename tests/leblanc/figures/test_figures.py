@@ -260,7 +260,8 @@ def test_texts_stay_on_the_page_and_apart(name: str):
     record = narrow() if name == "narrow" else EXTREMES[name]()
     for draw in DRAW:
         figure = draw(record)
-        FigureCanvasAgg(figure).draw()
+        FigureCanvasAgg(figure)
+        figure.draw_without_rendering()
         # All that is drawn, tick labels included, inches.
         drawn, (width, height) = figure.get_tightbbox(), figure.get_size_inches()
         assert drawn.x0 >= 0.0, draw.__name__
@@ -276,8 +277,8 @@ def test_texts_stay_on_the_page_and_apart(name: str):
             assert common is None or min(common.width, common.height) < 3.0, (draw.__name__, one, other)
 
 
-def test_a_million_speeds_keep_their_peak():
-    record = rig(1_000_000)
+def test_very_many_speeds_keep_their_peak():
+    record = rig(200_000)
     r = record.response
     w = r.deflection.copy()
     w[123_457] *= 100.0

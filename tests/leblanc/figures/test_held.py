@@ -157,7 +157,8 @@ def test_alternative_texts_tell_what_is_drawn() -> None:
 @pytest.mark.parametrize("draw", [run_figures.amplitude_figure, run_figures.liquid_figure])
 def test_panels_do_not_overlap(draw) -> None:
     figure = draw(held_rig())
-    FigureCanvasAgg(figure).draw()
+    FigureCanvasAgg(figure)
+    figure.draw_without_rendering()
     boxes = sorted((axes.get_tightbbox() for axes in figure.axes), key=lambda box: box.y0)
     assert all(low.y1 <= high.y0 + 1.0 for low, high in pairwise(boxes))
 
