@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import fields
 from itertools import pairwise
 
@@ -186,20 +187,18 @@ def test_one_family_approaches_in_its_own_scaling(way: float, whitham: bool) -> 
 # --- what is kept ---
 
 
-def estimates(cases: Cases) -> dict[str, Array]:
+def estimates(cases: Cases) -> Iterator[tuple[str, Array]]:
+    """Names of models and what their errors are estimated to be, one after the other."""
     at = np.array([detuning(*pair) for pair in zip(cases.layer, cases.ratio, strict=True)])
-    found = {
-        "linear": linear_error(cases.layer, at, cases.whirl),
-        "long_wave": long_wave_error(cases.layer, at, cases.whirl, dispersion=False),
-        "dispersion": long_wave_error(cases.layer, at, cases.whirl, dispersion=True),
-    }
+    yield "linear", linear_error(cases.layer, at, cases.whirl)
+    yield "long_wave", long_wave_error(cases.layer, at, cases.whirl, dispersion=False)
+    yield "dispersion", long_wave_error(cases.layer, at, cases.whirl, dispersion=True)
     for twin, ending in enumerate(("", "_twin")):
         for name in ("kdv", "whitham"):
-            found[name + ending] = np.array([
+            yield name + ending, np.array([
                 family_error(layer, whirl_speeds(layer, ratio)[twin], whirl, name == "whitham")
                 for layer, ratio, whirl in zip(cases.layer, cases.ratio, cases.whirl, strict=True)
             ])  # fmt: skip
-    return found
 
 
 # Least share of the errors that are covered, and most of the median of the estimate over the error.
@@ -212,7 +211,7 @@ COVERED = {"linear": (0.95, 1.1), "long_wave": (0.97, 1.1), "dispersion": (0.97,
 def test_estimates_cover_waves_that_no_constant_was_fitted_to() -> None:
     drawn = kept().drawn
     assert np.count_nonzero(drawn.smooth) > 300
-    for name, estimate in estimates(drawn).items():
+    for name, estimate in estimates(drawn):
         error = drawn.error(name)
         known = np.isfinite(error)
         assert np.isfinite(estimate[known]).all(), name

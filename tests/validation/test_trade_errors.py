@@ -563,7 +563,8 @@ def test_response_ladder() -> None:
     """On the vertical axis the plane cells miss the paraboloid whatever their number; elements do not."""
     question = response_question(scene("vertical_rig"), quick=True)
     cut = replace(question, scene=at_speeds(question.scene, np.array([12.5])))
-    found = error_table(cut, [case for case in cut.cases if case.variant != "order 1"])
+    told = [case for case in cut.cases if case.variant == "" or case.label == "fem 16, order 2"]
+    found = error_table(cut, [case for case in told if case.model != "linear"])
     assert found["auto"][0] <= 0.01 and found["statics"][0] == 0.0
     assert found["fem 16, order 2"][0] < 1e-4 < 1e-3 < min(found[f"long_wave {n}"][0] for n in (16, 32, 64))
     assert not answer(cut.scene, Case(RESPONSE, "long_wave", 16)).in_range
