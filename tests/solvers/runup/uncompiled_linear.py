@@ -86,7 +86,7 @@ def test_growth() -> None:
     """A machine let go grows, or dies, as its characteristic equation says."""
     for rate in (0.0, 5.0):
         free = Jeffcott(3.0, 3.0 * 15.0**2, 0.0, 0.0)
-        found = couple_linear(free.system(), [FILL], 22.0, Friction("linear", rate), 0.0, 64, False)
+        found = couple_linear(free.system(), [FILL], 22.0, Friction("linear", rate), 0.0, 32, False)
         found.machine.place[0] = 1e-6
         seen = []
         times = np.linspace(0.0, 3.0, 61)[1:]
