@@ -39,7 +39,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     # Before numpy is loaded: small matrices get many times slower when the BLAS spreads them over threads.
     os.environ |= dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1")
     os.environ["MPLBACKEND"] = "Agg"
-    cases = [case for case in all_cases() if asked.only in case.name]
+    cases = [case for case in all_cases() if any(name in case.name for name in asked.only or [""])]
     if asked.list:
         print("\n".join(f"{case.name:28}{' '.join(case.argv)}" for case in cases))
         return 0
@@ -58,7 +58,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="python -m tests.net", description=__doc__)
     parser.add_argument("action", choices=_ACTIONS, help="; ".join(f"{k}: {v}" for k, v in _ACTIONS.items()))
-    parser.add_argument("--only", default="", metavar="NAME", help="commands whose name has this in it")
+    parser.add_argument(
+        "--only",
+        nargs="+",
+        action="extend",
+        default=[],
+        metavar="NAME",
+        help="commands whose name has one of these in it",
+    )
     parser.add_argument("--jobs", type=int, default=2, help="processes [default: 2]")
     parser.add_argument("--list", action="store_true", help="show the commands, run none")
     parser.add_argument("--kept", type=Path, default=KEPT, help="folder of the kept answers")
