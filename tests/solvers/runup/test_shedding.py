@@ -141,6 +141,8 @@ def test_water_that_leaves_takes_its_momentum_along(model: RunupModel) -> None:
 
 
 @kills("solvers.runup.state:CoupledRotor.lighten", "-= mass - gone", "-= 0.0")
+@kills("solvers.runup.state:CoupledRotor.lighten", "-0.5 * float(", "0.5 * float(")
+@kills("solvers.runup.state:CoupledRotor.lighten", "@ (mass - gone) @", "@ mass @")
 @kills("solvers.runup.shedding:Shedding._lost", "mass += (1.0 - share)", "mass += share")
 def test_the_lighter_rotor_moves_as_such() -> None:
     """scipy with M(t) and no force of what leaves, through the resonance; the energy closes."""

@@ -15,6 +15,7 @@ from fluid.liquid import KNOWN_LIQUIDS
 from fluid.waves import gravity_offset
 from leblanc.liquid.choose import across_gravity, axial_gravity
 from leblanc.scene.scene import dry_rotor, load_scene
+from meshes.arrays import Array
 from meshes.chamber import Chamber
 from solvers.layer.records import Outcome
 from solvers.liquid_model import Whirls
@@ -266,6 +267,25 @@ def test_several_branches_have_no_narrow_bounds() -> None:
     assert several.any()
     error = planar(light, [DRUM], answer.speed[several].tolist()).error()
     assert (error.amplitude > 0.1).all()
+
+
+@kills("solvers.synchronous.errors:_largest_coupled", "left = left[falls]", "left = left[~falls]")
+@kills("solvers.synchronous.errors:_largest_coupled", "own.at(left) for own", "own.at(left[::-1]) for own")
+@kills("solvers.synchronous.errors:_largest_coupled", "linear[left] + _", "linear[left[::-1]] + _")
+def test_bounds_of_speeds_do_not_hang_on_one_another(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each speed of an upright tub has its bound alone; more rounds never raise one and lower some."""
+    scene = load_scene("examples/tub.toml")
+    system, speed = dry_rotor(scene).system(), np.linspace(5.0, 31.0, 9)
+
+    def found(speeds: Array) -> Array:
+        return error_estimate(system, scene.fills, speeds, 9.81, position=0.0)[0].amplitude
+
+    together = found(speed)
+    alone = np.concatenate([found(speed[k : k + 1]) for k in range(9)])
+    np.testing.assert_allclose(together, alone, rtol=1e-9)
+    monkeypatch.setattr("solvers.synchronous.errors._COUPLED_ROUNDS", 1)
+    once = found(speed)
+    assert (together <= once).all() and (together < 0.99 * once).any()
 
 
 @kills("solvers.synchronous.errors:_largest_coupled", "+ _carried(spread[left]", "- _carried(spread[left]")
