@@ -155,6 +155,7 @@ def _usage(error: BaseException) -> str:
     """One line for a wrong command line."""
     context = getattr(error, "ctx", None)
     message = " ".join(str(getattr(error, "format_message", error.__str__)()).split())
+    message += "" if message.endswith((".", "?")) else "."
     return escaped(f"leblanc: {message} See: {context.command_path if context else 'leblanc'} --help")
 
 

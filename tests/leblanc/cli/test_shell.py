@@ -120,7 +120,7 @@ def test_a_wrong_command_line_is_one_clear_line(arguments: list[str], said: str,
     (line,) = printed.err.splitlines()
     assert line.startswith("leblanc: ")
     assert said in line
-    assert "--help" in line
+    assert line.endswith((". See: leblanc --help", "? See: leblanc --help", ". See: leblanc new --help"))
 
 
 # -- what a command may raise --------------------------------------------------------------------------------
