@@ -146,7 +146,7 @@ def _bounds(rule: Any) -> str:
     if isinstance(rule, Span):
         return f"two, the lower first, each {_bounds(rule.each)}"
     if isinstance(rule, Several):
-        return f"{_bounds(rule.each)}; or three of them"
+        return f"{_bounds(rule.each)}; or {rule.count} of them"
     if isinstance(rule, Text):
         return f"a text of at most {rule.longest} characters"
     # A table in a table is one piece of code.

@@ -160,14 +160,20 @@ class JeffcottRotor(Part):
         return []
 
 
+def _across(dimension: units.Dimension) -> PlainValidator:
+    """The same in all directions across the axis, or along the first and the second."""
+    each = Quantity(dimension, 0.0, 1e15)
+    return PlainValidator(Several(each, "two", "the first and the second direction across the axis"))
+
+
 class Support(Part):
-    """An isotropic support of the rotor's axis."""
+    """A support of the rotor's axis."""
 
     position: Position = Field(description="along the axis from the rotor's centre of mass")
-    stiffness: Annotated[float, quantity(units.STIFFNESS, 0.0, 1e15)] = Field(
-        description="the same in all directions across the axis"
+    stiffness: Annotated[float | tuple[float, float], _across(units.STIFFNESS)] = Field(
+        description="the same in all directions across the axis, or one for each of two"
     )
-    damping: Damping = Field(description="likewise")
+    damping: Annotated[float | tuple[float, float], _across(units.DAMPING)] = Field(description="likewise")
     ball_diameter: BallDiameter = None
     pitch_diameter: PitchDiameter = None
     contact_angle: ContactAngle = 0.0
@@ -273,8 +279,8 @@ class TwoPlaneRotor(Part):
             (
                 Value(f"{k + 1}"),
                 Value(number(support.position * MM), (f"rotor.supports.{k}.position",)),
-                Value(number(support.stiffness), (f"rotor.supports.{k}.stiffness",)),
-                Value(number(support.damping), (f"rotor.supports.{k}.damping",)),
+                Value(_each(support.stiffness), (f"rotor.supports.{k}.stiffness",)),
+                Value(_each(support.damping), (f"rotor.supports.{k}.damping",)),
                 *columns[k],
             )
             for k, support in enumerate(self.supports)
@@ -284,6 +290,11 @@ class TwoPlaneRotor(Part):
         if self.unbalances:
             found.append(unbalance_table("Unbalance", "rotor.unbalances", self.unbalances))
         return found
+
+
+def _each(value: float | tuple[float, float]) -> str:
+    """One value, or one for each direction, for readers."""
+    return f"({three(value)})" if isinstance(value, tuple) else number(value)
 
 
 _DIRECTION = entries(3, 3, "pure numbers, along x, y, z")

@@ -1,4 +1,4 @@
-"""A rigid rotor in isotropic supports along its axis, with the gyroscopic terms of its spin."""
+"""A rigid rotor in supports along its axis, with the gyroscopic terms of its spin."""
 
 from __future__ import annotations
 
@@ -15,16 +15,32 @@ from solvers.rotor.system import RotorSystem
 
 @dataclass(frozen=True)
 class Support:
-    """An isotropic support of the rotor's axis."""
+    """A support of the rotor's axis, the same in all directions or unlike in two."""
 
     position: float  #: along the axis from the rotor's centre of mass, m
-    stiffness: float  #: k, N/m, the same in all directions across the axis
-    damping: float  #: c, N s/m, likewise
+    #: k, N/m: of all directions across the axis, or of the first and of the second
+    stiffness: float | tuple[float, float]
+    damping: float | tuple[float, float]  #: c, N s/m, likewise
 
     def __post_init__(self) -> None:
         _require_finite("position", self.position)
-        require_not_negative("stiffness", self.stiffness)
-        require_not_negative("damping", self.damping)
+        for name in ("stiffness", "damping"):
+            for value in _in_two(getattr(self, name)):
+                require_not_negative(name, value)
+
+    @property
+    def across(self) -> tuple[Array, Array]:
+        """Stiffness and damping along the two directions across the axis, shape (2, 2) each."""
+        return np.diag(_in_two(self.stiffness)), np.diag(_in_two(self.damping))
+
+    @property
+    def isotropic(self) -> bool:
+        """It resists in all directions alike."""
+        return all(len(set(_in_two(value))) == 1 for value in (self.stiffness, self.damping))
+
+
+def _in_two(value: float | tuple[float, float]) -> tuple[float, float]:
+    return value if isinstance(value, tuple) else (value, value)
 
 
 @dataclass(frozen=True)
@@ -69,9 +85,9 @@ class TwoPlane:
         """Equations of motion for x, y of the centre of mass and the turns alpha, beta about x and y."""
         stiffness, damping, gyroscopic = np.zeros((3, 4, 4))
         for support in self.supports:
-            axis = _axis(support.position)
-            stiffness += support.stiffness * axis.T @ axis
-            damping += support.damping * axis.T @ axis
+            axis, (spring, damper) = _axis(support.position), support.across
+            stiffness += axis.T @ spring @ axis
+            damping += axis.T @ damper @ axis
         gyroscopic[2, 3], gyroscopic[3, 2] = self.polar_inertia, -self.polar_inertia
         unbalance = np.zeros(4, dtype=complex)
         for unbalanced in self.unbalances:

@@ -62,7 +62,10 @@ heavy = TwoPlane(
     HEAVIER * LONG.mass,
     HEAVIER * LONG.transverse_inertia,
     HEAVIER * LONG.polar_inertia,
-    tuple(Support(one.position, HEAVIER * one.stiffness, HEAVIER * one.damping) for one in LONG.supports),
+    tuple(
+        Support(one.position, HEAVIER * float(one.across[0][0, 0]), HEAVIER * float(one.across[1][0, 0]))
+        for one in LONG.supports
+    ),
     LONG.unbalances,
 )
 race = RACES[0]

@@ -51,20 +51,22 @@ class Quantity:
 
 @dataclass(frozen=True)
 class Several:
-    """One quantity, or three of them, along x, y, z."""
+    """One quantity, or several of them, along x, y, z or other directions."""
 
     each: Quantity
+    count: str = "three"
+    directions: str = "x, y, z"
 
     @property
     def allowed(self) -> str:
         """What is allowed, as a text."""
-        return f"{self.each.allowed}; or a list of three, along x, y, z"
+        return f"{self.each.allowed}; or a list of {self.count}, along {self.directions}"
 
     def __call__(self, value: object) -> float | tuple[float, ...]:
         """Value or values in SI units."""
         if not isinstance(value, list | tuple):
             return self.each(value)
-        if len(value) != 3:
+        if len(value) != {"two": 2, "three": 3}[self.count]:
             raise Refused(self.allowed)
         return tuple(map(self.each, value))
 

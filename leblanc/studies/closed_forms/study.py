@@ -144,6 +144,8 @@ def lacking(scene: Scene) -> str | None:
         )
     if scene.rotor.pivot is None:
         return f"{stability}: rotor.pivot, the place of a ball joint, is not given."
+    if not all(support.isotropic for support in scene.rotor.machine().supports):
+        return f"{stability}: a support differs in two directions."
     walls = [fill.chamber for fill in scene.fills]
     if any(chamber.section is not None or chamber.baffles is not None for chamber in walls):
         return f"{stability}: a chamber has baffles or a section of its own."
@@ -161,7 +163,8 @@ def upright(scene: Scene, speed: Array) -> Upright | None:
     if lacking(scene) is not None or not isinstance(rotor, TwoPlaneRotor) or rotor.pivot is None:
         return None
     pivot, fills = rotor.pivot, [fill for fill in scene.fills if fill.volume > 0.0]
-    stiffness = sum(support.stiffness * (support.position - pivot) ** 2 for support in rotor.supports)
+    supports = rotor.machine().supports
+    stiffness = sum(float(each.across[0][0, 0]) * (each.position - pivot) ** 2 for each in supports)
     top = Top(rotor.mass, rotor.transverse_inertia, rotor.polar_inertia, -pivot, stiffness)
 
     def left_at(spin: Array) -> Array:

@@ -162,7 +162,7 @@ def _two_plane(scene: Scene, rotor: TwoPlaneRotor, places: tuple[float, ...]) ->
         for strut in _radial(
             support.position, BEARING * radius, 1.25 * radius, UNDER if rotor.axis == "horizontal" else AROUND
         )
-        if strut.kind == "spring" or support.damping > 0.0
+        if strut.kind == "spring" or support.damping not in (0.0, (0.0, 0.0))
     )
     beyond = 0.15 * radius
     first, last = min([low, *supports]) - beyond, max([high, *supports]) + beyond

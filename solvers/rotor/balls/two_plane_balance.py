@@ -155,12 +155,18 @@ def dynamic_balancing(
 
 
 def of_two_planes(rotor: TwoPlane, added_mass: float = 0.0) -> RigidRotor:
-    """Rotor of `solvers.rotor.two_plane` as its balancing sees it, with the mass of the balancers, kg."""
+    """Rotor of `solvers.rotor.two_plane` as its balancing sees it, with the mass of the balancers, kg.
+
+    An `InputError` where a support differs in two directions: the conditions are those of supports alike.
+    """
     across, along = rotor.transverse_inertia, rotor.polar_inertia
+    for support in rotor.supports:
+        if not support.isotropic:
+            raise InputError("supports", support, "the same in all directions across the axis")
     return RigidRotor(
         mass=rotor.mass + added_mass,
         inertia=(across, across, along),
-        stiffness=tuple(support.stiffness for support in rotor.supports),
+        stiffness=tuple(float(support.across[0][0, 0]) for support in rotor.supports),
         position=tuple(support.position for support in rotor.supports),
     )
 

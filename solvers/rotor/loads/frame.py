@@ -78,7 +78,7 @@ def holders_of(rotor: AnyRotor) -> tuple[Holder, ...]:
         return (*springs, *dampers)
     if isinstance(rotor, TwoPlane):
         return tuple(
-            Holder(f"support {k + 1}", (0.0, 0.0, s.position), s.stiffness * across, s.damping * across)
+            Holder(f"support {k + 1}", (0.0, 0.0, s.position), *(np.pad(each, (0, 1)) for each in s.across))
             for k, s in enumerate(rotor.supports)
         )
     return (Holder("support", (0.0, 0.0, 0.0), rotor.stiffness * across, rotor.damping * across),)

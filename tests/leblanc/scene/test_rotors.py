@@ -20,6 +20,7 @@ from leblanc.scene.scene import (
     jeffcott,
     scene_from_table,
 )
+from leblanc.scene.schema.load import SceneError
 from leblanc.scene.tasks import Motor
 from meshes.errors import InputError
 from solvers.rotor.exciter.machine import Exciter as Machine
@@ -135,6 +136,18 @@ def test_two_plane() -> None:
     )
     assert isinstance(rotor, TwoPlaneRotor) and rotor.machine() == expected and rotor.axis == "vertical"
     assert dry_rotor(read(TWO_PLANE)) == expected and read(TWO_PLANE).chambers == ()
+
+
+def test_supports_unlike_in_two_directions() -> None:
+    """Two values, each with its unit; one of them is a field of its own; three are refused."""
+    unlike = TWO_PLANE.replace('"40 N/mm"', '["40 N/mm", 3e4]').replace("damping = 80", "damping = [80, 70]")
+    rotor = read(unlike).rotor
+    assert isinstance(rotor, TwoPlaneRotor)
+    assert rotor.machine().supports[0] == Support(-0.35, (4e4, 3e4), (80.0, 70.0))
+    softer = read(unlike).replace({"rotor.supports.0.stiffness.1": "20 N/mm"}).rotor
+    assert isinstance(softer, TwoPlaneRotor) and softer.supports[0].stiffness == (4e4, 2e4)
+    with pytest.raises(SceneError, match=r"supports\.0\.stiffness.*a list of two"):
+        read(TWO_PLANE.replace('"40 N/mm"', "[1e4, 1e4, 1e4]"))
 
 
 def test_tub() -> None:

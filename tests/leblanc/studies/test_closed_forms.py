@@ -217,7 +217,7 @@ def test_upright_rotation_turns_where_it_is_said_to() -> None:
     assert text.startswith("unstable at first, turns at 444.2 rpm")
 
 
-@kills("leblanc.studies.closed_forms.study:upright", "support.position - pivot", "support.position + pivot")
+@kills("leblanc.studies.closed_forms.study:upright", "each.position - pivot", "each.position + pivot")
 @kills("leblanc.studies.closed_forms.study:upright", "polar_inertia, -pivot", "polar_inertia, pivot")
 def test_upright_without_liquid_is_a_top_on_springs() -> None:
     """(C - A - M l^2) W^2 + sum k (z - p)^2 = M g l, by hand."""

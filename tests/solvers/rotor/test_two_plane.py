@@ -18,7 +18,7 @@ from tests.oracles.rotors import free_energy_drift, two_plane
 
 
 @kills("solvers.rotor.two_plane:_axis", "[0.0, 1.0, -position, 0.0]", "[0.0, 1.0, position, 0.0]")
-@kills("solvers.rotor.two_plane:TwoPlane.system", "support.damping * axis.T", "support.stiffness * axis.T")
+@kills("solvers.rotor.two_plane:TwoPlane.system", "axis.T @ damper @ axis", "axis.T @ spring @ axis")
 def test_support_matrices() -> None:
     """[FF20]: k11 = k1 + k2, k14 = k1 l1 - k2 l2, k33 = k1 l1^2 + k2 l2^2, supports at +l1 and -l2."""
     k1, k2, l1, l2 = 5e4, 4e4, 0.31, 0.35
@@ -36,6 +36,29 @@ def test_support_matrices() -> None:
         for z, c in ((-0.35, 20.0), (0.31, 40.0))
     )
     assert rate @ system.damping @ rate == pytest.approx(power, rel=1e-14)
+
+
+@kills(
+    "solvers.rotor.two_plane:Support.across",
+    "np.diag(_in_two(self.damping))",
+    "np.diag(_in_two(self.damping)[::-1])",
+)
+@kills(
+    "solvers.rotor.two_plane:Support.across",
+    "np.diag(_in_two(self.stiffness))",
+    "np.diag(_in_two(self.stiffness)[::-1])",
+)
+def test_unlike_supports() -> None:
+    """Without gyroscopic moments the two directions are two machines, each as if its supports were alike."""
+    first, second = (3e4, 20.0), (2e4, 50.0)
+    unlike = TwoPlane(10.0, 0.5, 0.0, tuple(Support(z, (3e4, 2e4), (20.0, 50.0)) for z in (-0.3, 0.25)))
+    for pair, (stiffness, damping) in (((0, 3), first), ((1, 2), second)):
+        alike = TwoPlane(10.0, 0.5, 0.0, tuple(Support(z, stiffness, damping) for z in (-0.3, 0.25)))
+        for name in ("stiffness", "damping"):
+            found, expected = (getattr(each.system(), name)[np.ix_(pair, pair)] for each in (unlike, alike))
+            np.testing.assert_allclose(found, expected, rtol=1e-14)
+    others = np.ix_((0, 3), (1, 2))
+    np.testing.assert_array_equal(unlike.system().stiffness[others], 0.0)
 
 
 def test_symmetry() -> None:

@@ -353,3 +353,15 @@ def test_the_roots_stand_beside_the_conditions() -> None:
         assert ("grows" in answer.why()) == (not holds)
     alone = dynamic_balancing(of_two_planes(rotor, 0.06), [60.0])
     assert alone.growth is None and alone.holds.tolist() == alone.possible.tolist()
+
+
+@kills("solvers.rotor.balls.two_plane_balance:of_two_planes", "if not support.isotropic:", "if False:")
+def test_supports_that_differ_in_two_directions_are_refused() -> None:
+    """The conditions come from a potential that turns with the rotor: there is none where supports differ."""
+    refused = []
+    for unlike in (Support(0.3, (2e4, 1e4), 1.0), Support(0.3, 2e4, (1.0, 2.0))):
+        try:
+            of_two_planes(TwoPlane(10.0, 0.5, 0.1, (Support(-0.3, 2e4, 1.0), unlike)))
+        except InputError as error:
+            refused.append(error.field)
+    assert refused == ["supports"] * 2

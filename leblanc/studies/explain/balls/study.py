@@ -131,9 +131,10 @@ def _in_one_plane(scene: Scene, speed: Array) -> Flags | None:
         return None
     rotor = scene.rotor.machine()
     added = sum(race.count * race.each for race in scene.balls)
-    damping = [support.damping for support in rotor.supports]
     try:
-        return single_plane_balancing(of_two_planes(rotor, added), planes.pop(), speed, damping)
+        alike = of_two_planes(rotor, added)
+        damping = [float(support.across[1][0, 0]) for support in rotor.supports]
+        return single_plane_balancing(alike, planes.pop(), speed, damping)
     except InputError:
         return None
 

@@ -12,7 +12,7 @@ from meshes.errors import InputError
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.loads.bearings import bearing_forces, hub_load
 from solvers.rotor.loads.floor import Cabinet, floor_forces, margins
-from solvers.rotor.loads.frame import frame_of
+from solvers.rotor.loads.frame import frame_of, holders_of, tensor
 from solvers.rotor.loads.machine import LoadedMachine, Point
 from solvers.rotor.loads.turn import damping_power, orbits, turn_extremes
 from solvers.rotor.tub import Mount, Tub
@@ -77,6 +77,18 @@ def test_jeffcott_rotor_presses_with_its_turning_force() -> None:
     # All the power is the damper's: C v^2.
     power = damping_power(LoadedMachine(rotor), answer, speed)
     np.testing.assert_allclose(power, 84.0 * (speed * np.abs(answer[:, 0])) ** 2, rtol=ROUNDING)
+
+
+@kills(f"{LOADS}.frame:holders_of", "in s.across)", "in reversed(s.across))")
+def test_supports_unlike_in_two_directions_hold_as_a_tub_on_springs_does() -> None:
+    """Their tensors beside those of mounts along the axes, which know nothing of supports."""
+    rotor = TwoPlane(10.0, 0.5, 0.1, (Support(0.2, (3e4, 2e4), (20.0, 50.0)), Support(-0.2, 1e4, 5.0)))
+    for found, place, along in zip(
+        holders_of(rotor), (0.2, -0.2), ((3e4, 2e4, 20.0, 50.0), (1e4, 1e4, 5.0, 5.0)), strict=True
+    ):
+        assert found.position == (0.0, 0.0, place)
+        for matrix, pair in ((found.stiffness, along[:2]), (found.damping, along[2:])):
+            np.testing.assert_array_equal(matrix, tensor(Mount((0.0, 0.0, place), along_axes=(*pair, 0.0))))
 
 
 @kills(f"{LOADS}.floor:floor_forces", "np.ones(a.size), b, -a", "np.ones(a.size), b, a")
