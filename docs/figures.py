@@ -82,6 +82,7 @@ RECIPES = (
     ),
     _example("run", "washing_machine", washing_machine_amplitude="amplitude"),
     _example("run", "tub", machine_loads="machine"),
+    _example("run", "centrifuge", volumes_centrifuge="volumes"),
     _example("run", "spindle", spindle_compliance="compliance", spindle_shapes="shapes"),
     _example("map", "horizontal_rig", whirl_map="map"),
     Recipe(

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -179,7 +180,8 @@ def optimal_volume(
 ) -> Array:
     """Volume whose surface just touches the near wall at the floor [DR18, eq. 18-19; theory: statics, eq. 8].
 
-    Less leaves a dry patch, more does not change the liquid's unbalance.
+    Less leaves a dry patch. Along an upright axis more still adds to the liquid's unbalance, up to the full
+    one of `wall_volumes`.
 
     >>> from meshes.chamber import Chamber
     >>> print(f"{optimal_volume(Chamber(0.2, 0.05), 0.001, 90.0) * 1e6:.6f} ml")
@@ -191,6 +193,39 @@ def optimal_volume(
     _check("gravity", g)
     steep = steepness(spin, g, chamber.radius, chamber.height)
     return volume_under(chamber, e, steep, 4.0 * steep * e / chamber.radius)
+
+
+class WallVolumes(NamedTuple):
+    """Volumes at which the free surface meets an edge of the chamber, m^3, shape (...,)."""
+
+    wetting: Array  #: the wall is wet all round at the floor: `optimal_volume`
+    lid: Array  #: the lid is touched, where the axis is farthest; nan without gravity along the axis
+    inner: Array  #: the foot of the inner wall is touched; nan without one
+    full: Array  #: the wall is wet all round up to the lid
+
+
+def wall_volumes(
+    chamber: AnyChamber, eccentricity: ArrayLike, speed: ArrayLike, gravity: ArrayLike = 9.81
+) -> WallVolumes:
+    """Volumes that wet the wall at the floor, touch the lid or the inner wall, wet the wall up to the lid.
+
+    C = -beta (R - e)^2, h - beta (R + e)^2, -beta (R_i + e)^2, h - beta (R - e)^2 [theory: statics, eq. 8,
+    22, 23]. Without gravity along the axis the surface is a cylinder that meets lid and floor at once: the
+    first and the last are one.
+    """
+    e, spin, g = same_shape(eccentricity, speed, gravity)
+    wetting = optimal_volume(chamber, e, spin, g)
+    radius, inner = (np.asarray(x, dtype=float) for x in (chamber.radius, chamber.inner_radius))
+    steep, upright = steepness(spin, g, radius, chamber.height), g > 0.0
+    foot = steep * (radius - inner) * (radius + inner + 2.0 * e) / radius**2
+    heights = np.ones_like(e), foot, 1.0 + 4.0 * steep * e / radius
+    lid, reached, full = (volume_under(chamber, e, steep, height) for height in heights)
+    return WallVolumes(
+        wetting,
+        np.where(upright, lid, np.nan),
+        np.where(inner > 0.0, reached, np.nan),
+        np.where(upright, full, wetting),
+    )
 
 
 def _solve(

@@ -80,8 +80,8 @@ case_table(sweep)
 #   that step strike the cabinet. The one machine that is fitted to the first and the last fill falls to a
 #   half, smoothly. In none of 400 sets of assumed values does the fill decide whether the motor gets through.
 #   A tub that touches its cabinet beyond a clearance makes such a step; the two fills do not tell where.
-# * **Highest speed.** In the model liquid beyond what covers the wall does nothing. Measured is a change of
-#   1.1 to 0.7; with one run for each volume nobody can say how much of it is chance.
+# * **Highest speed.** In the model liquid beyond what wets the wall up to the lid does nothing.
+#   Measured is a change of 1.1 to 0.7; with one run for each volume nobody can say how much of it is chance.
 # * **Way down.** With the motor off the real machine shakes as much as on its way up, the fitted one less.
 # * **Columns.** What the source calls the resonance peak is the largest value in a window of time, in which
 #   the drum was at its highest speed already with 100 ml.

@@ -33,6 +33,7 @@ from leblanc.studies.closed_forms.answer import ClosedForms, closed_form_table
 from leblanc.studies.loads.answer import MachineLoads, load_table
 from leblanc.studies.run.notes import plane_words
 from leblanc.studies.run.words import failing
+from leblanc.studies.volume.answer import WallVolumes
 from meshes.arrays import Array, Complex, Flags, Index
 from meshes.quantity import Q
 from solvers.rotor.balls.steady import GROWS, BallKind, BallStates
@@ -115,6 +116,8 @@ class BallsAnswer(Answer):
     balanced_bands: tuple[tuple[float, float], ...] | None = None
     #: forces and clearances of the state reported where it is stable; None where the scene asks for none
     loads: Annotated[MachineLoads | None, Q(part=True)] = None
+    #: at which the surface meets an edge of a chamber, for the state reported; None without liquid
+    wall_volumes: Annotated[WallVolumes | None, Q(part=True)] = None
     #: analytical checks of the sources
     closed_forms: Annotated[ClosedForms, Q(part=True)] = field(default_factory=ClosedForms)
     liquid_model: str = ""  #: name of the liquid's model; empty without liquid

@@ -23,6 +23,7 @@ from leblanc.studies.closed_forms.study import closed_forms
 from leblanc.studies.loads.answer import MachineLoads
 from leblanc.studies.loads.study import loaded_machine, loads_over_speed
 from leblanc.studies.run import notes as response_notes
+from leblanc.studies.volume.study import volumes_over_speed
 from meshes.arrays import Array, Complex, Index
 from meshes.errors import InputError
 from solvers.liquid_model import ROUNDING, LiquidModel
@@ -118,6 +119,11 @@ def run_balls(scene: Scene, families: bool = True, edges: bool = True) -> BallsA
         answer = replace(answer, growth_range=_growth_range(scene, system, races, answer, model))
     if edges:
         answer = replace(answer, balanced_bands=_balanced_bands(scene, system, answer))
+    if scene.fills:
+        paths = found.states.coordinates[np.arange(speed.size), answer.chosen]
+        moved = [np.abs(orbit(system, paths, fill.chamber.plane).forward) for fill in scene.fills]
+        volumes = volumes_over_speed(scene.fills, speed, np.stack(moved), gravity)
+        answer = replace(answer, wall_volumes=volumes)
     answer, waves = _estimated(machine, races, answer)
     answer = replace(answer, loads=_loads(scene, answer))
     alike = turning(system) is not None

@@ -18,6 +18,7 @@ from leblanc.liquid.choice import KNOWN, HeldCost, ModelSpan, SpeedEstimate
 from leblanc.studies.closed_forms.answer import ClosedForms, closed_form_table
 from leblanc.studies.run.motion import RestMode
 from leblanc.studies.run.words import described, error_words, speeds_words
+from leblanc.studies.volume.answer import WallVolumes
 from meshes.arrays import Array
 from meshes.quantity import Q
 
@@ -174,6 +175,8 @@ class ExplainAnswer(Explained):
     source: str = ""  #: of the scene
     assumed: tuple[str, ...] = ()
     digest: str = ""
+    #: at which the surface meets an edge of a chamber, for the deflection without liquid
+    wall_volumes: Annotated[WallVolumes | None, Q(part=True)] = None
     #: analytical checks of the sources, without an answer
     closed_forms: Annotated[ClosedForms, Q(part=True)] = field(default_factory=ClosedForms)
 
@@ -217,7 +220,8 @@ def described_blocks(answer: ExplainAnswer) -> list[Block]:
             Table(mode_rows(answer.modes), indent=2),
         ]
     for k, layer in enumerate(answer.layers):
-        found += [Words(f"chamber {k + 1}"), Table(layer_rows(layer, own_model_of(answer)), indent=2)]
+        rows = layer_rows(layer, own_model_of(answer)) + ([] if layer is None else volume_rows(answer, k))
+        found += [Words(f"chamber {k + 1}"), Table(rows, indent=2)]
     if answer.models:
         found.append(Words(f"liquid model, with a tolerance of {percent(answer.tolerance)}"))
     for span in answer.models:
@@ -308,9 +312,6 @@ def layer_rows(layer: LayerExplanation | None, own: str = "") -> Rows:
     added = f"{layer.added_mass_ratio:.4g} of the rotor's mass while the wall is wet"
     if own:
         added = f"as {own} has it, not that of an even layer"
-    covers = "not known for such a chamber"
-    if not math.isnan(layer.optimal_volume):
-        covers = f"from {with_unit(layer.optimal_volume, VOLUME)} at the last deflection without liquid"
     return [
         *([("walls", layer.walls)] if layer.walls else []),
         *([("baffles' torque", carrying_words(layer.carrying))] if layer.carrying else []),
@@ -324,9 +325,41 @@ def layer_rows(layer: LayerExplanation | None, own: str = "") -> Rows:
         ("Reynolds number", _ends(n.reynolds)),
         ("wall layer", f"{_ends(n.skin)} of the depth"),
         *(_spin_up_rows(layer.spin_up) if layer.spin_up is not None else []),
-        ("wetting volume", covers),
         *([] if layer.carried_from is None else [("spin-up from rest", _carried(layer.carried_from))]),
     ]
+
+
+def volume_rows(answer: ExplainAnswer, chamber: int) -> Rows:
+    """Volumes that meet an edge of a chamber at its deflection without liquid, first to last speed."""
+    found = answer.wall_volumes
+    if found is None or not np.isfinite(found.full_volume[chamber]).any():
+        return [("wetting volume", "not known for such a chamber")]
+    wet, lid, full = (each[chamber] for each in (found.wetting_volume, found.lid_volume, found.full_volume))
+    at = "at the deflection without liquid"
+    if np.array_equal(wet, full, equal_nan=True):
+        touched = "the inner wall"
+        rows = [("wetting volume", f"{_first_to_last(full)} {at}: wets the wall; more adds nothing")]
+    else:
+        touched = "the lid, or the inner wall"
+        rows = [
+            ("wetting volume", f"{_first_to_last(wet)} {at}: wets the wall all round at the floor"),
+            ("full volume", f"{_first_to_last(full)}: wets it up to the lid; more adds nothing"),
+        ]
+    if np.isfinite(lid).any():
+        rows.append(("lid volume", f"{_first_to_last(lid)}: touches {touched}"))
+    return rows
+
+
+_LEAST = 1e-9  # m^3, below which a volume is no amount
+
+
+def _first_to_last(volume: Array) -> str:
+    """From the first speed to the last."""
+    first, last = (
+        with_unit(each, VOLUME) if each >= _LEAST else f"under {with_unit(_LEAST, VOLUME)}"
+        for each in (float(volume[0]), float(volume[-1]))
+    )
+    return f"{first} to {last}"
 
 
 def _carried(speed: float) -> str:

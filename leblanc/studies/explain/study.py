@@ -38,12 +38,12 @@ from leblanc.studies.explain.answer import (
 )
 from leblanc.studies.run.motion import RestMode
 from leblanc.studies.run.study import rest_modes
+from leblanc.studies.volume.study import volumes_over_speed
 from solvers.checked_model import CheckedModel
 from solvers.cycles.estimate import largest_estimate
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import moving_mass
 from solvers.rotor.vibration import axis_is_free, critical_speeds, modes, orbit, unbalance_response
-from solvers.statics.hydrostatics import optimal_volume
 from solvers.synchronous.response import critical_speed, main_critical_speeds, wet_critical_speeds
 from solvers.whirl.growth import asynchronous_growth
 
@@ -56,9 +56,14 @@ def explain_scene(scene: Scene) -> ExplainAnswer:
     growth = asynchronous_growth(machine.rotor, scene.fills, machine.speed, machine.waves)[0]
     choice = costed(machine, choice, growth)
     ends = np.array([scene.speeds.start, scene.speeds.stop])
+    moved = unbalance_response(machine.system, machine.speed)
+    dry = [np.abs(orbit(machine.system, moved, fill.chamber.plane).forward) for fill in scene.fills]
+    volumes = volumes_over_speed(
+        scene.fills, machine.speed, np.reshape(dry, (len(dry), machine.speed.size)), gravity
+    )
     bare = _bare(machine, choice.model)
     layers: list[LayerExplanation | None] = []
-    for fill, dry in zip(scene.fills, bare.deflection, strict=True):
+    for fill, covering in zip(scene.fills, volumes.wetting_volume[:, -1].tolist(), strict=True):
         if fill.volume == 0.0:
             layers.append(None)
             continue
@@ -68,7 +73,7 @@ def explain_scene(scene: Scene) -> ExplainAnswer:
                 depth=fill.depth,
                 added_mass_ratio=fill.added_mass / bare.mass,
                 liquid_mass_ratio=fill.mass / bare.mass,
-                optimal_volume=_covering(fill, dry, ends[1], gravity),
+                optimal_volume=covering,
                 walls=_walls(fill),
                 carried_from=balance_from(scene, fill),
                 spin_up=_spin_up(scene, fill),
@@ -94,6 +99,7 @@ def explain_scene(scene: Scene) -> ExplainAnswer:
         assumed=scene.assumed,
         digest=scene.digest,
         closed_forms=closed_forms(machine),
+        wall_volumes=volumes,
     )
 
 
@@ -109,13 +115,6 @@ def _whirl(machine: Prepared) -> WhirlOutlook | None:
     if most is None:
         return None
     return WhirlOutlook(most.spin, most.amplitude, most.whirl_speed, most.lag)
-
-
-def _covering(fill: Fill, deflection: float, speed: float, gravity: float) -> float:
-    """Volume that just covers the wall of a clear circular chamber, m^3."""
-    if fill.compartments > 1 or fill.chamber.section is not None:
-        return math.nan
-    return float(optimal_volume(fill.chamber, deflection, speed, gravity))
 
 
 class _Rise(NamedTuple):
@@ -193,31 +192,27 @@ def _carrying(scene: Scene, fill: Fill, captured_from: float | None) -> BaffleOu
 
 @dataclass(frozen=True)
 class _Bare:
-    """The rotor without liquid in numbers; its deflection at each chamber is that of the last speed."""
+    """The rotor without liquid in numbers."""
 
     mass: float
     critical_speed: float
     critical_speed_wet: float
     damping_ratio: float
-    deflection: tuple[float, ...]
     modes: tuple[RestMode, ...] = ()
 
 
 def _bare(machine: Prepared, model: str) -> _Bare:
     rotor, system, fills = machine.rotor, machine.system, machine.scene.fills
-    gravity, last = machine.axial_gravity, np.array([machine.scene.speeds.stop])
-    answer = unbalance_response(system, last)
-    moved = [float(np.abs(orbit(system, answer, fill.chamber.plane).forward[0])) for fill in fills]
-    deflection = tuple(size if np.isfinite(size) else 0.0 for size in moved)
+    gravity = machine.axial_gravity
     if axis_is_free(system):
         nothing = math.nan
-        return _Bare(moving_mass(rotor), nothing, nothing, nothing, deflection, rest_modes(system))
+        return _Bare(moving_mass(rotor), nothing, nothing, nothing, rest_modes(system))
     if isinstance(rotor, Jeffcott):
         wet = critical_speed(rotor, fills, gravity, synchronous_model(model))
-        return _Bare(moving_mass(rotor), rotor.natural_frequency, wet, rotor.damping_ratio, deflection)
+        return _Bare(moving_mass(rotor), rotor.natural_frequency, wet, rotor.damping_ratio)
     liquid = wet_critical_speeds(system, fills, gravity, synchronous_model(model))
     dry, wet = main_critical_speeds(system, fills, critical_speeds(system), liquid)
     turning = modes(system, dry if np.isfinite(dry) else 0.0)
     nearest = int(np.argmin(np.abs(turning.frequency[0] - dry))) if np.isfinite(dry) else 0
     ratio = float(turning.damping_ratio[0, nearest])
-    return _Bare(moving_mass(rotor), dry, wet, ratio, deflection, rest_modes(system))
+    return _Bare(moving_mass(rotor), dry, wet, ratio, rest_modes(system))

@@ -153,10 +153,10 @@ class WettingVolumes:
     speed: float  #: rad/s
     #: the least that leaves no part of the wall dry over its whole height, m^3 [theory: statics, eq. 8]
     optimal_volume: float
-    #: the least that wets the whole wall up to the lid, beyond which more liquid adds nothing, m^3; infinite
-    #: where the chamber does not hold it [theory: optimum, eq. 1]
+    #: the least that wets the whole wall up to the lid, m^3; more liquid adds nothing, unless the surface has
+    #: reached an inner wall [theory: statics, eq. 23]
     full_volume: float
-    #: liquid's unbalance with the optimal volume over the largest possible one at this deflection
+    #: liquid's unbalance with the former over that with the latter
     unbalance_share: float
 
 
@@ -471,8 +471,7 @@ class OptimumAnswer(Best):
             if forms:
                 row += [length.number(forms[k].deflection), liquid.number(forms[k].optimal_volume)]
                 row += [number(100.0 * forms[k].unbalance_share)]
-                full = forms[k].full_volume
-                row += [liquid.number(full) if math.isfinite(full) else "never"]
+                row += [liquid.number(forms[k].full_volume)]
             rows.append(row)
         head = ["Chamber", f"best volume ({liquid.name})", "liquid", "% of what it holds"]
         if forms:

@@ -243,9 +243,8 @@ def _marks(axes: Axes, result: OptimumAnswer, k: int) -> None:
         axes.axvline(
             form.optimal_volume * ML, linestyle=(0, (6, 2)), label="analytical: wetting volume", **dashes
         )
-        if math.isfinite(form.full_volume):
-            label = "analytical: wetting volume to the lid"
-            axes.axvline(form.full_volume * ML, linestyle=(0, (1, 1)), label=label, **dashes)
+        label = "analytical: full volume, wet to the lid"
+        axes.axvline(form.full_volume * ML, linestyle=(0, (1, 1)), label=label, **dashes)
 
 
 def _draw_map(figure: Figure, axes: Axes, result: OptimumAnswer) -> None:

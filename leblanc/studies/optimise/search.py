@@ -13,10 +13,10 @@ from leblanc.scene.scene import JeffcottRotor, Scene, jeffcott
 from leblanc.scene.tasks import Optimisation
 from leblanc.studies.optimise.objectives import Passages, PeakOver
 from leblanc.studies.optimise.problem import Problem
-from leblanc.studies.optimise.wetting import wetting_volumes
 from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.search import Found, Judgement, SearchPlan, best_of, joined, search
+from solvers.statics.hydrostatics import wall_volumes
 
 # Where an answer costs tens of milliseconds and more.
 _SPARING = SearchPlan(
@@ -103,8 +103,7 @@ def _starts(scene: Scene, problem: Problem, count: int) -> Array:
             row = []
             for fill in scene.fills:
                 e = min(deflection, 0.9 * fill.chamber.radius)
-                form = wetting_volumes(fill.chamber, e, speed, gravity)
-                row.append(form.optimal_volume if math.isinf(form.full_volume) else form.full_volume)
+                row.append(float(wall_volumes(fill.chamber, e, speed, gravity).full))
             rows.append(row)
     return np.array(rows[: 12 if count == 1 else 3]).reshape(-1, len(scene.fills))
 

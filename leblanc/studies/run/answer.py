@@ -24,6 +24,7 @@ from leblanc.studies.loads.answer import MachineLoads, load_table
 from leblanc.studies.run import words
 from leblanc.studies.run.motion import Motion, SelfExcited
 from leblanc.studies.run.notes import OF_MODELS, RunCode
+from leblanc.studies.volume.answer import WallVolumes
 from meshes.arrays import Array, Complex, Flags
 from meshes.errors import InputError
 from meshes.quantity import Q
@@ -36,7 +37,7 @@ STABILITY = ("not_known", "unstable", "stable")
 OF_LIQUID = (
     *("liquid_offset", "liquid_angle", "dry_patch", "model", "error_estimate", "critical_speeds_wet"),
     *("chamber_deflection", "chamber_real", "chamber_imag", "critical_speed_wet", "capture_speed"),
-    "carried_from",
+    *("carried_from", "wetting_volume", "lid_volume", "full_volume"),
 )
 _OVER, _RATE, _FIGURES = ("speed",), "rad s-1", "leblanc.studies.run.figure"
 _QUALITY = "unbalance over the rotor's mass, times the speed"
@@ -127,6 +128,8 @@ class RunAnswer(Answer):
     carried_from: Annotated[
         float | None, Q(_RATE, "speed of balance", "from rest the walls carry the liquid")
     ] = None
+    #: at which the surface meets an edge of a chamber, for the deflection of this answer
+    wall_volumes: Annotated[WallVolumes | None, Q(part=True)] = None
     #: analytical checks of the sources beside the answer; None where nobody asked
     closed_forms: Annotated[ClosedForms | None, Q(part=True)] = None
 
@@ -352,6 +355,9 @@ class RunAnswer(Answer):
             yield Picture("chamber", "Chamber seen along the axis", chamber)
         if few:
             yield phase_of
+        if self.wall_volumes is not None and np.isfinite(self.wall_volumes.full_volume).any():
+            of_volumes = f"{_FIGURES}:volumes_figure"
+            yield Picture("volumes", "Volumes that wet the wall over speed", of_volumes)
         if tilts:
             yield Picture("campbell", "Natural frequencies over speed", f"{_FIGURES}:campbell_figure")
         if loaded:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from leblanc.core.units import MM, MM_PEAK, RPM, in_rpm
+from leblanc.core.units import ML, MM, MM_PEAK, RPM, in_rpm
 from leblanc.plotting.curves import (
     NARROW,
     Curves,
@@ -19,6 +19,7 @@ from leblanc.plotting.curves import (
     median_over,
     other_branches,
     prepare,
+    speed_limits,
     widened,
     windows,
 )
@@ -64,6 +65,14 @@ LAYERS = (
     ("#009E73", (0, (3, 1, 1, 1))),
     ("#CC79A7", (0, (1, 1))),
 )
+
+# Label, colour and dashes of each volume that the surface meets an edge with.
+VOLUMES = (
+    ("wets the wall at the floor", WET, "solid"),
+    ("first touches lid, or inner wall", "#E69F00", (0, (5, 1.5))),
+    ("wets the wall up to the lid", "#009E73", (0, (3, 1, 1, 1))),
+)
+_PANELS = 4
 
 FORWARD, BACKWARD, STRAIGHT, SPIN = "#0072B2", "#D55E00", "0.35", "0.2"  # after Okabe and Ito
 CLEAR = 0.2  # from here on a whirl is drawn as one with or against the spin
@@ -534,6 +543,58 @@ def draw_campbell(axes: Axes, result: RunAnswer) -> None:
     axes.set_ylim(0.0, 1.15 * max(float(hertz.max(initial=0.0)), 0.1))
     axes.set_xlabel("Speed (rpm)")
     axes.set_ylabel("Natural frequency (Hz)")
+
+
+def volumes_figure(result: RunAnswer) -> Figure:
+    """Volumes at which the surface meets an edge of each chamber, over speed, beside what it holds."""
+    found, order = result.wall_volumes, np.argsort(result.speed, kind="stable")
+    assert found is not None
+    upright = result.axial_gravity > 0.0
+    rpm, known = result.speed[order] * RPM, np.isfinite(found.full_volume).any(axis=1)
+    walled = any(chamber.inner_radius > 0.0 for chamber in result.chambers)
+    drawn = np.flatnonzero(known)[:_PANELS].tolist()
+    with style():
+        figure = Figure()
+        rows = []
+        for k in drawn:
+            axes: Axes = figure.add_axes((0, 0, 1, 1), label=str(k))
+            chamber = result.chambers[k]
+            full = np.pi * (chamber.radius**2 - chamber.inner_radius**2) * chamber.height * ML
+            every = (found.wetting_volume, found.lid_volume, found.full_volume)
+            wet, lid, most = (each[k, order] * ML for each in every)
+            lines = [(wet, *VOLUMES[0]), (lid, *VOLUMES[1]), (most, *VOLUMES[2])]
+            if not upright:
+                lines = [
+                    (most, "wets the wall", *VOLUMES[2][1:]),
+                    (lid, "touches the inner wall", *VOLUMES[1][1:]),
+                ]
+            for volume, label, color, dashes in lines:
+                if np.isfinite(volume).any():
+                    axes.plot(rpm, volume, color=color, linestyle=dashes, label=label, **_marked(volume, "o"))
+            axes.fill_between(rpm, most, full, color=SHADE, linewidth=0, zorder=0.5, label="wet to the lid")
+            if chamber.volume > 0.0:
+                axes.axhline(chamber.volume * ML, color="black", linewidth=0.9, label="fill")
+            positive = np.concatenate([wet[wet > 0.0], most[most > 0.0], [full]])
+            low = min(max(float(positive.min()), 1e-4 * full), chamber.volume * ML or full)
+            axes.set_yscale("log")
+            axes.set_ylim(0.7 * low, full)
+            axes.set_xlim(*speed_limits(result.speed))
+            axes.set_ylabel("Volume (ml)" if len(result.chambers) == 1 else f"Chamber {k + 1} (ml)")
+            _number_axes(axes)
+            rows.append([axes])
+        for (axes,) in rows[:-1]:
+            axes.tick_params(labelbottom=False)
+        rows[-1][0].set_xlabel("Speed (rpm)")
+        add_rate_axis(rows[0][0])
+        text = (
+            "Volumes that wet the wall at the deflection of this answer, up to what the chamber holds. "
+            f"Where it is wet to the lid more adds nothing{' until it reaches the inner wall' * walled}."
+        )
+        if len(drawn) < np.count_nonzero(known):
+            text += f" Chambers {', '.join(f'{k + 1}' for k in drawn)} of {len(result.chambers)}."
+        figure.alt = alts(result)["volumes"]
+        lay_out(figure, rows, [2.75 if len(rows) == 1 else 1.6] * len(rows), FRAME, caption(result, text))
+    return figure
 
 
 def _sense(direction: Array) -> Array:

@@ -25,6 +25,7 @@ from leblanc.studies.run.motion import SelfExcited
 from meshes.arrays import Array
 
 if TYPE_CHECKING:
+    from solvers.statics.hydrostatics import WallVolumes
     from solvers.synchronous.response import Response
 
 
@@ -53,6 +54,7 @@ class RunCode(NoteCode):
     LOADS = "loads"
 
 
+_SAME = 1e-6  # relative, up to which two volumes are one
 CLOSURE = 1e-3  # of the work: what the energy balance may leave
 # What a page that shows the table of models says there already.
 OF_MODELS = (RunCode.LIQUID_MODEL, RunCode.TOLERANCE_MISSED)
@@ -375,15 +377,35 @@ def unbounded(wet: float | None, dry: float | None) -> Note:
     return Note(RunCode.UNBOUNDED, {"speed": wet, "speed_dry": dry}, text)
 
 
-def wall(chamber: int, speed: float, volume: float, enough: float, deflection: float) -> Note:
-    """How much liquid just covers a chamber's wall at a speed, rad/s, and the axis' deflection, m."""
-    has = "wet all round" if volume > enough else "dry in part"
-    text = (
-        f"Chamber {chamber + 1} at {in_rpm(speed)}: wall {has} with {with_unit(volume, VOLUME)}; "
-        f"{with_unit(enough, VOLUME)} just cover it, deflection {with_unit(deflection, LENGTH)}."
+def wall(chamber: int, speed: float, volume: float, deflection: float, met: WallVolumes) -> Note:
+    """How wet a chamber's wall is at a speed, rad/s, and what more liquid does there.
+
+    Along an upright axis, where the wall is wet at the floor before it is under the lid, more liquid than
+    wets it adds to the unbalance until it is wet up to the lid.
+    """
+    wet, full, inner = float(met.wetting), float(met.full), float(met.inner)
+    held, at_floor, to_lid, first = (
+        with_unit(each, VOLUME) for each in (volume, wet, full, np.fmin(full, inner))
     )
-    data = {"chamber": chamber, "speed": speed, "volume": volume, "enough": enough, "deflection": deflection}
-    return Note(RunCode.WALL, data, text)
+    upright, reaches = full > wet * (1.0 + _SAME), inner < full or inner < volume
+    nothing = "more does nothing"
+    if reaches:
+        nothing = f"from {with_unit(inner, VOLUME)} on, at the inner wall, more changes its unbalance"
+    elif not math.isnan(inner):
+        nothing += f" up to {with_unit(inner, VOLUME)}, at the inner wall"
+    if volume < wet * (1.0 - _SAME):
+        enough = f"{at_floor} wet it{f' at the floor, {to_lid} up to the lid' * upright}"
+        has = f"dry in part with {held}: {enough}; then {nothing}"
+    elif volume < full * (1.0 - _SAME):
+        has = f"wet all round at the floor, not up to the lid, with {held} (from {at_floor} on): "
+        has += f"more adds to its unbalance up to {first}; then {nothing}"
+    else:
+        has = f"wet all round{' up to the lid' * upright} with {held} (from {to_lid} on): {nothing}"
+    text = (
+        f"Chamber {chamber + 1} at {in_rpm(speed)}, deflection {with_unit(deflection, LENGTH)}: wall {has}."
+    )
+    data = {"chamber": chamber, "speed": speed, "volume": volume, "enough": wet, "full": full}
+    return Note(RunCode.WALL, {**data, "deflection": deflection}, text)
 
 
 def mesh(chamber: int, finding: str) -> Note:

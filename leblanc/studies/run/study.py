@@ -41,6 +41,8 @@ from leblanc.studies.peaks import responses_between
 from leblanc.studies.run import notes as notes
 from leblanc.studies.run.answer import RunAnswer
 from leblanc.studies.run.motion import Motion, RestMode, SelfExcited
+from leblanc.studies.volume.answer import WallVolumes
+from leblanc.studies.volume.study import volumes_over_speed
 from meshes.arrays import Array, Complex
 from meshes.chamber_section import liquid_of
 from meshes.errors import InputError
@@ -58,7 +60,7 @@ from solvers.rotor.vibration import (
     orbit,
     whirl_direction,
 )
-from solvers.statics.hydrostatics import optimal_volume
+from solvers.statics.hydrostatics import wall_volumes
 from solvers.synchronous.response import (
     Response,
     answered_by,
@@ -219,6 +221,7 @@ def run_scene(scene: Scene, holding: Holding = HERE, cycles: bool = False) -> Ru
     if motion is not None:
         motion = replace(motion, refined_forward=_at_chambers(machine.system, scene.fills, refined))
     loads = _loads(scene, answer, refined, states)
+    volumes = _wall_volumes(machine, answer, motion)
     obstructed = any(fill.uneven and fill.volume > 0.0 for fill in scene.fills)
     stands = () if loads is None else (notes.loads(obstructed),)
     return RunAnswer(
@@ -229,7 +232,7 @@ def run_scene(scene: Scene, holding: Holding = HERE, cycles: bool = False) -> Ru
         digest=scene.digest,
         response=answer,
         liquid_mass=sum(fill.mass for fill in scene.fills),
-        notes=(*_notes(machine, choice, answer, refined, motion, whirl, held), *grown, *stands),
+        notes=(*_notes(machine, choice, answer, refined, motion, whirl, held, volumes), *grown, *stands),
         axis=scene.rotor.axis,
         chambers=tuple(_chamber(fill, motion) for fill in scene.fills),
         capture_speed=choice.captured_from,
@@ -246,6 +249,7 @@ def run_scene(scene: Scene, holding: Holding = HERE, cycles: bool = False) -> Ru
         axial_gravity=machine.axial_gravity,
         held=held,
         loads=loads,
+        wall_volumes=volumes,
         **_balance(machine, answer),
     )
 
@@ -299,6 +303,7 @@ def _notes(
     motion: Motion | None,
     whirl: SelfExcited,
     held: Held | None,
+    volumes: WallVolumes,
 ) -> tuple[Note, ...]:
     """Limits of validity and findings."""
     cost = held_cost(machine, choice, whirl.growth)
@@ -326,7 +331,7 @@ def _notes(
         first, last = answer.speed[several][[0, -1]].tolist()
         found.append(notes.several_answers(first, last, stable=motion is None))
     found.append(_endless(by_speed([answer, refined])))
-    found += [*compartment_notes(machine.scene.fills), *_walls(machine, answer, motion)]
+    found += [*compartment_notes(machine.scene.fills), *_walls(machine, answer, motion, volumes)]
     found += [*_meshes(machine.scene), *doubts(machine.scene)]
     return tuple(note for note in found if note is not None)
 
@@ -367,17 +372,30 @@ def _thick_layers(machine: Prepared) -> Note | None:
     return notes.thick_wall_layer(least, limit, whole=least > float(machine.speed[-1]))
 
 
-def _walls(machine: Prepared, answer: Response, motion: Motion | None) -> list[Note]:
-    """The volume beyond which more liquid does nothing, for the deflection at the last speed."""
-    found = []
-    speed = float(answer.speed[-1])
-    for k, fill in enumerate(machine.scene.fills):
-        deflection = abs(answer.deflection[-1] if motion is None else motion.chamber_forward[-1, k])
-        if not np.isfinite(deflection) or fill.compartments > 1 or fill.chamber.section is not None:
-            continue
-        enough = float(optimal_volume(fill.chamber, deflection, speed, machine.axial_gravity))
-        found.append(notes.wall(k, speed, fill.volume, enough, float(deflection)))
-    return found
+def _moved(machine: Prepared, answer: Response, motion: Motion | None) -> Array:
+    """Deflection at each chamber, m, shape (c, s)."""
+    if motion is not None:
+        return np.abs(motion.chamber_forward.T)
+    return np.tile(np.abs(answer.deflection), (len(machine.scene.fills), 1))
+
+
+def _wall_volumes(machine: Prepared, answer: Response, motion: Motion | None) -> WallVolumes:
+    """Volumes at which the surface meets an edge of each chamber, at the deflection of the answer."""
+    moved = _moved(machine, answer, motion)
+    return volumes_over_speed(machine.scene.fills, answer.speed, moved, machine.axial_gravity)
+
+
+def _walls(machine: Prepared, answer: Response, motion: Motion | None, volumes: WallVolumes) -> list[Note]:
+    """How wet each wall is at the last speed, and what more liquid does there."""
+    moved, speed = _moved(machine, answer, motion)[:, -1], float(answer.speed[-1])
+    return [
+        notes.wall(
+            *(k, speed, fill.volume, float(e)),
+            wall_volumes(fill.chamber, e, speed, machine.axial_gravity),
+        )
+        for k, (fill, e) in enumerate(zip(machine.scene.fills, moved, strict=True))
+        if np.isfinite(volumes.wetting_volume[k, -1])
+    ]
 
 
 def _meshes(scene: Scene) -> list[Note]:

@@ -468,7 +468,22 @@ def alts(result: RunAnswer) -> dict[str, str]:
         "chamber": "Drawing of each chamber with its liquid, seen along the axis, at the largest deflection"
         f"{_where_it_holds(result)}, {most.wet_text}, and at the last speed, {last.wet_text}.",
         "campbell": "Curves of the natural frequencies without liquid over speed.",
+        "volumes": "Curves over speed of the volumes that wet each chamber's wall; at the last speed: "
+        f"{_volumes_alt(result)}.",
     }
+
+
+def _volumes_alt(result: RunAnswer) -> str:
+    """The volumes of each chamber at the last speed."""
+    found = result.wall_volumes
+    if found is None:
+        return "not known"
+    return "; ".join(
+        f"{with_unit(wet, VOLUME)} at the floor, {with_unit(full, VOLUME)} up to the lid"
+        for wet, full in zip(
+            found.wetting_volume[:, -1].tolist(), found.full_volume[:, -1].tolist(), strict=True
+        )
+    )
 
 
 def _held_alt(result: RunAnswer) -> str:

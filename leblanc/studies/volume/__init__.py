@@ -1,4 +1,4 @@
-"""Volume that just covers a chamber's wall at a deflection, and the free surface of a given volume."""
+"""Volumes that wet a chamber's wall at a deflection, and the free surface of a given volume."""
 
 from __future__ import annotations
 
@@ -21,7 +21,10 @@ def volume(
     gravity: Annotated[Quantity, ACCELERATION, "Gravity along the axis."] = 9.81,
     inner_radius: Annotated[Quantity, LENGTH, "Inner wall radius."] = 0.0,
 ) -> VolumeAnswer:
-    """Wetting volume at a deflection: the least that covers the wall. Also the surface of a given volume.
+    """Volumes that wet the wall at the floor and up to the lid. Also the surface of a given volume.
+
+    Along an upright axis more liquid than wets the wall at the floor still adds to its unbalance, up to the
+    volume that wets it to the lid. Without gravity along the axis, as on a horizontal one, both are one.
 
     Raises
     ------
@@ -33,6 +36,8 @@ def volume(
     >>> best = lb.volume(radius=0.2, height=0.05, eccentricity="1 mm", speed=90.0)
     >>> f"{1e6 * best.optimal_volume:.4f} ml"
     '54.4396 ml'
+    >>> f"{1e6 * best.full_volume:.2f} ml up to the lid, {1e6 * best.lid_volume:.2f} ml touch it"
+    '72.19 ml up to the lid, 1.26 ml touch it'
     """
     return ask(_volume, "leblanc.studies.volume.study:answer_volume", locals())
 

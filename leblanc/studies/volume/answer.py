@@ -9,10 +9,15 @@ from typing import Annotated
 from leblanc.core.answer import Answer
 from leblanc.core.blocks import Block, Picture, Table, Words
 from leblanc.core.units import LENGTH, ML, MM, VOLUME, Unit, in_rpm, unit_for, with_unit
+from meshes.arrays import Array
 from meshes.chamber import Chamber
 from meshes.quantity import Q
 
 _ML_MM = ML * MM  # millilitres times millimetres in one m^4
+_WETTING = ("m3", "wetting volume", "the wall is wet all round at the floor")
+_LID = ("m3", "lid volume", "the surface first touches the lid or the foot of the inner wall")
+_FULL = ("m3", "full volume", "the wall is wet all round up to the lid")
+_OVER, _BY = ("chamber", "speed"), "statics, eq. 8, 22, 23"
 
 
 class Coverage(IntEnum):
@@ -26,10 +31,24 @@ class Coverage(IntEnum):
     def message(self) -> str:
         """The case as text."""
         return {
-            Coverage.MORE: "more than just covers the wall: wet all round",
-            Coverage.AS_MUCH: "just covers the wall",
-            Coverage.LESS: "less than covers the wall: dry in part",
+            Coverage.MORE: "more than wets the wall at the floor: wet all round there",
+            Coverage.AS_MUCH: "just wets the wall at the floor",
+            Coverage.LESS: "less than wets the wall: dry in part",
         }[self]
+
+
+@dataclass(frozen=True)
+class WallVolumes:
+    """Volumes at which the surface meets an edge, at the deflection of an answer at each speed.
+
+    nan where that is not known, and in chambers that are no clear ring.
+    """
+
+    wetting_volume: Annotated[Array, Q(*_WETTING, _OVER, by=_BY)]
+    #: nan where gravity does not act along the axis and there is no inner wall
+    lid_volume: Annotated[Array, Q(*_LID, _OVER, by=_BY)]
+    #: more liquid adds nothing to its unbalance, unless the surface has reached an inner wall
+    full_volume: Annotated[Array, Q(*_FULL, _OVER, by=_BY)]
 
 
 @dataclass(frozen=True)
@@ -75,8 +94,15 @@ class VolumeAnswer(Answer):
     #: None where the formula has no value, of the next as well
     printed_eq18: Annotated[float | None, Q("m3", "printed eq18", "as the source prints it")]
     corrected_eq18: Annotated[float | None, Q("m3", "corrected eq18", "with its moment corrected")]
+    #: None without gravity along the axis and without an inner wall
+    lid_volume: Annotated[float | None, Q(*_LID, by=_BY)]
+    full_volume: Annotated[float, Q(*_FULL, by=_BY)]
     volume: float | None = None  #: that was given, m^3; None without one
     surface: Annotated[Surface | None, Q(part=True)] = None  #: of that volume
+
+    @property
+    def wetting_volume(self) -> Annotated[float, Q(*_WETTING, by=_BY)]:
+        return self.optimal_volume
 
     @property
     def faults(self) -> tuple[str, ...]:
@@ -106,11 +132,13 @@ def facts(answer: VolumeAnswer) -> tuple[tuple[str, str], ...]:
     """Label and value with its unit."""
     unit = unit_for(VOLUME, answer.optimal_volume)
     rows = [
-        ("optimal volume", _volume(answer.optimal_volume, unit)),
+        ("wetting volume, at the floor", _volume(answer.optimal_volume, unit)),
         ("by finite elements", _volume(answer.optimal_volume_fem, unit)),
         ("relative difference", f"{answer.fem_error:.2g}"),
         ("as published, DR18 eq. 18", _volume(answer.printed_eq18, unit)),
         ("the same, corrected", _volume(answer.corrected_eq18, unit)),
+        ("touches the lid, or an inner wall", _volume(answer.lid_volume, unit)),
+        ("wets the wall to the lid", _volume(answer.full_volume, unit)),
     ]
     if surface := answer.surface:
         constant = surface.surface_constant

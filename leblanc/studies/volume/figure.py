@@ -48,10 +48,10 @@ def surface_figure(answer: VolumeAnswer) -> Figure:
         for axis in (axes.xaxis, axes.yaxis):
             axis.set_major_formatter(number)
         axes.grid(visible=False)
-        best = dict(facts(answer))["optimal volume"]
-        figure.alt = f"Section of the chamber with the free surface of its liquid; optimal volume {best}."
-        which = "the volume asked for" if answer.surface is not None else "the optimal volume"
-        text = f"Free surface of {which}; {best} just cover the wall. Height and width differ in scale."
+        best = dict(facts(answer))["wetting volume, at the floor"]
+        figure.alt = f"Section of the chamber with the free surface of its liquid; wetting volume {best}."
+        which = "the volume asked for" if answer.surface is not None else "the wetting volume"
+        text = f"Free surface of {which}; {best} wet the wall at the floor. Height and width differ in scale."
         lay_out(figure, [[axes]], [2.4], FRAME, Caption(text, f"{question_words(answer)}."))
     return figure
 

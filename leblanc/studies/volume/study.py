@@ -7,11 +7,13 @@ from collections.abc import Callable
 
 import numpy as np
 
+from fluid.fill import Fill
 from fluid.printed import optimal_volume_as_printed, optimal_volume_disc_corrected
-from leblanc.studies.volume.answer import Coverage, Surface, VolumeAnswer
+from leblanc.studies.volume.answer import Coverage, Surface, VolumeAnswer, WallVolumes
+from meshes.arrays import Array
 from meshes.chamber import Chamber
 from meshes.errors import InputError, require_not_negative
-from solvers.statics.hydrostatics import equilibrium, optimal_volume
+from solvers.statics.hydrostatics import equilibrium, wall_volumes
 
 # The volume counts as the optimal one when it is that to the digits that people pass on.
 _SAME = 1e-8
@@ -32,7 +34,8 @@ def answer_volume(
     chamber = Chamber(radius, height, inner_radius)
     for name, value in {"eccentricity": eccentricity, "speed": speed, "gravity": gravity}.items():
         require_not_negative(name, value)
-    exact = float(optimal_volume(chamber, eccentricity, speed, gravity))
+    met = wall_volumes(chamber, eccentricity, speed, gravity)
+    exact, lid, full = float(met.wetting), float(np.fmin(met.lid, met.inner)), float(met.full)
     elements = optimal_volume_fem(
         chamber.radius,
         chamber.height,
@@ -50,9 +53,28 @@ def answer_volume(
         fem_error=abs(elements - exact) / exact if exact > 0.0 else abs(elements),
         printed_eq18=_or_none(lambda: optimal_volume_as_printed(chamber, eccentricity, speed, gravity)),
         corrected_eq18=_or_none(lambda: optimal_volume_disc_corrected(chamber, eccentricity, speed, gravity)),
+        lid_volume=None if math.isnan(lid) else lid,
+        full_volume=full,
         volume=volume,
         surface=None if volume is None else _surface(chamber, volume, eccentricity, speed, gravity, exact),
     )
+
+
+def volumes_over_speed(
+    fills: tuple[Fill, ...], speed: Array, deflection: Array, gravity: float
+) -> WallVolumes:
+    """The three volumes of each chamber at its deflection at each speed, shape (c, s).
+
+    nan where the deflection is not known or has no bound, and where baffles cut the liquid or a section is no
+    circle.
+    """
+    found = np.full((3, len(fills), speed.size), np.nan)
+    for k, fill in enumerate(fills):
+        known = np.isfinite(deflection[k])
+        if known.any() and fill.compartments <= 1 and fill.chamber.section is None:
+            met = wall_volumes(fill.chamber, deflection[k, known], speed[known], gravity)
+            found[:, k, known] = met.wetting, np.fmin(met.lid, met.inner), met.full
+    return WallVolumes(*found)
 
 
 def _surface(

@@ -21,30 +21,32 @@ from leblanc.studies.optimise.objectives import AtSpeed, PeakOver
 from leblanc.studies.optimise.problem import Problem, problem_of
 from leblanc.studies.optimise.robust import operating_conditions, unbalance_range
 from leblanc.studies.optimise.study import not_dominated, optimise_scene
-from leblanc.studies.optimise.wetting import (
-    full_volume,
-    optimal_volume_by_search,
-    wetting_volumes,
-)
+from leblanc.studies.optimise.wetting import optimal_volume_by_search, wetting_volumes
 from leblanc.studies.run.study import run_scene
 from meshes.arrays import Array
 from meshes.chamber import Chamber
 from meshes.errors import InputError
 from solvers.search import Found, Judgement, SearchPlan, search
-from solvers.statics.hydrostatics import equilibrium
+from solvers.statics.hydrostatics import equilibrium, wall_volumes
 from tests.mutants import kills
 from tests.oracles.optimise import amplitudes, brute_force, random_scene, random_task
 
 EXAMPLES = Path(__file__).parents[4] / "examples"
 WATER = known_liquid("water")
-# Chamber, deflection, speed: fast, slow, deep, annular.
+# Chamber, deflection, speed: fast, slow, deep, annular, so slow that the liquid covers the floor.
 CHAMBERS = (
     (Chamber(0.2, 0.05), 1e-3, 90.0),
     (Chamber(0.2, 0.05), 1e-2, 90.0),
     (Chamber(0.2, 0.05), 1e-3, 20.0),
     (Chamber(0.05, 0.02), 3e-3, 100.0),
     (Chamber(0.3, 0.05, 0.25), 1e-3, 157.0),
+    (Chamber(0.2, 0.05), 2e-2, 4.0),
 )
+
+
+def full_volume(chamber: Chamber, deflection: float, speed: float) -> float:
+    """Volume that wets the wall up to the lid, m^3."""
+    return float(wall_volumes(chamber, deflection, speed).full)
 
 
 @kills(
@@ -87,39 +89,45 @@ def test_largest_unbalance() -> None:
         assert found == pytest.approx(flat.optimal_volume, rel=1e-6)
         assert flat.full_volume == pytest.approx(flat.optimal_volume, rel=1e-9)
         form = wetting_volumes(chamber, deflection, speed, 9.81)
-        if math.isfinite(form.full_volume):
-            found = largest_unbalance(chamber, deflection, speed, 9.81)
-            assert found == pytest.approx(form.full_volume, rel=1e-4)
+        found = largest_unbalance(chamber, deflection, speed, 9.81)
+        assert found == pytest.approx(form.full_volume, rel=1e-4)
 
 
-@kills("leblanc.studies.optimise.wetting:full_volume", "ring + 0.5 * fall", "ring + fall")
 @kills(
-    "leblanc.studies.optimise.wetting:full_volume",
-    "deflection * (chamber.radius + near)",
-    "deflection * chamber.radius",
+    "solvers.statics.hydrostatics:wall_volumes",
+    "1.0 + 4.0 * steep * e / radius",
+    "0.5 + 4.0 * steep * e / radius",
 )
 @kills(
-    "leblanc.studies.optimise.wetting:full_volume",
-    "2.0 * gravity * chamber.height / speed**2",
-    "gravity * chamber.height / speed**2",
+    "solvers.statics.hydrostatics:wall_volumes",
+    "1.0 + 4.0 * steep * e / radius",
+    "1.0 + 2.0 * steep * e / radius",
+)
+@kills(
+    "solvers.statics.hydrostatics:wall_volumes",
+    "1.0 + 4.0 * steep * e / radius",
+    "2.0 + 4.0 * steep * e / radius",
 )
 @kills("leblanc.studies.optimise.wetting:wetting_volumes", "of_touching / of_most", "of_most / of_touching")
 def test_full_volume() -> None:
     """With it the unbalance is that of a full chamber; with a tenth less it is not; with more it stays."""
     for chamber, deflection, speed in CHAMBERS:
-        full = full_volume(chamber, deflection, speed, 9.81)
-        if math.isinf(full):
-            continue
+        full = full_volume(chamber, deflection, speed)
         most = math.pi * chamber.radius**2 * chamber.height * deflection
 
         def short(share: float, c: Chamber = chamber, e: float = deflection, w: float = speed) -> float:
-            held = share * full_volume(c, e, w, 9.81)
+            held = share * full_volume(c, e, w)
             whole = math.pi * c.radius**2 * c.height * e
             return 1.0 - float(equilibrium(c, held, e, w, 9.81).unbalance()[0]) / whole
 
         assert abs(short(1.0)) < 1e-11
         assert abs(short(1.0001)) < 1e-11
         assert short(0.9) > 1e-4
+        # Eq. 1 of the theory: all circles of the air reach the floor.
+        near, fall = chamber.radius - deflection, 2.0 * 9.81 * chamber.height / speed**2
+        if near**2 > fall:
+            ring = chamber.radius**2 - near**2
+            assert full == pytest.approx(math.pi * chamber.height * (ring + 0.5 * fall), rel=1e-11)
         form = wetting_volumes(chamber, deflection, speed, 9.81)
         own = float(equilibrium(chamber, form.optimal_volume, deflection, speed, 9.81).unbalance()[0])
         assert form.unbalance_share == pytest.approx(own / most, rel=1e-9)
@@ -129,12 +137,11 @@ def test_full_volume() -> None:
 @settings(max_examples=30)
 @given(st.floats(1e-4, 0.3), st.floats(0.05, 1.0), st.floats(10.0, 1e4))
 def test_full_volume_over_the_box(share: float, slender: float, speed: float) -> None:
-    """Wherever eq. 1 has a value, the wall is wet and the chamber acts as a full one."""
+    """With it the wall is wet and the chamber acts as a full one."""
     chamber = Chamber(0.1, 0.1 * slender)
     deflection = 0.1 * share
-    full = full_volume(chamber, deflection, speed, 9.81)
-    if math.isinf(full) or full > chamber.capacity:
-        return
+    full = full_volume(chamber, deflection, speed)
+    assert full <= chamber.capacity * (1.0 + 1e-12)
     state = equilibrium(chamber, full, deflection, speed, 9.81)
     most = math.pi * chamber.radius**2 * chamber.height * deflection
     assert float(state.unbalance()[0]) == pytest.approx(most, rel=1e-9)
