@@ -28,7 +28,8 @@ from leblanc.core.units import (
     unit_for,
     with_unit,
 )
-from leblanc.studies.balls.races import GravityOnBalls, RaceOfBalls, ball_moment
+from leblanc.studies.balls.notes import rounded
+from leblanc.studies.balls.races import GravityOnBalls, RaceOfBalls, StuckBalls, ball_moment
 from leblanc.studies.closed_forms.answer import ClosedForms, closed_form_table
 from leblanc.studies.loads.answer import MachineLoads, load_table
 from leblanc.studies.run.notes import plane_words
@@ -103,7 +104,12 @@ class BallsAnswer(Answer):
     can_balance: Annotated[bool, Q(text="the balls can take all unbalance away")]
     sticking: Annotated[
         tuple[float, ...],
-        Q("m", "deflection below which balls stay where they are", "in the plane of each race", data=False),
+        Q(
+            "m",
+            "deflection below which balls stay where they are",
+            "in the plane of each race, without gravity across the axis",
+            data=False,
+        ),
     ]
     notes: Annotated[tuple[Note, ...], Q(text="limits of validity and findings")]
     #: over the members of the reported state's family, twice its own growth where it is the only member,
@@ -143,6 +149,8 @@ class BallsAnswer(Answer):
     #: what it does to the balls; None where it does not act
     gravity: Annotated[GravityOnBalls | None, Q(prefix="gravity", when="gravity")] = None
     tolerance: float | None = None  #: relative error that the scene allows
+    #: what balls that resist to rolling leave; None where they do not
+    stuck: Annotated[StuckBalls | None, Q(prefix="stuck", when="stuck")] = None
 
     @property
     def speed(self) -> Annotated[Array, Q("rad s-1", "spin speed", over=_OVER)]:
@@ -409,6 +417,11 @@ def sentence(result: BallsAnswer) -> str:
         return f"{first}: {nothing}; without balls the largest amplitude is {without}."
     most = int(np.argmax(np.where(result.stable, result.amplitude, -1.0)))
     peak = f"{with_unit(float(result.amplitude[most]), LENGTH)} at {in_rpm(float(result.speed[most]))}"
+    stuck = result.stuck
+    if stuck is not None and stuck.sticks[-1]:
+        last = in_rpm(float(result.speed[-1]))
+        left = f"{rounded(float(stuck.low[-1]))} to {rounded(float(stuck.high[-1]))}"
+        first = f"{first}; balls that stick leave {left} at {last}"
     return f"{first}; the largest amplitude of a stable state is {peak}, without balls {without}."
 
 
@@ -443,9 +456,20 @@ def facts(result: BallsAnswer) -> list[tuple[str, str]]:
         rows.append((f"Growth over the family at {last}", f"{number(least)} to {number(largest)} 1/s"))
     tilts = result.kind != "jeffcott"
     rows.append(amplitudes_are(plane_words(result.position, chambers=True) if tilts else ""))
-    if any(result.sticking):
-        rows.append(("Balls stay below a deflection of", with_unit(max(result.sticking), LENGTH)))
+    if result.stuck is not None:
+        rows += _stuck_rows(result, result.stuck)
     return rows
+
+
+def _stuck_rows(result: BallsAnswer, stuck: StuckBalls) -> list[tuple[str, str]]:
+    """Rows of balls that resist to rolling."""
+    last = in_rpm(float(result.speed[-1]))
+    low, middle, high = (rounded(float(part[-1])) for part in (stuck.low, stuck.median, stuck.high))
+    return [
+        ("Balls can stick at", ranges(result.speed, stuck.sticks)),
+        (f"Deflection up to which they stay at {last}", rounded(float(stuck.hold[-1].max()))),
+        (f"Amplitude that they leave at {last}", f"{low} to {high}, median {middle}"),
+    ]
 
 
 def checks(result: BallsAnswer) -> list[Check]:

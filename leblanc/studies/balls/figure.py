@@ -73,7 +73,17 @@ def _draw_amplitudes(axes: Any, result: BallsAnswer) -> None:
     breaks = np.zeros(max(rpm.size - 1, 0), dtype=bool)
     breaks[jump] = True
     axes.plot(*gapped(rpm, shown * MM, breaks), color=WET, linewidth=1.6, label="stable state", zorder=3.0)
-    top = float(np.nanmax(np.concatenate((bare, shown, [0.0]))))
+    high = np.zeros(1)
+    if result.stuck is not None and result.stuck.sticks.any():
+        found = [
+            np.where(result.stuck.sticks, part, np.nan)
+            for part in (result.stuck.low, result.stuck.high, result.stuck.median)
+        ]
+        look = {"color": WET, "alpha": 0.18, "linewidth": 0.0, "zorder": 1.2}
+        axes.fill_between(rpm, found[0] * MM, found[1] * MM, label="balls that stick, 5 to 95 %", **look)
+        axes.plot(rpm, found[2] * MM, color=WET, linestyle=":", linewidth=1.1, label="their median")
+        high = found[1][-1:]
+    top = float(np.nanmax(np.concatenate((bare, shown, high, [0.0]))))
     axes.set_ylim(-0.02 * _FAR * top * MM, _FAR * top * MM or 1.0)
     axes.set_ylabel(f"Amplitude ({MM_PEAK})")
 

@@ -48,14 +48,33 @@ def points() -> Note:
     return Note(BallCode.POINTS, {}, text)
 
 
-def sticks(deflection: float) -> Note:
-    """What resists to rolling leaves a band of deflections, m, below which balls stay."""
+def rounded(size: float) -> str:
+    """Amplitude of balls that stick, m, in the two digits that a sample of starts gives."""
+    return with_unit(float(f"{size:.2g}"), LENGTH)
+
+
+def sticks(
+    speed: float, deflection: float, first: float, band: tuple[float, float, float], lies: bool
+) -> Note:
+    """What resistance to rolling leaves.
+
+    At the last speed, rad/s: the deflection below which balls stay, m, and 5, 50 and 95 % of the amplitudes,
+    m; `first` is the first speed at which a ball can stay, nan for none.
+    """
+    data = {"speed": speed, "deflection": deflection, "first": first, "band": band}
+    why = "gravity across the axis moves the balls in every turn" if lies else ""
+    if not math.isfinite(first):
+        text = f"The balls resist to rolling, but stick at none of these speeds: {why}."
+        return Note(BallCode.STICKS, data, text)
+    below = f" Below {in_rpm(first)} {why}, and they do not stick." if why else ""
     text = (
-        f"Balls that resist to rolling stay where they are while the axis moves by less than "
-        f"{with_unit(deflection, LENGTH)}: any deflection up to that may remain. The states are those "
-        "without this resistance."
+        f"The balls resist to rolling: at {in_rpm(speed)} a ball stays where it is while the deflection "
+        f"along its race is below {rounded(deflection)}. Balls let go from places all round leave an "
+        f"amplitude of {rounded(band[0])} to {rounded(band[2])} (5 to 95 % of the starts), median "
+        f"{rounded(band[1])}.{below} States and growth rates are those without this resistance. A run-up "
+        "has it: its balls stick where its way takes them."
     )
-    return Note(BallCode.STICKS, {"deflection": deflection}, text)
+    return Note(BallCode.STICKS, data, text)
 
 
 def lies(rows: Sequence[tuple[float, float, float, float]]) -> Note:

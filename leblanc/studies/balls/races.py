@@ -8,7 +8,7 @@ from typing import Annotated
 
 import numpy as np
 
-from meshes.arrays import Array, Complex
+from meshes.arrays import Array, Complex, Flags
 from meshes.quantity import Q
 
 _OVER = ("speed",)
@@ -57,6 +57,29 @@ class GravityOnBalls:
     power: Annotated[
         Array, Q("W", "power that the swing of the balls takes", over=_OVER, variable="swing_power")
     ]
+
+
+@dataclass(frozen=True)
+class StuckBalls:
+    """What balls that resist to rolling leave, let go from places all round; s speeds, N balls."""
+
+    hold: Annotated[
+        Array,
+        Q(
+            "m",
+            "deflection along its race up to which the ball stays",
+            "resistance to rolling less gravity across the axis, 0 where gravity moves the ball each turn",
+            ("speed", "ball"),
+        ),
+    ]  # [theory: races, eq. 9]
+    low: Annotated[Array, Q("m", "amplitude that balls leave, 5 % of their starts below it", "", _OVER)]
+    median: Annotated[Array, Q("m", "amplitude that balls leave, median of their starts", "", _OVER)]
+    high: Annotated[Array, Q("m", "amplitude that balls leave, 95 % of their starts below it", "", _OVER)]
+
+    @property
+    def sticks(self) -> Flags:
+        """Some ball can stay where it is, shape (s,)."""
+        return np.asarray((self.hold > 0.0).any(axis=1))
 
 
 def ball_moment(races: Sequence[RaceOfBalls], angle: Array) -> Complex:

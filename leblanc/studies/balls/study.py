@@ -17,7 +17,7 @@ from leblanc.scene.races import BallRace
 from leblanc.scene.scene import Scene
 from leblanc.studies.balls import notes
 from leblanc.studies.balls.answer import BallsAnswer
-from leblanc.studies.balls.races import GravityOnBalls, RaceOfBalls
+from leblanc.studies.balls.races import GravityOnBalls, RaceOfBalls, StuckBalls
 from leblanc.studies.balls.states import liquid_beside, own_family
 from leblanc.studies.closed_forms.study import closed_forms
 from leblanc.studies.loads.answer import MachineLoads
@@ -33,7 +33,7 @@ from solvers.rotor.balls.charts import stable_bands
 from solvers.rotor.balls.families import Member, growth_ranges
 from solvers.rotor.balls.states import RotorWithBalls, turning
 from solvers.rotor.balls.steady import BallKind
-from solvers.rotor.balls.swing import gravity_swing, swing_power
+from solvers.rotor.balls.swing import gravity_swing, holding, swing_power
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import RotorSystem
 from solvers.rotor.vibration import orbit
@@ -42,6 +42,8 @@ from solvers.synchronous.balls import in_step, wet_states
 from solvers.synchronous.errors import GravityError, LinearError, error_estimate, machine_errors
 from solvers.synchronous.response import response
 
+_STARTS, _FOUND = 64, 0.9  # from which balls that stick are let go; share that must come to a stop
+_UNLIKE = 1e-9  # of its mass, by which a ball differs from the next: what rounding does in a long run
 APART = 0.1  # rad between balls at the bottom of a race whose diameter the scene does not say
 
 
@@ -60,7 +62,16 @@ def started_balls(scene: Scene) -> Balls:
     for race in scene.balls:
         places += _places(race)
         shares += [1.0 if race.start == "spread" else 0.0] * race.count
-    return Balls(tuple(race.race() for race in scene.balls), tuple(places), tuple(shares))
+    return Balls(tuple(_apart(race.race()) for race in scene.balls), tuple(places), tuple(shares))
+
+
+def _apart(race: Race) -> Race:
+    """A race whose balls are not quite alike: two that meet with one speed would move as one for ever.
+
+    Real balls touch before and are pushed apart; these part where being together is not stable.
+    """
+    masses = tuple(mass * (1.0 + _UNLIKE * k) for k, mass in enumerate(race.masses))
+    return replace(race, masses=masses)
 
 
 def _places(race: BallRace) -> list[float]:
@@ -124,6 +135,8 @@ def run_balls(scene: Scene, families: bool = True, edges: bool = True) -> BallsA
         moved = [np.abs(orbit(system, paths, fill.chamber.plane).forward) for fill in scene.fills]
         volumes = volumes_over_speed(scene.fills, speed, np.stack(moved), gravity)
         answer = replace(answer, wall_volumes=volumes)
+    if any(answer.sticking):
+        answer = replace(answer, stuck=stuck_balls(machine, races, model, place))
     answer, waves = _estimated(machine, races, answer)
     answer = replace(answer, loads=_loads(scene, answer))
     alike = turning(system) is not None
@@ -213,8 +226,8 @@ def _run_notes(
     if answer.elsewhere.any():
         first, last = answer.speed[answer.elsewhere][[0, -1]].tolist()
         found.append(notes.elsewhere(first, last))
-    if any(answer.sticking):
-        found.append(notes.sticks(max(answer.sticking)))
+    if answer.stuck is not None:
+        found.append(_sticks(answer, answer.stuck))
     if answer.gravity is not None:
         found.append(_gravity(answer))
     if not alike:
@@ -230,6 +243,40 @@ def _run_notes(
     if answer.loads is not None:
         found += [response_notes.loads(), notes.loads_of_states()]
     return (*found, *doubts(scene))
+
+
+def stuck_balls(machine: Prepared, races: Sequence[Race], model: LiquidModel, position: float) -> StuckBalls:
+    """Amplitudes that balls leave which creep until their resistance holds them [theory: races, eq. 9].
+
+    From the same places all round at each speed; the liquid goes in step with the axis.
+    """
+    speed, fills, gravity = machine.speed, machine.scene.fills, machine.axial_gravity
+    count = sum(len(race.masses) for race in races)
+    starts = np.random.default_rng(0).uniform(0.0, 2.0 * math.pi, (_STARTS, count))
+    hold = holding(races, speed, machine.across_gravity)
+    own = RotorWithBalls(machine.system, tuple(races))
+    compliance = own.compliance(speed)
+    for k in range(speed.size if fills else 0):
+        wet = in_step(machine.system, fills, float(speed[k]), gravity, model)
+        compliance[k] = RotorWithBalls(wet, tuple(races)).compliance(speed[k : k + 1])[0]
+    each = np.repeat(compliance, _STARTS, axis=0)
+    places, stopped = own.stick(each, np.tile(starts, (speed.size, 1)), np.repeat(hold, _STARTS, axis=0))
+    size = orbit(machine.system, own.coordinates(each, places), position).amplitude
+    sizes = np.where(stopped, size, np.nan).reshape(speed.size, _STARTS)
+    # Where balls run in their race they find no place.
+    known = np.isfinite(sizes).mean(axis=1) >= _FOUND
+    found = np.full((3, speed.size), np.nan)
+    found[:, known] = np.nanpercentile(sizes[known], [5.0, 50.0, 95.0], axis=1)
+    return StuckBalls(hold, *found)
+
+
+def _sticks(answer: BallsAnswer, stuck: StuckBalls) -> Note:
+    """Balls that resist to rolling: from which speed on they stick, and what they leave at the last."""
+    sticks = np.flatnonzero(stuck.sticks)
+    first = float(answer.speed[sticks[0]]) if sticks.size else math.nan
+    band = float(stuck.low[-1]), float(stuck.median[-1]), float(stuck.high[-1])
+    lies = answer.axis == "horizontal"
+    return notes.sticks(float(answer.speed[-1]), float(stuck.hold[-1].max()), first, band, lies)
 
 
 def _gravity(answer: BallsAnswer) -> Note:

@@ -26,6 +26,8 @@ _SETTLING = 400  # rounds
 _LONGEST = 0.4  # rad, that a ball moves in a round
 _RESTS = 1e-11  # of the pull on a ball of the bare rotor: what a state may leave
 _NEWTON = 60  # rounds
+_FINE = 0.05  # rad, that a ball which may stick moves in a round
+_STICKS = 1e-6  # of the deflection that all together could give: pull beyond the hold that counts as none
 _CREEPS, _LOCAL = 2000, 1e-5  # steps of a way of creeping balls, at most; rad, error of each
 _CREPT = 1e-9  # pull at which they are there: from a smaller one rounding leads along a family
 _RANK = 1e-7  # of the largest: smaller singular values are none
@@ -157,8 +159,7 @@ class RotorWithBalls:
     def _scaled_answers(self, compliance: Complex) -> tuple[Complex, Complex]:
         """Answers of `_answers` over the largest deflection that all together could give."""
         bare, each = self._answers(compliance)
-        scale = np.abs(bare).max(axis=1) + np.abs(each).sum(axis=2).max(axis=1)
-        scale = np.where(scale > 0.0, scale, 1.0)
+        scale = _largest(bare, each)
         return bare / scale[:, None], each / scale[:, None, None]
 
     def pulls(self, compliance: Complex, places: Array) -> tuple[Array, Array]:
@@ -196,6 +197,36 @@ class RotorWithBalls:
             step *= np.minimum(1.0, _LONGEST / most)[:, None]
             found += step * busy[:, None]
         return found, np.asarray(size <= 1e3 * _RESTS)
+
+    def stick(self, compliance: Complex, places: Array, hold: Array) -> tuple[Array, Flags]:
+        """Places at which balls that creep stop for the resistance to rolling, and whether they stopped.
+
+        Each is held where its pull, as a deflection, is at most `hold`, m, shape (p, N); elsewhere it creeps
+        along what exceeds that [theory: races, eq. 9], in implicit steps of at most `_FINE`. Shapes (p, N)
+        and (p,).
+        """
+        bare, each = self._answers(compliance)
+        scale = _largest(bare, each)
+        found, going = places.astype(float), np.arange(places.shape[0])
+        unit, rest = np.eye(places.shape[1]), np.zeros(places.shape[0], dtype=bool)
+        for _ in range(_SETTLING):
+            pull, slope = _pulls(bare[going], each[going], found[going])
+            held = hold[going]
+            beyond = np.sign(pull) * np.maximum(np.abs(pull) - held, 0.0)
+            stopped = np.abs(beyond).max(axis=1) <= _STICKS * scale[going]
+            rest[going[stopped]] = True
+            going, beyond, slope = going[~stopped], beyond[~stopped], slope[~stopped]
+            if not going.size:
+                break
+            moves = (beyond != 0.0).astype(float)
+            slope = slope * moves[:, :, None] * moves[:, None, :]
+            # A third of the shortest time in which the pull changes: longer steps would leave the way.
+            steep = np.abs(slope).sum(axis=2).max(axis=1)
+            damped = np.maximum(3.0 * steep, 1e-9 * scale[going])[:, None, None]
+            step = np.linalg.solve(damped * unit - slope, beyond[:, :, None])[:, :, 0]
+            most = np.abs(step).max(axis=1, initial=1e-300)
+            found[going] += step * np.minimum(1.0, _FINE / most)[:, None]
+        return found, rest
 
     @cached_property
     def _mean_of_race(self) -> Array:
@@ -262,6 +293,12 @@ class RotorWithBalls:
             return balanced_places(self.system, self.races)
         except InputError:
             return None
+
+
+def _largest(bare: Complex, each: Complex) -> Array:
+    """Largest deflection that unbalance and balls all together could give, m, 1 for none, shape (p,)."""
+    found = np.abs(bare).max(axis=1) + np.abs(each).sum(axis=2).max(axis=1)
+    return np.where(found > 0.0, found, 1.0)
 
 
 def _times(matrix: Array, vector: Array) -> Array:

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from meshes.arrays import Array, Complex
 from meshes.errors import require_not_negative, require_positive
@@ -72,3 +73,13 @@ def swing_power(races: Sequence[BallRace], speed: float, swing: Complex) -> floa
     """
     drag = np.array([race.drag * race.radius**2 for race in races for _ in race.masses])
     return float(0.5 * speed**2 * drag @ np.square(np.abs(swing)))
+
+
+def holding(races: Sequence[BallRace], speed: ArrayLike, gravity: float = 0.0) -> Array:
+    """Deflection along its race up to which a ball stays where it is [theory: races, eq. 9], m, shape (s, N).
+
+    Of a drum that lies gravity takes its part once a turn; 0 where it moves the ball in each.
+    """
+    reach = [race.resistance * race.radius for race in races for _ in race.masses]
+    taken = gravity / np.square(np.atleast_1d(np.asarray(speed, dtype=float)))
+    return np.asarray(np.maximum(np.array(reach) - taken[:, None], 0.0))

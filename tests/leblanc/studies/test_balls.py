@@ -11,7 +11,7 @@ import pytest
 
 import leblanc as lb
 from leblanc.cli import main
-from leblanc.studies.balls.answer import BallsAnswer
+from leblanc.studies.balls.answer import BallsAnswer, sentence
 from leblanc.studies.balls.study import run_balls
 from meshes.errors import InputError
 from solvers.rotor.balls.swing import ball_swing
@@ -87,6 +87,35 @@ def test_balls_that_resist_leave_a_band() -> None:
     assert isinstance(result, BallsAnswer)
     assert result.sticking == (1e-3 * 0.065,)
     assert any(note.code == "sticks" for note in result.notes)
+    assert result.stuck is not None
+    np.testing.assert_allclose(result.stuck.hold, 1e-3 * 0.065, rtol=1e-12)
+    # Beyond the band at rest in which any deflection is left alone, and far from what the balls could do.
+    at = result.stuck
+    assert at.low[-1] < at.median[-1] < at.high[-1] and at.median[-1] > 0.5 * 1e-3 * 0.065
+    assert result.amplitude[-1] == 0.0
+    assert "balls that stick leave" in sentence(result)
+    without = lb.run(scene.replace({"chambers.0.rolling_resistance": 0.0}))
+    assert isinstance(without, BallsAnswer) and without.stuck is None and "stuck" not in without.to_json()
+    # On a lying axis gravity, here 1.5 times what holds a ball at 3000 rpm, frees it in every turn.
+    lying = lb.run(scene.replace({"rotor.axis": "horizontal"}))
+    assert isinstance(lying, BallsAnswer) and lying.stuck is not None and not lying.stuck.sticks.any()
+    assert lying.stuck.high[-1] < 1e-3 * lying.amplitude_without[-1]
+    assert "balls that stick leave" not in sentence(lying)
+
+
+@kills("leblanc.studies.balls.study:_apart", "_UNLIKE * k", "0.0 * k")
+def test_balls_that_met_part_where_they_balance() -> None:
+    """Slowly through the resonance: below it both come to the heavy side, and to one place to the last digit.
+
+    Two alike would stay together for ever and leave a rotor that they can balance at U - 2 m R over its mass.
+    """
+    slow = {"runup.rate": "4 rad/s^2", "runup.duration": "160 s", "runup.cells": 16, "model.liquid": "linear"}
+    run = lb.run_up(lb.example("balls").replace(slow), check=False, samples=100)
+    early = run.ball_angle[run.speed < 80.0][-1]
+    assert abs(early[1] - early[0]) < 0.01
+    np.testing.assert_allclose(np.cos(run.ball_angle[-1]), -6e-4 / 9.23e-4, rtol=0.0, atol=0.02)
+    # What is left is the drum's, which has stopped gaining speed: a hundredth of what balls together leave.
+    assert run.amplitude[-1] < 0.01 * 9e-5
 
 
 def test_models_of_liquid_are_not_compared_beside_balls(capsys: pytest.CaptureFixture[str]) -> None:

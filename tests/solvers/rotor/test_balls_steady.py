@@ -208,3 +208,55 @@ def test_places_that_creeping_balls_would_leave_are_not_kept() -> None:
     # As from the starts 0, which is irregular, and 1 and 2, which begin together.
     told = [attracting(machine, many, np.array([places[k]] * 3), 3).tolist() for k in range(3)]
     assert told == [[False, True, True], [False, False, False], [True, True, True]]
+
+
+def crept(machine: RotorWithBalls, compliance: np.ndarray, start: np.ndarray, hold: float) -> np.ndarray:
+    """The same way by a solver of differential equations, each ball at the speed of its pull beyond."""
+    from scipy.integrate import solve_ivp
+
+    def rate(_: float, places: np.ndarray) -> np.ndarray:
+        turning = machine.forward(machine.coordinates(compliance, places[None]))[0]
+        pull = np.imag(turning * np.exp(-1j * places))
+        return np.asarray(np.sign(pull) * np.maximum(np.abs(pull) - hold, 0.0) / hold)
+
+    return np.asarray(solve_ivp(rate, (0.0, 200.0), start, rtol=1e-8, atol=1e-10).y[:, -1])
+
+
+STICK = "solvers.rotor.balls.states:RotorWithBalls.stick"
+
+
+@kills(STICK, "np.abs(pull) - held", "np.abs(pull) - 0.5 * held")
+@kills(STICK, "np.sign(pull) *", "-np.sign(pull) *")
+@kills(STICK, "(beyond != 0.0).astype(float)", "np.ones(beyond.shape)")
+def test_balls_that_stick_stop_where_a_solver_has_them() -> None:
+    """A start within the band stays, others come to its edge, below and above the resonance.
+
+    Steps of a quarter of the pull's own time: an eighth of the hold, where the pull of the resonance is a
+    hundred times as large. Where a way forks its steps may take the other one, here at two of the starts.
+    """
+    machine = RotorWithBalls(ROTOR.system(), (RACE,))
+    hold = 5e-5
+    for speed in (60.0, 200.0):
+        compliance = machine.compliance(np.array([speed]))
+        starts = np.random.default_rng(3).uniform(0.0, 2.0 * math.pi, (12, 2))
+        each = np.repeat(compliance, 12, axis=0)
+        places, stopped = machine.stick(each, starts, np.full((12, 2), hold))
+        assert stopped.all()
+        own = np.imag(machine.forward(machine.coordinates(each, places)) * np.exp(-1j * places))
+        assert np.abs(own).max() <= hold * (1.0 + 1e-4)
+        begun = np.imag(machine.forward(machine.coordinates(each, starts)) * np.exp(-1j * starts))
+        still = np.abs(begun).max(axis=1) <= hold
+        np.testing.assert_array_equal(places[still], starts[still])
+        expected = np.array([crept(machine, compliance, start, hold) for start in starts])
+        sizes = [np.abs(machine.forward(machine.coordinates(each, at))[:, 0]) for at in (places, expected)]
+        away = np.abs(sizes[0] - sizes[1])
+        assert np.sum(away > 0.125 * hold) <= 2 and np.median(away) < 0.01 * hold
+
+
+def test_balls_that_do_not_resist_stop_where_they_balance() -> None:
+    machine = RotorWithBalls(ROTOR.system(), (RACE,))
+    starts = np.random.default_rng(3).uniform(0.0, 2.0 * math.pi, (12, 2))
+    each = np.repeat(machine.compliance(np.array([200.0])), 12, axis=0)
+    places, stopped = machine.stick(each, starts, np.zeros((12, 2)))
+    assert stopped.all()
+    np.testing.assert_allclose(np.cos(places), -6e-4 / (2.0 * 7.1e-3 * 0.065), rtol=0.0, atol=1e-4)

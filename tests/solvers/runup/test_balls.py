@@ -17,6 +17,7 @@ from meshes.errors import InputError
 from solvers.layer.records import Outcome
 from solvers.rotor.balls.balancers import BallRace, simulate
 from solvers.rotor.balls.steady import BallKind
+from solvers.rotor.balls.swing import holding
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import RotorSystem
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
@@ -181,6 +182,32 @@ def test_what_resists_to_rolling_holds_a_ball() -> None:
     # It creeps by at most 1e-5 of the spin.
     assert moved[0.5] < 1e-5 * spin * 5.0
     assert moved[2.0] > 0.3
+
+
+@kills("solvers.rotor.balls.swing:holding", "gravity / np", "0.5 * gravity / np")
+@kills("solvers.rotor.balls.swing:holding", "race.resistance * race.radius for", "race.resistance for")
+def test_gravity_frees_what_resists_to_rolling() -> None:
+    """It adds to the pull once a turn: the resistance may be above the pull, and yet the ball moves on.
+
+    Pull 72 um, gravity 56: a resistance of 85 um leaves a hold of 0.40 of the pull, and the ball slips a
+    little each turn, 0.01 rad a second; one of 137 um leaves 1.13 of it, and the ball stays.
+    """
+    spin, gravity = 60.0, 0.2
+    size = 6e-4 * spin**2 / abs(4.4e4 - 4.0 * spin**2 + 84.0j * spin)
+    along = size * math.sin(1.5 + math.atan2(84.0 * spin, 4.4e4 - 4.0 * spin**2))
+    moved = {}
+    for f in (1.3e-3, 2.1e-3):
+        race = BallRace(0.0, 0.065, (1e-6,), 0.0, resistance=f)
+        share = float(holding([race], spin, gravity)[0, 0]) / along
+        assert f * 0.065 > 1.1 * along
+        made = machine(ROTOR.system(), Balls((race,), (1.5,), (1.0,)), spin, 64, gravity=gravity)
+        # The rotor's own start is part of the first second, which a ball on its hold outlasts.
+        before = held(made, 1.0).read().ball_angle[0]
+        moved[share] = abs(held(made, 6.0).read().ball_angle[0] - before)
+    (free, loose), (firm, still) = sorted(moved.items())
+    assert 0.35 < free < 0.45 and 1.1 < firm < 1.2
+    assert still < 1e-5 * spin * 5.0
+    assert loose > 10.0 * still
 
 
 def test_balls_and_liquid_take_the_unbalance_together() -> None:

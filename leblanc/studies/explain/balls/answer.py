@@ -37,7 +37,12 @@ class RaceNumbers:
     ]
     drag: Annotated[float, Q("1", "drag", "over a ball's mass, rolling share and the critical speed")]
     sticking: Annotated[
-        float, Q("m", "sticking", "deflection below which balls that resist to rolling stay where they are")
+        float,
+        Q(
+            "m",
+            "sticking",
+            "deflection below which balls that resist to rolling stay, without gravity across the axis",
+        ),
     ]
 
 

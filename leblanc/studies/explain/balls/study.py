@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from leblanc.core.units import in_rpm
 from leblanc.liquid.choose import runup_outlook
 from leblanc.scene.races import BallRace
 from leblanc.scene.scene import Scene, TwoPlaneRotor, dry_rotor, require_clear
@@ -145,6 +146,10 @@ def _lacking(scene: Scene, turned: RotorWithBalls) -> Iterator[str]:
         yield "Liquid models beside the balls: those reported are of the scene without its balls."
     if scene.rotor.axis == "horizontal":
         yield "Gravity across the axis, which swings the balls: `leblanc runup` has it."
+        reach = [race.rolling_resistance * race.radius for race in scene.balls if race.rolling_resistance]
+        if reach:
+            free = math.sqrt(scene.gravity / max(reach))
+            yield f"Gravity that frees balls which stick: below {in_rpm(free)} it moves them in every turn."
     if any(race.count > 2 for race in scene.balls):
         yield "Three balls and more can balance in many ways: growth is of one; `leblanc run` has its range."
     if turning(turned.system) is None:
