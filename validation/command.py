@@ -32,6 +32,7 @@ GROUPS = {
     "blood_pump": "rotors.blood_pump",
     "spindle": "rotors.spindle",
     "turning": "rotors.turning",
+    "measured_balls": "measured_balls.cases",
 }
 
 

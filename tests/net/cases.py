@@ -95,7 +95,7 @@ def _long() -> Iterator[Case]:
     for group in (
         *("two_plane", "whirl", "layer", "runup", "fill_sweep", "exciter", "errata", "optimal_volume"),
         *("vector_model", "horizontal_rig", "vertical_rig", "tub", "baffles", "exact_wave", "claims"),
-        *("blood_pump", "spindle", "turning"),
+        *("blood_pump", "spindle", "turning", "measured_balls"),
     ):
         yield _case(f"validate-{group}", f"validate {group} --json")
 
@@ -109,6 +109,9 @@ def _runs() -> Iterator[Case]:
         yield _case(f"run-{name}", f"run {_scene(name)} --json --out out")
         yield _case(f"explain-{name}", f"explain {_scene(name)} --json")
     yield _case("words-explain-balls", f"explain {_scene('balls')}")
+    for command in ("run", "explain"):
+        typed = f"{command} {_scene('measured_balls')} --json"
+        yield _case(f"{command}-measured_balls", typed + " --out out" * (command == "run"))
     for name in ("tub_balls", "linear_balls"):
         yield _case(f"run-{name}", f"run small/{name}.toml --json --out out")
     yield _case("run-exact", "run small/horizontal_rig_exact.toml --workers 1 --json --out out")

@@ -40,6 +40,7 @@ MACHINES = sorted(
         "balls_and_liquid",
         "balls_design",
         "long_rotor",
+        "measured_balls",
     )
 )
 

@@ -1,0 +1,1 @@
+"""A rig with two balls in one race, measured [RCFW11]."""
