@@ -33,6 +33,7 @@ GROUPS = {
     "spindle": "rotors.spindle",
     "turning": "rotors.turning",
     "measured_balls": "measured_balls.cases",
+    "bearings": "rotors.bearings",
 }
 
 

@@ -76,6 +76,7 @@ TEMPERATURE_STEP = Dimension("difference of temperatures", "K", "900 K")
 EXPANSION = Dimension("thermal expansion", "1/K", "0.0007 1/K")
 VELOCITY = Dimension("velocity", "m/s", "6.3 mm/s")
 FORCE = Dimension("force", "N", "800 N")
+WEAR = Dimension("wear coefficient", "m^2/N", "0.00000001 mm^3/(N*m)")
 CURRENT = Dimension("electric current", "A", "30 mA")
 MAGNET = Dimension("force constant of a magnet", "N*m^2/A^2", "0.00002 N*m^2/A^2")
 DYNAMIC_VISCOSITY = Dimension("dynamic viscosity", "Pa*s", "3.5 mPa*s")
@@ -91,7 +92,7 @@ _DIMENSIONS = (
     *(LENGTH, VOLUME, MASS, DENSITY, VISCOSITY, STIFFNESS, DAMPING, UNBALANCE, INERTIA, TORQUE, ANGLE, TIME),
     *(RATE, ACCELERATION, TEMPERATURE, ANGULAR_SPEED, ANGULAR_ACCELERATION, FORCE, CURRENT, MAGNET),
     *(DYNAMIC_VISCOSITY, INTEGRAL_GAIN, SQUARE_TIME, CUBIC_RATE),
-    *(ELASTIC_MODULUS, ANGULAR_STIFFNESS, ANGULAR_DAMPING),
+    *(ELASTIC_MODULUS, ANGULAR_STIFFNESS, ANGULAR_DAMPING, WEAR),
 )
 
 # Units of usual scenes, each in the SI unit of its dimension; all others are left to pint, whose
@@ -127,6 +128,7 @@ _COMMON: dict[Dimension, dict[str, float]] = {
     ELASTIC_MODULUS: {"Pa": 1.0, "MPa": 1e6, "GPa": 1e9},
     ANGULAR_STIFFNESS: {"N*m/rad": 1.0},
     ANGULAR_DAMPING: {"N*m*s/rad": 1.0},
+    WEAR: {"m^2/N": 1.0},
     ANGLE: {"rad": 1.0, "mrad": 1e-3, "deg": _TURN / 360.0},
     TIME: {"s": 1.0, "ms": 1e-3, "min": 60.0, "h": 3600.0},
     RATE: {"1/s": 1.0},

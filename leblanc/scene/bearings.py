@@ -22,6 +22,20 @@ BallDiameter = Annotated[
     Field(description="of its balls; the speed of its cage is reported with this and pitch_diameter"),
 ]
 PitchDiameter = Annotated[float | None, LENGTH, Field(description="of the circle of the balls' centres")]
+DynamicRating = Annotated[
+    float | None,
+    quantity(units.FORCE, 1.0, 1e8),
+    Field(description="basic dynamic load rating C, by the maker; life, slip and wear are reported with it"),
+]
+STEEL_WEAR = 1e-17  # m^2/N, of lubricated hardened steel to an order of magnitude: 1e-7 over its hardness
+WearCoefficient = Annotated[
+    float,
+    quantity(units.WEAR, 0.0, 1e-9),
+    Field(
+        description="volume that sliding balls wear off for each newton and metre; left out that of "
+        "lubricated steel, to an order of magnitude"
+    ),
+]
 ContactAngle = Annotated[
     float,
     quantity(units.ANGLE, 0.0, 1.57),

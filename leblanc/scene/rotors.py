@@ -27,10 +27,13 @@ from leblanc.core import units
 from leblanc.core.units import MASS, MM, in_rpm, number, with_unit
 from leblanc.registry import CORE, MACHINES, WINGS, announced, sound
 from leblanc.scene.bearings import (
+    STEEL_WEAR,
     BallDiameter,
     CagedBearing,
     ContactAngle,
+    DynamicRating,
     PitchDiameter,
+    WearCoefficient,
     caged,
     rolling_columns,
     rolling_conflicts,
@@ -376,11 +379,15 @@ class Bearing(Part):
     ball_diameter: BallDiameter = None
     pitch_diameter: PitchDiameter = None
     contact_angle: ContactAngle = 0.0
+    dynamic_rating: DynamicRating = None
+    wear_coefficient: WearCoefficient = STEEL_WEAR
 
     @classmethod
     def conflicts(cls, values: Mapping[str, Any], given: Mapping[str, Any]) -> Iterator[Conflict]:
-        """Balls and their circle belong together."""
+        """Balls and their circle belong together, wear and rating as well."""
         yield from rolling_conflicts(values, given)
+        if "wear_coefficient" in given and "dynamic_rating" not in given:
+            yield Conflict(("wear_coefficient",), "left out without dynamic_rating")
 
 
 class TubRotor(Part):
@@ -511,17 +518,30 @@ class TubRotor(Part):
         return found
 
 
+def _rating_values(part: Bearing, field: str) -> tuple[Value, Value]:
+    """Rating and wear of a bearing as cells of a table."""
+    rating = part.dynamic_rating
+    return (
+        Value("not given" if rating is None else number(rating), (f"{field}.dynamic_rating",)),
+        Value(f"{part.wear_coefficient:.4g}", (f"{field}.wear_coefficient",)),
+    )
+
+
 def _bearing_table(bearings: Sequence[Bearing]) -> RowTable:
     """Bearings for readers; columns of their balls where some are known."""
     head, columns = rolling_columns(bearings, "rotor.bearings")
+    rated = any(part.dynamic_rating is not None for part in bearings)
     rows = [
         (
             Value(f"{k + 1}"),
             Value(number(part.position * MM), (f"rotor.bearings.{k}.position",)),
             *columns[k],
+            *(_rating_values(part, f"rotor.bearings.{k}") if rated else ()),
         )
         for k, part in enumerate(bearings)
     ]
+    if rated:
+        head = (*head, "dynamic rating (N)", "wear (m2/N)")
     return RowTable(("Bearing", "at y (mm)", *head), tuple(rows))
 
 

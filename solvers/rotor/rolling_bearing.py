@@ -1,4 +1,4 @@
-"""Frequencies of a rolling bearing whose outer ring is at rest: cage, rings, balls; what they tell of it."""
+"""A ball bearing whose outer ring is at rest: its frequencies and what they tell; life, slip and wear."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Annotated
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from meshes.arrays import Array
 from meshes.errors import InputError, require_positive
@@ -46,6 +47,41 @@ class Bearing:
         cage = float(cage_speed(1.0, 1.0, ratio, self.contact_angle))
         spin = 0.5 * (1.0 - (ratio * cosine) ** 2) / ratio
         return dict(zip(ORDERS, (cage, self.balls * cage, self.balls * (1.0 - cage), spin), strict=True))
+
+
+# A ball bearing with less load than this share of its dynamic rating skids: the makers' common rule.
+LEAST_LOAD = 0.01
+
+
+def rating_life(rating: ArrayLike, load: ArrayLike, speed: ArrayLike) -> Array:
+    """Time that nine of ten ball bearings reach, s by ISO 281 [theory: loads, eq. 22]; infinite without load.
+
+    `rating` the basic dynamic one, N; `load` across the axis, N; `speed` of the inner ring, rad/s.
+    """
+    c, p, spin = np.broadcast_arrays(*(np.asarray(x, dtype=float) for x in (rating, load, speed)))
+    turns = np.divide(c, p, out=np.full(p.shape, np.inf), where=p != 0.0) ** 3
+    return np.asarray(2.0 * np.pi * 1e6 * turns / spin)
+
+
+def skidding_slip(load: ArrayLike, least: ArrayLike) -> Array:
+    """Share by which a cage is behind rolling, its load below the least one [theory: loads, eq. 23]."""
+    return np.asarray(np.maximum(1.0 - np.asarray(load) / np.asarray(least), 0.0))
+
+
+def sliding_speed(
+    speed: ArrayLike, slip: ArrayLike, ball: float, pitch: float, contact_angle: float = 0.0
+) -> Array:
+    """Speed of the inner ring's track against the balls, m/s, by the cage's slip [theory: loads, eq. 24].
+
+    `ball` and `pitch` are the diameters of a ball and of the circle of their centres.
+    """
+    track = 0.5 * (pitch - ball * math.cos(contact_angle))
+    return np.asarray(np.asarray(slip) * np.asarray(speed) * track)
+
+
+def worn_volume(coefficient: ArrayLike, load: ArrayLike, distance: ArrayLike) -> Array:
+    """Volume worn off by sliding, m^3: coefficient (m^2/N), load, distance [theory: loads, eq. 25]."""
+    return np.asarray(np.asarray(coefficient) * np.asarray(load) * np.asarray(distance))
 
 
 def cage_slip(measured: float, theoretical: float) -> float:

@@ -7,7 +7,7 @@ import numpy as np
 from meshes.arrays import Array
 from solvers.rotor.loads.bearings import bearing_forces, hub_load
 from solvers.rotor.loads.machine import LoadedMachine
-from solvers.rotor.loads.turn import ANGLES, LEAST, Extremes, extremes, turn_extremes
+from solvers.rotor.loads.turn import ANGLES, LEAST, MEAN, Extremes, cubic_mean, extremes, turn_extremes
 from solvers.rotor.tub import Tub
 from solvers.runup.path import RotorPath
 
@@ -34,6 +34,10 @@ def path_extremes(machine: LoadedMachine, path: RotorPath, time: Array) -> Extre
     for name in Extremes.__dataclass_fields__:
         moments = np.concatenate([getattr(part, name) for part in parts])
         worst = np.fmin if name in LEAST else np.fmax
+        if name == MEAN:
+            count = np.diff([*starts, len(moments)])[:, None]
+            values[name] = np.cbrt(np.add.reduceat(moments**3, starts, axis=0) / count)
+            continue
         values[name] = worst.reduceat(moments, starts, axis=0)
     return Extremes(**values)
 
@@ -66,7 +70,7 @@ def held_extremes(machine: LoadedMachine, spin: float, path: Array) -> Extremes:
     found = path_extremes(machine, whole, times)
     values = {}
     for name in Extremes.__dataclass_fields__:
-        worst = np.min if name in LEAST else np.max
+        worst = cubic_mean if name == MEAN else np.min if name in LEAST else np.max
         values[name] = worst(getattr(found, name), axis=0, keepdims=True)
     return Extremes(**values)
 

@@ -31,7 +31,7 @@ from leblanc.core.units import (
 from leblanc.studies.balls.notes import rounded
 from leblanc.studies.balls.races import GravityOnBalls, RaceOfBalls, StuckBalls, ball_moment
 from leblanc.studies.closed_forms.answer import ClosedForms, closed_form_table
-from leblanc.studies.loads.answer import MachineLoads, load_table
+from leblanc.studies.loads.answer import MachineLoads, bearing_tables, load_table
 from leblanc.studies.run.notes import plane_words
 from leblanc.studies.run.words import failing
 from leblanc.studies.volume.answer import WallVolumes
@@ -379,7 +379,7 @@ class BallsAnswer(Answer):
             Section(
                 "Results",
                 (
-                    *([] if self.loads is None else [load_table(self.loads)]),
+                    *([] if self.loads is None else [load_table(self.loads), *bearing_tables(self.loads)]),
                     Picture("balls", "Amplitude with balls and where they rest", self.figure),
                     *(() if self.loads is None else machine),
                     Columns((Table(facts(self)), Checks(checks(self)), forms), (_every_state(self),)),

@@ -21,7 +21,7 @@ from leblanc.studies.balls.races import GravityOnBalls, RaceOfBalls, StuckBalls
 from leblanc.studies.balls.states import liquid_beside, own_family
 from leblanc.studies.closed_forms.study import closed_forms
 from leblanc.studies.loads.answer import MachineLoads
-from leblanc.studies.loads.study import loaded_machine, loads_over_speed
+from leblanc.studies.loads.study import loaded_machine, loads_over_speed, with_bearing_life
 from leblanc.studies.run import notes as response_notes
 from leblanc.studies.volume.study import volumes_over_speed
 from meshes.arrays import Array, Complex, Index
@@ -206,7 +206,8 @@ def _loads(scene: Scene, answer: BallsAnswer) -> MachineLoads | None:
     asked = np.arange(answer.speed.size)
     swing = 0.0 if answer.gravity is None else answer.gravity.power
     friction = scene.model.friction
-    return loads_over_speed(machine, friction, answer.speed, coordinates, asked, lost=swing)
+    found = loads_over_speed(machine, friction, answer.speed, coordinates, asked, lost=swing)
+    return with_bearing_life(scene, machine, found)
 
 
 def _run_notes(

@@ -11,6 +11,7 @@ import numpy as np
 from leblanc.core.blocks import Cell, Table
 from leblanc.core.netcdf import Variable
 from leblanc.core.netcdf import variable as var
+from leblanc.core.quantities import quantities
 from leblanc.core.units import LENGTH, NOT_FOUND, RPM, in_rpm, number, with_unit
 from meshes.arrays import Array, Flags, Index
 from meshes.quantity import Q
@@ -34,6 +35,42 @@ class Worst:
         return None if math.isnan(self.time) else self.time
 
 
+_OF_BEARING = ("bearing", "speed")
+
+
+@dataclass(frozen=True)
+class BearingLife:
+    """Ball bearings at the speeds of the scene; b bearings, n speeds; nan without a dynamic rating."""
+
+    load: Annotated[Array, Q("N", "load", "cubic mean over a turn", _OF_BEARING, by="loads, eq. 21")]
+    load_dry: Annotated[Array, Q("N", "load without liquid", "cubic mean over a turn", _OF_BEARING)]
+    least_load: Annotated[
+        Array, Q("N", "least load", "with less the balls skid: 0.01 of the rating", _OF_BEARING)
+    ]
+    slip: Annotated[
+        Array, Q("1", "slip of the cage", "behind rolling, by its load", _OF_BEARING, by="loads, eq. 23")
+    ]
+    #: nan where the balls are not given
+    wear_volume: Annotated[
+        Array,
+        Q(
+            "m3",
+            "wear volume",
+            "of sliding balls on the inner ring, in an hour",
+            _OF_BEARING,
+            by="loads, eq. 25",
+        ),
+    ]
+    life_hours: Annotated[
+        Array, Q("h", "rating life", "of nine in ten, ISO 281", _OF_BEARING, by="loads, eq. 22")
+    ]
+
+    @property
+    def slip_dry(self) -> Array:
+        """The slip without liquid."""
+        return np.asarray(np.maximum(1.0 - self.load_dry / self.least_load, 0.0))
+
+
 @dataclass(frozen=True)
 class MachineLoads:
     """Loads and clearances at k speeds, or in k intervals of time; f feet, h holders, p points."""
@@ -55,6 +92,11 @@ class MachineLoads:
     impulse: Array  #: of each hand-over of liquid on each bearing, N s, shape (j, b)
     jumps: Array  #: time of each, s, shape (j,)
     counts: Flags | None = None  #: which of the k count for the worst, shape (k,); all if None
+    #: None over time, and without a bearing whose dynamic rating is given
+    bearing_life: Annotated[
+        BearingLife | None,
+        Q(text="life, slip and wear of the bearings", prefix="bearing_life", when="bearing_life"),
+    ] = None
 
     @property
     def stands(self) -> bool:
@@ -280,6 +322,10 @@ class MachineLoads:
             found["bearing_impulse"] = var(
                 ("handover", "bearing"), self.impulse, "N s", "impulse on the bearing", text
             )
+        if self.bearing_life is not None:
+            for name, q in quantities(BearingLife).items():
+                values = getattr(self.bearing_life, name)
+                found[f"bearing_life_{name}"] = var(q.over, values, q.unit, q.name, q.text)
         if not self.stands:
             return found
         for name, long in (("floor_force", "largest"), ("floor_force_least", "least")):
@@ -424,6 +470,25 @@ def verdict(loads: MachineLoads) -> str:
         least = known[name]
         told.append(f"The least clearance is {_length(least.value)}, {name}, at {in_rpm(least.speed)}.")
     return " ".join(told)
+
+
+def bearing_tables(loads: MachineLoads) -> list[Table]:
+    """Life, slip and wear of the bearings with a rating at the last speed; none without one."""
+    found, rows = loads.bearing_life, []
+    if found is None:
+        return []
+    for k, name in enumerate(loads.bearings):
+        if math.isnan(found.least_load[k, -1]):
+            continue
+        size = (f"{number(float(each[k, -1]))} N" for each in (found.load, found.load_dry, found.least_load))
+        slip, life = float(found.slip[k, -1]), float(found.life_hours[k, -1])
+        wear = float(found.wear_volume[k, -1]) * 1e9
+        told = NOT_FOUND if math.isnan(slip) else _percent(slip)
+        worn = "balls not given" if math.isnan(wear) else f"{number(wear)} mm3"
+        rows.append((name, *size, told, worn, f"{number(life)} h" if math.isfinite(life) else "no end"))
+    speed = in_rpm(float(loads.speed[loads.asked[-1]]))
+    head = ("Bearing", "load", "without liquid", "least load", "cage slip", "wear in an hour", "rating life")
+    return [Table(rows, head, title=f"Ball bearings at {speed}")]
 
 
 def load_table(loads: MachineLoads) -> Table:

@@ -30,6 +30,10 @@ def machine_figure(loads: MachineLoads, caption: Callable[[str], Caption]) -> Fi
         panels.append((1.5, _draw_clearances if loads.clearances else _draw_movements))
     if loads.stands:
         panels += [(1.5, _draw_feet), (1.0, _draw_walking)]
+    if (life := loads.bearing_life) is not None:
+        panels.append((1.3, _draw_bearings))
+        if np.any(life.slip > 0.0) or np.any(life.slip_dry > 0.0):
+            panels.append((1.0, _draw_slip))
     panels.append((1.0, _draw_torque))
     across = loads.time if loads.in_time else loads.speed * RPM
     with style():
@@ -46,6 +50,10 @@ def machine_figure(loads: MachineLoads, caption: Callable[[str], Caption]) -> Fi
         if not loads.in_time:
             add_rate_axis(rows[0][0])
         text = "Least clearance, largest force under each foot (thin: at rest) and least margin over a turn."
+        if loads.bearing_life is not None:
+            text += (
+                " Mean load of each bearing (thin: without liquid) beside the least with which balls roll."
+            )
         frame = OVER_TIME if loads.in_time else FRAME
         lay_out(figure, rows, [height for height, _ in panels], frame, caption(text))
         figure.alt = f"Curves of clearances, floor forces, margin and torque. {verdict(loads)}".strip()
@@ -97,6 +105,30 @@ def _draw_walking(axes: Axes, loads: MachineLoads, across: Array) -> None:
     _limit(axes, "walks")
     axes.set_ylim(top=104.0)
     axes.set_ylabel("Margin (%)")
+
+
+def _draw_bearings(axes: Axes, loads: MachineLoads, across: Array) -> None:
+    life, rpm = loads.bearing_life, across[loads.asked]
+    assert life is not None
+    for k, name in enumerate(loads.bearings):
+        look = _look(k)
+        axes.plot(rpm, life.load[k], label=f"{name}", **look)
+        axes.plot(rpm, life.load_dry[k], color=look["color"], linewidth=0.5, zorder=1)
+    least = life.least_load[np.isfinite(life.least_load)]
+    axes.axhline(float(least.max()), color="0.15", linewidth=0.9, linestyle=(0, (2, 1.5)), label="least load")
+    axes.set_yscale("log")
+    axes.set_ylabel("Bearing load (N)")
+
+
+def _draw_slip(axes: Axes, loads: MachineLoads, across: Array) -> None:
+    life, rpm = loads.bearing_life, across[loads.asked]
+    assert life is not None
+    for k in range(len(loads.bearings)):
+        look = _look(k)
+        axes.plot(rpm, 100.0 * life.slip[k], **look)
+        axes.plot(rpm, 100.0 * life.slip_dry[k], color=look["color"], linewidth=0.5, zorder=1)
+    axes.set_ylim(bottom=0.0)
+    axes.set_ylabel("Cage slip (%)")
 
 
 def _draw_torque(axes: Axes, loads: MachineLoads, across: Array) -> None:

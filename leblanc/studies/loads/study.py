@@ -11,13 +11,23 @@ import numpy as np
 from fluid.friction.laws import Friction
 from leblanc.scene.scene import JeffcottRotor, Scene, TubRotor, dry_rotor
 from leblanc.studies.drives import rotor_in_time
-from leblanc.studies.loads.answer import MachineLoads
+from leblanc.studies.loads.answer import BearingLife, MachineLoads
 from meshes.arrays import Array, Complex, Flags, Index
 from solvers.held.state import HeldState
 from solvers.rotor.loads.machine import LoadedMachine
 from solvers.rotor.loads.turn import Extremes, damping_power, joined, liquid_power, orbits, turn_extremes
+from solvers.rotor.rolling_bearing import (
+    LEAST_LOAD,
+    rating_life,
+    skidding_slip,
+    sliding_speed,
+    worn_volume,
+)
+from solvers.rotor.vibration import unbalance_response
 from solvers.runup.loads import bearing_impulses, drive_torque, held_extremes, path_extremes
 from solvers.runup.runup import RunupHistory
+
+_HOUR = 3600.0  # s
 
 
 def loaded_machine(scene: Scene) -> LoadedMachine | None:
@@ -68,6 +78,29 @@ def loads_over_speed(
         asked,
     )
     return found if counts is None or not counts.any() else replace(found, counts=counts)
+
+
+def with_bearing_life(scene: Scene, machine: LoadedMachine, loads: MachineLoads) -> MachineLoads:
+    """Loads over speed with life, slip and wear of the bearings whose rating is given [theory: loads]."""
+    bearings = scene.rotor.bearings if isinstance(scene.rotor, TubRotor) else ()
+    if all(bearing.dynamic_rating is None for bearing in bearings):
+        return loads
+    speed = loads.speed[loads.asked]
+    bare = replace(machine, fills=(), races=())
+    dry = turn_extremes(bare, unbalance_response(machine.rotor.system(), speed), speed).bearing_mean.T
+    load = loads.worst.bearing_mean[loads.asked].T
+    rating = np.array([[bearing.dynamic_rating or np.nan] for bearing in bearings])
+    least = np.broadcast_to(LEAST_LOAD * rating, load.shape)
+    slip = skidding_slip(load, least)
+    wear = np.full(load.shape, np.nan)
+    for k, bearing in enumerate(bearings):
+        if bearing.ball_diameter is None or bearing.pitch_diameter is None:
+            continue
+        sizes = bearing.ball_diameter, bearing.pitch_diameter, bearing.contact_angle
+        distance = _HOUR * sliding_speed(speed, slip[k], *sizes)
+        wear[k] = worn_volume(bearing.wear_coefficient, load[k], distance)
+    life = rating_life(rating, load, speed) / _HOUR
+    return replace(loads, bearing_life=BearingLife(load, dry, np.array(least), slip, wear, life))
 
 
 def steady_power(machine: LoadedMachine, friction: Friction, coordinates: Complex, speed: Array) -> Array:

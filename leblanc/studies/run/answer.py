@@ -20,7 +20,7 @@ from leblanc.liquid.filled import FilledChamber
 from leblanc.liquid.notes import BaffleCode
 from leblanc.studies.closed_forms.answer import HEAD, ClosedForms, closed_form_table, vector_rows
 from leblanc.studies.held.answer import MOTIONS, Held
-from leblanc.studies.loads.answer import MachineLoads, load_table
+from leblanc.studies.loads.answer import MachineLoads, bearing_tables, load_table
 from leblanc.studies.run import words
 from leblanc.studies.run.motion import Motion, SelfExcited
 from leblanc.studies.run.notes import OF_MODELS, RunCode
@@ -320,7 +320,7 @@ class RunAnswer(Answer):
             Table(rows, head, right=True, shown="text"),
             Words(amplitude_sentence(words.amplitude_place(self)), shown="text"),
             *(Words(note.text, shown="text") for note in self.notes if note.code in _SAID),
-            *([] if self.loads is None else [load_table(self.loads)]),
+            *([] if self.loads is None else [load_table(self.loads), *bearing_tables(self.loads)]),
             Columns(pictures[:2], (*aside, *pictures[2:3]), wide=True),
             *pictures[3:],
             *(

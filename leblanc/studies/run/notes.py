@@ -13,6 +13,7 @@ from leblanc.core.units import (
     RPM,
     VOLUME,
     in_rpm,
+    number,
     over_rpm,
     rpm_bands,
     rpm_range,
@@ -21,6 +22,7 @@ from leblanc.core.units import (
 from leblanc.liquid.choice import HELD_MODELS, Choice, HeldCost
 from leblanc.studies.cycles.answer import LargeWhirl
 from leblanc.studies.held.answer import Held
+from leblanc.studies.loads.answer import BearingLife
 from leblanc.studies.run.motion import SelfExcited
 from meshes.arrays import Array
 
@@ -52,6 +54,7 @@ class RunCode(NoteCode):
     THICK_WALL_LAYER = "thick_wall_layer"
     UNBALANCE_LEAVES = "unbalance_leaves"
     LOADS = "loads"
+    SKIDS = "skids"
 
 
 _SAME = 1e-6  # relative, up to which two volumes are one
@@ -180,6 +183,25 @@ def slow_disturbances(held: Held | None = None) -> Note | None:
     where = "Branches" if held is None else "Where no motion was integrated in time branches"
     text = f"{where} are evaluated against slow disturbances, the liquid always in equilibrium."
     return Note(RunCode.SLOW_DISTURBANCES, {}, text)
+
+
+def skids(bearing: str, speed: float, life: BearingLife, k: int) -> Note | None:
+    """A bearing that carries less at the last speed than its balls need to roll; None where it does not."""
+    load, dry, least, slip = (
+        float(each[k, -1]) for each in (life.load, life.load_dry, life.least_load, life.slip)
+    )
+    if not slip > 0.0:
+        return None
+    before = float(life.slip_dry[k, -1])
+    bare = percent(before) if before > 0.0 else "none"
+    text = (
+        f"{bearing.capitalize()} carries {number(load)} N at {in_rpm(speed)}. Its balls roll with "
+        f"{number(least)} N, 0.01 of its rating: its cage slips by about {percent(slip)}, and wear comes "
+        f"before fatigue. Without liquid it carries {number(dry)} N, slip {bare}: the better the balance, "
+        "the less the load. A preload or a bearing of a lighter series mends it."
+    )
+    data = {"bearing": k, "load": load, "load_dry": dry, "least": least, "slip": slip}
+    return Note(RunCode.SKIDS, data, text)
 
 
 STANDS = "Forces on the floor take the cabinet as rigid and standing still on feet that do not pull"

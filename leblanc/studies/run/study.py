@@ -36,7 +36,7 @@ from leblanc.studies.cycles.study import large_whirl
 from leblanc.studies.held.answer import Held
 from leblanc.studies.held.holding import HERE, Began, Holding
 from leblanc.studies.loads.answer import MachineLoads
-from leblanc.studies.loads.study import loaded_machine, loads_over_speed
+from leblanc.studies.loads.study import loaded_machine, loads_over_speed, with_bearing_life
 from leblanc.studies.peaks import responses_between
 from leblanc.studies.run import notes as notes
 from leblanc.studies.run.answer import RunAnswer
@@ -223,7 +223,7 @@ def run_scene(scene: Scene, holding: Holding = HERE, cycles: bool = False) -> Ru
     loads = _loads(scene, answer, refined, states)
     volumes = _wall_volumes(machine, answer, motion)
     obstructed = any(fill.uneven and fill.volume > 0.0 for fill in scene.fills)
-    stands = () if loads is None else (notes.loads(obstructed),)
+    stands = () if loads is None else (notes.loads(obstructed), *_skidding(loads, answer))
     return RunAnswer(
         name=scene.name,
         source=scene.source,
@@ -265,9 +265,19 @@ def _loads(
     order = np.argsort(np.concatenate((answer.speed, refined.speed)), kind="stable")
     asked = np.argsort(order, kind="stable")[: answer.speed.size]
     friction = scene.model.friction
-    return loads_over_speed(
+    found = loads_over_speed(
         machine, friction, every.speed, every.coordinates, asked, held, counts=every.holds
     )
+    return with_bearing_life(scene, machine, found)
+
+
+def _skidding(loads: MachineLoads, answer: Response) -> list[Note]:
+    """Bearings with too little load to roll at the last speed."""
+    life, speed = loads.bearing_life, float(answer.speed[-1])
+    if life is None:
+        return []
+    found = (notes.skids(name, speed, life, k) for k, name in enumerate(loads.bearings))
+    return [note for note in found if note is not None]
 
 
 def _balance(machine: Prepared, answer: Response) -> dict[str, Array]:

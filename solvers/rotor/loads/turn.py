@@ -17,6 +17,7 @@ from solvers.rotor.vibration import orbit
 ANGLES = 180  # of a turn at which sizes are looked at: a maximum of a sine is within 1.6e-4 of its size
 _AT_ONCE = 200  # speeds
 LEAST = ("clearance", "floor_force_least", "lift_off", "slip", "walking")
+MEAN = "bearing_mean"
 
 
 @dataclass(frozen=True)
@@ -25,6 +26,7 @@ class Extremes:
 
     holder: Array  #: largest size of the force in each spring, damper or support, N, shape (k, h)
     bearing: Array  #: in each bearing across the axis, N, shape (k, b)
+    bearing_mean: Array  #: cubic mean of that force, by which a ball bearing lives, N, shape (k, b)
     moved: Array  #: largest distance of each point from where it rests, m, shape (k, p)
     clearance: Array  #: least of each point, nan without a gap, m, shape (k, p)
     floor_force: Array  #: of each foot, N, shape (k, f)
@@ -38,6 +40,11 @@ class Extremes:
         return Extremes(**{name: getattr(self, name)[rows] for name in Extremes.__dataclass_fields__})
 
 
+def cubic_mean(values: Array, axis: int, keepdims: bool = False) -> Array:
+    """(mean of F^3)^(1/3) along an axis: the steady load with the same life [theory: loads, eq. 21]."""
+    return np.asarray(np.cbrt(np.mean(values**3, axis=axis, keepdims=keepdims)))
+
+
 def extremes(loads: Loads) -> Extremes:
     """Extremes of k turns over moments, the last axis of loads of shape (k, m)."""
     count = loads.holder.shape[0]
@@ -46,6 +53,7 @@ def extremes(loads: Loads) -> Extremes:
     return Extremes(
         holder=loads.holder.max(axis=1),
         bearing=loads.bearing.max(axis=1),
+        bearing_mean=cubic_mean(loads.bearing, axis=1),
         moved=loads.moved.max(axis=1),
         clearance=loads.clearance.min(axis=1),
         floor_force=nobody if floor is None else floor.vertical.max(axis=1),

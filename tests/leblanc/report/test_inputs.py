@@ -110,7 +110,7 @@ ROTORS: dict[str, dict[str, Any]] = {
             {"position": "-60 mm"},
             {
                 "position": -0.15, "ball_diameter": "7 mm", "pitch_diameter": "31 mm",
-                "contact_angle": "12 deg",
+                "contact_angle": "12 deg", "dynamic_rating": "9.56 kN", "wear_coefficient": 2e-17,
             },
         ],
         "axis": "horizontal",

@@ -4,12 +4,22 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from meshes.errors import InputError
-from solvers.rotor.rolling_bearing import Bearing, cage_slip, fit_bearing
+from solvers.rotor.rolling_bearing import (
+    Bearing,
+    cage_slip,
+    fit_bearing,
+    rating_life,
+    skidding_slip,
+    sliding_speed,
+    worn_volume,
+)
+from solvers.rotor.system import cage_speed
 from tests.mutants import kills
 
 _AT = "solvers.rotor.rolling_bearing"
@@ -93,3 +103,57 @@ def test_what_cannot_be_told() -> None:
             Bearing(*wrong)
     with pytest.raises(InputError):
         cage_slip(math.nan, 1.0)
+
+
+@kills(f"{_AT}:rating_life", "** 3", "** 2")
+@kills(f"{_AT}:rating_life", "2.0 * np.pi * 1e6", "1e6")
+@kills(f"{_AT}:rating_life", "np.divide(c, p", "np.divide(p, c")
+def test_rating_life() -> None:
+    """A million turns under the rating itself; ten times less load at 1000 rpm: 1e9 turns, 16 667 h."""
+    turn = 2.0 * math.pi
+    assert float(rating_life(9560.0, 9560.0, turn)) == pytest.approx(1e6, rel=1e-12)
+    hours = float(rating_life(9560.0, 956.0, 1000.0 * turn / 60.0)) / 3600.0
+    assert hours == pytest.approx(1e9 / (1000.0 * 60.0), rel=1e-12)
+    assert math.isinf(rating_life(9560.0, 0.0, 10.0))
+
+
+@kills(
+    f"{_AT}:skidding_slip",
+    "1.0 - np.asarray(load) / np.asarray(least)",
+    "np.asarray(load) / np.asarray(least)",
+)
+@kills(f"{_AT}:skidding_slip", "np.asarray(load) / np.asarray(least)", "np.asarray(least) / np.asarray(load)")
+@given(load=st.floats(0.0, 1e4), least=st.floats(1.0, 1e3))
+def test_skidding_balances_traction_and_drag(load: float, least: float) -> None:
+    """The cage turns so fast that its drag, in proportion to its speed, is what the load can drive."""
+    slip = float(skidding_slip(load, least))
+    assert 0.0 <= slip <= 1.0
+    if load >= least:
+        assert slip == 0.0
+    else:
+        assert least * (1.0 - slip) == pytest.approx(load, rel=1e-12, abs=1e-12 * least)
+        assert float(skidding_slip(0.5 * load, least)) >= slip
+
+
+@kills(f"{_AT}:sliding_speed", "pitch - ball", "pitch + ball")
+@kills(f"{_AT}:sliding_speed", "0.5 * (pitch", "(pitch")
+@given(slip=st.floats(0.0, 1.0), ratio=st.floats(0.05, 0.6), angle=st.floats(0.0, 1.2))
+def test_sliding_by_the_velocities(slip: float, ratio: float, angle: float) -> None:
+    """A ball rolls on the outer ring at rest, its centre with the late cage: what the inner ring has more."""
+    speed, pitch = 100.0, 0.0285
+    ball = ratio * pitch
+    cage = (1.0 - slip) * float(cage_speed(speed, pitch, ball, angle))
+    # The point of the ball on the outer ring stands still, the one on the inner ring moves twice the centre,
+    # of which both are as far off.
+    at_centre, track = cage * 0.5 * pitch, 0.5 * (pitch - ball * math.cos(angle))
+    found = float(sliding_speed(speed, slip, ball, pitch, angle))
+    assert found == pytest.approx(speed * track - 2.0 * at_centre, rel=1e-9, abs=1e-12)
+
+
+@kills(
+    f"{_AT}:worn_volume", "np.asarray(load) * np.asarray(distance)", "np.asarray(load) + np.asarray(distance)"
+)
+def test_wear_of_the_printed_bush() -> None:
+    """5.1e-7 mm^3 for a newton and a metre: 100 N over 10 km wear 0.51 mm^3."""
+    worn = worn_volume(5.1e-7 * 1e-9, np.array([100.0, 0.0]), 1e4)
+    np.testing.assert_allclose(worn, [0.51e-9, 0.0], rtol=1e-12)

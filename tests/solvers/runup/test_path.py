@@ -10,7 +10,9 @@ from fluid.liquid import Liquid
 from meshes.chamber import Chamber
 from solvers.rotor.loads.bearings import bearing_forces
 from solvers.rotor.loads.machine import LoadedMachine
+from solvers.rotor.loads.turn import turn_extremes
 from solvers.rotor.tub import Mount, Tub
+from solvers.rotor.vibration import unbalance_response
 from solvers.runup.linear import couple_linear
 from solvers.runup.loads import bearing_impulses, path_extremes
 from solvers.runup.long_wave import couple
@@ -147,3 +149,22 @@ def test_bearing_forces_go_on_through_a_capture() -> None:
     assert np.isfinite(bearing).all()
     # The layer pulls otherwise than the pool did: on each side the force goes on, between them it may step.
     assert np.ptp(around[:3]) < 0.1 * blow and np.ptp(around[3:]) < 0.1 * blow
+
+
+@kills(
+    "solvers.runup.loads:path_extremes",
+    "np.add.reduceat(moments**3, starts, axis=0) / count",
+    "moments[starts]**3",
+)
+@kills("solvers.runup.loads:path_extremes", "axis=0) / count", "axis=0)")
+def test_mean_load_of_a_path_is_that_of_its_turns() -> None:
+    """A steady motion as a path: over whole turns the bearings' cubic mean is the one of `turn_extremes`."""
+    machine, spin = LoadedMachine(TUB, FILLS, bearings=(-0.05, -0.15)), 40.0
+    moved = unbalance_response(TUB.system(), np.array([spin]))
+    time = np.linspace(0.0, 6.0 * np.pi / spin, 1537)
+    placed = (moved * np.exp(1j * spin * time)[:, None]).real
+    path = RotorPath(time, spin * time, placed, np.zeros((2, 3)))
+    # The second and the third turn; a spline's second derivative has 1e-5 at 512 moments a turn.
+    found = path_extremes(machine, path, 2.0 * np.pi / spin * np.array([1.0, 2.0])).bearing_mean
+    exact = turn_extremes(machine, moved, np.array([spin])).bearing_mean
+    np.testing.assert_allclose(found[1], exact[0], rtol=1e-3)

@@ -5,6 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
+import numpy as np
+
+from meshes.arrays import Array
 from validation.case import Case, Claims
 
 CLAIMS = Claims("turning")
@@ -23,6 +26,8 @@ def cases() -> Iterator[Case]:
     note = f"10 mm need {speed(500.0 / 60.0, 0.010) * 60.0:.0f} rpm"
     yield CLAIMS.case("10-mm", least, 10.0 <= least < 11.0, note=note)
     yield from _resonances()
+    yield from _modal()
+    yield from _modulations()
     yield CLAIMS.case(
         "modulation",
         note="only the lathe 16K20T1 shows it, Ra 1.7 to 0.8 um, at 40 m/min on 60 mm: "
@@ -63,3 +68,69 @@ def _resonances() -> Iterator[Case]:
             **{"hertz": hertz, "rpm": 60.0 * hertz, "beside": " and ".join(f"{off:.0f}" for off in beside)},
             **{"gap": gap, "share": width / gap, "damping": min(ratios)},
         )
+
+
+def modal_response(speed: Array, scale: float, resonances: Array, damping: Array) -> Array:
+    """Amplitude of modes under one unbalance, each with the same share of it, at speeds in Hz.
+
+    |sum_j s r_j^2/(1 - r_j^2 + 2 i zeta_j r_j)|, r_j the speed over the j-th resonance.
+    """
+    ratio = speed[:, None] / resonances
+    modes = ratio**2 / (1.0 - ratio**2 + 2j * damping * ratio)
+    return np.asarray(scale * np.abs(modes.sum(axis=1)))
+
+
+def modal_fit(speed: Array, amplitude: Array, resonances: Array) -> tuple[float, Array, Array]:
+    """Scale, damping ratios and amplitudes of the modes nearest to some amplitudes, by relative errors.
+
+    The scale is the unbalance over the modes' mass: free, so that no mass is needed.
+    """
+    from scipy.optimize import least_squares
+
+    def apart(logs: Array) -> Array:
+        return np.log(modal_response(speed, math.exp(logs[0]), resonances, np.exp(logs[1:])) / amplitude)
+
+    start = np.log([0.05 * float(amplitude.max()), *np.full(resonances.size, 0.04)])
+    found = np.exp(least_squares(apart, start, xtol=1e-12, ftol=1e-12, gtol=1e-12).x)
+    return float(found[0]), found[1:], modal_response(speed, float(found[0]), resonances, found[1:])
+
+
+def _modal() -> Iterator[Case]:
+    """Three modes with one free scale at the five amplitudes: four unknowns."""
+    printed = dict(sorted((_PEAKS | _BETWEEN).items()))
+    speed, sizes = np.array([*printed]), np.array([*printed.values()])
+    scale, damping, found = modal_fit(speed, sizes, np.array([*_PEAKS]))
+    words = {"damping": ", ".join(f"{ratio:.3f}" for ratio in damping), "scale": 1e3 * scale}
+    for hertz, size, computed in zip(speed, sizes, found, strict=True):
+        yield CLAIMS.case("modal", 1e3 * float(computed), hertz=hertz, printed=1e3 * float(size), **words)
+
+
+# Depths of modulation, rpm, at a frequency, Hz, about the highest mean speed, rpm [ZSK18, section 5].
+_POWER = 1500.0  # W, of the lathe 1700BF30
+_DEPTHS = ((150.0, 3.0, 7000.0), (50.0, 5.0, 7000.0))
+_RATE = math.pi / 30.0
+
+
+def power_of_modulation(depth: float, frequency: float, mean: float) -> float:
+    """Largest power that a speed mean + depth sin(2 pi f t), rpm, asks for each kg m^2, W.
+
+    J Omega dOmega/dt at its largest, to first order in depth over mean.
+    """
+    return mean * _RATE * depth * _RATE * 2.0 * math.pi * frequency
+
+
+def _modulations() -> Iterator[Case]:
+    """The moment of inertia that each printed depth allows, and the depth that the other one would."""
+    bounds = [_POWER / power_of_modulation(*each) for each in _DEPTHS]
+    for (depth, frequency, mean), bound in zip(_DEPTHS, bounds, strict=True):
+        words = {"depth": depth, "frequency": frequency, "mean": mean}
+        yield CLAIMS.case(
+            "inertia", f"{1e3 * bound:.2g} g m2 at most", name=f"inertia-{frequency:.0f}-hz", **words
+        )
+    (first, _, mean), (second, fast, _) = _DEPTHS
+    allowed = _POWER / (min(bounds) * power_of_modulation(1.0, fast, mean))
+    yield CLAIMS.case(
+        "depth", f"{allowed:.0f} rpm at most", second <= allowed, share=second / allowed, first=first
+    )
+    other = 1.0 / power_of_modulation(180.0, 4.0, 800.0)
+    yield CLAIMS.case("inertia-16k20", f"{1e6 * other:.2g} g m2 for each kW at most")

@@ -14,7 +14,7 @@ from solvers.rotor.loads.bearings import bearing_forces, hub_load
 from solvers.rotor.loads.floor import Cabinet, floor_forces, margins
 from solvers.rotor.loads.frame import frame_of, holders_of, tensor
 from solvers.rotor.loads.machine import LoadedMachine, Point
-from solvers.rotor.loads.turn import damping_power, orbits, turn_extremes
+from solvers.rotor.loads.turn import cubic_mean, damping_power, orbits, turn_extremes
 from solvers.rotor.tub import Mount, Tub
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
 from solvers.rotor.vibration import unbalance_response
@@ -276,3 +276,40 @@ def test_what_is_refused() -> None:
         LoadedMachine(Jeffcott(4.0, 4.4e4, 84.0, 6e-4), bearings=(0.0, 1.0))
     with pytest.raises(InputError, match=r"points\.0\.on"):
         LoadedMachine(Jeffcott(4.0, 4.4e4, 84.0, 6e-4), points=(Point("a", (0.0, 0.0, 0.0), "tub"),))
+
+
+@kills(f"{LOADS}.turn:cubic_mean", "np.cbrt(np.mean(values**3", "np.sqrt(np.mean(values**2")
+def test_mean_load_of_a_bearing() -> None:
+    """By the cube over a turn: of weight alone and unbalance alone their own, between both less than the sum.
+
+    |F|^2 = W^2 + U^2 + 2 W U cos(t); the fourth mean in closed form bounds the cubic one from above, the
+    square one from below.
+    """
+    angle = np.linspace(0.0, 2.0 * np.pi, 720, endpoint=False)
+    for weight, turning in ((100.0, 0.0), (0.0, 80.0), (100.0, 80.0), (30.0, 200.0)):
+        force = np.hypot(weight + turning * np.cos(angle), turning * np.sin(angle))
+        mean = float(cubic_mean(force, axis=0))
+        square = weight**2 + turning**2
+        fourth = (square**2 + 2.0 * (weight * turning) ** 2) ** 0.25
+        assert square**0.5 * (1.0 - 1e-12) <= mean <= fourth * (1.0 + 1e-12)
+        # Without one of both all means are alike; with both, (W U)^2/(4 square^2) apart to lowest order.
+        assert (mean < 1.001 * square**0.5) == (weight * turning == 0.0)
+
+
+@kills(f"{LOADS}.turn:extremes", "cubic_mean(loads.bearing", "np.max(loads.bearing")
+def test_mean_over_a_turn_is_that_of_its_moments() -> None:
+    """Of the turn's forces at other angles: a bearing under weight, unbalance and tilt."""
+    machine, speed = LoadedMachine(TUB, FILLS, bearings=(-0.06, -0.15)), np.array([8.0, 60.0])
+    moved = unbalance_response(TUB.system(), speed)
+    found = turn_extremes(machine, moved, speed)
+    angle = np.linspace(0.0, 2.0 * np.pi, 97, endpoint=False)
+    for k, spin in enumerate(speed.tolist()):
+        turned = moved[k] * np.exp(1j * angle)[:, None]
+        each = machine.loads(
+            turned.real, (1j * spin * turned).real, (-(spin**2) * turned).real, angle
+        ).bearing
+        mean = (each**3).mean(axis=0) ** (1.0 / 3.0)
+        np.testing.assert_allclose(
+            found.bearing_mean[k], mean, rtol=1e-6
+        )  # of a smooth function of the angle
+        assert np.all(found.bearing_mean[k] <= found.bearing[k])
