@@ -67,5 +67,8 @@ def test_power_of_a_modulation() -> None:
 
 def test_verdicts() -> None:
     found = {case.name.partition("/")[2]: case for case in bearings.cases()}
-    assert {name for name, case in found.items() if case.verdict == "differs"} == {"load-and-slip"}
-    assert len(found) == 7
+    assert {name for name, case in found.items() if case.verdict == "differs"} == {
+        "load-and-slip",
+        "bush-dry",
+    }
+    assert len(found) == 4
