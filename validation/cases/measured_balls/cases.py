@@ -7,11 +7,13 @@ from collections.abc import Iterator
 import numpy as np
 
 from meshes.arrays import Array
+from solvers.rotor.balls.states import RotorWithBalls
 from solvers.rotor.balls.steady import steady_states
 from solvers.rotor.campbell import campbell
 from solvers.rotor.vibration import orbit, unbalance_response
 from validation.case import Case, Claims, Effect
 from validation.cases.measured_balls.machine import (
+    FAST,
     RPM,
     STIFFER,
     WASHERS,
@@ -36,6 +38,7 @@ _BETWEEN = (1550.0, 2100.0)
 _LOWEST, _BEARING = 1250.0, 3300.0
 # Of the steps over which one resistance is the best: whose misfit is no more than so many times the least.
 _AS_GOOD = 2.0
+_ROUNDS, _STEP = 3000, 1e-4  # of balls that creep; m, over which the pull changes in a radian
 
 
 def criticals(stiffer: float) -> Array:
@@ -71,6 +74,32 @@ def unresisted(washers: int) -> float:
     states = steady_states(system, [race()], _FAST * RPM)
     sizes = np.where(states.stable, at_bearings(system, states.coordinates), np.nan)
     return float(np.nanmax(sizes, axis=1).mean())
+
+
+def eccentric(washers: int) -> float:
+    """Largest mean amplitude, m, that balls without resistance leave in a race as eccentric as the source's.
+
+    They balance about the race's centre, which turns about the axis; of twelve directions of it the worst.
+    """
+    system, away = rotor(washers).system(), known()["race"]["eccentricity_um"] * 1e-6
+    machine, turned = RotorWithBalls(system, (race(),)), np.linspace(0.0, 2.0 * np.pi, 13)[:-1]
+    centre, sizes = away * np.exp(1j * turned)[:, None], []
+    for rpm in FAST:
+        each = np.repeat(machine.compliance(np.array([rpm * RPM])), turned.size, axis=0)
+        # Balls that creep.
+        places = np.tile(balanced_start(washers), (turned.size, 1))
+        for _ in range(_ROUNDS):
+            seen = machine.forward(machine.coordinates(each, places)) + centre
+            places = places + np.imag(seen * np.exp(-1j * places)) / _STEP
+        sizes.append(at_bearings(system, machine.coordinates(each, places)))
+    return float(np.mean(sizes, axis=0).max())
+
+
+def balanced_start(washers: int) -> Array:
+    """Angles at which the balls take the washers' unbalance away, or most of it, rad."""
+    moment, own = known()["washers"]["unbalance_g_mm"][washers] * 1e-6 * (washers > 0), race()
+    share = min(1.0, moment / (sum(own.masses) * own.radius))
+    return np.array([np.pi - np.arccos(share), np.pi + np.arccos(share)])
 
 
 def curves_of(resistance: float, washers: int) -> list[Curve]:
@@ -143,6 +172,10 @@ def _stuck() -> Iterator[Case]:
     """Levels of balls that resist to rolling."""
     found = levels(BEST)
     least, most = as_good()
+    for washers in (1, 2):
+        yield CLAIMS.case(
+            "eccentric", 1e6 * eccentric(washers), washers=washers, printed=1e6 * level("up", washers)
+        )
     for washers in WASHERS:
         low, middle, high = np.percentile(found[washers], [10.0, 50.0, 90.0]).tolist()
         told = {"low": low, "high": high, "count": found.shape[1], "resistance": BEST}
