@@ -234,7 +234,8 @@ class Problem:
                 parts.append(rest)
             elif name in SIZES:
                 cut = _CUT * float(value.max()) or 1.0
-                parts.append(np.log((np.abs(own) + cut) / (value + cut)))
+                # Noise may put a small size below zero.
+                parts.append(np.log((np.abs(own) + cut) / (np.maximum(value, 0.0) + cut)))
             else:
                 parts.append(rest / size)
         return np.concatenate(parts)
