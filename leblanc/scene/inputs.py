@@ -208,6 +208,8 @@ def _races(scene: Scene) -> Iterator[RowTable]:
             how = f"{how}, in {race.liquid.name}"
         if race.start == "bottom":
             how = f"{how}, from the bottom"
+        if race.start_angle:
+            how = f"{how}, from {degrees(race.start_angle)} deg"
         size = "" if race.diameter is None else f" of {number(race.diameter * MM)} mm"
         rows.append(
             (
@@ -217,7 +219,13 @@ def _races(scene: Scene) -> Iterator[RowTable]:
                 Value(number(race.plane * MM), (f"{at}.plane",)),
                 Value(number(race.each * 1e3), (own,)),
                 Value(number(race.drag), (f"{at}.drag",)),
-                Value(how, (f"{at}.motion", f"{at}.rolling_resistance", f"{at}.liquid", f"{at}.start")),
+                Value(
+                    how,
+                    tuple(
+                        f"{at}.{key}"
+                        for key in ("motion", "rolling_resistance", "liquid", "start", "start_angle")
+                    ),
+                ),
             )
         )
     if rows:

@@ -71,11 +71,16 @@ class BallRace(Part):
         description="where a run-up begins: evenly round the race at rest in the drum, or side by side at "
         "rest at the bottom",
     )
+    start_angle: Annotated[float, quantity(units.ANGLE, -1e3, 1e3)] = Field(
+        0.0, description="of the first ball that begins evenly round the race, from the drum's zero mark"
+    )
 
     @classmethod
     def conflicts(cls, values: Mapping[str, Any], given: Mapping[str, Any]) -> Iterator[Conflict]:
         """A mass or what it follows from; balls that fit in their race, and sink in their liquid."""
         yield from super().conflicts(values, given)
+        if values.get("start") == "bottom" and values.get("start_angle"):
+            yield Conflict(("start_angle",), "left out where the balls start at the bottom")
         for key in ("density", "liquid"):
             if key in given and "diameter" not in given:
                 text = f"given with {key}: {allowed_at(cls.model_fields['diameter'])}"

@@ -730,7 +730,8 @@ def machine_content(scene: Scene) -> dict[str, Any]:
 def race_content(race: BallRace) -> dict[str, Any]:
     """What a race is, whichever of two alternatives says so."""
     liquid = None if race.liquid is None else asdict(race.liquid)
-    return asdict(race.race()) | {"start": race.start, "liquid": liquid, "diameter": race.diameter}
+    turned = {"start_angle": race.start_angle} if race.start_angle else {}
+    return asdict(race.race()) | {"start": race.start, "liquid": liquid, "diameter": race.diameter} | turned
 
 
 def optimise_content(wanted: Optimisation) -> dict[str, Any]:

@@ -77,7 +77,7 @@ def _apart(race: Race) -> Race:
 def _places(race: BallRace) -> list[float]:
     """Angle of each ball from the first direction, against which gravity acts, rad."""
     if race.start == "spread":
-        return [2.0 * math.pi * k / race.count for k in range(race.count)]
+        return [race.start_angle + 2.0 * math.pi * k / race.count for k in range(race.count)]
     apart = APART if race.diameter is None else 2.0 * math.asin(0.5 * race.diameter / race.radius)
     return [math.pi + apart * (k - 0.5 * (race.count - 1)) for k in range(race.count)]
 

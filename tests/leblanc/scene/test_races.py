@@ -65,6 +65,7 @@ def test_a_solid_ball_by_its_density() -> None:
         ({"diameter": "90 mm", "count": 10}, "chambers.1.diameter", "fit in the race"),
         ({"diameter": "40 mm", "liquid": "water"}, "chambers.1.mass", "or the balls float"),
         ({"start": "bottom"}, "chambers.1.start", "spread where the axis stands"),
+        ({"start": "bottom", "start_angle": 1.0}, "chambers.1.start_angle", "at the bottom"),
         ({"volume": 1e-3}, "chambers.1.volume", "left out or spelled"),
     ],
 )

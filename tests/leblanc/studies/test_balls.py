@@ -118,6 +118,23 @@ def test_balls_that_met_part_where_they_balance() -> None:
     assert run.amplitude[-1] < 0.01 * 9e-5
 
 
+@kills("leblanc.studies.balls.study:_places", "race.start_angle + 2.0", "2.0")
+def test_where_balls_begin_turns_with_the_unbalance() -> None:
+    """Unbalances and balls turned by one angle in an upright drum are the same machine, balls alone not."""
+    table = lb.example("two_plane_rig").table() | {"assumed": []}
+    table["rotor"]["axis"] = "vertical"
+    race = {"kind": "balls", "radius": 0.1, "count": 2, "mass": 0.01, "drag": 1.0, "plane": 0.2}
+    table["chambers"] = [race]
+    table["runup"] = {"start": 20.0, "stop": 90.0, "rate": 20.0, "duration": 4.0, "cells": 16}
+    first = lb.Scene(**table)
+    angles = {f"rotor.unbalances.{k}.angle": u.angle + 0.7 for k, u in enumerate(first.rotor.unbalances)}
+    alone = {"chambers.0.start_angle": 0.7}
+    runs = [lb.run_up(first.replace(how), samples=40, check=False) for how in ({}, angles | alone, alone)]
+    size = runs[0].amplitude.max()
+    np.testing.assert_allclose(runs[0].amplitude, runs[1].amplitude, rtol=0.0, atol=1e-9 * size)
+    assert np.abs(runs[0].amplitude - runs[2].amplitude).max() > 0.01 * size
+
+
 def test_models_of_liquid_are_not_compared_beside_balls(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["compare", str(ROOT / "examples" / "balls_and_liquid.toml"), "--models", "statics"]) == 2
     said = capsys.readouterr().err.strip()
