@@ -57,9 +57,9 @@ case_table(volumes)
 # ## What the volume does
 #
 # About the rotation axis the unbalance of the liquid grows with the deflection like that of a full chamber,
-# `rho pi R^2 h e`, whatever the volume is, until the near wall runs dry. From there on the law bends
-# over and tends to `rho V (R + e)`. The marks are the deflections whose optimal volume is the one filled
-# in: the last cases of the table above.
+# `rho pi R^2 h e`, whatever the volume is, until the near wall runs dry somewhere. From there on the law
+# bends over and tends to `rho V (R + e)`. The marks are the deflections whose optimal volume is the one
+# filled in: the last cases of the table above.
 
 # %%
 picture(law_figure())

@@ -25,7 +25,7 @@ def optimise(
     ] = None,
     *,
     deflection: Annotated[
-        Quantity | None, LENGTH, "Given deflection: the least liquid that covers the walls at it."
+        Quantity | None, LENGTH, "Given deflection: the least liquid that wets the walls at it."
     ] = None,
     limit: Annotated[
         Quantity | None, LENGTH, "Vibration limit of the objective least_mass [default: the scene's]."

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING
 
@@ -9,7 +10,7 @@ from leblanc.core.notes import Note, NoteCode
 from leblanc.core.units import LENGTH, VOLUME, in_rpm, with_unit
 
 if TYPE_CHECKING:
-    from leblanc.studies.optimise.answer import EmulatedAnswer
+    from leblanc.studies.optimise.answer import EmulatedAnswer, WettingVolumes
 
 
 class OptimumCode(NoteCode):
@@ -45,13 +46,17 @@ LAMINAR = Note(
 )
 
 
-def given_deflection(deflection: float, speed: float, gap: float) -> Note:
+def given_deflection(deflection: float, speed: float, gap: float, forms: Sequence[WettingVolumes]) -> Note:
     """Least volumes that wet the walls; `gap`: largest relative difference to the analytical check."""
+    upright = any(form.full_volume > form.optimal_volume * (1.0 + 1e-6) for form in forms)
+    full = " and ".join(with_unit(form.full_volume, VOLUME) for form in forms)
     text = (
         f"The deflection is given, {with_unit(deflection, LENGTH)} at {in_rpm(speed)}: the volumes are the "
         "least that leave no part of a wall dry over its whole height; search and analytical check differ by "
         f"{gap:.1e}."
     )
+    if upright:
+        text += f" Upright the wall is dry above the floor then: up to {full} more adds to the unbalance."
     data = {"deflection": deflection, "speed": speed, "gap": gap}
     return Note(OptimumCode.GIVEN_DEFLECTION, data, text)
 

@@ -296,7 +296,7 @@ def _at_deflection(scene: Scene, task: Optimisation, deflection: float) -> Optim
             mass=mass * single,
             exact=single > 0.0,
         ),
-        notes=(notes_of.given_deflection(deflection, speed, gap), *doubts(scene)),
+        notes=(notes_of.given_deflection(deflection, speed, gap, forms), *doubts(scene)),
     )
 
 

@@ -571,7 +571,9 @@ def volumes_figure(result: RunAnswer) -> Figure:
             for volume, label, color, dashes in lines:
                 if np.isfinite(volume).any():
                     axes.plot(rpm, volume, color=color, linestyle=dashes, label=label, **_marked(volume, "o"))
-            axes.fill_between(rpm, most, full, color=SHADE, linewidth=0, zorder=0.5, label="wet to the lid")
+            # What is touched with more than wets the wall to the lid is an inner wall.
+            top = np.where(lid > most, lid, full)
+            axes.fill_between(rpm, most, top, color=SHADE, linewidth=0, zorder=0.5, label="wet to the lid")
             if chamber.volume > 0.0:
                 axes.axhline(chamber.volume * ML, color="black", linewidth=0.9, label="fill")
             positive = np.concatenate([wet[wet > 0.0], most[most > 0.0], [full]])

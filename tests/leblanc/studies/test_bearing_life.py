@@ -91,12 +91,15 @@ def test_weight_at_low_speed() -> None:
 
 def test_nothing_is_invented() -> None:
     """No rating, no key; one rating, one bearing; no balls, no wear; no wear asked without a rating."""
-    plain = run_scene(lb.example("tub").replace({"speeds.count": 3}))
+    balls = {"ball_diameter": 0.00675, "pitch_diameter": 0.0285}
+    bare = [balls | {"position": place} for place in (-0.06, -0.15)]
+    plain = run_scene(lb.example("tub").replace({"speeds.count": 3, "rotor.bearings": bare}))
     assert "bearing_life" not in plain.to_json()
     assert not any(
         "Ball bearings" in block.title for block in flat(plain.blocks(), "text") if isinstance(block, Table)
     )
-    one = lb.example("tub").replace({"speeds.count": 3, "rotor.bearings.1.dynamic_rating": RATING})
+    rated = [bare[0], bare[1] | {"dynamic_rating": RATING}]
+    one = lb.example("tub").replace({"speeds.count": 3, "rotor.bearings": rated})
     life = run_scene(one).to_json()["bearing_life"]
     for key in ("least_load", "slip", "life_hours", "wear_volume"):
         assert life[key][0] == [None] * 3 and None not in life[key][1]
@@ -105,7 +108,7 @@ def test_nothing_is_invented() -> None:
     assert life["bearing_life"]["wear_volume"] == [[None] * 3] * 2
     assert None not in life["bearing_life"]["life_hours"][0]
     with pytest.raises(SceneError, match="left out without dynamic_rating"):
-        lb.example("tub").replace({"rotor.bearings.0.wear_coefficient": 1e-17})
+        lb.example("tub").replace({"rotor.bearings": [bare[0] | {"wear_coefficient": 1e-17}, bare[1]]})
     with pytest.raises(SceneError, match="dynamic_rating"):
         tub(rotor__bearings__0__dynamic_rating=-1.0)
 

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from fluid.fill import Fill
 from fluid.liquid import known_liquid
+from leblanc.core.units import VOLUME, with_unit
 from leblanc.liquid.choose import prepare
 from leblanc.scene.scene import Scene, Speeds, load_scene
 from leblanc.scene.tasks import Optimisation
@@ -289,9 +290,13 @@ def test_special_case_of_a_given_deflection() -> None:
         best = optimise_scene(scene, task=Optimisation(deflection=2e-3, working_speed=speed))
         assert best.volume[0] == pytest.approx(best.closed_form[0].optimal_volume, rel=1e-9)
         assert best.feasible
+        # Upright that is not all that liquid can do at this deflection, and so it is said.
+        text = " ".join(note.text for note in best.notes)
+        assert with_unit(best.closed_form[0].full_volume, VOLUME) + " more adds to the unbalance" in text
     flat = optimise_scene(load_scene(EXAMPLES / "horizontal_rig.toml"), task=Optimisation(deflection=5e-4))
     for volume, form in zip(flat.volume, flat.closed_form, strict=True):
         assert volume == pytest.approx(form.optimal_volume, rel=1e-9)
+    assert not any("more adds" in note.text for note in flat.notes)
 
 
 def test_the_best_volume_is_self_consistent() -> None:
