@@ -232,3 +232,14 @@ def test_one_chamber_for_each_state() -> None:
     met = wall_volumes(many, np.full(2, 1e-3), 50.0, GRAVITY)
     for k, one in enumerate((Chamber(0.2, 0.05), Chamber(0.1, 0.04, 0.05))):
         np.testing.assert_array_equal([each[k] for each in met], wall_volumes(one, 1e-3, 50.0, GRAVITY))
+
+
+def test_units_of_length_and_time() -> None:
+    """Three times as large under three times the gravity, and twice as fast under four times: alike."""
+    chamber, e = Chamber(0.2, 0.05, 0.12), np.array([0.0, 1e-3, 0.02])
+    plain = wall_volumes(chamber, e, 40.0, GRAVITY)
+    large = wall_volumes(Chamber(0.6, 0.15, 0.36), 3.0 * e, 40.0, 3.0 * GRAVITY)
+    fast = wall_volumes(chamber, e, 80.0, 4.0 * GRAVITY)
+    for one, wide, quick in zip(plain, large, fast, strict=True):
+        np.testing.assert_allclose(wide, 27.0 * one, rtol=1e-12, atol=1e-18)
+        np.testing.assert_allclose(quick, one, rtol=1e-12, atol=1e-18)
