@@ -13,6 +13,9 @@ from tests.net.call import ROOT
 SMALL: dict[str, tuple[str, dict[str, str]]] = {
     "horizontal_rig": ("examples/horizontal_rig.toml", {"speeds.count": "15"}),
     "centrifuge": ("examples/centrifuge.toml", {"speeds.count": "15"}),
+    # Every fourth of their speeds: what is kept of all of them is large.
+    "tub": ("examples/tub.toml", {"speeds.count": "71"}),
+    "vertical_rig": ("examples/vertical_rig.toml", {"speeds.count": "173"}),
     "horizontal_rig_exact": (
         "examples/horizontal_rig.toml",
         {
