@@ -58,6 +58,11 @@ class Several:
     directions: str = "x, y, z"
 
     @property
+    def dimension(self) -> Dimension:
+        """Of each."""
+        return self.each.dimension
+
+    @property
     def allowed(self) -> str:
         """What is allowed, as a text."""
         return f"{self.each.allowed}; or a list of {self.count}, along {self.directions}"

@@ -357,7 +357,7 @@ class RunAnswer(Answer):
             yield phase_of
         if self.wall_volumes is not None and np.isfinite(self.wall_volumes.full_volume).any():
             of_volumes = f"{_FIGURES}:volumes_figure"
-            yield Picture("volumes", "Volumes that wet the wall over speed", of_volumes)
+            yield Picture("volumes", "Volumes that wet the wall over speed", of_volumes, alone=True)
         if tilts:
             yield Picture("campbell", "Natural frequencies over speed", f"{_FIGURES}:campbell_figure")
         if loaded:

@@ -30,7 +30,7 @@ from leblanc.scene.schema.load import (
 )
 from leblanc.scene.schema.part import Conflict, Part, allowed_at, faults_of
 from leblanc.scene.schema.paths import Keys, keys_of, rule_at
-from leblanc.scene.schema.rules import Entries, Quantity, Refused, Text, Whole, one_of, whole
+from leblanc.scene.schema.rules import Entries, Quantity, Refused, Several, Text, Whole, one_of, whole
 from meshes.arrays import Array
 from meshes.errors import InputError
 
@@ -120,7 +120,8 @@ def _standard_normal(u: Array) -> Array:
 
 
 def _quantity(rule: Any, kind: str) -> Quantity:
-    """The rule of a field that takes any number between bounds."""
+    """The rule of a field that takes any number between bounds, the same in all directions."""
+    rule = rule.each if isinstance(rule, Several) else rule
     if not isinstance(rule, Quantity):
         raise Refused(f"choice, since the field must be {rule.allowed}: it has no {kind}")
     return rule
@@ -389,7 +390,7 @@ def _fields(
                 said = shown(given)
             faults.append(SceneFault(file, field_path(where), said, allowed_as_typed(error.allowed, value)))
             continue
-        unit = rule.dimension.unit if isinstance(rule, Quantity) else ""
+        unit = rule.dimension.unit if isinstance(rule, Quantity | Several) else ""
         fields.append(VariedField(path, unit or "1", distribution))
     faults = faults or _nested(vary, file)
     if faults:

@@ -16,7 +16,7 @@ from leblanc.liquid.validity import doubts
 from leblanc.scene.scene import Scene, dry_rotor
 from leblanc.scene.schema.load import SceneError
 from leblanc.scene.schema.paths import keys_of, rule_at
-from leblanc.scene.schema.rules import Quantity, Refused
+from leblanc.scene.schema.rules import Quantity, Refused, Several
 from leblanc.studies.balls import notes
 from leblanc.studies.balls.states import Parts, liquid_beside, own_family, parts_of
 from leblanc.studies.map.axes import few_points, speeds_of
@@ -165,6 +165,7 @@ def _rule(scene: Scene, path: str) -> Quantity:
         rule = rule_at(Scene, scene.table(), path)
     except Refused as refused:
         raise InputError("over", path, refused.allowed) from None
+    rule = rule.each if isinstance(rule, Several) else rule
     if not isinstance(rule, Quantity):
         raise InputError("over", path, "the path of a number that may take any value in between")
     return rule

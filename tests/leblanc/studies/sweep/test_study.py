@@ -254,3 +254,15 @@ def test_a_single_speed_moves_as_one(tmp_path: Path) -> None:
         many = table | {"speeds": {"start": 10.0, "stop": 90.0, "count": 3}}
         moved = with_values(many, [(("speeds", end), 55.0)])["speeds"]
         assert moved == many["speeds"] | {end: 55.0}
+
+
+def test_a_support_is_varied_alike_in_all_directions(tmp_path: Path) -> None:
+    """What may have a value for each direction takes any number between bounds as well."""
+    text = (
+        f'scene = "{(EXAMPLES / "two_plane_rig.toml").as_posix()}"\nmethod = "sobol"\nsamples = 4\nseed = 1\n'
+        '[vary]\n"rotor.supports.0.damping" = { uniform = ["10 N*s/m", "20 N*s/m"] }\n'
+    )
+    file = tmp_path / "study.toml"
+    file.write_text(text, encoding="utf-8")
+    (varied,) = load_sweep(file).fields
+    assert varied.path == "rotor.supports.0.damping" and varied.unit == "N*s/m"
