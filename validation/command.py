@@ -34,7 +34,6 @@ GROUPS = {
     "turning": "rotors.turning",
     "measured_balls": "measured_balls.cases",
     "bearings": "rotors.bearings",
-    "lying_drum": "liquid.lying_drum",
 }
 
 
