@@ -40,6 +40,7 @@ class Support:
 
 
 def _in_two(value: float | tuple[float, float]) -> tuple[float, float]:
+    """Value across both directions x and y: one stands for both."""
     return value if isinstance(value, tuple) else (value, value)
 
 
