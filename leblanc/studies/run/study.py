@@ -221,7 +221,9 @@ def run_scene(scene: Scene, holding: Holding = HERE, cycles: bool = False) -> Ru
     if motion is not None:
         motion = replace(motion, refined_forward=_at_chambers(machine.system, scene.fills, refined))
     loads = _loads(scene, answer, refined, states)
-    volumes = _wall_volumes(machine, answer, motion)
+    moved = _moved(machine, answer, motion)
+    volumes = volumes_over_speed(scene.fills, answer.speed, moved, machine.axial_gravity)
+    walls = _walls(machine, answer, moved, volumes)
     obstructed = any(fill.uneven and fill.volume > 0.0 for fill in scene.fills)
     stands = () if loads is None else (notes.loads(obstructed), *_skidding(loads, answer))
     return RunAnswer(
@@ -232,7 +234,7 @@ def run_scene(scene: Scene, holding: Holding = HERE, cycles: bool = False) -> Ru
         digest=scene.digest,
         response=answer,
         liquid_mass=sum(fill.mass for fill in scene.fills),
-        notes=(*_notes(machine, choice, answer, refined, motion, whirl, held, volumes), *grown, *stands),
+        notes=(*_notes(machine, choice, answer, refined, motion, whirl, held, walls), *grown, *stands),
         axis=scene.rotor.axis,
         chambers=tuple(_chamber(fill, motion) for fill in scene.fills),
         capture_speed=choice.captured_from,
@@ -313,7 +315,7 @@ def _notes(
     motion: Motion | None,
     whirl: SelfExcited,
     held: Held | None,
-    volumes: WallVolumes,
+    walls: list[Note],
 ) -> tuple[Note, ...]:
     """Limits of validity and findings."""
     cost = held_cost(machine, choice, whirl.growth)
@@ -341,7 +343,7 @@ def _notes(
         first, last = answer.speed[several][[0, -1]].tolist()
         found.append(notes.several_answers(first, last, stable=motion is None))
     found.append(_endless(by_speed([answer, refined])))
-    found += [*compartment_notes(machine.scene.fills), *_walls(machine, answer, motion, volumes)]
+    found += [*compartment_notes(machine.scene.fills), *walls]
     found += [*_meshes(machine.scene), *doubts(machine.scene)]
     return tuple(note for note in found if note is not None)
 
@@ -389,21 +391,15 @@ def _moved(machine: Prepared, answer: Response, motion: Motion | None) -> Array:
     return np.tile(np.abs(answer.deflection), (len(machine.scene.fills), 1))
 
 
-def _wall_volumes(machine: Prepared, answer: Response, motion: Motion | None) -> WallVolumes:
-    """Volumes at which the surface meets an edge of each chamber, at the deflection of the answer."""
-    moved = _moved(machine, answer, motion)
-    return volumes_over_speed(machine.scene.fills, answer.speed, moved, machine.axial_gravity)
-
-
-def _walls(machine: Prepared, answer: Response, motion: Motion | None, volumes: WallVolumes) -> list[Note]:
+def _walls(machine: Prepared, answer: Response, moved: Array, volumes: WallVolumes) -> list[Note]:
     """How wet each wall is at the last speed, and what more liquid does there."""
-    moved, speed = _moved(machine, answer, motion)[:, -1], float(answer.speed[-1])
+    speed = float(answer.speed[-1])
     return [
         notes.wall(
             *(k, speed, fill.volume, float(e)),
             wall_volumes(fill.chamber, e, speed, machine.axial_gravity),
         )
-        for k, (fill, e) in enumerate(zip(machine.scene.fills, moved, strict=True))
+        for k, (fill, e) in enumerate(zip(machine.scene.fills, moved[:, -1], strict=True))
         if np.isfinite(volumes.wetting_volume[k, -1])
     ]
 
