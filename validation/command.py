@@ -34,6 +34,7 @@ GROUPS = {
     "turning": "rotors.turning",
     "measured_balls": "measured_balls.cases",
     "bearings": "rotors.bearings",
+    "kdv": "liquid.kdv",
 }
 
 

@@ -148,6 +148,8 @@ def _typed(one: Asked) -> Parameter:
         kind = list[str] if one.default is Parameter.empty else list[str] | None
     elif one.read is not None or kind == Quantity | None:  # of the latter the study knows the unit
         kind = str if one.default is Parameter.empty else str | None
+    if kind is Any:  # typed by its name
+        kind = str | None
     if one.option.argument:
         return _parameter(one.name, kind, typer.Argument(help=one.text), one.default)
     if _usual(one):

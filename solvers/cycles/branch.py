@@ -8,17 +8,20 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import lu_factor, lu_solve
 
+from fluid.fill import Fill
 from fluid.friction.laws import Friction
 from meshes.arrays import Array, Complex
 from solvers.continuation import slopes
 from solvers.cycles.balance import Circular
-from solvers.cycles.wave import Answer, Derivatives, StandingWave, Whirling
+from solvers.cycles.wave import Answer, Derivatives, LayerWave, StandingWave, Whirling
+
+MakeWave = Callable[[Fill, Friction, int], LayerWave]  # of a layer on so many cells
 
 _ROUNDS = 24
 # What is left of the layers' maps over their mean areas, and of the rotor's balance times the weight.
@@ -84,9 +87,16 @@ class Follower:
     `speed` and spin over 0.1 `speed`.
     """
 
-    def __init__(self, machine: Circular, friction: Friction, cells: int, speed: float) -> None:
+    def __init__(
+        self,
+        machine: Circular,
+        friction: Friction,
+        cells: int,
+        speed: float,
+        wave: MakeWave = StandingWave,
+    ) -> None:
         self.machine, self.speed = machine, speed
-        self.waves = [StandingWave(place.fill, friction, cells) for place in machine.places]
+        self.waves = [wave(place.fill, friction, cells) for place in machine.places]
         rows = np.array([place.row for place in machine.places])
         heavy = int(np.argmax([place.mass for place in machine.places]))
         self.depth = machine.places[heavy].fill.depth
@@ -138,8 +148,7 @@ class Follower:
     def thinnest(self, cycle: Cycle) -> float:
         """Least depth of a layer over its mean depth."""
         pairs = zip(self.waves, cycle.state, strict=True)
-        area = min(float(state[: wave.cells].min()) / wave.mean for wave, state in pairs)
-        return max(area, 0.0)
+        return min(wave.thinnest(state) for wave, state in pairs)
 
     def start(
         self,
@@ -313,7 +322,7 @@ class Follower:
 
     def _across(self, towards: Array) -> Array:
         """Row of the condition that the rotor's unknowns lie on a plane."""
-        count = sum(2 * wave.cells for wave in self.waves)
+        count = sum(wave.state.size for wave in self.waves)
         return np.concatenate([np.zeros(count), towards])
 
     def _balance(self, vector: Array, forces: list[complex]) -> Array:
@@ -335,10 +344,7 @@ class Follower:
         scale = -(whirl_speed**2) / (self.unit * self.speed**2)
         for k, (place, found) in enumerate(zip(self.machine.places, derivatives, strict=True)):
             own = slice(k * size, (k + 1) * size)
-            matrix[own, own] = found.state - np.eye(size)
-            # The map keeps the volume: one equation says nothing, and that the volume stays takes its place.
-            area = slice(k * size, k * size + size // 2)
-            matrix[area, area] += 2.0 / size
+            matrix[own, own] = self.waves[k].closed(found.state)
             matrix[own, rotor] = found.given @ drives[k]
             push = scale * place.full_mass * (place.row @ moved) * place.row.conj()
             by_state, by_rotor = np.outer(push, found.force), np.outer(push, found.force_given @ drives[k])

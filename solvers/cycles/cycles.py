@@ -15,10 +15,12 @@ from fluid.whirl import plane_layer
 from meshes.arrays import Array, Complex, Flags
 from meshes.errors import InputError
 from solvers.cycles.balance import Circular, NotCircularError, circular
-from solvers.cycles.branch import Cycle, Follower
+from solvers.cycles.branch import Cycle, Follower, MakeWave
 from solvers.cycles.edges import Edge, small_whirl_edges
 from solvers.cycles.estimate import estimated_whirl, undamped_bands, unsettled
+from solvers.cycles.family import FamilyWave, family_growth
 from solvers.cycles.floquet import disturbance_growth
+from solvers.cycles.wave import StandingWave
 from solvers.rotor.system import Rotor
 
 CELLS = 64
@@ -149,6 +151,7 @@ def limit_cycles(
     friction: Friction,
     cells: int = CELLS,
     progress: Callable[[int, float], None] | None = None,
+    wave: MakeWave = StandingWave,
 ) -> LimitCycles:
     """Self-excited whirls of finite size over a range of speeds [theory: whirl, eq. 21-28].
 
@@ -167,7 +170,7 @@ def limit_cycles(
     why_not = unsettled(machine, friction)
     if why_not:
         return LimitCycles((), why_not)
-    finder = _Finder(machine, friction, cells, (_BELOW * first, last), progress)
+    finder = _Finder(machine, friction, cells, (_BELOW * first, last), progress, wave=wave)
     finder.search(rotor, fills)
     return LimitCycles(tuple(finder.branches), finder.reason())
 
@@ -214,8 +217,9 @@ class _Finder:
         range_: tuple[float, float],
         progress: Callable[[int, float], None] | None,
         judged: bool = True,
+        wave: MakeWave = StandingWave,
     ) -> None:
-        self.judged = judged
+        self.judged, self.wave = judged, wave
         self.machine, self.friction, self.cells, self.range = machine, friction, cells, range_
         self.progress, self.count = progress, 0
         self.branches: list[Branch] = []
@@ -258,7 +262,7 @@ class _Finder:
 
     def _from_edge(self, edge: Edge) -> None:
         """The branch from an edge of a band, at which a small whirl neither grows nor decays."""
-        follower = Follower(self.machine, self.friction, self.cells, edge.spin)
+        follower = Follower(self.machine, self.friction, self.cells, edge.spin, self.wave)
         start = None
         for trough in _FIRST:
             size = trough / edge.trough / follower.depth
@@ -280,7 +284,7 @@ class _Finder:
 
     def _from_inside(self, lower: float, upper: float, near: float) -> None:
         """The branch of a large whirl inside a band, where none of the others leads to it."""
-        follower = Follower(self.machine, self.friction, self.cells, lower)
+        follower = Follower(self.machine, self.friction, self.cells, lower, self.wave)
         for share in _SHARES:
             spin = lower + share * (upper - lower)
             guess = estimated_whirl(self.machine, self.friction, lower, near, spin)
@@ -395,7 +399,11 @@ class _Finder:
         """Growth of the disturbance that grows most, 1/s; nan where it was not found."""
         if not self.judged:
             return float("nan")
-        found = disturbance_growth(self.machine, follower.waves, cycle)
+        families = [wave for wave in follower.waves if isinstance(wave, FamilyWave)]
+        if families:
+            return family_growth(self.machine, families, cycle)
+        volumes = [wave for wave in follower.waves if isinstance(wave, StandingWave)]
+        found = disturbance_growth(self.machine, volumes, cycle)
         return float("nan") if found is None else found
 
 

@@ -12,7 +12,7 @@ from fluid.fill import Fill
 from fluid.friction.laws import NO_FRICTION, QUADRATIC, WALL, Friction, FrictionLaw, damping_rate
 from fluid.friction.pipe import drag_speed, hydraulic_diameter
 from meshes.arrays import Array, Complex
-from solvers.cycles.balance import Circular, NotCircularError, Place, circular
+from solvers.cycles.balance import Circular, NotCircularError, circular
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import Rotor
 from solvers.whirl.edges import Bands, unstable_bands
@@ -52,7 +52,10 @@ def estimated_whirl(
     shape = shape / float(np.abs(rows @ shape).max())
     lag = max(spin - _DRAGGED * lower, 0.0)
     torque = sum(
-        _wall_torque(place, friction, lag, spin, abs(whirl_speed - spin)) for place in machine.places
+        place.mass
+        * place.fill.chamber.radius**2
+        * wall_drag(place.fill, friction, lag, spin, abs(whirl_speed - spin))
+        for place in machine.places
     )
     resisted = whirl_speed * float((shape.conj() @ machine.damping @ shape).real)
     size = math.sqrt(torque / resisted) if resisted > 0.0 else math.inf
@@ -75,22 +78,23 @@ def _full(machine: Circular, near: float, spin: float) -> tuple[float, Complex]:
     return float(values[best].real), np.asarray(vectors[:p, best])
 
 
-def _wall_torque(place: Place, friction: Friction, lag: float, spin: float, slip: float) -> float:
-    """Torque of the wall on liquid that turns as a solid, N m."""
-    fill = place.fill
+def wall_drag(fill: Fill, friction: Friction, lag: float, spin: float, slip: float) -> float:
+    """Torque of the wall on liquid that lags as a solid, over m R^2 of it, 1/s^2; speeds in rad/s.
+
+    The mean part alone: that of the waves has no torque. `slip` of the waves, without sign.
+    """
     radius, depth = fill.chamber.radius, fill.depth / fill.chamber.radius
     law, coefficient = friction.at(fill.liquid.viscosity, slip, radius)
     area = depth * (1.0 - 0.5 * depth)
     if law == WALL:
-        # The mean part alone: that of the waves has no torque. It takes the lag as that of a solid layer.
+        # It takes the lag as that of a solid layer.
         diameter = hydraulic_diameter(fill.depth, fill.chamber.height)
         given = lag * radius, diameter, fill.liquid.viscosity, friction.roughness
-        rate = 4.0 * float(drag_speed(*given)) / float(diameter)
-        return place.mass * rate * lag * radius**2 * (1.0 - area)
+        return 4.0 * float(drag_speed(*given)) / float(diameter) * lag * (1.0 - area)
     velocity = lag * (1.0 - depth)  # over R, at the surface: the profile R/r of the long waves
     lid = 2.0 * radius / fill.chamber.height if friction.law is FrictionLaw.STOKES else 0.0
     rate = float(damping_rate(law, coefficient, lid, depth, area, velocity if law == QUADRATIC else 0.0))
-    return place.mass * rate * velocity * radius**2
+    return rate * velocity
 
 
 def _settling(rotor: Rotor, fills: Sequence[Fill], friction: Friction) -> Circular | None:

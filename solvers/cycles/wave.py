@@ -9,6 +9,7 @@ over 1/Omega [theory: whirl, eq. 21-23].
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -63,14 +64,60 @@ class Derivatives:
     force_given: Complex  #: and by ratio, size and drag, shape (3,)
 
 
-class StandingWave:
+class LayerWave(ABC):
+    """A layer whose wave stands in the whirl's frame, by any equations, as a branch asks it."""
+
+    mean: float  #: area at rest, A0 over R^2
+    state: Array  #: the present one
+
+    def __init__(self, fill: Fill, friction: Friction, cells: int) -> None:
+        self.fill, self.friction, self.cells = fill, friction, cells
+
+    def drag(self, spin: float, whirl_speed: float) -> float:
+        """Coefficient of the friction, over the spin if it is a rate; both speeds in rad/s."""
+        slip, radius = whirl_speed - spin, self.fill.chamber.radius
+        if self.friction.law is FrictionLaw.WALL:
+            return 1.0 / spin
+        _, found = self.friction.at(self.fill.liquid.viscosity, slip, radius)
+        return found if self.friction.law is FrictionLaw.QUADRATIC else found / spin
+
+    @abstractmethod
+    def lag(self, share: float) -> None:
+        """Start anew with a uniform layer that lags behind the drum by a share of its spin."""
+
+    @abstractmethod
+    def thinnest(self, state: Array) -> float:
+        """Least area over the mean."""
+
+    @abstractmethod
+    def kept(self, state: Array) -> Array:
+        """A state that a layer can have, next to one that a step of Newton's method led to."""
+
+    @abstractmethod
+    def closed(self, step: Array) -> Array:
+        """Derivative of the map less the state, from that of the map, each equation saying something."""
+
+    @abstractmethod
+    def period(self, given: Whirling) -> Answer | None:
+        """Go on towards the standing wave of a prescribed whirl; None where the layer breaks down."""
+
+    @abstractmethod
+    def cell(self, state: Array, given: Whirling) -> Answer | None:
+        """A state after the map whose fixed point is the standing wave; None where the layer breaks down."""
+
+    @abstractmethod
+    def linearise(self, given: Whirling) -> Derivatives | None:
+        """Derivatives of the map at the present state; None where the layer breaks down."""
+
+
+class StandingWave(LayerWave):
     """A layer on its way to a standing wave."""
 
     def __init__(self, fill: Fill, friction: Friction, cells: int) -> None:
         from solvers.layer.step import scratch
 
+        super().__init__(fill, friction, cells)
         chamber = fill.chamber
-        self.fill, self.friction, self.cells = fill, friction, cells
         self.mean = fill.volume / (2.0 * math.pi * chamber.height * chamber.radius**2)
         self._lid = 2.0 * chamber.radius / chamber.height if friction.law.laminar else 0.0
         self._table: tuple[float, Array] | None = None
@@ -84,27 +131,18 @@ class StandingWave:
         area = np.full(cells, self.mean)
         self.state = np.concatenate([area, -np.square(area)])
 
-    @property
-    def least(self) -> float:
-        """Least area of a cell over the mean: 0 where the wall is dry."""
-        return float(self.state[: self.cells].min()) / self.mean
+    def thinnest(self, state: Array) -> float:
+        """See `LayerWave`; 0 where the wall is dry."""
+        return max(float(state[: self.cells].min()) / self.mean, 0.0)
 
     def lag(self, share: float) -> None:
-        """Start anew with a uniform layer that lags behind the drum by a share of its spin."""
+        """See `LayerWave`."""
         area = np.full(self.cells, self.mean)
         velocity = -share * math.sqrt(1.0 - 2.0 * self.mean)
         self.state = np.concatenate([area, velocity * area - np.square(area)])
 
-    def drag(self, spin: float, whirl_speed: float) -> float:
-        """Coefficient of the friction, over the spin if it is a rate; both speeds in rad/s."""
-        slip, radius = whirl_speed - spin, self.fill.chamber.radius
-        if self.friction.law is FrictionLaw.WALL:
-            return 1.0 / spin
-        _, found = self.friction.at(self.fill.liquid.viscosity, slip, radius)
-        return found if self.friction.law is FrictionLaw.QUADRATIC else found / spin
-
     def period(self, given: Whirling) -> Answer | None:
-        """Go on for one turn of the whirl in the drum; None where the layer breaks down."""
+        """See `LayerWave`; for one turn of the whirl in the drum."""
         state = self.state.copy()
         found = self._advance(state, given, 2.0 * math.pi / abs(given.ratio - 1.0))
         if found is not None:
@@ -146,7 +184,7 @@ class StandingWave:
         return Answer(states[0], complex(forces[0]), float(loads["turning"][0]) / time)
 
     def linearise(self, given: Whirling) -> Derivatives | None:
-        """Derivatives of the map at the present state; None where the layer breaks down."""
+        """See `LayerWave`."""
         slip, size = given.ratio - 1.0, 2 * self.cells
         if not abs(slip) > _SLOWEST:
             return None
@@ -200,6 +238,12 @@ class StandingWave:
             states[:, first : first + n] = part[:, self._back[way]]
         offset = (loads["offset_x"] + 1j * loads["offset_y"]) / time
         return states, self._force(offset, drive.amplitude), loads
+
+    def closed(self, step: Array) -> Array:
+        """See `LayerWave`: the map keeps the volume, and that it stays takes that equation's place."""
+        matrix, n = step - np.eye(2 * self.cells), self.cells
+        matrix[:n, :n] += 1.0 / n
+        return np.asarray(matrix)
 
     def kept(self, state: Array) -> Array:
         """A state without areas below nothing, of the layer's volume."""

@@ -95,7 +95,7 @@ def _long() -> Iterator[Case]:
     for group in (
         *("two_plane", "whirl", "layer", "runup", "fill_sweep", "exciter", "errata", "optimal_volume"),
         *("vector_model", "horizontal_rig", "vertical_rig", "tub", "baffles", "exact_wave", "claims"),
-        *("blood_pump", "spindle", "turning", "measured_balls", "bearings"),
+        *("blood_pump", "spindle", "turning", "measured_balls", "bearings", "kdv"),
     ):
         yield _case(f"validate-{group}", f"validate {group} --json")
 
@@ -186,6 +186,11 @@ def _maps() -> Iterator[Case]:
     yield _case(
         "map-cycles",
         "map docs/examples/self_excited.toml --cycles --volumes 3 --speeds 11 --json --out out",
+        measured=frozenset(["cycles", *(f"cycle_{name}" for name in cycles.split())]),
+    )
+    yield _case(
+        "map-cycles-kdv",
+        "map docs/examples/self_excited.toml --cycles --model kdv --volumes 3 --speeds 11 --json --out out",
         measured=frozenset(["cycles", *(f"cycle_{name}" for name in cycles.split())]),
     )
     yield _case("map-wall", f"map small/horizontal_rig.toml {_GRID} {wall} --json --out out")

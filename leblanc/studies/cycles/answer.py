@@ -40,8 +40,15 @@ class Cycle(_Row):
     growth: Annotated[float, Q("s-1", "growth rate", "of a small disturbance of the whirl")]
     torque: Annotated[float, Q("N m", "torque", "that the drive has to supply on top")]
     power: Annotated[float, Q("W", "power", "that the drive has to supply on top")]
-    thinnest: Annotated[float, Q("1", "least depth", "over the mean depth")]
-    in_range: Annotated[bool, Q(name="in range", text="the liquid lags by a third at most", flags="no yes")]
+    thinnest: Annotated[float, Q("1", "least depth", "over the mean depth; of KdV-Burgers may be below 0")]
+    in_range: Annotated[
+        bool,
+        Q(
+            name="in range",
+            text="the liquid lags by a third at most, and KdV-Burgers leaves the wall wet",
+            flags="no yes",
+        ),
+    ]
 
 
 @dataclass(frozen=True)
@@ -58,6 +65,9 @@ class Cycles:
     """Limit cycles, one after the other along their branches."""
 
     branches: tuple[Branch, ...]  #: without unbalance
+    wave: Annotated[
+        str, Q(name="liquid model", text="of limit cycles: long_wave or kdv", key="cycles_model", data=False)
+    ]
 
     @property
     def cycles(self) -> Annotated[list[Cycle], Q(text="limit cycles along their branches")]:
@@ -67,7 +77,8 @@ class Cycles:
             lag = np.nanmax(branch.lag, axis=1)
             columns = (
                 *(branch.speed, branch.amplitude, branch.whirl_speed, lag, branch.stable, branch.growth),
-                *(branch.torque, branch.power, branch.thinnest, lag <= FAST_LAG * branch.speed),
+                *(branch.torque, branch.power, branch.thinnest),
+                (lag <= FAST_LAG * branch.speed) & (branch.thinnest >= 0.0),
             )
             rows = zip(*(column.tolist() for column in columns), strict=True)
             found += [Cycle(number, *row) for row in rows]

@@ -18,6 +18,10 @@ if TYPE_CHECKING:
     from solvers.cycles.cycles import HeldWhirl, LimitCycles
 
 _DEEP = 0.9  # of the layer's depth: whirls beyond that lay walls dry, or come near to it
+# nu_b of KdV-Burgers over the spin, and those that the answer is compared with [theory: kdv, eq. 39].
+_DIFFUSION, _BARS = 0.002, (0.001, 0.003)
+_HIGH = 0.3  # of the depth: waves of KdV-Burgers beyond that are out of its range
+_SPEEDS = 41  # at which diffusions are compared
 _WAY = 1e-3  # relative width of the range of a single speed
 
 
@@ -29,11 +33,22 @@ class CycleCode(NoteCode):
     NO_CIRCLE = "no_circle"
     LAGGING = "lagging"
     DEEP_WHIRL = "deep_whirl"
+    HIGH_WAVE = "high_wave"
+    DIFFUSION = "diffusion"
+
+
+def cycles_by(machine: Prepared) -> str:
+    """Liquid model of a scene's limit cycles: KdV-Burgers where it is named, else long waves."""
+    return "kdv" if machine.scene.model.liquid == "kdv" else "long_wave"
 
 
 def scene_cycles(machine: Prepared, friction: Friction) -> tuple[LimitCycles, tuple[Note, ...]]:
-    """Limit cycles over the speeds of a scene, and what they leave out [theory: whirl, eq. 21-30]."""
+    """Limit cycles over the speeds of a scene, and what they leave out [theory: whirl, eq. 21-30].
+
+    By KdV-Burgers where the scene names it [theory: kdv, eq. 34-40].
+    """
     from solvers.cycles.cycles import limit_cycles
+    from solvers.cycles.family import family_wave
 
     def told(count: int, speed: float) -> None:
         update(what=f"whirls of finite size: {count} found, at {in_rpm(speed)}")
@@ -41,7 +56,14 @@ def scene_cycles(machine: Prepared, friction: Friction) -> tuple[LimitCycles, tu
     speeds, fills = machine.scene.speeds, machine.scene.fills
     # A single speed still needs a way to it.
     range_ = speeds.start, max(speeds.stop, speeds.start * (1.0 + _WAY))
-    found = limit_cycles(machine.rotor, fills, range_, friction, progress=told)
+    by_family = cycles_by(machine) == "kdv"
+    if by_family:
+        found, *others = (
+            limit_cycles(machine.rotor, fills, range_, friction, progress=told, wave=family_wave(share))
+            for share in (_DIFFUSION, *_BARS)
+        )
+    else:
+        found, others = limit_cycles(machine.rotor, fills, range_, friction, progress=told), []
     if not found.branches:
         text = f"No limit cycles: {found.reason}."
         return found, (Note(CycleCode.NO_CYCLES, {"reason": found.reason}, text),)
@@ -57,17 +79,45 @@ def scene_cycles(machine: Prepared, friction: Friction) -> tuple[LimitCycles, tu
         said.append(Note(CycleCode.NO_CIRCLE, {}, text))
     lag = max(float(np.nanmax(branch.lag / branch.speed[:, None])) for branch in found.branches)
     if lag > FAST_LAG:
+        flow = "turns as a whole beneath its waves" if by_family else "has no vorticity"
         text = (
             f"Limit cycles in which the liquid lags by more than {percent(FAST_LAG)} of the spin (up to "
-            f"{percent(lag)}) are the model's own: its flow has no vorticity."
+            f"{percent(lag)}) are the model's own: its flow {flow}."
         )
         said.append(Note(CycleCode.LAGGING, {"largest": lag, "limit": FAST_LAG}, text))
     deflection = max(float(np.abs(branch.deflection).max()) for branch in found.branches)
     share = deflection / max(fill.depth for fill in fills)
-    if share > _DEEP:
+    if by_family:
+        said += _of_family(found, others, range_)
+    elif share > _DEEP:
         text = f"The largest limit cycle is {share:.2g} times the depth of the layer: walls fall nearly dry."
         said.append(Note(CycleCode.DEEP_WHIRL, {"largest": share}, text))
     return found, tuple(said)
+
+
+def _of_family(found: LimitCycles, others: list[LimitCycles], range_: tuple[float, float]) -> list[Note]:
+    """What limit cycles by KdV-Burgers leave out, and what they owe to its diffusion."""
+    said, height = [], 1.0 - min(float(branch.thinnest.min()) for branch in found.branches)
+    if height > _HIGH:
+        text = (
+            "KdV-Burgers is right to the first order of the wave's height over the layer's depth, which "
+            f"comes to {height:.2g}; `map --cycles` with another model takes nonlinear long waves."
+        )
+        said.append(Note(CycleCode.HIGH_WAVE, {"largest": height, "limit": _HIGH}, text))
+    speeds = np.linspace(*range_, _SPEEDS).tolist()
+    sizes = np.array([[one.largest_stable(speed) for speed in speeds] for one in (found, *others)])
+    both = (sizes > 0.0).all(axis=0)
+    if both.any():
+        change = float(np.abs(sizes[1:, both] - sizes[0, both]).max() / sizes[0].max())
+        low, high = (percent(share) for share in _BARS)
+        text = (
+            "No law sets the diffusion of KdV-Burgers, which gives fronts of a wave their width. It is "
+            f"{percent(_DIFFUSION)} of the spin here; from {low} to {high} the whirl changes by up to "
+            f"{percent(change)} of the largest."
+        )
+        data = {"diffusion": _DIFFUSION, "tried": _BARS, "change": change}
+        said.append(Note(CycleCode.DIFFUSION, data, text))
+    return said
 
 
 def large_whirl(machine: Prepared, growth: Array) -> tuple[LargeWhirl, tuple[Note, ...]]:
@@ -79,6 +129,7 @@ def large_whirl(machine: Prepared, growth: Array) -> tuple[LargeWhirl, tuple[Not
     lost = (size == 0.0) & ~(growth <= 0.0)
     large = LargeWhirl(
         branches=found.branches,
+        wave=cycles_by(machine),
         amplitude=np.where(lost, np.nan, size),
         whirl_speed=turning,
         kicked=(size > 0.0) & (growth <= 0.0),

@@ -39,8 +39,8 @@ def map_whirl(
     ] = False,
     model: Annotated[
         Any,
-        Option(alone=True),
-        "Liquid in place of the scene's: an object as `leblanc.LiquidModel` says, or a name.",
+        Option(("--model",)),
+        "Liquid model in place of the scene's, by its name; kdv: limit cycles by KdV-Burgers.",
     ] = None,
     progress: Annotated[
         Callable[[float, float], None] | None, "Called with the number of volumes done and of all."
@@ -49,7 +49,7 @@ def map_whirl(
     """Growth rate of self-excited whirl over speed and fill, with the edges of its bands.
 
     Rising arrays say each of the `volumes`, of all liquid together, and of the `speeds`. Friction may be a
-    table as in a machine file as well, or a `Friction`.
+    table as in a machine file as well, or a `Friction`; the model an object as `leblanc.LiquidModel` says.
 
     Raises
     ------

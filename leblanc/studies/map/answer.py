@@ -45,6 +45,10 @@ CYCLES = (
     "Nonlinear long waves that stand in the whirl's frame, rotor and every cell of every layer solved at "
     "once; stability by Floquet multipliers."
 )
+FAMILY = (
+    "KdV-Burgers for the waves against the spin, linear waves with it, on liquid that lags behind the drum "
+    "as the whirl's torque and the wall's drag leave it; rotor, modes and lag of every layer solved at once."
+)
 REASON = "No other model answers this for any growth and any whirl speed."
 _OVER, _BANDS, _RATE = ("volume", "speed"), ("volume", "band"), "rad s-1"
 _MODE = "of the fastest-growing whirl"
@@ -153,7 +157,10 @@ class WhirlMap(Answer):
         if self.cycles:
             draw = "leblanc.studies.map.figure:cycles_figure"
             pictures.append(Picture("cycles", "How large the whirl grows, over speed", draw))
-            models.append(Words(CYCLES, "long_wave", small=True))
+            by_family = self.large is not None and self.large.wave == "kdv"
+            models.append(
+                Words(FAMILY if by_family else CYCLES, "kdv" if by_family else "long_wave", small=True)
+            )
         tables = Columns(
             (Table(facts(self), indent=2), Checks(checks(self), shown="page")), (bands_table(self),)
         )

@@ -20,7 +20,7 @@ from leblanc.liquid.models import asked_with
 from leblanc.liquid.validity import doubts
 from leblanc.scene.scene import Scene, require_no_balls, require_whirl
 from leblanc.studies.cycles.answer import Cycles
-from leblanc.studies.cycles.study import scene_cycles
+from leblanc.studies.cycles.study import cycles_by, scene_cycles
 from leblanc.studies.map.answer import WhirlMap
 from leblanc.studies.map.axes import few_points, speeds_of
 from meshes.arrays import Array, Flags
@@ -128,7 +128,7 @@ def map_scene(
         edges_not_known=tuple(bands_not_known(speed, found) for found in growth),
         capacity=sum(fill.chamber.capacity for fill in rows[-1] if fill.volume > 0.0),
         critical_speed_dry=_critical_speed(machine),
-        large=None if large is None else Cycles(large.branches),
+        large=None if large is None else Cycles(large.branches, cycles_by(machine)),
         depth=max((fill.depth for fill in scene.fills), default=0.0),
     )
 

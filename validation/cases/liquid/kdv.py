@@ -1,0 +1,198 @@
+"""KdV-Burgers where it is to hold: self-excited whirls, waves near resonance; the published fluid balancer.
+
+Its limit cycles beside those of long waves and beside rotor and layer marched in time, its waves beside exact
+ones; of the balancer by forced KdV-Burgers the statements of its abstract [LN14].
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from functools import cache
+from itertools import islice
+
+import numpy as np
+
+from fluid import kdv
+from fluid.fill import Fill
+from fluid.friction.laws import Friction, FrictionLaw
+from fluid.liquid import known_liquid
+from meshes.chamber import Chamber
+from solvers.cycles.balance import circular
+from solvers.cycles.branch import Follower
+from solvers.cycles.cycles import HeldWhirl, LimitCycles, limit_cycles
+from solvers.cycles.edges import small_whirl_edges
+from solvers.cycles.family import FamilyWave, family_wave
+from solvers.cycles.wave import Whirling
+from solvers.potential.steady import forced
+from solvers.synchronous.models import STATICS
+from solvers.synchronous.response import response
+from validation.case import Case, Claims
+from validation.cases.rotors.rigs import horizontal_rig, horizontal_rotor
+from validation.cases.rotors.whirl import BANDED, NATURAL, layered_rotor
+from validation.exact import detuning, whirl_speeds
+
+CLAIMS = Claims("kdv")
+
+# Over omega_n: speeds at which whirls are compared, of machines by depth over R and damping ratio.
+MACHINES = {"a": (0.1, 0.02, (1.2, 1.3, 1.4, 1.55, 1.7, 2.0)), "c": (0.05, 0.02, (1.1, 1.2, 1.3))}
+# Rotor and layer of the first in time, from a large whirl: speed and amplitude over the depth.
+MARCHED = ((1.2, 0.4147), (1.3, 0.5664), (1.4, 0.6784), (1.55, 0.8126), (1.7, 0.9238), (2.0, 1.1065))
+_BARS, _BAND = (0.001, 0.003), (1.15, 2.0)
+# Waves near resonance, p over p_1 and w0 over h0: whirls of their size behind the drum.
+_WAVES = ((0.1, 0.9, 0.005), (0.1, 0.95, 0.001), (0.1, 1.05, 0.001), (0.1, 1.1, 0.005), (0.05, 0.9, 0.002))
+_RESTING = Friction(FrictionLaw.LINEAR, 1e-9)  # so little that nothing shows
+_SPEEDS = np.linspace(0.3, 3.0, 55)  # critical speeds
+_DEPTHS = 0.01, 0.05, 0.1, 0.2
+
+
+def cases() -> list[Case]:
+    """Whirls, what they owe to lag and diffusion, waves beside exact ones, the published balancer."""
+    return [*_whirls(), *_owed(), *_waves(), *_balancer()]
+
+
+@cache
+def by_family(machine: str, diffusion: float = 0.002) -> LimitCycles:
+    """Limit cycles of a machine by KdV-Burgers."""
+    return _cycles(machine, diffusion)
+
+
+@cache
+def by_long_waves(machine: str) -> LimitCycles:
+    """The same by nonlinear long waves."""
+    return _cycles(machine, None)
+
+
+def _cycles(machine: str, diffusion: float | None) -> LimitCycles:
+    depth, zeta, speeds = MACHINES[machine]
+    rotor, fill = layered_rotor(0.1, depth, zeta)
+    range_ = 0.95 * NATURAL, (speeds[-1] + 0.02) * NATURAL
+    if diffusion is None:
+        return limit_cycles(rotor, [fill], range_, BANDED)
+    return limit_cycles(rotor, [fill], range_, BANDED, wave=family_wave(diffusion))
+
+
+def stable_at(found: LimitCycles, ratio: float) -> HeldWhirl:
+    """The largest stable whirl at a speed over omega_n."""
+    whirls = [whirl for branch in found.branches for whirl in branch.at(ratio * NATURAL) if whirl.stable]
+    return max(whirls, key=lambda whirl: whirl.amplitude)
+
+
+def _whirls() -> Iterator[Case]:
+    for name, (depth, zeta, speeds) in MACHINES.items():
+        size = depth * layered_rotor(0.1, depth, zeta)[1].chamber.radius
+        for ratio in speeds:
+            own, other = (stable_at(found, ratio) for found in (by_family(name), by_long_waves(name)))
+            words = {
+                "machine": name, "ratio": ratio, "depth": depth, "zeta": zeta, "marched": "",
+                "whirl_speed": own.whirl_speed / NATURAL, "other_speed": other.whirl_speed / NATURAL,
+                "lag": own.lag / NATURAL, "other_lag": other.lag / NATURAL,
+            }  # fmt: skip
+            yield CLAIMS.case("whirl", own.amplitude / size, printed=other.amplitude / size, **words)
+    size = 0.1 * layered_rotor(0.1, 0.1, 0.02)[1].chamber.radius
+    for ratio, amplitude in MARCHED:
+        found = stable_at(by_family("a"), ratio).amplitude / size
+        yield CLAIMS.case("in-time", found, printed=amplitude, ratio=ratio)
+
+
+class _Held(FamilyWave):
+    """A layer whose mean flow the wall holds, however the whirl pulls."""
+
+    def _rate(self, given: Whirling, lag: float) -> float:
+        return 1e9
+
+
+def without_lag(ratio: float) -> float:
+    """Whirl over the depth at a speed over omega_n, from the upper edge, if no liquid lagged."""
+    rotor, fill = layered_rotor(0.1, 0.1, 0.02)
+    machine = circular(rotor.system(), [fill], BANDED)
+    (edge,) = small_whirl_edges(machine, (1.3 * NATURAL, 1.6 * NATURAL))
+    follower = Follower(machine, BANDED, 64, NATURAL, _Held)
+    start = follower.start(edge.moved, edge.whirl_speed, edge.spin, 0.02, hold_size=True)
+    assert start is not None
+    for cycle in islice(follower.after(start), 80):
+        if cycle.spin < ratio * NATURAL:
+            return follower.size(cycle)
+    return math.inf
+
+
+def _owed() -> Iterator[Case]:
+    """What the whirl owes to the lag and to the diffusion."""
+    size = 0.1 * layered_rotor(0.1, 0.1, 0.02)[1].chamber.radius
+    lagging = stable_at(by_family("a"), 1.4).amplitude / size
+    times = without_lag(1.4) / lagging
+    yield CLAIMS.case("no-lag", f"{times:.2g} times", 2.0 < times < math.inf, difference="in words")
+    speeds = np.linspace(*_BAND, 18)
+    sizes = [
+        [stable_at(by_family("a", share), ratio).amplitude for ratio in speeds] for share in (0.002, *_BARS)
+    ]
+    change = float(np.abs(np.array(sizes[1:]) - sizes[0]).max() / max(sizes[0]))
+    yield CLAIMS.case("diffusion", f"{change:.2%}", change < 0.01, difference="in words")
+
+
+def _waves() -> Iterator[Case]:
+    """G of both families, one nonlinear, beside that of exact waves."""
+    for depth, ratio, size in _WAVES:
+        speed, _ = whirl_speeds(depth, ratio)
+        exact = forced(depth, detuning(depth, ratio), size * depth)
+        chamber = Chamber(0.15, 0.05)
+        volume = (1.0 - (1.0 - depth) ** 2) * chamber.capacity
+        wave = FamilyWave(Fill(chamber, known_liquid("water"), volume), _RESTING, 256, 0.0)
+        given = Whirling(speed, size * depth, 1e-9)
+        answer = wave.period(given)
+        assert answer is not None
+        posed = wave.posed(wave.state, given)
+        assert posed is not None
+        c = wave.near
+        alone = (
+            2.0
+            * wave.mean
+            * (1.0 + c.surface_radius / wave.mean * (posed.first - posed.other).real / (size * depth))
+        )
+        words = {"depth": depth, "ratio": ratio, "size": size, "alone": alone}
+        yield CLAIMS.case(
+            "exact",
+            answer.force.real,
+            printed=exact.force_ratio,
+            height=1.0 - wave.thinnest(wave.state),
+            **words,
+        )
+
+
+def offset_share(depth: float, family: int) -> float:
+    """Share that a family of small waves has of the liquid's offset in a synchronous whirl, by depth over R.
+
+    Its linear wave, solved, over the exact offset of the paraboloid.
+    """
+    c = kdv.coefficients(1.0, 1.0 - depth, 1.0, family)
+    wave = float(kdv.forcing(c, 1.0)) / float(kdv.wave_frequency(1, c, False))
+    profile = wave * np.cos(2.0 * np.pi * np.arange(64) / 64)
+    return float(kdv.offset(c, profile).real) * ((1.0 - depth) ** -2 - 1.0)
+
+
+def _closed(depth: float) -> float:
+    """The same by the closed form, of the family against the spin."""
+    log = -math.log1p(-depth)
+    root = math.sqrt(log * (log + 1.0))
+    # lambda_0 and delta over the spin, from L alone.
+    speed = log - root
+    lag = log**3 / 3.0 * (1.0 - (2.0 * log + 1.0) / (2.0 * root))
+    return 0.5 * (1.0 + math.sqrt(log / (1.0 + log))) * speed / (speed - lag)
+
+
+def _balancer() -> Iterator[Case]:
+    """A balancer by forced KdV-Burgers: where its liquid lies, and what one family makes of it."""
+    rotor, fills = horizontal_rotor(0.05, 105.0), horizontal_rig()
+    found = response(rotor, fills, _SPEEDS * rotor.natural_frequency, 0.0, STATICS)
+    side = np.cos(found.liquid_angle - np.angle(found.deflection)) * found.liquid_offset
+    least = float((side / np.abs(found.deflection)).min())
+    deepest = max(fill.depth / fill.chamber.radius for fill in fills)
+    yield CLAIMS.case("balancer-side", f"{least:.3g} or more", least > 0.0, depth=deepest)
+    dry = found.deflection_dry[[int(np.argmin(np.abs(_SPEEDS - at))) for at in (0.8, 1.25)]]
+    below, above = (float(value.real / abs(value)) for value in dry)
+    yield CLAIMS.case("balancer-dry", agrees=below > 0.9 and above < -0.9, below=below, above=above)
+    for depth in (*_DEPTHS, deepest):
+        where = "the larger ring of the horizontal rig" if depth == deepest else "any radius, any speed"
+        words = {"depth": depth, "where": where}
+        yield CLAIMS.case("balancer-share", offset_share(depth, -1), printed=_closed(depth), **words)
+    yield CLAIMS.case("balancer-both", offset_share(0.05, -1) + offset_share(0.05, 1))
