@@ -91,6 +91,29 @@ def gravity_displacement(curvature: ArrayLike, spin: ArrayLike, gravity: ArrayLi
     return np.asarray(-(kappa - 1.0) * gravity_offset(kappa, spin, gravity))
 
 
+def wall_swing(curvature: ArrayLike, spin: ArrayLike, gravity: ArrayLike) -> Array:
+    """Velocity with which gravity swings the liquid to and fro along the wall once a turn, m/s.
+
+    U = g/(kappa Omega), seen from a horizontal drum [theory: waves, eq. 13].
+    """
+    kappa, omega = _checked(curvature, spin)
+    _require(bool(np.all(omega != 0.0)), "spin", spin, "other than 0")
+    return np.asarray(np.asarray(gravity, dtype=float) / (kappa * omega))
+
+
+def wall_drift(radius: ArrayLike, curvature: ArrayLike, spin: ArrayLike, gravity: ArrayLike) -> Array:
+    """Mean speed of the liquid at the edge of the wall's layer that gravity's swing makes, rad/s.
+
+    -(3/4) U^2/(Omega R^2) seen from the drum, whatever the viscosity: a lag [theory: waves, eq. 15].
+
+    >>> print(f"{wall_drift(0.05, 1.0 / 0.7, 40.0, 9.81):.3f}")
+    -0.221
+    """
+    omega = np.asarray(spin, dtype=float)
+    swing = wall_swing(curvature, omega, gravity) / np.asarray(radius, dtype=float)
+    return np.asarray(-0.75 * np.square(swing) / omega)
+
+
 def capture_speed(free_surface_radius: ArrayLike, gravity: ArrayLike) -> Array:
     """Centrifuging speed of a horizontal drum, rad/s: above it the liquid is a closed layer, Omega^2 a > g.
 

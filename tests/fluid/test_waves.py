@@ -1,3 +1,5 @@
+import math
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -13,6 +15,8 @@ from fluid.waves import (
     gravity_displacement,
     gravity_offset,
     offset_ratio,
+    wall_drift,
+    wall_swing,
 )
 from meshes.errors import InputError
 from tests.mutants import kills
@@ -225,6 +229,58 @@ def test_gravity_is_the_limit_of_a_slow_whirl() -> None:
     )
     np.testing.assert_allclose(force_ratio(kappa, 0.0), 1.0 - 1.0 / kappa, rtol=1e-15)
     assert np.all(gravity_offset(kappa, spin, g) < 0.0)
+
+
+@kills("fluid.waves:wall_swing", "/ (kappa * omega)", "/ omega")
+def test_gravity_swings_the_liquid_along_the_wall() -> None:
+    """What flows through a section of the layer is what its surface takes up: seen from the drum u times the
+    mean share of the depth is the speed of the surface, -d xi/dt a = d/dtheta of the flow."""
+    kappa, spin, g, radius = 1.3, 40.0, 9.81, 0.15
+    inner = radius / math.sqrt(kappa)
+    xi = float(gravity_displacement(kappa, spin, g))
+    # psi of the wave between the circles, n = 1: its largest u_theta at the wall for a flow of Omega a xi.
+    radii = np.linspace(inner, radius, 20_001)
+    shape = 1.0 / radius**2 + 1.0 / radii**2
+    flow = float(np.trapezoid(shape, radii))
+    at_wall = 2.0 / radius**2 * spin * inner * xi / flow
+    assert float(wall_swing(kappa, spin, g)) == pytest.approx(at_wall, rel=1e-6)
+
+
+def stokes_layer_drift(viscosity: float, spin: float, radius: float, swing: float) -> tuple[float, float]:
+    """Mean velocity at the edge of the wall's layer by quadratures of its momentum, and of a particle, m/s.
+
+    nu u2'' = mean(w1 du1/dz) for u1 = U (1 - e^(-m z)) e^(i (x/R + Omega t)), u2 = 0 at the wall.
+    """
+    thickness = math.sqrt(2.0 * viscosity / spin)
+    z = np.linspace(0.0, 40.0 * thickness, 40_001)
+    m = (1.0 + 1.0j) / thickness
+    u1, slope = swing * (1.0 - np.exp(-m * z)), swing * m * np.exp(-m * z)
+    w1 = -1j / radius * swing * (z - (1.0 - np.exp(-m * z)) / m)
+    force = 0.5 * (w1 * slope.conj()).real
+    step = z[1] - z[0]
+    below = np.concatenate([[0.0], np.cumsum(0.5 * step * (force[1:] + force[:-1]))])
+    shear = (below - below[-1]) / viscosity
+    mean = float(np.trapezoid(shear, z))
+    # Of a particle the way that it has gone along and off the wall counts as well.
+    along = u1[-1] / (1j * spin)
+    return mean, mean + 0.5 * float((along.conj() * 1j / radius * u1[-1]).real)
+
+
+@kills("fluid.waves:wall_drift", "-0.75", "0.75")
+@kills("fluid.waves:wall_drift", "-0.75", "-1.25")
+@kills("fluid.waves:wall_drift", "np.square(swing) / omega", "swing")
+def test_drift_along_the_wall() -> None:
+    """The momentum of the wall's layer, of any viscosity: against the spin, 3/4 at a point, 5/4 of a
+    particle."""
+    radius, kappa, spin, g = 0.05, 1.0 / 0.7, 40.0, 9.81
+    swing = float(wall_swing(kappa, spin, g))
+    for viscosity in (1e-7, 1e-6):
+        mean, particle = stokes_layer_drift(viscosity, spin, radius, swing)
+        # The trapezium rule on a thousandth of the layer.
+        assert float(wall_drift(radius, kappa, spin, g)) == pytest.approx(mean / radius, rel=1e-5)
+        assert particle == pytest.approx(5.0 / 3.0 * mean, rel=1e-5)
+    lag = -wall_drift(radius, kappa, spin * np.array([1.0, 2.0]), g) / (spin * np.array([1.0, 2.0]))
+    assert lag[0] == pytest.approx(16.0 * lag[1], rel=1e-12)
 
 
 @kills("fluid.waves:capture_speed", "np.sqrt(g / a)", "np.sqrt(2.0 * g / a)")

@@ -220,6 +220,11 @@ class LayerAnswer(_Layered):
     #: nan if no wave was found
     depth: Annotated[Array, Q("m", "depth of the layer", over=_ROUND)]
     gravity_offset: Annotated[float, Q("m", "steady offset by gravity, in space", "up is negative")]
+    #: at the edge of the wall's layer; 0 without gravity, nan with baffles or without an annular layer
+    wall_drift: Annotated[
+        float,
+        Q(_RATE, "mean drift along the wall by gravity", "in the drum, with the spin", by="waves, eq. 15"),
+    ] = math.nan
     captured: Annotated[bool, Q(text="centrifugal acceleration at the surface exceeds gravity")]
     exact: Annotated[ExactWave | None, Q(part=True)] = None  #: None for other models
 
@@ -250,6 +255,8 @@ class LayerAnswer(_Layered):
         if self.gravity_offset != 0.0:
             offset = f"{with_unit(self.gravity_offset, LENGTH)} in space"
             rows += [("Centre of mass under gravity", offset)]
+        if self.wall_drift < 0.0:
+            rows += [("Drift along the wall by gravity", _rate(self.wall_drift))]
         if not self.captured:
             rows += [("Annulus not reached from rest", "gravity is stronger at its surface")]
         if exact is not None and exact.state is not None:

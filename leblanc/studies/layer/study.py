@@ -254,10 +254,21 @@ def answer_layer(
         depth=wave.depth,
         notes=notes,
         gravity_offset=float(waves.gravity_offset(kappa, speed, gravity)) if gravity else 0.0,
+        wall_drift=_wall_drift(fill, speed, gravity),
         captured=not gravity or speed > float(waves.capture_speed(surface, gravity)),
         validity=judge(wave.numbers, wave.ranges),
         exact=exact,
     )
+
+
+def _wall_drift(fill: Fill, speed: float, gravity: float) -> float:
+    """Drift of a clear ring along its wall by gravity, rad/s; 0 without gravity, nan without such a ring."""
+    if not gravity:
+        return 0.0
+    radius, surface = fill.chamber.radius, fill.surface_radius
+    if fill.uneven or speed <= float(waves.capture_speed(surface, gravity)):
+        return math.nan
+    return float(waves.wall_drift(radius, (radius / surface) ** 2, speed, gravity))
 
 
 def _driven(whirl: Whirl) -> Whirl:

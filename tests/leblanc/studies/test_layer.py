@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +20,8 @@ from leblanc.liquid.models import wave_model
 from leblanc.liquid.notes import LayerCode
 from leblanc.studies.layer import layer
 from leblanc.studies.layer.answer import LayerAnswer
-from leblanc.studies.layer.study import answer_layer, steady_film
+from leblanc.studies.layer.study import _wall_drift, answer_layer, steady_film
+from meshes.baffles import Baffles
 from meshes.chamber import Chamber
 from meshes.errors import InputError
 from solvers.liquid_model import Whirl, drag_frequency
@@ -208,6 +210,19 @@ def test_gravity_lifts_the_liquid() -> None:
     assert answer.captured and answer.gravity_offset == pytest.approx(-9.81 / (2 * (R / A) ** 2 * SPIN**2))
     slow = answer_layer(FILL, 8.0, 8.0, 1e-4, LINEAR, gravity=9.81)
     assert not slow.captured and not slow.in_range
+
+
+@kills("leblanc.studies.layer.study:_wall_drift", "(radius / surface) ** 2", "(surface / radius) ** 2")
+def test_gravity_makes_the_liquid_drift_along_the_wall() -> None:
+    """3/4 of the squared speed of the swing over that of the wall; unknown where no clear ring stands."""
+    answer = answer_layer(FILL, SPIN, SPIN, 1e-4, LINEAR, gravity=9.81)
+    swing = 9.81 * (A / R) ** 2 / (SPIN**2 * R)
+    assert answer.wall_drift == pytest.approx(-0.75 * swing**2 * SPIN, rel=1e-12)
+    assert "Drift along the wall by gravity" in dict(answer.facts())
+    assert answer_layer(FILL, SPIN, SPIN, 1e-4, LINEAR).wall_drift == 0.0
+    assert math.isnan(answer_layer(FILL, 8.0, 8.0, 1e-4, LINEAR, gravity=9.81).wall_drift)
+    cut = replace(FILL, chamber=replace(FILL.chamber, baffles=Baffles(4)))
+    assert math.isnan(_wall_drift(cut, SPIN, 9.81))
 
 
 LONG_WAVE = [
