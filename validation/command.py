@@ -35,6 +35,9 @@ GROUPS = {
     "measured_balls": "measured_balls.cases",
     "bearings": "rotors.bearings",
     "kdv": "liquid.kdv",
+    "published": " ".join(
+        f"published.{each}" for each in ("partitions", "damping", "tilt", "absorber", "ring", "balancer")
+    ),
 }
 
 
