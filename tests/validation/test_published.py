@@ -99,6 +99,15 @@ def test_a_light_liquid_has_its_band_where_the_rule_says() -> None:
         assert abs(left[1]) < 0.15 * abs(left[0]) < 0.15 * 0.07
 
 
+@kills(f"{CASES}.partitions:whirl_over_critical", "(mass + fill.added_mass)", "(mass - fill.added_mass)")
+@kills(f"{CASES}.partitions:whirl_over_critical", "np.argmax(growth)", "np.argmin(growth)")
+def test_a_light_liquid_whirls_at_the_critical_speed() -> None:
+    """Where the growth is largest; to first order in its mass, a sixtieth of the rotor's."""
+    for sectors in (0, 3):
+        band = partitions.widest(partitions.bands(sectors, 0.25, mass=100.0))
+        assert partitions.whirl_over_critical(sectors, 0.25, band, 100.0) == pytest.approx(1.0, abs=0.006)
+
+
 @kills(f"{CASES}.damping:width_of_two", "rotor_decay + wave_decay)", "rotor_decay - wave_decay)")
 @kills(f"{CASES}.damping:width_of_two", "growth**2 / (rotor", "growth / (rotor")
 def test_width_of_two_modes_by_their_eigenvalues() -> None:
@@ -200,6 +209,13 @@ def test_swing_by_elements() -> None:
     assert ring.swing_by_elements(40.0) == pytest.approx(exact, rel=5e-5)
 
 
+@kills(f"{CASES}.ring:lag", ".wall_drift / speed", ".wall_drift")
+def test_lag_over_the_spin() -> None:
+    """(3/4) Gamma^2/kappa^2."""
+    gamma = 9.81 / (40.0**2 * ring.RADIUS)
+    assert ring.lag(40.0) == pytest.approx(0.75 * (gamma * (1.0 - ring.SHARE)) ** 2, rel=1e-12)
+
+
 @kills(f"{CASES}.ring:shifts", "0.5 * depth * _GRAVITY", "depth * _GRAVITY")
 @kills(f"{CASES}.ring:shifts", "0.5 * depth * float(", "0.25 * depth * float(")
 def test_gravity_in_the_frame_of_a_modulated_drum() -> None:
@@ -223,6 +239,23 @@ def test_rigid_supports_leave_the_liquid_in_place() -> None:
         known = fill.full_mass * found.speed**2 / (stiffer * mass * partitions.NATURAL**2)
         liquid = fill.mass * found.liquid_offset / 1e-3
         np.testing.assert_allclose(liquid, known, rtol=30.0 / stiffer)
+
+
+@kills(f"{CASES}.balancer:angles", "1.2 * second", "0.8 * second")
+def test_the_liquid_goes_over_at_each_critical_speed() -> None:
+    """Signs of a stiffness without damping: the force of an unbalance in one plane on another one's place."""
+    for place in (tilt.filled(0.25).chamber.plane, -0.15):
+        (first, second), fill, machine = balancer.two_criticals(place)
+        system = machine.system()
+        push, at = system.at(place)[0], system.at(fill.chamber.plane)[0]
+        added = fill.added_mass * np.outer(at, at)
+        signs = []
+        for speed in (0.5 * first, math.sqrt(first * second), 1.2 * second):
+            # A forward circle sees the gyroscopic moment as less inertia of its lean.
+            mass = system.mass[::3, ::3] + added[::3, ::3] - np.diag([0.0, machine.polar_inertia])
+            moved = np.linalg.solve(system.stiffness[::3, ::3] - speed**2 * mass, push[::3])
+            signs.append(float(at[::3] @ moved) > 0.0)
+        assert [angle < 90.0 for angle in balancer.angles(place)] == signs
 
 
 @kills(f"{CASES}.balancer:two_criticals", "> 0.0]", "< 0.0]")

@@ -82,11 +82,11 @@ def widest(found: Bands) -> tuple[float, float]:
     return max(found, key=lambda band: band[1] - band[0])
 
 
-def whirl_over_critical(sectors: int, share: float, band: tuple[float, float]) -> float:
+def whirl_over_critical(sectors: int, share: float, band: tuple[float, float], mass: float = MASS) -> float:
     """Whirl speed where the growth is largest in a band, over the critical speed with liquid."""
     fill, speeds = chamber_with(sectors, share), np.linspace(*band, 21) * NATURAL
-    growth, whirl_speed = asynchronous_growth(rotor(), [fill], speeds)
-    critical = NATURAL * math.sqrt(MASS / (MASS + fill.added_mass))
+    growth, whirl_speed = asynchronous_growth(rotor(0.0, mass), [fill], speeds)
+    critical = NATURAL * math.sqrt(mass / (mass + fill.added_mass))
     return float(whirl_speed[np.argmax(growth)] / critical)
 
 
