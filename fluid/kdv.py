@@ -20,6 +20,8 @@ from fluid.waves import free_wave_frequencies
 from meshes.arrays import Array, Complex
 from meshes.errors import InputError, require_positive
 
+FRONT = 0.2  # no law sets it: width of a front over the layer's depth, of the highest bore
+
 
 @dataclass(frozen=True)
 class KdvCoefficients:
@@ -94,6 +96,15 @@ def decay(c: KdvCoefficients, friction_rate: ArrayLike) -> Array:
     if not bool(np.all(np.isfinite(k) & (k >= 0.0))):
         raise InputError("friction_rate", friction_rate, "a finite number, 0 or above")
     return np.asarray(k * abs(c.linear_speed) / abs(c.linear_speed - c.other_speed))
+
+
+def diffusion(c: KdvCoefficients, forcing: ArrayLike, front: float = FRONT) -> Array:
+    """Diffusion nu_b that makes a front so wide beside the layer's depth, rad^2/s [theory: kdv, eq. 39].
+
+    nu_b = front h0/R sqrt(|alpha q|), of a bore at resonance, whose front is the highest.
+    """
+    strength = np.sqrt(np.abs(c.steepening * np.asarray(forcing, dtype=float)))
+    return np.asarray(front * (1.0 - c.surface_radius / c.radius) * strength)
 
 
 def wave_frequency(mode: ArrayLike, c: KdvCoefficients, whitham: bool) -> Array:

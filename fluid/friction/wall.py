@@ -12,7 +12,17 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fluid.friction.laws import Friction, layer_thickness, plate_factor, stokes_coefficient
+from fluid.fill import Fill
+from fluid.friction.laws import (
+    QUADRATIC,
+    WALL,
+    Friction,
+    FrictionLaw,
+    damping_rate,
+    layer_thickness,
+    plate_factor,
+    stokes_coefficient,
+)
 from fluid.friction.pipe import drag_speed, hydraulic_diameter
 from meshes.arrays import Array
 
@@ -101,3 +111,22 @@ def wall_shear(drag: WallDrag, depth: Array, area: Array, velocity: Array) -> Ar
     weight = waves * area
     mean = float(weight @ velocity) / max(float(weight.sum()), 1e-300)
     return np.asarray(area * (held * velocity + waves * (velocity - mean)))
+
+
+def lag_drag(fill: Fill, friction: Friction, lag: float, spin: float, slip: float) -> float:
+    """Torque of the wall on liquid that lags as a solid, over m R^2 of it, 1/s^2; speeds in rad/s.
+
+    The mean part alone: that of the waves has no torque. `slip` of the waves, without sign.
+    """
+    radius, depth = fill.chamber.radius, fill.depth / fill.chamber.radius
+    law, coefficient = friction.at(fill.liquid.viscosity, slip, radius)
+    area = depth * (1.0 - 0.5 * depth)
+    if law == WALL:
+        # It takes the lag as that of a solid layer.
+        diameter = hydraulic_diameter(fill.depth, fill.chamber.height)
+        given = lag * radius, diameter, fill.liquid.viscosity, friction.roughness
+        return 4.0 * float(drag_speed(*given)) / float(diameter) * lag * (1.0 - area)
+    velocity = lag * (1.0 - depth)  # over R, at the surface: the profile R/r of the long waves
+    lid = 2.0 * radius / fill.chamber.height if friction.law is FrictionLaw.STOKES else 0.0
+    rate = float(damping_rate(law, coefficient, lid, depth, area, velocity if law == QUADRATIC else 0.0))
+    return rate * velocity

@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fluid.fill import Fill
-from fluid.friction.laws import NO_FRICTION, QUADRATIC, WALL, Friction, FrictionLaw, damping_rate
-from fluid.friction.pipe import drag_speed, hydraulic_diameter
+from fluid.friction.laws import NO_FRICTION, Friction, FrictionLaw
+from fluid.friction.wall import lag_drag
 from meshes.arrays import Array, Complex
 from solvers.cycles.balance import Circular, NotCircularError, circular
 from solvers.rotor.jeffcott import Jeffcott
@@ -54,7 +54,7 @@ def estimated_whirl(
     torque = sum(
         place.mass
         * place.fill.chamber.radius**2
-        * wall_drag(place.fill, friction, lag, spin, abs(whirl_speed - spin))
+        * lag_drag(place.fill, friction, lag, spin, abs(whirl_speed - spin))
         for place in machine.places
     )
     resisted = whirl_speed * float((shape.conj() @ machine.damping @ shape).real)
@@ -76,25 +76,6 @@ def _full(machine: Circular, near: float, spin: float) -> tuple[float, Complex]:
     values, vectors = np.linalg.eig(state)
     best = int(np.argmin(np.abs(values - near)))
     return float(values[best].real), np.asarray(vectors[:p, best])
-
-
-def wall_drag(fill: Fill, friction: Friction, lag: float, spin: float, slip: float) -> float:
-    """Torque of the wall on liquid that lags as a solid, over m R^2 of it, 1/s^2; speeds in rad/s.
-
-    The mean part alone: that of the waves has no torque. `slip` of the waves, without sign.
-    """
-    radius, depth = fill.chamber.radius, fill.depth / fill.chamber.radius
-    law, coefficient = friction.at(fill.liquid.viscosity, slip, radius)
-    area = depth * (1.0 - 0.5 * depth)
-    if law == WALL:
-        # It takes the lag as that of a solid layer.
-        diameter = hydraulic_diameter(fill.depth, fill.chamber.height)
-        given = lag * radius, diameter, fill.liquid.viscosity, friction.roughness
-        return 4.0 * float(drag_speed(*given)) / float(diameter) * lag * (1.0 - area)
-    velocity = lag * (1.0 - depth)  # over R, at the surface: the profile R/r of the long waves
-    lid = 2.0 * radius / fill.chamber.height if friction.law is FrictionLaw.STOKES else 0.0
-    rate = float(damping_rate(law, coefficient, lid, depth, area, velocity if law == QUADRATIC else 0.0))
-    return rate * velocity
 
 
 def _settling(rotor: Rotor, fills: Sequence[Fill], friction: Friction) -> Circular | None:

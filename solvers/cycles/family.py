@@ -18,17 +18,16 @@ import numpy as np
 from fluid import kdv
 from fluid.fill import Fill
 from fluid.friction.laws import Friction, FrictionLaw, damping_rate
+from fluid.friction.wall import lag_drag
 from meshes.arrays import Array, Complex
 from meshes.errors import InputError
 from solvers.cycles.balance import Circular
 from solvers.cycles.branch import Cycle, MakeWave
-from solvers.cycles.estimate import wall_drag
 from solvers.cycles.wave import Answer, Derivatives, LayerWave, Whirling
 from solvers.waves.modes import System, WaveProblem, joined, resized, split, values
 from solvers.waves.newton import TOLERANCE
 from solvers.waves.steady import solve
 
-DIFFUSION = 0.002  # nu_b over the spin: no law sets it, see [theory: kdv, eq. 39]
 _MOST_POINTS = 1024  # of a first wave, whose modes beyond the layer's are left
 _STEP = 1e-7  # relative, in differences by the lag and by what drives the layer
 _LEAST = 1e-7  # of the radius, of the spin: smaller deflections and lags are answered as this one
@@ -56,13 +55,13 @@ class FamilyWave(LayerWave):
     the mean area.
     """
 
-    def __init__(self, fill: Fill, friction: Friction, cells: int, diffusion: float = DIFFUSION) -> None:
+    def __init__(self, fill: Fill, friction: Friction, cells: int, front: float = kdv.FRONT) -> None:
         if friction.law is FrictionLaw.QUADRATIC:
             raise InputError(
                 "friction", friction.law, "none, linear, stokes or wall for unidirectional waves"
             )
         super().__init__(fill, friction, cells)
-        self.diffusion, self.modes = diffusion, cells // 2 - 1
+        self.front, self.modes = front, cells // 2 - 1
         surface = 1.0 - fill.depth / fill.chamber.radius
         self.near, self._far = (kdv.coefficients(1.0, surface, 1.0, sign) for sign in (-1, 1))
         self.mean = self.near.mean_area
@@ -150,10 +149,11 @@ class FamilyWave(LayerWave):
             near.steepening * turning,
             q,
             float(kdv.decay(near, rubbed)),
-            self.diffusion,
+            # The spin is gone from it.
+            float(kdv.diffusion(near, q * turning, self.front)),
         )
         system = System(problem, self.modes)
-        decay = self.diffusion + float(kdv.decay(far, rubbed))
+        decay = problem.diffusion + float(kdv.decay(far, rubbed))
         rate = -1j * (float(_frequency(far, turning, np.array(1.0))) - slip) - decay
         push = 0.5j * q / acceleration
         other = push * acceleration / rate
@@ -221,7 +221,7 @@ class FamilyWave(LayerWave):
         slip = abs(given.ratio - 1.0)
         if self.friction.law is FrictionLaw.WALL:
             spin = 1.0 / given.drag
-            found = wall_drag(self.fill, self.friction, behind * spin, spin, slip * spin)
+            found = lag_drag(self.fill, self.friction, behind * spin, spin, slip * spin)
             return found * given.drag**2 / behind
         # One law for a lag and for waves, whose rate the long waves take for the surface's velocity.
         return self._wave_rate(given) * self.near.surface_radius
@@ -249,9 +249,9 @@ class FamilyWave(LayerWave):
         return (given.ratio * given.size) ** 2 / (2.0 * self.mean) * np.imag(force)
 
 
-def family_wave(diffusion: float = DIFFUSION) -> MakeWave:
-    """What makes layers of KdV-Burgers with a diffusion nu_b over the spin."""
-    return functools.partial(FamilyWave, diffusion=diffusion)
+def family_wave(front: float = kdv.FRONT) -> MakeWave:
+    """What makes layers of KdV-Burgers with fronts so wide beside the depth."""
+    return functools.partial(FamilyWave, front=front)
 
 
 def family_growth(machine: Circular, waves: Sequence[FamilyWave], cycle: Cycle) -> float:

@@ -11,10 +11,12 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
+from scipy.optimize import brentq
 
 from fluid import kdv
 from fluid.fill import Fill, Fills
 from fluid.friction.laws import NO_FRICTION, Friction, FrictionLaw, damping_rate
+from fluid.friction.wall import lag_drag
 from meshes.arrays import Array
 from meshes.errors import InputError
 from solvers.layer.state import Numerics
@@ -44,6 +46,7 @@ if TYPE_CHECKING:
     from solvers.pypde.family_law import Standing
 
 _MOST_POINTS = 65536
+_LAGS, _MOST_LAG = 0.01, 0.8  # of the spin: steps in which a lag is looked for, and the most of it
 
 Progress = Callable[[float], object] | None
 
@@ -250,19 +253,18 @@ class OneFamily(WaveModel):
         if not chamber.inner_radius < surface < chamber.radius:
             allowed = "less than what fills the chamber, for a free surface"
             raise InputError("volume", fill.volume, allowed)
-        pair = [kdv.coefficients(chamber.radius, surface, whirl.spin, sign) for sign in (1, -1)]
-        family = min(pair, key=lambda c: abs(whirl.slip - c.linear_speed))
-        gamma = float(kdv.decay(family, self._friction_rate(fill, whirl)))
-        forcing = float(kdv.forcing(family, whirl.speed**2 * whirl.amplitude))
-        acting = WaveTerms(family, self.dispersion, 0.0, gamma, forcing, whirl.slip)
+        lag, held = self._lag(fill, whirl)
+        acting = self._terms(fill, whirl, lag)
+        family = acting.c
         eta, reason = self._steady(acting, whirl)
+        reason = reason or held
         points = eta.size
         offset = complex(kdv.offset(family, eta))
         theta = 2.0 * math.pi * np.arange(points) / points
         around = np.mod(theta + math.pi, 2.0 * math.pi) - math.pi
         order = np.argsort(around)
         area = np.clip(family.mean_area + eta, 0.0, 0.5 * chamber.radius**2)
-        size = kdv.validity(family, eta, whirl.slip)
+        size = kdv.validity(family, eta, acting.whirl_speed)
         other = float(size.neglected)
         found = {"wave_amplitude": float(size.amplitude), "other_family": other}
         numbers = numbers_of(fill, whirl, found | smooth_whirl(fill, whirl))
@@ -295,9 +297,52 @@ class OneFamily(WaveModel):
             numbers=numbers,
             ranges=ranges,
             mass_error=abs(float(area.mean()) / family.mean_area - 1.0),
-            mean_rotation=math.nan,
+            mean_rotation=-lag if self._friction_rate(fill, whirl) else math.nan,
             reason=reason if possible else "the wave would run the wall dry or fill the drum",
         )
+
+    def _terms(self, fill: Fill, whirl: Whirl, lag: float) -> WaveTerms:
+        """The wave's equation in liquid that lags behind the drum, rad/s [theory: kdv, eq. 34, 39]."""
+        radius, surface, rate = fill.chamber.radius, fill.surface_radius, self._friction_rate(fill, whirl)
+        spins = whirl.spin, whirl.spin - lag
+        pair = [[kdv.coefficients(radius, surface, spin, sign) for spin in spins] for sign in (1, -1)]
+        # The same family with a lag as without one.
+        _, family = min(pair, key=lambda each: abs(whirl.slip - each[0].linear_speed))
+        forcing = float(kdv.forcing(family, whirl.speed**2 * whirl.amplitude))
+        diffusion = float(kdv.diffusion(family, forcing)) if rate else 0.0
+        gamma = float(kdv.decay(family, rate))
+        return WaveTerms(family, self.dispersion, diffusion, gamma, forcing, whirl.slip + lag)
+
+    def _lag(self, fill: Fill, whirl: Whirl) -> tuple[float, str]:
+        """Lag at which the wall's drag holds the whirl's torque, rad/s, and why there is none, or empty.
+
+        The first one that liquid comes to which begins at rest in the drum [theory: kdv, eq. 36]. Without
+        friction none is told: nothing would hold it.
+        """
+        if not (self._friction_rate(fill, whirl) and whirl.amplitude):
+            return 0.0, ""
+        from solvers.pypde.settle_family import steady_wave
+
+        inertia = fill.mass * fill.chamber.radius**2
+
+        def left(lag: float) -> float:
+            """Torque of the wall less that of the whirl, N m."""
+            terms = self._terms(fill, whirl, lag)
+            wave = steady_wave(terms, self.points)
+            offset = kdv.offset(terms.c, wave.profile(max(self.points, 2 * wave.modes.size + 2)))
+            ratio = complex(kdv.force_ratio(terms.c, offset, whirl.amplitude))
+            fed = fill.full_mass * (whirl.speed * whirl.amplitude) ** 2 * ratio.imag
+            drag = lag_drag(fill, self.friction, abs(lag), whirl.spin, abs(whirl.slip))
+            return inertia * math.copysign(drag, lag) - fed
+
+        way = -math.copysign(1.0, left(0.0))
+        step, least = _LAGS * whirl.spin, 0.0
+        while way * left(way * (least + step)) < 0.0:
+            least += step
+            if least + step > _MOST_LAG * whirl.spin:
+                return way * least, "the wall's drag does not hold the liquid against the whirl's torque"
+        ends = way * least, way * (least + step)
+        return float(brentq(left, *ends, xtol=1e-9 * whirl.spin, rtol=1e-12)), ""
 
     def _steady(self, terms: WaveTerms, whirl: Whirl) -> tuple[Array, str]:
         """Heights at equal steps of the angle from the deflection, m^2, and why they are none, or empty."""

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fluid.friction.laws import Friction
+from fluid.kdv import FRONT
 from leblanc.core.notes import Note, NoteCode, percent
 from leblanc.core.progress import update
 from leblanc.core.units import in_rpm
@@ -18,9 +19,10 @@ if TYPE_CHECKING:
     from solvers.cycles.cycles import HeldWhirl, LimitCycles
 
 _DEEP = 0.9  # of the layer's depth: whirls beyond that lay walls dry, or come near to it
-# nu_b of KdV-Burgers over the spin, and those that the answer is compared with [theory: kdv, eq. 39].
-_DIFFUSION, _BARS = 0.002, (0.001, 0.003)
+# Widths of fronts over the one taken that limit cycles by KdV-Burgers are compared at [theory: kdv, eq. 39].
+_TRIED = 0.5, 1.5
 _HIGH = 0.3  # of the depth: waves of KdV-Burgers beyond that are out of its range
+_POINTS = 128  # round the drum, of waves of KdV-Burgers
 _SPEEDS = 41  # at which diffusions are compared
 _WAY = 1e-3  # relative width of the range of a single speed
 
@@ -59,8 +61,10 @@ def scene_cycles(machine: Prepared, friction: Friction) -> tuple[LimitCycles, tu
     by_family = cycles_by(machine) == "kdv"
     if by_family:
         found, *others = (
-            limit_cycles(machine.rotor, fills, range_, friction, progress=told, wave=family_wave(share))
-            for share in (_DIFFUSION, *_BARS)
+            limit_cycles(
+                machine.rotor, fills, range_, friction, progress=told, wave=family_wave(share * FRONT)
+            )
+            for share in (1.0, *_TRIED)
         )
     else:
         found, others = limit_cycles(machine.rotor, fills, range_, friction, progress=told), []
@@ -109,13 +113,12 @@ def _of_family(found: LimitCycles, others: list[LimitCycles], range_: tuple[floa
     both = (sizes > 0.0).all(axis=0)
     if both.any():
         change = float(np.abs(sizes[1:, both] - sizes[0, both]).max() / sizes[0].max())
-        low, high = (percent(share) for share in _BARS)
         text = (
-            "No law sets the diffusion of KdV-Burgers, which gives fronts of a wave their width. It is "
-            f"{percent(_DIFFUSION)} of the spin here; from {low} to {high} the whirl changes by up to "
-            f"{percent(change)} of the largest."
+            "No law sets the diffusion of KdV-Burgers, which gives the fronts of waves their width, here "
+            f"{FRONT:g} of the layer's depth. With half of it and half as much again the whirl changes by up "
+            f"to {percent(change)} of the largest."
         )
-        data = {"diffusion": _DIFFUSION, "tried": _BARS, "change": change}
+        data = {"front": FRONT, "tried": _TRIED, "change": change}
         said.append(Note(CycleCode.DIFFUSION, data, text))
     return said
 

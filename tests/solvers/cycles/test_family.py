@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import cache, partial
 
 import numpy as np
@@ -30,9 +31,9 @@ LAG = {1.2: 0.1227, 1.3: 0.2306, 1.4: 0.3326, 1.55: 0.4803, 1.7: 0.6236, 2.0: 0.
 
 
 @cache
-def found(depth: float, zeta: float, top: float, diffusion: float = 0.002) -> tuple[LimitCycles, Fill]:
+def found(depth: float, zeta: float, top: float, front: float = kdv.FRONT) -> tuple[LimitCycles, Fill]:
     rotor, fill = machine(MU, depth, zeta)
-    range_, wave = (0.9 * NATURAL, top * NATURAL), family_wave(diffusion)
+    range_, wave = (0.9 * NATURAL, top * NATURAL), family_wave(front)
     return limit_cycles(rotor, [fill], range_, FRICTION, wave=wave), fill
 
 
@@ -42,7 +43,7 @@ def cycle(points: int = 64, law: str = "linear") -> tuple[Cycle, Follower]:
     friction = FRICTION if law == "linear" else Friction(law)  # type: ignore[arg-type]
     pair = circular(rotor.system(), [fill], friction)
     follower = Follower(pair, friction, points, 1.3 * NATURAL, FamilyWave)
-    start = follower.start(np.array([1.0 + 0.0j]), 0.95 * NATURAL, 1.3 * NATURAL, 0.3, 0.2 * NATURAL)
+    start = follower.start(np.array([1.0 + 0.0j]), 0.95 * NATURAL, 1.3 * NATURAL, 0.5, 0.22 * NATURAL)
     assert start is not None
     return start, follower
 
@@ -83,7 +84,7 @@ def test_the_branch_a_machine_leaves_and_its_fold() -> None:
 
 
 def test_the_whirl_owes_little_to_the_diffusion() -> None:
-    sizes = [found(0.1, 0.02, 2.05, share)[0].largest_stable(1.3 * NATURAL) for share in (0.001, 0.003)]
+    sizes = [found(0.1, 0.02, 2.05, share)[0].largest_stable(1.3 * NATURAL) for share in (0.1, 0.3)]
     assert sizes[0] / sizes[1] == pytest.approx(1.0, abs=0.005) and sizes[0] > sizes[1]
 
 
@@ -121,9 +122,8 @@ def test_the_wave_is_that_of_a_drum_that_turns_as_the_liquid_does() -> None:
     lag, size = -float(limit.turning[0]), abs(limit.moved[0] * follower.machine.places[0].row[0])
     c = kdv.coefficients(RADIUS, RADIUS - wave.fill.depth, limit.spin - lag, -1)
     rate = 0.03 * NATURAL * 0.1 / wave.mean
-    problem = family_problem(
-        c, limit.whirl_speed**2 * size, False, float(kdv.decay(c, rate)), 0.002 * limit.spin
-    )
+    nu = 0.02 * math.sqrt(abs(c.steepening * float(kdv.forcing(c, limit.whirl_speed**2 * size))))
+    problem = family_problem(c, limit.whirl_speed**2 * size, False, float(kdv.decay(c, rate)), nu)
     own = joined(state[:-1]) * RADIUS**2
     other = solve(problem, limit.whirl_speed - limit.spin + lag, guess=own)
     assert other.converged
@@ -148,11 +148,12 @@ def test_power_and_torques_close() -> None:
     force = (limit.whirl_speed / limit.spin) ** 2 * size / RADIUS
     q, slip = abs(float(kdv.forcing(near, force))), limit.whirl_speed / limit.spin - turning
     decay, other_decay = (float(kdv.decay(c, rate / limit.spin)) + 0.0 for c in (near, far))
+    nu = 0.02 * math.sqrt(abs(near.steepening) * q)
     own = np.square(np.abs(joined(limit.state[0][:-1])))
     n = np.arange(1.0, own.size + 1.0)
-    lost = 2.0 * float(((0.002 * np.square(n) + decay) * own).sum())
-    gap = complex(float(kdv.wave_frequency(1, far, False)) - slip, -0.002 - other_decay)
-    lost -= 2.0 * (0.002 + other_decay) * (0.5 * q / abs(gap)) ** 2
+    lost = 2.0 * float(((nu * np.square(n) + decay) * own).sum())
+    gap = complex(float(kdv.wave_frequency(1, far, False)) - slip, -nu - other_decay)
+    lost -= 2.0 * (nu + other_decay) * (0.5 * q / abs(gap)) ** 2
     unit = fill.mass * RADIUS**2 * limit.spin**2
     # Newton's method left 1e-6 of the mean area, to which the highest of 63 modes weigh by their squares.
     assert fed == pytest.approx(unit * surface * force / (area * q) * lost, rel=1e-3)

@@ -12,9 +12,14 @@ from pde.solvers import registered_solvers
 from pde.solvers.base import ConvergenceError
 
 from fluid import kdv
+from fluid.fill import Fill
+from fluid.friction.laws import Friction
+from fluid.liquid import known_liquid
+from meshes.chamber import Chamber
 from meshes.errors import InputError
 from solvers.liquid_model import Whirl
 from solvers.pypde.grid import circle
+from solvers.pypde.models import OneFamily
 from solvers.pypde.one_family import KdvBurgersPDE
 from solvers.pypde.settle_family import steady_state, steady_wave
 from solvers.pypde.steady_newton import SteadyNewtonSolver, drawn
@@ -136,3 +141,37 @@ def test_solvers_that_cannot_are_refused() -> None:
         SteadyNewtonSolver(PDE({"u": "laplace(u)"}))  # type: ignore[arg-type]
     with pytest.raises(InputError, match="dt"):
         equation().solve(ScalarField(circle(16), 0.0), 1.0, 0.1, tracker=None, solver="steady_newton")
+
+
+@kills("solvers.pypde.models:OneFamily._terms", "whirl.slip + lag", "whirl.slip")
+@kills("solvers.pypde.models:OneFamily._terms", "whirl.spin, whirl.spin - lag", "whirl.spin, whirl.spin")
+@kills(
+    "solvers.pypde.models:OneFamily._lag",
+    "math.copysign(drag, lag) - fed",
+    "math.copysign(drag, lag) - 0.5 * fed",
+)
+@kills("fluid.kdv:diffusion", "front * (1.0 -", "30.0 * front * (1.0 -")
+def test_a_driven_layer_lags_as_the_wall_holds_it_against_the_whirl() -> None:
+    chamber = Chamber(0.15, 0.05)
+    fill = Fill(chamber, known_liquid("water"), (1.0 - 0.9**2) * chamber.capacity)
+    # Settled long waves with dispersion on 128 cells: G and lag; the other family is some 0.1 of G.
+    for speed, rate, share, force, lag in (
+        (30.58, 2.0, 0.05, 0.4851 + 2.5355j, 0.172),
+        (30.58, 0.5, 0.05, 1.7558 + 2.8560j, 0.753),
+        (31.0, 0.5, 0.02, 3.2072 + 3.5978j, 0.157),
+    ):
+        friction = Friction("linear", rate)  # type: ignore[arg-type]
+        whirl = Whirl(40.0, speed, share * fill.depth, 0.0)
+        wave = OneFamily(friction).wave(fill, whirl)
+        found = complex(wave.answer.unbalance[0]) / (fill.full_mass * whirl.amplitude)
+        assert wave.answer.converged[0]
+        assert abs(found - force) < 0.05 * abs(force)
+        assert -wave.mean_rotation == pytest.approx(lag, rel=0.07)
+        # Torques, by hand: tau R/(rho u A) = k h R/A, u = lag a, of m R^2.
+        held = fill.mass * 0.15**2 * rate * (0.1 / 0.095) * 0.9 * -wave.mean_rotation
+        fed = fill.full_mass * (whirl.speed * whirl.amplitude) ** 2 * found.imag
+        assert held == pytest.approx(fed, rel=1e-6)
+    # A whirl ahead of the drum carries the liquid along; without friction nothing would hold a lag.
+    ahead = Whirl(40.0, 57.5, 0.02 * fill.depth, 0.0)
+    assert OneFamily(Friction("linear", 2.0)).wave(fill, ahead).mean_rotation > 0.0  # type: ignore[arg-type]
+    assert math.isnan(OneFamily().wave(fill, ahead).mean_rotation)

@@ -24,7 +24,10 @@ from solvers.cycles.cycles import HeldWhirl, LimitCycles, limit_cycles
 from solvers.cycles.edges import small_whirl_edges
 from solvers.cycles.family import FamilyWave, family_wave
 from solvers.cycles.wave import Whirling
+from solvers.layer.state import Numerics
+from solvers.liquid_model import Whirl
 from solvers.potential.steady import forced
+from solvers.pypde.models import LongWave, OneFamily
 from solvers.synchronous.models import STATICS
 from solvers.synchronous.response import response
 from validation.case import Case, Claims
@@ -38,23 +41,31 @@ CLAIMS = Claims("kdv")
 MACHINES = {"a": (0.1, 0.02, (1.2, 1.3, 1.4, 1.55, 1.7, 2.0)), "c": (0.05, 0.02, (1.1, 1.2, 1.3))}
 # Rotor and layer of the first in time, from a large whirl: speed and amplitude over the depth.
 MARCHED = ((1.2, 0.4147), (1.3, 0.5664), (1.4, 0.6784), (1.55, 0.8126), (1.7, 0.9238), (2.0, 1.1065))
-_BARS, _BAND = (0.001, 0.003), (1.15, 2.0)
+_TRIED, _BAND = (1.0, 0.5, 1.5), (1.15, 2.0)
 # Waves near resonance, p over p_1 and w0 over h0: whirls of their size behind the drum.
 _WAVES = ((0.1, 0.9, 0.005), (0.1, 0.95, 0.001), (0.1, 1.05, 0.001), (0.1, 1.1, 0.005), (0.05, 0.9, 0.002))
 _RESTING = Friction(FrictionLaw.LINEAR, 1e-9)  # so little that nothing shows
+_DRIVEN = (
+    (2.0, 30.0, 0.05),
+    (2.0, 30.58, 0.05),
+    (0.5, 30.0, 0.05),
+    (0.5, 30.58, 0.05),
+    (0.5, 31.0, 0.02),
+    (0.5, 31.5, 0.05),
+)
 _SPEEDS = np.linspace(0.3, 3.0, 55)  # critical speeds
 _DEPTHS = 0.01, 0.05, 0.1, 0.2
 
 
 def cases() -> list[Case]:
     """Whirls, what they owe to lag and diffusion, waves beside exact ones, the published balancer."""
-    return [*_whirls(), *_owed(), *_waves(), *_balancer()]
+    return [*_whirls(), *_owed(), *_waves(), *_driven(), *_balancer()]
 
 
 @cache
-def by_family(machine: str, diffusion: float = 0.002) -> LimitCycles:
+def by_family(machine: str, front: float = kdv.FRONT) -> LimitCycles:
     """Limit cycles of a machine by KdV-Burgers."""
-    return _cycles(machine, diffusion)
+    return _cycles(machine, front)
 
 
 @cache
@@ -63,13 +74,13 @@ def by_long_waves(machine: str) -> LimitCycles:
     return _cycles(machine, None)
 
 
-def _cycles(machine: str, diffusion: float | None) -> LimitCycles:
+def _cycles(machine: str, front: float | None) -> LimitCycles:
     depth, zeta, speeds = MACHINES[machine]
     rotor, fill = layered_rotor(0.1, depth, zeta)
     range_ = 0.95 * NATURAL, (speeds[-1] + 0.02) * NATURAL
-    if diffusion is None:
+    if front is None:
         return limit_cycles(rotor, [fill], range_, BANDED)
-    return limit_cycles(rotor, [fill], range_, BANDED, wave=family_wave(diffusion))
+    return limit_cycles(rotor, [fill], range_, BANDED, wave=family_wave(front))
 
 
 def stable_at(found: LimitCycles, ratio: float) -> HeldWhirl:
@@ -123,9 +134,8 @@ def _owed() -> Iterator[Case]:
     times = without_lag(1.4) / lagging
     yield CLAIMS.case("no-lag", f"{times:.2g} times", 2.0 < times < math.inf, difference="in words")
     speeds = np.linspace(*_BAND, 18)
-    sizes = [
-        [stable_at(by_family("a", share), ratio).amplitude for ratio in speeds] for share in (0.002, *_BARS)
-    ]
+    widths = [share * kdv.FRONT for share in _TRIED]
+    sizes = [[stable_at(by_family("a", width), ratio).amplitude for ratio in speeds] for width in widths]
     change = float(np.abs(np.array(sizes[1:]) - sizes[0]).max() / max(sizes[0]))
     yield CLAIMS.case("diffusion", f"{change:.2%}", change < 0.01, difference="in words")
 
@@ -156,6 +166,37 @@ def _waves() -> Iterator[Case]:
             printed=exact.force_ratio,
             height=1.0 - wave.thinnest(wave.state),
             **words,
+        )
+
+
+def driven(rate: float, speed: float, share: float) -> tuple[complex, float, complex, float]:
+    """G and lag, rad/s, of a layer with friction under a whirl: by KdV-Burgers, and by settled long waves.
+
+    A layer of 0.1 of 150 mm at 40 rad/s, linear friction, 1/s, whirl speed, rad/s, w0 over h0.
+    """
+    chamber = Chamber(0.15, 0.05)
+    fill = Fill(chamber, known_liquid("water"), (1.0 - 0.9**2) * chamber.capacity)
+    friction = Friction(FrictionLaw.LINEAR, rate)
+    whirl = Whirl(40.0, speed, share * fill.depth, 0.0)
+    models = OneFamily(friction), LongWave(friction, Numerics(128, dispersion=True))
+    waves = [model.wave(fill, whirl) for model in models]
+    unit = fill.full_mass * whirl.amplitude
+    (own, lag), (other, other_lag) = (
+        (complex(wave.answer.unbalance[0]) / unit, -wave.mean_rotation) for wave in waves
+    )
+    return own, lag, other, other_lag
+
+
+def _driven() -> Iterator[Case]:
+    """Layers with friction next to their natural wave at 30.58 rad/s."""
+    for rate, speed, share in _DRIVEN:
+        own, lag, other, other_lag = driven(rate, speed, share)
+        words = {
+            "rate": rate, "speed": speed, "share": share, "lag": lag, "other_lag": other_lag,
+            "own": f"{own:.3f}", "other": f"{other:.3f}",
+        }  # fmt: skip
+        yield CLAIMS.case(
+            "driven", abs(own - other) / abs(other), abs(own - other) < 0.05 * abs(other), **words
         )
 
 
