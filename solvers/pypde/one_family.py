@@ -14,6 +14,7 @@ from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 from pde.backends.base import BackendBase
 from pde.fields.scalar import ScalarField
 from pde.grids.base import GridBase
@@ -68,6 +69,11 @@ class KdvBurgersPDE(SplitPDE):  # type: ignore[no-untyped-call]
         self.terms = WaveTerms(c, whitham, viscosity, damping, forcing, whirl_speed, ramp)
         self._known: tuple[int, float, Split] | None = None
         self.explicit_time_dependence = self.terms.forcing != 0.0 and self.terms.whirl_speed != 0.0
+
+    @staticmethod
+    def start(grid: GridBase, change: ArrayLike = 0.0) -> ScalarField:
+        """State from eta, m^2, of shape (n,) or one number."""
+        return ScalarField(grid, np.broadcast_to(np.asarray(change, dtype=float), grid.shape).copy())
 
     def split(self, grid: GridBase) -> Split:
         """The equation as exponential steppers take it."""

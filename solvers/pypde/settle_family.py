@@ -6,7 +6,6 @@ from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
 
-from pde.fields.scalar import ScalarField
 from pde.solvers.base import ConvergenceError
 
 from meshes.arrays import Array
@@ -28,7 +27,7 @@ def steady_wave(terms: WaveTerms, points: int) -> SteadyWave:
     """The steady wave of one family that py-pde's `solve` comes back with."""
     equation = KdvBurgersPDE(**vars(terms))
     with suppress(ConvergenceError):  # which the wave tells as well
-        equation.solve(ScalarField(circle(points), 0.0), 1.0, tracker=None, solver=NEWTON)
+        equation.solve(equation.start(circle(points)), 1.0, tracker=None, solver=NEWTON)
     found: SteadyWave = equation.diagnostics["solver"]["wave"]
     return found
 
@@ -48,7 +47,7 @@ def steady_state(
     named = vars(replace(terms, ramp=whirl.ramp))
     equation = KdvBurgersPDE(named.pop("c"), **named)
     require_solver(equation, solver)
-    state = ScalarField(circle(points), 0.0)
+    state = equation.start(circle(points))
     settled = _SETTLED if terms.damping or terms.viscosity else _STIRRED
     means = StretchMeans(equation, settling(whirl, False), SAMPLES, settled)
     options = stepping(equation, state.grid, solver, whirl.period / SAMPLES)

@@ -94,6 +94,25 @@ BROKEN: tuple[tuple[str, Mutant], ...] = (
         "11_balls_two_planes_damping",
         Mutant("solvers.rotor.balls.motion:rates", "-drag * radius", "-1.05 * drag * radius"),
     ),
+    *(
+        ("12_the_wave_by_py_pde", mutant)
+        for mutant in (
+            Mutant("fluid.kdv:coefficients", "log**3 / 3.0", "log**3 / 3.15"),
+            Mutant("fluid.kdv:coefficients", "dispersion=spin", "dispersion=-spin"),
+            Mutant("fluid.kdv:coefficients", "3.0 * spin / surface_radius", "3.15 * spin / surface_radius"),
+            Mutant("fluid.kdv:coefficients", "surface_radius / (2.0", "surface_radius / (2.1"),
+            Mutant("fluid.kdv:coefficients", "coupling=family", "coupling=-family"),
+            Mutant("fluid.kdv:decay", "k * abs", "1.05 * k * abs"),
+            Mutant("fluid.kdv:offset", "c.surface_radius /", "1.05 * c.surface_radius /"),
+            Mutant("fluid.kdv:force_ratio", "2.0 * c.mean_area", "2.1 * c.mean_area"),
+            Mutant("solvers.waves.modes:wave_split", "terms.viscosity * np", "1.05 * terms.viscosity * np"),
+            Mutant("solvers.pypde.models:OneFamily._terms", "whirl.slip + lag", "whirl.slip - lag"),
+            Mutant("solvers.pypde.models:OneFamily._lag", "inertia * math", "1.1 * inertia * math"),
+            Mutant("solvers.cycles.family:FamilyWave._rate", "* self.near", "* 1.15 * self.near"),
+            Mutant("solvers.cycles.family:FamilyWave._fed", "2.0 * self.mean", "2.4 * self.mean"),
+            Mutant("fluid.long_wave:mass_flux", "velocity * log", "1.05 * velocity * log"),
+        )
+    ),
 )
 
 
