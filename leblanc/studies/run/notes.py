@@ -281,7 +281,8 @@ def one_family(answer: Response) -> Note | None:
     text = (
         "Liquid model: unidirectional waves alone. Liquid that goes with the drum is held by both families, "
         "so that this is out of range at every speed; the estimated error is the distance from the exact "
-        "equilibrium."
+        "equilibrium. They hold next to a natural wave: in self-excited whirls (`--cycles`) and in `leblanc "
+        "layer`."
     )
     lost = alone & ~answer.converged & np.isfinite(answer.deflection)
     if lost.any():

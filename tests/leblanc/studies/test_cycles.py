@@ -163,3 +163,29 @@ def test_a_limit_of_a_whirl_that_is_an_ellipse(tmp_path: Path) -> None:
     tub = load_scene(Path(__file__).parents[3] / "examples/tub.toml")
     with pytest.raises(InputError, match="whirl_limit"):
         whirl_size(tub, np.linspace(10.0, 100.0, 5), 1e-3)
+
+
+@kills("leblanc.studies.cycles.study:cycles_by", '== "kdv" else', '== "none" else')
+@kills(
+    "leblanc.studies.cycles.study:_of_family",
+    "sizes[1:, both] - sizes[0, both]",
+    "sizes[:1, both] - sizes[0, both]",
+)
+def test_limit_cycles_by_kdv_burgers(machine: Scene, capsys: pytest.CaptureFixture[str]) -> None:
+    map_ = lb.map_whirl(machine, volumes=2, speeds=3, cycles=True, model="kdv")
+    assert map_.large is not None and map_.large.wave == "kdv"
+    # Marched in time 0.5664 of 10 mm at 130 rad/s; see [theory: kdv] for the distance.
+    (size,) = (w.amplitude for branch in map_.large.branches for w in branch.at(130.0) if w.stable)
+    assert size == approx(5.664e-3, rel=0.04)
+    notes = {note.code: note.data for note in map_.notes}
+    assert notes["high_wave"]["largest"] > 0.3
+    # Half the diffusion and half as much again: the whirl owes it little, but not nothing.
+    assert 1e-4 < notes["diffusion"]["change"] < 0.01
+    # Where the trough is below the wall the wave is out of range, though the size still holds.
+    rows = map_.large.cycles
+    assert all(row.in_range == (row.thinnest >= 0.0 and row.lag <= row.speed / 3.0) for row in rows)
+    assert "KdV-Burgers" in str(map_.blocks())
+    with pytest.raises(InputError, match="unidirectional"):
+        lb.map_whirl(machine, volumes=2, speeds=3, cycles=True, model="kdv", friction="quadratic:0.01")
+    given = machine.replace({"model.liquid": "kdv"})
+    assert lb.run(given, cycles=True).to_json()["cycles_model"] == "kdv"
