@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import cache
 from itertools import islice
 
@@ -34,6 +35,7 @@ from validation.case import Case, Claims
 from validation.cases.rotors.rigs import horizontal_rig, horizontal_rotor
 from validation.cases.rotors.whirl import BANDED, NATURAL, layered_rotor
 from validation.exact import detuning, whirl_speeds
+from validation.kdv_in_time import Motion, kdv_in_time
 
 CLAIMS = Claims("kdv")
 
@@ -53,13 +55,16 @@ _DRIVEN = (
     (0.5, 31.0, 0.02),
     (0.5, 31.5, 0.05),
 )
+# Unbalance in depths off the axis, and what rotor and long waves have in time at 1.3 omega_n, over the depth:
+# the part that goes with the spin and the self-excited one.
+_UNBALANCED = ((0.1, 0.189, 0.554), (0.3, 0.585, 0.631))
 _SPEEDS = np.linspace(0.3, 3.0, 55)  # critical speeds
 _DEPTHS = 0.01, 0.05, 0.1, 0.2
 
 
 def cases() -> list[Case]:
     """Whirls, what they owe to lag and diffusion, waves beside exact ones, the published balancer."""
-    return [*_whirls(), *_owed(), *_waves(), *_driven(), *_balancer()]
+    return [*_whirls(), *_owed(), *_let_go(), *_waves(), *_driven(), *_balancer()]
 
 
 @cache
@@ -138,6 +143,30 @@ def _owed() -> Iterator[Case]:
     sizes = [[stable_at(by_family("a", width), ratio).amplitude for ratio in speeds] for width in widths]
     change = float(np.abs(np.array(sizes[1:]) - sizes[0]).max() / max(sizes[0]))
     yield CLAIMS.case("diffusion", f"{change:.2%}", change < 0.01, difference="in words")
+
+
+def let_go(unbalance: float) -> Motion:
+    """Rotor and layer by KdV-Burgers in time at 1.3 omega_n, kicked; unbalance in depths off the axis."""
+    rotor, fill = layered_rotor(0.1, 0.1, 0.02)
+    found = stable_at(by_family("a"), 1.3)
+    heavy = replace(rotor, unbalance=rotor.mass * unbalance * fill.depth)
+    kick, around = 0.95 * found.amplitude, found.whirl_speed
+    return kdv_in_time(heavy, fill, 1.3 * NATURAL, BANDED, kick, 60.0, whirl_speed=around)
+
+
+def _let_go() -> Iterator[Case]:
+    """In time, without unbalance and with it beside long waves in time."""
+    depth, cycle = layered_rotor(0.1, 0.1, 0.02)[1].depth, stable_at(by_family("a"), 1.3)
+    seen = let_go(0.0)
+    words = {"speed": seen.whirl_speed / NATURAL, "lag": seen.lag / NATURAL}
+    yield CLAIMS.case("let-go", seen.whirl / depth, printed=cycle.amplitude / depth, **words)
+    for unbalance, synchronous, whirl in _UNBALANCED:
+        seen = let_go(unbalance)
+        for part, size, other in (
+            ("whirl", seen.whirl, whirl),
+            ("synchronous", seen.synchronous, synchronous),
+        ):
+            yield CLAIMS.case("unbalanced", size / depth, printed=other, part=part, unbalance=unbalance)
 
 
 def _waves() -> Iterator[Case]:
