@@ -38,6 +38,7 @@ GROUPS = {
     "published": " ".join(
         f"published.{each}" for each in ("partitions", "damping", "tilt", "absorber", "ring", "balancer")
     ),
+    "lying_drum": "liquid.lying_drum",
 }
 
 

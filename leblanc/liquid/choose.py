@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from fluid.fill import Fill, Fills
 from fluid.friction.laws import Friction, FrictionLaw
-from fluid.pool import balance_speed, pool_of
+from fluid.pool import centrifuging_speed, pool_of
 from fluid.waves import capture_speed
 from fluid.whirl import covering_speed
 from leblanc.core.notes import percent
@@ -20,7 +20,7 @@ from leblanc.core.units import small_whirl_friction
 from leblanc.liquid.choice import HELD_MODELS, Choice, HeldCost
 from leblanc.liquid.models import RUNUP_MODELS, own_model, synchronous_model
 from leblanc.liquid.validity import require_supported
-from leblanc.scene.scene import LIQUID_MODELS, Scene, dry_rotor, require_no_balls
+from leblanc.scene.scene import LIQUID_MODELS, Runup, Scene, dry_rotor, require_no_balls
 from meshes.arrays import Array, Flags
 from meshes.chamber_section import rest_offset, surface_is_whole
 from meshes.errors import InputError
@@ -396,7 +396,7 @@ def captured_speed(scene: Scene) -> float | None:
 
 
 def balance_from(scene: Scene, fill: Fill) -> float | None:
-    """Speed above which gravity cannot hold liquid at the bottom, rad/s [theory: pool, eq. 8].
+    """Centrifuging speed of liquid that lies at the bottom, rad/s [theory: pool, eq. 21-22].
 
     inf where nothing drags on it; None where gravity does not act across the axis, no pool lies on a circular
     wall, or closed compartments take it along.
@@ -405,11 +405,11 @@ def balance_from(scene: Scene, fill: Fill) -> float | None:
     if gravity == 0.0 or fill.chamber.section is not None or fill.compartments > 1:
         return None
     pool = pool_of(fill)
-    return None if pool is None else balance_speed(fill, pool, scene.model.friction, gravity)
+    return None if pool is None else centrifuging_speed(fill, scene.model.friction, gravity)
 
 
 def carried_from(scene: Scene) -> float | None:
-    """Speed above which the walls carry every layer round from rest, rad/s [theory: pool, eq. 10].
+    """Speed above which the walls carry every layer round from rest, rad/s [theory: pool, eq. 21-22].
 
     inf where nothing drags on one of them; None where no layer lies at the bottom first, or that of a chamber
     whose section is no circle.
@@ -424,6 +424,16 @@ def carried_from(scene: Scene) -> float | None:
 def _has_surface(fill: Fill) -> bool:
     """Neither empty nor full to rounding."""
     return 0.0 < fill.volume < fill.chamber.capacity * (1.0 - 1e-9) and fill.surface_radius > 0.0
+
+
+def _lies(scene: Scene) -> bool:
+    """Whether gravity moves the liquid of a run-up before, or after, an annular layer exists."""
+    plan, stands = scene.speed_plan, captured_speed(scene)
+    if plan is None or stands is None or plan.capture == "riding":
+        return False
+    slowest = plan.start if isinstance(plan, Runup) else 0.0
+    balances = [balance_from(scene, fill) for fill in scene.fills]
+    return slowest < max([stands, *(speed for speed in balances if speed is not None)])
 
 
 def runup_outlook(scene: Scene) -> str:
@@ -450,6 +460,8 @@ def ruled_out_linear(scene: Scene) -> str:
     """Why linear layers are not tried for the run-up of a scene, or nothing."""
     from solvers.runup.runup import largest_wave
 
+    if _lies(scene):
+        return "liquid lies at the bottom at first, and linear layers do not move it"
     if any(fill.uneven for fill in scene.fills):
         return "baffles stand in the liquid, whose waves linear layers do not hold back"
     if scene.runup is not None and scene.runup.motor is not None:

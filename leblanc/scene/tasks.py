@@ -327,10 +327,9 @@ class Runup(Part):
     )
     capture: Annotated[str, one_of(*CAPTURES)] = Field(
         "carried",
-        description="how liquid at the bottom of a horizontal chamber becomes an annular layer: dragged "
-        "over the top by its "
-        "walls (carried); taken along by the drum at once where their drag beats gravity (drum); or in any "
-        "case where the drum's centrifugal field beats gravity (riding)",
+        description="how liquid at the bottom of a horizontal chamber becomes an annular layer: drawn over "
+        "the top by its walls and baffles (carried); the same with twice their grip, the earliest to be "
+        "expected (drum); or at rest in the drum where its centrifugal field beats gravity (riding)",
     )
     samples: Annotated[int, whole(10, 1_000_000)] = Field(2000, description="of the results over time")
 

@@ -32,6 +32,9 @@ from solvers.layer.step import (
     profile,
     stage_rates,
 )
+from solvers.layer.two_layer_step import advance as advance_pool
+from solvers.layer.two_layer_step import measure as measure_pool
+from solvers.layer.two_layer_step import stands
 from solvers.machine_code import BARE, machine_code
 
 _jit: Any = machine_code(**COMPILED)
@@ -97,21 +100,6 @@ def resisted(curve, weight, aim):
             high = middle
     slope = (curve[1, high] - curve[1, low]) / (curve[0, high] - curve[0, low])
     return curve[0, low] + (aim - curve[0, low] - weight * curve[1, low]) / (1.0 + weight * slope), slope
-
-
-@_jit
-def dragged(curve, inertia, slip, freely, dt):
-    """Impulse of the drag on what slips past its walls, and how much of other torques it lets through.
-
-    The drag is that of the mean slip and at most stops it: its heat is never below zero
-    [theory: pool, eq. 13]. `freely` is the slip at the end without drag.
-    """
-    both = 0.5 * (slip + freely)
-    mean, slope = resisted(curve, 0.5 * dt / inertia, abs(both))
-    mean = np.copysign(mean, both)
-    if slip * freely > 0.0 and (2.0 * mean - slip) * slip <= 0.0:
-        return inertia * freely, 0.0
-    return 2.0 * inertia * (both - mean), 1.0 / (1.0 + 0.5 * dt * slope / inertia)
 
 
 @_jit
@@ -386,43 +374,77 @@ def layer_step(
 
 
 # A step is done once two estimates of the mean accelerations differ by this, relative to the largest. Where
-# the drying edge of a layer makes them jump, the guess follows by halves after a few rounds; after the last
+# the drying edge of a layer makes them jump, the guess follows by shares after some rounds; after the last
 # the step is shortened, and a short one may pass with what is left. Momentum is handed over all the same.
-AGREED, _PASSABLE, _STRAIGHT, _ROUNDS, _SHORT = 1e-6, 1e-2, 5, 12, 1.0 / 32.0
+AGREED, _PASSABLE, _STRAIGHT, _ROUNDS, _SHORT = 1e-6, 1e-2, 3, 16, 1.0 / 32.0
+# The force of a pool jumps where cells run dry: beside one, steps as short as this pass with so much left.
+_TINY, _PASSABLE_POOL = 1.0 / 256.0, 0.2
 # Steps this short that do not agree end the run: a layer on its way through the axis.
 SHORTEST = 1.0 / 1024.0
 # Share of the spin by which a ball that sticks may creep.
 _CREEP = 1e-5
+# No wave of a pool is faster, rad/s.
+_FASTEST = 1e9
 # Steps shortened by more than this no longer follow what the layers do.
 _LEAST = 1e-6
-# Of the time in which a pool swings by a radian; steps of twice that time would throw it up.
+# Longest step beside a pool, over the time in which it swings by a radian.
 _SWING = 0.25
 
 
 @_unwrapped
 def _move_pools(machine, state, room, dt):
-    """Move all pools one step under the guessed accelerations, by the midpoint [theory: pool, eq. 5]."""
+    """Move all pools one step under the guessed accelerations; whether they could [theory: pool, eq. 20]."""
     spin, first = 0.5 * (room.spins[0] + room.spins[1]), machine.layers.shape[0]
     for j in range(machine.pools.shape[0]):
-        pool, own, drag = machine.pools[j], first + j, machine.drags[j]
-        x, y = machine.gravity[0] - room.guess[own, 0], machine.gravity[1] - room.guess[own, 1]
-        angle, rate = room.lean[j], room.lean_rate[j]
-        turned = angle + 0.5 * dt * rate
-        fallen = dt * (x * np.sin(turned) - y * np.cos(turned)) / pool.length
-        room.drag[j], given = dragged(drag, pool.inertia, spin - rate, spin - rate - fallen, dt)
-        faster = fallen + room.drag[j] / pool.inertia
-        state.lean[j], state.lean_rate[j] = angle + dt * (rate + 0.5 * faster), rate + faster
-        moving = pool.mass * pool.arm
-        room.before[own, 0], room.before[own, 1] = (
-            moving * rate * np.sin(angle),
-            -moving * rate * np.cos(angle),
+        pool, own, taken, work = machine.pools[j], first + j, room.taken[j], room.work[j]
+        x = (machine.gravity[0] - room.guess[own, 0]) / pool.radius
+        y = (machine.gravity[1] - room.guess[own, 1]) / pool.radius
+        for i in range(state.two_layers.shape[1]):
+            copy(room.two_layers[j, i], state.two_layers[j, i])
+        taken.torque, taken.heat, taken.baffles = 0.0, 0.0, 0.0
+        fastest = advance_pool(
+            *(state.two_layers[j], spin, x, y, state.rings[j], dt, machine.standing, pool),
+            *(machine.pool_tables[j], work, taken),
         )
-        last, rate = state.lean[j], state.lean_rate[j]
-        room.after[own, 0], room.after[own, 1] = moving * rate * np.sin(last), -moving * rate * np.cos(last)
-        cosine, sine, share = np.cos(turned), np.sin(turned), given * moving / pool.length
-        room.inertia[own, 0] = share * sine * sine
-        room.inertia[own, 1] = -share * sine * cosine
-        room.inertia[own, 2] = share * cosine * cosine
+        if not fastest < _FASTEST:
+            return False
+        begin, end = room.first[j], room.last[j]
+        measure_pool(
+            *(state.two_layers[j], machine.standing, pool.full, pool.slot, room.spins[1]),
+            *(work, end),
+        )
+        room.before[own, 0], room.before[own, 1] = pool.weight * begin.flow_x, pool.weight * begin.flow_y
+        room.after[own, 0], room.after[own, 1] = pool.weight * end.flow_x, pool.weight * end.flow_y
+        scale = 0.5 * pool.weight / pool.radius
+        room.inertia[own, 0] = scale * (begin.xx + end.xx)
+        room.inertia[own, 1] = scale * (begin.xy + end.xy)
+        room.inertia[own, 2] = scale * (begin.yy + end.yy)
+    return True
+
+
+@_unwrapped
+def _begin_pools(machine, state, room):
+    """Measure the pools at the beginning of a step; rings that their own rotation holds no more fall."""
+    first = machine.layers.shape[0]
+    for j in range(machine.pools.shape[0]):
+        pool = machine.pools[j]
+        x = (machine.gravity[0] - state.push[first + j, 0, 0]) / pool.radius
+        y = (machine.gravity[1] - state.push[first + j, 0, 1]) / pool.radius
+        state.rings[j] = state.rings[j] and stands(state.two_layers[j], x, y, pool.full)
+        for i in range(state.two_layers.shape[1]):
+            copy(state.two_layers[j, i], room.two_layers[j, i])
+        measure_pool(
+            *(state.two_layers[j], machine.standing, pool.full, pool.slot, state.shaft[0].spin),
+            *(room.work[j], room.first[j]),
+        )
+
+
+@_unwrapped
+def _restore_pools(state, room):
+    """Put the pools back to the beginning of the step."""
+    for j in range(room.two_layers.shape[0]):
+        for i in range(room.two_layers.shape[1]):
+            copy(room.two_layers[j, i], state.two_layers[j, i])
 
 
 @_inner
@@ -432,7 +454,8 @@ def _move_layers(machine, state, room, dt):
     copy(room.area, state.area)
     copy(room.momentum, state.momentum)
     copy(room.rolling, state.rolling)
-    _move_pools(machine, state, room, dt)
+    if not _move_pools(machine, state, room, dt):
+        return Outcome.AT_AXIS, fastest
     for j in range(machine.layers.shape[0]):
         layer = machine.layers[j]
         x = (machine.gravity[0] - room.guess[j, 0]) / layer.radius
@@ -596,14 +619,16 @@ def _disagreement(machine, room, dt):
     """Mean accelerations that the rotor's change means; their distance from the guess, and their size."""
     gap, size, spin, first = 0.0, 0.0, room.spins[0], machine.layers.shape[0]
     for j in range(machine.planes.shape[0]):
-        reach = machine.layers[j].radius if j < first else machine.pools[j - first].length
+        reach = machine.layers[j].radius if j < first else 0.0
         for i in range(2):
             total = 0.0
             for k in range(room.change.size):
                 total += machine.planes[j, i, k] * room.change[k]
             room.found[j, i] = total / dt
             gap = max(gap, abs(room.found[j, i] - room.guess[j, i]))
-            size = max(size, abs(room.found[j, i]), 1e-6 * spin * spin * reach)
+            # Edges of a pool that run dry make its force jump: beside its weight that is nothing.
+            least = 1e-6 * spin * spin * reach if j < first else abs(machine.gravity[0])
+            size = max(size, abs(room.found[j, i]), least)
     return gap, size
 
 
@@ -624,7 +649,7 @@ def _spin_after(machine, state, room, dt):
         layer = machine.layers[j]
         load += layer.weight * layer.radius**4 * room.gains[j].torque
     for j in range(machine.pools.shape[0]):
-        load += room.drag[j]
+        load += machine.pools[j].inertia * room.taken[j].torque
     for j in range(machine.balls.shape[0]):
         rate, change = state.roll_rate[j], room.roll[j]
         load += ball_turned(machine.balls[j], room.held[j], rate, change, room.spins, dt)
@@ -658,21 +683,40 @@ def _tally(machine, state, room, dt):
         sums.lost += scale * gains.loss
         sums.baffles += scale * gains.baffles
         sums.profile += scale * gains.missed
+    for j in range(machine.pools.shape[0]):
+        pool, taken, own = machine.pools[j], room.taken[j], machine.layers.shape[0] + j
+        begin, end = room.first[j], room.last[j]
+        drive, heat = spin * pool.inertia * taken.torque, pool.inertia * taken.heat
+        lost = pool.inertia * taken.baffles
+        x, y = end.moment_x - begin.moment_x, end.moment_y - begin.moment_y
+        fallen = pool.weight * (machine.gravity[0] * x + machine.gravity[1] * y)
+        sums.drive += drive
+        sums.friction += heat
+        sums.baffles += lost
+        sums.gravity += fallen
+        # Jumps, mixing and what the layers rub on one another: what is left of its balance in its own frame.
+        sums.lost += pool.inertia * (begin.energy - end.energy) + fallen + drive - heat - lost
+        for i in range(2):
+            sums.lost -= 0.5 * dt * room.found[own, i] * (room.before[own, i] + room.after[own, i])
     # Bores give nothing back: what the scheme does is no heat, the balance leaves it.
     sums.bores = max(sums.bores, sums.lost)
-    for j in range(machine.pools.shape[0]):
-        pool, past = machine.pools[j], spin - 0.5 * (room.lean_rate[j] + state.lean_rate[j])
-        sums.drive += spin * room.drag[j]
-        sums.friction += past * room.drag[j]
-        fallen_x = np.cos(room.lean[j]) - np.cos(state.lean[j])
-        fallen_y = np.sin(room.lean[j]) - np.sin(state.lean[j])
-        arm = pool.mass * pool.arm
-        sums.gravity += arm * (machine.gravity[0] * fallen_x + machine.gravity[1] * fallen_y)
     for j in range(machine.balls.shape[0]):
         ball, moving = machine.balls[j], (state.roll[j], state.roll_rate[j])
         tally_ball(ball, room.held[j], machine.gravity, moving, room.roll[j], room.spins, dt, sums)
     if machine.curve.shape[1] > 0:
         sums.motor += dt * spin * motor_torque(machine.curve, spin)
+
+
+@_unwrapped
+def _relaxed(room, share):
+    """Share of what the accelerations miss by that the guess follows next, by Aitken's rule for vectors."""
+    along, size = 0.0, 0.0
+    for j in range(room.guess.shape[0]):
+        for i in range(2):
+            change = room.found[j, i] - room.guess[j, i] - room.miss[j, i]
+            along += room.miss[j, i] * change
+            size += change * change
+    return min(max(-share * along / (size + 1e-300), -1.0), 1.0)
 
 
 @_inner
@@ -683,7 +727,7 @@ def _couple(machine, state, room, dt):
     room.spins[0], room.spins[1] = spin, spin + shaft.rate * dt
     if machine.curve.shape[1] > 0:
         room.spins[1] = max(room.spins[1], 0.5 * spin)
-    left = 0.0
+    left, share, last_given, last_after = 0.0, 1.0, 0.0, 0.0
     for tried in range(_ROUNDS):
         turned = angle + 0.5 * (spin + room.spins[1]) * dt
         room.turn[0], room.turn[1] = np.cos(angle), np.sin(angle)
@@ -707,11 +751,18 @@ def _couple(machine, state, room, dt):
             return Outcome.DONE, fastest, left
         if tried == _ROUNDS - 1:
             break
-        share = 1.0 if tried < _STRAIGHT else 0.5
+        share = _relaxed(room, share) if tried >= _STRAIGHT else 1.0
         for j in range(room.guess.shape[0]):
             for i in range(2):
-                room.guess[j, i] += share * (room.found[j, i] - room.guess[j, i])
-        room.spins[1] = after
+                room.miss[j, i] = room.found[j, i] - room.guess[j, i]
+                room.guess[j, i] += share * room.miss[j, i]
+        given, room.spins[1] = room.spins[1], after
+        if tried > 0 and given != last_given and machine.pools.shape[0] > 0:
+            # A pool that clings to a drum as light as itself answers the spin as strongly as it does.
+            slope = (after - last_after) / (given - last_given)
+            if slope < 0.9:
+                room.spins[1] = max(given + (after - given) / (1.0 - slope), 0.5 * spin)
+        last_given, last_after = given, after
     return Outcome.NOT_COUPLED, fastest, left
 
 
@@ -764,8 +815,7 @@ def swing_time(pools, gravity):
     """Longest step that follows the pools' swinging, s."""
     longest = np.inf
     for j in range(pools.shape[0]):
-        if pools[j].mass > 0.0:
-            longest = min(longest, _SWING * np.sqrt(pools[j].length / abs(gravity[0])))
+        longest = min(longest, _SWING * np.sqrt(pools[j].radius / abs(gravity[0])))
     return longest
 
 
@@ -813,18 +863,17 @@ def advance(machine, state, room, stop, courant, most, resumed):
         copy(state.area, room.area)
         copy(state.momentum, room.momentum)
         copy(state.rolling, room.rolling)
-        copy(state.lean, room.lean)
-        copy(state.lean_rate, room.lean_rate)
+        _begin_pools(machine, state, room)
         _guess(state, room, dt)
         status, fastest, gap = _couple(machine, state, room, dt)
-        if status == Outcome.NOT_COUPLED and pace.share <= _SHORT and gap <= _PASSABLE:
+        passable = _PASSABLE if pace.share > _TINY or machine.pools.shape[0] == 0 else _PASSABLE_POOL
+        if status == Outcome.NOT_COUPLED and pace.share <= _SHORT and gap <= passable:
             status = Outcome.DONE
         if status == Outcome.TOO_LONG or (status == Outcome.NOT_COUPLED and pace.share > SHORTEST):
             copy(room.area, state.area)
             copy(room.momentum, state.momentum)
             copy(room.rolling, state.rolling)
-            copy(room.lean, state.lean)
-            copy(room.lean_rate, state.lean_rate)
+            _restore_pools(state, room)
             pace.fastest, pace.share = max(pace.fastest, fastest), 0.5 * pace.share
             if pace.share < _LEAST:
                 return status, taken
@@ -833,8 +882,7 @@ def advance(machine, state, room, stop, courant, most, resumed):
             copy(room.area, state.area)
             copy(room.momentum, state.momentum)
             copy(room.rolling, state.rolling)
-            copy(room.lean, state.lean)
-            copy(room.lean_rate, state.lean_rate)
+            _restore_pools(state, room)
             return status, taken
         _tally(machine, state, room, dt)
         _accept(state, room, dt, fastest)

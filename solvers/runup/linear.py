@@ -22,11 +22,9 @@ from solvers.runup.balls import NO_BALLS, Balls, ball_records, balls_energy, bal
 from solvers.runup.machine import Handover, Reading, Transfer
 from solvers.runup.state import (
     CREST,
-    POOL,
     SUMS,
     CoupledRotor,
     at_rest,
-    drag_curves,
     layer_drag,
     layer_properties,
     mean_area,
@@ -110,8 +108,6 @@ class LinearCoupled(CoupledRotor):
             axis, row = m.planes[j] @ v, slice(n + 2 * j, n + 2 * j + 2)
             total += 0.5 * layer.mass * axis @ axis
             if not m.active[j]:
-                momentum, swing = self._momentum(j), m.rate[n + 2 * j]
-                total += momentum @ axis + 0.5 * self.pool_inertia[j] * swing**2 * self.swings[j]
                 continue
             d, rate, kappa = m.place[row], m.rate[row], layer.curvature
             total += layer.mass * (axis @ rate + 0.5 * (1.0 + kappa) * rate @ rate)
@@ -122,11 +118,7 @@ class LinearCoupled(CoupledRotor):
     def switch(self) -> float:
         """Catch and let go liquid as `solvers.runup.long_wave.Coupled.switch`; energy brought in, J."""
         m, n, active = self.machine, len(self.system.coordinates), self.machine.active > 0.0
-        pools = self.swings & ~active
-        place, rate = m.place[self.sloshing][::2], m.rate[self.sloshing][::2]
-        self.lean[pools], self.lean_rate[pools] = place[pools], rate[pools]
-        own = self._own_rotation()
-        wanted = self.caught(active, own)
+        own, wanted = m.carried * active, self.ridden(active)
         anew = wanted != active
         if not anew.any():
             return 0.0
@@ -136,17 +128,13 @@ class LinearCoupled(CoupledRotor):
             row = slice(n + 2 * j, n + 2 * j + 2)
             lost += m.planes[j].T @ self._momentum(j)
             m.place[row], m.rate[row], m.active[j] = 0.0, 0.0, wanted[j]
-            m.carried[j] = own[j] if wanted[j] and self.handover is Handover.CARRIED else self.spin
-            if not wanted[j] and self.swings[j]:
-                self.lean[j] = 0.0
-                self.lean_rate[j] = m.rate[n + 2 * j] = self.fallen_rate(own)[j]
-                lost -= m.planes[j].T @ self._momentum(j)
+            m.carried[j] = self.spin
         # What else moves keeps its momentum: the offsets' rates act on the rotor through their masses.
         inertia, along = balls_inertia(m.balls, m.races, m.place[self.rolling])
         jump = np.linalg.solve(whole + inertia, lost)
         m.rate[:n] += jump
         m.rate[self.rolling] -= along @ jump
-        after, now = self.energy(), self._own_rotation()
+        after, now = self.energy(), m.carried * m.active
         rise = (self._offset() - offset).real * abs(float(self.gravity[0])) * self.masses
         for j in np.flatnonzero(anew).tolist():
             turning = float(own[j] * self.spread_inertia[j]), float(now[j] * self.spread_inertia[j])
@@ -156,19 +144,10 @@ class LinearCoupled(CoupledRotor):
             )
         return after - before
 
-    def _own_rotation(self) -> Array:
-        """Rotation of the liquid itself, of a pool as if it were spread, rad/s, shape (l,)."""
-        m, inertia = self.machine, np.maximum(self.spread_inertia, 1e-300)
-        swing = self.pool_inertia * self.swings * m.rate[self.sloshing][::2]
-        return np.where(m.active > 0.0, m.carried, swing / inertia)
-
     def _momentum(self, j: int) -> Array:
         """Momentum of a liquid relative to its chamber's axis, standing frame, kg m/s, shape (2,)."""
         m, row = self.machine, len(self.system.coordinates) + 2 * j
-        if m.active[j] > 0.0:
-            return np.asarray(self.masses[j] * m.rate[row : row + 2])
-        moving = 1j * m.rate[row] * complex(self._offset()[j]) * self.masses[j] * self.swings[j]
-        return np.array([moving.real, moving.imag])
+        return np.asarray(self.masses[j] * m.rate[row : row + 2] * m.active[j])
 
     def fall(self, outcome: Outcome) -> None:
         """Always None: small waves do not fall."""
@@ -180,7 +159,6 @@ class LinearCoupled(CoupledRotor):
         deflection = np.array([complex(*(plane @ q)) for plane in self.seen])
         offset = self._offset()
         depth = np.array([fill.depth for fill in self.fills])
-        swing = self.swings * (m.rate[self.sloshing][::2] - self.spin)
         rise = (m.layers.curvature - 1.0) * np.abs(offset)
         nothing = np.full(len(self.fills), np.nan)
         return Reading(
@@ -194,7 +172,9 @@ class LinearCoupled(CoupledRotor):
             captured=active,
             depth_min=np.where(active, depth - rise, nothing),
             depth_max=np.where(active, depth + rise, nothing),
-            mean_rotation=np.where(active, m.carried - self.spin, swing),
+            mean_rotation=np.where(active, m.carried - self.spin, 0.0),
+            wet_share=np.where(active, 1.0, self.resting_wet),
+            lifted_share=np.where(active, 0.5, 0.0),
             ball_angle=m.place[self.rolling] - self.shaft.angle,
             ball_speed=m.rate[self.rolling].copy(),
         )
@@ -212,7 +192,6 @@ class LinearCoupled(CoupledRotor):
         """Offset of each liquid's centre of mass from its chamber's axis, standing frame, complex, m."""
         m, active = self.machine, self.machine.active > 0.0
         first, second = m.place[self.sloshing].reshape(-1, 2).T
-        self.lean[:] = np.where(active, self.lean, first)
         return np.where(active, first + 1j * second, self.pool_offset)
 
 
@@ -232,6 +211,7 @@ def couple_linear(
     """Rotor without deflection, liquid at rest in the drum, balls where they start, by linear layers.
 
     `cells` sets the length of the steps alone; the exact linear theory has all dispersion and no bores.
+    Liquid at the bottom of a lying drum is a mass at rest there, whatever the `handover`: long waves move it.
     """
     from solvers.runup.linear_kernel import LINEAR_LAYER, LinearMachine
 
@@ -241,11 +221,6 @@ def couple_linear(
     layers = records(LINEAR_LAYER, count)
     for j, fill in enumerate(fills):
         layers[j] = _layer(fill, friction)
-    drags = drag_curves(fills, rest.pools, friction, gravity)
-    pools = records(POOL, count)
-    for j, pool in enumerate(rest.pools):
-        if pool is not None and handover is not Handover.RIDING:
-            pools[j] = pool.mass, pool.arm, pool.length, pool.inertia
     machine = LinearMachine(
         matrices=np.stack([system.mass, system.damping, system.gyroscopic, system.stiffness]).astype(float),
         unbalance=system.unbalance.astype(complex),
@@ -254,8 +229,6 @@ def couple_linear(
         tables=wall_tables(fills, friction),
         plates=plate_curves(fills),
         active=np.zeros(count),
-        pools=pools,
-        drags=drags,
         gravity=rest.gravity,
         curve=np.zeros((2, 0)),
         watched=rest.watched,
@@ -281,8 +254,6 @@ def couple_linear(
         handover=handover,
         capture=rest.capture,
         pools=rest.pools,
-        lean=np.zeros(count),
-        lean_rate=np.zeros(count),
         cells=cells,
         machine=machine,
         shaft=machine.shaft[0],

@@ -17,11 +17,9 @@ from solvers.runup.kernel import (
     SHORTEST,
     add_ball,
     ball_turned,
-    dragged,
     driven,
     motor_torque,
     solve,
-    swing_time,
     tally_ball,
     watch,
 )
@@ -46,14 +44,11 @@ class LinearMachine(NamedTuple):
     #: where no layer has any
     plates: Array
     active: Array  #: 1 for a layer, 0 for liquid that lies at the bottom or is solid, shape (l,)
-    #: records POOL of `solvers.runup.state`, the mass 0 for liquid that does not swing, shape (l,)
-    pools: Record
-    drags: Array  #: relative rotation of the walls and their torque on each pool, shape (l, 2, k)
     gravity: Array  #: across the axis, shape (2,)
     curve: Array  #: the motor's, shape (2, k)
     watched: Array  #: displacement of the axis whose amplitude counts, for unit coordinates, shape (2, n)
     #: place and rate: rotor's coordinates, the layers' offsets, two parts each, and the balls' angles in the
-    #: standing frame, and their rates, shape (N,); of a pool its angle from the bottom, and 0
+    #: standing frame, and their rates, shape (N,)
     place: Array
     rate: Array
     shaft: Record  #: record SHAFT of `solvers.runup.state`, shape (1,)
@@ -86,7 +81,6 @@ def _assemble(m, j, spin, before, after, dt):
         m.left[row, row] = 1.0
         m.change[row] = 0.0
     if m.active[j] == 0.0:
-        _swing(m, j, spin, dt)
         return
     for part in range(2):
         row = n + 2 * j + part
@@ -105,42 +99,6 @@ def _assemble(m, j, spin, before, after, dt):
         for i in range(n):
             m.left[row, i] = mass * b[part, i]
             m.left[i, row] = mass * b[part, i]
-
-
-@_jit
-def _swing(m, j, spin, dt):
-    """Row and column of a pool, a pendulum about its axis, by the midpoint [theory: pool, eq. 5]."""
-    n = m.unbalance.size
-    pool, b, row = m.pools[j], m.planes[j], n + 2 * j
-    if pool.mass == 0.0:
-        return
-    x, y = m.gravity[0], m.gravity[1]
-    angle, rate = m.place[row], m.rate[row]
-    turned, held = angle + 0.5 * dt * rate, _hold(m, j, spin, dt)
-    cosine, sine, moving = np.cos(turned), np.sin(turned), pool.mass * pool.arm
-    m.left[row, row] = pool.inertia + 0.5 * dt * held
-    m.change[row] = dt * (moving * (x * sine - y * cosine) + held * (spin - rate))
-    # The rate in the middle of the step as it would be with the axis held.
-    rate += 0.5 * m.change[row] / m.left[row, row]
-    for i in range(n):
-        along = moving * (b[0, i] * sine - b[1, i] * cosine)
-        m.left[row, i] = along
-        m.left[i, row] = along
-        m.change[i] -= dt * moving * rate * rate * (b[0, i] * cosine + b[1, i] * sine)
-
-
-@_jit
-def _hold(m, j, spin, dt):
-    """Torque of the walls on a pool over its mean slip, from that slip with the axis held, N m s.
-
-    In proportion to the mean slip it has no heat below zero, whatever the axis does [theory: pool, eq. 13].
-    """
-    pool, row = m.pools[j], m.unbalance.size + 2 * j
-    turned, slip = m.place[row] + 0.5 * dt * m.rate[row], spin - m.rate[row]
-    fallen = dt * (m.gravity[0] * np.sin(turned) - m.gravity[1] * np.cos(turned)) / pool.length
-    impulse, _ = dragged(m.drags[j], pool.inertia, slip, slip - fallen, dt)
-    mean = slip - 0.5 * (fallen + impulse / pool.inertia)
-    return impulse / (dt * mean) if mean != 0.0 else 0.0
 
 
 @_jit
@@ -210,14 +168,6 @@ def _tally(m, spin, spins, dt):
             sums.support += dt * mean * m.matrices[1, i, k] * (m.rate[k] + 0.5 * m.change[k])
     for j in range(m.layers.shape[0]):
         row = n + 2 * j
-        if m.active[j] == 0.0 and m.pools[j].mass > 0.0:
-            swing = m.rate[row] + 0.5 * m.change[row]
-            turned, moving = m.place[row] + 0.5 * dt * m.rate[row], m.pools[j].mass * m.pools[j].arm
-            torque = _hold(m, j, spin, dt) * (spin - swing)
-            sums.drive += dt * spin * torque
-            sums.friction += dt * (spin - swing) * torque
-            x, y = m.gravity[0] * np.sin(turned), m.gravity[1] * np.cos(turned)
-            sums.gravity += dt * moving * swing * (x - y)
         if m.active[j] == 0.0:
             continue
         layer = m.layers[j]
@@ -255,7 +205,6 @@ def advance_linear(m, stop, angle_step, most):
     Outcome.DONE, RAN_OUT, STOPPED where the motor stands, or NOT_COUPLED where its load grows without bound.
     """
     n, spins, taken, shaft, share = m.unbalance.size, (0.0, 0.0), 0, m.shaft[0], 1.0
-    longest = swing_time(m.pools, m.gravity)
     balls = n + 2 * m.layers.shape[0]
     while shaft.time < stop:
         before = shaft.spin
@@ -265,7 +214,7 @@ def advance_linear(m, stop, angle_step, most):
             return Outcome.RAN_OUT
         taken += 1
         left = stop - shaft.time
-        dt = min(share * min(angle_step / before, longest), left)
+        dt = min(share * angle_step / before, left)
         if left > dt > 0.5 * left:
             dt = 0.5 * left
         after = before + (shaft.rate * dt if m.curve.shape[1] == 0 else 0.0)
@@ -294,10 +243,6 @@ def advance_linear(m, stop, angle_step, most):
                 for j in range(m.layers.shape[0]):
                     gained = _carry(m, j, spin, spins, dt) - m.carried[j]
                     load += m.layers[j].inertia * gained * m.active[j]
-                    if m.active[j] == 0.0 and m.pools[j].mass > 0.0:
-                        row = n + 2 * j
-                        slip = spin - m.rate[row] - 0.5 * m.change[row]
-                        load += dt * _hold(m, j, spin, dt) * slip
                 for j in range(m.balls.shape[0]):
                     rate, change = m.rate[balls + j], m.change[balls + j]
                     load += ball_turned(m.balls[j], m.held[j], rate, change, spins, dt)

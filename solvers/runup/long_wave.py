@@ -9,12 +9,14 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from fluid.fill import Fill
+from fluid.friction.baffles import SUPERCRITICAL
 from fluid.friction.laws import Friction
 from meshes.arrays import Array, Complex, Flags
 from solvers.layer.baffles import tables_of
 from solvers.layer.inside import SLOT_SPEED, full_area
 from solvers.layer.records import Outcome, Record, records
-from solvers.layer.state import ring
+from solvers.layer.state import ring, turned_ring
+from solvers.layer.two_layers import CELLS, FLOWS, ROWS, STREAM, TAKEN, resting, stream_of
 from solvers.rotor.system import RotorSystem
 from solvers.runup.balls import NO_BALLS, Balls, ball_records, balls_energy, balls_inertia, race_planes
 from solvers.runup.machine import Handover, Reading, Transfer
@@ -24,7 +26,6 @@ from solvers.runup.state import (
     LAYER,
     MEASURES,
     PACE,
-    POOL,
     SUMS,
     WORKS,
     CoupledRotor,
@@ -32,7 +33,6 @@ from solvers.runup.state import (
     Room,
     State,
     at_rest,
-    drag_curves,
     layer_properties,
     mean_area,
     planes_of,
@@ -42,6 +42,22 @@ from solvers.slices import compiled, slices
 
 # A layer that gravity has thrown down is caught again at a speed higher by this factor.
 _AGAIN = 1.2
+# Own rotation over sqrt(g/a) below which a ring is left to the two layers, and above which it is taken from
+# them; Froude number of the flow past its baffles above which it is left, and below which it is taken; slip
+# between stream and pool over their rotation up to which they are one layer [theory: pool].
+_LEFT, _TAKEN = 1.2, 1.4
+_SHOOTS, _RESTS = SUPERCRITICAL, 0.8
+_ONE = 0.1
+# Least and largest depth of a ring over its mean.
+_THIN, _THICK = 0.3, 2.0
+# Area over R^2 of a film from which on a wall counts as wet: 24 um in a drum of 0.24 m.
+_FILM = 1e-4
+# Grip of the walls on a pool over the expected one in the run that shows how far that is known.
+_FIRM = 2.0
+
+
+# Plane, relative momentum, number of the chamber and record FLOWS of liquids in two layers.
+Swinging = list[tuple[Array, Array, int, np.record]]
 
 
 @dataclass
@@ -55,7 +71,9 @@ class Coupled(CoupledRotor):
     #: A e of the fluctuations behind bores of all layers, shape (l, c), or (l, 0) without them
     rolling: Array
     active: Flags  #: which of them are layers now, shape (l,)
-    drags: Array  #: of each pool, as in `Machine`, shape (l, 2, k)
+    streams: Record  #: records STREAM of each chamber, shape (l,)
+    two_layers: Array  #: of all liquids as stream and pool, as in `State`, shape (l, 4, k)
+    rings: Flags
     balls: Record  #: records BALL, shape (N,)
     machine: Machine  #: of those
     state: State
@@ -89,7 +107,7 @@ class Coupled(CoupledRotor):
                 break
         self.area[self.active], self.momentum[self.active] = self.state.area, self.state.momentum
         self.rolling[self.active] = self.state.rolling
-        self.lean[self.pooled], self.lean_rate[self.pooled] = self.state.lean, self.state.lean_rate
+        self.two_layers[self.pooled], self.rings[self.pooled] = self.state.two_layers, self.state.rings
         return outcome
 
     def follow(self, rows: int) -> None:
@@ -126,10 +144,10 @@ class Coupled(CoupledRotor):
             total += 0.5 * layer.mass * rate @ rate + momentum @ rate
             total += layer.weight * layer.radius**4 * measures.energy
         total += self._pressed()
-        for plane, momentum, j in self._swinging():
+        for plane, momentum, j, flows in self._swinging():
             rate = plane @ v
             total += 0.5 * self.masses[j] * rate @ rate + momentum @ rate
-            total += 0.5 * self.pool_inertia[j] * self.lean_rate[j] ** 2
+            total += self.streams[j].inertia * flows.energy
         return float(
             total
             + balls_energy(
@@ -147,20 +165,40 @@ class Coupled(CoupledRotor):
         each = math.pi * (SLOT_SPEED * self.spin) ** 2 * np.square(more).mean(axis=1)
         return float((self.machine.layers.weight * self.machine.layers.radius**4) @ each)
 
-    def _swinging(self) -> list[tuple[Array, Array, int]]:
-        """Plane, relative momentum and number of the chamber of each pool that swings."""
-        found, planes = [], planes_of(self.system, self.fills)
+    def _swinging(self) -> Swinging:
+        """Plane, relative momentum, number of the chamber and record FLOWS of each pool."""
+        if not self.pooled.any():
+            return []
+        planes = planes_of(self.system, self.fills)
+        found = []
         for j in np.flatnonzero(self.pooled).tolist():
-            rate = 1j * self.lean_rate[j] * self.pool_offset[j] * self.masses[j]
-            found.append((planes[j], np.array([rate.real, rate.imag]), j))
+            flows = self._flows(j)
+            momentum = self.streams[j].weight * np.array([flows.flow_x, flows.flow_y])
+            found.append((planes[j], momentum, j, flows))
         return found
 
-    def _own_rotation(self) -> Array:
-        """Rotation of the liquid itself, of a pool as if it were spread, rad/s, shape (l,)."""
-        turning = self.pool_inertia * self.lean_rate
-        for (layer, _, measures, _), j in zip(self.measured(), np.flatnonzero(self.active), strict=True):
-            turning[j] = layer.weight * layer.radius**4 * measures.spinning
-        return np.divide(turning, self.spread_inertia, out=np.zeros_like(turning), where=turning != 0.0)
+    def _flows(self, j: int) -> np.record:
+        """Record FLOWS of a liquid in two layers."""
+        from solvers.layer.two_layer_step import measure
+
+        flows: np.record = records(FLOWS)[0]
+        work = np.zeros((ROWS, self.two_layers.shape[2]))
+        full, slot = self.streams[j].full, self.streams[j].slot
+        measure(self.two_layers[j], self.machine.standing, full, slot, self.spin, work, flows)
+        return flows
+
+    def _turning(self, swinging: Swinging | None = None) -> tuple[Array, Array]:
+        """Angular momentum of each liquid, kg m^2/s, and its own rotation, rad/s, shape (l,) each."""
+        momentum, inertia = np.zeros((2, len(self.fills)))
+        if self.active.any():
+            for (layer, _, measures, _), j in zip(self.measured(), np.flatnonzero(self.active), strict=True):
+                momentum[j] = layer.weight * layer.radius**4 * measures.spinning
+                inertia[j] = self.spread_inertia[j]
+        for _, _, k, flows in self._swinging() if swinging is None else swinging:
+            momentum[k] = self.streams[k].inertia * flows.spinning
+            inertia[k] = self.streams[k].inertia * flows.inertia
+        own = np.divide(momentum, inertia, out=np.zeros_like(momentum), where=inertia > 0.0)
+        return momentum, own
 
     def measured(self) -> list[tuple[np.record, Array, np.record, Array]]:
         """Properties, plane, measures and relative momentum of each layer."""
@@ -182,8 +220,9 @@ class Coupled(CoupledRotor):
         """Largest relative change of a layer's volume since the beginning."""
         errors = [0.0]
         for j, fill in enumerate(self.fills):
-            if self.active[j]:
-                errors.append(abs(float(self.area[j].mean()) / mean_area(fill) - 1.0))
+            held = self.area[j] if self.active[j] else self.two_layers[j, :2].sum(axis=0)
+            if self.active[j] or self.pooled[j]:
+                errors.append(abs(float(held.mean()) / mean_area(fill) - 1.0))
         return max(errors)
 
     def switch(self) -> float:
@@ -192,9 +231,36 @@ class Coupled(CoupledRotor):
         Keeps the momentum of rotor and liquid and, of liquid that the drum does not take along, its angular
         momentum about the chamber's axis [theory: pool, eq. 9-11].
         """
-        riding = self.handover is Handover.RIDING
-        own = np.zeros(len(self.fills)) if riding else self._own_rotation()
-        return self._rearrange(self.caught(self.active, own))
+        if self.handover is Handover.RIDING:
+            return self._rearrange(self.ridden(self.active))
+        if not self.swings.any():
+            return 0.0
+        return self._rearrange(self._wanted())
+
+    def _wanted(self) -> Flags:
+        """Which liquids are layers from now on, shape (l,) [theory: pool]."""
+        own, wanted = self._turning()[1], self.active.copy()
+        for j in np.flatnonzero(self.swings).tolist():
+            fill, fast = self.fills[j], own[j] / float(self.capture[j])
+            past = abs(own[j] - self.spin) * math.sqrt(fill.chamber.radius / max(fill.depth, 1e-300))
+            past /= max(abs(own[j]), 1e-300)
+            shoots = past if fill.uneven and fill.compartments == 1 else 0.0
+            if self.active[j]:
+                wanted[j] = fast > _LEFT and shoots < _SHOOTS
+            else:
+                wanted[j] = fast > _TAKEN and shoots < _RESTS and self._is_one(j)
+        return wanted
+
+    def _is_one(self, j: int) -> bool:
+        """Whether liquid stands round the whole wall, and stream and pool turn alike nearly everywhere."""
+        area, spun = self.two_layers[j, :2], self.two_layers[j, 2:]
+        whole = area.sum(axis=0)
+        if not _THIN * whole.mean() < whole.min() <= whole.max() < _THICK * whole.mean():
+            return False
+        turn = np.divide(spun, area * (1.0 - whole), out=np.zeros_like(spun), where=area > 1e-6)
+        shared = area.prod(axis=0) / whole
+        slip = math.sqrt(float(shared @ np.square(turn[0] - turn[1])) / float(whole.sum()))
+        return slip < _ONE * abs(float((area * turn).sum() / whole.sum()))
 
     def fall(self, outcome: Outcome) -> float | None:
         """Let the deepest layer fall to the bottom where gravity has won; energy brought in, J.
@@ -207,35 +273,37 @@ class Coupled(CoupledRotor):
         deepest = int(np.argmax(np.where(self.active, self.area.max(axis=1), -1.0)))
         wanted = self.active.copy()
         wanted[deepest] = False
-        own = (
-            self.spin if self.handover is Handover.RIDING else max(float(self._own_rotation()[deepest]), 0.0)
-        )
+        own = self.spin if self.handover is Handover.RIDING else max(float(self._turning()[1][deepest]), 0.0)
         self.capture[deepest] = _AGAIN * max(own, float(self.lowest[deepest]))
-        return self._rearrange(wanted)
+        return self._rearrange(wanted, broken=True)
 
-    def _rearrange(self, wanted: Flags) -> float:
-        """Make the wanted layers the active ones; energy brought in, J."""
+    def _rearrange(self, wanted: Flags, broken: bool = False) -> float:
+        """Make the wanted layers the active ones; energy brought in, J.
+
+        `broken`: what leaves has no state to go on from, and keeps its mean depth and rotation.
+        """
         if np.array_equal(wanted, self.active):
             return 0.0
         before, lost = self.energy(), np.zeros(self.state.rate.size)
-        anew, own = wanted != self.active, self._own_rotation()
+        anew, (spread, own) = wanted != self.active, self._turning()
         offset = self._offsets()
         for (_, plane, _, momentum), gone in zip(self.measured(), anew[self.active], strict=True):
             lost += plane.T @ momentum * gone
-        for plane, momentum, j in self._swinging():
+        for plane, momentum, j, _ in self._swinging():
             lost += plane.T @ momentum * anew[j]
-        spread = own * self.spread_inertia
-        fallen = anew & ~wanted & self.swings
-        self.lean[fallen], self.lean_rate[fallen] = 0.0, self.fallen_rate(own)[fallen]
-        mean = self.area.mean(axis=1, keepdims=True)
-        self.area[anew] = mean[anew]
-        keeps = self.handover is Handover.CARRIED
-        lag = np.where(anew & wanted & keeps, self.spin - own, 0.0)[:, None]
-        self.momentum[anew] = self._uniform(lag)[anew]
-        self.rolling[anew] = 0.0
+        for j in np.flatnonzero(anew).tolist():
+            if not self.swings[j]:
+                self.area[j], self.rolling[j] = self.area[j].mean(), 0.0
+                self.momentum[j] = -self.spin * np.square(self.area[j])
+            elif wanted[j]:
+                self._join(j)
+            else:
+                self._part(j, own[j] if broken else None)
         self.active = wanted
         self._assemble()
-        for plane, momentum, j in self._swinging():
+        for (_, plane, _, momentum), come in zip(self.measured(), anew[self.active], strict=True):
+            lost -= plane.T @ momentum * come
+        for plane, momentum, j, _ in self._swinging():
             lost -= plane.T @ momentum * anew[j]
         whole = self.machine.matrices[0].copy()
         weights = np.concatenate((self.masses[self.active], self.masses[self.pooled]))
@@ -245,20 +313,34 @@ class Coupled(CoupledRotor):
         jump = np.linalg.solve(whole + inertia, lost)
         self.state.rate[:] += jump
         self.state.roll_rate[:] -= along @ jump
-        after, now, low = self.energy(), self._own_rotation(), abs(float(self.gravity[0]))
+        after, now, low = self.energy(), self._turning()[0], abs(float(self.gravity[0]))
         rise = (self._offsets() - offset).real * low * self.masses
         for j in np.flatnonzero(anew).tolist():
-            turning = float(spread[j]), float(now[j] * self.spread_inertia[j])
+            turning = float(spread[j]), float(now[j])
             there = bool(wanted[j])
             self.transfers.append(
                 Transfer(j, there, self.time, self.spin, turning, (before, after), float(rise[j]))
             )
         return after - before
 
-    def _uniform(self, lag: Array) -> Array:
-        """Relative angular momentum of the cells of layers that turn as a whole, over R^2, shape (l, c)."""
-        # Its own rotation about the axis takes r^2, the profile of the flow R^2: the same angular momentum.
-        return np.asarray(-lag * (1.0 - self.area) * self.area - self.spin * np.square(self.area))
+    def _join(self, j: int) -> None:
+        """Make stream and pool one layer in the drum's frame, cell by cell."""
+        whole = self.two_layers[j].reshape(2, 2, -1).sum(axis=1)
+        area, spun = turned_ring(whole, self.area.shape[1], -float(self.shaft.angle))
+        # The layer's momentum is the absolute one less Omega R^2 A.
+        self.area[j], self.momentum[j], self.rolling[j] = area, spun - self.spin * area, 0.0
+
+    def _part(self, j: int, rotation: float | None) -> None:
+        """Take a layer over as a ring of one layer in the frame that stands still, cell by cell."""
+        count, area = self.two_layers.shape[2], self.area[j]
+        if rotation is None:
+            both = np.stack([area, self.momentum[j] + self.spin * area])
+            area, spun = turned_ring(both, count, float(self.shaft.angle))
+        else:
+            area = np.full(count, area.mean())
+            spun = rotation * area * (1.0 - area)
+        self.two_layers[j] = 0.0
+        self.two_layers[j, 1], self.two_layers[j, 3], self.rings[j] = area, spun, True
 
     def _assemble(self) -> None:
         """Make machine, state and scratch anew for the present layers and pools; other liquid is a mass."""
@@ -270,18 +352,13 @@ class Coupled(CoupledRotor):
             if not moving:
                 mass += weight * plane.T @ plane
         matrices = [mass, self.system.damping, self.system.gyroscopic, self.system.stiffness]
-        pools = records(POOL, int(pooled.sum()))
-        for k, j in enumerate(np.flatnonzero(pooled).tolist()):
-            pool = self.pools[j]
-            assert pool is not None
-            pools[k] = pool.mass, pool.arm, pool.length, pool.inertia
         riding = [fill for fill, on in zip(self.fills, active, strict=True) if on]
         self.machine = self.machine._replace(
             matrices=np.stack(matrices).astype(float),
             planes=np.concatenate((planes[active], planes[pooled])),
             layers=self.layers[active],
-            pools=pools,
-            drags=self.drags[pooled],
+            pools=self.streams[pooled],
+            pool_tables=self.tables[pooled],
             tables=self.tables[active],
             plates=tables_of(riding, self.area.shape[1]),
             gaps=np.array([full_area(fill) for fill in riding]),
@@ -291,16 +368,16 @@ class Coupled(CoupledRotor):
             area=self.area[active],
             momentum=self.momentum[active],
             rolling=self.rolling[active],
-            lean=self.lean[pooled],
-            lean_rate=self.lean_rate[pooled],
-            push=np.zeros((count + pools.size, 2, 2)),
+            two_layers=self.two_layers[pooled],
+            rings=self.rings[pooled],
+            push=np.zeros((count + int(pooled.sum()), 2, 2)),
             pace=_fresh_pace(),
         )
         self.follow(old.trace.shape[0])
-        sizes = count, pools.size, self.balls.size
+        sizes = count, int(pooled.sum()), self.balls.size
         self.room = _room(old.place.size, sizes, cells, self.rolling.shape[1])
 
-    def _offsets(self) -> Complex:
+    def _offsets(self, swinging: Swinging | None = None) -> Complex:
         """Centre of mass of each liquid from its chamber's axis, standing frame, complex, m, shape (l,)."""
         angle, angles = float(self.shaft.angle), self.machine.angles
         surface = np.sqrt(np.maximum(1.0 - 2.0 * self.area, 0.0))
@@ -308,7 +385,10 @@ class Coupled(CoupledRotor):
         whole = np.maximum(self.area.sum(axis=1), 1e-300)
         turn = complex(math.cos(angle), math.sin(angle))
         moved = self.layers.radius * (lever @ angles[0] + 1j * (lever @ angles[1])) / whole * turn
-        return np.asarray(np.where(self.active, moved, self.pool_offset))
+        found = np.where(self.active, moved, self.pool_offset)
+        for _, _, j, flows in self._swinging() if swinging is None else swinging:
+            found[j] = self.streams[j].weight * complex(flows.moment_x, flows.moment_y) / self.masses[j]
+        return np.asarray(found)
 
     def read(self) -> Reading:
         """The moment as the history keeps it."""
@@ -319,6 +399,9 @@ class Coupled(CoupledRotor):
         velocity = np.divide(self.momentum, self.area, out=np.zeros_like(surface), where=self.area > 0.0)
         velocity += self.spin * self.area
         flow = velocity * -np.log(np.maximum(surface, 1e-300))
+        wet, lifted = self._shares()
+        swinging = self._swinging()
+        slow = self.pooled * (self._turning(swinging)[1] - self.spin) if swinging else 0.0
         nothing = np.full(len(self.fills), np.nan)
         return Reading(
             time=self.time,
@@ -327,16 +410,29 @@ class Coupled(CoupledRotor):
             coordinates=x,
             deflection=deflection,
             **self.largest(abs(deflection[0])),
-            offset=self._offsets(),
+            offset=self._offsets(swinging),
             captured=self.active.copy(),
             depth_min=np.where(self.active, radius * (1.0 - surface.max(axis=1, initial=0.0)), nothing),
             depth_max=np.where(self.active, radius * (1.0 - surface.min(axis=1, initial=1.0)), nothing),
-            mean_rotation=np.where(
-                self.active, flow.sum(axis=1) / whole, self.pooled * (self.lean_rate - self.spin)
-            ),
+            mean_rotation=np.where(self.active, flow.sum(axis=1) / whole, slow),
+            wet_share=wet,
+            lifted_share=lifted,
             ball_angle=self.state.roll - angle,
             ball_speed=self.state.roll_rate.copy(),
         )
+
+    def _shares(self) -> tuple[Array, Array]:
+        """Share of the outer wall that is wet and of the liquid above the axis, shape (l,) each."""
+        wet, lifted = self.resting_wet.copy(), np.zeros(len(self.fills))
+        for j in np.flatnonzero(self.active | self.pooled).tolist():
+            if self.active[j]:
+                area, angles = self.area[j], self.machine.angles
+                up = math.cos(self.shaft.angle) * angles[0] - math.sin(self.shaft.angle) * angles[1]
+            else:
+                area, up = self.two_layers[j, :2].sum(axis=0), self.machine.standing[0]
+            wet[j] = np.mean(area > _FILM)
+            lifted[j] = area[up > 0.0].sum() / max(float(area.sum()), 1e-300)
+        return wet, lifted
 
     def depth(self) -> Array:
         """Depth of the layers cell by cell, m, nan where the liquid is none, shape (l, c)."""
@@ -362,12 +458,17 @@ def couple(
     `enstrophy`: bores carry fluctuations behind them [theory: long_wave, eq. 15-17]; `position` of the plane
     whose amplitude counts where there is no chamber, m.
     """
+    tables_of(fills, cells)  # refuses compartments that the cells do not resolve
     rest, sums, crest = at_rest(system, fills, spin, gravity, position), records(SUMS), records(CREST)
     n, count = len(system.coordinates), len(fills)
     layers = records(LAYER, count)
     for j, fill in enumerate(fills):
         layers[j] = layer_properties(fill, friction, dispersion)
     tables = wall_tables(fills, friction)
+    streams = records(STREAM, count)
+    grip = _FIRM if handover is Handover.DRUM else 1.0
+    for j, fill in enumerate(fills):
+        streams[j] = stream_of(fill, friction, gravity, float(layers[j].top), grip)
     area = np.repeat(np.array([mean_area(fill) for fill in fills]).reshape(-1, 1), cells, axis=1)
     found = Coupled(
         system=system,
@@ -378,8 +479,6 @@ def couple(
         tables=tables,
         capture=rest.capture,
         pools=rest.pools,
-        lean=np.zeros(count),
-        lean_rate=np.zeros(count),
         shaft=rest.shaft[0],
         sums=sums[0],
         crest=crest[0],
@@ -387,18 +486,21 @@ def couple(
         momentum=-spin * np.square(area),
         rolling=np.zeros((count, cells if enstrophy else 0)),
         active=np.zeros(count, dtype=bool),
-        drags=drag_curves(fills, rest.pools, friction, gravity),
+        streams=streams,
+        two_layers=np.zeros((count, 4, CELLS)),
+        rings=np.zeros(count, dtype=bool),
         balls=ball_records(balls),
         machine=Machine(
             matrices=np.zeros((4, n, n)),
             unbalance=system.unbalance.astype(complex),
             planes=np.zeros((0, 2, n)),
             layers=layers[:0],
-            pools=records(POOL, 0),
-            drags=np.zeros((0, 2, 1)),
+            pools=streams[:0],
+            pool_tables=tables[:0],
             tables=tables[:0],
             gravity=rest.gravity,
             angles=ring(cells),
+            standing=ring(CELLS),
             curve=np.zeros((2, 0)),
             watched=rest.watched,
             plates=tables_of([], cells),
@@ -413,8 +515,8 @@ def couple(
             area=area[:0],
             momentum=area[:0],
             rolling=area[:0, :0],
-            lean=np.zeros(0),
-            lean_rate=np.zeros(0),
+            two_layers=np.zeros((0, 4, CELLS)),
+            rings=np.zeros(0, dtype=bool),
             push=np.zeros((0, 2, 2)),
             pace=_fresh_pace(),
             sums=sums,
@@ -427,8 +529,18 @@ def couple(
     )
     found.position = position
     found.active = found.begins_as_layer(spin)
+    for j in np.flatnonzero(found.pooled).tolist():
+        found.two_layers[j] = _at_bottom(streams[j], mean_area(fills[j]), gravity)
     found._assemble()
     return found
+
+
+def _at_bottom(stream: np.record, mean: float, gravity: float) -> Array:
+    """Liquid at rest at the bottom in two layers, shape (4, k)."""
+    pull = -gravity / stream.radius * ring(CELLS)[0]
+    whole = resting(mean, pull, stream.full, stream.slot, stream.rim)
+    below = np.minimum(whole, stream.tip)
+    return np.stack([below, whole - below, np.zeros(CELLS), np.zeros(CELLS)])
 
 
 def _fresh_pace() -> Record:
@@ -448,9 +560,11 @@ def _room(coordinates: int, sizes: tuple[int, int, int], cells: int, rolling: in
         area=np.zeros((count, cells)),
         momentum=np.zeros((count, cells)),
         rolling=np.zeros((count, rolling)),
-        lean=np.zeros(pools),
-        lean_rate=np.zeros(pools),
-        drag=np.zeros(pools),
+        two_layers=np.zeros((pools, 4, CELLS)),
+        taken=records(TAKEN, pools),
+        first=records(FLOWS, pools),
+        last=records(FLOWS, pools),
+        work=np.zeros((pools, ROWS, CELLS)),
         begin=records(MEASURES, count),
         end=records(MEASURES, count),
         gains=records(GAINS, count),
@@ -459,6 +573,7 @@ def _room(coordinates: int, sizes: tuple[int, int, int], cells: int, rolling: in
         after=np.zeros((both, 2)),
         guess=np.zeros((both, 2)),
         found=np.zeros((both, 2)),
+        miss=np.zeros((both, 2)),
         change=np.zeros(n),
         swing=np.zeros(n),
         left=np.zeros((n + balls, n + balls)),

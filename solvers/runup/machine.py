@@ -127,6 +127,9 @@ class Reading:
     depth_min: Array  #: of each layer, m, shape (l,); nan while it is not captured
     depth_max: Array
     mean_rotation: Array  #: of each layer or pool relative to its drum, rad/s, shape (l,)
+    #: share of the outer wall that liquid wets, and of the liquid that is above the axis, shape (l,)
+    wet_share: Array
+    lifted_share: Array
     #: of each ball in the drum, from its zero mark, whole turns counted, rad, shape (N,)
     ball_angle: Array = field(default_factory=lambda: np.zeros(0))
     #: of each ball in space, rad/s, shape (N,)

@@ -200,6 +200,9 @@ class RunupHistory:
     limited: Flags | None = None
     left: Array | None = None  #: share that is left of each part of the unbalance that leaves, shape (k, s)
     path: RotorPath | None = None  #: of the rotor all along; None where nobody asked for it
+    #: of the outer wall that liquid wets, and of the liquid that is above the axis, shape (k, l)
+    wet_share: Array = field(default_factory=lambda: np.zeros((0, 0)))
+    lifted_share: Array = field(default_factory=lambda: np.zeros((0, 0)))
     #: of each ball in the drum, from its zero mark, whole turns counted, rad, shape (k, N)
     ball_angle: Array = field(default_factory=lambda: np.zeros((0, 0)))
     #: of each ball in space, rad/s, shape (k, N)

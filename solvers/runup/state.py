@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from fluid.fill import Fill
 from fluid.friction.laws import Friction, FrictionLaw
 from fluid.friction.wall import NO_TABLE, WallDrag, wall_drag
-from fluid.pool import Pool, balance_speed, pool_of, wall_torque
+from fluid.pool import Pool, centrifuging_speed, pool_of
 from fluid.waves import free_wave_frequencies
 from meshes.arrays import Array, Complex, Flags
 from meshes.errors import require_not_negative
@@ -109,26 +109,6 @@ def layer_capture(fill: Fill, gravity: float) -> float:
     return math.sqrt(gravity / fill.surface_radius)
 
 
-# Relative rotations at which a pool's torque is kept, over the frequency of its pendulum at g: straight lines
-# between them are right to 3e-4.
-_TURNS = np.concatenate(([0.0], np.geomspace(1e-5, 1e4, 430)))
-
-
-def drag_curves(
-    fills: Sequence[Fill], pools: Sequence[Pool | None], friction: Friction, gravity: float
-) -> Array:
-    """Relative rotation of the walls and their torque on each pool, as the steps take it, shape (l, 2, k).
-
-    rad/s, rising from 0, and N m, 0 where there is no pool.
-    """
-    found = np.zeros((len(fills), 2, _TURNS.size))
-    for j, (fill, pool) in enumerate(zip(fills, pools, strict=True)):
-        if pool is not None:
-            found[j, 0] = math.sqrt(gravity / pool.length) * _TURNS
-            found[j, 1] = wall_torque(fill, pool, friction, found[j, 0])
-    return found
-
-
 # What a layer is measured by: moment and its rate of change by the flow, inertia of the flow, angular
 # momentum and energy in the frame that does not turn [theory: coupling, eq. 2, 4 and 7].
 MEASURES = floats("moment_x", "moment_y", "flow_x", "flow_y", "xx", "xy", "yy", "spinning", "energy")
@@ -143,8 +123,6 @@ SHAFT = floats("spin", "angle", "time", "rate", "inertia")
 PACE = floats("last", "before", "fastest", "share", "kept")
 # The largest amplitude since the moment was last read, and the speed and time of it.
 CREST = floats("amplitude", "speed", "time")
-# A pool as a pendulum about its chamber's axis: mass, distance of its centre of mass, length, inertia.
-POOL = floats("mass", "arm", "length", "inertia")
 # A ball in a race: mass, radius of its path, inertia on it, torque of the drag over the speed in the drum,
 # torque by a change of the spin on the ball and on the drum, and its resistance to rolling over its pressure.
 BALL = floats("mass", "radius", "inertia", "drag", "carried", "driven", "resistance")
@@ -171,12 +149,15 @@ class Machine(NamedTuple):
     #: p, 2, n)
     planes: Array
     layers: Record  #: records LAYER, shape (l,)
-    pools: Record  #: records POOL of liquid that swings at the bottom, shape (p,)
-    #: of each pool, relative rotation of its walls, rising from 0, and their torque, shape (p, 2, k)
-    drags: Array
+    #: records `solvers.layer.two_layers.STREAM` of liquid that is in two layers, and their tables of the law
+    #: of the wall, shapes (p,) and (p, m, 2)
+    pools: Record
+    pool_tables: Array
     tables: Array  #: of the law of the wall, shape (l, m, 2); m = 0 under other laws
     gravity: Array  #: acceleration across the axis, shape (2,)
-    angles: Array  #: cosine and sine at the cells' middles and at their left faces, shape (4, c)
+    #: cosine and sine at the cells' middles and at their left faces, of layers (4, c) and of pools (4, k)
+    angles: Array
+    standing: Array
     curve: Array  #: the motor's speeds and torques, shape (2, k); k = 0 for a ramp
     watched: Array  #: displacement of the axis whose amplitude counts, for unit coordinates, shape (2, n)
     plates: Array  #: baffles of each layer, as by `solvers.layer.baffles.tables_of`, shape (l, k, COLUMNS)
@@ -197,10 +178,10 @@ class State(NamedTuple):
     momentum: Array
     #: A e/R^4 of the fluctuations behind bores, shape (l, c), or (l, 0) where they are left out
     rolling: Array
-    #: lean and lean_rate: angle of each pool from the bottom, positive with the spin, and its rate, shape
-    #: (p,)
-    lean: Array
-    lean_rate: Array
+    #: two_layers: A_1, A_2 over R^2 and L_1, L_2 over R^4 of each pool's cells, shape (p, 4, k)
+    #: rings: whether each is a ring that has not fallen yet, shape (p,)
+    two_layers: Array
+    rings: Flags
     #: mean accelerations of the axes over the last step and over the one before, shape (l + p, 2, 2)
     push: Array
     pace: Record  #: record PACE, shape (1,)
@@ -217,13 +198,16 @@ class State(NamedTuple):
 class Room(NamedTuple):
     """Scratch of the steps, made by `solvers.runup.long_wave`."""
 
-    #: area, momentum, rolling, lean and lean_rate: the liquid at the beginning of the step, as in `State`
+    #: area, momentum, rolling and two_layers: the liquid at the beginning of the step, as in `State`
     area: Array
     momentum: Array
     rolling: Array
-    lean: Array
-    lean_rate: Array
-    drag: Array  #: impulse of the walls' torque on each pool, shape (p,)
+    two_layers: Array
+    #: of each pool records TAKEN and FLOWS of `solvers.layer.two_layers`, these at both ends, shape (p,)
+    taken: Record
+    first: Record
+    last: Record
+    work: Array  #: scratch of `solvers.layer.two_layers.advance`, shape (p, ROWS, k)
     #: begin and end: records MEASURES of the layers at both ends, shape (l,)
     begin: Record
     end: Record
@@ -232,9 +216,11 @@ class Room(NamedTuple):
     #: before and after: their momenta relative to their axes at both ends, shape (l + p, 2)
     before: Array
     after: Array
-    #: guess and found: mean accelerations of the axes put in and come out, shape (l + p, 2)
+    #: guess and found: mean accelerations of the axes put in and come out; what they missed by in the round
+    #: before, shape (l + p, 2)
     guess: Array
     found: Array
+    miss: Array
     #: change and swing: of the velocities over the step; of the unbalance's momentum, shape (n,)
     change: Array
     swing: Array
@@ -287,6 +273,15 @@ def planes_of(system: RotorSystem, fills: Sequence[Fill]) -> Array:
     return planes.reshape(len(fills), 2, len(system.coordinates))
 
 
+def _pours(fill: Fill, pool: Pool) -> bool:
+    """Whether a pool leaves its chamber's axis free, so that two shallow layers describe it."""
+    return fill.chamber.inner_radius > 0.0 or pool.half_angle < _TO_THE_AXIS
+
+
+# Half of the wetted arc at which a pool without an inner wall comes near the axis: 45 % of the chamber.
+_TO_THE_AXIS = 0.475 * math.pi
+
+
 @dataclass
 class CoupledRotor(ABC):
     """What every rotor with layers has, long waves or linear; see `solvers.runup.machine.RunupMachine`."""
@@ -297,8 +292,6 @@ class CoupledRotor(ABC):
     handover: Handover  #: how liquid at the bottom becomes a layer
     capture: Array  #: as of `Rest`, shape (l,)
     pools: tuple[Pool | None, ...]
-    lean: Array  #: angle of each pool from the bottom, positive with the spin, rad, and its rate, (l,)
-    lean_rate: Array
     machine: Machine | LinearMachine  #: what the compiled steps take
     shaft: np.record  #: record SHAFT of the moment
     sums: np.record  #: record SUMS: works, heats and counts so far
@@ -315,50 +308,38 @@ class CoupledRotor(ABC):
     def swings(self) -> Flags:
         """Liquid that swings as a pool while it is no layer, shape (l,)."""
         moves = self.handover is not Handover.RIDING
-        return np.array([moves and pool is not None for pool in self.pools], dtype=bool)
+        pairs = zip(self.fills, self.pools, strict=True)
+        return np.array(
+            [moves and pool is not None and _pours(fill, pool) for fill, pool in pairs], dtype=bool
+        )
 
     @cached_property
-    def balance(self) -> Array:
-        """Speed at which the walls' drag lifts each pool to the axis' height, rad/s; inf without one."""
+    def centrifuging(self) -> Array:
+        """Speed from which each pool becomes a ring, rad/s; inf without a pool, shape (l,)."""
         gravity = abs(float(self.gravity[0]))
         pairs = zip(self.fills, self.pools, strict=True)
         return np.array(
-            [np.inf if p is None else balance_speed(f, p, self.friction, gravity) for f, p in pairs]
+            [np.inf if p is None else centrifuging_speed(f, self.friction, gravity) for f, p in pairs]
         )
 
     @property
     def pool_offset(self) -> Complex:
-        """Centre of mass of liquid that is no layer, from its chamber's axis, standing frame, m."""
-        arm = np.array([0.0 if pool is None else pool.arm for pool in self.pools])
-        return np.asarray(-arm * np.exp(1j * self.lean))
+        """Centre of mass of liquid that rests at the bottom, from its chamber's axis, standing frame, m."""
+        return np.array([0.0 if pool is None else -pool.arm for pool in self.pools], dtype=complex)
+
+    @cached_property
+    def resting_wet(self) -> Array:
+        """Share of the outer wall that each liquid wets at rest at the bottom; all of it elsewhere, (l,)."""
+        return np.array([1.0 if pool is None else pool.half_angle / math.pi for pool in self.pools])
 
     def begins_as_layer(self, spin: float) -> Flags:
         """Whether each liquid rides with a drum that has always turned at this speed, shape (l,)."""
         rides = self.capture < spin
-        return rides & (self.balance < spin) if self.swings.any() else rides
+        return rides & (self.centrifuging < spin) if self.swings.any() else rides
 
-    def fallen_rate(self, own: Array) -> Array:
-        """Rate at which layers that fall swing on as pools at the bottom, rad/s [theory: pool, eq. 11].
-
-        Their angular momentum stays, as far as their energy and what the fall gives suffice for that.
-        """
-        arm = np.array([0.0 if pool is None else pool.arm for pool in self.pools])
-        inertia = np.maximum(self.pool_inertia, 1e-300)
-        given = 2.0 * abs(float(self.gravity[0])) * self.masses * arm
-        most = np.sqrt((self.spread_inertia * np.square(own) + given) / inertia)
-        return np.asarray(np.copysign(np.minimum(self.spread_inertia * np.abs(own) / inertia, most), own))
-
-    def caught(self, active: Flags, own: Array) -> Flags:
-        """Which liquids are layers from now on [theory: pool, eq. 9-10].
-
-        `own`: rotation of the liquid itself: of layers, and of pools once they were spread, rad/s.
-        """
-        if self.handover is Handover.RIDING:
-            return np.asarray(self.spin > np.where(active, RELEASE * self.capture, self.capture))
-        stays = own > RELEASE * self.lowest
-        if self.handover is Handover.DRUM:
-            return np.where(active, stays, (self.spin > self.capture) & (self.spin > self.balance))
-        return np.where(active, stays, (own > self.capture) & (np.cos(self.lean) < 0.0))
+    def ridden(self, active: Flags) -> Flags:
+        """Which liquids are layers from now on under the rule `riding`, shape (l,)."""
+        return np.asarray(self.spin > np.where(active, RELEASE * self.capture, self.capture))
 
     @cached_property
     def seen(self) -> Array:
@@ -376,11 +357,6 @@ class CoupledRotor(ABC):
     def spread_inertia(self) -> Array:
         """Moment of inertia of each liquid as a uniform layer, kg m^2, shape (l,)."""
         return np.array([0.5 * f.mass * (f.chamber.radius**2 + f.surface_radius**2) for f in self.fills])
-
-    @cached_property
-    def pool_inertia(self) -> Array:
-        """Moment of inertia of each pool, kg m^2, 0 without one, shape (l,)."""
-        return np.array([0.0 if pool is None else pool.inertia for pool in self.pools])
 
     @property
     def gravity(self) -> Array:

@@ -340,6 +340,22 @@ class RunupAnswer(Answer):
         return np.asarray(-self.history.mean_rotation)
 
     @property
+    def wet_share(
+        self,
+    ) -> Annotated[Array | None, Q("1", "share of the outer wall that is wet", over=_EACH, when="wet_share")]:
+        """Of a horizontal drum, shape (k, l); None for others."""
+        return self.history.wet_share if self.gravity > 0.0 and self.history.wet_share.size else None
+
+    @property
+    def lifted_share(
+        self,
+    ) -> Annotated[
+        Array | None, Q("1", "share of the liquid above the axis", over=_EACH, when="lifted_share")
+    ]:
+        """Of a horizontal drum, shape (k, l); None for others."""
+        return self.history.lifted_share if self.gravity > 0.0 and self.history.lifted_share.size else None
+
+    @property
     def motor_limited(
         self,
     ) -> Annotated[

@@ -62,7 +62,6 @@ class RunupCode(NoteCode):
     NOT_CARRIED = "not_carried"
     SELF_EXCITED = "self_excited"
     TOO_SLOW = "too_slow"
-    TUMBLES = "tumbles"
     INNER_WALL = "inner_wall"
     FULL_GAP = "full_gap"
     TOO_DEEP = "too_deep"
@@ -98,8 +97,8 @@ def happened(
         yield note
     if (error := history.handover_estimate) > ERROR:
         text = (
-            "How liquid becomes a ring is known roughly: if the drum took it along at once, the "
-            f"amplitude would differ by up to {error:.1%} of its largest."
+            "How liquid becomes a ring is known roughly: with twice the grip of the walls on the liquid at "
+            f"the bottom, the amplitude would differ by up to {error:.1%} of its largest."
         )
         yield Note(RunupCode.HANDOVER, {"error": error}, text)
     if spread is not None:
@@ -223,14 +222,15 @@ def capture(transfer: Transfer, handover: str) -> Note:
 def not_carried(chamber: int, speed: float, balance: float) -> Note:
     """Liquid of a chamber that its walls never carry round.
 
-    `balance` is the speed at which the walls' drag lifts it to the height of the axis, rad/s; inf where none
-    does.
+    `balance` is the centrifuging speed by a quasi-steady balance, rad/s; inf where nothing drags on it.
     """
-    text = f"Chamber {chamber + 1}: up to {in_rpm(speed)} its walls do not carry the liquid round: "
+    text = f"Chamber {chamber + 1}: no annular layer has formed by {in_rpm(speed)}: "
     if math.isinf(balance):
-        text += "without friction nothing does."
+        text += "without friction nothing carries the liquid round."
     else:
-        text += f"their drag beats gravity from {in_rpm(balance)} on. Baffles or rough walls would carry it."
+        text += (
+            f"held long enough, it forms from about {in_rpm(balance)} on. Baffles or rough walls lower that."
+        )
     return Note(RunupCode.NOT_CARRIED, {"chamber": chamber + 1, "balance": balance}, text)
 
 
@@ -322,7 +322,7 @@ def unbalance_left(share: float) -> Note:
 def out_of_range(code: RunupCode, chamber: int, holds: Flags, limit: float = math.nan) -> Note | None:
     """At what share of the samples the layer of a chamber does not describe its liquid; None if nowhere.
 
-    The code is TOO_SLOW, TUMBLES, INNER_WALL, TOO_DEEP or TOO_HIGH; `limit` the depth over radius, or rise
+    The code is TOO_SLOW, INNER_WALL, TOO_DEEP or TOO_HIGH; `limit` the depth over radius, or rise
     over depth, that is too much.
     """
     if holds.all():
@@ -330,7 +330,6 @@ def out_of_range(code: RunupCode, chamber: int, holds: Flags, limit: float = mat
     label, high = f"chamber {chamber + 1}", f"higher than {limit:g} of the depth"
     why = {
         RunupCode.TOO_SLOW: f"the liquid in {label} turns too slowly to stand round the wall against gravity",
-        RunupCode.TUMBLES: f"the liquid in {label} is on its way over the top, neither pool nor ring",
         RunupCode.INNER_WALL: f"the surface reaches the inner wall of {label}",
         RunupCode.TOO_DEEP: f"the layer in {label} is deeper than {limit:g} of its radius",
         RunupCode.TOO_HIGH: f"the wave in {label} is {high}, beyond linear theory",

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fluid.fill import Fill
-from fluid.pool import balance_speed, pool_of
+from fluid.pool import centrifuging_speed, pool_of
 from fluid.waves import capture_speed
 from fluid.whirl import covering_speed, is_full
 from leblanc.core.notes import Note, percent
@@ -110,10 +110,8 @@ def judged(scene: Scene, history: RunupHistory, model: str | None = None) -> tup
             continue
         wall = fill.chamber
         own = history.speed + history.mean_rotation[:, k]
-        ring, swings = history.captured[:, k], history.handover is not Handover.RIDING
-        carried = (ring & (np.abs(own) > held_from(scene, fill))) | (swings & ~ring)
-        # A pool above the axis is on its way over the top, neither pool nor ring.
-        lies = ring | ~np.asarray(swings) | (history.offset[:, k].real < 0.0)
+        ring, flows = history.captured[:, k], history.handover is not Handover.RIDING and not linear
+        carried = (ring & (np.abs(own) > held_from(scene, fill))) | (flows & ~ring)
         reached = np.nan_to_num(history.depth_max[:, k]) >= wall.radius - wall.inner_radius
         touches = reached & (wall.inner_radius > 0.0)
         # The exact linear theory holds at any depth.
@@ -122,7 +120,6 @@ def judged(scene: Scene, history: RunupHistory, model: str | None = None) -> tup
         small = ~(linear & (rise > highest * fill.depth))
         for code, holds, limit in (
             (RunupCode.TOO_SLOW, carried, math.nan),
-            (RunupCode.TUMBLES, lies, math.nan),
             (RunupCode.INNER_WALL, ~(touches & linear), math.nan),
             (RunupCode.TOO_DEEP, np.full(good.shape, shallow), deepest),
             (RunupCode.TOO_HIGH, small, highest),
@@ -440,9 +437,9 @@ def _never_caught(scene: Scene, history: RunupHistory) -> Iterator[Note]:
         gravity = across_gravity(scene)
         if gravity == 0.0 or history.captured[:, k].any() or top <= held_from(scene, fill):
             continue
-        if (pool := pool_of(fill)) is None:
-            continue
-        yield notes.not_carried(k, top, balance_speed(fill, pool, scene.model.friction, gravity))
+        if pool_of(fill) is not None:
+            speed = centrifuging_speed(fill, scene.model.friction, gravity)
+            yield notes.not_carried(k, top, speed)
 
 
 def steady_response(scene: Scene, speed: Array) -> Response | None:

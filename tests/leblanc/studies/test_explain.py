@@ -12,7 +12,7 @@ import pytest
 from fluid.fill import Fill
 from fluid.liquid import Liquid
 from fluid.numbers import layer_numbers
-from fluid.pool import balance_speed, pool_of
+from fluid.pool import centrifuging_speed
 from leblanc.cli import main
 from leblanc.core.units import in_rpm
 from leblanc.liquid.choose import carried_from, choose
@@ -105,9 +105,8 @@ def test_run_tells_both_speeds_of_a_lying_drum() -> None:
     """Speeds from which an annular layer exists and is reached from rest: `fluid.pool` has both."""
     lying = scene().replace({"model.friction": "stokes"})
     fill, found = lying.fills[0], run_scene(lying)
-    stands, pool = math.sqrt(9.81 / fill.surface_radius), pool_of(fill)
-    assert pool is not None
-    balance = balance_speed(fill, pool, lying.model.friction, 9.81)
+    stands = math.sqrt(9.81 / fill.surface_radius)
+    balance = centrifuging_speed(fill, lying.model.friction, 9.81)
     assert balance > stands
     assert found.capture_speed == pytest.approx(stands) and found.carried_from == pytest.approx(balance)
     assert found.to_json()["carried_from"] == found.carried_from

@@ -14,15 +14,17 @@ from fluid.liquid import Liquid
 from meshes.chamber import Chamber
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.runup.linear import couple_linear
+from solvers.runup.long_wave import couple
 from solvers.runup.machine import Handover, Ramp
 from solvers.runup.runup import RunupNumerics, _over_a_turn, run_up
 from tests.mutants import kills
 
 FILL = Fill(Chamber(0.24, 0.06), Liquid("brine", 1200.0, 1.6e-6), 1.2e-3)
-ROTOR = Jeffcott(60.0, 11196.0, 309.0, 0.05)
-RAMP = Ramp(4.0, 24.0, 4.0, 7.0)
+# Critical at 26 rad/s, where the ring forms.
+ROTOR = Jeffcott(60.0, 4.05e4, 309.0, 0.05)
+RAMP = Ramp(4.0, 44.0, 8.0, 7.0)
 NUMERICS = RunupNumerics(cells=32, samples=600, handover=Handover.CARRIED)
-LINEAR = Friction("linear", 2.0)
+LINEAR = Friction("linear", 8.0)
 
 
 @kills("solvers.runup.runup:run_up", "handover=Handover.DRUM", "handover=Handover.CARRIED")
@@ -33,20 +35,20 @@ def test_band() -> None:
 
     def alone(cells: int, handover: Handover) -> np.ndarray:
         numerics = replace(NUMERICS, cells=cells, handover=handover, companion=False)
-        return _over_a_turn(run_up(ROTOR.system(), [FILL], RAMP, LINEAR, 9.81, numerics, model=couple_linear))
+        return _over_a_turn(run_up(ROTOR.system(), [FILL], RAMP, LINEAR, 9.81, numerics, model=couple))
 
-    found = run_up(ROTOR.system(), [FILL], RAMP, LINEAR, 9.81, NUMERICS, model=couple_linear)
+    found = run_up(ROTOR.system(), [FILL], RAMP, LINEAR, 9.81, NUMERICS, model=couple)
     fine, coarse, early = alone(32, Handover.CARRIED), alone(16, Handover.CARRIED), alone(16, Handover.DRUM)
     largest = found.amplitude.max()
     assert found.handover_estimate == pytest.approx(np.abs(coarse - early).max() / largest, rel=1e-12)
-    assert found.handover_estimate > 0.01
+    assert found.handover_estimate > 1e-3
     assert found.band is not None
     np.testing.assert_allclose(found.band, np.abs(fine - coarse) + np.abs(coarse - early), atol=1e-12)
     # The largest amplitudes are those of all steps, the others those of the samples, some tens a turn.
     peaks = [run.max() for run in (fine, coarse, early)]
     wanted = abs(peaks[0] - peaks[1]), abs(peaks[1] - peaks[2])
     np.testing.assert_allclose(found.peak_gaps, wanted, atol=2e-3 * largest)
-    assert found.peak_gaps[1] > 0.01 * largest
+    assert found.peak_gaps[1] > 1e-4 * largest
 
 
 def test_none_where_nothing_is_handed_over() -> None:
@@ -57,7 +59,7 @@ def test_none_where_nothing_is_handed_over() -> None:
         (LINEAR, Handover.DRUM),
     ):
         numerics = replace(NUMERICS, handover=handover)
-        found = run_up(ROTOR.system(), [FILL], RAMP, friction, 9.81, numerics, model=couple_linear)
+        found = run_up(ROTOR.system(), [FILL], RAMP, friction, 9.81, numerics, model=couple)
         assert math.isnan(found.handover_estimate) and found.band is not None
         assert float(found.band.max()) <= 2.0 * found.error_estimate * float(found.amplitude.max()) + 1e-15
 

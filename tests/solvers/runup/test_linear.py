@@ -144,7 +144,7 @@ def test_motor() -> None:
     assert history.mean_rotation.min() < -1.0
 
 
-@kills("solvers.runup.state:CoupledRotor.caught", "RELEASE * self.capture", "self.capture")
+@kills("solvers.runup.state:CoupledRotor.ridden", "RELEASE * self.capture", "self.capture")
 def test_capture() -> None:
     """Caught at sqrt(g/a) and let go below; momentum and energy are kept account of."""
     drive = Ramp(3.0, 20.0, 4.0, 5.0, back=True)

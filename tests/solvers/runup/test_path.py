@@ -132,23 +132,23 @@ def test_a_blow_is_no_acceleration() -> None:
     np.testing.assert_allclose(impulse, shared, rtol=1e-3)
 
 
-def test_bearing_forces_go_on_through_a_capture() -> None:
+def test_bearing_forces_go_on_through_a_release() -> None:
     """Every interval has them, and the blow is the only thing that they leave out."""
-    numerics = RunupNumerics(cells=32, samples=600, companion=False, handover=Handover.DRUM)
-    ramp, friction = Ramp(start=3.0, stop=30.0, rate=10.0, duration=3.0), Friction("linear", 5.0)
+    numerics = RunupNumerics(cells=32, samples=600, companion=False, handover=Handover.RIDING)
+    ramp, friction = Ramp(3.0, 20.0, 10.0, 2.0, back=True), Friction("linear", 5.0)
     history = run_up(TUB.system(), FILLS, ramp, friction, 9.81, numerics, None, couple_linear, follow=True)
-    (transfer,) = history.transfers
-    assert history.path is not None and transfer.captured
-    np.testing.assert_array_equal(history.path.jumps, [transfer.time])
+    transfer = history.transfers[-1]
+    assert history.path is not None and not transfer.captured
+    np.testing.assert_array_equal(history.path.jumps, [each.time for each in history.transfers])
     machine = LoadedMachine(TUB, FILLS, bearings=(-0.05, -0.15))
     bearing = path_extremes(machine, history.path, history.time).bearing
     k = int(np.searchsorted(history.time, transfer.time))
     around = bearing[k - 3 : k + 4, 0]
     # A spline through the jump would make of an impulse J a force of J over two samples.
-    blow = bearing_impulses(machine, history.path)[0, 0] / (2.0 * np.diff(history.time).max())
+    blow = bearing_impulses(machine, history.path)[-1, 0] / (2.0 * np.diff(history.time).max())
     assert np.isfinite(bearing).all()
-    # The layer pulls otherwise than the pool did: on each side the force goes on, between them it may step.
-    assert np.ptp(around[:3]) < 0.1 * blow and np.ptp(around[3:]) < 0.1 * blow
+    # The layer pulls otherwise than liquid at rest does: the force goes on on each side.
+    assert np.ptp(around[:3]) < 0.2 * blow and np.ptp(around[3:]) < 0.2 * blow
 
 
 @kills(

@@ -1,0 +1,309 @@
+"""Seeded faults of the two layers, and their oracles, run as plain Python by `test_uncompiled.py`."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fluid import pool as closures
+from fluid.fill import Fill
+from fluid.friction.laws import Friction
+from meshes.arrays import Array
+from meshes.baffles import Baffles
+from meshes.chamber import Chamber
+from solvers.layer import two_layer_step
+from solvers.layer.records import records
+from solvers.layer.two_layers import TAKEN
+from tests.mutants import kills
+from tests.solvers.layer.two_layer_drums import COMPUTED, WATER, Drum
+
+_RATES = "solvers.layer.two_layer_step:_rates"
+_SOURCES = "solvers.layer.two_layer_step:_sources"
+_MEASURE = "solvers.layer.two_layer_step:measure"
+PLAIN = Fill(Chamber(0.24, 1.0), WATER, COMPUTED.volume)
+
+
+def rates(drum: Drum, dt: float = 0.0) -> Array:
+    """Rates of change of a drum's state, shape (4, n)."""
+    turn, rate = np.zeros((2, drum.cells)), np.zeros((4, drum.cells))
+    stream = drum.stream
+    two_layer_step.turnings(drum.flow, stream.full, 0.0, turn)
+    given = drum.flow, turn, *drum.force, drum.angles, stream.full, stream.slot, stream.rim, dt, drum.work
+    two_layer_step._rates(*given, rate)
+    return rate
+
+
+def waving(cells: int, unlike: float = 0.0) -> Drum:
+    """A ring with waves all round, of two layers whose speeds differ, too thin for the weight of either."""
+    drum = Drum(PLAIN, cells=cells)
+    first, second = np.arctan2(drum.angles[1], drum.angles[0]), drum.mean
+    one, two = second * (0.4 + 0.1 * np.cos(first)), second * (0.6 + 0.1 * np.sin(2.0 * first))
+    rest = 1.0 - one - two
+    drum.flow[:2] = one, two
+    drum.flow[2] = one * rest * (30.0 + np.cos(first) - unlike)
+    drum.flow[3] = two * rest * (30.0 + np.sin(first) + unlike)
+    return drum
+
+
+@kills(_RATES, "drop = (1.0 - share) * drop if dried else drop", "drop = drop")
+@kills(_RATES, "edge = min(pull[left], pull[f])", "edge = max(pull[left], pull[f])")
+@kills(_RATES, "wanted = _area_at(level, edge, rim, full, slot)", "wanted = whole")
+def test_rest() -> None:
+    """No rates in a pool at rest, full gap or not; a slope where it is not level."""
+    for fill in (COMPUTED, PLAIN):
+        drum = Drum(fill, cells=48)
+        drum.lie()
+        assert np.abs(rates(drum)).max() < 1e-11
+        # Deeper by a cell's worth on one side: what the middle feels is the slope of the level.
+        middle = int(np.argmax(drum.pull))
+        if fill is PLAIN:
+            drum.flow[1, middle - 3 : middle] *= 1.02
+            slope = rates(drum)
+            assert slope[3, middle] > 0.0 > slope[3, middle - 3]
+
+
+@kills(_RATES, "stiff = stiff or (own > full) != (wanted > full)", "stiff = False")
+@kills(_RATES, "share = min(1.0, 2.0 * own / (whole + 1e-300))", "share = 1.0")
+@kills(_RATES, "one = min(one, whole) if flow[1, i] > DRY else whole", "one = min(one, whole)")
+def test_rounding_does_not_grow() -> None:
+    """A shallow shore cell beside a deep one, a gap that begins to be full: nothing grows."""
+    plates = Baffles(6, 0.24 * 0.97)
+    half = Chamber(0.24, 0.06, 0.12, baffles=plates)
+    shore = Fill(half, WATER, 0.1640625 * half.capacity)
+    for fill, down, cells, time in ((shore, 0.0, 32, 0.5), (COMPUTED, math.pi, 64, 0.03)):
+        drum = Drum(fill, down=down, cells=cells)
+        drum.lie()
+        drum.flow[2:] = 1e-9 * drum.flow[:2] * np.sin(np.arctan2(drum.angles[1], drum.angles[0]))
+        drum.go(time)
+        assert np.abs(drum.flow[2:]).max() < 1e-8
+
+
+@kills(_RATES, "mean * radius + edge > 0.0 or beyond > 0.0", "edge > 0.0 or beyond > 0.0")
+@kills("solvers.layer.two_layer_step:turnings", "(rest * a) if a", "a if a")
+def test_spun_ring() -> None:
+    """The exact offset of a fast ring is steady, with all of it in either layer."""
+    for layer in range(2):
+        drum = Drum(PLAIN, cells=64)
+        drum.force *= 0.1
+        a, spin = drum.mean, 60.0
+        area = a - a * math.sqrt(1.0 - 2.0 * a) * drum.pull / spin**2
+        drum.flow[layer], drum.flow[2 + layer] = area, area * (1.0 - area) * spin * (2.0 - area / a)
+        found, cosine = rates(drum), drum.angles[0]
+        force = a * 0.5 * abs(drum.force[0])
+        # Rates along cos and sin theta beside what gravity alone would do.
+        for row in (drum.angles[0], drum.angles[1]):
+            assert abs(found[2 + layer] @ row) / (force * drum.cells) < 3e-3
+        assert abs(found[layer] @ cosine) * spin / (force * drum.cells) < 3e-3
+
+
+@kills(_RATES, "pressure += 0.5 * (still + 0.5 * mean", "pressure += 0.5 * (still + 0.25 * mean")
+@kills(_RATES, "spun_2 += 0.5 * moved_2 * rest * w_2", "spun_2 += 0.5 * moved_2 * w_2")
+@kills(_RATES, "between = 0.5 * (min(whole, full) + min(own, full))", "between = 0.5 * min(own, full)")
+@kills(_RATES, "0.5 * rise * flow[k, i] * (turn[k, i] ** 2 - square)", "0.0 * rise * flow[k, i] * square")
+@kills(
+    _RATES,
+    "0.5 * rise * flow[k, i] * (turn[k, i] ** 2 - square)",
+    "rise * flow[k, i] * (turn[k, i] ** 2 - square)",
+)
+def test_energy_of_unlike_layers() -> None:
+    """Smooth waves of two layers of unlike speed keep their energy, but for the scheme's spreading."""
+    for unlike in (-4.0, 4.0):
+        gained = []
+        for cells in (48, 96):
+            drum = waving(cells, unlike)
+            rate, begin, tiny = rates(drum), drum.energy(), 1e-7
+            drum.flow += tiny * rate
+            gained.append((drum.energy() - begin) / tiny / begin)
+        # Limited slopes spread by the square of a cell; wrong terms give 0.1 and more.
+        assert abs(gained[1]) < 0.02 and abs(gained[1]) < 0.5 * abs(gained[0])
+
+
+@kills(_RATES, "work[_EDGE, i] = flow[k, i] / out if out > flow[k, i] else 1.0", "work[_EDGE, i] = 1.0")
+def test_no_cell_gives_more_than_it_has() -> None:
+    """A thin cell that runs out: no area below zero, and what it gives arrives."""
+    drum = Drum(PLAIN, cells=16)
+    drum.flow[1, 5], drum.flow[3, 5] = 0.01, 0.01 * 40.0
+    whole = drum.flow[:2].sum()
+    rate = rates(drum, 0.02)
+    assert (drum.flow[:2] + 0.02 * rate[:2]).min() > -1e-15
+    assert rate[:2].sum() == pytest.approx(0.0, abs=1e-12)
+    drum.go(0.02)
+    assert drum.flow[:2].sum() == pytest.approx(whole, rel=1e-12)
+
+
+def sources(drum: Drum, spin: float, dt: float) -> np.record:
+    """Exchange and drag alone over a time; what was taken."""
+    taken, table = records(TAKEN)[0], np.zeros((2, 2))
+    heavy = float(np.hypot(*drum.force))
+    two_layer_step._sources(drum.flow, drum.pull, spin, drum.stream, table, heavy, drum.is_ring, dt, taken)
+    return taken
+
+
+@kills(
+    _SOURCES,
+    "plates_1 = 0.5 * often * width * slip_1 * lever * thin",
+    "plates_1 = often * width * slip_1 * thin",
+)
+@kills(_SOURCES, "plates_2 = 0.5 * often * width * slip_2", "plates_2 = 0.5 * often * width * slip_1")
+@kills(_SOURCES, "width *= held / (held + width", "width *= held / (held + 0.0 * width")
+@kills(_SOURCES, "wall_1 = _shear(stream, table, slip_1, depth, whole)", "wall_1 = 0.0")
+@kills(_SOURCES, "torque += drag_1 * (spin - last_1)", "torque -= drag_1 * (spin - last_1)")
+@kills(
+    _SOURCES, "lost += dt * plates_2 * (spin - last_2) ** 2", "lost -= dt * plates_2 * (spin - last_2) ** 2"
+)
+def test_drag() -> None:
+    """Torques of an instant by their formulas; what the drum gives is momentum, its heat positive."""
+    drum, dt = Drum(COMPUTED, Friction("quadratic", 0.002), cells=16), 1e-9
+    stream, often = drum.stream, 8.0 / (2.0 * math.pi)
+    one, two = np.full(16, stream.tip), np.full(16, 0.03)
+    rest = 1.0 - one - two
+    drum.flow[:] = one, two, one * rest * 5.0, two * rest * 2.0
+    begin = drum.flow[2:].sum()
+    taken = sources(drum, 20.0, dt)
+    step = 2.0 * math.pi / 16.0
+    assert (drum.flow[2:].sum() - begin) * step == pytest.approx(taken.torque, rel=1e-6)
+    depth = 1.0 - np.sqrt(1.0 - 2.0 * (one + two))
+    mean = (one * 25.0 + two * 4.0) / (one + two)
+    weight = np.maximum(mean + drum.pull, 0.0) * depth
+    share = (depth - stream.tip) / depth
+    length = np.minimum(depth * (1.0 / ((0.58 + 0.42 * share**3) * share) - 1.0) ** 2, 20.0 * stream.tip)
+    length /= 1.0 + length * 18.0**2 / (2.0 * 0.15 * stream.tip * weight + 1e-300)
+    first = 0.5 * often * 2.4 * stream.tip * (1.0 - 0.5 * stream.tip) * 15.0 * 15.0
+    second, wall = 0.5 * often * length * 18.0 * 18.0, 0.002 * 15.0 * 15.0
+    lids = stream.lid * 0.002 * (15.0**2 * one + 18.0**2 * two) * rest
+    assert taken.torque / dt == pytest.approx(step * np.sum(first + second + wall + lids), rel=1e-6)
+    assert taken.baffles / dt == pytest.approx(step * np.sum(first * 15.0 + second * 18.0), rel=1e-6)
+    heat = wall * 15.0 + stream.lid * 0.002 * (15.0**3 * one + 18.0**3 * two) * rest
+    assert taken.heat / dt == pytest.approx(step * np.sum(heat), rel=1e-6)
+
+
+@kills(_SOURCES, "between = 0.125 * closures.INTERFACE * abs(w_2 - w_1)", "between = 0.0")
+@kills(_SOURCES, "closures.FADES * (w_1 - w_2) ** 2", "0.0 * (w_1 - w_2) ** 2")
+@kills(_SOURCES, "min(two / one, 1.0) * often", "1.0 * often")
+def test_between_the_layers() -> None:
+    """What one layer loses to the other it gains, by the formula, and energy is lost."""
+    drum, dt = Drum(COMPUTED, cells=16), 1e-9
+    one, two = np.full(16, drum.stream.tip), np.full(16, 0.6 * drum.stream.tip)
+    rest = 1.0 - one - two
+    drum.flow[:] = one, two, one * rest * 6.0, two * rest * 2.0
+    # The drum turns with the stream: no drag on it, and none on the pool where its back has no pressure.
+    begin, before = drum.flow.copy(), drum.flows().energy
+    taken = sources(drum, 8.0, dt)
+    gained = (drum.flow[3] - begin[3]) / dt
+    mixed = (
+        0.6 * 8.0 / (2.0 * math.pi) * 2.0 * one * rest / (1.0 + 2.0 * 16.0 / np.maximum(drum.pull, 1e-300))
+    )
+    given = (0.125 * closures.INTERFACE * 4.0 + mixed) * 4.0
+    above = drum.pull < -40.0 * 0.7
+    np.testing.assert_allclose(gained[above], given[above], rtol=1e-5)
+    below = drum.pull > 0.0
+    lost = (begin[2] - drum.flow[2]) / dt
+    own = 0.5 * 8.0 / (2.0 * math.pi) * 2.4 * one * (1.0 - 0.5 * one) * 4.0
+    np.testing.assert_allclose(lost[below], (given - own)[below], rtol=1e-5)
+    assert before - drum.flows().energy + 8.0 * taken.torque > taken.heat + taken.baffles
+
+
+@kills(_SOURCES, "pace = closures.RENEWED * often * abs(spin - w)", "pace = often * abs(w)")
+@kills(_SOURCES, "most = closures.DEPTH * stream.tip if often > 0.0 else film", "most = film")
+@kills(_SOURCES, "spun = flow[3, i] * moved / flow[1, i]", "spun = 0.0")
+@kills(
+    _SOURCES,
+    "_shear(stream, table, speed, 1.0, 1.0) * speed",
+    "_shear(stream, table, speed, 1.0, 1.0)",
+)
+@kills(_SOURCES, "closures.DRAWN * _shear", "0.5 * closures.DRAWN * _shear")
+def test_exchange() -> None:
+    """The stream is renewed once a passage beside baffles; a smooth wall draws in what its shear does."""
+    for fill, friction in ((COMPUTED, Friction()), (PLAIN, Friction("quadratic", 0.002))):
+        drum, dt = Drum(fill, friction, cells=16), 1e-7
+        most = drum.stream.tip if fill is COMPUTED else 0.002 * 30.0**2 / (9.81 / 0.24)
+        one, two = np.full(16, 0.5 * most), np.full(16, 0.05)
+        rest = 1.0 - one - two
+        drum.flow[:] = one, two, one * rest * 6.0, two * rest * 2.0
+        sources(drum, 30.0, dt)
+        pace = 8.0 / (2.0 * math.pi) * 24.0 if fill is COMPUTED else 2.72 * 0.002 * 28.0 / most
+        np.testing.assert_allclose((drum.flow[0] - one) / dt, (most - one) * pace, rtol=1e-4)
+        np.testing.assert_allclose(drum.flow[:2].sum(axis=0), one + two, rtol=1e-13)
+        if fill is PLAIN:
+            # What it takes out of the pool has the pool's speed.
+            drum.stream.lid = 0.0
+            drum.flow[:] = one, two, one * rest * 2.0, two * rest * 2.0
+            sources(drum, 30.0, dt)
+            given = (two * rest * 2.0 - drum.flow[3]) / dt
+            np.testing.assert_allclose(given, 2.0 * rest * (most - one) * pace, rtol=1e-4)
+        # All that exceeds the depth goes to the pool at once, with its momentum.
+        drum.flow[:] = one + most, two, (one + most) * (rest - most) * 30.0, two * (rest - most) * 30.0
+        sources(drum, 30.0, dt)
+        np.testing.assert_allclose(drum.flow[0], most)
+        np.testing.assert_allclose(drum.flow[2:] / drum.flow[:2], 30.0 * (rest - most)[0], rtol=1e-9)
+
+
+@kills("solvers.layer.two_layer_step:_spread", "nu += 0.5 * closures.SPREADS * depth", "nu += 0.0 * depth")
+@kills("solvers.layer.two_layer_step:_spread", "if both else 0.0", "if True else 0.0")
+def test_spreading() -> None:
+    """Viscosity along the wall evens out each layer's speed and keeps its momentum; none beside nothing."""
+    drum = waving(64, 4.0)
+    turn, before = np.zeros((2, 64)), drum.flow.copy()
+    two_layer_step.turnings(drum.flow, drum.stream.full, 0.0, turn)
+    two_layer_step._spread(drum.flow, turn, drum.stream.full, 1e-6, drum.work)
+    change = (drum.flow[2:] - before[2:]) / 1e-6
+    np.testing.assert_allclose(change.sum(axis=1), 0.0, atol=1e-9)
+    depth = 1.0 - np.sqrt(1.0 - 2.0 * drum.flow[:2].sum(axis=0))
+    nu = 0.1 * depth * np.abs(turn[0] - turn[1])
+    for k in range(2):
+        ahead = 0.5 * (nu + np.roll(nu, -1)) * np.minimum(before[k], np.roll(before[k], -1))
+        flux = ahead * (np.roll(turn[k], -1) - turn[k]) / (2.0 * math.pi / 64)
+        np.testing.assert_allclose(change[k], (flux - np.roll(flux, 1)) / (2.0 * math.pi / 64), atol=1e-6)
+    drum.flow[0], drum.flow[2] = 0.0, 0.0
+    alone = drum.flow.copy()
+    two_layer_step.turnings(drum.flow, drum.stream.full, 0.0, turn)
+    two_layer_step._spread(drum.flow, turn, drum.stream.full, 1e-3, drum.work)
+    np.testing.assert_array_equal(drum.flow, alone)
+
+
+@kills(_MEASURE, "moved = flow[0, i] * turn[0, i] + flow[1, i]", "moved = flow[1, i]")
+@kills(_MEASURE, "lever = 2.0 / 3.0 * held", "lever = 0.5 * held")
+@kills(_MEASURE, "light = whole / (rest * step)", "light = whole / step")
+@kills(_MEASURE, "energy += 0.5 * step * slot * beyond * beyond / full", "energy += 0.0 * beyond")
+@kills(_MEASURE, "inertia += step * whole * rest", "inertia += step * whole")
+def test_measures() -> None:
+    """Moments by quadrature; the flow is their rate; a force changes it by the inertia."""
+    drum = waving(96)
+    angle, area = np.arctan2(drum.angles[1], drum.angles[0]), drum.flow[:2].sum(axis=0)
+    surface, step = np.sqrt(1.0 - 2.0 * area), 2.0 * math.pi / 96
+    found = drum.flows()
+    assert found.moment_x == pytest.approx(float(((1.0 - surface**3) / 3.0 * np.cos(angle)).sum()) * step)
+    whole = np.sum((1.0 - surface**4) / 4.0) * step
+    assert found.inertia == pytest.approx(float(whole))
+    tiny, rate = 1e-6, rates(drum)
+    free, bare = drum.flow.copy(), np.array([found.flow_x, found.flow_y])
+    begin = np.array([found.moment_x, found.moment_y])
+    drum.flow += tiny * rate
+    after = drum.flows()
+    moved = (np.array([after.moment_x, after.moment_y]) - begin) / tiny
+    np.testing.assert_allclose(moved, bare, rtol=2e-2, atol=2e-2 * float(np.abs(bare).max()))
+    first = np.array([after.flow_x, after.flow_y])
+    drum.flow[:] = free
+    drum.force += [20.0, 7.0]
+    drum.flow += tiny * rates(drum)
+    pushed = drum.flows()
+    change = (np.array([pushed.flow_x, pushed.flow_y]) - first) / tiny
+    wanted = [found.xx * 20.0 + found.xy * 7.0, found.xy * 20.0 + found.yy * 7.0]
+    np.testing.assert_allclose(change, wanted, rtol=3e-2)
+    # A gap filled beyond its room holds energy: what presses it together.
+    full = Drum(COMPUTED, cells=16)
+    full.flow[1] = full.stream.full * 1.05
+    held = 2.0 * math.pi * 0.5 * full.stream.slot * (0.05 * full.stream.full) ** 2 / full.stream.full
+    assert full.flows().energy == pytest.approx(held, rel=1e-9)
+
+
+@kills("solvers.layer.two_layer_step:stands", "own * own * _surface", "own * _surface")
+def test_a_ring_stands_by_its_own_rotation() -> None:
+    """Up to sqrt(g/a) in either sense, whatever the drum does."""
+    for share, holds in ((1.01, True), (-1.01, True), (0.99, False), (-0.5, False)):
+        drum = Drum(replace(COMPUTED, volume=0.015))
+        drum.spread(share * math.sqrt(9.81 / drum.fill.surface_radius))
+        assert bool(two_layer_step.stands(drum.flow, *drum.force, drum.stream.full)) is holds
