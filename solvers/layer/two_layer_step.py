@@ -36,8 +36,8 @@ _FILM, _NOTHING = 1e-3, 1e-9
 _COURANT = 0.4
 # Liquid slower than this share of the speed at which its weight and its whirl are alike keeps its level.
 _SLOW = 0.25
-# Levels of two cells further apart than this share of the shallower one's depth are no level.
-_ALIKE = 0.2
+# Levels of two cells further apart than twice the depth of the shallower one are less and less a level, by this share.
+_ALIKE = 0.25
 # A pull weaker than this share of the whole holds no level.
 _LEVEL = 0.02
 _SLOPE_A, _SLOPE_W, _FORCE, _FLUX, _PULL, _EDGE = 0, 2, 4, 5, 9, 10
@@ -68,12 +68,16 @@ def _limited(back, ahead):
 
 
 @_part
-def _steep(flow, full, i, before, after, step):
-    """What is left of a force along the wall where the surface is steep: the liquid moves across as well."""
+def _steep(flow, full, i, before, after, step, level):
+    """What is left of a force along the wall where the surface is steep: the liquid moves across as well.
+
+    `level`: the slope dr/dtheta of a surface at rest there, which is no cliff.
+    """
     slope = _surface(flow[0, after] + flow[1, after], full) - _surface(
         flow[0, before] + flow[1, before], full
     )
     slope *= 0.5 / step
+    slope = max(abs(slope) - abs(level), 0.0) if slope * level > 0.0 else slope
     rest = 1.0 - min(flow[0, i] + flow[1, i], full)
     return rest / (rest + slope * slope)
 
@@ -109,7 +113,8 @@ def _rates(flow, turn, x, y, angles, full, slot, rim, dt, work, rate):
         if own_l > DRY and own_r > DRY:
             r_l, r_r = _surface(own_l, full), _surface(own_r, full)
             apart = abs(_level(own_l, r_l, pull[left], full, slot) - _level(own_r, r_r, pull[f], full, slot))
-            level_alike = max(1.0 - _ALIKE * apart / (min(own_l, own_r) * weak / _LEVEL), 0.0)
+            apart /= min(own_l, own_r) * weak / _LEVEL
+            level_alike = max(1.0 - _ALIKE * max(apart - 2.0, 0.0), 0.0)
         pressure, fast, stiff = 0.0, 0.0, False
         mass_1, mass_2, spun_1, spun_2 = 0.0, 0.0, 0.0, 0.0
         jump_1, jump_2, leap_1, leap_2, swift, lower, both = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
@@ -125,10 +130,10 @@ def _rates(flow, turn, x, y, angles, full, slot, rim, dt, work, rate):
             held = square * r + pull[i] > 0.0 or own > full
             level = _level(own, r, pull[i], full, slot)
             share, dried = 0.0, False
-            if own > DRY and pull[i] > weak and edge > weak and square * r < _SLOW * pull[i]:
+            if own > DRY and pull[i] > weak and square * r < _SLOW * pull[i]:
                 # Slow liquid keeps its level up to the face.
                 share = level_alike * min(2.0 * (1.0 - square * r / (_SLOW * pull[i])), 1.0)
-                wanted = _area_at(level, edge, rim, full, slot)
+                wanted = _area_at(level, edge, rim, full, slot) if edge > 0.0 else 0.0
                 dried = wanted == 0.0
                 stiff = stiff or (own > full) != (wanted > full)
                 whole += share * (wanted - whole)
@@ -203,7 +208,11 @@ def _rates(flow, turn, x, y, angles, full, slot, rim, dt, work, rate):
             # Off the wall weight is no pressure; where that would give energy for nothing it counts.
             force[i] += free[i]
         if force[i] * (flow[2, i] + flow[3, i]) > 0.0:
-            force[i] *= _steep(flow, full, i, before, after, step)
+            # A level surface lies across the pull: dr/dtheta over r is the pull along the wall over the one to it.
+            along = 0.5 * (pull[after] - pull[before]) / np.sin(step)
+            r = _surface(whole, full)
+            level = -r * along / pull[i] if pull[i] > weak else 0.0
+            force[i] *= _steep(flow, full, i, before, after, step, level)
         rise = 0.5 * (flow[0, after] + flow[1, after] - flow[0, before] - flow[1, before]) / step
         for k in range(2):
             push = flow[k, i] / whole * force[i] - 0.5 * rise * flow[k, i] * (turn[k, i] ** 2 - square)
@@ -237,8 +246,7 @@ def _spread(flow, turn, full, dt, work):
             left, nu = (f - 1) % n, 0.0
             for i in (left, f):
                 depth = 1.0 - _surface(flow[0, i] + flow[1, i], full)
-                both = flow[0, i] > DRY and flow[1, i] > DRY
-                nu += 0.5 * closures.SPREADS * depth * abs(turn[0, i] - turn[1, i]) if both else 0.0
+                nu += 0.5 * closures.SPREADS * depth * abs(turn[0, i] - turn[1, i])
             least = min(flow[k, left], flow[k, f])
             work[_FLUX, f] = -min(nu, 0.25 * step * step / dt) * least * (turn[k, f] - turn[k, left]) / step
         for i in range(n):
@@ -439,7 +447,7 @@ def measure(flow, angles, full, slot, spin, work, out):
         bend = 2.0 * _limited(r - r_b, r_a - r)
         x = 0.5 * r * (angles[0, after] - angles[0, before]) + bend * angles[0, i]
         y = 0.5 * r * (angles[1, after] - angles[1, before]) + bend * angles[1, i]
-        left = _steep(flow, full, i, before, after, step)
+        left = _steep(flow, full, i, before, after, step, 0.0)
         x, y = left * x, left * y
         moved = flow[0, i] * turn[0, i] + flow[1, i] * turn[1, i]
         flow_x += moved * x

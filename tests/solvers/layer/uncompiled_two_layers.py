@@ -206,8 +206,9 @@ def test_between_the_layers() -> None:
     assert before - drum.flows().energy + 8.0 * taken.torque > taken.heat + taken.baffles
 
 
-@kills(_SOURCES, "pace = closures.RENEWED * often * abs(spin - w)", "pace = often * abs(w)")
-@kills(_SOURCES, "most = closures.DEPTH * stream.tip if often > 0.0 else film", "most = film")
+@kills(_SOURCES, "max(closures.RENEWED * often * abs(spin - w)", "max(often * abs(w)")
+@kills(_SOURCES, "most = max(closures.DEPTH * stream.tip, open_ * film)", "most = open_ * film")
+@kills(_SOURCES, "1.0 - closures.SHELTERS * often * stream.tip", "1.0 - 0.2 * often * stream.tip")
 @kills(_SOURCES, "spun = flow[3, i] * moved / flow[1, i]", "spun = 0.0")
 @kills(
     _SOURCES,
@@ -242,7 +243,7 @@ def test_exchange() -> None:
 
 
 @kills("solvers.layer.two_layer_step:_spread", "nu += 0.5 * closures.SPREADS * depth", "nu += 0.0 * depth")
-@kills("solvers.layer.two_layer_step:_spread", "if both else 0.0", "if True else 0.0")
+@kills("solvers.layer.two_layer_step:_spread", "least = min(", "least = max(")
 def test_spreading() -> None:
     """Viscosity along the wall evens out each layer's speed and keeps its momentum; none beside nothing."""
     drum = waving(64, 4.0)

@@ -25,7 +25,7 @@ FREE = Jeffcott(3.0, 1e-9, 0.0, 0.0)
 SOFT = Jeffcott(3.0, 600.0, 5.0, 0.01)
 
 
-def poured(rotor: Jeffcott, spin: float = 25.0) -> Coupled:
+def poured(rotor: Jeffcott, spin: float = 15.0) -> Coupled:
     """Liquid at rest in a drum that turns, after a fiftieth of a second."""
     friction = Friction("quadratic", 0.01)
     machine = couple(rotor.system(), [FILL], spin, friction, G, 32, False, handover=Handover.CARRIED)
@@ -67,14 +67,14 @@ def test_axis_that_shakes() -> None:
     assert abs(drum.flows().flow_x - still.flows().flow_x) > 20.0 * abs(own - drum.flows().flow_x)
 
 
-@kills("solvers.runup.kernel:_move_pools", "scale * (begin.xx + end.xx)", "0.0 * (begin.xx + end.xx)")
+@kills("solvers.runup.kernel:_move_pools", "scale * (begin.yy + end.yy)", "0.0 * (begin.yy + end.yy)")
 def test_light_rotors_agree_with_their_liquid() -> None:
     """Beside a rotor of a twentieth of its mass as well, since the flow's inertia is put in beforehand."""
     machine = couple(
-        Jeffcott(0.07, 1e-9, 0.0, 0.0).system(), [FILL], 25.0, Friction("quadratic", 0.01), G, 32, False,
+        Jeffcott(0.07, 1e-9, 0.0, 0.0).system(), [FILL], 15.0, Friction("quadratic", 0.01), G, 32, False,
         handover=Handover.CARRIED,
     )  # fmt: skip
-    assert machine.advance(0.004, 0.0, 0.8, 10**6) is Outcome.DONE
+    assert machine.advance(0.02, 0.0, 0.8, 10**6) is Outcome.DONE
     assert machine.sums.disagreement < 1e-6
 
 
@@ -91,7 +91,7 @@ def test_light_rotors_agree_with_their_liquid() -> None:
 def test_energy() -> None:
     """What drum and gravity give is heat, motion of liquid and axis, and what mixing loses."""
     friction = Friction("quadratic", 0.01)
-    machine = couple(SOFT.system(), [FILL], 25.0, friction, G, 32, False, handover=Handover.CARRIED)
+    machine = couple(SOFT.system(), [FILL], 15.0, friction, G, 32, False, handover=Handover.CARRIED)
     begin = machine.energy()
     machine.advance(0.02, 0.0, 0.8, 10**6)
     sums = machine.sums
@@ -115,16 +115,16 @@ def test_works_are_those_of_the_layers() -> None:
     """With the axis held they are those of the two layers alone."""
     friction = Friction("quadratic", 0.01)
     stiff = Jeffcott(3.0, 1e13, 0.0, 0.0)
-    machine = couple(stiff.system(), [FILL], 25.0, friction, G, 32, False, handover=Handover.CARRIED)
+    machine = couple(stiff.system(), [FILL], 15.0, friction, G, 32, False, handover=Handover.CARRIED)
     machine.advance(0.01, 0.0, 0.8, 10**6)
     drum = Drum(FILL, friction)
     drum.lie()
-    drum.go(0.01, 25.0)
+    drum.go(0.01, 15.0)
     scale, taken = drum.stream.inertia, drum.taken
     # Steps of other lengths, of first order in the drag.
     assert machine.sums.friction == pytest.approx(scale * taken.heat, rel=2e-2)
     assert machine.sums.baffles == pytest.approx(scale * taken.baffles, rel=2e-2)
-    assert machine.sums.drive == pytest.approx(25.0 * scale * taken.torque, rel=2e-2)
+    assert machine.sums.drive == pytest.approx(15.0 * scale * taken.torque, rel=2e-2)
 
 
 @kills(
@@ -134,7 +134,7 @@ def test_works_are_those_of_the_layers() -> None:
 )
 def test_a_free_drum_is_slowed() -> None:
     """What the liquid gets of angular momentum by the drum, a drum without a motor loses."""
-    machine = couple(SOFT.system(), [FILL], 25.0, Friction(), 1e-4, 32, False, handover=Handover.CARRIED)
+    machine = couple(SOFT.system(), [FILL], 15.0, Friction(), 1e-4, 32, False, handover=Handover.CARRIED)
     machine._rearrange(np.array([False]))
     machine.two_layers[0, 2:] = 0.0
     machine._assemble()
@@ -142,7 +142,7 @@ def test_a_free_drum_is_slowed() -> None:
     machine.drive(np.array([[0.0, 100.0], [0.0, 0.0]]), 0.05)
     machine.advance(0.01, 0.0, 0.8, 10**6)
     spun = float(machine._turning()[0][0])
-    assert spun > 1e-4 and 0.05 * (25.0 - machine.spin) == pytest.approx(spun, rel=1e-5)
+    assert spun > 1e-4 and 0.05 * (15.0 - machine.spin) == pytest.approx(spun, rel=1e-5)
 
 
 @kills("solvers.runup.kernel:_begin_pools", "state.rings[j] and stands", "state.rings[j] or stands")
