@@ -189,6 +189,11 @@ class RunupHistory:
     handover_estimate: Annotated[
         float, Q("1", "relative error by how liquid becomes a layer", data=False)
     ] = math.nan
+    #: over this run, the one with half the cells and the one with the firmer grip; nan where none forms, shape (l, 2)
+    ring_speed: Annotated[
+        Array,
+        Q("rad s-1", "least and largest spin speed at which an annular layer first forms", data=False),
+    ] = field(default_factory=lambda: np.zeros((0, 2)))
     #: of the largest amplitude of the run, m: what half the cells change of it, and what that hand-over
     #: changes; nan without those runs
     peak_gaps: tuple[float, float] = (math.nan, math.nan)
@@ -292,6 +297,8 @@ def _with_errors(history: RunupHistory, coarse: RunupHistory, early: RunupHistor
     """The run with its errors, from two others as coarse: by its own rule of capture, and another."""
     if not coarse.converged:
         return history
+    firmer = [] if early is None or not early.converged else [early]
+    formed = np.array([_formed(run) for run in (history, coarse, *firmer)])
     largest = float(history.amplitude.max())
     scale = 1.0 / largest if largest > 0.0 else 0.0
     at_once = float(np.nanmax(_gap(history, coarse, history.amplitude, coarse.amplitude))) * scale
@@ -308,8 +315,22 @@ def _with_errors(history: RunupHistory, coarse: RunupHistory, early: RunupHistor
     known = ~np.isnan(band)
     whole = np.interp(history.time, history.time[known], band[known])
     return replace(
-        history, error_estimate=at_once, handover_estimate=handed, peak_gaps=(gaps[0], gaps[1]), band=whole
+        history,
+        error_estimate=at_once,
+        handover_estimate=handed,
+        ring_speed=np.stack([np.fmin.reduce(formed), np.fmax.reduce(formed)], axis=-1),
+        peak_gaps=(gaps[0], gaps[1]),
+        band=whole,
     )
+
+
+def _formed(run: RunupHistory) -> Array:
+    """Spin speed at which the liquid of each chamber first became a layer, nan where none did, shape (l,)."""
+    found = np.full(run.layer_mass.shape, np.nan)
+    for each in reversed(run.transfers):
+        if each.captured:
+            found[each.chamber] = each.speed
+    return found
 
 
 def _gap(run: RunupHistory, other: RunupHistory, own: Array, others: Array) -> Array:

@@ -112,7 +112,7 @@ def happened(
     for chamber in sorted({transfer.chamber for transfer in history.transfers}):
         own = [transfer for transfer in history.transfers if transfer.chamber == chamber]
         few = len(own) <= FEW
-        yield from (capture(each, history.handover) for each in own) if few else [_again_and_again(own)]
+        yield from (capture(each, history) for each in own) if few else [_again_and_again(own)]
 
 
 def numerical_error(error: float, cells: int | None = None) -> Note | None:
@@ -197,10 +197,10 @@ def _again_and_again(own: Sequence[Transfer]) -> Note:
     return Note(RunupCode.CAPTURED if last.captured else RunupCode.FALLS_BACK, data, text)
 
 
-def capture(transfer: Transfer, handover: str) -> Note:
-    """When the liquid of a chamber became a ring, or fell, and what was handed over."""
+def capture(transfer: Transfer, history: RunupHistory) -> Note:
+    """When the liquid of a chamber became a ring, with its band, or fell, and what was handed over."""
     chamber, speed = transfer.chamber + 1, transfer.speed
-    data = {
+    data: dict[str, Any] = {
         "chamber": chamber,
         "time": transfer.time,
         "speed": speed,
@@ -212,7 +212,13 @@ def capture(transfer: Transfer, handover: str) -> Note:
         f"{'becomes an annular layer' if transfer.captured else 'falls back into a pool'} at "
         f"{transfer.time:.4g} s, {in_rpm(speed)}"
     )
-    if handover != "riding":
+    first = next((own for own in history.transfers if own.captured and own.chamber == transfer.chamber), None)
+    if transfer is first and history.ring_speed.size:
+        low, high = history.ring_speed[transfer.chamber].tolist()
+        if in_rpm(low) != in_rpm(high):
+            data["ring_speed"] = (low, high)
+            text += f" (at {rpm_range(low, high)} with fewer cells or a firmer grip)"
+    if history.handover != "riding":
         heat = f"{number(abs(transfer.lost))} J"
         text += f"; {heat} become heat" if transfer.lost >= 0.0 else f"; the drum gives {heat}"
     code = RunupCode.CAPTURED if transfer.captured else RunupCode.FALLS_BACK
