@@ -132,6 +132,7 @@ RECIPES = (
     Recipe(("validation.cases.two_plane.conditions",), ("two_plane_balls",)),
     Recipe(("validation.cases.measured_balls.figure",), ("measured_balls",)),
     _example("run", "measured_balls", balls_that_stick="balls"),
+    Recipe(("validation.cases.liquid.lying_drum",), ("lying_drum",)),
     Recipe(
         ("validation.cases.two_plane.charts",),
         ("balls_damping", "balls_reference", "balls_unlike", "balls_charts"),

@@ -36,7 +36,8 @@ _FILM, _NOTHING = 1e-3, 1e-9
 _COURANT = 0.4
 # Liquid slower than this share of the speed at which its weight and its whirl are alike keeps its level.
 _SLOW = 0.25
-# Levels of two cells further apart than twice the depth of the shallower one are less and less a level, by this share.
+# Levels of two cells further apart than twice the depth of the shallower one are less and less one, by this
+# share of the depth each.
 _ALIKE = 0.25
 # A pull weaker than this share of the whole holds no level.
 _LEVEL = 0.02
@@ -208,7 +209,7 @@ def _rates(flow, turn, x, y, angles, full, slot, rim, dt, work, rate):
             # Off the wall weight is no pressure; where that would give energy for nothing it counts.
             force[i] += free[i]
         if force[i] * (flow[2, i] + flow[3, i]) > 0.0:
-            # A level surface lies across the pull: dr/dtheta over r is the pull along the wall over the one to it.
+            # A level surface lies across the pull: r' over r is the pull along the wall over that to it.
             along = 0.5 * (pull[after] - pull[before]) / np.sin(step)
             r = _surface(whole, full)
             level = -r * along / pull[i] if pull[i] > weak else 0.0

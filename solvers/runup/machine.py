@@ -77,9 +77,9 @@ Drive = Ramp | Motor | Programme
 class Handover(StrEnum):
     """How liquid at the bottom of a lying chamber becomes a layer round its wall [theory: pool]."""
 
-    # By itself: the walls drag it until it goes over the top without falling. Its angular momentum stays.
+    # By itself: walls and baffles draw it over the top until none of it lies at the bottom.
     CARRIED = "carried"
-    # As soon as the walls' drag beats gravity; the drum takes it to its own speed at once.
+    # The same with twice their grip on the liquid: the earliest to be expected.
     DRUM = "drum"
     # As soon as the drum's centrifugal field beats gravity, however it would get there.
     RIDING = "riding"

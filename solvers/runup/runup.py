@@ -189,11 +189,17 @@ class RunupHistory:
     handover_estimate: Annotated[
         float, Q("1", "relative error by how liquid becomes a layer", data=False)
     ] = math.nan
-    #: over this run, the one with half the cells and the one with the firmer grip; nan where none forms, shape (l, 2)
+    #: over this run, the one with half the cells and the one with the firmer grip, nan where none forms,
+    #: shape (l, 2); None without those runs, and where no layer forms
     ring_speed: Annotated[
-        Array,
-        Q("rad s-1", "least and largest spin speed at which an annular layer first forms", data=False),
-    ] = field(default_factory=lambda: np.zeros((0, 2)))
+        Array | None,
+        Q(
+            "rad s-1",
+            "least and largest spin speed at which an annular layer first forms",
+            data=False,
+            when="ring_speed",
+        ),
+    ] = None
     #: of the largest amplitude of the run, m: what half the cells change of it, and what that hand-over
     #: changes; nan without those runs
     peak_gaps: tuple[float, float] = (math.nan, math.nan)
@@ -318,10 +324,15 @@ def _with_errors(history: RunupHistory, coarse: RunupHistory, early: RunupHistor
         history,
         error_estimate=at_once,
         handover_estimate=handed,
-        ring_speed=np.stack([np.fmin.reduce(formed), np.fmax.reduce(formed)], axis=-1),
+        ring_speed=None if np.isnan(formed).all() else _band_of(formed),
         peak_gaps=(gaps[0], gaps[1]),
         band=whole,
     )
+
+
+def _band_of(values: Array) -> Array:
+    """Least and largest of some values of each chamber, nan where none is known, (k, l) to (l, 2)."""
+    return np.stack([np.fmin.reduce(values), np.fmax.reduce(values)], axis=-1)
 
 
 def _formed(run: RunupHistory) -> Array:

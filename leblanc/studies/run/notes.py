@@ -131,14 +131,14 @@ def not_carried(stands: float, carried: float | None = None) -> Note:
 
 
 def carried_words(stands: float, carried: float) -> str:
-    """From where on the walls carry the liquid round from rest, in a sentence; as for `not_carried`."""
+    """From where on a ring forms from rest, in a sentence; as for `not_carried`."""
     if math.isinf(carried):
-        return "From rest nothing carries it round: no friction acts on it."
+        return "From rest it never forms: no friction acts on the liquid."
     if carried <= stands:
-        return "From rest the walls carry it from there on too."
+        return "From rest it forms from there on too."
     return (
-        f"From rest the walls carry it from {in_rpm(carried)} on: between the two an answer holds for a "
-        "ring that stands already, as on the way down."
+        f"From rest it forms from about {in_rpm(carried)} on, by a balance within 25 % of slow run-ups: "
+        "between the two an answer holds for a ring that stands already, as on the way down."
     )
 
 

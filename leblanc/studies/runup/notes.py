@@ -213,7 +213,7 @@ def capture(transfer: Transfer, history: RunupHistory) -> Note:
         f"{transfer.time:.4g} s, {in_rpm(speed)}"
     )
     first = next((own for own in history.transfers if own.captured and own.chamber == transfer.chamber), None)
-    if transfer is first and history.ring_speed.size:
+    if transfer is first and history.ring_speed is not None:
         low, high = history.ring_speed[transfer.chamber].tolist()
         if in_rpm(low) != in_rpm(high):
             data["ring_speed"] = (low, high)
