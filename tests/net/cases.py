@@ -95,7 +95,7 @@ def _long() -> Iterator[Case]:
     for group in (
         *("two_plane", "whirl", "layer", "runup", "fill_sweep", "exciter", "errata", "optimal_volume"),
         *("vector_model", "horizontal_rig", "vertical_rig", "tub", "baffles", "exact_wave", "claims"),
-        *("blood_pump", "spindle", "turning", "measured_balls", "bearings", "kdv", "published"),
+        *("blood_pump", "spindle", "turning", "measured_balls", "bearings", "kdv", "published", "lying_drum"),
     ):
         yield _case(f"validate-{group}", f"validate {group} --json")
 

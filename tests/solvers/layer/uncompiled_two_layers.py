@@ -208,7 +208,6 @@ def test_between_the_layers() -> None:
 
 @kills(_SOURCES, "max(closures.RENEWED * often * abs(spin - w)", "max(often * abs(w)")
 @kills(_SOURCES, "most = max(closures.DEPTH * stream.tip, open_ * film)", "most = open_ * film")
-@kills(_SOURCES, "1.0 - closures.SHELTERS * often * stream.tip", "1.0 - 0.2 * often * stream.tip")
 @kills(_SOURCES, "spun = flow[3, i] * moved / flow[1, i]", "spun = 0.0")
 @kills(
     _SOURCES,
@@ -240,6 +239,19 @@ def test_exchange() -> None:
         sources(drum, 30.0, dt)
         np.testing.assert_allclose(drum.flow[0], most)
         np.testing.assert_allclose(drum.flow[2:] / drum.flow[:2], 30.0 * (rest - most)[0], rtol=1e-9)
+
+
+@kills(_SOURCES, "1.0 - closures.SHELTERS * often * stream.tip", "1.0 - 0.2 * often * stream.tip")
+def test_low_bars_shelter_the_wall_beside_them() -> None:
+    """Between low bars the wall draws its own film, on what they leave of it, fifteen heights each."""
+    low = replace(COMPUTED, chamber=replace(COMPUTED.chamber, baffles=Baffles(8, 0.24 * 0.99)))
+    drum = Drum(low, Friction("quadratic", 0.002), cells=16)
+    one, two = np.full(16, 0.06), np.full(16, 0.02)
+    rest = 1.0 - one - two
+    drum.flow[:] = one, two, one * rest * 30.0, two * rest * 30.0
+    sources(drum, 30.0, 1e-9)
+    film = 0.002 * 30.0**2 / (9.81 / 0.24)
+    np.testing.assert_allclose(drum.flow[0], (1.0 - 15.0 * 8.0 * 0.01 / (2.0 * math.pi)) * film, rtol=1e-9)
 
 
 @kills("solvers.layer.two_layer_step:_spread", "nu += 0.5 * closures.SPREADS * depth", "nu += 0.0 * depth")
