@@ -165,7 +165,7 @@ class Unit:
 
     def text(self, value: float) -> str:
         """An SI value with this unit; what is not finite has none."""
-        return f"{self.number(value)} {self.name}" if math.isfinite(value) else number(value)
+        return f"{self.number(value)} {self.name}".rstrip() if math.isfinite(value) else number(value)
 
 
 # Units that a person would write, each with the size in SI from which it is taken. The first one takes all

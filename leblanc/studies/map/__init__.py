@@ -1,4 +1,4 @@
-"""Self-excited whirl over speed and fill; of a machine with balls where they balance, over another number."""
+"""Self-excited whirl over speed and fill or another number; of balls where they balance."""
 
 from __future__ import annotations
 
@@ -27,6 +27,23 @@ def map_whirl(
     max_volume: Annotated[
         Quantity | None, VOLUME, "Most liquid in all chambers together [default: what fits]."
     ] = None,
+    over: Annotated[
+        Texts,
+        "Path of the number on the second axis, as rotor.damping_ratio; several, each behind its own --over, "
+        "keep their ratios [default: the liquid's volume; with balls the drag in all races].",
+    ] = (),
+    start: Annotated[
+        Quantity | None, Option(("--from",)), "Its first value [default: a tenth of the scene's]."
+    ] = None,
+    stop: Annotated[
+        Quantity | None, Option(("--to",)), "Its last value [default: ten times the scene's]."
+    ] = None,
+    values: Annotated[Points, "How many values of it [default: 31]."] = 31,
+    log: Annotated[
+        bool | None,
+        Option(("--log/--linear",)),
+        "How it is spaced [default: log where it spans a decade].",
+    ] = None,
     friction: Annotated[
         Any,
         FRICTION,
@@ -46,20 +63,23 @@ def map_whirl(
         Callable[[float, float], None] | None, "Called with the number of volumes done and of all."
     ] = None,
 ) -> WhirlMap:
-    """Growth rate of self-excited whirl over speed and fill, with the edges of its bands.
+    """Growth rate of self-excited whirl over speed and fill, or another number, with the edges of its bands.
 
-    Rising arrays say each of the `volumes`, of all liquid together, and of the `speeds`. Friction may be a
-    table as in a machine file as well, or a `Friction`; the model an object as `leblanc.LiquidModel` says.
+    Rising arrays say each of the `volumes`, of all liquid together, of the `speeds`, and of the `values` of
+    what `over` names. Friction may be a table as in a machine file as well, or a `Friction`; the model an
+    object as `leblanc.LiquidModel` says.
 
     Raises
     ------
-    SceneError, InputError : as for `run`
+    SceneError, InputError : as for `run`; a path that leads to no number
 
     Examples
     --------
     >>> import leblanc as lb
     >>> lb.map_whirl(lb.example("horizontal_rig"), volumes=3, speeds=5).growth.shape
     (3, 5)
+    >>> lb.map_whirl(lb.example("horizontal_rig"), over="rotor.damping_ratio", values=3, speeds=5).value
+    array([0.01, 0.1 , 1.  ])
     >>> lb.map_whirl(lb.example("horizontal_rig"), volumes=["5 ml", "8 ml"], speeds=[100, 150, 210]).speed
     array([100., 150., 210.])
     """
@@ -70,8 +90,8 @@ def map_balls(
     scene: Annotated[SceneOrPath, SCENE, "The machine with its races, or its file."],
     over: Annotated[
         Texts,
-        'With balls: path of the number on the second axis, as "chambers.0.drag"; several, each behind its '
-        "own --over, keep their ratios [default: the drag in all races].",
+        "Path of the number on the second axis, as rotor.damping_ratio; several, each behind its own --over, "
+        "keep their ratios [default: the liquid's volume; with balls the drag in all races].",
     ] = (),
     *,
     start: Annotated[
@@ -113,7 +133,7 @@ def map_balls(
 
 
 def map(scene: Scene, **options: Any) -> WhirlMap | BallChart:
-    """Growth of self-excited whirl over speed and fill; with balls in races where they balance the rotor.
+    """Growth of self-excited whirl over speed and fill, or any number; with balls where these balance.
 
     Options of the other kind of machine are refused.
     """

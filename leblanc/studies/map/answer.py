@@ -1,10 +1,10 @@
-"""The map of self-excited whirl over spin speed and liquid volume."""
+"""The map of self-excited whirl over spin speed and liquid volume, or another number of the machine."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
@@ -25,12 +25,13 @@ from leblanc.core.blocks import (
     check,
 )
 from leblanc.core.notes import Note, texts
-from leblanc.core.units import LENGTH, RPM, VOLUME, in_rpm, number, unit_for, with_unit
+from leblanc.core.units import LENGTH, RPM, VOLUME, Dimension, Unit, in_rpm, number, unit_for, with_unit
 from leblanc.studies.cycles.answer import Cycle, Cycles
 from meshes.arrays import Array, Flags
 from meshes.quantity import Q
 
 if TYPE_CHECKING:
+    from leblanc.core.netcdf import NamedArrays
     from solvers.whirl.edges import Bands
 
 MOST_LOST = 0.01  # of the points, at which a map still is one; they are marked
@@ -116,6 +117,40 @@ class WhirlMap(Answer):
     #: of the scene as it stands; None where they were not asked for
     large: Annotated[Cycles | None, Q(part=True)] = None
     depth: float = math.nan  #: of the scene's deepest layer, m
+    #: of the number on the second axis in place of the volume; empty for that
+    paths: Annotated[
+        tuple[str, ...], Q(key="over", text="paths of what varies in place of the volume", when="paths")
+    ] = ()
+    value: Annotated[Array | None, Q("{0.si}", "{0.paths[0]}", "varied", over=("volume",), when="paths")] = (
+        None
+    )
+    scene_value: Annotated[float, Q(text="what the scene has there, SI", when="paths")] = math.nan
+    dimension: Dimension | None = None  #: of these values; None of volumes
+    log: bool = False  #: they are spaced by their logarithms
+
+    @property
+    def si(self) -> str:
+        """Unit of the values in the data file."""
+        return (self.dimension and self.dimension.unit) or "1"
+
+    @property
+    def second(self) -> tuple[str, Array, Unit]:
+        """Name, values and unit for print of the second axis."""
+        if self.value is None or self.dimension is None:
+            return "liquid", self.volume, unit_for(VOLUME, *self.volume.tolist())
+        more = f" and {len(self.paths) - 1} more" if len(self.paths) > 1 else ""
+        return self.paths[0] + more, self.value, unit_for(self.dimension, *self.value[[0, -1]].tolist())
+
+    def named_arrays(self) -> NamedArrays:
+        """Over what varies, whatever it is."""
+        found = super().named_arrays()
+        if self.value is None:
+            return found
+        moved = {
+            name: replace(each, dims=tuple("value" if dim == "volume" else dim for dim in each.dims))
+            for name, each in found.variables.items()
+        }
+        return replace(found, variables=moved)
 
     @property
     def not_known(self) -> Annotated[int, Q("1", "points without a known growth", data=False)]:
@@ -147,13 +182,18 @@ class WhirlMap(Answer):
 
     @property
     def closing(self) -> str:
-        return f"{self.name}: {self.volume.size} volumes by {self.speed.size} speeds done"
+        what = "volumes" if self.value is None else "values"
+        return f"{self.name}: {self.volume.size} {what} by {self.speed.size} speeds done"
 
     def blocks(self) -> tuple[Block, ...]:
         low, high = (number(float(speed) * RPM) for speed in (self.speed[0], self.speed[-1]))
-        most = with_unit(float(self.volume[-1]), VOLUME)
-        about = f"Whirls that grow by themselves from {low} to {high} rpm, from no liquid to {most}."
-        pictures, models = [Picture("map", self.title, self.figure)], [Words(LINEAR, "linear", small=True)]
+        name, values, unit = self.second
+        span = f"from no liquid to {unit.text(float(values[-1]))}"
+        if self.value is not None:
+            span = f"with {name} from {unit.text(float(values[0]))} to {unit.text(float(values[-1]))}"
+        about = f"Whirls that grow by themselves from {low} to {high} rpm, {span}."
+        title = self.title if self.value is None else f"Self-excited whirl over speed and {name}"
+        pictures, models = [Picture("map", title, self.figure)], [Words(LINEAR, "linear", small=True)]
         if self.cycles:
             draw = "leblanc.studies.map.figure:cycles_figure"
             pictures.append(Picture("cycles", "How large the whirl grows, over speed", draw))
@@ -174,15 +214,14 @@ class WhirlMap(Answer):
 
 def sentence(found: WhirlMap) -> str:
     """Where a whirl grows."""
+    any_row = "with any volume of liquid" if found.value is None else f"with any {found.second[0]}"
     if not (found.growth > 0.0).any():
         if found.not_known == found.growth.size:
-            return "It is not known whether whirl is self-excited at any speed with any volume of liquid."
-        where = (
-            "where it is known, which is not everywhere" if found.not_known else "with any volume of liquid"
-        )
+            return f"It is not known whether whirl is self-excited at any speed {any_row}."
+        where = "where it is known, which is not everywhere" if found.not_known else any_row
         return f"No self-excited whirl at any speed {where}."
     values = dict(facts(found))
-    own = f"with the scene's {with_unit(found.scene_volume, VOLUME)}"
+    own = f"with {_scene_row(found)}"
     bands = f"from {band_words(found.scene_edges)} rpm" if found.scene_edges else "nowhere"
     largest = _largest(found)
     grown = f", up to {largest}" if largest else ""
@@ -190,6 +229,14 @@ def sentence(found: WhirlMap) -> str:
         f"Self-excited whirl at {values['A whirl grows at']}, fastest by {values['Fastest growth']}; "
         f"{own} it grows {bands}{grown}."
     )
+
+
+def _scene_row(found: WhirlMap) -> str:
+    """The scene's own place on the second axis."""
+    if found.value is None:
+        return f"the scene's {with_unit(found.scene_volume, VOLUME)}"
+    name, _, unit = found.second
+    return f"the scene's {name} of {unit.text(found.scene_value)}" if found.scene_value > 0.0 else "the scene's"
 
 
 def _within(found: WhirlMap) -> list[Cycle]:
@@ -241,19 +288,28 @@ def band_words(bands: Sequence[tuple[float, float]]) -> str:
 
 def facts(found: WhirlMap) -> list[tuple[str, str]]:
     """What the map says in numbers: label and value."""
-    growth, size = found.growth, found.growth.size
+    growth, size, (_, values, unit) = found.growth, found.growth.size, found.second
     unstable = growth > 0.0
     fastest, turning = "none grows", "none grows"
     if unstable.any():
         row, column = np.unravel_index(int(np.nanargmax(growth)), growth.shape)
-        speed, volume = float(found.speed[column]), float(found.volume[row])
-        at = f"{in_rpm(speed)}, {with_unit(volume, VOLUME)}"
+        speed = float(found.speed[column])
+        at = f"{in_rpm(speed)}, {unit.text(float(values[row]))}"
         fastest = f"{number(float(growth[row, column]))} 1/s at {at}"
         turning = f"{number(float(found.whirl_speed[row, column]) / speed)} of the spin"
-    own = f"Bands with the scene's {with_unit(found.scene_volume, VOLUME)} (rpm)"
-    return [
+    own = f"Bands with {_scene_row(found)} (rpm)"
+    first = [
         ("Volumes by speeds", f"{found.volume.size} by {found.speed.size}"),
         ("Most liquid, all chambers", with_unit(float(found.volume[-1]), VOLUME)),
+    ]
+    if found.value is not None:
+        span = f"{unit.text(float(values[0]))} to {unit.text(float(values[-1]))}"
+        first = [
+            ("Values by speeds", f"{found.volume.size} by {found.speed.size}"),
+            (f"Over {', '.join(found.paths)}", span),
+        ]
+    return [
+        *first,
         ("A whirl grows at", f"{number(100.0 * float(np.count_nonzero(unstable)) / size)} % of the points"),
         *([("Growth not known at", f"{found.not_known} of {size} points")] if found.not_known else []),
         ("Fastest growth", fastest),
@@ -287,14 +343,15 @@ def _share(mask: Flags) -> str:
 
 
 def bands_table(found: WhirlMap) -> Table:
-    """Bands of speed in which a whirl grows, for a few volumes spread over the map."""
-    rows, unit = [], unit_for(VOLUME, *found.volume.tolist())
+    """Bands of speed in which a whirl grows, for a few rows spread over the map."""
+    rows, (name, values, unit) = [], found.second
     for k in np.unique(np.linspace(0, found.volume.size - 1, LISTED).round().astype(int)).tolist():
         known = found.growth[k][~np.isnan(found.growth[k])]
         words = Cell(band_words(found.edges[k]), warning=known.size < found.speed.size)
         most = number(float(known.max()) if known.size else math.nan)
-        rows.append((unit.number(float(found.volume[k])), words, most))
-    head = (f"Liquid ({unit.name})", "a whirl grows between (rpm)", "largest growth (1/s)")
+        rows.append((unit.number(float(values[k])), words, most))
+    label = name.capitalize() if found.value is None else name
+    head = (f"{label} ({unit.name or '-'})", "a whirl grows between (rpm)", "largest growth (1/s)")
     return Table(rows, head, shown="page")
 
 
@@ -302,8 +359,8 @@ def alt(found: WhirlMap) -> str:
     """What the figure shows and the numbers a reader would take from it."""
     values = dict(facts(found))
     return (
-        "Map of the growth rate over speed and liquid, and of the whirl's speed where one grows; one grows "
-        f"at {values['A whirl grows at']}, fastest: {values['Fastest growth']}."
+        f"Map of the growth rate over speed and {found.second[0]}, and of the whirl's speed where one grows; "
+        f"one grows at {values['A whirl grows at']}, fastest: {values['Fastest growth']}."
     )
 
 

@@ -1,4 +1,4 @@
-"""Figures of a map: self-excited whirl over speed and volume, and how large it grows."""
+"""Figures of a map: self-excited whirl over speed and volume or another number, and how large it grows."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ OWN = {"color": "black", "linewidth": 1.2, "linestyle": (0, (6, 2)), "zorder": 4
 
 
 def map_figure(result: WhirlMap) -> Figure:
-    """Growth rate above, whirl speed over spin speed below, over speed and volume of all liquid."""
+    """Growth rate above, whirl speed over spin speed below, over speed and all liquid, or what varies."""
     with style():
         figure = Figure()
         figure.alt = alt(result)
@@ -54,9 +54,11 @@ def map_figure(result: WhirlMap) -> Figure:
         bars = [_draw_growth(figure, panels[0], result), _draw_whirl(figure, panels[1], result)]
         for axes in panels:
             _outline(axes, result, hatched=axes is panels[0])
-            axes.set_ylabel("Liquid (ml)")
+            label, y = _second(result)
+            axes.set_ylabel(label)
             axes.set_xlim(result.speed[0] * RPM, result.speed[-1] * RPM)
-            axes.set_ylim(0.0, result.volume[-1] * ML)
+            axes.set_yscale("log" if result.log else "linear")
+            axes.set_ylim(0.0 if result.value is None else y[0], y[-1])
             axes.grid(visible=False)
             axes.xaxis.set_major_formatter(number)
             axes.yaxis.set_major_formatter(number)
@@ -66,6 +68,14 @@ def map_figure(result: WhirlMap) -> Figure:
         for axes, bar in zip(panels, bars, strict=True):
             _place_bar(axes, bar)
     return figure
+
+
+def _second(result: WhirlMap) -> tuple[str, Array]:
+    """Label of the second axis, and its values as drawn."""
+    if result.value is None:
+        return "Liquid (ml)", result.volume * ML
+    name, values, unit = result.second
+    return f"{name} ({unit.name})" if unit.name else name, values * unit.count
 
 
 def _add_ratios(axes: Axes, result: WhirlMap) -> None:
@@ -96,7 +106,7 @@ def _place_bar(axes: Axes, bar: Axes | None) -> None:
 
 def _colours(figure: Figure, axes: Axes, result: WhirlMap, values: Array, label: str, **look: Any) -> Axes:
     """Colours of the values that are numbers; their bar."""
-    x, y = result.speed * RPM, result.volume * ML
+    x, y = result.speed * RPM, _second(result)[1]
     drawn = axes.pcolormesh(x, y, values, shading="nearest", rasterized=True, **look)
     bar = figure.add_axes((0, 0, 1, 1), label=label)
     short = bool(np.nanmin(values) < drawn.get_clim()[0])
@@ -153,7 +163,7 @@ def signed_distance(result: WhirlMap) -> Array:
 
 def _outline(axes: Axes, result: WhirlMap, hatched: bool) -> None:
     """Unstable region hatched and outlined, what is out of range dotted, the scene's own volume dashed."""
-    x, y, distance = result.speed * RPM, result.volume * ML, signed_distance(result)
+    x, y, distance = result.speed * RPM, _second(result)[1], signed_distance(result)
     key = {"facecolor": "none", "linewidth": 0.0}
     if np.any(distance > 0.0):
         if hatched:
@@ -180,18 +190,20 @@ def _outline(axes: Axes, result: WhirlMap, hatched: bool) -> None:
         rows, columns = np.nonzero(lost)
         axes.plot(x[columns], y[rows], label="growth not known", **style)
     narrow = [
-        (0.5 * (low + high) * RPM, volume * ML)
-        for bands, volume in zip(result.edges, result.volume, strict=True)
+        (0.5 * (low + high) * RPM, at)
+        for bands, at in zip(result.edges, y.tolist(), strict=True)
         for low, high in bands
         if np.searchsorted(result.speed, low) == np.searchsorted(result.speed, high)
     ]
     if narrow:
         style = {"color": OUTLINE, "markersize": 2.5, "linestyle": "none", "marker": "."}
         axes.plot(*np.array(narrow).T, label="unstable band between two speeds", **style)
-    if 0.0 < result.scene_volume <= result.volume[-1]:
-        axes.axhline(
-            result.scene_volume * ML, label=f"scene's volume, {with_unit(result.scene_volume, VOLUME)}", **OWN
-        )
+    _, values, unit = result.second
+    own, label = result.scene_volume, f"scene's volume, {with_unit(result.scene_volume, VOLUME)}"
+    if result.value is not None:
+        own, label = result.scene_value, f"scene: {unit.text(result.scene_value)}"
+    if 0.0 < own <= values[-1]:
+        axes.axhline(own * (ML if result.value is None else unit.count), label=label, **OWN)
 
 
 def cycles_figure(result: WhirlMap) -> Figure:
@@ -276,8 +288,9 @@ def _caption(result: WhirlMap) -> Caption:
     """What is shown, the scene, the model, both dampings, notes."""
     assumed = ", ".join(map(one_line, result.assumed)) or "nothing"
     notes = " ".join(one_line(note.text) for note in result.notes)
+    what = "all liquid together" if result.value is None else " and ".join(result.paths)
     return Caption(
-        "Fastest-growing whirl, infinitesimal, over speed and all liquid together; below, its speed in space "
+        f"Fastest-growing whirl, infinitesimal, over speed and {what}; below, its speed in space "
         "over the spin's, where it grows.",
         f"Scene: {one_line(result.name)}. Liquid model: exact linear theory of the plane layer; liquid "
         f"friction: {result.friction}; support: {result.damping}. {notes} Assumed: {assumed}.",

@@ -1,9 +1,10 @@
-"""Self-excited whirl of a scene over spin speed and liquid volume."""
+"""Self-excited whirl of a scene over spin speed and liquid volume, or another number of it."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -23,17 +24,20 @@ from leblanc.studies.cycles.answer import Cycles
 from leblanc.studies.cycles.study import cycles_by, scene_cycles
 from leblanc.studies.map.answer import WhirlMap
 from leblanc.studies.map.axes import few_points, speeds_of
+from leblanc.studies.map.varied import Axis, Varied, axis_of, varied_of
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
 from solvers.checked_model import CheckedModel
 from solvers.liquid_model import THIN_LAYERS
 from solvers.rotor.jeffcott import Jeffcott
+from solvers.rotor.system import Rotor
 from solvers.rotor.vibration import critical_speeds
 from solvers.synchronous.response import main_critical_speeds
 from solvers.whirl.edges import Bands, bands_not_known, unstable_bands
 from solvers.whirl.growth import Waves, growth_map
 
-MOST = 4000  # volumes or speeds of a map
+MOST = 4000  # volumes, values or speeds of a map
+VALUES, VOLUMES = 31, 101  # unless others are asked for
 _AT_ONCE = 20  # volumes between reports of progress
 _THIN = THIN_LAYERS[1]
 
@@ -65,13 +69,18 @@ def map_scene(
     max_volume: float | None = None,
     friction: Friction | None = None,
     cycles: bool = False,
+    over: str | Sequence[str] = (),
+    start: str | float | None = None,
+    stop: str | float | None = None,
+    values: int | Sequence[str | float] = VALUES,
+    log: bool | None = None,
 ) -> WhirlMap:
     """Growth rate and whirl speed of self-excited whirl over speeds, rad/s, and over volume.
 
     With several chambers their volumes grow by a common factor; up to what fits where no largest volume is
-    given. `cycles`: find how large the whirls of the scene as it stands grow.
+    given. `over`: paths of another number in place of the volume, with its values. `cycles`: find how large
+    the whirls of the scene as it stands grow.
     """
-    few_points("volumes", volumes, MOST)
     require_whirl(scene)
     require_no_balls(scene, "a map over liquid; `lb.map_balls` charts balls")
     if not scene.fills:
@@ -82,38 +91,27 @@ def map_scene(
         field, given = ("friction", friction) if friction is not None else ("cycles", cycles)
         raise InputError(field, given, "left out with a liquid model of one's own")
     law = law if friction is None else friction
-    drag = replace(machine, waves=law).drag
-    rotor = machine.rotor
-    rows = fills_over_volume(scene.fills, volumes, max_volume)
-    parts = []
-    # In the plane all are solved together; a rotor that tilts takes them one by one, each for a while.
-    together = _AT_ONCE if isinstance(rotor, Jeffcott) else 1
-    for first in range(0, len(rows), together):
-        parts.append(growth_map(rotor, rows[first : first + together], speed, law))
-        done = min(first + together, len(rows))
-        update(done, len(rows), "volumes" if done < len(rows) else "edges of the bands")
-    growth, whirl_speed = (np.concatenate([part[k] for part in parts]) for k in (0, 1))
-    edges = unstable_bands(rotor, rows, speed, law, growth)
-    (own,) = unstable_bands(rotor, [scene.fills], speed, law)
-    here = growth_map(rotor, [scene.fills], speed, law)[0][0]
-    carried = np.array([_held(scene, fills, speed) for fills in rows])
+    rows, axis, varied = _rows(machine, volumes, max_volume, friction, (over, start, stop, values, log))
+    growth, whirl_speed, edges = _grown(rows, speed)
+    (own,) = unstable_bands(machine.rotor, [scene.fills], speed, law)
+    here = growth_map(machine.rotor, [scene.fills], speed, law)[0][0]
+    carried = np.array([_held(row.scene, row.fills, speed) for row in rows])
     large, said = scene_cycles(machine, law) if cycles and isinstance(law, Friction) else (None, ())
     pairs = zip(rows, whirl_speed - speed, strict=True)
-    thin = np.ones(growth.shape, dtype=bool)
-    if isinstance(law, Friction) and law.law.laminar:
-        thin = np.array([_thin_layers(fills, slip) for fills, slip in pairs])
+    thin = np.array([_thin_layers(row.fills, row.law, slip) for row, slip in pairs])
+    rotor = machine.rotor
     return WhirlMap(
         name=scene.name,
         source=scene.source,
         assumed=scene.assumed,
         digest=scene.digest,
         speed=speed,
-        volume=np.array([sum(fill.volume for fill in fills) for fills in rows]),
+        volume=np.array([sum(fill.volume for fill in row.fills) for row in rows]),
         growth=growth,
         whirl_speed=whirl_speed,
         in_range=carried & thin,
         edges=edges,
-        friction=drag,
+        friction=replace(machine, waves=law).drag,
         damping=f"damping ratio {rotor.damping_ratio:.3g}"
         if isinstance(rotor, Jeffcott)
         else "damping as in the scene",
@@ -121,16 +119,90 @@ def map_scene(
         scene_edges=own,
         notes=(
             _own_volume(scene, own, speed, here),
-            *_notes(machine, law, carried, thin, growth),
+            *_notes(machine, law, (carried, thin, growth), axis is None),
             *said,
             *doubts(scene),
         ),
         edges_not_known=tuple(bands_not_known(speed, found) for found in growth),
-        capacity=sum(fill.chamber.capacity for fill in rows[-1] if fill.volume > 0.0),
+        capacity=sum(fill.chamber.capacity for fill in rows[-1].fills if fill.volume > 0.0)
+        if axis is None
+        else math.nan,
         critical_speed_dry=_critical_speed(machine),
         large=None if large is None else Cycles(large.branches, cycles_by(machine)),
         depth=max((fill.depth for fill in scene.fills), default=0.0),
+        paths=() if varied is None else varied.paths,
+        value=None if axis is None else axis.value,
+        scene_value=math.nan if varied is None else varied.own,
+        dimension=None if varied is None else varied.rule.dimension,
+        log=axis is not None and axis.log,
     )
+
+
+@dataclass(frozen=True)
+class _Row:
+    """A machine of the second axis."""
+
+    scene: Scene
+    rotor: Rotor
+    fills: tuple[Fill, ...]
+    law: Waves
+
+
+def _rows(
+    machine: Prepared,
+    volumes: int | Sequence[float],
+    max_volume: float | None,
+    friction: Friction | None,
+    asked: tuple[Any, ...],
+) -> tuple[list[_Row], Axis | None, Varied | None]:
+    """The machines of the second axis; the axis and what varies along it where that is not the volume."""
+    scene, (over, *given) = machine.scene, asked
+    law = machine.waves if friction is None else friction
+    if not over:
+        for field, value, usual in zip(("start", "stop", "values", "log"), given, _NOT_ASKED, strict=True):
+            if value != usual:
+                raise InputError(field, value, "left out without `over`, the path of a number")
+        few_points("volumes", volumes, MOST)
+        rows = fills_over_volume(scene.fills, volumes, max_volume)
+        return [_Row(scene, machine.rotor, fills, law) for fills in rows], None, None
+    for field, value, usual in (("volumes", volumes, VOLUMES), ("max_volume", max_volume, None)):
+        if value != usual:
+            raise InputError(field, value, "left out where `over` names what varies")
+    varied = varied_of(scene, over)
+    start, stop, values, log = given
+    axis = axis_of(varied, values, start, stop, log, MOST)
+    found = []
+    for value in axis.value.tolist():
+        other = prepare(varied.at(scene, value), free=True)
+        found.append(
+            _Row(other.scene, other.rotor, other.scene.fills, other.waves if friction is None else friction)
+        )
+    return found, axis, varied
+
+
+_NOT_ASKED = (None, None, VALUES, None)
+
+
+def _grown(rows: Sequence[_Row], speed: Array) -> tuple[Array, Array, tuple[Bands, ...]]:
+    """Growth and whirl speed, shape (v, n), and bands of each row; of one rotor and law many at once."""
+    edges: list[Bands] = []
+    parts, done, first = [], 0, rows[0]
+    # In the plane all are solved together; a rotor that tilts takes them one by one, each for a while.
+    alike = isinstance(first.rotor, Jeffcott) and all(
+        row.rotor is first.rotor and row.law is first.law for row in rows
+    )
+    together = _AT_ONCE if alike else 1
+    while done < len(rows):
+        some = rows[done : done + together]
+        parts.append(growth_map(some[0].rotor, [row.fills for row in some], speed, some[0].law))
+        if not alike:
+            edges += unstable_bands(some[0].rotor, [some[0].fills], speed, some[0].law, parts[-1][0])
+        done += len(some)
+        update(done, len(rows), "volumes" if done < len(rows) else "edges of the bands")
+    growth, whirl_speed = (np.concatenate([part[k] for part in parts]) for k in (0, 1))
+    if alike:
+        edges += unstable_bands(first.rotor, [row.fills for row in rows], speed, first.law, growth)
+    return growth, whirl_speed, tuple(edges)
 
 
 def _critical_speed(machine: Prepared) -> float:
@@ -186,8 +258,10 @@ def _held(scene: Scene, fills: tuple[Fill, ...], speed: Array) -> Flags:
     return np.asarray(speed > max(needed, default=0.0))
 
 
-def _thin_layers(fills: tuple[Fill, ...], slip: Array) -> Flags:
+def _thin_layers(fills: tuple[Fill, ...], law: Waves, slip: Array) -> Flags:
     """The laminar layers on the walls are thin beside the liquid, as their law assumes."""
+    if not isinstance(law, Friction) or not law.law.laminar:
+        return np.ones(slip.shape, dtype=bool)
     thin = np.ones(slip.shape, dtype=bool)
     for fill in fills:
         if fill.volume > 0.0 and not is_full(fill):
@@ -210,18 +284,20 @@ def _own_volume(scene: Scene, bands: Bands, speed: Array, growth: Array) -> Note
     return Note(MapCode.OWN_VOLUME, data, f"With the scene's {with_unit(volume, VOLUME)} {text}")
 
 
-def _notes(machine: Prepared, law: Waves, carried: Flags, thin: Flags, growth: Array) -> tuple[Note, ...]:
+def _notes(
+    machine: Prepared, law: Waves, points: tuple[Flags, Flags, Array], volumes: bool
+) -> tuple[Note, ...]:
     """Limits of validity and findings."""
-    scene, found = machine.scene, []
+    scene, found, (carried, thin, growth) = machine.scene, [], points
 
     def note(code: MapCode, text: str, **data: object) -> None:
         found.append(Note(code, data, text))
 
     if lost := int(np.count_nonzero(np.isnan(growth))):
-        points = f"At {lost} of {thin.size} points the growth is not known"
+        where = f"At {lost} of {thin.size} points the growth is not known"
         note(
             MapCode.NOT_KNOWN,
-            f"{points}: crosses; do not take them for stable.",
+            f"{where}: crosses; do not take them for stable.",
             lost=lost,
             points=thin.size,
         )
@@ -238,7 +314,7 @@ def _notes(machine: Prepared, law: Waves, carried: Flags, thin: Flags, growth: A
             "Without liquid friction the support's damping feeds the wave against the spin, whose energy is "
             "negative: a weak growth remains at almost every speed.",
         )
-    if len(scene.fills) > 1:
+    if volumes and len(scene.fills) > 1:
         note(
             MapCode.COMMON_FACTOR,
             "The volumes of the chambers grow by a common factor until the first is full.",

@@ -181,8 +181,8 @@ def test_gathered_states_are_those_of_run() -> None:
 
 
 @pytest.mark.usefixtures("no_curves")
-@kills(f"{STUDY}:_family", "value * share", "value")
-@kills(f"{STUDY}:_own", "float(found)", "2.0 * float(found)")
+@kills("leblanc.studies.map.varied:Varied.at", "value * share", "value")
+@kills("leblanc.studies.map.varied:_own", "float(found)", "2.0 * float(found)")
 def test_several_numbers_keep_their_ratio() -> None:
     machine = scene("balls_and_liquid")
     own = machine.balls[0].drag, machine.balls[1].drag

@@ -4,23 +4,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
 
 from leblanc.core.notes import Note
 from leblanc.core.progress import update
-from leblanc.core.units import parse_option
 from leblanc.liquid.validity import doubts
 from leblanc.scene.scene import Scene, dry_rotor
-from leblanc.scene.schema.load import SceneError
-from leblanc.scene.schema.paths import keys_of, rule_at
-from leblanc.scene.schema.rules import Quantity, Refused, Several
 from leblanc.studies.balls import notes
 from leblanc.studies.balls.states import Parts, liquid_beside, own_family, parts_of
-from leblanc.studies.map.axes import few_points, speeds_of
+from leblanc.studies.map.axes import speeds_of
 from leblanc.studies.map.balls.answer import STATES, BallChart, Curve
+from leblanc.studies.map.varied import USUAL, Varied, axis_of, varied_of
 from meshes.errors import InputError
 from solvers.rotor.balls.charts import (
     Edge,
@@ -35,20 +32,8 @@ from solvers.rotor.balls.charts import (
 from solvers.rotor.balls.states import turning
 
 MOST = 1000  # values or speeds of a chart
-_WIDE, _USUAL = 100.0, 10.0  # factors on both sides of the scene's drag, of any other number
-_DECADE = 10.0  # a range as wide as this is spaced by logarithms
-_ROOTS = ("rotor", "chambers", "gravity")
+_WIDE = 100.0  # factor on both sides of the scene's drag
 _KEPT = 4096  # machines
-
-
-@dataclass(frozen=True)
-class _Varied:
-    """Numbers of a scene that vary together."""
-
-    paths: tuple[str, ...]  #: of them, the first one leads
-    rule: Quantity  #: of the first
-    own: float  #: what the scene has there, SI, nan where it says nothing
-    shares: tuple[float, ...]  #: of each over the first
 
 
 def chart_scene(
@@ -70,28 +55,16 @@ def chart_scene(
     _check(scene, state)
     scene, speed = speeds_of(scene, speeds, MOST)
     liquid_beside(scene)
-    varied = _varied(scene, (over,) if isinstance(over, str) else tuple(over))
-    points = values if isinstance(values, int) else _given(varied, values, start, stop)
-    few_points("values", points, MOST)
-    low, high = _ends(varied, start, stop, not over) if isinstance(points, int) else (points[0], points[-1])
-    log = low > 0.0 and high >= _DECADE * low if log is None else log
-    if log and low <= 0.0:
-        raise InputError("start", low, "above 0 for values spaced by their logarithm")
-    if isinstance(points, int):
-        first, last = (math.log(low), math.log(high)) if log else (low, high)
-        second = np.linspace(first, last, points)
-    else:
-        second = np.log(points) if log else np.array(points)
+    drags = tuple(f"chambers.{len(scene.liquids) + k}.drag" for k in range(len(scene.balls)))
+    varied = varied_of(scene, over or drags)
+    axis = axis_of(varied, values, start, stop, log, MOST, USUAL if over else _WIDE)
+    second, log = axis.even, axis.log
     family = _family(scene, varied, log)
     rotor, races = dry_rotor(scene).system(), [race.race() for race in scene.balls]
     chosen = State() if state == "balanced" else gathered(rotor, races, state == "light")
     chart = stability_chart(_told(family, speed.size * second.size), speed, second, chosen)
     bounds = existence_bounds(family, float(speed[0]), second) if state == "balanced" else []
     growth, bands = stable_bands(own_family(scene), speed, 0.0, chosen)
-    # Ends as they were asked for, without the rounding of a logarithm.
-    value = np.exp(second) if log else second.copy()
-    value[0], value[-1] = low, high
-    value = value if isinstance(points, int) else np.array(points)
     answer = BallChart(
         name=scene.name,
         source=scene.source,
@@ -103,7 +76,7 @@ def chart_scene(
         dimension=varied.rule.dimension,
         log=log,
         speed=speed,
-        value=value,
+        value=axis.value,
         growing=chart.growing.T.astype(np.int32),
         growth=chart.growth.T,
         edges=tuple(_curve(edge, log) for edge in chart.edges),
@@ -124,79 +97,6 @@ def _check(scene: Scene, state: str) -> None:
         raise InputError("state", state, f"one of {', '.join(STATES)}")
 
 
-def _given(
-    varied: _Varied, values: Sequence[str | float], start: str | float | None, stop: str | float | None
-) -> list[float]:
-    """Values one by one, SI, each as the scene allows it."""
-    for field, end in (("start", start), ("stop", stop)):
-        if end is not None:
-            raise InputError(field, end, "left out where each of the values is given")
-    found = []
-    for k, one in enumerate(np.asarray(values).tolist()):
-        value = parse_option(one, varied.rule.dimension, f"values.{k}")
-        try:
-            found.append(varied.rule(value))
-        except Refused as refused:
-            raise InputError(f"values.{k}", one, refused.allowed) from None
-    return found
-
-
-def _varied(scene: Scene, over: tuple[str, ...]) -> _Varied:
-    """What varies: the paths given, or the drag of all races."""
-    first = len(scene.liquids)
-    paths = over or tuple(f"chambers.{first + k}.drag" for k in range(len(scene.balls)))
-    if len(set(paths)) < len(paths):
-        raise InputError("over", ", ".join(paths), "paths that differ")
-    rules = [_rule(scene, path) for path in paths]
-    if len({rule.dimension for rule in rules}) > 1:
-        raise InputError("over", ", ".join(paths), "paths of quantities of one kind")
-    own = [_own(scene, path) for path in paths]
-    together = all(math.isfinite(value) for value in own) and own[0] != 0.0
-    # Numbers that have no ratio take the same value.
-    shares = tuple(value / own[0] for value in own) if together else (1.0,) * len(own)
-    return _Varied(paths, rules[0], own[0], shares)
-
-
-def _rule(scene: Scene, path: str) -> Quantity:
-    """Rule of a number that may take any value in between."""
-    if keys_of(path)[0] not in _ROOTS:
-        raise InputError("over", path, f"the path of a number under {', '.join(_ROOTS)}")
-    try:
-        rule = rule_at(Scene, scene.table(), path)
-    except Refused as refused:
-        raise InputError("over", path, refused.allowed) from None
-    rule = rule.each if isinstance(rule, Several) else rule
-    if not isinstance(rule, Quantity):
-        raise InputError("over", path, "the path of a number that may take any value in between")
-    return rule
-
-
-def _own(scene: Scene, path: str) -> float:
-    """What the scene has at a path, SI; nan where that is nothing."""
-    found: object = scene
-    for key in keys_of(path):
-        found = found[key] if isinstance(key, int) and isinstance(found, tuple) else getattr(found, str(key))
-    return float(found) if isinstance(found, float | int) else math.nan
-
-
-def _ends(
-    varied: _Varied, start: str | float | None, stop: str | float | None, drag: bool
-) -> tuple[float, float]:
-    """First and last value, SI."""
-    factor, own, ends = _WIDE if drag else _USUAL, varied.own, []
-    for option, given, chosen in (("start", start, own / factor), ("stop", stop, own * factor)):
-        if given is None and not own > 0.0:
-            raise InputError(option, given, f"given where the scene has no {varied.paths[0]} above 0")
-        value = chosen if given is None else parse_option(given, varied.rule.dimension, option)
-        try:
-            ends.append(varied.rule(value))
-        except Refused as refused:
-            raise InputError(option, value, refused.allowed) from None
-    if not ends[0] < ends[1]:
-        raise InputError("stop", ends[1], f"above the first value, {ends[0]:g}")
-    return ends[0], ends[1]
-
-
 def _curve(edge: Edge, log: bool) -> Curve:
     """A curve with values in place of their logarithms."""
     value = np.exp(edge.second) if log else edge.second
@@ -204,20 +104,12 @@ def _curve(edge: Edge, log: bool) -> Curve:
     return Curve(edge.kind.name.lower(), edge.first, value, edge.frequency, ends)
 
 
-def _family(scene: Scene, varied: _Varied, log: bool) -> Family:
+def _family(scene: Scene, varied: Varied, log: bool) -> Family:
     """The scene's machine at each speed and value, or logarithm of one."""
 
     @lru_cache(maxsize=_KEPT)
     def parts(at: float) -> Parts:
-        value = math.exp(at) if log else at
-        changes = {path: value * share for path, share in zip(varied.paths, varied.shares, strict=True)}
-        try:
-            return parts_of(scene.replace(changes))
-        except SceneError as error:
-            fault = error.faults[0]
-            where = f"{varied.paths[0]} at {value:g}"
-            allowed = f"such that {fault.field} is {fault.allowed}"
-            raise InputError("over", where, allowed) from None
+        return parts_of(varied.at(scene, math.exp(at) if log else at))
 
     return lambda speed, at: parts(at).at(speed)
 
