@@ -85,6 +85,12 @@ RECIPES = (
     _example("run", "centrifuge", volumes_centrifuge="volumes"),
     _example("run", "spindle", spindle_compliance="compliance", spindle_shapes="shapes"),
     _example("map", "horizontal_rig", whirl_map="map"),
+    _example(
+        "map",
+        "centrifuge",
+        *("--over", "rotor.damping_ratio", "--speeds", "101"),
+        whirl_over_damping="map",
+    ),
     Recipe(
         ("leblanc", "map", "docs/examples/self_excited.toml", "--cycles", "--volumes", "21"),
         ("whirl_cycles",),

@@ -110,6 +110,17 @@ class WhirlOutlook:
     lag: Annotated[float, Q(_RATE, "slip speed of the liquid", "by rule, behind the drum")]
 
 
+@dataclass(frozen=True)
+class Cure:
+    """A change of a machine, and the bands of self-excited whirl with it over the machine's speeds."""
+
+    kind: Annotated[str, Q(text="less or more liquid, viscosity, walls, twice the damping, damping")]
+    #: m^3, m^2/s, number of walls, damping ratio; nan where none of those tried does it
+    value: Annotated[float, Q(text="what it takes, SI")]
+    bands: Annotated[tuple[tuple[float, float], ...], Q("rad s-1", text="bands that are left", data=False)]
+    text: Annotated[str, Q(text="in words")]
+
+
 class Explained(Answer):
     """Base of what `explain` answers of machines with liquid or balls."""
 
@@ -167,6 +178,10 @@ class ExplainAnswer(Explained):
     runup: Annotated[str, Q(text="which liquid model the run-up will take")] = ""
     #: None where none does, or nothing bounds it
     whirl: Annotated[WhirlOutlook | None, Q(text="size of the self-excited whirl", prefix="whirl")] = None
+    #: of a planar rotor; empty where none grows
+    cures: Annotated[
+        tuple[Cure, ...], Q(text="what would end the self-excited whirl", rows="cure", when="cures")
+    ] = ()
     #: None where steady models answer all
     held: Annotated[
         HeldCost | None, Q(text="cost of what steady models do not answer", prefix="held", data=False)
@@ -214,6 +229,9 @@ class ExplainAnswer(Explained):
 def described_blocks(answer: ExplainAnswer) -> list[Block]:
     """The explanation as text; of the liquid only where there is any."""
     found: list[Block] = [Words(answer.name), Table(machine_rows(answer), indent=2)]
+    if answer.cures:
+        rows = [(cure.kind, cure.text) for cure in answer.cures]
+        found += [Words("what would end the self-excited whirl, each alone"), Table(rows, indent=2)]
     if answer.modes:
         found += [
             Words("natural frequencies at rest, without liquid"),

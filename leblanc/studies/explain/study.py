@@ -36,6 +36,7 @@ from leblanc.studies.explain.answer import (
     SpinUp,
     WhirlOutlook,
 )
+from leblanc.studies.explain.cures import cures
 from leblanc.studies.run.motion import RestMode
 from leblanc.studies.run.study import rest_modes
 from leblanc.studies.volume.study import volumes_over_speed
@@ -94,6 +95,7 @@ def explain_scene(scene: Scene) -> ExplainAnswer:
         modes=bare.modes,
         runup=runup_outlook(scene),
         whirl=_whirl(machine),
+        cures=cures(machine),
         held=held_cost(machine, choice, growth),
         source=scene.source,
         assumed=scene.assumed,

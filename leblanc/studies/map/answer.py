@@ -236,7 +236,9 @@ def _scene_row(found: WhirlMap) -> str:
     if found.value is None:
         return f"the scene's {with_unit(found.scene_volume, VOLUME)}"
     name, _, unit = found.second
-    return f"the scene's {name} of {unit.text(found.scene_value)}" if found.scene_value > 0.0 else "the scene's"
+    return (
+        f"the scene's {name} of {unit.text(found.scene_value)}" if found.scene_value > 0.0 else "the scene's"
+    )
 
 
 def _within(found: WhirlMap) -> list[Cycle]:

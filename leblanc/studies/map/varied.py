@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fluid.friction.laws import Friction
 from leblanc.core.units import parse_option
 from leblanc.scene.scene import Scene
 from leblanc.scene.schema.load import SceneError
@@ -129,7 +130,13 @@ def _own(scene: Scene, path: str) -> float:
     """What the scene has at a path, SI; nan where that is nothing."""
     found: object = scene
     for key in keys_of(path):
-        found = found[key] if isinstance(key, int) and isinstance(found, tuple) else getattr(found, str(key))
+        if isinstance(found, Friction):
+            # As typed: a table of its law.
+            found = {found.law.value: found.coefficient}.get(str(key))
+        elif isinstance(key, int) and isinstance(found, tuple):
+            found = found[key]
+        else:
+            found = getattr(found, str(key), None)
     return float(found) if isinstance(found, float | int) else math.nan
 
 

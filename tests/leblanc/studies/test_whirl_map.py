@@ -18,6 +18,7 @@ from fluid.whirl import covering_speed
 from leblanc.cli import main
 from leblanc.core.netcdf import write_netcdf
 from leblanc.core.question import parameters
+from leblanc.liquid.choose import prepare
 from leblanc.scene.scene import Scene, dry_rotor, load_scene
 from leblanc.studies import map as questions
 from leblanc.studies.map.answer import WhirlMap
@@ -25,6 +26,7 @@ from leblanc.studies.map.figure import map_figure, signed_distance
 from leblanc.studies.map.study import MapCode, fills_over_volume
 from leblanc.studies.run.study import run_scene
 from meshes.errors import InputError
+from solvers.whirl.edges import unstable_bands
 from solvers.whirl.growth import asynchronous_growth, growth_map
 from tests.mutants import kills
 
@@ -324,3 +326,70 @@ def test_validation_agrees() -> None:
 
     found = cases()
     assert len(found) == 22 and {one.verdict for one in found} == {"agrees"}
+
+
+@kills(
+    "leblanc.studies.map.study:_rows",
+    "prepare(varied.at(scene, value), free=True)",
+    "prepare(scene, free=True)",
+)
+@kills(
+    "leblanc.studies.map.study:_rows", "other.waves if friction is None", "machine.waves if friction is None"
+)
+def test_over_any_number() -> None:
+    """Each row is the machine with that number: of the rotor, of the liquid, of its friction."""
+    machine = scene()
+    viscosity = [f"chambers.{k}.liquid.viscosity" for k in range(len(machine.fills))]
+    own = machine.replace(
+        {f"chambers.{k}.liquid": {"density": 1200.0, "viscosity": 1.6e-6} for k in range(len(machine.fills))}
+    )
+    rubbing = machine.replace({"model.friction": {"linear": 2.0}})
+    for start, over in ((machine, "rotor.damping"), (own, viscosity), (rubbing, "model.friction.linear")):
+        found = lb.map_whirl(start, over=over, values=3, speeds=12)
+        paths = [over] if isinstance(over, str) else over
+        assert found.paths == tuple(paths) and found.value is not None and found.value.shape == (3,)
+        for value, growth, edges in zip(found.value.tolist(), found.growth, found.edges, strict=True):
+            changed = prepare(start.replace(dict.fromkeys(paths, value)), free=True)
+            fills = changed.scene.fills
+            alone, _ = asynchronous_growth(changed.rotor, fills, found.speed, changed.waves)
+            np.testing.assert_allclose(growth, alone, rtol=1e-9, atol=1e-12)
+            (bands,) = unstable_bands(changed.rotor, [fills], found.speed, changed.waves)
+            np.testing.assert_allclose(edges, bands, rtol=1e-6)
+        assert np.ptp(found.growth[:, 3]) > 0.0
+        np.testing.assert_allclose(found.value[1], found.scene_value)
+
+
+def test_over_any_number_in_files(tmp_path: Path) -> None:
+    """The data have the number as their axis, and are opened again; the figure names it."""
+    found = lb.map_whirl(
+        scene(), over="rotor.damping", start="100 N*s/m", stop="600 N*s/m", values=4, speeds=9
+    )
+    data = found.to_dataset()
+    assert data.growth.dims == ("value", "speed") and data.value.attrs["units"] == "N*s/m"
+    np.testing.assert_allclose(data.value, np.linspace(100.0, 600.0, 4))
+    found.save(tmp_path / "map.nc")
+    again = lb.open(tmp_path / "map.nc")
+    np.testing.assert_array_equal(again.growth, found.growth)
+    panel = map_figure(found).axes[0]
+    assert panel.get_ylabel() == "rotor.damping (N*s/m)" and panel.get_yscale() == "linear"
+    assert found.to_json()["over"] == ["rotor.damping"]
+    assert "over" not in small().to_json()
+
+
+@pytest.mark.parametrize(
+    ("options", "field"),
+    [
+        ({"over": "rotor.axis"}, "over"),
+        ({"over": "speeds.start"}, "over"),
+        ({"over": "rotor.damping", "volumes": 5}, "volumes"),
+        ({"over": "rotor.damping", "max_volume": 1e-4}, "max_volume"),
+        ({"values": 5}, "values"),
+        ({"start": 1.0}, "start"),
+        ({"over": "rotor.damping", "start": 0.0, "log": True}, "start"),
+    ],
+)
+def test_over_refuses(options: dict[str, object], field: str) -> None:
+    """Paths that lead to no number, volumes beside another axis, values without one."""
+    with pytest.raises(InputError) as caught:
+        lb.map_whirl(scene(), speeds=5, **options)  # type: ignore[arg-type]
+    assert caught.value.field == field

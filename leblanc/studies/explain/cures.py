@@ -1,0 +1,142 @@
+"""What would end a self-excited whirl: fill, viscosity, walls through the surface, damping of the support."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from fluid.fill import Fill
+from fluid.friction.laws import Friction, FrictionLaw
+from leblanc.core.units import VOLUME, number, rpm_bands, with_unit
+from leblanc.liquid.choose import Prepared
+from leblanc.studies.explain.answer import Cure
+from leblanc.studies.map.study import fills_over_volume
+from meshes.arrays import Array
+from solvers.rotor.jeffcott import Jeffcott
+from solvers.whirl.edges import Bands, unstable_bands
+
+_VOLUMES = 25  # from none to what fits
+_THICKER = 10.0 ** (0.25 * np.arange(1, 13))  # times the viscosity
+_FIRMER = 2.0 ** (0.5 * np.arange(1, 21))  # times the damping
+_MOST_DAMPED = 1.0  # damping ratio
+_SECTORS = range(2, 13)
+_CELLS = 24  # around, of elements: the frequency is known to a per cent
+_MM2 = 1e6
+
+
+def cures(machine: Prepared) -> tuple[Cure, ...]:
+    """Each alone, computed; none of a rotor that tilts, of a model of one's own, or where no whirl grows.
+
+    Walls by the rule that no whirl grows once the liquid's wave is seen from the drum at the spin or faster.
+    """
+    rotor, law, fills = machine.rotor, machine.waves, machine.scene.fills
+    if not isinstance(rotor, Jeffcott) or not isinstance(law, Friction) or not fills:
+        return ()
+    ends = machine.speed[[0, -1]]
+    if ends[0] == ends[1]:
+        return ()
+    (own,) = unstable_bands(rotor, [fills], ends, law)
+    if not own:
+        return ()
+    found = [*_by_volume(rotor, fills, law, ends), *_by_viscosity(rotor, fills, law, ends)]
+    return (*found, *_by_walls(fills), *_by_damping(rotor, fills, law, ends, own))
+
+
+def _by_volume(rotor: Jeffcott, fills: tuple[Fill, ...], law: Friction, ends: Array) -> Iterator[Cure]:
+    """The next smaller and larger volume, of all chambers in their ratio, with which none grows."""
+    rows = fills_over_volume(fills, _VOLUMES)
+    volumes, own = [sum(fill.volume for fill in row) for row in rows], sum(fill.volume for fill in fills)
+    calm = [not bands for bands in unstable_bands(rotor, rows, ends, law)]
+    free = [volume for volume, ends_it in zip(volumes, calm, strict=True) if ends_it]
+    for kind, side in (
+        ("less liquid", [v for v in free if v < own]),
+        ("more liquid", [v for v in free if v > own]),
+    ):
+        less = kind == "less liquid"
+        value = math.nan if not side else max(side) if less else min(side)
+        text = f"{with_unit(value, VOLUME)}{', nothing,' if value == 0.0 else ''}"
+        if not side:
+            text = "at no fill that was tried, up to full"
+        elif value in (volumes[0], volumes[-1]):
+            text = "none at all alone" if less else "a full chamber alone"
+        yield Cure(kind, value, (), text)
+
+
+def _by_viscosity(rotor: Jeffcott, fills: tuple[Fill, ...], law: Friction, ends: Array) -> Iterator[Cure]:
+    """The least viscosity with which none grows, of all liquids in their ratio."""
+    if law.law not in (FrictionLaw.STOKES, FrictionLaw.WALL) or not any(f.liquid.viscosity for f in fills):
+        return
+    rows = [
+        tuple(
+            replace(fill, liquid=replace(fill.liquid, viscosity=fill.liquid.viscosity * times))
+            for fill in fills
+        )
+        for times in _THICKER.tolist()
+    ]
+    calm = [k for k, bands in enumerate(unstable_bands(rotor, rows, ends, law)) if not bands]
+    if not calm:
+        yield Cure("viscosity", math.nan, (), f"not up to {number(_THICKER[-1])} times it")
+        return
+    value = rows[calm[0]][0].liquid.viscosity
+    text = f"{number(value * _MM2)} mm^2/s, {number(_THICKER[calm[0]])} times it"
+    yield Cure("viscosity", value, (), text)
+
+
+def _by_walls(fills: tuple[Fill, ...]) -> Iterator[Cure]:
+    """The least number of walls from the drum through the surface that do it in every plain ring."""
+    from meshes.baffles import Baffles
+    from meshes.rings.quadrilaterals import ring
+    from solvers.sloshing.modes import spectrum
+    from solvers.sloshing.system import condense
+
+    if any(fill.uneven or fill.compartments > 1 or fill.chamber.section is not None for fill in fills):
+        return
+    needed = 0
+    for fill in fills:
+        if fill.volume == 0.0:
+            continue
+        inner = fill.surface_radius / fill.chamber.radius
+        for count in _SECTORS:
+            liquid = condense(ring(1.0, inner, _CELLS, 4, baffles=Baffles(count)))
+            if float(spectrum(liquid).frequency[0]) >= 1.0:
+                needed = max(needed, count)
+                break
+        else:
+            text = f"not up to {_SECTORS[-1]} of them"
+            yield Cure("walls", math.nan, (), text)
+            return
+    yield Cure(
+        "walls", float(needed), (), f"{needed} from the drum through the surface, which part the liquid"
+    )
+
+
+def _by_damping(
+    rotor: Jeffcott, fills: tuple[Fill, ...], law: Friction, ends: Array, own: Bands
+) -> Iterator[Cure]:
+    """What twice the damping of the support makes of the bands, and with how much none is left."""
+    if rotor.damping_ratio == 0.0:
+        return
+
+    def left(times: float) -> Bands:
+        return unstable_bands(replace(rotor, damping=rotor.damping * times), [fills], ends, law)[0]
+
+    def width(bands: Bands) -> float:
+        return sum(high - low for low, high in bands)
+
+    twice = left(2.0)
+    how = "gone" if not twice else "wider" if width(twice) > width(own) else "narrower"
+    text = f"{rpm_bands(twice)}, {how}" if twice else "no whirl grows"
+    yield Cure("twice the damping", 2.0 * rotor.damping_ratio, twice, text)
+    if not twice:
+        return
+    for times in _FIRMER.tolist():
+        ratio = rotor.damping_ratio * times
+        if ratio > _MOST_DAMPED:
+            break
+        if times > 2.0 and not left(times):
+            yield Cure("damping", ratio, (), f"a damping ratio of {number(ratio)} ends it")
+            return
+    yield Cure("damping", math.nan, (), f"no damping ratio up to {number(_MOST_DAMPED)} ends it")
