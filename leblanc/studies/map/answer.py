@@ -118,9 +118,7 @@ class WhirlMap(Answer):
     large: Annotated[Cycles | None, Q(part=True)] = None
     depth: float = math.nan  #: of the scene's deepest layer, m
     #: of the number on the second axis in place of the volume; empty for that
-    paths: Annotated[
-        tuple[str, ...], Q(key="over", text="paths of what varies in place of the volume", when="paths")
-    ] = ()
+    paths: Annotated[tuple[str, ...], Q(text="of what varies in place of the volume", when="paths")] = ()
     value: Annotated[Array | None, Q("{0.si}", "{0.paths[0]}", "varied", over=("volume",), when="paths")] = (
         None
     )

@@ -372,8 +372,8 @@ def test_over_any_number_in_files(tmp_path: Path) -> None:
     np.testing.assert_array_equal(again.growth, found.growth)
     panel = map_figure(found).axes[0]
     assert panel.get_ylabel() == "rotor.damping (N*s/m)" and panel.get_yscale() == "linear"
-    assert found.to_json()["over"] == ["rotor.damping"]
-    assert "over" not in small().to_json()
+    assert found.to_json()["paths"] == ["rotor.damping"]
+    assert not {"paths", "value", "scene_value"} & set(small().to_json())
 
 
 @pytest.mark.parametrize(
