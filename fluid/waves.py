@@ -44,6 +44,34 @@ def free_wave_speeds(mode: ArrayLike, layer_log: ArrayLike, spin: ArrayLike) -> 
     return np.asarray(prograde / n), np.asarray(retrograde / n)
 
 
+# Waves along a sector; twice as many change the slowest by 1e-4 of it.
+_ACROSS = 16
+
+
+def sector_frequencies(sectors: int, layer_log: float) -> Array:
+    """Frequencies of the natural waves between radial walls through the surface, over the spin, rising.
+
+    Of one of so many sectors, from the drum, shape (n,) [theory: waves, eq. 16-18]; L = ln(R/a), above 0.
+
+    >>> print(f"{sector_frequencies(4, 0.34657)[0]:.3f}")
+    0.950
+    """
+    _require(sectors >= 1, "sectors", sectors, "1 or above")
+    _require(layer_log > 0.0, "layer_log", layer_log, "above 0")
+    j = np.arange(1, _ACROSS + 1)
+    order = 0.5 * sectors * j
+    t = np.tanh(order * layer_log)
+    apart = j[:, None] + j[None, :]
+    shared = 4.0 / np.pi * j[None, :] / np.where(apart % 2 == 1, (j[None, :] - j[:, None]) * apart, np.inf)
+    # w^2 a = -2 i w C T a + m T a as a pencil of first order.
+    both = np.zeros((2 * _ACROSS, 2 * _ACROSS), dtype=complex)
+    both[:_ACROSS, :_ACROSS] = -2j * shared * t
+    both[:_ACROSS, _ACROSS:] = np.diag(order * t)
+    both[_ACROSS:, :_ACROSS] = np.eye(_ACROSS)
+    frequency = np.linalg.eigvals(both).real
+    return np.asarray(np.sort(frequency[frequency > 0.0]))
+
+
 def force_ratio(curvature: ArrayLike, whirl_ratio: ArrayLike) -> Array:
     """Force of a liquid layer on its whirling drum, over that of a full drum [theory: waves, eq. 5].
 

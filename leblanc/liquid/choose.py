@@ -437,9 +437,12 @@ def _lies(scene: Scene) -> bool:
 
 
 def runup_outlook(scene: Scene) -> str:
-    """Which liquid model the run-up of a scene will take, as far as that is known before, in words."""
+    """Which liquid model the run-up of a scene will take, as far as that is known before, in words.
+
+    Empty without a run-up or without liquid.
+    """
     liquid, tolerance = scene.model.liquid, scene.model.tolerance
-    if scene.speed_plan is None or not scene.chambers:
+    if scene.speed_plan is None or not scene.fills:
         return ""
     from solvers.runup.runup import largest_wave
 

@@ -15,11 +15,13 @@ from fluid.waves import (
     gravity_displacement,
     gravity_offset,
     offset_ratio,
+    sector_frequencies,
     wall_drift,
     wall_swing,
 )
 from meshes.errors import InputError
 from tests.mutants import kills
+from validation.cases.published.partitions import wave_ratio
 
 POINTS = 24
 
@@ -175,6 +177,29 @@ def test_synchronous_whirl() -> None:
     np.testing.assert_array_equal(force_ratio(kappa, 1.0), 1.0)
     np.testing.assert_allclose(displacement_ratio(kappa, 1.0), -1.0, rtol=1e-15)
     np.testing.assert_allclose(offset_ratio(kappa, 1.0), 1.0 / (kappa - 1.0), rtol=1e-15)
+
+
+@kills("fluid.waves:sector_frequencies", "-2j * shared * t", "-1j * shared * t")
+@kills("fluid.waves:sector_frequencies", "0.5 * sectors * j", "sectors * j")
+@kills("fluid.waves:sector_frequencies", "np.diag(order * t)", "np.diag(t)")
+@pytest.mark.parametrize("sectors", [3, 4, 5])
+@pytest.mark.parametrize("fill", [0.25, 0.75])
+def test_waves_between_walls(sectors: int, fill: float) -> None:
+    """Those of elements on a sector, whose slowest wave is off by the square of a cell."""
+    log = -0.5 * math.log(1.0 - fill)
+    exact, coarse, fine = (
+        sector_frequencies(sectors, log)[0],
+        *(wave_ratio(sectors, fill, n) for n in (24, 48)),
+    )
+    # What elements of second order still change is a third of their last change; the series is off by 1e-4.
+    assert abs(fine - exact) < abs(fine - coarse) + 2e-4 * exact
+    assert abs(fine - exact) < 2e-3 * exact
+
+
+def test_narrow_sectors_have_deep_waves() -> None:
+    """A crest as short as the walls are close knows no Coriolis force: w^2 = m tanh(m L)."""
+    found = sector_frequencies(400, 0.2)[0]
+    assert found == pytest.approx(math.sqrt(200.0), rel=2e-2)
 
 
 def test_full_drum_is_a_solid_mass() -> None:

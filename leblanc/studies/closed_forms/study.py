@@ -94,6 +94,8 @@ def _balancing(scene: Scene, speed: Array) -> tuple[Balancing | None, str | None
     refused = "Conditions of balancing in two planes"
     planes = [fill.chamber.plane for fill in scene.fills if fill.volume > 0.0]
     planes += [race.plane for race in scene.balls]
+    if not planes:
+        return None, None
     if len(set(planes)) < 2:
         what = "liquid and balls are" if scene.balls else "liquid is"
         return None, f"{refused}: {what} in fewer than two planes."

@@ -10,6 +10,7 @@ import numpy as np
 
 from fluid.fill import Fill
 from fluid.friction.laws import Friction, FrictionLaw
+from fluid.waves import sector_frequencies
 from leblanc.core.units import VOLUME, number, rpm_bands, with_unit
 from leblanc.liquid.choose import Prepared
 from leblanc.studies.explain.answer import Cure
@@ -23,7 +24,6 @@ _THICKER = 10.0 ** (0.25 * np.arange(1, 13))  # times the viscosity
 _FIRMER = 2.0 ** (0.5 * np.arange(1, 21))  # times the damping
 _MOST_DAMPED = 1.0  # damping ratio
 _SECTORS = range(2, 13)
-_CELLS = 24  # around, of elements: the frequency is known to a per cent
 _MM2 = 1e6
 
 
@@ -87,30 +87,16 @@ def _by_viscosity(rotor: Jeffcott, fills: tuple[Fill, ...], law: Friction, ends:
 
 def _by_walls(fills: tuple[Fill, ...]) -> Iterator[Cure]:
     """The least number of walls from the drum through the surface that do it in every plain ring."""
-    from meshes.baffles import Baffles
-    from meshes.rings.quadrilaterals import ring
-    from solvers.sloshing.modes import spectrum
-    from solvers.sloshing.system import condense
-
-    if any(fill.uneven or fill.compartments > 1 or fill.chamber.section is not None for fill in fills):
+    wet = [fill for fill in fills if fill.volume > 0.0]
+    if any(fill.uneven or fill.compartments > 1 or fill.chamber.section is not None for fill in wet):
         return
-    needed = 0
-    for fill in fills:
-        if fill.volume == 0.0:
-            continue
-        inner = fill.surface_radius / fill.chamber.radius
-        for count in _SECTORS:
-            liquid = condense(ring(1.0, inner, _CELLS, 4, baffles=Baffles(count)))
-            if float(spectrum(liquid).frequency[0]) >= 1.0:
-                needed = max(needed, count)
-                break
-        else:
-            text = f"not up to {_SECTORS[-1]} of them"
-            yield Cure("walls", math.nan, (), text)
+    logs = [math.log(fill.chamber.radius / fill.surface_radius) for fill in wet]
+    for count in _SECTORS:
+        if all(sector_frequencies(count, log)[0] >= 1.0 for log in logs):
+            text = f"{count} from the drum through the surface, which part the liquid"
+            yield Cure("walls", float(count), (), text)
             return
-    yield Cure(
-        "walls", float(needed), (), f"{needed} from the drum through the surface, which part the liquid"
-    )
+    yield Cure("walls", math.nan, (), f"not up to {_SECTORS[-1]} of them")
 
 
 def _by_damping(

@@ -85,7 +85,11 @@ def test_volume() -> None:
     assert "full" in cure["more liquid"].text and cure["more liquid"].value > own
 
 
-@kills(f"{CURES}:_by_walls", ".frequency[0]) >= 1.0", ".frequency[0]) >= 0.8")
+@kills(
+    f"{CURES}:_by_walls",
+    "sector_frequencies(count, log)[0] >= 1.0",
+    "sector_frequencies(count, log)[0] >= 0.8",
+)
 def test_walls_through_the_surface() -> None:
     """No band with so many, by elements in every sector; one with two fewer: the rule holds at any speed."""
     scene = damped(lb.example("washing_machine").replace({"model.friction": "none"}), 0.0)
