@@ -157,7 +157,8 @@ def centrifuging_speed(fill: Fill, friction: Friction, gravity: float) -> float:
             return stands
         tip = 1.0 - baffles.tip_radius / radius
         often = baffles.count / (2.0 * math.pi)
-        plates = 0.5 * often * DRAG * (tip - baffles.wall_gap / radius)
+        width = DRAG * (tip - baffles.wall_gap / radius) if baffles.loss is None else baffles.loss * tip
+        plates = 0.5 * often * width
         bare = max(1.0 - SHELTERS * often * tip, 0.0)
 
     def held(log: float) -> bool:

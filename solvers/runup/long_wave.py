@@ -26,6 +26,7 @@ from solvers.runup.state import (
     LAYER,
     MEASURES,
     PACE,
+    RELEASE,
     SUMS,
     WORKS,
     CoupledRotor,
@@ -233,13 +234,15 @@ class Coupled(CoupledRotor):
         """
         if self.handover is Handover.RIDING:
             return self._rearrange(self.ridden(self.active))
-        if not self.swings.any():
+        if not (self.swings | self.rests).any():
             return 0.0
         return self._rearrange(self._wanted())
 
     def _wanted(self) -> Flags:
         """Which liquids are layers from now on, shape (l,) [theory: pool]."""
         own, wanted = self._turning()[1], self.active.copy()
+        formed = self.spin > np.where(self.active, RELEASE * self.capture, self.centrifuging)
+        wanted[self.rests] = formed[self.rests]
         for j in np.flatnonzero(self.swings).tolist():
             fill, fast = self.fills[j], own[j] / float(self.capture[j])
             past = abs(own[j] - self.spin) * math.sqrt(fill.chamber.radius / max(fill.depth, 1e-300))

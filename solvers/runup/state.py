@@ -273,13 +273,14 @@ def planes_of(system: RotorSystem, fills: Sequence[Fill]) -> Array:
     return planes.reshape(len(fills), 2, len(system.coordinates))
 
 
-def _pours(fill: Fill, pool: Pool) -> bool:
-    """Whether a pool leaves its chamber's axis free, so that two shallow layers describe it."""
-    return fill.chamber.inner_radius > 0.0 or pool.half_angle < _TO_THE_AXIS
+def pours(fill: Fill, pool: Pool) -> bool:
+    """Whether a pool lies below its chamber's axis, so that two shallow layers describe it."""
+    return pool.half_angle < (_HALF if fill.chamber.inner_radius > 0.0 else _TO_THE_AXIS) * math.pi
 
 
-# Half of the wetted arc at which a pool without an inner wall comes near the axis: 45 % of the chamber.
-_TO_THE_AXIS = 0.475 * math.pi
+# Half of the wetted arc over pi: half a ring, and where a pool without an inner wall comes near the axis, 45
+# per cent of the chamber.
+_HALF, _TO_THE_AXIS = 0.5, 0.475
 
 
 @dataclass
@@ -310,8 +311,14 @@ class CoupledRotor(ABC):
         moves = self.handover is not Handover.RIDING
         pairs = zip(self.fills, self.pools, strict=True)
         return np.array(
-            [moves and pool is not None and _pours(fill, pool) for fill, pool in pairs], dtype=bool
+            [moves and pool is not None and pours(fill, pool) for fill, pool in pairs], dtype=bool
         )
+
+    @cached_property
+    def rests(self) -> Flags:
+        """Liquid across the axis that is too much for a pool: a mass until it becomes a ring, shape (l,)."""
+        moves = self.handover is not Handover.RIDING
+        return np.array([moves and pool is not None for pool in self.pools], dtype=bool) & ~self.swings
 
     @cached_property
     def centrifuging(self) -> Array:

@@ -21,8 +21,10 @@ from solvers.whirl.edges import Bands, unstable_bands
 
 _VOLUMES = 25  # from none to what fits
 _THICKER = 10.0 ** (0.25 * np.arange(1, 13))  # times the viscosity
-_FIRMER = 2.0 ** (0.5 * np.arange(1, 21))  # times the damping
+_FIRMER = math.sqrt(2.0)  # times the damping, again and again
+_LESS = 2.0 ** -np.arange(1.0, 9.0)  # of the scene's volume
 _MOST_DAMPED = 1.0  # damping ratio
+_ALIKE = 1e-6  # relative: bands as wide as before
 _SECTORS = range(2, 13)
 _MM2 = 1e6
 
@@ -47,8 +49,10 @@ def cures(machine: Prepared) -> tuple[Cure, ...]:
 
 def _by_volume(rotor: Jeffcott, fills: tuple[Fill, ...], law: Friction, ends: Array) -> Iterator[Cure]:
     """The next smaller and larger volume, of all chambers in their ratio, with which none grows."""
-    rows = fills_over_volume(fills, _VOLUMES)
-    volumes, own = [sum(fill.volume for fill in row) for row in rows], sum(fill.volume for fill in fills)
+    own = sum(fill.volume for fill in fills)
+    grid = [sum(fill.volume for fill in row) for row in fills_over_volume(fills, _VOLUMES)]
+    volumes = sorted({*grid, *(own * _LESS).tolist()})
+    rows = fills_over_volume(fills, volumes)
     calm = [not bands for bands in unstable_bands(rotor, rows, ends, law)]
     free = [volume for volume, ends_it in zip(volumes, calm, strict=True) if ends_it]
     for kind, side in (
@@ -57,11 +61,11 @@ def _by_volume(rotor: Jeffcott, fills: tuple[Fill, ...], law: Friction, ends: Ar
     ):
         less = kind == "less liquid"
         value = math.nan if not side else max(side) if less else min(side)
-        text = f"{with_unit(value, VOLUME)}{', nothing,' if value == 0.0 else ''}"
+        text = with_unit(value, VOLUME)
         if not side:
-            text = "at no fill that was tried, up to full"
+            text = "at none of the fills tried, up to full"
         elif value in (volumes[0], volumes[-1]):
-            text = "none at all alone" if less else "a full chamber alone"
+            text = "only none at all" if less else "only a full chamber"
         yield Cure(kind, value, (), text)
 
 
@@ -103,7 +107,7 @@ def _by_damping(
     rotor: Jeffcott, fills: tuple[Fill, ...], law: Friction, ends: Array, own: Bands
 ) -> Iterator[Cure]:
     """What twice the damping of the support makes of the bands, and with how much none is left."""
-    if rotor.damping_ratio == 0.0:
+    if not 0.0 < rotor.damping_ratio < _MOST_DAMPED:
         return
 
     def left(times: float) -> Bands:
@@ -113,16 +117,20 @@ def _by_damping(
         return sum(high - low for low, high in bands)
 
     twice = left(2.0)
-    how = "gone" if not twice else "wider" if width(twice) > width(own) else "narrower"
+    change = width(twice) - width(own)
+    how = (
+        "as wide as before" if abs(change) < _ALIKE * width(own) else "wider" if change > 0.0 else "narrower"
+    )
+    if twice and {twice[0][0], twice[-1][1]} & set(ends.tolist()):
+        how += ", as far as the machine's speeds go"
     text = f"{rpm_bands(twice)}, {how}" if twice else "no whirl grows"
     yield Cure("twice the damping", 2.0 * rotor.damping_ratio, twice, text)
     if not twice:
         return
-    for times in _FIRMER.tolist():
-        ratio = rotor.damping_ratio * times
-        if ratio > _MOST_DAMPED:
-            break
-        if times > 2.0 and not left(times):
+    ratio, tried = 2.0 * rotor.damping_ratio, False
+    while ratio < _MOST_DAMPED or not tried:
+        ratio, tried = min(ratio * _FIRMER, _MOST_DAMPED), True
+        if not left(ratio / rotor.damping_ratio):
             yield Cure("damping", ratio, (), f"a damping ratio of {number(ratio)} ends it")
             return
     yield Cure("damping", math.nan, (), f"no damping ratio up to {number(_MOST_DAMPED)} ends it")

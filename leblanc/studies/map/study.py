@@ -112,9 +112,7 @@ def map_scene(
         in_range=carried & thin,
         edges=edges,
         friction=replace(machine, waves=law).drag,
-        damping=f"damping ratio {rotor.damping_ratio:.3g}"
-        if isinstance(rotor, Jeffcott)
-        else "damping as in the scene",
+        damping=_damping(rotor, rows[-1].rotor),
         scene_volume=sum(fill.volume for fill in scene.fills),
         scene_edges=own,
         notes=(
@@ -127,7 +125,7 @@ def map_scene(
         capacity=sum(fill.chamber.capacity for fill in rows[-1].fills if fill.volume > 0.0)
         if axis is None
         else math.nan,
-        critical_speed_dry=_critical_speed(machine),
+        critical_speed_dry=_critical_speed(machine) if _alike(machine, rows) else math.nan,
         large=None if large is None else Cycles(large.branches, cycles_by(machine)),
         depth=max((fill.depth for fill in scene.fills), default=0.0),
         paths=() if varied is None else varied.paths,
@@ -203,6 +201,21 @@ def _grown(rows: Sequence[_Row], speed: Array) -> tuple[Array, Array, tuple[Band
     if alike:
         edges += unstable_bands(first.rotor, [row.fills for row in rows], speed, first.law, growth)
     return growth, whirl_speed, tuple(edges)
+
+
+def _damping(rotor: Rotor, last: Rotor) -> str:
+    """Damping of the support in words, of the scene and of the last row."""
+    if not isinstance(rotor, Jeffcott):
+        return "damping as in the scene"
+    if isinstance(last, Jeffcott) and last.damping_ratio != rotor.damping_ratio:
+        return "damping as it varies"
+    return f"damping ratio {rotor.damping_ratio:.3g}"
+
+
+def _alike(machine: Prepared, rows: Sequence[_Row]) -> bool:
+    """Whether the rows have one critical speed without liquid."""
+    own, last = machine.rotor.system(), rows[-1].rotor.system()
+    return np.array_equal(own.mass, last.mass) and np.array_equal(own.stiffness, last.stiffness)
 
 
 def _critical_speed(machine: Prepared) -> float:

@@ -56,6 +56,7 @@ from solvers.runup.runup import (
     linear_run_error,
     run_up,
 )
+from solvers.runup.state import pours
 from solvers.synchronous.models import LINEAR
 from solvers.synchronous.response import Response, by_speed, response
 
@@ -111,6 +112,8 @@ def judged(scene: Scene, history: RunupHistory, model: str | None = None) -> tup
         wall = fill.chamber
         own = history.speed + history.mean_rotation[:, k]
         ring, flows = history.captured[:, k], history.handover is not Handover.RIDING and not linear
+        pool = pool_of(fill)
+        flows = flows and (pool is None or pours(fill, pool))
         carried = (ring & (np.abs(own) > held_from(scene, fill))) | (flows & ~ring)
         reached = np.nan_to_num(history.depth_max[:, k]) >= wall.radius - wall.inner_radius
         touches = reached & (wall.inner_radius > 0.0)

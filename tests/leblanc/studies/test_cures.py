@@ -38,8 +38,8 @@ def found(name: str) -> dict[str, Cure]:
 
 
 @kills(f"{CURES}:_by_damping", "2.0 * rotor.damping_ratio, twice", "2.0 * rotor.damping_ratio, own")
-@kills(f"{CURES}:_by_damping", "width(twice) > width(own)", "width(twice) < width(own)")
-@kills(f"{CURES}:_by_damping", "times > 2.0 and not left(times)", "times > 2.0")
+@kills(f"{CURES}:_by_damping", "if change > 0.0", "if change < 0.0")
+@kills(f"{CURES}:_by_damping", "if not left(ratio / rotor.damping_ratio)", "if True")
 @pytest.mark.parametrize(("name", "how"), [("centrifuge", "wider"), ("washing_machine", "narrower")])
 def test_damping_of_the_support(name: str, how: str) -> None:
     """A first dose may widen the band; the ratio that ends it does, seven tenths of it do not."""

@@ -393,3 +393,14 @@ def test_over_refuses(options: dict[str, object], field: str) -> None:
     with pytest.raises(InputError) as caught:
         lb.map_whirl(scene(), speeds=5, **options)  # type: ignore[arg-type]
     assert caught.value.field == field
+
+
+@kills("leblanc.studies.map.study:_alike", "np.array_equal(own.mass, last.mass)", "True")
+@kills("leblanc.studies.map.study:_damping", "!= rotor.damping_ratio", "is None")
+def test_what_varies_is_not_told_as_one_number() -> None:
+    """A critical speed or a damping ratio that varies along the axis is no scale and no caption."""
+    one = lb.map_whirl(scene(), over="rotor.damping", values=3, speeds=5)
+    assert one.critical_speed_dry > 0.0 and one.damping == "damping as it varies"
+    assert math.isnan(lb.map_whirl(scene(), over="rotor.mass", values=3, speeds=5).critical_speed_dry)
+    assert math.isnan(lb.map_whirl(scene(), over="rotor.stiffness", values=3, speeds=5).critical_speed_dry)
+    assert small().critical_speed_dry > 0.0

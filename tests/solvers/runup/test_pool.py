@@ -45,6 +45,27 @@ def carried(
     return run_up(SOFT.system(), [fill], Ramp(4.0, stop, 8.0, time + 1.0, back=True), friction, G, numerics)
 
 
+@kills("solvers.runup.long_wave:Coupled._wanted", "formed[self.rests]", "False")
+@kills("solvers.runup.state:pours", "pool.half_angle < (", "pool.half_angle < 9.0 + (")
+def test_what_reaches_above_the_axis_rests_until_it_is_a_ring() -> None:
+    """Four fifths of a ring, three of an open chamber: a mass at the bottom, then a layer at once."""
+    ring, free = BAFFLED.chamber, replace(FILL.chamber, height=0.02)
+    for fill in (
+        replace(BAFFLED, volume=0.8 * ring.capacity),
+        Fill(free, FILL.liquid, 0.6 * free.capacity),
+    ):
+        rough = Friction("quadratic", 0.2)
+        pool, forms = pool_of(fill), centrifuging_speed(fill, rough, G)
+        history = carried(fill, friction=rough, stop=1.3 * forms)
+        assert pool is not None and history.converged and not history.audit.faults and history.transfers
+        first = history.transfers[0]
+        assert first.captured and forms < first.speed < 1.02 * forms
+        before = history.time < first.time
+        np.testing.assert_allclose(history.offset[before, 0], -pool.arm, rtol=1e-12)
+        np.testing.assert_allclose(history.wet_share[before, 0], pool.half_angle / math.pi, rtol=1e-12)
+        assert not history.lifted_share[before, 0].any()
+
+
 def test_becomes_a_ring_and_falls() -> None:
     """Mass, angular momentum and energy are kept; the ring falls far below where it formed."""
     history = carried()
