@@ -169,6 +169,7 @@ def test_drag() -> None:
 
 
 @kills("fluid.pool:centrifuging_speed", "froude**2 < _DRAGGED", "froude < _DRAGGED")
+@kills("fluid.pool:centrifuging_speed", "if baffles.loss is None else", "if True else")
 @kills(
     "fluid.pool:centrifuging_speed",
     "min(stream / _SHALLOW, 1.0)",
@@ -200,6 +201,12 @@ def test_centrifuging_speed() -> None:
         assert 0.038 * (10.6 * deep * min(deep / 1.5, 1.0)) ** 2 > 24.0 * mean or volume < 1e-3
         wanted = max(stands, math.sqrt(10.6 * deep * min(deep / 1.5, 1.0) * 9.81 / 0.24))
         assert speed == pytest.approx(wanted, rel=1e-12)
+    # A loss that is given drives the stream in place of the plates' drag: as much at 2.4, nothing at 0.
+    for loss in (2.4, 0.0):
+        given = Fill(Chamber(0.24, 0.06, 0.2, baffles=Baffles(8, 0.2396, loss=loss)), BRINE, 1.2e-3)
+        alike = Fill(Chamber(0.24, 0.06, 0.2, baffles=Baffles(8, 0.2396)), BRINE, 1.2e-3)
+        same = centrifuging_speed(given, Friction(), 9.81) == centrifuging_speed(alike, Friction(), 9.81)
+        assert same == (loss > 0.0)
     closed = Fill(Chamber(0.24, 0.06, 0.2, baffles=Baffles(8, 0.2)), BRINE, 1e-3)
     assert centrifuging_speed(closed, Friction(), 9.81) == math.sqrt(9.81 / closed.surface_radius)
 

@@ -65,6 +65,7 @@ def test_rest() -> None:
             assert slope[3, middle] > 0.0 > slope[3, middle - 3]
 
 
+@kills(_RATES, "max(apart - 2.0, 0.0)", "apart")
 @kills(_RATES, "stiff = stiff or (own > full) != (wanted > full)", "stiff = False")
 @kills(_RATES, "share = min(1.0, 2.0 * own / (whole + 1e-300))", "share = 1.0")
 @kills(_RATES, "one = min(one, whole) if flow[1, i] > DRY else whole", "one = min(one, whole)")
@@ -73,12 +74,51 @@ def test_rounding_does_not_grow() -> None:
     plates = Baffles(6, 0.24 * 0.97)
     half = Chamber(0.24, 0.06, 0.12, baffles=plates)
     shore = Fill(half, WATER, 0.1640625 * half.capacity)
-    for fill, down, cells, time in ((shore, 0.0, 32, 0.5), (COMPUTED, math.pi, 64, 0.03)):
+    bare = replace(half, baffles=None)
+    nearly = Fill(bare, WATER, 0.4453125 * bare.capacity)
+    for fill, down, cells, time in (
+        (shore, 0.0, 32, 0.5),
+        (COMPUTED, math.pi, 64, 0.03),
+        (nearly, 0.0, 32, 0.05),
+    ):
         drum = Drum(fill, down=down, cells=cells)
         drum.lie()
         drum.flow[2:] = 1e-9 * drum.flow[:2] * np.sin(np.arctan2(drum.angles[1], drum.angles[0]))
         drum.go(time)
         assert np.abs(drum.flow[2:]).max() < 1e-8
+
+
+@kills("solvers.layer.two_layer_step:_steep", "abs(slope) - abs(level)", "abs(slope)")
+@kills("solvers.layer.two_layer_step:_steep", "if slope * level > 0.0", "if True")
+@kills("solvers.layer.two_layer_step:_steep", "rest / (rest + slope * slope)", "rest / (rest + slope)")
+def test_steep_surfaces_move_across_as_well() -> None:
+    """By what a surface is steeper than a level one: the share K/(K + s^2)."""
+    step, slope = 0.1, 0.8
+    radius = np.array([0.9 - slope * step, 0.9, 0.9 + slope * step])
+    flow = np.zeros((4, 3))
+    flow[1] = 0.5 * (1.0 - radius**2)
+    rest = 1.0 - flow[1, 1]
+    for level, left in ((0.0, slope), (0.3, slope - 0.3), (1.0, 0.0), (-0.3, slope)):
+        found = two_layer_step._steep(flow, 1.0, 1, 0, 2, step, level)
+        assert found == pytest.approx(rest / (rest + left**2), rel=1e-12)
+
+
+@kills(
+    _RATES,
+    "force[i] *= _steep(flow, full, i, before, after, step, level)",
+    "force[i] *= _steep(flow, full, i, before, after, step, 0.0)",
+)
+def test_a_level_pool_is_no_cliff() -> None:
+    """One that leans a little and gives way is driven back by its whole weight's torque."""
+    drum, leaning = Drum(PLAIN, cells=192), Drum(PLAIN, down=math.pi + 0.1, cells=192)
+    leaning.lie()
+    drum.flow[:] = leaning.flow
+    moment = drum.flows()
+    torque = moment.moment_x * drum.force[1] - moment.moment_y * drum.force[0]
+    drum.flow[3] = math.copysign(1e-9, torque) * drum.flow[1]
+    found = rates(drum)[2:].sum() * 2.0 * math.pi / 192
+    # 25 cells to either side, of which a shore may be off by half a one.
+    assert found == pytest.approx(torque, rel=0.5 / 25.0)
 
 
 @kills(_RATES, "mean * radius + edge > 0.0 or beyond > 0.0", "edge > 0.0 or beyond > 0.0")
