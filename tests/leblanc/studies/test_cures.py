@@ -85,6 +85,17 @@ def test_volume() -> None:
     assert "full" in cure["more liquid"].text and cure["more liquid"].value > own
 
 
+@kills(f"{CURES}:_by_volume", "own * _LESS", "own * _LESS[:0]")
+def test_a_little_liquid_is_looked_at_too() -> None:
+    """Of less than a step of the fills, some of it may still be too much."""
+    scene = lb.example("washing_machine")
+    step = scene.fills[0].chamber.capacity / 24.0
+    scene = damped(scene.replace({"chambers.0.volume": 0.9 * step}), 0.3)
+    assert bands(scene)
+    (less,) = [cure for cure in cures(prepare(scene, free=True)) if cure.kind == "less liquid"]
+    assert 0.0 < less.value < 0.9 * step and not bands(scene.replace({"chambers.0.volume": less.value}))
+
+
 @kills(
     f"{CURES}:_by_walls",
     "sector_frequencies(count, log)[0] >= 1.0",

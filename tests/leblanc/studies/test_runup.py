@@ -41,7 +41,7 @@ from leblanc.studies.runup.study import (
 from meshes.chamber import Chamber
 from meshes.errors import InputError
 from solvers.layer.records import Outcome
-from solvers.runup.machine import Motor, Ramp, Transfer
+from solvers.runup.machine import Handover, Motor, Ramp, Transfer
 from solvers.runup.runup import EnergyAudit, RunupHistory, run_up
 from tests.mutants import kills
 from tests.oracles.data_files import assert_read_back
@@ -340,6 +340,17 @@ def test_gravity_across() -> None:
     assert "40%" in notes[0].text
     good, _ = judged(machine, history_of(2, 1, captured=np.array([[False], [True]])))
     assert good.tolist() == [False, True]
+
+
+@kills("leblanc.studies.runup.study:judged", "(pool is None or pours(fill, pool))", "True")
+def test_a_pool_that_reaches_the_axis_is_out_of_range() -> None:
+    """Two layers describe one below the axis; of a fuller chamber only the ring is described."""
+    free = np.array([[False], [True]])
+    for share, holds in ((0.3, True), (0.48, False)):
+        machine = lying()
+        machine = machine.replace({"chambers.0.volume": share * machine.fills[0].chamber.capacity})
+        good, _ = judged(machine, history_of(2, 1, captured=free, handover=Handover.CARRIED))
+        assert good.tolist() == [holds, True]
 
 
 @kills(
