@@ -256,7 +256,7 @@ def _spread(flow, turn, full, dt, work):
 
 
 @_part
-def _shear(stream, table, slip, depth, area):
+def _shear(stream, table, slip, depth):
     """Shear on the wall over density and slip of the liquid there, 1/s [theory: friction, eq. 1]."""
     if stream.law == NONE:
         return 0.0
@@ -281,7 +281,7 @@ def _sources(flow, pull, spin, stream, table, heavy, ring, dt, taken):
     plate, lever = stream.tip - stream.gap, 1.0 - 0.5 * (stream.tip + stream.gap)
     often = stream.baffles
     speed = abs(spin)
-    film = stream.grip * _shear(stream, table, speed, 1.0, 1.0) * speed / (heavy + 1e-300)
+    film = stream.grip * _shear(stream, table, speed, 1.0) * speed / (heavy + 1e-300)
     if stream.law == LINEAR:
         film = 0.5 if film > 1.0 else 0.0
     open_ = max(1.0 - closures.SHELTERS * often * stream.tip, 0.0)
@@ -308,7 +308,7 @@ def _sources(flow, pull, spin, stream, table, heavy, ring, dt, taken):
                     pace = 1e300
                 else:
                     slip = abs(spin - below)
-                    drawn = stream.grip * closures.DRAWN * _shear(stream, table, slip, depth, whole)
+                    drawn = stream.grip * closures.DRAWN * _shear(stream, table, slip, depth)
                     pace = max(closures.RENEWED * often * abs(spin - w), open_ * drawn / (most + 1e-300))
                 moved = min((most - flow[0, i]) * (1.0 - np.exp(-pace * dt)), flow[1, i])
                 spun = flow[3, i] * moved / flow[1, i]
@@ -326,7 +326,7 @@ def _sources(flow, pull, spin, stream, table, heavy, ring, dt, taken):
             width = closures.DRAG * plate if stream.loss < 0.0 else stream.loss * one
             width = 1e6 if stream.shut > 0.0 else width
             plates_1 = 0.5 * often * width * slip_1 * lever * thin
-            wall_1 = _shear(stream, table, slip_1, depth, whole)
+            wall_1 = _shear(stream, table, slip_1, depth)
         if two > DRY:
             if often > 0.0:
                 turned = (one * w_1 * w_1 + two * w_2 * w_2) / (one + two)
@@ -337,13 +337,13 @@ def _sources(flow, pull, spin, stream, table, heavy, ring, dt, taken):
                 width *= held / (held + width * slip_2 * slip_2 + 1e-300)
                 plates_2 = 0.5 * often * width * slip_2
             if one <= 10.0 * DRY:
-                wall_2 = _shear(stream, table, slip_2, depth, whole)
+                wall_2 = _shear(stream, table, slip_2, depth)
         if stream.law == LINEAR:
             wall_1 = stream.coefficient * one * rest
             wall_2 = stream.coefficient * two * rest
         elif stream.law != NONE:
-            wall_1 += stream.lid * _shear(stream, table, slip_1, depth, whole) * one * rest
-            wall_2 += stream.lid * _shear(stream, table, slip_2, depth, whole) * two * rest
+            wall_1 += stream.lid * _shear(stream, table, slip_1, depth) * one * rest
+            wall_2 += stream.lid * _shear(stream, table, slip_2, depth) * two * rest
         if one > DRY and two > DRY:
             between = 0.125 * closures.INTERFACE * abs(w_2 - w_1)
             weighs = max(pull[i], 0.0)

@@ -16,6 +16,21 @@ if TYPE_CHECKING:
 
 FILES = ("map.html", "map.nc")
 
+# The second axis of either map.
+_Over = Annotated[
+    Texts,
+    "Path of the number on the second axis, as rotor.damping_ratio; several, each behind its own --over, "
+    "keep their ratios [default: the liquid's volume; with balls the drag in all races].",
+]
+_First = Annotated[Quantity | None, Option(("--from",)), "Its first value [default: a tenth of the scene's]."]
+_Last = Annotated[Quantity | None, Option(("--to",)), "Its last value [default: ten times the scene's]."]
+_Values = Annotated[Points, "How many values of it [default: 31]."]
+_Spacing = Annotated[
+    bool | None,
+    Option(("--log/--linear",)),
+    "How it is spaced [default: log where it spans a decade].",
+]
+
 
 def map_whirl(
     scene: Annotated[SceneOrPath, SCENE, "The machine, or the path of its file."],
@@ -27,23 +42,11 @@ def map_whirl(
     max_volume: Annotated[
         Quantity | None, VOLUME, "Most liquid in all chambers together [default: what fits]."
     ] = None,
-    over: Annotated[
-        Texts,
-        "Path of the number on the second axis, as rotor.damping_ratio; several, each behind its own --over, "
-        "keep their ratios [default: the liquid's volume; with balls the drag in all races].",
-    ] = (),
-    start: Annotated[
-        Quantity | None, Option(("--from",)), "Its first value [default: a tenth of the scene's]."
-    ] = None,
-    stop: Annotated[
-        Quantity | None, Option(("--to",)), "Its last value [default: ten times the scene's]."
-    ] = None,
-    values: Annotated[Points, "How many values of it [default: 31]."] = 31,
-    log: Annotated[
-        bool | None,
-        Option(("--log/--linear",)),
-        "How it is spaced [default: log where it spans a decade].",
-    ] = None,
+    over: _Over = (),
+    start: _First = None,
+    stop: _Last = None,
+    values: _Values = 31,
+    log: _Spacing = None,
     friction: Annotated[
         Any,
         FRICTION,
@@ -88,25 +91,13 @@ def map_whirl(
 
 def map_balls(
     scene: Annotated[SceneOrPath, SCENE, "The machine with its races, or its file."],
-    over: Annotated[
-        Texts,
-        "Path of the number on the second axis, as rotor.damping_ratio; several, each behind its own --over, "
-        "keep their ratios [default: the liquid's volume; with balls the drag in all races].",
-    ] = (),
+    over: _Over = (),
     *,
-    start: Annotated[
-        Quantity | None, Option(("--from",)), "Its first value [default: a tenth of the scene's]."
-    ] = None,
-    stop: Annotated[
-        Quantity | None, Option(("--to",)), "Its last value [default: ten times the scene's]."
-    ] = None,
-    values: Annotated[Points, "How many values of it [default: 31]."] = 31,
+    start: _First = None,
+    stop: _Last = None,
+    values: _Values = 31,
     speeds: Annotated[Points, ANGULAR_SPEED, "How many speeds, over the scene's range."] = 61,
-    log: Annotated[
-        bool | None,
-        Option(("--log/--linear",)),
-        "How it is spaced [default: log where it spans a decade].",
-    ] = None,
+    log: _Spacing = None,
     state: Annotated[
         str, "Of the balls: balanced, heavy or light, together on that side [default: balanced]."
     ] = "balanced",

@@ -189,7 +189,7 @@ def sources(drum: Drum, spin: float, dt: float) -> np.record:
 )
 @kills(_SOURCES, "plates_2 = 0.5 * often * width * slip_2", "plates_2 = 0.5 * often * width * slip_1")
 @kills(_SOURCES, "width *= held / (held + width", "width *= held / (held + 0.0 * width")
-@kills(_SOURCES, "wall_1 = _shear(stream, table, slip_1, depth, whole)", "wall_1 = 0.0")
+@kills(_SOURCES, "wall_1 = _shear(stream, table, slip_1, depth)", "wall_1 = 0.0")
 @kills(_SOURCES, "torque += drag_1 * (spin - last_1)", "torque -= drag_1 * (spin - last_1)")
 @kills(
     _SOURCES, "lost += dt * plates_2 * (spin - last_2) ** 2", "lost -= dt * plates_2 * (spin - last_2) ** 2"
@@ -251,8 +251,8 @@ def test_between_the_layers() -> None:
 @kills(_SOURCES, "spun = flow[3, i] * moved / flow[1, i]", "spun = 0.0")
 @kills(
     _SOURCES,
-    "_shear(stream, table, speed, 1.0, 1.0) * speed",
-    "_shear(stream, table, speed, 1.0, 1.0)",
+    "_shear(stream, table, speed, 1.0) * speed",
+    "_shear(stream, table, speed, 1.0)",
 )
 @kills(_SOURCES, "closures.DRAWN * _shear", "0.5 * closures.DRAWN * _shear")
 def test_exchange() -> None:
