@@ -17,7 +17,11 @@ if TYPE_CHECKING:
     from solvers.synchronous.errors import GravityError, LinearError
 
 # Liquid models of time-domain states, with what goes round each wall, in words.
-HELD_MODELS = {"long_wave": ("long waves", "cells"), "potential": ("fully nonlinear waves", "nodes")}
+HELD_MODELS = {
+    "long_wave": ("long waves", "cells"),
+    "potential": ("fully nonlinear waves", "nodes"),
+    "kdv_held": ("waves of KdV-Burgers", "points"),
+}
 
 
 KNOWN, _RATE = ("linear", "statics", "kdv", "fem", *HELD_MODELS), "rad s-1"
@@ -215,7 +219,13 @@ def _held_reason(choice: Choice, part: Index) -> str:
     worst = choice.error[part].max()
     size = percent(worst) if np.isfinite(worst) else "an amount that is not known"
     parts = HELD_MODELS[choice.held_model][1]
-    return f"{asked}integrated in time with the rotor until converged; half the {parts} change it by {size}"
+    why = f"{asked}integrated in time with the rotor until converged"
+    if choice.held_model == "kdv_held":
+        return (
+            f"{why}; the distance from the exact equilibrium and half the {parts} come to {size}, of a limit "
+            "cycle there is no estimate"
+        )
+    return f"{why}; half the {parts} change it by {size}"
 
 
 def _linear_reason(choice: Choice, part: Index) -> str:
@@ -258,6 +268,10 @@ def _better(choice: Choice, model: str, part: Index) -> str:
         return "unknown: it is compared with no other"
     if not choice.in_range[part[0]]:
         return "none that is steady: `leblanc runup` carries the liquid until it is caught"
+    if model == "kdv_held":
+        return (
+            'long waves integrated in time (liquid = "long_wave"), for whirls that are large or off resonance'
+        )
     if model in HELD_MODELS:
         return f"the same with more {HELD_MODELS[model][1]} ([model] cells)"
     if model == "kdv":

@@ -126,6 +126,7 @@ def choose_all(machines: Sequence[Prepared]) -> list[Choice]:
     for machine in machines:
         _check_walls(machine.scene)
         _check_exact(machine.scene)
+        _check_family(machine.scene)
     planar = [machine for machine in machines if isinstance(machine.rotor, Jeffcott)]
     found = iter(_planar_errors(planar) if planar else ())
     errors = [
@@ -233,15 +234,30 @@ def _check_exact(scene: Scene) -> None:
         raise InputError("model.cells", scene.model.cells, "even, for fully nonlinear waves")
 
 
+def _check_family(scene: Scene) -> None:
+    """What waves of KdV-Burgers in time leave out."""
+    model = scene.model
+    if model.liquid != "kdv" or model.held == "never":
+        return
+    if any(fill.uneven and fill.volume > 0.0 for fill in scene.fills):
+        allowed = "never for kdv where baffles stand in the liquid or a section is no circle"
+        raise InputError("model.held", model.held, allowed)
+    if model.friction.law is FrictionLaw.QUADRATIC:
+        allowed = "none, linear, stokes or wall for unidirectional waves"
+        raise InputError("model.friction", "quadratic", allowed)
+    if model.cells % 2:
+        raise InputError("model.cells", model.cells, "even, for waves of KdV-Burgers")
+
+
 def may_hold(scene: Scene) -> bool:
     """Whether a scene allows time-domain states."""
     model = scene.model
-    return model.liquid in HELD_MODELS or (model.liquid == "auto" and model.held != "never")
+    return model.liquid in HELD_MODELS or (model.liquid in ("auto", "kdv") and model.held != "never")
 
 
 def held_model(scene: Scene) -> str:
     """Name of the liquid model that motions are held with."""
-    return "potential" if scene.model.liquid == "potential" else "long_wave"
+    return {"potential": "potential", "kdv": "kdv_held"}.get(scene.model.liquid, "long_wave")
 
 
 def held_at(scene: Scene, choice: Choice, growth: Array) -> Flags:
@@ -268,8 +284,8 @@ def costed(machine: Prepared, choice: Choice, growth: Array) -> Choice:
     drawn = any(fill.chamber.section is not None for fill in scene.fills)
     if drawn or not any(map(_has_surface, scene.fills)):
         return choice
-    numerics, exact = HoldNumerics(cells=scene.model.cells), choice.held_model == "potential"
-    given = scene.fills, machine.speed, growth, machine.across_gravity, numerics, exact
+    numerics, liquid = HoldNumerics(cells=scene.model.cells), choice.held_model.removesuffix("_held")
+    given = scene.fills, machine.speed, growth, machine.across_gravity, numerics, liquid
     return replace(choice, holding=hold_seconds(*given))
 
 
@@ -280,6 +296,8 @@ def held_cost(machine: Prepared, choice: Choice, growth: Array) -> HeldCost | No
     """
     scene = machine.scene
     asked = scene.model.held != "never" or scene.model.liquid in HELD_MODELS
+    if scene.model.liquid == "kdv" and not asked:
+        return None
     ready = scene if asked else scene.altered(model=scene.model.altered(held="auto"))
     at = held_at(ready, choice, growth)
     if choice.holding is None or not at.any():

@@ -238,13 +238,14 @@ class Model(Part):
     )
     held: Annotated[str, one_of(*HELD)] = Field(
         "never",
-        description="where auto may hold rotor and long waves in time, which takes seconds a speed: never; "
-        "where no steady model is within the tolerance or whirl is self-excited (auto); or always",
+        description="where auto may hold rotor and long waves in time, or kdv its own, which takes seconds a "
+        "speed: never; where no steady model is within the tolerance or whirl is self-excited (auto); or "
+        "always",
     )
     cells: Annotated[int, whole(16, MAX_CELLS)] = Field(
         128,
         description="finite volumes round each wall of a wave that is held; nodes of an exact one, even, of "
-        "which it takes more where needed",
+        "which it takes more where needed; points, even, of one by kdv",
     )
 
 

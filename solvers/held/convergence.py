@@ -128,7 +128,7 @@ class Watch:
 
         Without an inner wall its steps would have failed at the axis.
         """
-        if self.machine.gravity == 0.0 or self.machine.exact:
+        if self.machine.gravity == 0.0 or self.machine.liquid != "long_wave":
             return self.down
         full = layers.max(axis=(0, 2)) > self.gaps
         if full.any():

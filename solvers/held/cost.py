@@ -19,6 +19,8 @@ _THROWN = 0.15  # of gravity over the centrifugal acceleration, from which a mot
 _TURN, _CELL = 2e-3, 1e-7
 # Of fully nonlinear waves: of a step's rotor, of a layer's, and of each of its nodes.
 _ROTOR, _NODES, _NODE = 2e-3, 4e-3, 1e-5
+# Of KdV-Burgers: steps in a turn, at least and by cells; of a step, and of a cell in it.
+_FEWEST, _PER_CELL, _PLACE, _WAVES = 48.0, 0.6, 8e-4, 1e-6
 _HEAPED, _MOST = 80.0, 22.0  # by what a turn takes longer where gravity heaps the liquid up
 
 
@@ -42,18 +44,21 @@ def hold_seconds(
     growth: Array,
     across: float = 0.0,
     numerics: HoldNumerics | None = None,
-    exact: bool = False,
+    liquid: str = "long_wave",
 ) -> Array:
     """Processor time to hold motions until they converge, with half the cells for the error, s, shape (n,).
 
     Of one core of the machine it was measured on, to a factor of two [theory: held, eq. 12 and 13]; of exact
-    waves [theory: held, eq. 14].
+    waves [theory: held, eq. 14], of KdV-Burgers [theory: held, eq. 18].
     """
     numerics = numerics or HoldNumerics()
     surfaces = [fill.surface_radius for fill in fills if fill.volume > 0.0 and fill.surface_radius > 0.0]
     strength = across / (np.square(spin) * min(surfaces, default=math.inf))
     cells = np.array([[numerics.cells], [numerics.cells // 2]])
-    if exact:
+    if liquid == "kdv":
+        turn = np.maximum(_FEWEST, _PER_CELL * cells) * (_PLACE + _WAVES * cells * len(surfaces))
+        return np.asarray((settling_turns(spin, growth, strength, numerics) * turn).sum(axis=0))
+    if liquid == "potential":
         steps = math.pi * (1.0 + np.sqrt(1.0 + cells / 3.0))
         turn = steps * (_ROTOR + len(surfaces) * (_NODES + _NODE * cells))
         return np.asarray((settling_turns(spin, growth, strength, numerics) * turn).sum(axis=0))

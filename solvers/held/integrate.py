@@ -40,6 +40,10 @@ def start(
 
         # A thin layer without bores breaks of what long waves forget.
         return exact.begin(machine, spin, numerics.cells, motion, 0.1 * kick)
+    if machine.family:
+        from solvers.held import family
+
+        return family.begin(machine, spin, numerics.cells, motion, kick)
     from solvers.pypde import RotorLayersPDE
 
     equation = RotorLayersPDE(
@@ -116,7 +120,7 @@ def hold(
 
 def compile_kernels(machine: HeldMachine, begin: Moment) -> None:
     """Compile what holds a motion, or load it from disk, by a step of it."""
-    if machine.exact:  # nothing of it is compiled
+    if machine.exact or machine.family:  # nothing of it is compiled
         return
     from solvers.pypde import RotorLayersPDE, run
 
@@ -130,12 +134,12 @@ def compile_kernels(machine: HeldMachine, begin: Moment) -> None:
 
 def require_known_solver(machine: HeldMachine, spin: float, numerics: HoldNumerics) -> None:
     """Raise `InputError` unless py-pde has a solver of that name that can hold the machine."""
-    if machine.exact:
+    if machine.exact or machine.family:
+        waves = "fully nonlinear waves" if machine.exact else "waves of KdV-Burgers"
         if numerics.solver != COUPLED:
-            text = "left out: fully nonlinear waves have their own steps"
-            raise InputError("solver", numerics.solver, text)
+            raise InputError("solver", numerics.solver, f"left out: {waves} have their own steps")
         if numerics.cells < 16 or numerics.cells % 2:
-            raise InputError("cells", numerics.cells, "an even number from 16 for fully nonlinear waves")
+            raise InputError("cells", numerics.cells, f"an even number from 16 for {waves}")
         return
     if numerics.solver == COUPLED:
         return
@@ -158,7 +162,7 @@ def hold_with_error(
     found = hold(machine, begin, numerics, slowest)
     half = replace(numerics, cells=numerics.cells // 2)
     parted = any(fill.compartments > 1 and is_smeared(fill, half.cells) for fill in machine.fills)
-    fewest = 64 if machine.exact else 16
+    fewest = 64 if machine.exact else 32 if machine.family else 16
     if numerics.cells < fewest or parted or not found.settled:
         return found
     # A guess would lead from a whirl to the steady motion.
@@ -176,6 +180,10 @@ def _resampled(machine: HeldMachine, moment: Moment, cells: int) -> Moment:
         from solvers.held.exact import again as with_nodes
 
         return with_nodes(machine, moment, cells)
+    if machine.family:
+        from solvers.held.family import again as with_modes
+
+        return with_modes(machine, moment, cells)
 
     def again(rows: Array) -> Array:
         n = rows.shape[1]
@@ -194,12 +202,16 @@ def _march(
 ) -> tuple[Moment, Outcome]:
     """Advance on py-pde until the watch has seen enough, the turns have run out or the steps have failed.
 
-    Fully nonlinear waves by `solvers.held.exact`.
+    Fully nonlinear waves by `solvers.held.exact`, those of KdV-Burgers by `solvers.held.family`.
     """
     if machine.exact:
         from solvers.held import exact
 
         return exact.march(machine, moment, numerics, watch)
+    if machine.family:
+        from solvers.held import family
+
+        return family.march(machine, moment, numerics, watch)
     from solvers.pypde import RotorLayersPDE, TurnTracker, run
     from solvers.pypde.stock import SAMPLES
 

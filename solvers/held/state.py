@@ -62,8 +62,8 @@ class Moment:
     area: Array  #: A, m^2, and q, m^4/s, of the layers' cells, shape (l, c)
     momentum: Array
     layers: Flags  #: which chambers hold a layer
-    #: y and phi of nonlinear waves, lengths over R and times in 1/Omega, of which area and momentum are
-    #: seen, shape (l, 2m); none of others
+    #: of which area and momentum are seen, lengths over R and times in 1/Omega: y and phi of nonlinear waves,
+    #: shape (l, 2m), modes and lag of KdV-Burgers, shape (l, 2m + 3); none of long waves
     wave: Array = field(default_factory=lambda: np.zeros((0, 0)))
 
     def at(self, spin: float) -> Moment:
@@ -132,4 +132,15 @@ class HeldMachine:
     #: all the liquid that damps that wave as much
     friction: Friction = NO_FRICTION
     gravity: float = 0.0  #: across the axis, m/s^2
-    exact: bool = False  #: the layers are fully nonlinear waves instead of long ones
+    #: what the layers are: long_wave; potential, fully nonlinear waves; kdv, those of KdV-Burgers
+    liquid: str = "long_wave"
+
+    @property
+    def exact(self) -> bool:
+        """The layers are fully nonlinear waves."""
+        return self.liquid == "potential"
+
+    @property
+    def family(self) -> bool:
+        """The layers are waves of KdV-Burgers."""
+        return self.liquid == "kdv"

@@ -79,6 +79,7 @@ class Outcome(IntEnum):
     BROKE = 8
     DRIED = 9
     WANTS_NODES = 10
+    FAMILY_LOST = 11
 
     @property
     def message(self) -> str:
@@ -98,4 +99,5 @@ _MESSAGES = {
     Outcome.BROKE: "a wave broke: the fully nonlinear wave owes no force",
     Outcome.WANTS_NODES: "a wave wants more than 512 nodes, and its crest does not break",
     Outcome.DRIED: "a wave left a part of its wall dry, which the fully nonlinear wave cannot",
+    Outcome.FAMILY_LOST: "waves of KdV-Burgers ran away, or the liquid came to stand still",
 }

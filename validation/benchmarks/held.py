@@ -56,7 +56,8 @@ class Cost:
 def cost(name: str, stride: int = 1, cells: int | None = None, liquid: str | None = None) -> Cost:
     """Compute the time-domain states that `auto` would compute on a scene.
 
-    Of every `stride`-th speed; `cells` and `liquid` ("potential": nonlinear waves) are the scene's if None.
+    Of every `stride`-th speed; `cells` and `liquid` ("potential": nonlinear waves, "kdv": those of
+    KdV-Burgers) are the scene's if None.
     """
     scene = example(name)
     given = {"cells": cells, "liquid": liquid}
@@ -80,7 +81,7 @@ def main(
     *scenes: str,
     stride: int = 1,
     cells: int | None = None,
-    liquid: Literal["long_wave", "potential"] | None = None,
+    liquid: Literal["long_wave", "potential", "kdv"] | None = None,
 ) -> Iterator[str]:
     """Table of shipped scenes; parameters as for `cost`."""
     yield "foretold and taken, s; each speed's ratio of them: 5 and 50 and 95 in 100; within half and twice"

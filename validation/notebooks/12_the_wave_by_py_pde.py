@@ -171,7 +171,8 @@ assert verdicts(cases) == {
     "agrees": {
         *(f"whirl-{machine}-{ratio:g}" for machine, ratios in names.items() for ratio in ratios),
         *(f"in-time-{ratio:g}" for ratio in names["a"]),
-        *("let-go", *(f"unbalanced-{e}-{part}" for e in (0.1, 0.3) for part in ("whirl", "synchronous"))),
+        *("let-go", "held-1.2", "held-1.3", "held-1.4"),
+        *(f"unbalanced-{e}-{part}" for e in (0.1, 0.3) for part in ("whirl", "synchronous")),
         *("no-lag", "diffusion", "exact-0.1-0.9", "exact-0.1-0.95", "exact-0.1-1.05", "exact-0.1-1.1"),
         *("exact-0.05-0.9", "driven-2-30-0.05", "driven-2-30.58-0.05", "driven-0.5-30-0.05"),
         *("driven-0.5-30.58-0.05", "driven-0.5-31-0.02", "driven-0.5-31.5-0.05"),

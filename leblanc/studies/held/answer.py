@@ -89,7 +89,7 @@ class Held:
     ]
     solver: Annotated[
         str,
-        Q("1", "solver", "that held the motions, of py-pde unless it is dop853", key="held_solver"),
+        Q("1", "solver", "that held the motions, of py-pde unless it is dop853 or lawson", key="held_solver"),
     ] = COUPLED
     model: str = "long_wave"  #: of the liquid, one of `HELD_MODELS`
 
@@ -101,7 +101,7 @@ class Held:
     @property
     def waves_not_known(self) -> Flags:
         """Limit cycles of which there is no estimate how far long waves are off, shape (n,)."""
-        if self.model == "potential":
+        if self.model != "long_wave":
             return np.zeros(self.at.shape, dtype=bool)
         return np.asarray(self.limit_cycle & np.isnan(self.wave_error))
 

@@ -31,10 +31,11 @@ from solvers.held.branch import HeldBranches, HeldTask, Runner, held_branches
 from solvers.held.integrate import compile_kernels, hold_with_error, require_known_solver, start
 from solvers.held.state import HeldKind, HeldMachine, HeldState, HoldNumerics, Moment
 from solvers.rotor.vibration import orbit
-from solvers.synchronous.response import Response, by_speed, joined, response
+from solvers.synchronous.response import Response, by_speed, distance, joined, response
 from solvers.whirl.growth import asynchronous_growth
 
-OWN_STEPS = "dop853"  # of fully nonlinear waves, which py-pde does not integrate
+# Of waves that py-pde does not integrate: fully nonlinear ones, those of KdV-Burgers.
+OWN_STEPS = {"potential": "dop853", "kdv_held": "lawson"}
 _KICK = 0.1  # of the layer's depth times the spin: what a whirl that grows by itself begins with
 
 
@@ -77,6 +78,8 @@ def hold_answer(
     models[rows] = choice.held_model
     waves = np.nan_to_num(held.wave_error[rows])  # where they have no estimate the notes say so
     error[rows] = held.error[rows] + waves + _left_out(machine, began.answer.at(rows))
+    if choice.held_model == "kdv_held":
+        error[rows] += _family_left(machine, every.at(np.arange(rows.size)), held.limit_cycle[rows])
     kept = by_speed([every.at(np.arange(rows.size, total)), began.refined.at(_far(began))])
     return replace(choice, models=models, error=error), answer, kept, held, motions
 
@@ -98,6 +101,14 @@ def _left_out(machine: Prepared, steady: Response) -> Array:
             np.abs(flat.liquid_offset / steady.liquid_offset - 1.0),
         )
     return np.where(np.isfinite(change), change, 0.0)
+
+
+def _family_left(machine: Prepared, found: Response, cycles: Flags) -> Array:
+    """Distance of motions by KdV-Burgers from the exact equilibrium, relative; nan at limit cycles, (n,)."""
+    exact = response(
+        machine.rotor, machine.scene.fills, found.speed, machine.axial_gravity, position=found.position
+    )
+    return np.where(cycles, np.nan, distance(found, exact))
 
 
 def _between(began: Began) -> Index:
@@ -131,8 +142,8 @@ def _placed(whole: Response, part: Response, rows: Index) -> Response:
 def held_machine(machine: Prepared) -> HeldMachine:
     """The machine as time-domain states take it."""
     fills = tuple(machine.scene.fills)
-    exact = machine.scene.model.liquid == "potential"
-    return HeldMachine(machine.system, fills, machine.friction, machine.across_gravity, exact)
+    liquid = held_model(machine.scene).removesuffix("_held")
+    return HeldMachine(machine.system, fills, machine.friction, machine.across_gravity, liquid)
 
 
 def hold_speeds(
@@ -187,7 +198,8 @@ def held_response(machine: Prepared, steady: Response, found: HeldBranches) -> R
         dry_patch=np.array([state.dry.any() for state in up]),
         stable=circles,
         model=np.full(settled.shape, held_model(machine.scene)),
-        in_range=steady.in_range & _in_range(machine, up),
+        # Steady waves of KdV-Burgers are out of range everywhere, as one family alone.
+        in_range=_in_range(machine, up) & (steady.in_range | (held_model(machine.scene) == "kdv_held")),
         converged=settled,
         branch_deflection=np.column_stack([motion.forward, none]),
         branch_stable=circles[:, None],
@@ -206,12 +218,17 @@ def _sizes(machine: Prepared, states: tuple[HeldState, ...]) -> Array:
 
 
 def _in_range(machine: Prepared, states: tuple[HeldState, ...]) -> Flags:
-    """Every layer rides with the drum, covers a vertical wall, is long, and clear of its inner wall."""
-    found, exact = [], held_model(machine.scene) == "potential"
+    """Every layer rides with the drum, covers a vertical wall, is long, and clear of its inner wall.
+
+    By KdV-Burgers the wall is wet as well, as of its limit cycles.
+    """
+    found, model = [], held_model(machine.scene)
+    exact, family = model == "potential", model == "kdv_held"
     covers = max((covering_speed(f, machine.axial_gravity) for f in machine.scene.fills), default=0.0)
     for state in states:
         rows = iter(range(len(state.moment.area)))
-        kept = state.spin >= covers
+        # Beyond its range the equation leaves less than nothing on the wall.
+        kept = state.spin >= covers and not (family and bool(state.dry.any()))
         for j, fill in enumerate(machine.scene.fills):
             radius = fill.chamber.radius
             if not state.captured[j]:
@@ -271,7 +288,7 @@ def held_result(found: HeldBranches, machine: Prepared, at: Index, solver: str) 
         amplitude_down=spread(falling),
         cells=machine.scene.model.cells,
         reason=spread([state.reason for state in up], ""),
-        solver=OWN_STEPS if model == "potential" else solver,
+        solver=OWN_STEPS.get(model, solver),
         model=model,
         wave_error=spread(wave_errors(machine, up)),
         energy_error=spread([state.energy_error for state in up]),
@@ -281,6 +298,7 @@ def held_result(found: HeldBranches, machine: Prepared, at: Index, solver: str) 
 FOLDER = "held"
 _ROOMS = (
     "fluid",
+    "fluid/friction",
     "solvers/rotor",
     "solvers/layer",
     "solvers/runup",

@@ -22,10 +22,10 @@ def wave_errors(machine: Prepared, states: Sequence[HeldState]) -> Array:
     That of smooth waves under a whirl of the cycle's speed and size [theory: model_error, eq. 35], of the
     layer where it is largest.
 
-    nan without a whirl beside the spin, for fully nonlinear waves, past baffles, and where no
-    smooth wave follows a whirl as large.
+    nan without a whirl beside the spin, for other waves than long ones, past baffles, and where no smooth
+    wave follows a whirl as large.
     """
-    if held_model(machine.scene) == "potential":
+    if held_model(machine.scene) != "long_wave":
         return np.full(len(states), np.nan)
     return np.array([_error(machine, state) for state in states])
 

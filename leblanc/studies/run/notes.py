@@ -230,6 +230,11 @@ def held_motions(held: Held, speed: Array) -> list[Note]:
             " Friction of the walls is a small force on all the liquid, which damps waves as they do: "
             "nothing lags."
         )
+    if held.model == "kdv_held":
+        text += (
+            " They hold next to a natural wave while the wall stays wet: with linear friction whirls are 1 "
+            "to 6 % off those of long waves (`leblanc validate kdv`). Their energy is not balanced."
+        )
     if cycles:
         text += f" Limit cycles at {cycles}, {_between(speed[held.limit_cycle])}{_waves_words(held)}."
     if apart:

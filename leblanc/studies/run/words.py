@@ -547,6 +547,10 @@ MODELS = {
         "Unidirectional, weakly nonlinear, dispersive waves that stand still as seen from the whirl.",
         "Taken for granted: whirl near the resonance of that family, low waves.",
     ),
+    "kdv_held": (
+        "Waves of KdV-Burgers against the spin, those with it by linear theory, on liquid that lags.",
+        "Taken for granted: whirl near the resonance of the former, a wet wall, a thin layer.",
+    ),
     "fem": (
         "Small disturbances of the liquid, by finite elements on the section of the chamber.",
         "Taken for granted: plane frictionless flow, an undisturbed surface that is a circle.",

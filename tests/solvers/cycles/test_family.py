@@ -26,7 +26,6 @@ from tests.oracles.exact import force_with_friction
 from tests.solvers.cycles.test_cycles import FRICTION, MARCHED, MU, SEPARATRIX
 from tests.solvers.whirl.test_growth import HEIGHT, NATURAL, RADIUS, WATER, machine
 from validation.cases.liquid.kdv import without_lag
-from validation.kdv_in_time import in_whirl
 
 LAG = {1.2: 0.1227, 1.3: 0.2306, 1.4: 0.3326, 1.55: 0.4803, 1.7: 0.6236, 2.0: 0.9007}  # of the marched ones
 
@@ -226,40 +225,3 @@ def test_what_it_refuses() -> None:
             Friction("quadratic", 0.01),
             wave=family_wave(),  # type: ignore[arg-type]
         )
-
-
-@kills("solvers.cycles.family:FamilyWave.rates", "-slope / inertia", "0.5 * -slope / inertia")
-@kills("solvers.cycles.family:FamilyWave.rates", "= change", "= 0.8 * change")
-@kills("solvers.cycles.family:disturbances", "+ around @ offset", "+ 0.9 * around @ offset")
-def test_rates_of_disturbances_are_those_of_the_equations_in_time() -> None:
-    """The equations as they stand: at rest at the limit cycle, and their derivatives have the same rates."""
-    limit, follower = cycle(48)
-    rotor, fill = machine(MU, 0.1, 0.02)
-    wave, state = follower.waves[0], limit.state[0]
-    assert isinstance(wave, FamilyWave)
-    size, m = abs(limit.moved[0] * follower.machine.places[0].row[0]), wave.modes
-    model = in_whirl(rotor, fill, limit.spin, FRICTION, float(size), m, limit.whirl_speed)
-    posed = wave.posed(state, limit.given[0])
-    assert posed is not None
-    lag, place = float(state[-1]) / wave.mean, size / RADIUS
-    offset = 0.9 / 0.095 * complex(posed.first).conjugate()
-    moving = 1j * model.frame * (place + model.share * offset)
-    at = np.array([*joined(state[:-1]), posed.other, lag, place, moving])
-    # Newton's method left 1e-6 of the mean area in modes whose rates go up to m times the slip.
-    assert np.abs(model.rates(0.0, at)).max() < 1e-4 * np.abs(at).max()
-    # Real and imaginary parts, of the lag the real one alone.
-    kept = np.delete(np.arange(2 * at.size), at.size + m + 1)
-
-    def real(values: np.ndarray) -> np.ndarray:
-        return np.concatenate((values.real, values.imag))[kept]
-
-    columns, base, step = [], model.rates(0.0, at), 1e-7
-    for k in kept.tolist():
-        moved = at.copy()
-        moved[k % at.size] += step * (1.0 if k < at.size else 1j)
-        columns.append(real(model.rates(0.0, moved) - base) / step)
-    found = np.linalg.eigvals(np.array(columns).T) * limit.spin
-    waves = [one for one in follower.waves if isinstance(one, FamilyWave)]
-    for rate in disturbances(follower.machine, waves, limit):
-        if rate.real > -0.3 * NATURAL:
-            assert np.abs(found - rate).min() < 0.02

@@ -26,7 +26,7 @@ FRICTION, NODES = Friction("linear", 6.0), HoldNumerics(cells=32)
 
 def held(spin: float, exact: bool, gravity: float = 0.0, numerics: HoldNumerics = NODES) -> HeldState:
     """The rig from its synchronous motion."""
-    machine = HeldMachine(RIG.system(), (SMALL,), FRICTION, gravity, exact)
+    machine = HeldMachine(RIG.system(), (SMALL,), FRICTION, gravity, "potential" if exact else "long_wave")
     steady = response(RIG, [SMALL], [spin], 0.0).coordinates[0]
     growth = float(asynchronous_growth(RIG, [SMALL], np.array([spin]), FRICTION)[0][0])
     return hold(machine, start(machine, spin, numerics, steady), numerics, growth)
@@ -36,7 +36,7 @@ def held(spin: float, exact: bool, gravity: float = 0.0, numerics: HoldNumerics 
 def test_upright_it_is_the_circle() -> None:
     """Begun off it: what it settles to is the closed form, to the tolerance of settling."""
     wanted = abs(response(RIG, [SMALL], [150.0], 0.0).deflection[0])
-    machine = HeldMachine(RIG.system(), (SMALL,), FRICTION, 0.0, exact=True)
+    machine = HeldMachine(RIG.system(), (SMALL,), FRICTION, 0.0, liquid="potential")
     steady = response(RIG, [SMALL], [150.0], 0.0).coordinates[0]
     growth = float(asynchronous_growth(RIG, [SMALL], np.array([150.0]), FRICTION)[0][0])
     found = hold(machine, start(machine, 150.0, NODES, 0.99 * steady), NODES, growth)
@@ -54,7 +54,7 @@ def test_gravity_across_begins_as_it_stays() -> None:
     Of second order in the wave's height over the depth, 3 % here.
     """
     heavy = replace(RIG, mass=4e4, stiffness=4e8, unbalance=0.0)
-    machine = HeldMachine(heavy.system(), (SMALL,), FRICTION, 9.81, exact=True)
+    machine = HeldMachine(heavy.system(), (SMALL,), FRICTION, 9.81, liquid="potential")
     none = np.zeros(2, dtype=complex)
     moment = begin(machine, 150.0, 32, none, 0.0)
     watch = Watch(machine, moment, replace(NODES, turns=16), 0.0)
@@ -84,7 +84,7 @@ def test_gravity_across_and_unbalance_beside_long_waves() -> None:
 
 def test_another_number_of_nodes() -> None:
     """What a layer holds and how it moves stays; another spin is the same motion in its own time."""
-    machine = HeldMachine(RIG.system(), (SMALL,), FRICTION, 9.81, exact=True)
+    machine = HeldMachine(RIG.system(), (SMALL,), FRICTION, 9.81, liquid="potential")
     steady = response(RIG, [SMALL], [150.0], 0.0).coordinates[0]
     moment = start(machine, 150.0, HoldNumerics(cells=64), steady)
     from solvers.held.exact import again
@@ -101,7 +101,7 @@ def test_another_number_of_nodes() -> None:
 def test_a_wave_that_breaks_is_not_settled(monkeypatch: pytest.MonkeyPatch) -> None:
     """Hit by three depths times the spin; no more than 64 nodes here."""
     monkeypatch.setattr("solvers.held.exact.MOST", 64)
-    machine = HeldMachine(RIG.system(), (SMALL,), FRICTION, 0.0, exact=True)
+    machine = HeldMachine(RIG.system(), (SMALL,), FRICTION, 0.0, liquid="potential")
     moment = begin(machine, 150.0, 32, np.zeros(2, dtype=complex), 3.0)
     found = hold(machine, moment, NODES)
     assert found.kind is HeldKind.NOT_SETTLED
@@ -109,7 +109,7 @@ def test_a_wave_that_breaks_is_not_settled(monkeypatch: pytest.MonkeyPatch) -> N
 
 
 def test_what_does_not_ride_is_a_mass() -> None:
-    machine = HeldMachine(RIG.system(), (SMALL,), FRICTION, 9.81, exact=True)
+    machine = HeldMachine(RIG.system(), (SMALL,), FRICTION, 9.81, liquid="potential")
     assert riding(machine, 150.0).tolist() == [True]
     assert riding(machine, 5.0).tolist() == [False]
     slow = exact_machine(machine, 5.0, riding(machine, 5.0), 32)
@@ -132,7 +132,7 @@ def test_the_force_damps_as_the_walls_do() -> None:
 
 
 def test_bad_numerics() -> None:
-    machine = HeldMachine(RIG.system(), (SMALL,), exact=True)
+    machine = HeldMachine(RIG.system(), (SMALL,), liquid="potential")
     moment = start(machine, 150.0, NODES)
     for numerics, field in ((replace(NODES, solver="scipy"), "solver"), (replace(NODES, cells=33), "cells")):
         with pytest.raises(InputError, match=field):

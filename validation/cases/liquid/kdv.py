@@ -18,6 +18,7 @@ from fluid import kdv
 from fluid.fill import Fill
 from fluid.friction.laws import Friction, FrictionLaw
 from fluid.liquid import known_liquid
+from leblanc.studies.held.whirls import own_whirl
 from meshes.chamber import Chamber
 from solvers.cycles.balance import circular
 from solvers.cycles.branch import Follower
@@ -25,17 +26,19 @@ from solvers.cycles.cycles import HeldWhirl, LimitCycles, limit_cycles
 from solvers.cycles.edges import small_whirl_edges
 from solvers.cycles.family import FamilyWave, family_wave
 from solvers.cycles.wave import Whirling
+from solvers.held.integrate import hold, start
+from solvers.held.state import HeldMachine, HeldState, HoldNumerics
 from solvers.layer.state import Numerics
 from solvers.liquid_model import Whirl
 from solvers.potential.steady import forced
 from solvers.pypde.models import LongWave, OneFamily
 from solvers.synchronous.models import STATICS
 from solvers.synchronous.response import response
+from solvers.whirl.growth import asynchronous_growth
 from validation.case import Case, Claims
 from validation.cases.rotors.rigs import horizontal_rig, horizontal_rotor
 from validation.cases.rotors.whirl import BANDED, NATURAL, layered_rotor
 from validation.exact import detuning, whirl_speeds
-from validation.kdv_in_time import Motion, kdv_in_time
 
 CLAIMS = Claims("kdv")
 
@@ -58,6 +61,7 @@ _DRIVEN = (
 # Unbalance in depths off the axis, and what rotor and long waves have in time at 1.3 omega_n, over the depth:
 # the part that goes with the spin and the self-excited one.
 _UNBALANCED = ((0.1, 0.189, 0.554), (0.3, 0.585, 0.631))
+_LET_GO = 1.2, 1.3, 1.4  # speeds over omega_n, in the band
 _SPEEDS = np.linspace(0.3, 3.0, 55)  # critical speeds
 _DEPTHS = 0.01, 0.05, 0.1, 0.2
 
@@ -145,27 +149,36 @@ def _owed() -> Iterator[Case]:
     yield CLAIMS.case("diffusion", f"{change:.2%}", change < 0.01, difference="in words")
 
 
-def let_go(unbalance: float) -> Motion:
-    """Rotor and layer by KdV-Burgers in time at 1.3 omega_n, kicked; unbalance in depths off the axis."""
+def let_go(ratio: float, unbalance: float = 0.0) -> HeldState:
+    """Rotor and layer held by KdV-Burgers, kicked: speed over omega_n, unbalance in depths off the axis."""
     rotor, fill = layered_rotor(0.1, 0.1, 0.02)
-    found = stable_at(by_family("a"), 1.3)
+    spin, numerics = ratio * NATURAL, HoldNumerics(cells=64)
     heavy = replace(rotor, unbalance=rotor.mass * unbalance * fill.depth)
-    kick, around = 0.95 * found.amplitude, found.whirl_speed
-    return kdv_in_time(heavy, fill, 1.3 * NATURAL, BANDED, kick, 60.0, whirl_speed=around)
+    machine = HeldMachine(heavy.system(), (fill,), BANDED, liquid="kdv")
+    growth = float(asynchronous_growth(rotor, [fill], np.array([spin]), BANDED)[0][0])
+    motion = response(heavy, [fill], [spin], 0.0).coordinates[0]
+    return hold(machine, start(machine, spin, numerics, motion, 0.4), numerics, growth)
 
 
 def _let_go() -> Iterator[Case]:
-    """In time, without unbalance and with it beside long waves in time."""
-    depth, cycle = layered_rotor(0.1, 0.1, 0.02)[1].depth, stable_at(by_family("a"), 1.3)
-    seen = let_go(0.0)
-    words = {"speed": seen.whirl_speed / NATURAL, "lag": seen.lag / NATURAL}
-    yield CLAIMS.case("let-go", seen.whirl / depth, printed=cycle.amplitude / depth, **words)
+    """In time, without unbalance beside the cycle and long waves in time, and with it beside the latter."""
+    rotor, fill = layered_rotor(0.1, 0.1, 0.02)
+    depth, marched = fill.depth, dict(MARCHED)
+    for ratio in _LET_GO:
+        seen = let_go(ratio)
+        words = {"speed": seen.whirl_speed / NATURAL, "lag": -float(seen.mean_rotation[0]) / NATURAL}
+        yield CLAIMS.case("held", seen.amplitude / depth, printed=marched[ratio], ratio=ratio, **words)
+        if ratio == 1.3:
+            cycle = stable_at(by_family("a"), ratio).amplitude / depth
+            yield CLAIMS.case("let-go", seen.amplitude / depth, printed=cycle, **words)
     for unbalance, synchronous, whirl in _UNBALANCED:
-        seen = let_go(unbalance)
-        for part, size, other in (
-            ("whirl", seen.whirl, whirl),
-            ("synchronous", seen.synchronous, synchronous),
-        ):
+        seen = let_go(1.3, unbalance)
+        forward = abs(seen.coordinates @ np.array([1.0, 1j])) / 2.0
+        parts = (
+            ("whirl", own_whirl(rotor.system(), seen, 0.0), whirl),
+            ("synchronous", forward, synchronous),
+        )
+        for part, size, other in parts:
             yield CLAIMS.case("unbalanced", size / depth, printed=other, part=part, unbalance=unbalance)
 
 
