@@ -20,7 +20,7 @@ _TURN, _CELL = 2e-3, 1e-7
 # Of fully nonlinear waves: of a step's rotor, of a layer's, and of each of its nodes.
 _ROTOR, _NODES, _NODE = 2e-3, 4e-3, 1e-5
 # Of KdV-Burgers: steps in a turn, at least and by cells; of a step, and of a cell in it.
-_FEWEST, _PER_CELL, _PLACE, _WAVES = 48.0, 0.6, 8e-4, 1e-6
+_FEWEST, _PER_CELL, _PLACE, _WAVES = 48.0, 0.6, 1.6e-3, 2e-6
 _HEAPED, _MOST = 80.0, 22.0  # by what a turn takes longer where gravity heaps the liquid up
 
 
