@@ -110,16 +110,17 @@ def _rates(flow, turn, x, y, angles, full, slot, rim, dt, work, rate):
             # Beside a dry cell the higher bed counts.
             edge = min(pull[left], pull[f])
         # A film on a slope has a level of its own, unlike its neighbour's by more than it is deep.
-        level_alike, own_l, own_r = 1.0, flow[0, left] + flow[1, left], flow[0, f] + flow[1, f]
+        level_alike, apart, own_l, own_r = 1.0, 0.0, flow[0, left] + flow[1, left], flow[0, f] + flow[1, f]
         if own_l > DRY and own_r > DRY:
             r_l, r_r = _surface(own_l, full), _surface(own_r, full)
-            apart = abs(_level(own_l, r_l, pull[left], full, slot) - _level(own_r, r_r, pull[f], full, slot))
-            apart /= min(own_l, own_r) * weak / _LEVEL
-            level_alike = max(1.0 - _ALIKE * max(apart - 2.0, 0.0), 0.0)
-        pressure, fast, stiff = 0.0, 0.0, False
-        mass_1, mass_2, spun_1, spun_2 = 0.0, 0.0, 0.0, 0.0
-        jump_1, jump_2, leap_1, leap_2, swift, lower, both = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+            apart = _level(own_l, r_l, pull[left], full, slot) - _level(own_r, r_r, pull[f], full, slot)
+            much = abs(apart) / (min(own_l, own_r) * weak / _LEVEL)
+            level_alike = max(1.0 - _ALIKE * max(much - 2.0, 0.0), 0.0)
+        pressure, fast, stiff, slow = 0.0, 0.0, 0.0, 1.0
+        mass_1, mass_2, jump_1, jump_2, swift, lower, both = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         held_l, held_r, share_l, share_r = 0.0, 0.0, 1.0, 1.0
+        least_1, least_2, bend_1, bend_2 = 1.0, 1.0, 0.0, 0.0
+        back_1, back_2, ahead_1, ahead_2 = 0.0, 0.0, 0.0, 0.0
         for side in range(2):
             i, way = (left, 1.0) if side == 0 else (f, -1.0)
             one, two = flow[0, i] + way * work[_SLOPE_A, i], flow[1, i] + way * work[_SLOPE_A + 1, i]
@@ -130,13 +131,16 @@ def _rates(flow, turn, x, y, angles, full, slot, rim, dt, work, rate):
             # What fills the gap has the inner wall to lean on.
             held = square * r + pull[i] > 0.0 or own > full
             level = _level(own, r, pull[i], full, slot)
-            share, dried = 0.0, False
-            if own > DRY and pull[i] > weak and square * r < _SLOW * pull[i]:
+            share, dried, calm = 0.0, False, 0.0
+            if own > DRY and pull[i] > weak:
+                calm = max(2.0 * (1.0 - square * r / (_SLOW * pull[i])), 0.0)
+            slow = min(slow, calm)
+            if calm > 0.0:
                 # Slow liquid keeps its level up to the face.
-                share = level_alike * min(2.0 * (1.0 - square * r / (_SLOW * pull[i])), 1.0)
+                share = level_alike * min(calm, 1.0)
                 wanted = _area_at(level, edge, rim, full, slot) if edge > 0.0 else 0.0
                 dried = wanted == 0.0
-                stiff = stiff or (own > full) != (wanted > full)
+                stiff = max(stiff, share) if max(own, wanted) > full else stiff
                 whole += share * (wanted - whole)
                 # The pool takes the change where there is one.
                 one = min(one, whole) if flow[1, i] > DRY else whole
@@ -154,7 +158,9 @@ def _rates(flow, turn, x, y, angles, full, slot, rim, dt, work, rate):
             both += whole
             stays = mean * radius + edge > 0.0 or beyond > 0.0
             still = _static(radius, edge) + slot * beyond if stays else 0.0
-            pressure += 0.5 * (still + 0.5 * mean * min(whole, full) ** 2) if stays else 0.0
+            # What turns weighs on a free surface alone.
+            turning = 0.5 * mean * whole**2 if beyond == 0.0 else 0.0
+            pressure += 0.5 * (still + turning) if stays else 0.0
             # What is left of the pressure over the cell's own half once the weight on its slope is taken off.
             between = 0.5 * (min(whole, full) + min(own, full))
             if held:
@@ -170,28 +176,39 @@ def _rates(flow, turn, x, y, angles, full, slot, rim, dt, work, rate):
                 held_l, share_l = balance, share
             else:
                 held_r, share_r = balance, share
-            moved_1, moved_2 = share * one * w_1, share * two * w_2
-            mass_1 += 0.5 * moved_1
-            mass_2 += 0.5 * moved_2
-            spun_1 += 0.5 * moved_1 * rest * w_1
-            spun_2 += 0.5 * moved_2 * rest * w_2
+            mass_1 += 0.5 * share * one * w_1
+            mass_2 += 0.5 * share * two * w_2
             jump_1 -= way * one
             jump_2 -= way * two
-            leap_1 -= way * moved_1 * rest
-            leap_2 -= way * moved_2 * rest
-        if stiff:
-            # Where a gap begins to be full its steep head would make a flood of rounding.
-            jump_1, jump_2 = 0.0, 0.0
+            if side == 0:
+                back_1, back_2 = rest * w_1, rest * w_2
+            else:
+                ahead_1, ahead_2 = rest * w_1, rest * w_2
+            least_1, least_2 = min(least_1, one, flow[0, i]), min(least_2, two, flow[1, i])
+            bend_1 -= way * rest * w_1
+            bend_2 -= way * rest * w_2
+        # Slow liquid does not spread up a slope, and a full gap, which answers a little more liquid by much
+        # pressure, passes no more than the levels ask for.
+        jump, asked, most = jump_1 + jump_2, 1.0, abs(apart) * full / slot
+        if jump * apart < 0.0:
+            asked = 1.0 - slow
+        elif abs(jump) > most:
+            asked = 1.0 - stiff * (1.0 - most / abs(jump))
+        jump_1, jump_2 = asked * jump_1, asked * jump_2
         below = lower / (both + 1e-300)
         force[left] += share_l * (held_l - pressure) / step
         force[f] -= share_r * (held_r - pressure) / step
         fastest = max(fastest, fast)
-        # Waves spread depth and momentum of the whole, the flow alone what the two layers have of them.
-        jump, leap = jump_1 + jump_2, leap_1 + leap_2
-        work[_FLUX, f] = mass_1 - 0.5 * (swift * jump_1 + (fast - swift) * below * jump)
-        work[_FLUX + 1, f] = mass_2 - 0.5 * (swift * jump_2 + (fast - swift) * (1.0 - below) * jump)
-        work[_FLUX + 2, f] = spun_1 - 0.5 * (swift * leap_1 + (fast - swift) * below * leap)
-        work[_FLUX + 3, f] = spun_2 - 0.5 * (swift * leap_2 + (fast - swift) * (1.0 - below) * leap)
+        # Waves spread the depth of the whole, the flow alone what the two layers have of it.
+        jump, waves = asked * jump, 0.5 * (fast - swift)
+        mass_1 -= 0.5 * swift * jump_1 + waves * below * jump
+        mass_2 -= 0.5 * swift * jump_2 + waves * (1.0 - below) * jump
+        # What passes has the velocity of where it comes from; waves even out that of the whole. No layer gets
+        # momentum that it has no mass for.
+        bend = waves * (least_1 * bend_1 + least_2 * bend_2) / (least_1 + least_2 + 1e-300)
+        work[_FLUX, f], work[_FLUX + 1, f] = mass_1, mass_2
+        work[_FLUX + 2, f] = mass_1 * (back_1 if mass_1 > 0.0 else ahead_1) - least_1 * bend
+        work[_FLUX + 3, f] = mass_2 * (back_2 if mass_2 > 0.0 else ahead_2) - least_2 * bend
     for k in range(2):
         for i in range(n):
             after = i + 1 if i < n - 1 else 0
@@ -214,7 +231,8 @@ def _rates(flow, turn, x, y, angles, full, slot, rim, dt, work, rate):
             r = _surface(whole, full)
             level = -r * along / pull[i] if pull[i] > weak else 0.0
             force[i] *= _steep(flow, full, i, before, after, step, level)
-        rise = 0.5 * (flow[0, after] + flow[1, after] - flow[0, before] - flow[1, before]) / step
+        rise = min(flow[0, after] + flow[1, after], full) - min(flow[0, before] + flow[1, before], full)
+        rise *= 0.5 / step
         for k in range(2):
             push = flow[k, i] / whole * force[i] - 0.5 * rise * flow[k, i] * (turn[k, i] ** 2 - square)
             rate[k, i] = -(work[_FLUX + k, after] - work[_FLUX + k, i]) / step
@@ -441,7 +459,8 @@ def measure(flow, angles, full, slot, spin, work, out):
         r, rest = _surface(whole, full), 1.0 - held
         r_b = _surface(flow[0, before] + flow[1, before], full)
         r_a = _surface(flow[0, after] + flow[1, after], full)
-        lever = 2.0 / 3.0 * held * (1.0 + r + r * r) / (1.0 + r)
+        # What is beyond a full gap lies at its inner wall.
+        lever = 2.0 / 3.0 * held * (1.0 + r + r * r) / (1.0 + r) + r * (whole - held)
         moment_x += lever * angles[0, i] * step
         moment_y += lever * angles[1, i] * step
         # Limited: beside a cliff of one cell the difference across it is nobody's slope.

@@ -132,6 +132,34 @@ def test_a_pool_swings_as_a_pendulum() -> None:
     assert lost[1] < 0.65 * lost[0] and lost[2] < 0.65 * lost[1]
 
 
+def test_slow_tumbling_makes_no_energy() -> None:
+    """High bars in narrow gaps, full at the bottom, turned slowly: what is lost is no more than the work.
+
+    Radius, gap, height of the bars, their distance off the wall in m; number, fill, cells, Omega^2 R/g, time
+    over sqrt(R/g). Where layers pass on momentum without mass most of these lose twice their work.
+    """
+    for radius, gap, tip, off, count, filled, cells, froude, time in (
+        (0.18, 0.030, 0.020, 0.005, 8, 0.48, 64, 0.08, 80.0),
+        (0.18, 0.030, 0.020, 0.000, 8, 0.48, 64, 0.08, 80.0),
+        (0.18, 0.030, 0.020, 0.005, 8, 0.48, 128, 0.08, 40.0),
+        (0.18, 0.130, 0.020, 0.005, 8, 0.15, 64, 0.08, 80.0),
+        (0.563, 0.201, 0.131, 0.000, 3, 0.43, 64, 0.0146, 40.0),
+        (0.336, 0.051, 0.029, 0.009, 3, 0.15, 32, 0.0772, 40.0),
+    ):
+        plates = Baffles(count, radius - tip, off)
+        chamber = Chamber(radius, 0.05, radius - gap, baffles=plates)
+        drum = Drum(
+            Fill(chamber, WATER, filled * chamber.capacity), Friction("quadratic", 0.0025), cells=cells
+        )
+        drum.lie()
+        begin, spin = drum.energy(), math.sqrt(froude * 9.81 / radius)
+        lasts = time * math.sqrt(radius / 9.81)
+        drum.go(lasts, spin, math.ceil(lasts / 0.005))
+        taken, work = drum.taken, spin * drum.taken.torque
+        assert taken.heat >= 0.0 and taken.baffles >= 0.0 and work > 0.0
+        assert drum.energy() - begin + taken.heat + taken.baffles <= 1.001 * work
+
+
 def test_spun_ring_is_offset_by_gravity() -> None:
     """A fast ring is thinner at the bottom by (kappa - 1) g/(2 kappa Omega^2), the exact plane solution."""
     fill, spin, errors = Fill(Chamber(0.24, 0.06), WATER, 0.0200695 * 0.06), 100.0, []

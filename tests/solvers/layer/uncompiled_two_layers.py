@@ -36,10 +36,12 @@ def rates(drum: Drum, dt: float = 0.0) -> Array:
     return rate
 
 
-def waving(cells: int, unlike: float = 0.0) -> Drum:
-    """A ring with waves all round, of two layers whose speeds differ, too thin for the weight of either."""
-    drum = Drum(PLAIN, cells=cells)
+def waving(cells: int, unlike: float = 0.0, fill: Fill = PLAIN) -> Drum:
+    """A ring with waves all round, of two layers whose speeds differ; in a gap, that fills it."""
+    drum = Drum(fill, cells=cells)
     first, second = np.arctan2(drum.angles[1], drum.angles[0]), drum.mean
+    if fill.chamber.inner_radius:
+        second = 1.2 * drum.stream.full
     one, two = second * (0.4 + 0.1 * np.cos(first)), second * (0.6 + 0.1 * np.sin(2.0 * first))
     rest = 1.0 - one - two
     drum.flow[:2] = one, two
@@ -65,10 +67,9 @@ def test_rest() -> None:
             assert slope[3, middle] > 0.0 > slope[3, middle - 3]
 
 
-@kills(_RATES, "max(apart - 2.0, 0.0)", "apart")
-@kills(_RATES, "stiff = stiff or (own > full) != (wanted > full)", "stiff = False")
+@kills(_RATES, "max(much - 2.0, 0.0)", "much")
+@kills(_RATES, "asked = 1.0 - stiff * (1.0 - most / abs(jump))", "asked = 1.0")
 @kills(_RATES, "share = min(1.0, 2.0 * own / (whole + 1e-300))", "share = 1.0")
-@kills(_RATES, "one = min(one, whole) if flow[1, i] > DRY else whole", "one = min(one, whole)")
 def test_rounding_does_not_grow() -> None:
     """A shallow shore cell beside a deep one, a gap that begins to be full: nothing grows."""
     plates = Baffles(6, 0.24 * 0.97)
@@ -76,10 +77,12 @@ def test_rounding_does_not_grow() -> None:
     shore = Fill(half, WATER, 0.1640625 * half.capacity)
     bare = replace(half, baffles=None)
     nearly = Fill(bare, WATER, 0.4453125 * bare.capacity)
+    narrow = Chamber(0.24, 0.06, 0.20, baffles=Baffles(6, 0.24 * 0.97))
     for fill, down, cells, time in (
         (shore, 0.0, 32, 0.5),
         (COMPUTED, math.pi, 64, 0.03),
         (nearly, 0.0, 32, 0.05),
+        (Fill(narrow, WATER, 0.252 * narrow.capacity), math.pi, 16, 0.3),
     ):
         drum = Drum(fill, down=down, cells=cells)
         drum.lie()
@@ -139,8 +142,8 @@ def test_spun_ring() -> None:
         assert abs(found[layer] @ cosine) * spin / (force * drum.cells) < 3e-3
 
 
-@kills(_RATES, "pressure += 0.5 * (still + 0.5 * mean", "pressure += 0.5 * (still + 0.25 * mean")
-@kills(_RATES, "spun_2 += 0.5 * moved_2 * rest * w_2", "spun_2 += 0.5 * moved_2 * w_2")
+@kills(_RATES, "turning = 0.5 * mean", "turning = 0.25 * mean")
+@kills(_RATES, "back_1, back_2 = rest * w_1, rest * w_2", "back_1, back_2 = rest * w_1, w_2")
 @kills(_RATES, "between = 0.5 * (min(whole, full) + min(own, full))", "between = 0.5 * min(own, full)")
 @kills(_RATES, "0.5 * rise * flow[k, i] * (turn[k, i] ** 2 - square)", "0.0 * rise * flow[k, i] * square")
 @kills(
@@ -152,13 +155,73 @@ def test_energy_of_unlike_layers() -> None:
     """Smooth waves of two layers of unlike speed keep their energy, but for the scheme's spreading."""
     for unlike in (-4.0, 4.0):
         gained = []
-        for cells in (48, 96):
+        for cells in (48, 96, 192):
             drum = waving(cells, unlike)
             rate, begin, tiny = rates(drum), drum.energy(), 1e-7
             drum.flow += tiny * rate
             gained.append((drum.energy() - begin) / tiny / begin)
-        # Limited slopes spread by the square of a cell; wrong terms give 0.1 and more.
-        assert abs(gained[1]) < 0.02 and abs(gained[1]) < 0.5 * abs(gained[0])
+        # Steep slopes take a little, limited ones spread by the square of a cell; wrong terms give 0.1.
+        assert -1e-3 < gained[2] <= 0.0 and abs(gained[2] - gained[1]) < 0.27 * abs(gained[1] - gained[0])
+
+
+@kills(_RATES, "mean * whole**2 if beyond == 0.0 else 0.0", "mean * min(whole, full) ** 2")
+@kills(_RATES, "rise = min(flow[0, after] + flow[1, after], full)", "rise = flow[0, after] + flow[1, after]")
+def test_energy_of_unlike_layers_in_a_full_gap() -> None:
+    """A full gap with waves in the speeds of both layers: what turns weighs on no surface there."""
+    for unlike in (-4.0, 4.0):
+        gained = []
+        for cells in (48, 96):
+            drum = waving(cells, unlike, COMPUTED)
+            rate, begin, tiny = rates(drum), drum.energy(), 1e-7
+            drum.flow += tiny * rate
+            gained.append((drum.energy() - begin) / tiny / begin)
+        assert abs(gained[1]) < 0.02 and gained[1] < 0.5 * abs(gained[0])
+
+
+@kills(_RATES, "min(least_2, two, flow[1, i])", "min(least_2, two)")
+@kills(
+    _RATES, "mass_1 * (back_1 if mass_1 > 0.0 else ahead_1)", "mass_1 * (back_1 if mass_1 < 0.0 else ahead_1)"
+)
+@kills(
+    _RATES, "mass_2 * (back_2 if mass_2 > 0.0 else ahead_2)", "mass_2 * (back_2 if mass_2 < 0.0 else ahead_2)"
+)
+def test_what_passes_has_the_velocity_of_where_it_comes_from() -> None:
+    """No cell gets a velocity that its neighbours have not: level layers, some hardly there; thin ones."""
+    draw, cells = np.random.default_rng(1), 32
+    pool, ring = Drum(PLAIN, cells=cells), Drum(PLAIN, gravity=1e-9, cells=cells)
+    pool.lie()
+    hardly = np.where(draw.random(cells) < 0.5, 1e-5, 0.5)
+    layers = pool.flow.sum(axis=0) * np.array([1.0 - hardly, hardly])
+    # Of the ring what turns weighs as its depth, a thousandth; it goes either way round.
+    thin = 1e-3 * draw.uniform(0.1, 1.9, (2, cells))
+    for drum, areas, least, most, fastest in (
+        (pool, layers, -1e-6, 1e-6, math.sqrt(9.81 / 0.24)),
+        (ring, thin, 20.0, 40.0, 40.0),
+        (ring, thin, -40.0, -20.0, 40.0),
+    ):
+        rest, dt = 1.0 - areas.sum(axis=0), 0.2 * 2.0 * math.pi / cells / fastest
+        drum.flow[:2], drum.flow[2:] = areas, areas * rest * draw.uniform(least, most, (2, cells))
+        after = drum.flow + dt * rates(drum, dt)
+        wet = areas.sum(axis=0) > 1e-4
+        found = after[2:, wet] / (after[:2, wet] * (1.0 - after[:2, wet].sum(axis=0)))
+        allowed = 0.01 * (most - least)
+        assert least - allowed <= found.min() and found.max() <= most + allowed
+
+
+@kills(_RATES, "one = min(one, whole) if flow[1, i] > DRY else whole", "one = min(one, whole)")
+def test_which_layer_holds_it_does_not_matter() -> None:
+    """A tilted pool that lies in the lower layer, in the upper one or in both: one flow of the whole."""
+    found = []
+    for share in (0.0, 0.5, 1.0):
+        drum = Drum(PLAIN, down=math.pi + 0.05, cells=32)
+        drum.lie()
+        whole = drum.flow.sum(axis=0)
+        drum.flow[:] = (1.0 - share) * whole, share * whole, 0.0 * whole, 0.0 * whole
+        drum.force = np.array([-9.81 / 0.24, 0.0])
+        rate = rates(drum, 1e-3)
+        found.append([rate[:2].sum(axis=0), rate[2:].sum(axis=0)])
+    np.testing.assert_allclose(found[0], found[2], atol=1e-12)
+    np.testing.assert_allclose(found[1], found[2], atol=1e-12)
 
 
 @kills(_RATES, "work[_EDGE, i] = flow[k, i] / out if out > flow[k, i] else 1.0", "work[_EDGE, i] = 1.0")
