@@ -209,7 +209,7 @@ STANDS = "Forces on the floor take the cabinet as rigid and standing still on fe
 
 def loads(obstructed: bool = False) -> Note:
     """What forces and clearances leave out."""
-    without = "; what liquid loses past baffles or in sections of their own is not in the motor's torque"
+    without = "; what rings past baffles and liquid in sections of its own lose is not in the motor's torque"
     return Note(RunCode.LOADS, {"obstructed": obstructed}, f"{STANDS}{without if obstructed else ''}.")
 
 

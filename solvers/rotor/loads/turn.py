@@ -137,21 +137,23 @@ def liquid_power(machine: LoadedMachine, friction: Friction, coordinates: Comple
 
     The motor replaces it. In a circular forward whirl without transverse gravity the liquid rests in its
     drum; backward whirl and gravity move it as small waves, below the speed from which an annular layer
-    exists as a pool past which the walls move. Chambers with baffles or sections of their own are left out.
+    exists as a pool past which walls and baffles move. Of a chamber with baffles the pool alone counts, one
+    with a section of its own is left out.
     """
     system, total = machine.rotor.system(), np.zeros(speed.shape)
     gravity = 0.0 if machine.vertical else machine.gravity
     for fill in machine.fills:
+        own, drawn = np.zeros((2, *speed.shape))
         layer = None if fill.uneven else plane_layer(fill, friction)
-        if layer is None:
-            continue
-        backward = np.abs(orbit(system, coordinates, fill.chamber.plane).backward)
-        own = drag_power(layer, speed, -speed, np.square(speed) * backward)
-        pool = pool_of(fill) if gravity > 0.0 else None
+        if layer is not None:
+            backward = np.abs(orbit(system, coordinates, fill.chamber.plane).backward)
+            own = drag_power(layer, speed, -speed, np.square(speed) * backward)
+            drawn = drag_power(layer, speed, 0.0 * speed, gravity)
+        pool = pool_of(fill) if gravity > 0.0 and fill.chamber.section is None else None
         if pool is not None:
             lies = speed <= capture_speed(fill.surface_radius, gravity)
             most = pool.mass * gravity * pool.arm
             held = speed * np.minimum(wall_torque(fill, pool, friction, speed), most)
-            own = np.where(lies, held, own + drag_power(layer, speed, 0.0 * speed, gravity))
+            own = np.where(lies, held, own + drawn)
         total = total + own
     return total
