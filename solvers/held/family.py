@@ -193,7 +193,7 @@ class FamilyMachine:
         # A body force less the axes' acceleration, which it changes in turn.
         left = self.whole - (self._carried @ (by_pull[:, :-1] / self.radius[:, None])).real
         right = force - self._felt(turn * ahead + by_pull[:, -1])
-        acceleration = self.rows @ np.linalg.solve(left, right) / self.radius
+        acceleration = self.rows @ _solved(left, right) / self.radius
         pull = weight - turn.conjugate() * acceleration
         waves[:, 0] += push * np.conj(pull)
         beside = beside - push * np.conj(pull)
@@ -239,6 +239,20 @@ class FamilyMachine:
         momentum = radius**4 * self.spin * area * (velocity - area)
         wave = np.concatenate(columns, axis=1)
         return Moment(self.spin, place.real.copy(), rate, radius**2 * area, momentum, layers, wave)
+
+
+def _solved(left: Array, right: Array) -> Array:
+    """Accelerations of the coordinates; nan where waves that run away leave nothing to solve."""
+    try:
+        return np.asarray(np.linalg.solve(left, right))
+    except np.linalg.LinAlgError:
+        return np.full(right.shape, np.nan)
+
+
+def overdamped(machine: HeldMachine, spin: float) -> bool:
+    """Whether a wall stops waves within the time of a radian, where the two families know it badly."""
+    own = FamilyMachine(machine, spin, riding(machine, spin), 16)
+    return bool((np.maximum(own.decay, own.far_decay) > 1.0).any())
 
 
 def begin(machine: HeldMachine, spin: float, cells: int, motion: Complex, kick: float) -> Moment:

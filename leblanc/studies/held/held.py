@@ -217,10 +217,17 @@ def _sizes(machine: Prepared, states: tuple[HeldState, ...]) -> Array:
     return np.array([state.amplitude if planar else state.crest for state in states])
 
 
+def _stops(machine: Prepared, spin: float) -> bool:
+    """Whether friction stops the waves of KdV-Burgers before they go far."""
+    from solvers.held.family import overdamped
+
+    return overdamped(held_machine(machine), spin)
+
+
 def _in_range(machine: Prepared, states: tuple[HeldState, ...]) -> Flags:
     """Every layer rides with the drum, covers a vertical wall, is long, and clear of its inner wall.
 
-    By KdV-Burgers the wall is wet as well, as of its limit cycles.
+    By KdV-Burgers the wall is wet as well, as of its limit cycles, and friction lets waves go far.
     """
     found, model = [], held_model(machine.scene)
     exact, family = model == "potential", model == "kdv_held"
@@ -228,7 +235,9 @@ def _in_range(machine: Prepared, states: tuple[HeldState, ...]) -> Flags:
     for state in states:
         rows = iter(range(len(state.moment.area)))
         # Beyond its range the equation leaves less than nothing on the wall.
-        kept = state.spin >= covers and not (family and bool(state.dry.any()))
+        kept = state.spin >= covers and not (
+            family and (bool(state.dry.any()) or _stops(machine, state.spin))
+        )
         for j, fill in enumerate(machine.scene.fills):
             radius = fill.chamber.radius
             if not state.captured[j]:

@@ -12,7 +12,7 @@ from leblanc.liquid.choose import choose_all, held_at, prepare
 from leblanc.scene.examples import example
 from leblanc.scene.scene import load_scene
 from leblanc.studies.held.held import _family_left, held_machine
-from leblanc.studies.run.study import run_scene
+from leblanc.studies.run.study import _endless, run_scene
 from meshes.errors import InputError
 from solvers.held.convergence import Watch
 from solvers.held.family import march
@@ -100,3 +100,20 @@ def test_tubs_and_two_planes_go_a_turn(name: str) -> None:
     np.testing.assert_allclose(
         after.coordinates, before.coordinates, atol=0.05 * np.abs(before.coordinates).max()
     )
+
+
+@kills(
+    "leblanc.studies.run.study:_endless",
+    "np.isinf(answer.amplitude) & answer.converged",
+    "np.isinf(answer.amplitude)",
+)
+def test_a_motion_that_ran_away_says_nothing_of_the_resonance() -> None:
+    """No bound is a matter of an answer: not of a motion that has not converged."""
+    scene = example("runup")
+    found = prepare(scene)
+    answer = response(found.rotor, scene.fills, np.array([20.0]), 0.0)
+    endless = replace(answer, deflection=np.array([complex(np.inf, 0.0)]))
+    assert np.isinf(endless.amplitude).all()
+    note = _endless(replace(endless, converged=np.array([True])))
+    assert note is not None and note.data["speed"] == 20.0
+    assert _endless(replace(endless, converged=np.array([False]))) is None

@@ -15,9 +15,11 @@ from meshes.errors import InputError
 from solvers.cycles.balance import circular
 from solvers.cycles.branch import Cycle, Follower
 from solvers.cycles.family import FamilyWave, disturbances
-from solvers.held.family import FamilyMachine, Frozen, again, begin
+from solvers.held.convergence import Watch
+from solvers.held.family import FamilyMachine, Frozen, _solved, again, begin, march, overdamped
 from solvers.held.integrate import hold, start
 from solvers.held.state import HeldKind, HeldMachine, HeldState, HoldNumerics
+from solvers.layer.records import Outcome
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.synchronous.response import response
 from solvers.waves.modes import joined
@@ -264,3 +266,19 @@ def test_another_number_of_modes_and_what_it_refuses() -> None:
         with pytest.raises(InputError) as refused:
             hold(of, moment, HoldNumerics(**changes))  # type: ignore[arg-type]
         assert refused.value.field == field
+
+
+@kills("solvers.held.family:overdamped", "> 1.0", "> 1e9")
+@kills("solvers.held.family:_solved", "np.full(right.shape, np.nan)", "np.full(right.shape, 0.0)")
+def test_friction_that_stops_waves_is_out_of_range_and_no_fault() -> None:
+    """Far beyond any wave the motion is lost and says so; moderate friction is in range."""
+    rotor, fill = machine(MU, 0.1, 0.02)
+    spin, none = 1.3 * NATURAL, np.zeros(2, dtype=complex)
+    of = [
+        HeldMachine(rotor.system(), (fill,), Friction("linear", k * spin), 0.0, "kdv") for k in (0.5, 200.0)
+    ]
+    assert [overdamped(one, spin) for one in of] == [False, True]
+    lost = Outcome.FAMILY_LOST
+    first, numerics = begin(of[1], spin, 16, none, 0.1), HoldNumerics(cells=16)
+    assert march(of[1], first, numerics, Watch(of[1], first, numerics, 0.0))[1] is lost
+    assert np.isnan(_solved(np.zeros((2, 2)), np.ones(2))).all()
