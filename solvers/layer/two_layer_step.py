@@ -140,7 +140,7 @@ def _rates(flow, turn, x, y, angles, full, slot, rim, dt, work, rate):
                 share = level_alike * min(calm, 1.0)
                 wanted = _area_at(level, edge, rim, full, slot) if edge > 0.0 else 0.0
                 dried = wanted == 0.0
-                stiff = max(stiff, share) if max(own, wanted) > full else stiff
+                stiff = max(stiff, min(calm, 1.0)) if max(own, wanted) > full else stiff
                 whole += share * (wanted - whole)
                 # The pool takes the change where there is one.
                 one = min(one, whole) if flow[1, i] > DRY else whole
