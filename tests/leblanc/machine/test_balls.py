@@ -147,7 +147,8 @@ def test_where_no_state_is_stable_nothing_is_told() -> None:
 def test_balls_without_mass_leave_the_loads_as_they_are() -> None:
     """Over speed and over time, beside liquid."""
     bare = lb.example("tub").replace(
-        {"speeds.count": 4, "model": {"liquid": "statics"}, "runup.duration": "2 s", "runup.cells": 16}
+        # The throw in which the ring forms, after 1.6 s, is chaotic: it tells machines 1e-9 apart.
+        {"speeds.count": 4, "model": {"liquid": "statics"}, "runup.duration": "1.5 s", "runup.cells": 16}
     )
     table = bare.table()
     race = RACE | {"radius": 0.2, "mass": 1e-9, "drag": 1e-8, "plane": 0.09}

@@ -307,7 +307,7 @@ def test_page_names_machine_model_notes_and_versions(tmp_path: Path) -> None:
 
 
 def test_every_model_says_what_it_does_and_takes_for_granted() -> None:
-    assert set(MODELS) == {"statics", "linear", "long_wave", "kdv", "potential", "fem"}
+    assert set(MODELS) == {"statics", "linear", "long_wave", "kdv", "kdv_held", "potential", "fem"}
     assert all(len(sentences) == 2 for sentences in MODELS.values())
 
 

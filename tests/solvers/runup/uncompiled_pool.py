@@ -48,7 +48,7 @@ def test_momentum() -> None:
 )
 def test_axis_that_shakes() -> None:
     """A heavy axis on springs, let go with a velocity: the liquid feels gravity less its acceleration."""
-    heavy, frequency, rate, steps = 1e7, 120.0, 0.3, 20
+    heavy, frequency, rate, steps = 1e7, 120.0, 0.3, 80
     shaken = Jeffcott(heavy, heavy * frequency**2, 0.0, 0.0)
     machine = couple(shaken.system(), [FILL], 5.0, Friction(), G, 128, False, handover=Handover.CARRIED)
     machine.state.rate[0] = rate
