@@ -351,7 +351,8 @@ def _notes(
 def _endless(answer: Response) -> Note | None:
     """Where the amplitude has no bound, with and without liquid; None where it has one everywhere."""
     # A motion held in time that ran away says nothing of the resonance.
-    endless = [np.isinf(answer.amplitude) & answer.converged, np.isinf(answer.amplitude_dry)]
+    lost = np.isin(answer.model, list(HELD_MODELS)) & ~answer.converged
+    endless = [np.isinf(answer.amplitude) & ~lost, np.isinf(answer.amplitude_dry)]
     wet, dry = (float(answer.speed[at][0]) if at.any() else None for at in endless)
     return None if wet is None and dry is None else notes.unbounded(wet, dry)
 
