@@ -14,8 +14,8 @@ from leblanc.studies.held.held import held_machine
 from leblanc.studies.run.study import run_scene
 from leblanc.studies.runup.study import runup_scene
 from meshes.errors import InputError
+from solvers.held import exact, family
 from solvers.held.convergence import Watch
-from solvers.held.exact import march
 from solvers.held.integrate import start
 from solvers.held.state import HoldNumerics
 from solvers.layer.records import Outcome
@@ -67,17 +67,19 @@ def test_a_thick_layer_holds_a_limit_cycle() -> None:
     assert found.held.whirl_speed[0] == pytest.approx(turning, rel=1e-4)
 
 
+@pytest.mark.parametrize("liquid", ["potential", "kdv"])
 @pytest.mark.parametrize("name", ["tub", "two_plane_rig"])
-def test_tubs_and_two_planes_go_a_turn(name: str) -> None:
+def test_tubs_and_two_planes_go_a_turn(name: str, liquid: str) -> None:
     """Of a synchronous motion: nothing is lost, and the axis is where it was, to what gravity ripples."""
-    scene = example(name).replace({"model.liquid": "potential"})
+    scene = example(name).replace({"model.liquid": liquid, "model.held": "always"})
     machine, spin = prepare(scene), 240.0
     held, numerics = held_machine(machine), HoldNumerics(cells=32, turns=16)
     steady = response(machine.rotor, scene.fills, np.array([spin]), machine.axial_gravity).coordinates[0]
     before = start(held, spin, numerics, steady)
     watch = Watch(held, before, numerics, 0.0)
     watch.count = 15
-    after, outcome = march(held, before, numerics, watch)
+    steps = exact.march if liquid == "potential" else family.march
+    after, outcome = steps(held, before, numerics, watch)
     assert outcome is Outcome.DONE
     np.testing.assert_allclose(after.area.mean(axis=1), before.area.mean(axis=1), rtol=1e-7)
     np.testing.assert_allclose(

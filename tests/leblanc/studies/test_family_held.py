@@ -11,14 +11,9 @@ import pytest
 from leblanc.liquid.choose import choose_all, held_at, prepare
 from leblanc.scene.examples import example
 from leblanc.scene.scene import load_scene
-from leblanc.studies.held.held import _family_left, held_machine
+from leblanc.studies.held.held import _family_left
 from leblanc.studies.run.study import _endless, run_scene
 from meshes.errors import InputError
-from solvers.held.convergence import Watch
-from solvers.held.family import march
-from solvers.held.integrate import start
-from solvers.held.state import HoldNumerics
-from solvers.layer.records import Outcome
 from solvers.synchronous.response import response
 from tests.mutants import kills
 
@@ -82,24 +77,6 @@ def test_what_it_refuses(changes: dict[str, object], field: str) -> None:
     with pytest.raises(InputError) as refused:
         run_scene(WHIRLS.replace(KDV | at(105.0, 115.0) | changes))
     assert refused.value.field == field
-
-
-@pytest.mark.parametrize("name", ["tub", "two_plane_rig"])
-def test_tubs_and_two_planes_go_a_turn(name: str) -> None:
-    """Of a synchronous motion: nothing is lost, and the axis is where it was, to what gravity ripples."""
-    scene = example(name).replace({"model.liquid": "kdv", "model.held": "always"})
-    machine, spin = prepare(scene), 240.0
-    held, numerics = held_machine(machine), HoldNumerics(cells=32, turns=16)
-    steady = response(machine.rotor, scene.fills, np.array([spin]), machine.axial_gravity).coordinates[0]
-    before = start(held, spin, numerics, steady)
-    watch = Watch(held, before, numerics, 0.0)
-    watch.count = 15
-    after, outcome = march(held, before, numerics, watch)
-    assert outcome is Outcome.DONE
-    np.testing.assert_allclose(after.area.mean(axis=1), before.area.mean(axis=1), rtol=1e-12)
-    np.testing.assert_allclose(
-        after.coordinates, before.coordinates, atol=0.05 * np.abs(before.coordinates).max()
-    )
 
 
 @kills("leblanc.studies.run.study:_endless", "& ~answer.converged", "& answer.converged")

@@ -208,6 +208,37 @@ def test_what_passes_has_the_velocity_of_where_it_comes_from() -> None:
         assert least - allowed <= found.min() and found.max() <= most + allowed
 
 
+@kills(_RATES, "asked = 1.0 - slow", "asked = 1.0")
+def test_slow_liquid_does_not_spread_up_a_slope() -> None:
+    """A film above either shore of a resting pool runs down into it, and nothing runs up out of the pool."""
+    drum = Drum(PLAIN, cells=32)
+    drum.lie()
+    whole = drum.flow[:2].sum(axis=0)
+    dry = np.flatnonzero(whole == 0.0)
+    shores = [k for k in dry if whole[(k - 1) % 32] > 0.0 or whole[(k + 1) % 32] > 0.0]
+    assert len(shores) == 2 and (drum.pull[shores] > 0.0).all()
+    drum.flow[0, shores] = 1e-4
+    assert (rates(drum, 1e-3)[:2].sum(axis=0)[shores] <= 0.0).all()
+
+
+@kills(_MEASURE, "+ r * (whole - held)", "+ 0.0 * whole")
+@kills(_MEASURE, "slot * beyond * beyond / full", "0.9 * slot * beyond * beyond / full")
+def test_energy_of_a_little_more_is_its_level() -> None:
+    """Height and pressure answer more liquid by the level, full gap or not [theory: pool, eq. 11]."""
+    for fill in (PLAIN, COMPUTED):
+        drum, tiny = Drum(fill, cells=48), 1e-7
+        drum.lie()
+        begin, whole, stream = drum.energy(), drum.flow[:2].sum(axis=0), drum.stream
+        for cell in np.flatnonzero(whole > 1e-3).tolist():
+            more = Drum(fill, cells=48)
+            more.flow[:] = drum.flow
+            more.flow[1, cell] += tiny
+            surface = two_layer_step._surface(whole[cell], stream.full)
+            level = two_layer_step._level(whole[cell], surface, drum.pull[cell], stream.full, stream.slot)
+            found = (more.energy() - begin) / tiny / (2.0 * math.pi / 48)
+            assert found == pytest.approx(-level, rel=1e-4, abs=1e-4)
+
+
 @kills(_RATES, "one = min(one, whole) if flow[1, i] > DRY else whole", "one = min(one, whole)")
 def test_which_layer_holds_it_does_not_matter() -> None:
     """A tilted pool that lies in the lower layer, in the upper one or in both: one flow of the whole."""
