@@ -40,9 +40,9 @@ _THINNEST = 0.25
 _DRY = 1e-12
 # A baffle that takes no more than this of its flow squared is none.
 _WEAKEST = 1e-12
-# Rounds of the fixed point for what piles up before a baffle; the bore that runs back is no slower than this
-# share of its waves; an area over R^2 that no pile comes to.
-_ROUNDS, _SLOWEST, _DEEPEST = 8, 0.05, 0.45
+# Rounds for what piles up before a baffle, and what may be left of it; the bore that runs back is no slower
+# than this share of its waves; an area over R^2 that no pile comes to.
+_ROUNDS, _SETTLED, _SLOWEST, _DEEPEST = 60, 1e-12, 0.05, 0.45
 # Cells between two baffles from which on each end of the piece has three of its own for its slopes.
 _FEWEST_ASIDE = 6
 
@@ -145,10 +145,9 @@ def _depth(area):
 
 @_jit
 def _piled(area, mass, passed, velocity, half, spin, most, star):
-    """Area that stands before a baffle, behind the bore that runs back from it; a round of a fixed point.
+    """Area that stands before a baffle, behind the bore that runs back from it if `star` stands there.
 
-    `mass`, `passed` and `velocity` count towards the baffle, `spin` as well; `star` is the area of the round
-    before [theory: baffles, eq. 9].
+    `mass`, `passed` and `velocity` count towards the baffle, `spin` as well [theory: baffles, eq. 9].
     """
     if mass <= passed:
         return area
@@ -157,7 +156,16 @@ def _piled(area, mass, passed, velocity, half, spin, most, star):
     other = _celerity(flow / max(1.0 - 2.0 * star, 1e-3), log, spin)[1]
     back = 0.5 * (half + other - velocity - flow - spin * (_log(area) + log))
     wanted = area + (mass - passed) / max(back, _SLOWEST * other)
-    return 0.5 * (star + max(min(wanted, most), area))
+    return max(min(wanted, most), area)
+
+
+@_jit
+def _past(drive, whole, before, behind, row):
+    """Flow past a baffle between two depths, with the sign of `drive`, and its resistance; eq. 5."""
+    held = resistance(_BEFORE * before + (1.0 - _BEFORE) * min(before, behind), row)
+    if held < 0.0:
+        return 0.0, held
+    return 2.0 * drive / (whole + np.sqrt(whole * whole + 4.0 * held * abs(drive))), held
 
 
 @_jit
@@ -165,19 +173,28 @@ def _through(sides, row, most):
     """Flow past a baffle and its resistance, below 0 where it is closed [theory: baffles, eq. 5 and 9].
 
     `sides`: drive and Z of eq. 5, spin, then area, flow, velocity and waves' speed before and after the face.
+    More passes where more is piled up, and less is left to pile up: one area between the layer's and `most`
+    is its own answer, found by false position with halves (Illinois).
     """
     drive, whole, spin, area_l, mass_l, u_l, half_l, area_r, mass_r, u_r, half_r = sides
-    star_l, star_r, passed, held = area_l, area_r, 0.0, 0.0
-    for _ in range(_ROUNDS):
-        deep_l, deep_r = _depth(star_l), _depth(star_r)
-        came, goes = (deep_l, deep_r) if drive > 0.0 else (deep_r, deep_l)
-        held = resistance(_BEFORE * came + (1.0 - _BEFORE) * min(came, goes), row)
-        passed = 2.0 * drive / (whole + np.sqrt(whole * whole + 4.0 * max(held, 0.0) * abs(drive)))
-        passed = passed if held >= 0.0 else 0.0
-        if drive > 0.0:
-            star_l = _piled(area_l, mass_l, passed, u_l, half_l, spin, max(most, area_l), star_l)
+    way, area, mass, u, half, behind = 1.0, area_l, mass_l, u_l, half_l, _depth(area_r)
+    if drive <= 0.0:
+        way, area, mass, u, half, behind = -1.0, area_r, -mass_r, -u_r, half_r, _depth(area_l)
+    low, high = area, max(most, area)
+    more, less, star, last = 0.0, 0.0, area, 0
+    passed, held = 0.0, 0.0
+    for tried in range(_ROUNDS):
+        passed, held = _past(drive, whole, _depth(star), behind, row)
+        miss = _piled(area, mass, way * passed, u, half, way * spin, max(most, area), star) - star
+        if abs(miss) <= _SETTLED * star:
+            break
+        if miss > 0.0:
+            less = 0.5 * less if last > 0 else less
+            low, more, last = star, miss, 1
         else:
-            star_r = _piled(area_r, -mass_r, -passed, -u_r, half_r, -spin, max(most, area_r), star_r)
+            more = 0.5 * more if last < 0 else more
+            high, less, last = star, miss, -1
+        star = high if tried == 0 else low + (high - low) * more / (more - less)
     return passed, held
 
 

@@ -52,6 +52,8 @@ DRY = 1e-13
 THIN = 1e-5
 # The surface of a face comes no nearer to the axis.
 NEAREST = 0.03
+# Share of its own rotation in whose field liquid counts as held.
+_HELD = 2.0 / 3.0
 # Keeps quotients of nothing by nothing at nothing.
 _NOTHING = 1e-300
 
@@ -109,16 +111,17 @@ def faded_velocity(area: float, q: float, spin: float) -> float:
 
 
 @_face_jit
-def primitives(area, q, spin, pull, full, slot, velocity, head, surface):
-    """Fill velocity, static head and radius of the surface of each cell; arrays of one shape.
+def primitives(area, q, spin, held, pull, full, slot, velocity, head, surface):
+    """Fill velocity, head in the field of a rotation `held` and radius of the surface of each cell.
 
-    Beyond the area `full` the head rises by `slot` times what is more [theory: long_wave, eq. 18].
+    Arrays of one shape. Beyond the area `full` the head rises by `slot` times what is more [theory:
+    long_wave, eq. 18].
     """
     for i in range(area.size):
         surface[i] = _surface(area[i])
         velocity[i] = faded_velocity(area[i], q[i], spin)
         pressed = slot * np.maximum(area[i] - full, 0.0)
-        head[i] = _head(area[i], surface[i], spin, pull[i]) + pressed
+        head[i] = _head(area[i], surface[i], held, pull[i]) + pressed
 
 
 @_face_jit
@@ -145,6 +148,7 @@ def _slopes(
     velocity,
     surface,
     spin,
+    held,
     full,
     slot,
     third,
@@ -171,7 +175,7 @@ def _slopes(
         half = np.sqrt(half * half + length * stiff) if stiff > 0.0 else half
         # Velocity over head of the wave that runs ahead and of the other one, times Omega^2 L; the inverse of
         # their difference.
-        carried, weight = spin * length, (spin * spin + stiff) * length
+        carried, weight = spin * length, (held * held + stiff) * length
         ahead, behind = carried + half, carried - half
         quotient = 1.0 / (half * weight)
         share = 0.5 * weight * quotient
@@ -189,7 +193,7 @@ def _slopes(
 
 
 @_face_jit
-def half_slopes(area, head, velocity, surface, spin, full, slot, half_head, half_velocity, log):
+def half_slopes(area, head, velocity, surface, spin, held, full, slot, half_head, half_velocity, log):
     """Half of the slopes of a ring's cells but the first and the last, limited wave by wave; and their L.
 
     Differences of head and velocity are split into those that the two waves of the cell carry, of which
@@ -197,21 +201,33 @@ def half_slopes(area, head, velocity, surface, spin, full, slot, half_head, half
     Next to a dry cell there is no slope, nor where the gap begins to be full.
     """
     _slopes(
-        area, head, velocity, surface, spin, full, slot, False,
+        area, head, velocity, surface, spin, held, full, slot, False,
         half_head, half_velocity, log, half_head, half_velocity,
     )  # fmt: skip
 
 
 @_face_jit
 def bent_slopes(
-    area, head, velocity, surface, spin, full, slot, half_head, half_velocity, log, bent_head, bent_velocity
+    area,
+    head,
+    velocity,
+    surface,
+    spin,
+    held,
+    full,
+    slot,
+    half_head,
+    half_velocity,
+    log,
+    bent_head,
+    bent_velocity,
 ):
     """`half_slopes` by parabolas: faces are right to third order [theory: long_wave, eq. 20].
 
     `bent_head` and `bent_velocity` are the means of what a cell has at its two faces.
     """
     _slopes(
-        area, head, velocity, surface, spin, full, slot, True,
+        area, head, velocity, surface, spin, held, full, slot, True,
         half_head, half_velocity, log, bent_head, bent_velocity,
     )  # fmt: skip
 
@@ -234,6 +250,7 @@ def side(
     bed,
     way,
     spin,
+    held,
     full,
     slot,
     area,
@@ -255,10 +272,10 @@ def side(
         wet = cell_area[i] > DRY
         # Where the push exceeds the centrifugal force no surface has this head: the least radius stands in.
         here = head[i] + way * half_head[i]
-        level = np.maximum(_at_head(here, spin, bed[i]), NEAREST)
+        level = np.maximum(_at_head(here, held, bed[i]), NEAREST)
         # Beyond the full gap the head is that of the slot, on a straight line.
-        beyond = here - spin * spin * full + rim * bed[i]
-        pressed = full + beyond / (slot + spin * spin + bed[i] / rim)
+        beyond = here - held * held * full + rim * bed[i]
+        pressed = full + beyond / (slot + held * held + bed[i] / rim)
         level = np.sqrt(np.maximum(1.0 - 2.0 * pressed, NEAREST * NEAREST)) if level < rim else level
         r = level if wet else 1.0
         u = velocity[i] + way * half_velocity[i] if wet else 0.0
@@ -349,6 +366,21 @@ DECAY = 0.48
 NO_ROLLER, MOST_ROLLER = 1e-5, 0.25
 
 
+@_sum_jit
+def _held(area, q, spin):
+    """Rotation in whose field liquid lies on the wall: the drum's, or 2/3 of its own where that is more.
+
+    Heads and areas of a face follow from one another in this field [theory: long_wave, eq. 5-6]. A drum that
+    is braked leaves its liquid behind, and its own field would not hold it against the force on its axis.
+    """
+    inertia, relative = 0.0, 0.0
+    for i in range(area.size):
+        inertia += area[i] * (1.0 - area[i])
+        relative += q[i] + spin * area[i] * area[i]
+    own = spin + relative / np.maximum(inertia, _NOTHING)
+    return np.maximum(abs(spin), _HELD * abs(own))
+
+
 @_inlined
 def ring_rates(
     area,
@@ -373,7 +405,8 @@ def ring_rates(
     are left out; `inside` are baffles and inner wall, a `solvers.layer.inside.Inside`.
     """
     plates, full, slot = inside.plates, inside.full, inside.slot * spin * spin
-    _cells(area, q, spin, pull_cell, full, slot, dispersion, work)
+    held = _held(area, q, spin)
+    _cells(area, q, spin, held, pull_cell, full, slot, dispersion, work)
     if plates.shape[0] > 0:
         slope_aside(plates, area, full, work[_HEAD], work[_HALF_HEAD], GHOSTS)
         slope_aside(plates, area, full, work[VELOCITY], work[_HALF_VELOCITY], GHOSTS)
@@ -382,13 +415,13 @@ def ring_rates(
             straighten(plates, area.size, work[VELOCITY], work[_BENT_VELOCITY], GHOSTS)
     if energy.size > 0:
         fluctuations(area, energy, spin, work[_ROLLER])
-    fastest = _faces(pull_face, plates, spin, full, slot, dispersion, work, energy.size > 0)
+    fastest = _faces(pull_face, plates, spin, held, full, slot, dispersion, work, energy.size > 0)
     mass = work[_MASS]
     if plates.shape[0] > 0:
         obstruct(plates, area, spin, full, slot, pull_face, work[_BEFORE:], work[_AFTER:], mass, work[_FLOW])
     pushes = work[_BEFORE + 4], work[_AFTER + 4]
     _drain(area, step, dt, plates.shape[0], mass, work[_FLOW], pushes[0], pushes[1], work[_BED])
-    _gather(area, euler, step, work, d_q)
+    _gather(area, euler, spin, held, step, work, d_q)
     take(plates, step, d_q)
     smear(plates, area, q, spin, step, dt, d_q)
     if energy.size > 0:
@@ -417,7 +450,7 @@ def rates(area, q, spin, euler, pull_cell, pull_face, inside, step, dt, dispersi
 
 
 @_inlined
-def _cells(area, q, spin, pull, full, slot, bent, work):
+def _cells(area, q, spin, held, pull, full, slot, bent, work):
     """Primitive variables of the cells and their half slopes, all round and a little further."""
     n = area.size
     end = n + GHOSTS
@@ -426,7 +459,7 @@ def _cells(area, q, spin, pull, full, slot, bent, work):
         work[_PULL, i + GHOSTS] = pull[i]
     cells = slice(GHOSTS, end)
     primitives(
-        area, q, spin, pull, full, slot, work[VELOCITY, cells], work[_HEAD, cells], work[SURFACE, cells]
+        area, q, spin, held, pull, full, slot, work[VELOCITY, cells], work[_HEAD, cells], work[SURFACE, cells]
     )
     for row in range(SURFACE + 1):
         for i in range(GHOSTS):
@@ -436,19 +469,19 @@ def _cells(area, q, spin, pull, full, slot, bent, work):
     # Only where waves disperse are the equations good enough for it to show.
     if bent:
         bent_slopes(
-            *(work[_AREA], work[_HEAD], work[VELOCITY], work[SURFACE], spin, full, slot),
+            *(work[_AREA], work[_HEAD], work[VELOCITY], work[SURFACE], spin, held, full, slot),
             *(work[_HALF_HEAD, inner], work[_HALF_VELOCITY, inner], work[LOG, inner]),
             *(work[_BENT_HEAD, inner], work[_BENT_VELOCITY, inner]),
         )
     else:
         half_slopes(
-            *(work[_AREA], work[_HEAD], work[VELOCITY], work[SURFACE], spin, full, slot),
+            *(work[_AREA], work[_HEAD], work[VELOCITY], work[SURFACE], spin, held, full, slot),
             *(work[_HALF_HEAD, inner], work[_HALF_VELOCITY, inner], work[LOG, inner]),
         )
 
 
 @_inlined
-def _faces(pull_face, plates, spin, full, slot, bent, work, rolling):
+def _faces(pull_face, plates, spin, held, full, slot, bent, work, rolling):
     """Fluxes through each cell's left face, and once more through the first; returns the largest speed.
 
     `bent`: the cells are parabolas; `rolling`: they have fluctuations.
@@ -480,6 +513,7 @@ def _faces(pull_face, plates, spin, full, slot, bent, work, rolling):
             bed,
             way,
             spin,
+            held,
             full,
             slot,
             work[row],
@@ -513,20 +547,22 @@ def _faces(pull_face, plates, spin, full, slot, bent, work, rolling):
 
 
 @_inlined
-def _gather(area, euler, step, work, d_q):
+def _gather(area, euler, spin, held, step, work, d_q):
     """Rate of change of q from the fluxes, the force within each cell and the Euler force.
 
     Inside a cell the force is A dB/dtheta, by the trapezium of its two ends; a film on a steep bed, whose
-    state at an end is deeper than twice its own, is pushed as what there is of it.
+    state at an end is deeper than twice its own, is pushed as what there is of it. Heads in a stronger field
+    than the drum's rise by what it adds as well.
     """
-    n = area.size
+    n, more = area.size, 0.5 * (held - spin) * (held + spin)
     flow, bend = work[_FLOW], work[_HALF_HEAD, GHOSTS : n + GHOSTS]
     area_l, push_l = work[_BEFORE], work[_BEFORE + 4]
     area_r, push_r = work[_AFTER], work[_AFTER + 4]
     for i in range(n):
         through = (flow[i + 1] - push_l[i + 1]) - (flow[i] - push_r[i])
         most = 2.0 * area[i]
-        within = (np.minimum(area_l[i + 1], most) + np.minimum(area_r[i], most)) * bend[i]
+        rise = bend[i] - more * (area_l[i + 1] - area_r[i])
+        within = (np.minimum(area_l[i + 1], most) + np.minimum(area_r[i], most)) * rise
         d_q[i] = -euler * area[i] - (through + within) / step
 
 

@@ -69,18 +69,19 @@ def _limited(back, ahead):
 
 
 @_part
-def _steep(flow, full, i, before, after, step, level):
-    """What is left of a force along the wall where the surface is steep: the liquid moves across as well.
+def _counted(flow, full, free):
+    """Share of what brakes liquid that thins out off the wall, of forces `free` on cells, that counts.
 
-    `level`: the slope dr/dtheta of a surface at rest there, which is no cliff.
+    Weight is no pressure there. What is lifted where a stretch becomes thin comes down where it becomes deep:
+    only what spreads on the whole would get energy for nothing, and is held back by as much.
     """
-    slope = _surface(flow[0, after] + flow[1, after], full) - _surface(
-        flow[0, before] + flow[1, before], full
-    )
-    slope *= 0.5 / step
-    slope = max(abs(slope) - abs(level), 0.0) if slope * level > 0.0 else slope
-    rest = 1.0 - min(flow[0, i] + flow[1, i], full)
-    return rest / (rest + slope * slope)
+    lifted, lowered = 0.0, 0.0
+    for i in range(flow.shape[1]):
+        whole = flow[0, i] + flow[1, i]
+        if whole > DRY:
+            power = free[i] * (flow[2, i] + flow[3, i]) / (whole * (1.0 - min(whole, full)))
+            lifted, lowered = lifted - min(power, 0.0), lowered + max(power, 0.0)
+    return max(1.0 - lowered / (lifted + 1e-300), 0.0)
 
 
 @_part
@@ -121,6 +122,7 @@ def _rates(flow, turn, x, y, angles, full, slot, rim, dt, work, rate):
         held_l, held_r, share_l, share_r = 0.0, 0.0, 1.0, 1.0
         least_1, least_2, bend_1, bend_2 = 1.0, 1.0, 0.0, 0.0
         back_1, back_2, ahead_1, ahead_2 = 0.0, 0.0, 0.0, 0.0
+        flows_1, flows_2, comes_1, comes_2 = 0.0, 0.0, 0.0, 0.0
         for side in range(2):
             i, way = (left, 1.0) if side == 0 else (f, -1.0)
             one, two = flow[0, i] + way * work[_SLOPE_A, i], flow[1, i] + way * work[_SLOPE_A + 1, i]
@@ -128,8 +130,9 @@ def _rates(flow, turn, x, y, angles, full, slot, rim, dt, work, rate):
             whole, own = one + two, flow[0, i] + flow[1, i]
             square = (flow[0, i] * turn[0, i] ** 2 + flow[1, i] * turn[1, i] ** 2) / (own + 1e-300)
             r = _surface(own, full)
-            # What fills the gap has the inner wall to lean on.
-            held = square * r + pull[i] > 0.0 or own > full
+            # What fills the gap has the inner wall to lean on, under pressure.
+            weighs = _static(r, pull[i]) + slot * max(own - full, 0.0)
+            held = square * r + pull[i] > 0.0 or (own > full and weighs > 0.0)
             level = _level(own, r, pull[i], full, slot)
             share, dried, calm = 0.0, False, 0.0
             if own > DRY and pull[i] > weak:
@@ -156,17 +159,21 @@ def _rates(flow, turn, x, y, angles, full, slot, rim, dt, work, rate):
             swift, fast = max(swift, speed), max(fast, speed + celerity)
             lower += one
             both += whole
-            stays = mean * radius + edge > 0.0 or beyond > 0.0
-            still = _static(radius, edge) + slot * beyond if stays else 0.0
+            still = _static(radius, edge) + slot * beyond
+            stays = mean * radius + edge > 0.0 or (beyond > 0.0 and still > 0.0)
+            still = still if stays else 0.0
             # What turns weighs on a free surface alone.
             turning = 0.5 * mean * whole**2 if beyond == 0.0 else 0.0
             pressure += 0.5 * (still + turning) if stays else 0.0
             # What is left of the pressure over the cell's own half once the weight on its slope is taken off.
             between = 0.5 * (min(whole, full) + min(own, full))
-            if held:
+            if held and (stays or dried):
                 drop = _level(whole, radius, edge, full, slot) - level
                 drop = (1.0 - share) * drop if dried else drop
                 balance = still + between * drop
+            elif held:
+                # Its pressure ends within the cell.
+                balance = weighs + between * r * (edge - pull[i])
             else:
                 balance = between * r * (edge - pull[i])
                 free[i] += way * between * edge * (radius - r) / step
@@ -182,8 +189,10 @@ def _rates(flow, turn, x, y, angles, full, slot, rim, dt, work, rate):
             jump_2 -= way * two
             if side == 0:
                 back_1, back_2 = rest * w_1, rest * w_2
+                flows_1, flows_2 = share * one * max(w_1, 0.0), share * two * max(w_2, 0.0)
             else:
                 ahead_1, ahead_2 = rest * w_1, rest * w_2
+                comes_1, comes_2 = share * one * min(w_1, 0.0), share * two * min(w_2, 0.0)
             least_1, least_2 = min(least_1, one, flow[0, i]), min(least_2, two, flow[1, i])
             bend_1 -= way * rest * w_1
             bend_2 -= way * rest * w_2
@@ -203,12 +212,16 @@ def _rates(flow, turn, x, y, angles, full, slot, rim, dt, work, rate):
         jump, waves = asked * jump, 0.5 * (fast - swift)
         mass_1 -= 0.5 * swift * jump_1 + waves * below * jump
         mass_2 -= 0.5 * swift * jump_2 + waves * (1.0 - below) * jump
-        # What passes has the velocity of where it comes from; waves even out that of the whole. No layer gets
-        # momentum that it has no mass for.
+        # Either side's own flow and what spreads besides have the velocity of where they come from, so that
+        # streams that meet collide; waves even out the velocity of the whole. No layer gets momentum that it
+        # has no mass for.
         bend = waves * (least_1 * bend_1 + least_2 * bend_2) / (least_1 + least_2 + 1e-300)
         work[_FLUX, f], work[_FLUX + 1, f] = mass_1, mass_2
-        work[_FLUX + 2, f] = mass_1 * (back_1 if mass_1 > 0.0 else ahead_1) - least_1 * bend
-        work[_FLUX + 3, f] = mass_2 * (back_2 if mass_2 > 0.0 else ahead_2) - least_2 * bend
+        spreads_1, spreads_2 = mass_1 - flows_1 - comes_1, mass_2 - flows_2 - comes_2
+        spreads_1 *= back_1 if spreads_1 > 0.0 else ahead_1
+        spreads_2 *= back_2 if spreads_2 > 0.0 else ahead_2
+        work[_FLUX + 2, f] = flows_1 * back_1 + comes_1 * ahead_1 + spreads_1 - least_1 * bend
+        work[_FLUX + 3, f] = flows_2 * back_2 + comes_2 * ahead_2 + spreads_2 - least_2 * bend
     for k in range(2):
         for i in range(n):
             after = i + 1 if i < n - 1 else 0
@@ -218,19 +231,13 @@ def _rates(flow, turn, x, y, angles, full, slot, rim, dt, work, rate):
             donor = (f - 1) % n if work[_FLUX + k, f] > 0.0 else f
             work[_FLUX + k, f] *= work[_EDGE, donor]
             work[_FLUX + 2 + k, f] *= work[_EDGE, donor]
+    counts = _counted(flow, full, free)
     for i in range(n):
         before, after = (i - 1) % n, i + 1 if i < n - 1 else 0
         whole = flow[0, i] + flow[1, i] + 1e-300
         square = (flow[0, i] * turn[0, i] ** 2 + flow[1, i] * turn[1, i] ** 2) / whole
         if free[i] * (flow[2, i] + flow[3, i]) < 0.0:
-            # Off the wall weight is no pressure; where that would give energy for nothing it counts.
-            force[i] += free[i]
-        if force[i] * (flow[2, i] + flow[3, i]) > 0.0:
-            # A level surface lies across the pull: r' over r is the pull along the wall over that to it.
-            along = 0.5 * (pull[after] - pull[before]) / np.sin(step)
-            r = _surface(whole, full)
-            level = -r * along / pull[i] if pull[i] > weak else 0.0
-            force[i] *= _steep(flow, full, i, before, after, step, level)
+            force[i] += counts * free[i]
         rise = min(flow[0, after] + flow[1, after], full) - min(flow[0, before] + flow[1, before], full)
         rise *= 0.5 / step
         for k in range(2):
@@ -307,7 +314,7 @@ def _sources(flow, pull, spin, stream, table, heavy, ring, dt, taken):
     torque, heat, lost = 0.0, 0.0, 0.0
     for i in range(n):
         whole = flow[0, i] + flow[1, i]
-        if whole <= 0.0:
+        if whole <= DRY:
             continue
         r = _surface(whole, full)
         rest, depth = 1.0 - min(whole, full), 1.0 - r
@@ -467,7 +474,9 @@ def measure(flow, angles, full, slot, spin, work, out):
         bend = 2.0 * _limited(r - r_b, r_a - r)
         x = 0.5 * r * (angles[0, after] - angles[0, before]) + bend * angles[0, i]
         y = 0.5 * r * (angles[1, after] - angles[1, before]) + bend * angles[1, i]
-        left = _steep(flow, full, i, before, after, step, 0.0)
+        # Where the surface is steep liquid gives way across the wall: the axis feels less of its flow.
+        slope = 0.5 * (r_a - r_b) / step
+        left = rest / (rest + slope * slope)
         x, y = left * x, left * y
         moved = flow[0, i] * turn[0, i] + flow[1, i] * turn[1, i]
         flow_x += moved * x

@@ -32,8 +32,6 @@ TAKEN = floats("torque", "heat", "baffles")
 # Sums over the cells: first moment; its rate by the flow; inertia of the flow; energy of motion and of what
 # full gaps hold; angular momentum; moment of inertia [theory: coupling, eq. 2-4].
 FLOWS = floats("moment_x", "moment_y", "flow_x", "flow_y", "xx", "xy", "yy", "energy", "spinning", "inertia")
-# Cells of every drum: with 256 the answers change by less than the closures are known.
-CELLS = 64
 
 
 def stream_of(fill: Fill, friction: Friction, gravity: float, top: float = 0.0, grip: float = 1.0) -> Record:

@@ -403,14 +403,14 @@ def _move_pools(machine, state, room, dt):
             copy(room.two_layers[j, i], state.two_layers[j, i])
         taken.torque, taken.heat, taken.baffles = 0.0, 0.0, 0.0
         fastest = advance_pool(
-            *(state.two_layers[j], spin, x, y, state.rings[j], dt, machine.standing, pool),
+            *(state.two_layers[j], spin, x, y, state.rings[j], dt, machine.angles, pool),
             *(machine.pool_tables[j], work, taken),
         )
         if not fastest < _FASTEST:
             return False
         begin, end = room.first[j], room.last[j]
         measure_pool(
-            *(state.two_layers[j], machine.standing, pool.full, pool.slot, room.spins[1]),
+            *(state.two_layers[j], machine.angles, pool.full, pool.slot, room.spins[1]),
             *(work, end),
         )
         room.before[own, 0], room.before[own, 1] = pool.weight * begin.flow_x, pool.weight * begin.flow_y
@@ -434,7 +434,7 @@ def _begin_pools(machine, state, room):
         for i in range(state.two_layers.shape[1]):
             copy(state.two_layers[j, i], room.two_layers[j, i])
         measure_pool(
-            *(state.two_layers[j], machine.standing, pool.full, pool.slot, state.shaft[0].spin),
+            *(state.two_layers[j], machine.angles, pool.full, pool.slot, state.shaft[0].spin),
             *(room.work[j], room.first[j]),
         )
 
@@ -763,6 +763,9 @@ def _couple(machine, state, room, dt):
             if slope < 0.9:
                 room.spins[1] = max(given + (after - given) / (1.0 - slope), 0.5 * spin)
         last_given, last_after = given, after
+    if machine.curve.shape[1] > 0 and last_after < 0.5 * spin and state.pace[0].share <= SHORTEST:
+        # Half of its speed in the shortest step: it stands.
+        return Outcome.STOPPED, fastest, left
     return Outcome.NOT_COUPLED, fastest, left
 
 

@@ -16,7 +16,7 @@ from solvers.layer.baffles import tables_of
 from solvers.layer.inside import SLOT_SPEED, full_area
 from solvers.layer.records import Outcome, Record, records
 from solvers.layer.state import ring, turned_ring
-from solvers.layer.two_layers import CELLS, FLOWS, ROWS, STREAM, TAKEN, resting, stream_of
+from solvers.layer.two_layers import FLOWS, ROWS, STREAM, TAKEN, resting, stream_of
 from solvers.rotor.system import RotorSystem
 from solvers.runup.balls import NO_BALLS, Balls, ball_records, balls_energy, balls_inertia, race_planes
 from solvers.runup.machine import Handover, Reading, Transfer
@@ -185,7 +185,7 @@ class Coupled(CoupledRotor):
         flows: np.record = records(FLOWS)[0]
         work = np.zeros((ROWS, self.two_layers.shape[2]))
         full, slot = self.streams[j].full, self.streams[j].slot
-        measure(self.two_layers[j], self.machine.standing, full, slot, self.spin, work, flows)
+        measure(self.two_layers[j], self.machine.angles, full, slot, self.spin, work, flows)
         return flows
 
     def _turning(self, swinging: Swinging | None = None) -> tuple[Array, Array]:
@@ -426,13 +426,13 @@ class Coupled(CoupledRotor):
 
     def _shares(self) -> tuple[Array, Array]:
         """Share of the outer wall that is wet and of the liquid above the axis, shape (l,) each."""
-        wet, lifted = self.resting_wet.copy(), np.zeros(len(self.fills))
+        wet, lifted, angles = self.resting_wet.copy(), np.zeros(len(self.fills)), self.machine.angles
         for j in np.flatnonzero(self.active | self.pooled).tolist():
             if self.active[j]:
-                area, angles = self.area[j], self.machine.angles
+                area = self.area[j]
                 up = math.cos(self.shaft.angle) * angles[0] - math.sin(self.shaft.angle) * angles[1]
             else:
-                area, up = self.two_layers[j, :2].sum(axis=0), self.machine.standing[0]
+                area, up = self.two_layers[j, :2].sum(axis=0), angles[0]
             wet[j] = np.mean(area > _FILM)
             lifted[j] = area[up > 0.0].sum() / max(float(area.sum()), 1e-300)
         return wet, lifted
@@ -490,7 +490,7 @@ def couple(
         rolling=np.zeros((count, cells if enstrophy else 0)),
         active=np.zeros(count, dtype=bool),
         streams=streams,
-        two_layers=np.zeros((count, 4, CELLS)),
+        two_layers=np.zeros((count, 4, cells)),
         rings=np.zeros(count, dtype=bool),
         balls=ball_records(balls),
         machine=Machine(
@@ -503,7 +503,6 @@ def couple(
             tables=tables[:0],
             gravity=rest.gravity,
             angles=ring(cells),
-            standing=ring(CELLS),
             curve=np.zeros((2, 0)),
             watched=rest.watched,
             plates=tables_of([], cells),
@@ -518,7 +517,7 @@ def couple(
             area=area[:0],
             momentum=area[:0],
             rolling=area[:0, :0],
-            two_layers=np.zeros((0, 4, CELLS)),
+            two_layers=np.zeros((0, 4, cells)),
             rings=np.zeros(0, dtype=bool),
             push=np.zeros((0, 2, 2)),
             pace=_fresh_pace(),
@@ -533,17 +532,17 @@ def couple(
     found.position = position
     found.active = found.begins_as_layer(spin)
     for j in np.flatnonzero(found.pooled).tolist():
-        found.two_layers[j] = _at_bottom(streams[j], mean_area(fills[j]), gravity)
+        found.two_layers[j] = _at_bottom(streams[j], mean_area(fills[j]), gravity, cells)
     found._assemble()
     return found
 
 
-def _at_bottom(stream: np.record, mean: float, gravity: float) -> Array:
-    """Liquid at rest at the bottom in two layers, shape (4, k)."""
-    pull = -gravity / stream.radius * ring(CELLS)[0]
+def _at_bottom(stream: np.record, mean: float, gravity: float, cells: int) -> Array:
+    """Liquid at rest at the bottom in two layers, shape (4, c)."""
+    pull = -gravity / stream.radius * ring(cells)[0]
     whole = resting(mean, pull, stream.full, stream.slot, stream.rim)
     below = np.minimum(whole, stream.tip)
-    return np.stack([below, whole - below, np.zeros(CELLS), np.zeros(CELLS)])
+    return np.stack([below, whole - below, np.zeros(cells), np.zeros(cells)])
 
 
 def _fresh_pace() -> Record:
@@ -563,11 +562,11 @@ def _room(coordinates: int, sizes: tuple[int, int, int], cells: int, rolling: in
         area=np.zeros((count, cells)),
         momentum=np.zeros((count, cells)),
         rolling=np.zeros((count, rolling)),
-        two_layers=np.zeros((pools, 4, CELLS)),
+        two_layers=np.zeros((pools, 4, cells)),
         taken=records(TAKEN, pools),
         first=records(FLOWS, pools),
         last=records(FLOWS, pools),
-        work=np.zeros((pools, ROWS, CELLS)),
+        work=np.zeros((pools, ROWS, cells)),
         begin=records(MEASURES, count),
         end=records(MEASURES, count),
         gains=records(GAINS, count),

@@ -155,9 +155,7 @@ class Machine(NamedTuple):
     pool_tables: Array
     tables: Array  #: of the law of the wall, shape (l, m, 2); m = 0 under other laws
     gravity: Array  #: acceleration across the axis, shape (2,)
-    #: cosine and sine at the cells' middles and at their left faces, of layers (4, c) and of pools (4, k)
-    angles: Array
-    standing: Array
+    angles: Array  #: cosine and sine at the cells' middles and at their left faces, shape (4, c)
     curve: Array  #: the motor's speeds and torques, shape (2, k); k = 0 for a ramp
     watched: Array  #: displacement of the axis whose amplitude counts, for unit coordinates, shape (2, n)
     plates: Array  #: baffles of each layer, as by `solvers.layer.baffles.tables_of`, shape (l, k, COLUMNS)
@@ -178,7 +176,7 @@ class State(NamedTuple):
     momentum: Array
     #: A e/R^4 of the fluctuations behind bores, shape (l, c), or (l, 0) where they are left out
     rolling: Array
-    #: two_layers: A_1, A_2 over R^2 and L_1, L_2 over R^4 of each pool's cells, shape (p, 4, k)
+    #: two_layers: A_1, A_2 over R^2 and L_1, L_2 over R^4 of each pool's cells, shape (p, 4, c)
     #: rings: whether each is a ring that has not fallen yet, shape (p,)
     two_layers: Array
     rings: Flags

@@ -16,7 +16,7 @@ from meshes.chamber import Chamber
 from solvers.layer.records import records
 from solvers.layer.state import ring
 from solvers.layer.two_layer_step import advance, measure
-from solvers.layer.two_layers import CELLS, FLOWS, ROWS, TAKEN, resting, stream_of
+from solvers.layer.two_layers import FLOWS, ROWS, TAKEN, resting, stream_of
 
 G = 9.81
 WATER = Liquid("water", 1000.0, 1e-6)
@@ -32,7 +32,7 @@ class Drum:
     friction: Friction = NO_FRICTION
     gravity: float = G  #: m/s^2
     down: float = math.pi  #: its direction
-    cells: int = CELLS
+    cells: int = 64
     is_ring: bool = False
     spin: float = 0.0  #: of the drum, rad/s, as it was last
 

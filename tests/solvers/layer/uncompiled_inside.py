@@ -55,10 +55,10 @@ def test_a_full_gap_rests() -> None:
     assert np.abs(d_q).max() < max(off, 1e-13) and np.abs(d_area).max() < max(off, 1e-13)
 
 
-@kills("solvers.layer.finite_volume:side", "spin * spin * full + rim * bed[i]", "spin * spin * full")
+@kills("solvers.layer.finite_volume:side", "held * held * full + rim * bed[i]", "held * held * full")
 @kills("solvers.layer.finite_volume:side", "0.5 * stiff * (a - full) * (a + full)", "stiff * (a - full)")
 @kills("solvers.layer.finite_volume:side", "half * half + 4.0 * log * quick", "half * half")
-@kills("solvers.layer.finite_volume:_slopes", "(spin * spin + stiff) * length", "spin * spin * length")
+@kills("solvers.layer.finite_volume:_slopes", "(held * held + stiff) * length", "held * held * length")
 @kills("solvers.layer.finite_volume:_faces", "PRESSED if most(wide)", "1.0 if most(wide)")
 def test_waves_of_a_full_gap() -> None:
     """A smooth disturbance under pressure changes by the equations, and its waves are as fast as stated."""
@@ -94,7 +94,9 @@ def test_a_thin_cell_fills_no_face() -> None:
     cells, out = np.array([0.45, 0.55]) * FULL, [np.zeros(n) for _ in range(7)]
     stiff, nothing = SLOT * SPIN**2, np.zeros(n)
     head = np.full(n, 1.1 * SPIN**2 * FULL)
-    finite_volume.side(cells, head, nothing, u + nothing, nothing, nothing, 1.0, SPIN, FULL, stiff, *out)
+    finite_volume.side(
+        cells, head, nothing, u + nothing, nothing, nothing, 1.0, SPIN, SPIN, FULL, stiff, *out
+    )
     full = FULL + 0.1 * SPIN**2 * FULL / (stiff + SPIN**2)
     np.testing.assert_allclose(out[0], full, rtol=1e-12)
     log, inverse = lw.layer_log(full), 1.0 / (1.0 - 2.0 * full)

@@ -40,6 +40,7 @@ def rates(
     dt: float = 0.0,
     dispersion: bool = False,
     pull: float = PULL,
+    spin: float = SPIN,
 ) -> tuple[np.ndarray, np.ndarray, float]:
     n = area.size
     theta, step = middles(n), 2 * np.pi / n
@@ -47,7 +48,7 @@ def rates(
     work = np.zeros((finite_volume.WORK, n + 2 * finite_volume.GHOSTS))
     cell, face = pull * np.cos(theta - TURNED), pull * np.cos(theta - 0.5 * step - TURNED)
     fastest = finite_volume.rates(
-        *(area, q, SPIN, euler, cell, face, NOTHING, step, dt, dispersion, work, d_area, d_q)
+        *(area, q, spin, euler, cell, face, NOTHING, step, dt, dispersion, work, d_area, d_q)
     )
     return d_area, d_q, fastest
 
@@ -86,22 +87,33 @@ def smooth(n: int) -> tuple[np.ndarray, np.ndarray]:
 @kills("solvers.layer.finite_volume:_gather", "-euler * area[i]", "euler * area[i]")
 @kills("solvers.layer.finite_volume:_gather", "(through + within)", "(through - within)")
 @kills("solvers.layer.finite_volume:ring_rates", "(mass[i] - mass[i + 1])", "(mass[i + 1] - mass[i])")
+@kills("solvers.layer.finite_volume:_gather", "bend[i] - more * (area_l", "bend[i] + more * (area_l")
+@kills("solvers.layer.finite_volume:_gather", "0.5 * (held - spin) * (held + spin)", "0.0")
+@kills("solvers.layer.finite_volume:_held", "np.maximum(abs(spin), _HELD * abs(own))", "abs(spin)")
+@kills("solvers.layer.finite_volume:_slopes", "(held * held + stiff)", "(spin * spin + stiff)")
 def test_rates() -> None:
-    """A smooth state changes as the equations say, with an error of second order."""
-    errors = []
-    for n in (48, 96):
-        area, u = smooth(n)
-        r, log = lw.free_surface_radius(area), lw.layer_log(area)
-        f_r, f_theta = PULL * np.cos(middles(n) - TURNED), -PULL * np.sin(middles(n) - TURNED)
-        flux = lw.momentum_flux(u, log, area, r**-2.0) + lw.pressure_force(area, r, SPIN, f_r)
-        exact_q = f_theta * (1 - r**3) / 3 - 0.3 * area - slope(flux)
-        d_area, d_q, fastest = rates(area, u * area - SPIN * area**2, euler=0.3)
-        errors.append((np.abs(d_area + slope(u * log)).mean(), np.abs(d_q - exact_q).mean()))
-        mean, half = lw.wave_celerity(u / r**2, log, SPIN)
-        assert abs(fastest / np.max(np.abs(mean) + half) - 1) < 0.02
-    # Second order quarters the error; at the few extrema of either wave the limiter leaves more.
-    assert np.all(np.array(errors[1]) < np.array(errors[0]) / 3.0), errors
-    assert errors[1][0] < 2e-5 and errors[1][1] < 1e-5, errors
+    """A smooth state changes as the equations say, with an error of second order.
+
+    So it does in a drum that hardly turns any more, where the force on the axis is three thousand times as
+    strong as the drum's own field would be.
+    """
+    for spin, faster, pull in ((SPIN, 0.0, PULL), (0.01, 0.9, 0.3), (-0.01, 0.9, 0.3)):
+        errors = []
+        for n in (48, 192):
+            area, u = smooth(n)
+            u = u + faster
+            r, log = lw.free_surface_radius(area), lw.layer_log(area)
+            f_r, f_theta = pull * np.cos(middles(n) - TURNED), -pull * np.sin(middles(n) - TURNED)
+            flux = lw.momentum_flux(u, log, area, r**-2.0) + lw.pressure_force(area, r, spin, f_r)
+            exact_q = f_theta * (1 - r**3) / 3 - 0.3 * area - slope(flux)
+            d_area, d_q, fastest = rates(area, u * area - spin * area**2, euler=0.3, pull=pull, spin=spin)
+            missed = d_area + slope(u * log), d_q - exact_q
+            errors.append([np.abs(miss).mean() for miss in missed])
+            mean, half = lw.wave_celerity(u / r**2, log, spin)
+            assert abs(fastest / np.max(np.abs(mean) + half) - 1) < 0.02
+        # Of second order a sixteenth is left; at the few extrema of either wave the limiter leaves more.
+        assert np.all(np.array(errors[1]) < np.array(errors[0]) / 9.0), errors
+        assert max(errors[1]) < 1e-2 * min(np.abs(d_area).mean(), np.abs(d_q).mean()), errors
 
 
 def rolling_rates(
@@ -334,12 +346,12 @@ def test_slopes() -> None:
     head, velocity = np.empty(5), np.empty(5)
     # At the fourth of them half of the central slope, 0.5, is cut back to the lesser difference, 0.1.
     limited = [0.75, 0.0, 0.0, 0.1, 0.0]
-    face_flux.half_slopes(deep, value, still, rim(deep), SPIN, 1.0, 0.0, head, velocity, np.empty(5))
+    face_flux.half_slopes(deep, value, still, rim(deep), SPIN, SPIN, 1.0, 0.0, head, velocity, np.empty(5))
     np.testing.assert_allclose([head, velocity], [limited, np.zeros(5)], atol=1e-14)
-    face_flux.half_slopes(deep, still, value, rim(deep), SPIN, 1.0, 0.0, head, velocity, np.empty(5))
+    face_flux.half_slopes(deep, still, value, rim(deep), SPIN, SPIN, 1.0, 0.0, head, velocity, np.empty(5))
     np.testing.assert_allclose([head, velocity], [np.zeros(5), limited], atol=1e-14)
     deep[5] = 0.0
-    face_flux.half_slopes(deep, value, still, rim(deep), SPIN, 1.0, 0.0, head, velocity, np.empty(5))
+    face_flux.half_slopes(deep, value, still, rim(deep), SPIN, SPIN, 1.0, 0.0, head, velocity, np.empty(5))
     np.testing.assert_allclose(head, [0.75, 0.0, 0.0, 0.0, 0.0], atol=1e-14)
 
 
@@ -365,19 +377,19 @@ def test_bent_slopes() -> None:
     rising, still = np.diff(primitive), np.zeros(7)
     for value, other in ((rising, still), (still, rising), (rising, -2.0 * rising)):
         found = np.empty((5, 5))
-        face_flux.bent_slopes(deep, value, other, rim, SPIN, 1.0, 0.0, *found)
+        face_flux.bent_slopes(deep, value, other, rim, SPIN, SPIN, 1.0, 0.0, *found)
         for cells, half, mean in ((value, found[0], found[3]), (other, found[1], found[4])):
             scale = cells[0] / rising[0]
             np.testing.assert_allclose(mean + half, scale * (edges[2:7] + 4.0) ** 2, atol=1e-12)
             np.testing.assert_allclose(mean - half, scale * (edges[1:6] + 4.0) ** 2, atol=1e-12)
     # A face goes no further than the neighbour nearby is, twice the difference allowed; a summit is flat.
     value = np.array([0.0, 1.0, 9.0, 6.0, 6.0, 9.0, 9.0])
-    face_flux.bent_slopes(deep, value, still, rim, SPIN, 1.0, 0.0, *found)
+    face_flux.bent_slopes(deep, value, still, rim, SPIN, SPIN, 1.0, 0.0, *found)
     np.testing.assert_allclose(found[0], [1.0, 0.0, 0.0, 0.0, 0.0], atol=1e-14)
     np.testing.assert_allclose(found[3], value[1:6], atol=1e-14)
     # Beside a dry cell nothing bends.
     dry = np.array([0.1, 0.1, 0.1, 0.1, 0.1, 0.1, 0.0])
-    face_flux.bent_slopes(dry, rising, still, rim, SPIN, 1.0, 0.0, *found)
+    face_flux.bent_slopes(dry, rising, still, rim, SPIN, SPIN, 1.0, 0.0, *found)
     assert found[0, 4] == 0.0 and found[3, 4] == rising[5] and found[0, 3] > 0.0
 
 
@@ -401,11 +413,11 @@ def test_waves() -> None:
     # Static head is Omega^2 A here.
     for first, second in ((one, other), (other, one)):
         heads, speeds = np.array([-1.0, 0.0, 1.0]), u + np.array([-first, 0.0, second])
-        face_flux.half_slopes(three, heads, speeds, rim(three), SPIN, 1.0, 0.0, head, velocity, log)
+        face_flux.half_slopes(three, heads, speeds, rim(three), SPIN, SPIN, 1.0, 0.0, head, velocity, log)
         np.testing.assert_allclose([head[0], velocity[0]], 0.0, atol=1e-8)
         # One wave on both sides, three times as steep on one of them, where the other wave comes in.
         heads, speeds = np.array([-1.0, 0.0, 4.0]), u + np.array([-first, 0.0, 3.0 * first + second])
-        face_flux.half_slopes(three, heads, speeds, rim(three), SPIN, 1.0, 0.0, head, velocity, log)
+        face_flux.half_slopes(three, heads, speeds, rim(three), SPIN, SPIN, 1.0, 0.0, head, velocity, log)
         np.testing.assert_allclose([head[0], velocity[0]], [1.0, first], atol=1e-8)
 
 

@@ -11,6 +11,7 @@ import pytest
 from fluid.fill import Fill
 from fluid.friction.laws import Friction
 from fluid.liquid import Liquid
+from meshes.baffles import Baffles
 from meshes.chamber import Chamber
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.runup.linear import couple_linear
@@ -19,12 +20,12 @@ from solvers.runup.machine import Handover, Ramp
 from solvers.runup.runup import RunupNumerics, _over_a_turn, run_up
 from tests.mutants import kills
 
-FILL = Fill(Chamber(0.24, 0.06), Liquid("brine", 1200.0, 1.6e-6), 1.2e-3)
+FILL = Fill(Chamber(0.24, 0.06, baffles=Baffles(8, 0.231)), Liquid("brine", 1200.0, 1.6e-6), 1.2e-3)
 # Critical at 26 rad/s, where the ring forms.
 ROTOR = Jeffcott(60.0, 4.05e4, 309.0, 0.05)
 RAMP = Ramp(4.0, 44.0, 8.0, 7.0)
 NUMERICS = RunupNumerics(cells=32, samples=600, handover=Handover.CARRIED)
-LINEAR = Friction("linear", 8.0)
+ROUGH = Friction("quadratic", 0.02)
 
 
 @kills("solvers.runup.runup:run_up", "handover=Handover.DRUM", "handover=Handover.CARRIED")
@@ -37,14 +38,14 @@ def test_band() -> None:
 
     def alone(cells: int, handover: Handover) -> np.ndarray:
         numerics = replace(NUMERICS, cells=cells, handover=handover, companion=False)
-        return _over_a_turn(run_up(ROTOR.system(), [FILL], RAMP, LINEAR, 9.81, numerics, model=couple))
+        return _over_a_turn(run_up(ROTOR.system(), [FILL], RAMP, ROUGH, 9.81, numerics, model=couple))
 
-    found = run_up(ROTOR.system(), [FILL], RAMP, LINEAR, 9.81, NUMERICS, model=couple)
+    found = run_up(ROTOR.system(), [FILL], RAMP, ROUGH, 9.81, NUMERICS, model=couple)
     assert found.ring_speed is not None
     ((low, high),) = found.ring_speed
     (formed,) = [each.speed for each in found.transfers if each.captured]
-    # The firmer grip makes the ring earlier; the cells of the ring do not move it.
-    assert low < 0.998 * formed and high == pytest.approx(formed, rel=1e-2)
+    # Fewer cells or the firmer grip make the ring earlier.
+    assert low < 0.9 * formed and high == pytest.approx(formed, rel=1e-2)
     fine, coarse, early = alone(32, Handover.CARRIED), alone(16, Handover.CARRIED), alone(16, Handover.DRUM)
     largest = found.amplitude.max()
     assert found.handover_estimate == pytest.approx(np.abs(coarse - early).max() / largest, rel=1e-12)
@@ -60,13 +61,14 @@ def test_band() -> None:
 
 def test_none_where_nothing_is_handed_over() -> None:
     """No second hand-over is run without a pool that becomes a ring, nor under another rule."""
+    smooth = replace(FILL, chamber=replace(FILL.chamber, baffles=None))
     for friction, handover in (
         (Friction(), Handover.CARRIED),
-        (LINEAR, Handover.RIDING),
-        (LINEAR, Handover.DRUM),
+        (ROUGH, Handover.RIDING),
+        (ROUGH, Handover.DRUM),
     ):
         numerics = replace(NUMERICS, handover=handover)
-        found = run_up(ROTOR.system(), [FILL], RAMP, friction, 9.81, numerics, model=couple)
+        found = run_up(ROTOR.system(), [smooth], RAMP, friction, 9.81, numerics, model=couple)
         assert math.isnan(found.handover_estimate) and found.band is not None
         assert (found.ring_speed is None) == (not any(each.captured for each in found.transfers))
         assert float(found.band.max()) <= 2.0 * found.error_estimate * float(found.amplitude.max()) + 1e-15

@@ -40,7 +40,7 @@ def carried(
     stop: float = 60.0,
 ) -> RunupHistory:
     """Up until a ring stands and down again."""
-    numerics = RunupNumerics(cells=32, samples=1200, companion=False, handover=handover)
+    numerics = RunupNumerics(cells=64, samples=1200, companion=False, handover=handover)
     time = (stop - 4.0) / 8.0
     return run_up(SOFT.system(), [fill], Ramp(4.0, stop, 8.0, time + 1.0, back=True), friction, G, numerics)
 
@@ -90,7 +90,8 @@ def test_becomes_a_ring_and_falls() -> None:
     assert history.wet_share[0, 0] == pytest.approx(pool.half_angle / math.pi, abs=1.0 / 64.0)
     assert history.lifted_share[0, 0] == 0.0
     ring = history.captured[:, 0]
-    assert (history.wet_share[ring, 0] == 1.0).all()
+    # Until it falls, when a cell may run dry.
+    assert history.wet_share[ring, 0].min() >= 1.0 - 1.0 / 64.0 and history.wet_share[ring, 0].mean() > 0.999
     assert abs(float(history.lifted_share[ring, 0].mean()) - 0.5) < 0.02
 
 
@@ -169,10 +170,10 @@ def test_turned_rings() -> None:
 
 def test_motor_feels_the_liquid() -> None:
     """A motor without torque: drum and liquid share their angular momentum, but for gravity's moment."""
-    numerics = RunupNumerics(cells=32, samples=800, companion=False, handover=Handover.CARRIED)
+    numerics = RunupNumerics(cells=64, samples=800, companion=False, handover=Handover.CARRIED)
     drive = Motor(10.0, 0.5, (0.0, 100.0), (0.0, 0.0), 2.0)
     history = run_up(STIFF.system(), [BAFFLED], drive, ROUGH, G, numerics)
-    machine = couple(STIFF.system(), [BAFFLED], 10.0, ROUGH, G, 32, False, handover=Handover.CARRIED)
+    machine = couple(STIFF.system(), [BAFFLED], 10.0, ROUGH, G, 64, False, handover=Handover.CARRIED)
     assert history.audit.drive == pytest.approx(0.25 * (10.0**2 - history.speed[-1] ** 2), rel=1e-6)
     machine.drive(np.array([[0.0, 100.0], [0.0, 0.0]]), 0.5)
     machine.advance(2.0, 0.0, 0.8, 10**6)

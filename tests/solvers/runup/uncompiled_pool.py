@@ -53,7 +53,7 @@ def test_axis_that_shakes() -> None:
     machine = couple(shaken.system(), [FILL], 5.0, Friction(), G, 128, False, handover=Handover.CARRIED)
     machine.state.rate[0] = rate
     machine.advance(0.02, 0.0, 0.8, 10**6)
-    drum, still = Drum(FILL), Drum(FILL)
+    drum, still = Drum(FILL, cells=128), Drum(FILL, cells=128)
     drum.lie()
     still.lie()
     for k in range(steps):
