@@ -136,8 +136,8 @@ def test_slow_tumbling_makes_no_energy() -> None:
     """High bars in narrow gaps, full at the bottom, turned slowly: what is lost is no more than the work.
 
     Radius, gap, height of the bars, their distance off the wall in m; number, fill, cells, Omega^2 R/g, time
-    over sqrt(R/g). Where layers pass on momentum without mass most of these lose twice their work; where streams that
-    meet without passing do not collide the first makes a twentieth of it with 80 cells.
+    over sqrt(R/g). Where layers pass on momentum without mass most of these lose twice their work; where
+    streams that meet and do not pass do not collide either, the first makes a twentieth of it with 80 cells.
     """
     for radius, gap, tip, off, count, filled, cells, froude, time in (
         (0.18, 0.030, 0.020, 0.005, 8, 0.48, 64, 0.08, 80.0),
