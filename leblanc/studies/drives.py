@@ -18,6 +18,7 @@ from leblanc.scene.unbalances import (
 )
 from meshes.arrays import Array
 from meshes.errors import InputError
+from solvers.layer.places import FEWEST_CELLS, fewest_cells
 from solvers.rotor.loads.frame import frame_of
 from solvers.rotor.system import RotorSystem, Shed
 from solvers.runup import programme
@@ -73,9 +74,13 @@ def _stage(step: Step, limit: float) -> programme.Stage:
 
 
 def numerics_of(
-    plan: Runup | Programme, cells: int | None = None, samples: int | None = None, check: bool = True
+    scene: Scene, cells: int | None = None, samples: int | None = None, check: bool = True
 ) -> RunupNumerics:
-    """Resolution of a run-up; the scene's where nothing else is given."""
+    """Resolution of a run-up; the scene's where nothing else is given, which its compartments may refuse."""
+    plan, fewest = planned(scene), fewest_cells(scene.fills)
+    if cells is None and plan.cells < fewest:
+        table = "runup" if scene.programme is None else "programme"
+        raise InputError(f"{table}.cells", plan.cells, f"{fewest} or more, {FEWEST_CELLS} in each compartment")
     return RunupNumerics(
         cells=plan.cells if cells is None else cells,
         samples=plan.samples if samples is None else samples,

@@ -255,7 +255,7 @@ def runup_scene(
     if frames is not None and scene.model.liquid == "linear":
         raise InputError("model.liquid", "linear", "auto or long_wave for a film")
     update(what="running up")
-    numerics = numerics_of(plan, cells, samples, check)
+    numerics = numerics_of(scene, cells, samples, check)
     drive, gravity = drive_of(plan, scene.rotor), across_gravity(scene)
     times = () if frames is None else np.linspace(0.0, float(drive.corners()[0, -1]), frames)
     share = 1.0 / (1.0 + 0.8 * ensemble / workers)

@@ -98,7 +98,7 @@ def test_a_drum_that_its_pool_turns_back_has_ended_its_coast() -> None:
     table = {name: part for name, part in MACHINES["jeffcott"].items() if name != "runup"}
     model = {"liquid": "long_wave", "friction": {"linear": 20.0}}
     way = {"start": 4.0, "steps": ["hold 2 s", "coast 3 s"], "inertia": 3e-5, "drag_torque": 1e-9}
-    scene = scene_from_table(table | {"model": model, "programme": way | {"cells": 16, "samples": 50}}, "")
+    scene = scene_from_table(table | {"model": model, "programme": way | {"cells": 64, "samples": 50}}, "")
     result = runup_scene(scene, check=False)
     assert result.converged and not result.reason
     # 0.005 of its highest speed is a stand, found to a millionth of it.
