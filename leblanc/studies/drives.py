@@ -80,7 +80,8 @@ def numerics_of(
     plan, fewest = planned(scene), fewest_cells(scene.fills)
     if cells is None and plan.cells < fewest:
         table = "runup" if scene.programme is None else "programme"
-        raise InputError(f"{table}.cells", plan.cells, f"{fewest} or more, {FEWEST_CELLS} in each compartment")
+        allowed = f"{fewest} or more, {FEWEST_CELLS} in each compartment"
+        raise InputError(f"{table}.cells", plan.cells, allowed)
     return RunupNumerics(
         cells=plan.cells if cells is None else cells,
         samples=plan.samples if samples is None else samples,

@@ -19,6 +19,7 @@ from leblanc.studies.runup.answer import RunupAnswer, pieces
 from leblanc.studies.runup.figure import speed_figure, time_figure
 from leblanc.studies.runup.notes import RunupCode
 from leblanc.studies.runup.words import passages
+from meshes.errors import InputError
 from tests.mutants import kills
 
 STEPS = ["to 60 rad/s in 4 s", "hold 1 s", "to 20 rad/s in 3 s", "to 45 rad/s in 3 s", "coast to 8 rad/s"]
@@ -38,6 +39,16 @@ def machine(**changes: object) -> Scene:
     }
     table |= {"programme": own | changes, "assumed": []}
     return scene_from_table(table)
+
+
+def test_too_few_cells_for_compartments_are_refused_where_they_stand() -> None:
+    """By the programme's name where the scene has them, by the option's where it was typed."""
+    closed = {"chambers.0.inner_radius": 0.2, "chambers.0.baffles": {"count": 10, "tip_radius": 0.2}}
+    scene = machine().replace(closed)
+    with pytest.raises(InputError, match=r"programme\.cells = 32: must be 40 or more, 4 in each compartment"):
+        lb.run_up(scene)
+    with pytest.raises(InputError, match=r"^cells = 16: must be 40 or more"):
+        lb.run_up(scene, cells=16)
 
 
 @pytest.fixture(scope="module")
