@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from enum import Enum
 
 MOST_NODES = 1_000_000  # of a mesh
 
@@ -25,7 +26,8 @@ class InputError(ValueError):
     """
 
     def __init__(self, field: str, value: object, allowed: str) -> None:
-        super().__init__(f"{field} = {value!r}: must be {allowed}")
+        given = value.value if isinstance(value, Enum) else value
+        super().__init__(f"{field} = {given!r}: must be {allowed}")
         self.field = field
         self.value = value
         self.allowed = allowed

@@ -18,7 +18,6 @@ from leblanc.scene.unbalances import (
 )
 from meshes.arrays import Array
 from meshes.errors import InputError
-from solvers.layer.places import FEWEST_CELLS, fewest_cells
 from solvers.rotor.loads.frame import frame_of
 from solvers.rotor.system import RotorSystem, Shed
 from solvers.runup import programme
@@ -74,14 +73,9 @@ def _stage(step: Step, limit: float) -> programme.Stage:
 
 
 def numerics_of(
-    scene: Scene, cells: int | None = None, samples: int | None = None, check: bool = True
+    plan: Runup | Programme, cells: int | None = None, samples: int | None = None, check: bool = True
 ) -> RunupNumerics:
-    """Resolution of a run-up; the scene's where nothing else is given, which its compartments may refuse."""
-    plan, fewest = planned(scene), fewest_cells(scene.fills)
-    if cells is None and plan.cells < fewest:
-        table = "runup" if scene.programme is None else "programme"
-        allowed = f"{fewest} or more, {FEWEST_CELLS} in each compartment"
-        raise InputError(f"{table}.cells", plan.cells, allowed)
+    """Resolution of a run-up; the scene's where nothing else is given."""
     return RunupNumerics(
         cells=plan.cells if cells is None else cells,
         samples=plan.samples if samples is None else samples,

@@ -310,7 +310,7 @@ def _of_fill(scene: Scene, name: str) -> float:
 def _history(scene: Scene) -> RunupHistory:
     """The scene's run-up or programme, without the second run that tells its error."""
     plan = planned(scene)
-    drive, numerics = drive_of(plan, scene.rotor), numerics_of(scene, check=False)
+    drive, numerics = drive_of(plan, scene.rotor), numerics_of(plan, check=False)
     return chosen_run(scene, drive, across_gravity(scene), numerics).history
 
 

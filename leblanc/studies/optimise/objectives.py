@@ -84,7 +84,7 @@ class Passages:
 
         plan = planned(scene)
         self.scene, self.drive, self.gravity = scene, drive_of(plan, scene.rotor), across_gravity(scene)
-        self.numerics = numerics_of(scene, cells, check=False)
+        self.numerics = numerics_of(plan, cells, check=False)
         self.model, self.loaded = runup_model(liquid_model(scene)), loaded
         self.of = Once(self._one)
 

@@ -39,6 +39,7 @@ from leblanc.studies.runup.answer import Bands, Passage, RunupAnswer, RunupFrame
 from leblanc.studies.runup.notes import RunupCode
 from meshes.arrays import Array, Flags, Index
 from meshes.errors import InputError
+from solvers.layer.places import FEWEST_CELLS, fewest_cells
 from solvers.layer.records import Outcome
 from solvers.liquid_model import LONG
 from solvers.runup.ensemble import EnsembleTask, Member, Spread, member_of, run_member, spread_over
@@ -254,8 +255,12 @@ def runup_scene(
         raise InputError("frames", frames, f"from 2 to {MOST_FRAMES}")
     if frames is not None and scene.model.liquid == "linear":
         raise InputError("model.liquid", "linear", "auto or long_wave for a film")
+    if cells is None and plan.cells < (fewest := fewest_cells(scene.fills)):
+        table = "runup" if scene.programme is None else "programme"
+        allowed = f"{fewest} or more, {FEWEST_CELLS} in each compartment"
+        raise InputError(f"{table}.cells", plan.cells, allowed)
     update(what="running up")
-    numerics = numerics_of(scene, cells, samples, check)
+    numerics = numerics_of(plan, cells, samples, check)
     drive, gravity = drive_of(plan, scene.rotor), across_gravity(scene)
     times = () if frames is None else np.linspace(0.0, float(drive.corners()[0, -1]), frames)
     share = 1.0 / (1.0 + 0.8 * ensemble / workers)

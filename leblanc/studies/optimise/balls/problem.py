@@ -271,7 +271,7 @@ class BallProblem:
 def run_up_peak(scene: Scene, balls: bool = True) -> float:
     """Largest amplitude of a scene's run-up in time, m; infinite where it did not come to its end."""
     plan, gravity = planned(scene), across_gravity(scene)
-    drive, numerics = drive_of(plan, scene.rotor), numerics_of(scene, check=False)
+    drive, numerics = drive_of(plan, scene.rotor), numerics_of(plan, check=False)
     if balls:
         history = chosen_run(scene, drive, gravity, numerics).history
     else:  # with the liquid of the scene
