@@ -217,7 +217,7 @@ def test_laminar_friction_and_that_of_the_wall(law: str) -> None:
 
 def test_what_it_refuses() -> None:
     rotor, fill = machine(MU, 0.1, 0.02)
-    with pytest.raises(InputError, match="friction = 'quadratic': must be .* unidirectional"):
+    with pytest.raises(InputError, match=r"friction = 'quadratic': must be .* unidirectional"):
         limit_cycles(
             rotor,
             [fill],
