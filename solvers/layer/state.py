@@ -24,18 +24,15 @@ def ring(cells: int) -> Array:
     return np.stack([np.cos(middle), np.sin(middle), np.cos(edge), np.sin(edge)])
 
 
-def turned_ring(values: Array, cells: int, angle: float) -> Array:
-    """Densities a radian on other cells that begin at minus `angle`; their integral stays, (k, cells).
-
-    `values` on even cells from 0 on, shape (k, n).
-    """
+def turned_ring(values: Array, angle: float) -> Array:
+    """Densities a radian on as many cells that begin at minus `angle`; their integral stays, shape (k, n)."""
     count = values.shape[1]
     whole = np.concatenate([np.zeros((len(values), 1)), np.cumsum(values, axis=1)], axis=1) / count
-    edges = np.arange(cells + 1) / cells - angle / (2.0 * math.pi)
+    edges = np.arange(count + 1) / count - angle / (2.0 * math.pi)
     turns = np.floor(edges)
     places = np.linspace(0.0, 1.0, count + 1)
     sums = np.array([np.interp(edges - turns, places, row) + turns * row[-1] for row in whole])
-    return np.asarray(np.diff(sums, axis=1) * cells)
+    return np.asarray(np.diff(sums, axis=1) * count)
 
 
 def means(

@@ -329,7 +329,7 @@ class Coupled(CoupledRotor):
     def _join(self, j: int) -> None:
         """Make stream and pool one layer in the drum's frame, cell by cell."""
         whole = self.two_layers[j].reshape(2, 2, -1).sum(axis=1)
-        area, spun = turned_ring(whole, self.area.shape[1], -float(self.shaft.angle))
+        area, spun = turned_ring(whole, -float(self.shaft.angle))
         # The layer's momentum is the absolute one less Omega R^2 A.
         self.area[j], self.momentum[j], self.rolling[j] = area, spun - self.spin * area, 0.0
 
@@ -338,7 +338,7 @@ class Coupled(CoupledRotor):
         count, area = self.two_layers.shape[2], self.area[j]
         if rotation is None:
             both = np.stack([area, self.momentum[j] + self.spin * area])
-            area, spun = turned_ring(both, count, float(self.shaft.angle))
+            area, spun = turned_ring(both, float(self.shaft.angle))
         else:
             area = np.full(count, area.mean())
             spun = rotation * area * (1.0 - area)

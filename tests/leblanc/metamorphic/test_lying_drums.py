@@ -20,8 +20,8 @@ from tests.oracles.random_balls import machine_with_balls
 # gravity's work by a momentum that was not that of the centre of mass (25, 278), the drive's work at the mean
 # spin beside stiff friction (45), heat of bores below zero by what the scheme gives back (238), momentum
 # of flow that a closed baffle holds back (149), films that ran dry pushed as the deep state at their face
-# (190).
-SEEDS = (11, 13, 17, 19, 25, 33, 42, 45, 61, 149, 190, 238, 278, 293)
+# (190), a motor that its pool holds at a millionth of its speed (83).
+SEEDS = (11, 13, 17, 19, 25, 33, 42, 45, 61, 83, 149, 190, 238, 278, 293)
 # Mass and volume of drum 190 off by these shares: a cell that holds an eighth of what fills its gap filled it
 # at its face, was emptied in a step by the waves of a full gap, and kept its momentum (8 to 37 % left).
 OFF = (

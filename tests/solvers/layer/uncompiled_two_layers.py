@@ -475,6 +475,7 @@ def test_spreading() -> None:
 
 @kills(_MEASURE, "moved = flow[0, i] * turn[0, i] + flow[1, i]", "moved = flow[1, i]")
 @kills(_MEASURE, "lever = 2.0 / 3.0 * held", "lever = 0.5 * held")
+@kills(_MEASURE, "left = rest / (rest + slope * slope)", "left = rest / (rest + slope)")
 @kills(_MEASURE, "light = whole / (rest * step)", "light = whole / step")
 @kills(_MEASURE, "energy += 0.5 * step * slot * beyond * beyond / full", "energy += 0.0 * beyond")
 @kills(_MEASURE, "inertia += step * whole * rest", "inertia += step * whole")
