@@ -137,7 +137,7 @@ def _baffle_factor(fill: Fill, pool: Pool) -> float:
     return float(0.5 * fill.liquid.density * chamber.height * wet * width * lever**3)
 
 
-# Of the two layers' own answers in slow ramps [theory: pool, eq. 21-22]: what F must be of the mean area
+# Of the two layers' own answers in slow ramps [theory: pool, eq. 20-21]: what F must be of the mean area
 # over that of the stream, less where that is shallow, and the drag times F^2 of the mean area over R^2.
 _BAFFLED, _SHALLOW, _DRAGGED = 10.6, 1.5, 24.0
 
@@ -145,7 +145,7 @@ _BAFFLED, _SHALLOW, _DRAGGED = 10.6, 1.5, 24.0
 def centrifuging_speed(fill: Fill, friction: Friction, gravity: float) -> float:
     """Spin speed at which liquid at rest at the bottom becomes a ring, held long enough, rad/s.
 
-    By a quasi-steady balance [theory: pool, eq. 21-22]; inf where nothing drags on the liquid.
+    By a quasi-steady balance [theory: pool, eq. 20-21]; inf where nothing drags on the liquid.
     """
     chamber = fill.chamber
     radius, baffles = chamber.radius, chamber.baffles
@@ -251,16 +251,14 @@ def _level(radius: float, inner: float, area: float) -> float:
 # Constants of the closures. Depth of the stream over the height of the baffles, and how often a passage of
 # one renews it: what the picture says; a free search over the computed runs gave 1.01 and 0.99.
 DEPTH, RENEWED = 1.0, 1.0
-# Drag coefficient of a baffle in the stream (1.8 to 3.2 change little) and friction factor between the two
-# layers: fitted to the two computed runs of 6 mm.
-DRAG, INTERFACE = 2.4, 0.016
+# Drag coefficient of a baffle in the stream and friction factor between the two layers, fitted to the two
+# computed runs of 6 mm: 2.4 to 2.8 and 0.012 to 0.016 do as well.
+DRAG, INTERFACE = 2.4, 0.012
 # Share of the pressure at the wall that a baffle in the pool can be pushed with, its back being open to the
-# air: fitted to the same; and of one in a standing ring, from the computed rings at 40 rad/s.
-VENTED_POOL, VENTED_RING = 0.15, 0.6
-# Mixing: what a stream passes on to the pool in one passage of a baffle, and by which square of the slip over
-# g R cos(theta) that fades; viscosity along the wall over slip and depth, without which two layers of unlike
-# speed have no solution.
-MIXED, FADES, SPREADS = 1.0, 2.0, 0.1
+# air: from the computed rings at 40 rad/s.
+VENTED = 0.6
+# Viscosity along the wall over slip and depth, without which two layers of unlike speed have no solution.
+SPREADS = 0.1
 # Flow that a smooth wall draws into a stream over its shear velocity squared over its speed, from the
 # similarity of a turbulent layer on a wall that moves through liquid at rest, with the 1/7 power profile.
 DRAWN = 2.72

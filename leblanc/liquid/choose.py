@@ -414,7 +414,7 @@ def captured_speed(scene: Scene) -> float | None:
 
 
 def balance_from(scene: Scene, fill: Fill) -> float | None:
-    """Centrifuging speed of liquid that lies at the bottom, rad/s [theory: pool, eq. 21-22].
+    """Centrifuging speed of liquid that lies at the bottom, rad/s [theory: pool, eq. 20-21].
 
     inf where nothing drags on it; None where gravity does not act across the axis, no pool lies on a circular
     wall, or closed compartments take it along.
@@ -427,7 +427,7 @@ def balance_from(scene: Scene, fill: Fill) -> float | None:
 
 
 def carried_from(scene: Scene) -> float | None:
-    """Speed above which the walls carry every layer round from rest, rad/s [theory: pool, eq. 21-22].
+    """Speed above which the walls carry every layer round from rest, rad/s [theory: pool, eq. 20-21].
 
     inf where nothing drags on one of them; None where no layer lies at the bottom first, or that of a chamber
     whose section is no circle.

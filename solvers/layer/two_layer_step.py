@@ -263,6 +263,22 @@ def _calm(flow, full, spin):
 
 
 @_part
+def _drained(flow, had, turn, full):
+    """Leave a layer that lost over half of a cell's area its velocity; what more it has is the other's.
+
+    Liquid leaves with the velocity at the face, and what is left is pushed for all that was there: hardly any
+    mass would keep that momentum.
+    """
+    for i in range(flow.shape[1]):
+        rest = 1.0 - min(flow[0, i] + flow[1, i], full)
+        for k in range(2):
+            if flow[k, i] < 0.5 * had[k, i] and flow[k, i] < flow[1 - k, i]:
+                own = flow[k, i] * rest * turn[k, i]
+                flow[3 - k, i] += flow[2 + k, i] - own
+                flow[2 + k, i] = own
+
+
+@_part
 def _spread(flow, turn, full, dt, work):
     """Viscosity along the wall, an explicit step [theory: pool, eq. 17]."""
     n = flow.shape[1]
@@ -346,20 +362,24 @@ def _sources(flow, pull, spin, stream, table, heavy, ring, dt, taken):
         w_2 = flow[3, i] / (two * rest) if two > DRY else 0.0
         slip_1, slip_2 = abs(spin - w_1), abs(spin - w_2)
         plates_1, wall_1, plates_2, wall_2, between = 0.0, 0.0, 0.0, 0.0, 0.0
+        length, held = 0.0, 0.0
+        if often > 0.0:
+            turned = (one * w_1 * w_1 + two * w_2 * w_2) / (one + two)
+            weight = max(turned + pull[i], 0.0) * depth + stream.slot * max(whole - full, 0.0) / full
+            length = _resistance(depth, stream.tip, stream.gap, stream.loss)
+            held = 2.0 * closures.VENTED * (1.0 if ring else stream.grip) * plate * weight
         if one > DRY:
             thin = min(1.0, one / (0.02 * plate)) if plate > 0.0 else 1.0
-            width = closures.DRAG * plate if stream.loss < 0.0 else stream.loss * one
+            width = stream.loss * one
+            if stream.loss < 0.0:
+                vented = length * held / (held + length * slip_1 * slip_1 + 1e-300)
+                width = max(closures.DRAG * plate, vented)
             width = 1e6 if stream.shut > 0.0 else width
             plates_1 = 0.5 * often * width * slip_1 * lever * thin
             wall_1 = _shear(stream, table, slip_1, depth)
         if two > DRY:
             if often > 0.0:
-                turned = (one * w_1 * w_1 + two * w_2 * w_2) / (one + two)
-                weight = max(turned + pull[i], 0.0) * depth + stream.slot * max(whole - full, 0.0) / full
-                width = _resistance(depth, stream.tip, stream.gap, stream.loss)
-                vented = closures.VENTED_RING if ring else stream.grip * closures.VENTED_POOL
-                held = 2.0 * vented * plate * weight
-                width *= held / (held + width * slip_2 * slip_2 + 1e-300)
+                width = length * held / (held + length * slip_2 * slip_2 + 1e-300)
                 plates_2 = 0.5 * often * width * slip_2
             if one <= 10.0 * DRY:
                 wall_2 = _shear(stream, table, slip_2, depth)
@@ -371,9 +391,6 @@ def _sources(flow, pull, spin, stream, table, heavy, ring, dt, taken):
             wall_2 += stream.lid * _shear(stream, table, slip_2, depth) * two * rest
         if one > DRY and two > DRY:
             between = 0.125 * closures.INTERFACE * abs(w_2 - w_1)
-            weighs = max(pull[i], 0.0)
-            weighs /= weighs + closures.FADES * (w_1 - w_2) ** 2 + 1e-300
-            between += closures.MIXED * min(two / one, 1.0) * often * slip_1 * one * rest * weighs
         mass_1, mass_2 = max(one * rest, 1e-300), max(two * rest, 1e-300)
         drag_1, drag_2 = dt * (plates_1 + wall_1), dt * (plates_2 + wall_2)
         a, b, c = mass_1 + drag_1 + dt * between, mass_2 + drag_2 + dt * between, dt * between
@@ -397,7 +414,7 @@ def _sources(flow, pull, spin, stream, table, heavy, ring, dt, taken):
 
 @_jit
 def stands(flow, x, y, full):
-    """Whether the liquid's own mean rotation holds it to the wall all round [theory: pool, eq. 19]."""
+    """Whether the liquid's own mean rotation holds it to the wall all round [theory: pool, eq. 18]."""
     spinning, inertia, mean, n = 0.0, 0.0, 0.0, flow.shape[1]
     for i in range(n):
         whole = flow[0, i] + flow[1, i]
@@ -434,13 +451,18 @@ def advance(flow, spin, x, y, ring, dt, angles, stream, table, work, taken):
                 after[j, i] = flow[j, i] + tau * rate[j, i]
                 if j < 2 and after[j, i] < 0.0:
                     after[j, i] = 0.0
+        _drained(after, flow, turn, full)
         turnings(after, full, spin, turn)
         _rates(after, turn, x, y, angles, full, slot, rim, tau, work, rate)
         for j in range(4):
             for i in range(n):
-                flow[j, i] = 0.5 * (flow[j, i] + after[j, i] + tau * rate[j, i])
-                if j < 2 and flow[j, i] < 0.0:
-                    flow[j, i] = 0.0
+                after[j, i] = 0.5 * (flow[j, i] + after[j, i] + tau * rate[j, i])
+                if j < 2 and after[j, i] < 0.0:
+                    after[j, i] = 0.0
+        _drained(after, flow, turn, full)
+        for j in range(4):
+            for i in range(n):
+                flow[j, i] = after[j, i]
         taken.torque += _calm(flow, full, spin)
         turnings(flow, full, spin, turn)
         _spread(flow, turn, full, tau, work)

@@ -393,7 +393,7 @@ _SWING = 0.25
 
 @_unwrapped
 def _move_pools(machine, state, room, dt):
-    """Move all pools one step under the guessed accelerations; whether they could [theory: pool, eq. 20]."""
+    """Move all pools one step under the guessed accelerations; whether they could [theory: pool, eq. 19]."""
     spin, first = 0.5 * (room.spins[0] + room.spins[1]), machine.layers.shape[0]
     for j in range(machine.pools.shape[0]):
         pool, own, taken, work = machine.pools[j], first + j, room.taken[j], room.work[j]

@@ -230,7 +230,7 @@ class Coupled(CoupledRotor):
         """Catch the liquid that can be a layer by now, let go what cannot; energy brought in, J.
 
         Keeps the momentum of rotor and liquid and, of liquid that the drum does not take along, its angular
-        momentum about the chamber's axis [theory: pool, eq. 18-19].
+        momentum about the chamber's axis [theory: pool, eq. 18].
         """
         if self.handover is Handover.RIDING:
             return self._rearrange(self.ridden(self.active))
