@@ -322,9 +322,10 @@ def _sources(flow, pull, spin, stream, table, heavy, ring, dt, taken):
     plate, lever = stream.tip - stream.gap, 1.0 - 0.5 * (stream.tip + stream.gap)
     often = stream.baffles
     speed = abs(spin)
-    film = stream.grip * _shear(stream, table, speed, 1.0) * speed / (heavy + 1e-300)
-    if stream.law == LINEAR:
-        film = 0.5 if film > 1.0 else 0.0
+    # Linear friction drags on all of the liquid alike, which makes no stream.
+    film = 0.0
+    if stream.law != LINEAR:
+        film = stream.grip * _shear(stream, table, speed, 1.0) * speed / (heavy + 1e-300)
     open_ = max(1.0 - closures.SHELTERS * often * stream.tip, 0.0)
     most = max(closures.DEPTH * stream.tip, open_ * film)
     torque, heat, lost = 0.0, 0.0, 0.0

@@ -5,6 +5,8 @@ Lengths over R, times in seconds [theory: pool, eq. 8-17].
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from fluid import pool as closures
@@ -13,8 +15,8 @@ from fluid.friction.laws import Friction, stokes_coefficient
 from meshes.arrays import Array
 from solvers.layer.records import Record, floats, records
 
-# The surface comes no nearer to the axis where there is no inner wall.
-_NEAREST = 0.03
+# The surface comes no nearer to the axis where there is no inner wall, but for that of liquid at rest.
+_NEAREST, _LEAST = 0.2, 0.03
 # Rows of scratch of the steps.
 ROWS = 22
 # Of a chamber: wall radius R, m; rho h_c R^4 in kg m^2 and rho h_c R^3; mass; area of the full gap, square of
@@ -38,7 +40,9 @@ def stream_of(fill: Fill, friction: Friction, gravity: float, top: float = 0.0, 
     """Record STREAM of a chamber; `top` of the law of the wall's table, over R."""
     chamber, plates = fill.chamber, fill.chamber.baffles
     radius, weight = chamber.radius, fill.liquid.density * chamber.height
-    rim = max(chamber.inner_radius / radius, _NEAREST)
+    pool = closures.pool_of(fill)
+    lies = _NEAREST if pool is None else math.cos(pool.half_angle)
+    rim = max(chamber.inner_radius / radius, min(_NEAREST, max(lies, _LEAST)))
     found = records(STREAM)[0]
     found.radius, found.weight, found.inertia = radius, weight * radius**3, weight * radius**4
     found.mass, found.rim, found.full = fill.mass, rim, 0.5 * (1.0 - rim) * (1.0 + rim)
