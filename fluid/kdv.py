@@ -16,11 +16,18 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from fluid.friction.laws import Friction, FrictionLaw
 from fluid.waves import free_wave_frequencies
 from meshes.arrays import Array, Complex
 from meshes.errors import InputError, require_positive
 
 FRONT = 0.2  # no law sets it: width of a front over the layer's depth, of the highest bore
+
+
+def refuse_quadratic(friction: Friction, field: str) -> None:
+    """InputError for friction that has no rate, by which these waves are damped; `field` it was given in."""
+    if friction.law is FrictionLaw.QUADRATIC:
+        raise InputError(field, "quadratic", "none, linear, stokes or wall for unidirectional waves")
 
 
 @dataclass(frozen=True)

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from fluid.fill import Fill, Fills
 from fluid.friction.laws import Friction, FrictionLaw
+from fluid.kdv import refuse_quadratic
 from fluid.pool import centrifuging_speed, pool_of
 from fluid.waves import capture_speed
 from fluid.whirl import covering_speed
@@ -242,9 +243,7 @@ def _check_family(scene: Scene) -> None:
     if any(fill.uneven and fill.volume > 0.0 for fill in scene.fills):
         allowed = "never for kdv where baffles stand in the liquid or a section is no circle"
         raise InputError("model.held", model.held, allowed)
-    if model.friction.law is FrictionLaw.QUADRATIC:
-        allowed = "none, linear, stokes or wall for unidirectional waves"
-        raise InputError("model.friction", "quadratic", allowed)
+    refuse_quadratic(model.friction, "model.friction")
     if model.cells % 2:
         raise InputError("model.cells", model.cells, "even, for waves of KdV-Burgers")
 

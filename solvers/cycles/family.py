@@ -56,10 +56,7 @@ class FamilyWave(LayerWave):
     """
 
     def __init__(self, fill: Fill, friction: Friction, cells: int, front: float = kdv.FRONT) -> None:
-        if friction.law is FrictionLaw.QUADRATIC:
-            raise InputError(
-                "friction", friction.law, "none, linear, stokes or wall for unidirectional waves"
-            )
+        kdv.refuse_quadratic(friction, "friction")
         super().__init__(fill, friction, cells)
         self.front, self.modes = front, cells // 2 - 1
         surface = 1.0 - fill.depth / fill.chamber.radius

@@ -323,6 +323,16 @@ def take(table, step, d_q):
 
 
 @_jit
+def keep_heat(table, step, d_energy):
+    """Keep from the fluctuations what is heat at the baffles, from the cells on both sides alike."""
+    for k in range(table.shape[0]):
+        i = int(table[k, FACE])
+        if i >= 0:
+            d_energy[i - 1] -= 0.5 * table[k, POWER] / step
+            d_energy[i] -= 0.5 * table[k, POWER] / step
+
+
+@_jit
 def smeared_resistance(depth, head, row):
     """`resistance` of one of many baffles to the flow of a layer that piles up before each.
 

@@ -15,7 +15,17 @@ from typing import Any
 import numpy as np
 
 from fluid import long_wave
-from solvers.layer.baffles import FACE, OPEN, obstruct, shut, slope_aside, smear, straighten, take
+from solvers.layer.baffles import (
+    FACE,
+    OPEN,
+    keep_heat,
+    obstruct,
+    shut,
+    slope_aside,
+    smear,
+    straighten,
+    take,
+)
 from solvers.machine_code import BARE, machine_code
 
 # Products and sums may be contracted, zeros lose their signs; the order of sums stays. Views of arrays need
@@ -423,10 +433,11 @@ def ring_rates(
     _drain(area, step, dt, plates.shape[0], mass, work[_FLOW], pushes[0], pushes[1], work[_BED])
     _gather(area, euler, spin, held, step, work, d_q)
     take(plates, step, d_q)
-    smear(plates, area, q, spin, step, dt, d_q)
     if energy.size > 0:
         # The faces' higher beds are gone by now: next to a dry cell there are no fluctuations.
         roller_rates(area, d_q, spin, euler, pull_cell, pull_face, step, work, d_energy)
+        keep_heat(plates, step, d_energy)
+    smear(plates, area, q, spin, step, dt, d_q)
     if dispersion:
         _disperse(area, spin, pull_cell, plates, step, work, d_q)
     for i in range(area.size):

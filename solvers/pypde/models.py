@@ -196,10 +196,7 @@ class OneFamily(WaveModel):
     }  # fmt: skip
 
     def __post_init__(self) -> None:
-        if self.friction.law is FrictionLaw.QUADRATIC:
-            raise InputError(
-                "friction", self.friction.law, "none, linear, stokes or wall for unidirectional waves"
-            )
+        kdv.refuse_quadratic(self.friction, "friction")
         if not 8 <= self.points <= _MOST_POINTS:
             raise InputError("cells", self.points, f"from 8 to {_MOST_POINTS}")
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fluid.friction.laws import Friction
-from fluid.kdv import FRONT
+from fluid.kdv import FRONT, refuse_quadratic
 from leblanc.core.notes import Note, NoteCode, percent
 from leblanc.core.progress import update
 from leblanc.core.units import in_rpm
@@ -60,6 +60,8 @@ def scene_cycles(machine: Prepared, friction: Friction) -> tuple[LimitCycles, tu
     range_ = speeds.start, max(speeds.stop, speeds.start * (1.0 + _WAY))
     by_family = cycles_by(machine) == "kdv"
     if by_family:
+        field = "model.friction" if friction == machine.scene.model.friction else "friction"
+        refuse_quadratic(friction, field)
         found, *others = (
             limit_cycles(
                 machine.rotor, fills, range_, friction, progress=told, wave=family_wave(share * FRONT)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from fluid import long_wave as lw
 from fluid.fill import Fill
@@ -245,6 +246,31 @@ def test_given_loss() -> None:
     rates(rest, u * rest - SPIN * rest**2, plates)
     assert abs(plates[0, baffles.TORQUE] / (area * 4.0 * (u * log) ** 2 / (2 * depth**2)) - 1) < 1e-4
     assert law.CLOSED < 1e-3
+
+
+@kills("solvers.layer.baffles:keep_heat", "d_energy[i - 1] -= 0.5 *", "d_energy[i - 1] -= 0.0 *")
+def test_heat_at_baffles_is_none_behind_bores() -> None:
+    """What leaves the mean flow is heat at the baffles, or feeds the fluctuations, and never both."""
+    n = 32
+    area = 0.06 + 0.01 * np.cos(middles(n))
+    smeared = table([-1], 0.05)
+    smeared[:, baffles.DENSITY] = 8.0 / (2.0 * np.pi)
+    for plates in (table([8, 24], 0.05), smeared):
+        q, pull = 0.2 * area - SPIN * area**2, np.zeros(n)
+        step, d_area, d_q, d_energy = 2.0 * np.pi / n, np.empty(n), np.empty(n), np.empty(n)
+        work = np.zeros((finite_volume.WORK, n + 2 * finite_volume.GHOSTS))
+        finite_volume.ring_rates(
+            *(area, q, np.zeros(n), SPIN, 0.0, pull, pull, Inside(plates, 1.0, 0.0), step, 0.0, False, work),
+            *(d_area, d_q, d_energy),
+        )
+
+        u, by_head = q / area + SPIN * area, np.square(q / area + SPIN * area)
+        log = -0.5 * np.log(1.0 - 2.0 * area)
+        by_area = 0.5 * by_head / (1.0 - 2.0 * area) + u * log * (2.0 * SPIN - u / area) + SPIN**2 * area
+        lost = -step * float((by_area * d_area + u * log / area * d_q).sum())
+        heat = baffles.taken(plates)[1]
+        assert heat > 0.0
+        assert step * d_energy.sum() == pytest.approx(lost - heat, rel=1e-6, abs=1e-9 * heat)
 
 
 @kills("solvers.runup.kernel:layer_step", "gains.torque -= 0.5 * dt * held", "pass")
