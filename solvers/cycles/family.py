@@ -20,7 +20,6 @@ from fluid.fill import Fill
 from fluid.friction.laws import Friction, FrictionLaw, damping_rate
 from fluid.friction.wall import lag_drag
 from meshes.arrays import Array, Complex
-from meshes.errors import InputError
 from solvers.cycles.balance import Circular
 from solvers.cycles.branch import Cycle, MakeWave
 from solvers.cycles.wave import Answer, Derivatives, LayerWave, Whirling
