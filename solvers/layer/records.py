@@ -90,7 +90,7 @@ class Outcome(IntEnum):
 _MESSAGES = {
     Outcome.DONE: "",
     Outcome.TOO_LONG: "a layer outran the shortest step",
-    Outcome.AT_AXIS: "the surface of a layer came to the axis",
+    Outcome.AT_AXIS: "the liquid piled up towards the axis, where it is no layer",
     Outcome.RAN_OUT: "the time steps ran out: thin films move too fast for longer ones",
     Outcome.NOT_COUPLED: "rotor and layers did not agree in the shortest steps",
     Outcome.STOPPED: "the motor stands",

@@ -384,6 +384,8 @@ SHORTEST = 1.0 / 1024.0
 # Momentum of a pool that jumps at a cell is no acceleration: the shortest steps pass with so much of a
 # difference in velocity.
 _JUMP = 3e-4
+# A layer of this area, whose surface is nearer to the axis than to the wall, is none where it does not agree.
+_PILED = 0.375
 # Share of the spin by which a ball that sticks may creep.
 _CREEP = 1e-5
 # No wave of a pool is faster, rad/s.
@@ -773,6 +775,16 @@ def _couple(machine, state, room, dt):
 
 
 @_unwrapped
+def _deepest(state):
+    """Largest area of all layers, over R^2."""
+    found = 0.0
+    for j in range(state.area.shape[0]):
+        for i in range(state.area.shape[1]):
+            found = max(found, state.area[j, i])
+    return found
+
+
+@_unwrapped
 def _apart(machine, room, dt):
     """Velocity by which what rotor and pools found is apart from what they were given, over sqrt(g R).
 
@@ -901,6 +913,8 @@ def advance(machine, state, room, stop, courant, most, resumed):
                 return status, taken
             continue
         if status != Outcome.DONE:
+            if status == Outcome.NOT_COUPLED and _deepest(state) > _PILED:
+                status = Outcome.AT_AXIS
             copy(room.area, state.area)
             copy(room.momentum, state.momentum)
             copy(room.rolling, state.rolling)

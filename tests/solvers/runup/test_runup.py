@@ -20,7 +20,7 @@ from solvers.layer.records import Outcome
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.runup.linear import couple_linear
 from solvers.runup.long_wave import couple
-from solvers.runup.machine import Motor, Ramp, RunupModel
+from solvers.runup.machine import Handover, Motor, Ramp, RunupModel
 from solvers.runup.runup import RunupHistory, RunupNumerics, run_up
 from solvers.synchronous.response import response
 from tests.mutants import kills
@@ -541,6 +541,29 @@ def test_a_drum_that_is_braked_leaves_its_liquid_behind(friction: Friction, tip:
     # The drum has 100 rad/s^2, which is more than any of these walls; it stands, and its liquid does not.
     assert (own[slowed][-15:] > history.speed[slowed][-15:]).all() and own[-1] > history.speed[-1] + 2.0
     assert own.max() < 1.1 * 80.0
+
+
+def test_liquid_that_long_plates_throw_to_the_axis_is_told() -> None:
+    """Upright, six plates up to a fifth of the radius, stopped in an eighth of a second."""
+    chamber = Chamber(0.37, 0.1, baffles=Baffles(6, 0.073))
+    fill, drive = Fill(chamber, WATER, 0.0107), Ramp(7.0, 47.0, 320.0, 0.3, back=True)
+    numerics = replace(ALONE, cells=48, samples=100)
+    history = run_up(ROTOR.system(), [fill], drive, Friction("quadratic", 0.15), 0.0, numerics)
+    assert history.outcome is Outcome.AT_AXIS and "towards the axis" in history.reason
+
+
+@pytest.mark.parametrize(("rate", "filled", "rotor"), [(5.0, 0.3, 10.0), (8.0, 0.4, 20.0), (12.0, 0.3, 10.0)])
+def test_linear_friction_carries_a_pool_on_a_light_rotor(rate: float, filled: float, rotor: float) -> None:
+    """Smooth and lying, no inner wall: momentum jumps where the pool comes near to the axis."""
+    unit = math.sqrt(9.81 / 0.25)
+    stiffness = rotor * (1.5 * unit) ** 2
+    system = Jeffcott(rotor, stiffness, 0.3 * rotor * 1.5 * unit, rotor * 5e-4)
+    chamber = Chamber(0.25, 0.1)
+    fill, drive = Fill(chamber, WATER, filled * chamber.capacity), Ramp(1.0, 5.0 * unit, 4.0, 8.2)
+    numerics = replace(ALONE, cells=64, samples=200, handover=Handover.CARRIED)
+    history = run_up(system.system(), [fill], drive, Friction("linear", rate), 9.81, numerics)
+    assert history.converged and history.captured[-1, 0]
+    assert history.audit.closure < 1e-3 and history.mass_error < 1e-12
 
 
 @pytest.mark.parametrize("rate", [1.0, 1e4])
