@@ -30,6 +30,7 @@ from solvers.waves.steady import solve
 _MOST_POINTS = 1024  # of a first wave, whose modes beyond the layer's are left
 _STEP = 1e-7  # relative, in differences by the lag and by what drives the layer
 _LEAST = 1e-7  # of the radius, of the spin: smaller deflections and lags are answered as this one
+_ROUNDS = 2  # for what friction gives a wave from the other family
 _HIGHEST = 30.0  # of the mean area: modes that no wave has
 _WILD = 0.1  # over the spin: disturbances that grow faster are none of the whirl, see `floquet`
 
@@ -42,9 +43,30 @@ class _Posed:
     speed: float  #: of the whirl, seen from the liquid, as the system takes it
     scale: float  #: of its modes, over R^2
     first: complex  #: mode 1 of both families together, over R^2
-    other: complex  #: mode 1 of the other family over R^2, and its rate in the whirl's frame
+    other: complex  #: mode 1 of the other family over R^2, its rate in the whirl's frame, what friction takes
     other_rate: complex
+    other_decay: float
     push: complex  #: rate of mode 1 by a force's conjugate; the other family's is less it
+
+    @property
+    def answers(self) -> complex:
+        """Mode 1 of the other family over that of this one: friction gives it what it takes from this one."""
+        return -self.system.problem.decay / self.other_rate
+
+    def left(self, state: Array) -> Array:
+        """What the modes leave of their equations [theory: kdv, eq. 19 and 35]."""
+        found = self.system.residual(state[:-1] / self.scale, self.speed)
+        given = 1j * self.other_decay * self.other / (self.system.scale * self.scale)
+        found[[0, self.system.modes]] += given.real, given.imag
+        return found
+
+    def slope(self, state: Array) -> Array:
+        """Derivative of what is left with respect to the modes over their scale."""
+        m = self.system.modes
+        found = self.system.jacobian(state[:-1] / self.scale, self.speed, m)
+        given = 1j * self.other_decay * self.answers / self.system.scale
+        found[np.ix_([0, m], [0, m])] += _real(np.array([[given]]))
+        return found
 
 
 class FamilyWave(LayerWave):
@@ -90,6 +112,13 @@ class FamilyWave(LayerWave):
         if wave.residual > TOLERANCE:
             return None
         self.state = np.append(resized(split(wave.modes), self.modes), self.state[-1])
+        # The wave rubs alone; what friction gives it from the other family is little.
+        for _ in range(_ROUNDS):
+            posed = self.posed(self.state, given)
+            if posed is None:
+                return None
+            step = np.linalg.solve(posed.slope(self.state), posed.left(self.state))
+            self.state[:-1] -= posed.scale * step
         return self.cell(self.state, given)
 
     def cell(self, state: Array, given: Whirling) -> Answer | None:
@@ -99,7 +128,7 @@ class FamilyWave(LayerWave):
             return None
         if not float(np.abs(state).max()) < _HIGHEST * self.mean:
             return None
-        left = posed.system.residual(state[:-1] / posed.scale, posed.speed)
+        left = posed.left(state)
         force, lag = self._force(posed.first, given), float(state[-1]) / self.mean
         held = lag - self._fed(given, force) / self._rate(given, lag)
         gap = np.append(left * self._unit(posed) * posed.scale, held * self.mean)
@@ -122,12 +151,11 @@ class FamilyWave(LayerWave):
         columns = np.array([end.state - base.state for end in ends if end]).T / steps
         forces = np.array([end.force - base.force for end in ends if end]) / steps
         force = np.zeros(state.size, dtype=complex)
-        force[[0, self.modes]] = self._force(1.0, given) - self._force(0.0, given), 0.0
+        force[[0, self.modes]] = self._force(1.0 + posed.answers, given) - self._force(0.0, given), 0.0
         force[self.modes] = -1j * force[0]
         force[-1] = forces[0]
         by_state = np.eye(state.size)
-        exact = posed.system.jacobian(state[:-1] / posed.scale, posed.speed, self.modes)
-        by_state[:-1, :-1] -= exact * self._unit(posed)
+        by_state[:-1, :-1] -= posed.slope(state) * self._unit(posed)
         by_state[-1] = self._fed(given, force) * (self.mean / self._rate(given, base.turning))
         by_state[:, -1] = columns[:, 0]
         return Derivatives(by_state, columns[:, 1:], force, forces[1:])
@@ -149,17 +177,18 @@ class FamilyWave(LayerWave):
             float(kdv.diffusion(near, q * turning, self.front)),
         )
         system = System(problem, self.modes)
-        decay = problem.diffusion + float(kdv.decay(far, rubbed))
-        rate = -1j * (float(_frequency(far, turning, np.array(1.0))) - slip) - decay
-        push = 0.5j * q / acceleration
-        other = push * acceleration / rate
+        other_decay = float(kdv.decay(far, rubbed))
+        rate = -1j * (float(_frequency(far, turning, np.array(1.0))) - slip) - problem.diffusion - other_decay
+        push, first = 0.5j * q / acceleration, complex(state[0], state[self.modes])
+        other = (push * acceleration - problem.decay * first) / rate
         return _Posed(
             system,
             slip / system.scale,
             system.scale / problem.steepening,
-            complex(state[0], state[self.modes]) + other,
+            first + other,
             other,
             rate,
+            other_decay,
             push,
         )
 
@@ -195,6 +224,9 @@ class FamilyWave(LayerWave):
         change = (left(later) - left(state)) / further
         rates[[*range(2 * m), count - 2, count - 1], 2 * m] = change
         rates[others, others] = _real(np.array([[posed.other_rate]]))
+        # What friction takes from one family it gives the other.
+        rates[others, [0, m]] = posed.system.problem.decay * np.eye(2)
+        rates[[0, m], others] = posed.other_decay * np.eye(2)
         # Of a force f the first mode of e^{i xi} is pushed by the conjugate.
         way = _real(np.array([[posed.push]])) @ np.diag([1.0, -1.0])
         push[[0, m]], push[others] = way, -way

@@ -71,8 +71,6 @@ class FamilyMachine:
         own = [kdv.wave_frequency(n, c, False) for c in self.near]
         self.numbers, self.frequency = n, np.array(own).reshape(-1, self.modes)
         self.far_frequency = np.array([float(kdv.wave_frequency(1, c, False)) for c in self.far])
-        #: what friction takes from one family it gives the other, the area being kept; 0: each rubs alone
-        self.shared = 1.0
         self.lever, self._squares = self.surface / self.mean, np.square(n)
         self.damping, self._springs = system.damping / spin + system.gyroscopic, system.stiffness / spin**2
         self._inverse, self._carried = np.linalg.inv(mass), (self.mass * self.radius) * self.rows.conj().T
@@ -156,13 +154,13 @@ class FamilyMachine:
         v, other = self.parts(state)[:2]
         modes, m = np.zeros((len(v), self.modes + 1), dtype=complex), self.modes
         modes[:, 1:] = v
-        given = self.shared * self.far_decay * other, self.shared * self.decay * v[:, 0]
         eta = np.fft.irfft(modes, 4 * (m + 1), norm="forward")
         square = np.fft.rfft(eta * eta, norm="forward")[:, 1 : m + 1]
         steep = (-0.5j * self.steepening * (1.0 - lag))[:, None] * self.numbers
         waves = linear[0] * v + steep * square
-        waves[:, 0] += given[0]
-        return waves, linear[1] * other + given[1]
+        # What friction takes from one family it gives the other, the area being kept.
+        waves[:, 0] += self.far_decay * other
+        return waves, linear[1] * other + self.decay * v[:, 0]
 
     def rates(self, time: float, state: Complex, frozen: Frozen) -> tuple[Complex, Array]:
         """Rates of a state, and the size of the axes' acceleration over R, shape (l,)."""
@@ -170,7 +168,7 @@ class FamilyMachine:
         v, other, lags, place, momentum = self.parts(state)
         lag, offset = lags.real, self.lever * np.conj(v[:, 0] + other)
         linear = self._linear(frozen, lag)
-        own, far = linear[0][:, 0] + self.shared * self.decay, linear[1] + self.shared * self.far_decay
+        own, far = linear[0][:, 0] + self.decay, linear[1] + self.far_decay
         turning = 1.0 - lag
         waves, beside = self._waves(state, lag, linear)
         change = self.lever * np.conj(waves[:, 0] + beside)
