@@ -384,7 +384,9 @@ def _carried(speed: float) -> str:
     """From where on liquid at the bottom becomes a ring, in words."""
     if math.isinf(speed):
         return "never: no friction acts on it"
-    return f"a ring forms from about {in_rpm(speed)} on, held there: slow run-ups do it at 0.6 to 1.6 times that"
+    return (
+        f"a ring forms from about {in_rpm(speed)} on, held there: slow run-ups do it at 0.6 to 1.6 times that"
+    )
 
 
 def _spin_up_rows(found: SpinUp) -> Rows:

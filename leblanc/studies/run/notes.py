@@ -137,8 +137,8 @@ def carried_words(stands: float, carried: float) -> str:
     if carried <= stands:
         return "From rest it forms from there on too."
     return (
-        f"From rest it forms from about {in_rpm(carried)} on, by a balance (slow run-ups 0.6 to 1.6 times it): "
-        "between the two an answer holds for a ring that stands already, as on the way down."
+        f"From rest it forms from about {in_rpm(carried)} on, by a balance (slow run-ups: 0.6 to 1.6 times "
+        "that): between the two an answer holds for a ring that stands already, as on the way down."
     )
 
 

@@ -60,6 +60,8 @@ def cycle() -> tuple[Cycle, Follower]:
 @kills(f"{FAMILY}.rates", "+ 2j * change", "+ 1j * change")
 @kills(f"{FAMILY}.rates", "slower - np.imag", "slower + np.imag")
 @kills(f"{FAMILY}.rates", "linear[1] + self.far_decay", "linear[0][:, 0] + self.far_decay")
+@kills("solvers.cycles.family:FamilyWave.rates", "posed.other_decay * np.eye(2)", "0.0 * np.eye(2)")
+@kills("solvers.cycles.family:FamilyWave.rates", "posed.system.problem.decay * np.eye", "0.0 * np.eye")
 @kills("solvers.cycles.family:FamilyWave.rates", "-slope / inertia", "0.5 * -slope / inertia")
 @kills("solvers.cycles.family:FamilyWave.rates", "= change", "= 0.8 * change")
 @kills("solvers.cycles.family:disturbances", "+ around @ offset", "+ 0.9 * around @ offset")

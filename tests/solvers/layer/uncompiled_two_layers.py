@@ -20,6 +20,7 @@ from solvers.layer.two_layers import TAKEN
 from tests.mutants import kills
 from tests.solvers.layer.two_layer_drums import COMPUTED, WATER, Drum
 
+_STEP = "solvers.layer.two_layer_step:"
 _RATES = "solvers.layer.two_layer_step:_rates"
 _SOURCES = "solvers.layer.two_layer_step:_sources"
 _MEASURE = "solvers.layer.two_layer_step:measure"
@@ -396,6 +397,9 @@ def test_drag_between_high_bars() -> None:
         np.testing.assert_allclose(given[below], vented, rtol=1e-3)
 
 
+@kills(_STEP + "_drained", "flow[3 - k, i] += flow[2 + k, i] - own", "pass")
+@kills(_STEP + "_drained", "flow[k, i] < 0.5 * had[k, i]", "flow[k, i] < had[k, i]")
+@kills(_STEP + "_drained", "flow[2 + k, i] = own", "pass")
 def test_drained() -> None:
     """A layer that leaves a cell leaves no more than its velocity there, and nothing is lost."""
     drum = Drum(COMPUTED, cells=16)
