@@ -16,6 +16,7 @@ from fluid import pool as closures
 from fluid.friction.laws import LINEAR, NONE, QUADRATIC, STOKES
 from solvers.layer.drag import mean_rate
 from solvers.layer.finite_volume import COMPILED
+from solvers.layer.step import copy
 from solvers.machine_code import BARE, machine_code
 
 _jit: Any = machine_code(**COMPILED)
@@ -461,9 +462,7 @@ def advance(flow, spin, x, y, ring, dt, angles, stream, table, work, taken):
                 if j < 2 and after[j, i] < 0.0:
                     after[j, i] = 0.0
         _drained(after, flow, turn, full)
-        for j in range(4):
-            for i in range(n):
-                flow[j, i] = after[j, i]
+        copy(after, flow)
         taken.torque += _calm(flow, full, spin)
         turnings(flow, full, spin, turn)
         _spread(flow, turn, full, tau, work)

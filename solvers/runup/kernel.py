@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from fluid.friction.laws import NONE, STOKES, WALL
 from solvers.layer.baffles import FACE, OPEN, taken
 from solvers.layer.drag import wall_kept
-from solvers.layer.finite_volume import COMPILED, GHOSTS, LOG, NEAREST, SUMMED, SURFACE, VELOCITY, WORK
+from solvers.layer.finite_volume import COMPILED, GHOSTS, LOG, NEAREST, SUMMED, SURFACE, VELOCITY, WORK, most
 from solvers.layer.inside import SLOT_SPEED, Inside
 from solvers.layer.records import Outcome
 from solvers.layer.step import (
@@ -779,8 +779,7 @@ def _deepest(state):
     """Largest area of all layers, over R^2."""
     found = 0.0
     for j in range(state.area.shape[0]):
-        for i in range(state.area.shape[1]):
-            found = max(found, state.area[j, i])
+        found = max(found, most(state.area[j]))
     return found
 
 

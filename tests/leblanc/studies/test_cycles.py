@@ -185,7 +185,10 @@ def test_limit_cycles_by_kdv_burgers(machine: Scene, capsys: pytest.CaptureFixtu
     rows = map_.large.cycles
     assert all(row.in_range == (row.thinnest >= 0.0 and row.lag <= row.speed / 3.0) for row in rows)
     assert "KdV-Burgers" in str(map_.blocks())
-    with pytest.raises(InputError, match="unidirectional"):
-        lb.map_whirl(machine, volumes=2, speeds=3, cycles=True, model="kdv", friction="quadratic:0.01")
+    own = machine.replace({"model.friction": {"quadratic": 0.01}})
+    for one, friction, field in ((machine, "quadratic:0.01", "friction"), (own, None, "model.friction")):
+        with pytest.raises(InputError, match="unidirectional") as refused:
+            lb.map_whirl(one, volumes=2, speeds=3, cycles=True, model="kdv", friction=friction)
+        assert refused.value.field == field
     given = machine.replace({"model.liquid": "kdv"})
     assert lb.run(given, cycles=True).to_json()["cycles_model"] == "kdv"
