@@ -3,6 +3,9 @@
 numba keys its cache by the file of a function, not by what that calls, and raises where neither the package
 nor HOME can be written. Here each state of a module and of all that it imports has a folder of its own below
 the user's caches; without one each process compiles for itself.
+
+What one compiled function calls by its name becomes a part of it and is compiled once more. Large parts, and
+those that only some scenes have, are handed over as arguments instead: `Handed`.
 """
 
 from __future__ import annotations
@@ -15,6 +18,7 @@ import shutil
 import stat
 import threading
 import time
+import warnings
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -22,6 +26,7 @@ from typing import Any
 
 import numba
 import platformdirs
+from numba.core.errors import NumbaExperimentalFeatureWarning
 
 # Options of what only compiled code calls: it needs no wrappers.
 BARE: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
@@ -30,7 +35,7 @@ _HERE = Path(__file__)
 _OURS = r"((?:meshes|fluid|solvers)\b[\w.]*)"
 _IMPORT = re.compile(rf"^ *(?:from {_OURS} import (\([^)]*\)|.+)|import {_OURS})", re.MULTILINE)
 _UNUSED = 30.0 * 86400.0  # s, after which the folder of other sources is removed
-_choosing = threading.Lock()
+_choosing = threading.RLock()
 _config: Any = numba.config
 
 
@@ -69,6 +74,64 @@ def cache_folder(source: Path = _HERE) -> Path | None:
         return folder if _writable(folder) else None
     sources = b"".join(path.read_bytes() for path in sorted(_reached(source)))
     return private_folder(f"machine-code-{hashlib.sha256(sources).hexdigest()[:16]}")
+
+
+# Types of arguments: a float, an integer, a flag, arrays of floats one after the other.
+REAL, WHOLE, FLAG = numba.float64, numba.int64, numba.boolean
+ROW, ROWS, BLOCKS, TURNING = REAL[::1], REAL[:, ::1], REAL[:, :, ::1], numba.complex128[::1]
+NOTHING = numba.void
+type_of: Any = numba.typeof
+
+
+def pair(first: Any, second: Any) -> Any:
+    """Type of a pair of these."""
+    return numba.types.Tuple((first, second))
+
+
+class Handed:
+    """A compiled function as an argument of others, which know its types alone; compiled when it is made."""
+
+    def __init__(self, function: Any, types: Any) -> None:
+        made = entry_result(function, types.signature.args)
+        name = made.fndesc.llvm_cfunc_wrapper_name
+        self.address: int = made.library.get_pointer_to_function(name)
+        self.types = types.signature
+
+    def __wrapper_address__(self) -> int:
+        return self.address
+
+    def signature(self) -> Any:
+        """Types of result and arguments, as numba asks for them."""
+        return self.types
+
+
+def handed_type(result: Any, *given: Any) -> Any:
+    """Type of functions that are handed over, by their result and arguments."""
+    return numba.types.FunctionType(result(*given))
+
+
+@cache
+def handed(function: Any, types: Any) -> Any:
+    """A compiled function as an argument of others; where nothing is compiled the function itself."""
+    return function if _config.DISABLE_JIT else Handed(function, types)
+
+
+@cache
+def entry(function: Any, *given: Any) -> Any:
+    """A compiled function for arguments of these types: it asks for no types as it is called."""
+    if _config.DISABLE_JIT:
+        return function
+    entry_result(function, given)
+    return function.get_overload(given)
+
+
+def entry_result(function: Any, given: Any) -> Any:
+    """What the compiler made of a function for arguments of these types."""
+    with _choosing, warnings.catch_warnings():
+        # Functions as arguments are new in numba, which says so each time.
+        warnings.simplefilter("ignore", NumbaExperimentalFeatureWarning)
+        function.compile(tuple(given))
+    return function.overloads[tuple(given)]
 
 
 def _reached(source: Path) -> set[Path]:

@@ -107,6 +107,17 @@ def shut(area, row):
 
 
 @_jit
+def wall_beds(table, pull_face, area, bed, ghosts):
+    """Let closed baffles bear the liquid to their own place, however dry the other side: walls, in `bed`."""
+    n = pull_face.size
+    for k in range(table.shape[0]):
+        i = int(table[k, FACE])
+        if i >= 0 and shut(max(area[i + ghosts - 1], area[i + ghosts]), table[k]):
+            bed[i] = pull_face[i]
+            bed[n] = bed[0]
+
+
+@_jit
 def _side(area, q, share, way, spin, full, slot, bed, other):
     """One side of a face: velocity, head, half the waves' speed over L, that speed, and how much is left.
 

@@ -10,12 +10,51 @@ from typing import Any
 
 import numpy as np
 
+from fluid.friction import laws
 from solvers.layer.finite_volume import COMPILED, DRY, SUMMED
-from solvers.machine_code import BARE, machine_code
+from solvers.machine_code import BARE, NOTHING, REAL, ROW, ROWS, WHOLE, handed, handed_type, machine_code
 
 _part: Any = machine_code(**COMPILED)
 _inner_part: Any = machine_code(**(COMPILED | BARE))
 _sum_part: Any = machine_code(**(SUMMED | BARE))
+_sum_jit: Any = machine_code(**SUMMED)
+
+# Decays up to this in a step take the exponential's series, whose tenth term is 0.06^10/10! = 2e-19.
+_WEAK = 0.0625
+
+_damping = _inner_part(laws.damping_rate)
+
+
+@_sum_jit
+def kept_speed(area, velocity, surface, law, coefficient, lid, dt, kept):
+    """Share of each cell's velocity that friction leaves after a time dt: an exact decay, cell by cell."""
+    n, strong = area.size, 0
+    for i in range(n):
+        a = np.maximum(area[i], DRY)
+        # The wall's shear over the velocity, without the cancellation in 1 - r.
+        rate = _damping(law, coefficient, lid, 2.0 * area[i] / (1.0 + surface[i]), a, velocity[i])
+        kept[i] = rate * dt
+        strong += 1 if kept[i] > _WEAK else 0
+    if law == laws.QUADRATIC:
+        # du/dt = -c |u| u has the hyperbola as its solution, the others the exponential.
+        for i in range(n):
+            kept[i] = 1.0 / (1.0 + kept[i])
+    elif strong == 0:
+        # The exponential's series, which vectorises; it ends with rounding.
+        for i in range(n):
+            x = kept[i]
+            total = 1.0 - x / 9.0
+            total = 1.0 - x / 8.0 * total
+            total = 1.0 - x / 7.0 * total
+            total = 1.0 - x / 6.0 * total
+            total = 1.0 - x / 5.0 * total
+            total = 1.0 - x / 4.0 * total
+            total = 1.0 - x / 3.0 * total
+            total = 1.0 - x / 2.0 * total
+            kept[i] = 1.0 - x * total
+    else:
+        for i in range(n):
+            kept[i] = np.exp(-kept[i])
 
 
 @_inner_part
@@ -77,13 +116,11 @@ def _weigh(area, velocity, surface, coefficient, plates, thin, dt, kept, gone):
 
 
 @_part
-def wall_kept(area, velocity, surface, coefficient, wall, dt, kept, pushed):
+def wall_kept(area, velocity, surface, law, coefficient, lid, plates, thin, top, table, dt, kept, pushed):
     """What the law of the wall makes of each cell's velocity in a time dt: kept u + pushed.
 
-    `wall` has lid, plates, thin, top and table, see `fluid.friction.wall.WallDrag`; `coefficient` is that of
-    the waves' part on the wall.
+    Numbers as of `fluid.friction.wall.WallDrag`; `coefficient` is that of the waves' part on the wall.
     """
-    lid, plates, thin, top, table = wall
     _slow_mean(area, velocity, surface, lid, top, table, dt, kept, pushed)
     momentum, mass = _weigh(area, velocity, surface, coefficient, plates, thin, dt, kept, pushed)
     mean = momentum / np.maximum(mass, 1e-300)
@@ -91,3 +128,26 @@ def wall_kept(area, velocity, surface, coefficient, wall, dt, kept, pushed):
         gone = pushed[i]
         kept[i] *= 1.0 - gone
         pushed[i] = gone * mean
+
+
+@_part
+def plain_kept(area, velocity, surface, law, coefficient, lid, plates, thin, top, table, dt, kept, pushed):
+    """The same by any other law, or none; nothing is pushed."""
+    if law == laws.NONE:
+        for i in range(area.size):
+            kept[i] = 1.0
+    else:
+        kept_speed(area, velocity, surface, law, coefficient, lid, dt, kept)
+    for i in range(area.size):
+        pushed[i] = 0.0
+
+
+# Of `wall_kept` and `plain_kept`.
+FRICTION: Any = handed_type(
+    *(NOTHING, ROW, ROW, ROW, WHOLE, REAL, REAL, REAL, REAL, REAL, ROWS, REAL, ROW, ROW)
+)
+
+
+def friction_of(law: int) -> Any:
+    """Friction by a law, handed over."""
+    return handed(wall_kept if law == laws.WALL else plain_kept, FRICTION)

@@ -15,18 +15,19 @@ from typing import Any
 import numpy as np
 
 from fluid import long_wave
+from meshes.arrays import Array
 from solvers.layer.baffles import (
     FACE,
     OPEN,
     keep_heat,
     obstruct,
-    shut,
     slope_aside,
     smear,
     straighten,
     take,
+    wall_beds,
 )
-from solvers.machine_code import BARE, machine_code
+from solvers.machine_code import BARE, FLAG, REAL, ROW, ROWS, handed, handed_type, machine_code
 
 # Products and sums may be contracted, zeros lose their signs; the order of sums stays. Views of arrays need
 # no reference counts here: less to compile.
@@ -34,13 +35,12 @@ COMPILED: dict[str, Any] = {
     "fastmath": {"contract", "arcp", "nsz"},
     "error_model": "numpy",
     "_nrt": False,
+    "nogil": True,
 }
 # Where a gap is full speeds count twice for the step. A ramp within a cell stays within its neighbours in
 # steps of half a cell: with longer ones, as of a Courant number of 0.8, a gap that fills and empties rings.
 PRESSED = 2.0
 _face_jit: Any = machine_code(**(COMPILED | BARE))
-# What becomes part of its callers.
-_inlined: Any = machine_code(inline="always")
 # Sums and largest values over a ring, in parts that the compiler chooses once and for all: the same numbers
 # give the same sum.
 SUMMED: dict[str, Any] = COMPILED | {"fastmath": {"contract", "arcp", "nsz", "reassoc", "nnan"}}
@@ -151,8 +151,8 @@ def _limited(back: float, ahead: float, skew: float) -> tuple[float, float]:
     return (half if same else 0.0), (bend if same else 0.0)
 
 
-@_inlined
-def _slopes(
+@_face_jit
+def half_slopes(
     area,
     head,
     velocity,
@@ -161,15 +161,23 @@ def _slopes(
     held,
     full,
     slot,
-    third,
     half_head,
     half_velocity,
     log,
     bent_head,
     bent_velocity,
 ):
-    """`half_slopes` or, to third order, `bent_slopes`; part of either."""
-    n, skew = half_head.size, THIRD if third else 0.0
+    """Half of the slopes of a ring's cells but the first and the last, limited wave by wave; and their L.
+
+    Differences of head and velocity are split into those that the two waves of the cell carry, of which
+    du/dA = (lambda - u/r^2)/L = Omega +- c/L, c half the difference of the speeds [theory: long_wave, eq. 3].
+    Next to a dry cell there is no slope, nor where the gap begins to be full. `bent_head` and `bent_velocity`
+    are the means of what a cell has at its two faces by parabolas, which make faces right to third order
+    [theory: long_wave, eq. 20]; None: the slopes are straight.
+    """
+    n, skew = half_head.size, 0.0
+    if bent_head is not None:
+        skew = THIRD
     area_b, area_m, area_a = area[:n], area[1 : n + 1], area[2 : n + 2]
     head_b, head_m, head_a = head[:n], head[1 : n + 1], head[2 : n + 2]
     velocity_b, velocity_m, velocity_a = velocity[:n], velocity[1 : n + 1], velocity[2 : n + 2]
@@ -196,56 +204,24 @@ def _slopes(
         second, second_bend = _limited(ahead * head_1 - velocity_1, ahead * head_2 - velocity_2, skew)
         half_head[i] = (first + second) * share if wet else 0.0
         half_velocity[i] = 0.5 * (ahead * first + behind * second) * quotient if wet else 0.0
-        if third:
+        if bent_head is not None:
             bend = 0.5 * (ahead * first_bend + behind * second_bend) * quotient
             bent_head[i] = head_m[i] + ((first_bend + second_bend) * share if wet else 0.0)
             bent_velocity[i] = velocity_m[i] + (bend if wet else 0.0)
 
 
 @_face_jit
-def half_slopes(area, head, velocity, surface, spin, held, full, slot, half_head, half_velocity, log):
-    """Half of the slopes of a ring's cells but the first and the last, limited wave by wave; and their L.
+def beds(pull_face, area, pull, bed):
+    """Radial force at the faces, (n + 1,); next to a dry cell the higher bed, the smaller of the two cells'.
 
-    Differences of head and velocity are split into those that the two waves of the cell carry, of which
-    du/dA = (lambda - u/r^2)/L = Omega +- c/L, c half the difference of the speeds [theory: long_wave, eq. 3].
-    Next to a dry cell there is no slope, nor where the gap begins to be full.
+    `area` and `pull` of the cells with ghosts.
     """
-    _slopes(
-        area, head, velocity, surface, spin, held, full, slot, False,
-        half_head, half_velocity, log, half_head, half_velocity,
-    )  # fmt: skip
-
-
-@_face_jit
-def bent_slopes(
-    area,
-    head,
-    velocity,
-    surface,
-    spin,
-    held,
-    full,
-    slot,
-    half_head,
-    half_velocity,
-    log,
-    bent_head,
-    bent_velocity,
-):
-    """`half_slopes` by parabolas: faces are right to third order [theory: long_wave, eq. 20].
-
-    `bent_head` and `bent_velocity` are the means of what a cell has at its two faces.
-    """
-    _slopes(
-        area, head, velocity, surface, spin, held, full, slot, True,
-        half_head, half_velocity, log, bent_head, bent_velocity,
-    )  # fmt: skip
-
-
-@_face_jit
-def beds(area_l, area_r, pull_l, pull_r, bed):
-    """Put the higher bed, the smaller radial force of the two cells', at faces next to a dry one."""
-    for i in range(bed.size):
+    n = pull_face.size
+    for i in range(n):
+        bed[i] = pull_face[i]
+    bed[n] = pull_face[0]
+    area_l, area_r, pull_l, pull_r = area[1:], area[2:], pull[1:], pull[2:]
+    for i in range(n + 1):
         wet = np.minimum(area_l[i], area_r[i]) > DRY
         bed[i] = bed[i] if wet else np.minimum(pull_l[i], pull_r[i])
 
@@ -391,8 +367,8 @@ def _held(area, q, spin):
     return np.maximum(abs(spin), _HELD * abs(own))
 
 
-@_inlined
-def ring_rates(
+@_jit
+def plain_rates(
     area,
     q,
     energy,
@@ -400,7 +376,9 @@ def ring_rates(
     euler,
     pull_cell,
     pull_face,
-    inside,
+    plates,
+    full,
+    slot,
     step,
     dt,
     dispersion,
@@ -409,29 +387,76 @@ def ring_rates(
     d_q,
     d_energy,
 ):
-    """`rates`, for callers that are compiled themselves: it becomes part of them.
+    """`rates` of a ring without baffles whose waves neither disperse nor leave fluctuations behind them."""
+    pressed, held, inner = slot * spin * spin, _held(area, q, spin), slice(1, area.size + 3)
+    _cells(area, q, spin, held, pull_cell, full, pressed, work)
+    half_slopes(
+        *(work[_AREA], work[_HEAD], work[VELOCITY], work[SURFACE], spin, held, full, pressed),
+        *(work[_HALF_HEAD, inner], work[_HALF_VELOCITY, inner], work[LOG, inner], None, None),
+    )
+    beds(pull_face, work[_AREA], work[_PULL], work[_BED])
+    fastest = _faces(pull_face, spin, held, full, pressed, _HEAD, VELOCITY, work, None)
+    _drain(area, step, dt, work[_MASS], work[_FLOW], work[_BEFORE + 4], work[_AFTER + 4], work[_BED])
+    _gather(area, euler, spin, held, step, work, d_area, d_q)
+    return fastest
 
-    `energy` is A e of the fluctuations behind bores and `d_energy` its rate of change, of no cells where they
-    are left out; `inside` are baffles and inner wall, a `solvers.layer.inside.Inside`.
+
+@_jit
+def rates(
+    area,
+    q,
+    energy,
+    spin,
+    euler,
+    pull_cell,
+    pull_face,
+    plates,
+    full,
+    slot,
+    step,
+    dt,
+    dispersion,
+    work,
+    d_area,
+    d_q,
+    d_energy,
+):
+    """Rates of change of A, q and, behind bores, A e; returns the largest characteristic speed.
+
+    `energy` is A e of the fluctuations and `d_energy` its rate of change, of no cells where they are left
+    out; `pull_cell` and `pull_face` are f_r at the cells' middles and at their left faces, `euler` the rate
+    of change of the spin; `plates`, `full` and `slot` as in `solvers.layer.inside.Inside`; `dt` the time step
+    in which no cell may lose more than it has, `work` scratch, (WORK, n + 2 GHOSTS).
     """
-    plates, full, slot = inside.plates, inside.full, inside.slot * spin * spin
-    held = _held(area, q, spin)
-    _cells(area, q, spin, held, pull_cell, full, slot, dispersion, work)
-    if plates.shape[0] > 0:
-        slope_aside(plates, area, full, work[_HEAD], work[_HALF_HEAD], GHOSTS)
-        slope_aside(plates, area, full, work[VELOCITY], work[_HALF_VELOCITY], GHOSTS)
-        if dispersion:
-            straighten(plates, area.size, work[_HEAD], work[_BENT_HEAD], GHOSTS)
-            straighten(plates, area.size, work[VELOCITY], work[_BENT_VELOCITY], GHOSTS)
+    pressed, held, inner = slot * spin * spin, _held(area, q, spin), slice(1, area.size + 3)
+    _cells(area, q, spin, held, pull_cell, full, pressed, work)
+    # Only where waves disperse are the equations good enough for parabolas to show.
+    if dispersion:
+        half_slopes(
+            *(work[_AREA], work[_HEAD], work[VELOCITY], work[SURFACE], spin, held, full, pressed),
+            *(work[_HALF_HEAD, inner], work[_HALF_VELOCITY, inner], work[LOG, inner]),
+            *(work[_BENT_HEAD, inner], work[_BENT_VELOCITY, inner]),
+        )
+    else:
+        half_slopes(
+            *(work[_AREA], work[_HEAD], work[VELOCITY], work[SURFACE], spin, held, full, pressed),
+            *(work[_HALF_HEAD, inner], work[_HALF_VELOCITY, inner], work[LOG, inner], None, None),
+        )
+    slope_aside(plates, area, full, work[_HEAD], work[_HALF_HEAD], GHOSTS)
+    slope_aside(plates, area, full, work[VELOCITY], work[_HALF_VELOCITY], GHOSTS)
+    straighten(plates, area.size, work[_HEAD], work[_BENT_HEAD], GHOSTS)
+    straighten(plates, area.size, work[VELOCITY], work[_BENT_VELOCITY], GHOSTS)
+    beds(pull_face, work[_AREA], work[_PULL], work[_BED])
+    wall_beds(plates, pull_face, work[_AREA], work[_BED], GHOSTS)
+    head, velocity = (_BENT_HEAD, _BENT_VELOCITY) if dispersion else (_HEAD, VELOCITY)
+    rolling = work[_ROLLER, : energy.size + 2 * GHOSTS if energy.size > 0 else 0]
     if energy.size > 0:
-        fluctuations(area, energy, spin, work[_ROLLER])
-    fastest = _faces(pull_face, plates, spin, held, full, slot, dispersion, work, energy.size > 0)
-    mass = work[_MASS]
-    if plates.shape[0] > 0:
-        obstruct(plates, area, spin, full, slot, pull_face, work[_BEFORE:], work[_AFTER:], mass, work[_FLOW])
-    pushes = work[_BEFORE + 4], work[_AFTER + 4]
-    _drain(area, step, dt, plates.shape[0], mass, work[_FLOW], pushes[0], pushes[1], work[_BED])
-    _gather(area, euler, spin, held, step, work, d_q)
+        fluctuations(area, energy, spin, rolling)
+    fastest = _faces(pull_face, spin, held, full, pressed, head, velocity, work, rolling)
+    mass, flow = work[_MASS], work[_FLOW]
+    obstruct(plates, area, spin, full, pressed, pull_face, work[_BEFORE:], work[_AFTER:], mass, flow)
+    _drain(area, step, dt, mass, flow, work[_BEFORE + 4], work[_AFTER + 4], work[_BED])
+    _gather(area, euler, spin, held, step, work, d_area, d_q)
     take(plates, step, d_q)
     if energy.size > 0:
         # The faces' higher beds are gone by now: next to a dry cell there are no fluctuations.
@@ -440,29 +465,23 @@ def ring_rates(
     smear(plates, area, q, spin, step, dt, d_q)
     if dispersion:
         _disperse(area, spin, pull_cell, plates, step, work, d_q)
-    for i in range(area.size):
-        d_area[i] = (mass[i] - mass[i + 1]) / step
     return fastest
 
 
-@_jit
-def rates(area, q, spin, euler, pull_cell, pull_face, inside, step, dt, dispersion, work, d_area, d_q):
-    """Rates of change of A and q; returns the largest characteristic speed.
-
-    `pull_cell` and `pull_face` are f_r at the cells' middles and at their left faces, `euler` the rate of
-    change of the spin, `dt` the time step in which no cell may lose more than it has, `work` scratch, (WORK,
-    n + 2 GHOSTS).
-    """
-    none = area[:0]
-    return ring_rates(
-        area, q, none, spin, euler, pull_cell, pull_face, inside,
-        step, dt, dispersion, work, d_area, d_q, none,
-    )  # fmt: skip
+# Of `rates`, which `plain_rates` takes the place of where a ring has nothing else.
+RATES: Any = handed_type(
+    *(REAL, ROW, ROW, ROW, REAL, REAL, ROW, ROW, ROWS, REAL, REAL, REAL, REAL, FLAG, ROWS, ROW, ROW, ROW)
+)
 
 
-@_inlined
-def _cells(area, q, spin, held, pull, full, slot, bent, work):
-    """Primitive variables of the cells and their half slopes, all round and a little further."""
+def rates_of(plates: Array, dispersion: bool, enstrophy: bool) -> Any:
+    """The rates of rings with these features, handed over."""
+    return handed(rates if plates.shape[-2] or dispersion or enstrophy else plain_rates, RATES)
+
+
+@_face_jit
+def _cells(area, q, spin, held, pull, full, slot, work):
+    """Primitive variables of the cells, all round and a little further."""
     n = area.size
     end = n + GHOSTS
     for i in range(n):
@@ -476,42 +495,18 @@ def _cells(area, q, spin, held, pull, full, slot, bent, work):
         for i in range(GHOSTS):
             work[row, i] = work[row, n + i]
             work[row, end + i] = work[row, GHOSTS + i]
-    inner = slice(1, n + 3)
-    # Only where waves disperse are the equations good enough for it to show.
-    if bent:
-        bent_slopes(
-            *(work[_AREA], work[_HEAD], work[VELOCITY], work[SURFACE], spin, held, full, slot),
-            *(work[_HALF_HEAD, inner], work[_HALF_VELOCITY, inner], work[LOG, inner]),
-            *(work[_BENT_HEAD, inner], work[_BENT_VELOCITY, inner]),
-        )
-    else:
-        half_slopes(
-            *(work[_AREA], work[_HEAD], work[VELOCITY], work[SURFACE], spin, held, full, slot),
-            *(work[_HALF_HEAD, inner], work[_HALF_VELOCITY, inner], work[LOG, inner]),
-        )
 
 
-@_inlined
-def _faces(pull_face, plates, spin, held, full, slot, bent, work, rolling):
+@_face_jit
+def _faces(pull_face, spin, held, full, slot, head, velocity, work, rolling):
     """Fluxes through each cell's left face, and once more through the first; returns the largest speed.
 
-    `bent`: the cells are parabolas; `rolling`: they have fluctuations.
+    `head` and `velocity`: rows of what the cells have at their faces on the whole; `rolling`: energy of their
+    fluctuations with ghosts, or None.
     """
     n = pull_face.size
     m = n + 1
-    bed = work[_BED, :m]
-    for i in range(n):
-        bed[i] = pull_face[i]
-    bed[n] = pull_face[0]
-    wide, pull = work[_AREA], work[_PULL]
-    head, velocity = (_BENT_HEAD, _BENT_VELOCITY) if bent else (_HEAD, VELOCITY)
-    beds(wide[1:], wide[2:], pull[1:], pull[2:], bed)
-    for k in range(plates.shape[0]):
-        # A closed baffle is a wall: it bears the liquid to its own place, however dry the other side.
-        i = int(plates[k, FACE])
-        if i >= 0 and shut(max(wide[i + 1], wide[i + 2]), plates[k]):
-            bed[i] = pull_face[i]
-            bed[n] = bed[0]
+    bed, wide = work[_BED, :m], work[_AREA]
     for k in range(2):
         # First the cell after each face, then the one before it.
         cells, row, way = slice(2 - k, m + 2 - k), _AFTER + k * _ROWS, 2.0 * k - 1.0
@@ -535,8 +530,8 @@ def _faces(pull_face, plates, spin, held, full, slot, bent, work, rolling):
             work[row + 5],
             work[row + 6],
         )
-        if rolling:
-            lifted(work[_ROLLER, cells], work[row], work[row + 3], work[row + 5], work[row + 6], m)
+        if rolling is not None and rolling.size > 0:
+            lifted(rolling[cells], work[row], work[row + 3], work[row + 5], work[row + 6], m)
     after, before = _AFTER, _BEFORE
     slow, fast = work[_SLOW, :m], work[_FAST, :m]
     signals(
@@ -557,16 +552,16 @@ def _faces(pull_face, plates, spin, held, full, slot, bent, work, rolling):
     return quicker * largest(slow, fast)
 
 
-@_inlined
-def _gather(area, euler, spin, held, step, work, d_q):
-    """Rate of change of q from the fluxes, the force within each cell and the Euler force.
+@_face_jit
+def _gather(area, euler, spin, held, step, work, d_area, d_q):
+    """Rates of change of A and q from the fluxes, the force within each cell and the Euler force.
 
     Inside a cell the force is A dB/dtheta, by the trapezium of its two ends; a film on a steep bed, whose
     state at an end is deeper than twice its own, is pushed as what there is of it. Heads in a stronger field
     than the drum's rise by what it adds as well.
     """
     n, more = area.size, 0.5 * (held - spin) * (held + spin)
-    flow, bend = work[_FLOW], work[_HALF_HEAD, GHOSTS : n + GHOSTS]
+    mass, flow, bend = work[_MASS], work[_FLOW], work[_HALF_HEAD, GHOSTS : n + GHOSTS]
     area_l, push_l = work[_BEFORE], work[_BEFORE + 4]
     area_r, push_r = work[_AFTER], work[_AFTER + 4]
     for i in range(n):
@@ -575,6 +570,7 @@ def _gather(area, euler, spin, held, step, work, d_q):
         rise = bend[i] - more * (area_l[i + 1] - area_r[i])
         within = (np.minimum(area_l[i + 1], most) + np.minimum(area_r[i], most)) * rise
         d_q[i] = -euler * area[i] - (through + within) / step
+        d_area[i] = (mass[i] - mass[i + 1]) / step
 
 
 @_face_jit
@@ -738,8 +734,8 @@ def solve_ring(diagonal, side, value, spare):
         value[i] += gained * spare[i]
 
 
-@_inlined
-def _drain(area, step, dt, plates, mass, flow, push_l, push_r, share):
+@_face_jit
+def _drain(area, step, dt, mass, flow, push_l, push_r, share):
     """Cut the mass fluxes so that no cell loses more than it has; nothing is lost on the way.
 
     The flow beyond the pressure is cut alike: a film that kept its mass and lost the momentum of more, or the
@@ -758,7 +754,7 @@ def _drain(area, step, dt, plates, mass, flow, push_l, push_r, share):
     for face in range(n + 1):
         kept = share[face] if mass[face] > 0.0 else share[face + 1]
         # Where nothing passes, as at a closed baffle, there is nothing to cut.
-        kept = 1.0 if plates > 0 and mass[face] == 0.0 else kept
+        kept = 1.0 if mass[face] == 0.0 else kept
         mass[face] *= kept
         push_l[face] = flow[face] - kept * (flow[face] - push_l[face])
         push_r[face] = flow[face] - kept * (flow[face] - push_r[face])

@@ -13,9 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fluid import long_wave
-from fluid.friction import laws as friction
 from meshes.arrays import Array
-from solvers.layer.drag import wall_kept
+from solvers.layer.drag import FRICTION, friction_of
 from solvers.layer.finite_volume import (
     COMPILED,
     DRY,
@@ -24,32 +23,28 @@ from solvers.layer.finite_volume import (
     MOST_ROLLER,
     NEAREST,
     NO_ROLLER,
+    RATES,
     SUMMED,
     THIN,
     WORK,
     faded_velocity,
     log_of_surface,
-    ring_rates,
+    rates_of,
 )
 from solvers.layer.inside import NOTHING, Inside
-from solvers.layer.records import PACE, Drive, Outcome, Record, Wall, records
-from solvers.machine_code import BARE, machine_code
+from solvers.layer.records import LOADS, PACE, Drive, Outcome, Record, Wall, records
+from solvers.machine_code import BARE, REAL, ROW, ROWS, WHOLE, entry, machine_code, type_of
 from solvers.slices import FASTEST, RUNAWAY, compiled, slices, step_budget
 
 _jit: Any = machine_code(**COMPILED)
 _part: Any = machine_code(**(COMPILED | BARE))
 _sum_part: Any = machine_code(**(SUMMED | BARE))
 _sum_jit: Any = machine_code(**SUMMED)
-# Parts of one function: compiled one by one and linked they would cost twice the time to compile.
-_inner: Any = machine_code(inline="always")
 
 # Courant number beyond which a step is taken again.
 LARGEST = 1.0
-# Decays up to this in a step take the exponential's series, whose tenth term is 0.06^10/10! = 2e-19.
-_WEAK = 0.0625
 
 surface_radius = _part(long_wave.free_surface_radius)
-_damping = _part(friction.damping_rate)
 _wall = _part(long_wave.wall_pressure)
 
 
@@ -70,71 +65,28 @@ def profile(area, q, spin, velocity, surface, log):
         log[i] = log_of_surface(area[i], surface[i])
 
 
-@_sum_jit
-def kept_speed(area, velocity, surface, law, coefficient, lid, dt, kept):
-    """Share of each cell's velocity that friction leaves after a time dt: an exact decay, cell by cell."""
-    n, strong = area.size, 0
-    for i in range(n):
-        a = np.maximum(area[i], DRY)
-        # The wall's shear over the velocity, without the cancellation in 1 - r.
-        rate = _damping(law, coefficient, lid, 2.0 * area[i] / (1.0 + surface[i]), a, velocity[i])
-        kept[i] = rate * dt
-        strong += 1 if kept[i] > _WEAK else 0
-    if law == friction.QUADRATIC:
-        # du/dt = -c |u| u has the hyperbola as its solution, the others the exponential.
-        for i in range(n):
-            kept[i] = 1.0 / (1.0 + kept[i])
-    elif strong == 0:
-        # The exponential's series, which vectorises; it ends with rounding.
-        for i in range(n):
-            x = kept[i]
-            total = 1.0 - x / 9.0
-            total = 1.0 - x / 8.0 * total
-            total = 1.0 - x / 7.0 * total
-            total = 1.0 - x / 6.0 * total
-            total = 1.0 - x / 5.0 * total
-            total = 1.0 - x / 4.0 * total
-            total = 1.0 - x / 3.0 * total
-            total = 1.0 - x / 2.0 * total
-            kept[i] = 1.0 - x * total
-    else:
-        for i in range(n):
-            kept[i] = np.exp(-kept[i])
-
-
 @_part
-def wall_friction(area, q, spin, wall, dt, spare):
+def wall_friction(friction, area, q, spin, wall, dt, spare):
     """Friction alone over a time dt; `spare`: scratch of at least four rows."""
-    n, law = area.size, wall.law
+    n = area.size
     velocity, surface, kept, pushed = spare[0, :n], spare[1, :n], spare[2, :n], spare[3, :n]
-    if law == friction.NONE:
-        return
     for i in range(n):
         surface[i] = surface_radius(area[i])
         velocity[i] = (q[i] + spin * area[i] * area[i]) / np.maximum(area[i], DRY)
-    if law == friction.WALL:
-        known = (wall.lid, wall.plates, wall.thin, wall.top, wall.table)
-        wall_kept(area, velocity, surface, wall.coefficient, known, dt, kept, pushed)
-        decelerate(area, q, spin, kept)
-        add_velocity(area, q, pushed)
-    else:
-        kept_speed(area, velocity, surface, law, wall.coefficient, wall.lid, dt, kept)
-        decelerate(area, q, spin, kept)
+    friction(
+        *(area, velocity, surface, wall.law, wall.coefficient, wall.lid, wall.plates, wall.thin, wall.top),
+        *(wall.table, dt, kept, pushed),
+    )
+    decelerate(area, q, spin, kept, pushed)
 
 
 @_part
-def decelerate(area, q, spin, kept):
-    """Leave each cell this share of its velocity; dry ones keep none."""
+def decelerate(area, q, spin, kept, pushed):
+    """Leave each cell this share of its velocity, then add to it; dry ones keep none."""
     for i in range(area.size):
         square = spin * area[i] * area[i]
         moved = (q[i] + square) * kept[i]
         q[i] = (moved if area[i] > DRY else 0.0) - square
-
-
-@_part
-def add_velocity(area, q, pushed):
-    """Add to each cell's velocity; dry ones stay at rest."""
-    for i in range(area.size):
         q[i] += area[i] * pushed[i] if area[i] > DRY else 0.0
 
 
@@ -206,8 +158,9 @@ def pull(x, y, angles, pull_cell, pull_face):
         pull_face[i] = x * angles[2, i] + y * angles[3, i]
 
 
-@_inner
+@_part
 def stage_rates(
+    rates,
     area,
     q,
     energy,
@@ -216,7 +169,9 @@ def stage_rates(
     x,
     y,
     angles,
-    inside,
+    plates,
+    full,
+    slot,
     dt,
     dispersion,
     pull_cell,
@@ -235,22 +190,9 @@ def stage_rates(
     """
     step = 2.0 * np.pi / area.size
     pull(x, y, angles, pull_cell, pull_face)
-    fastest = ring_rates(
-        area,
-        q,
-        energy,
-        spin,
-        euler,
-        pull_cell,
-        pull_face,
-        inside,
-        step,
-        dt,
-        dispersion,
-        spare,
-        rate_a,
-        rate_q,
-        rate_e,
+    fastest = rates(
+        *(area, q, energy, spin, euler, pull_cell, pull_face, plates, full, slot, step, dt, dispersion),
+        *(spare, rate_a, rate_q, rate_e),
     )
     outcome = Outcome.DONE
     if not fastest < np.inf:
@@ -351,9 +293,12 @@ def tally(area, q, spin, pull, angles, cosine, sine, share, full, slot, sums):
 
 
 @_jit
-def advance(area, q, energy, pace, stop, drive, wall, angles, inside, courant, most, spare, loads):
+def advance(
+    rates, friction, area, q, energy, pace, stop, drive, wall, angles, inside, courant, most, spare, loads
+):
     """Advance a layer under a prescribed whirl, in place, and add its loads to `loads`.
 
+    `rates` and `friction`: see `solvers.layer.finite_volume.RATES` and `solvers.layer.drag.FRICTION`.
     `energy` is A e of the fluctuations behind bores, (n,), or (0,) without them; `pace` a record PACE, how
     far it has come: after RAN_OUT the next call goes on as if there had been none between. `angles` as of
     `stage_rates`; rows of the scratch `spare` are reused. Returns Outcome, and the steps tried.
@@ -378,7 +323,7 @@ def advance(area, q, energy, pace, stop, drive, wall, angles, inside, courant, m
             dt = min(courant * step / (1.1 * fastest), stop - time)
             for i in range(n):
                 begin_q[i] = q[i]
-            wall_friction(area, q, spin, wall, 0.5 * dt, spare)
+            wall_friction(friction, area, q, spin, wall, 0.5 * dt, spare)
         if stage < 2:
             for i in range(n):
                 next_a[i], next_q[i] = area[i], q[i]
@@ -387,9 +332,22 @@ def advance(area, q, energy, pace, stop, drive, wall, angles, inside, courant, m
         x, y = _whirl(time + dt if stage == 2 else time, drive)
         limit = dt if stage > 0 else 0.0
         outcome, fastest = stage_rates(
-            next_a, next_q, next_e, spin, 0.0, x, y, angles, inside, limit, dispersion,
-            pull_cell, pull_face, spare, rate_a, rate_q, rate_e,
-        )  # fmt: skip
+            *(
+                rates,
+                next_a,
+                next_q,
+                next_e,
+                spin,
+                0.0,
+                x,
+                y,
+                angles,
+                inside.plates,
+                inside.full,
+                inside.slot,
+            ),
+            *(limit, dispersion, pull_cell, pull_face, spare, rate_a, rate_q, rate_e),
+        )
         if outcome == Outcome.AT_AXIS:
             return outcome, steps
         if stage < 2 and fastest > RUNAWAY * abs(spin):
@@ -417,12 +375,25 @@ def advance(area, q, energy, pace, stop, drive, wall, angles, inside, courant, m
             correct_energy(energy, rate_e, dt, next_e)
             bound_energy(area, energy, spin)
             calm(area, q, spin)
-            wall_friction(area, q, spin, wall, 0.5 * dt, spare)
+            wall_friction(friction, area, q, spin, wall, 0.5 * dt, spare)
             time += dt
             steps += 1
         stage = 2 if stage == 1 else 1
     pace[0].time, pace[0].fastest = time, fastest
     return Outcome.DONE, steps
+
+
+# Of `advance`.
+_ADVANCE = (
+    *(RATES, FRICTION, ROW, ROW, ROW, type_of(records(PACE)), REAL, type_of(Drive(*[0.0] * 6))),
+    *(type_of(Wall(0, 0.0, 0.0, False)), ROWS, type_of(NOTHING), REAL, WHOLE, ROWS, type_of(records(LOADS))),
+)
+
+
+def stepper(wall: Wall, inside: Inside, enstrophy: bool) -> tuple[Any, Any, Any]:
+    """`advance` and its first two arguments for a layer with these features."""
+    rates = rates_of(inside.plates, wall.dispersion, enstrophy)
+    return entry(advance, *_ADVANCE), rates, friction_of(wall.law)
 
 
 def march(
@@ -449,9 +420,10 @@ def march(
     rolling = np.empty(0) if energy is None else energy
     if most is None:
         most = step_budget(stop - start, drive.spin, area.size, courant)
+    going = stepper(wall, inside, rolling.size > 0)
     for steps in slices(most, area.size):
         reached, tried = compiled(
-            *(advance, area, q, rolling, pace, stop, drive, wall, angles, inside),
+            *(*going, area, q, rolling, pace, stop, drive, wall, angles, inside),
             *(courant, steps, spare, loads),
         )
         outcome, taken = Outcome(reached), taken + tried

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -33,7 +34,7 @@ from solvers.runup.state import (
 from solvers.slices import compiled, slices
 
 if TYPE_CHECKING:
-    from solvers.runup.linear_kernel import LinearMachine
+    from solvers.runup.steps.linear import LinearMachine
 
 _LAGS = 129  # of the curves of smeared baffles
 
@@ -66,19 +67,26 @@ class LinearCoupled(CoupledRotor):
 
     def advance(self, stop: float, rate: float, courant: float, most: int) -> Outcome:
         """Advance to a time while the spin changes at a rate, in at most so many steps."""
-        from solvers.runup.linear_kernel import advance_linear
-
         self.shaft.rate = rate
         angle_step, outcome = courant * (2.0 * math.pi / self.cells), Outcome.RAN_OUT
         # A step at a time where each is written down: it costs little beside what a step of waves does.
         for steps in slices(most, self.machine.left.size, 1 if self.rows else 0):
-            outcome = Outcome(compiled(advance_linear, self.machine, stop, angle_step, steps))
+            outcome = Outcome(compiled(*self.steps, *self.machine, stop, angle_step, steps))
             if self.rows:
                 place = self.machine.place[: len(self.system.coordinates)]
                 self.kept.append(np.array([self.time, self.shaft.angle, *place]))
             if outcome is not Outcome.RAN_OUT:
                 break
         return outcome
+
+    @cached_property
+    def steps(self) -> tuple[Any, ...]:
+        """The compiled steps and the part of them that this machine has, handed over."""
+        from solvers.machine_code import entry
+        from solvers.runup.steps.balls import balls_of
+        from solvers.runup.steps.linear import ADVANCE_LINEAR, advance_linear
+
+        return entry(advance_linear, *ADVANCE_LINEAR), balls_of(self.machine.balls.size)
 
     def follow(self, rows: int) -> None:
         """See `solvers.runup.long_wave.Coupled.follow`."""
@@ -213,7 +221,7 @@ def couple_linear(
     `cells` sets the length of the steps alone; the exact linear theory has all dispersion and no bores.
     Liquid at the bottom of a lying drum is a mass at rest there, whatever the `handover`: long waves move it.
     """
-    from solvers.runup.linear_kernel import LINEAR_LAYER, LinearMachine
+    from solvers.runup.steps.linear import LINEAR_LAYER, LinearMachine
 
     rest = at_rest(system, fills, spin, gravity, position)
     n, count = len(system.coordinates), len(fills)
@@ -244,6 +252,8 @@ def couple_linear(
         change=np.zeros(size),
         swing=np.zeros(n),
         held=np.zeros(len(balls.places)),
+        spins=np.zeros(2),
+        turn=np.zeros(4),
     )
     machine.place[n + 2 * count :] = balls.places
     machine.rate[n + 2 * count :] = spin * np.array(balls.shares, dtype=float)

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -94,14 +96,15 @@ class Coupled(CoupledRotor):
 
     def advance(self, stop: float, rate: float, courant: float, most: int) -> Outcome:
         """Advance to a time while the spin changes at a rate, in at most so many steps."""
-        from solvers.runup.kernel import advance
-
         if not self.machine.curve.size:  # a free spin goes on from its last step
             self.shaft.rate = rate
         outcome, resumed = Outcome.RAN_OUT, False
         rows = self.state.trace.shape[0]
         for steps in slices(most, max(1, self.state.area.size), rows):
-            found, _ = compiled(advance, self.machine, self.state, self.room, stop, courant, steps, resumed)
+            found, _ = compiled(
+                *(*self.steps, *self.machine, *self.state, *self.room),
+                *(stop, courant, steps, resumed),
+            )
             outcome, resumed = Outcome(found), True
             self._collect()
             if outcome is not Outcome.RAN_OUT:
@@ -110,6 +113,28 @@ class Coupled(CoupledRotor):
         self.rolling[self.active] = self.state.rolling
         self.two_layers[self.pooled], self.rings[self.pooled] = self.state.two_layers, self.state.rings
         return outcome
+
+    @cached_property
+    def steps(self) -> tuple[Any, ...]:
+        """The compiled steps and the parts of them that this machine has, handed over."""
+        from solvers.layer.drag import friction_of
+        from solvers.layer.finite_volume import rates_of
+        from solvers.machine_code import entry, handed
+        from solvers.runup.steps.balls import balls_of
+        from solvers.runup.steps.coupled import ADVANCE, advance
+        from solvers.runup.steps.layer import LAYER_STEP, layer_step
+        from solvers.runup.steps.pools import pools_of
+
+        wet, cells = [fill for fill in self.fills if fill.volume > 0.0], self.area.shape[1]
+        dispersion = bool(wet) and bool(self.layers.dispersion.any())
+        return (
+            entry(advance, *ADVANCE),
+            rates_of(tables_of(wet, cells), dispersion, bool(wet) and self.rolling.shape[1] > 0),
+            friction_of(self.friction.law.number),
+            handed(layer_step, LAYER_STEP),
+            *pools_of(bool(self.swings.any())),
+            balls_of(self.balls.size),
+        )
 
     def follow(self, rows: int) -> None:
         """Write every step down from here on; 0 writes none."""
@@ -203,7 +228,7 @@ class Coupled(CoupledRotor):
 
     def measured(self) -> list[tuple[np.record, Array, np.record, Array]]:
         """Properties, plane, measures and relative momentum of each layer."""
-        from solvers.runup.kernel import measure, relative_momentum
+        from solvers.runup.steps.layer import measure, relative_momentum
 
         shaft = self.shaft
         cosine, sine = math.cos(shaft.angle), math.sin(shaft.angle)
@@ -359,6 +384,7 @@ class Coupled(CoupledRotor):
         self.machine = self.machine._replace(
             matrices=np.stack(matrices).astype(float),
             planes=np.concatenate((planes[active], planes[pooled])),
+            masses=np.concatenate((self.layers.mass[active], self.streams.mass[pooled])),
             layers=self.layers[active],
             pools=self.streams[pooled],
             pool_tables=self.tables[pooled],
@@ -497,6 +523,7 @@ def couple(
             matrices=np.zeros((4, n, n)),
             unbalance=system.unbalance.astype(complex),
             planes=np.zeros((0, 2, n)),
+            masses=np.zeros(0),
             layers=layers[:0],
             pools=streams[:0],
             pool_tables=tables[:0],
@@ -554,7 +581,7 @@ def _fresh_pace() -> Record:
 
 def _room(coordinates: int, sizes: tuple[int, int, int], cells: int, rolling: int) -> Room:
     """Scratch for a machine of `sizes` layers, pools and balls; `rolling`: cells with fluctuations."""
-    from solvers.runup.kernel import layer_scratch
+    from solvers.runup.steps.layer import layer_scratch
 
     n, (count, pools, balls) = coordinates, sizes
     both = count + pools

@@ -28,7 +28,7 @@ from solvers.rotor.system import RotorSystem
 from solvers.runup.machine import Handover, Transfer
 
 if TYPE_CHECKING:
-    from solvers.runup.linear_kernel import LinearMachine
+    from solvers.runup.steps.linear import LinearMachine
 
 # A layer is let go at this share of the spin speed that captures it, lest it be caught and let go in turns.
 RELEASE = 0.98
@@ -148,6 +148,7 @@ class Machine(NamedTuple):
     #: in-plane displacement of each axis for unit coordinates, the layers' first, then the pools', shape (l +
     #: p, 2, n)
     planes: Array
+    masses: Array  #: of the liquids at these, kg, shape (l + p,)
     layers: Record  #: records LAYER, shape (l,)
     #: records `solvers.layer.two_layers.STREAM` of liquid that is in two layers, and their tables of the law
     #: of the wall, shapes (p,) and (p, m, 2)
@@ -231,7 +232,7 @@ class Room(NamedTuple):
     spins: Array  #: at both ends, shape (2,)
     turn: Array  #: cosine and sine of the angle turned at both ends, shape (4,)
     force: Array  #: body force over R in the drum frame at both ends, two parts each, shape (4,)
-    spare: Array  #: scratch of `solvers.runup.kernel.layer_step`, shape (l, ...)
+    spare: Array  #: scratch of `solvers.runup.steps.layer.layer_step`, shape (l, ...)
 
 
 class Rest(NamedTuple):
@@ -385,7 +386,7 @@ class CoupledRotor(ABC):
 
     def drive(self, curve: Array, inertia: float) -> None:
         """Set a motor's torque curve and moment of inertia; an empty curve leaves the spin to its ramp."""
-        self.machine = self.machine._replace(curve=curve)
+        self.machine = self.machine._replace(curve=np.ascontiguousarray(curve, dtype=float))
         self.shaft.inertia = inertia - self.lost_inertia
 
     def load(self, unbalance: Complex) -> None:

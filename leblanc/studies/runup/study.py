@@ -274,7 +274,7 @@ def runup_scene(
     if taken.model == "linear":
         tasks = [replace(task, model=model_of(scene, "linear")) for task in tasks]
     spread = rounding_spread(taken, tasks, seed, workers, share)
-    dry = dry_run(scene, history, drive, gravity, numerics)
+    dry = dry_run(scene, history, drive, gravity, numerics, taken.model)
     steady, bands = steady_response(scene, history.speed), whirl_bands(scene, history.speed)
     in_range, limits = judged(scene, history, taken.model)
     steps = () if scene.programme is None else tuple(step.words() for step in scene.programme.steps)
@@ -423,19 +423,21 @@ def _each(tasks: list[EnsembleTask], workers: int) -> Iterator[Member]:
 
 
 def dry_run(
-    scene: Scene, history: RunupHistory, drive: Drive, gravity: float, numerics: RunupNumerics
+    scene: Scene, history: RunupHistory, drive: Drive, gravity: float, numerics: RunupNumerics, model: str
 ) -> RunupHistory | None:
-    """The rotor of a scene on the same way without liquid and balls, to be compared with."""
+    """The rotor of a scene on the same way without liquid and balls, to be compared with.
+
+    By the model of the run: without liquid both step the rotor alike, and its steps are compiled by now.
+    """
     if history.outcome is Outcome.INTERRUPTED:
         return None
     if history.layer_mass.sum() == 0.0 and not scene.balls:
         return history
-    # Without liquid both models step the rotor alike; this one is the quicker.
-    empty, model = [replace(fill, volume=0.0) for fill in scene.fills], runup_model("linear")
-    alone = replace(numerics, companion=False)
+    empty, made = [replace(fill, volume=0.0) for fill in scene.fills], runup_model(model)
     if scene.balls:
-        model = partial(couple_linear, position=_position(scene))
-    return run_up(rotor_in_time(scene), empty, drive, scene.model.friction, gravity, alone, None, model)
+        made = partial(couple_linear if model == "linear" else couple, position=_position(scene))
+    alone = replace(numerics, companion=False)
+    return run_up(rotor_in_time(scene), empty, drive, scene.model.friction, gravity, alone, None, made)
 
 
 def _never_caught(scene: Scene, history: RunupHistory) -> Iterator[Note]:

@@ -583,7 +583,9 @@ def test_the_run_without_liquid_is_that_of_the_empty_machine(record: RunupAnswer
     )  # fmt: skip
     largest = history.amplitude.max()
     wet = scene(runup={"back": True})
-    own = runup_module.dry_run(wet, record.history, drive_of(plan), 0.0, runup_module.numerics_of(plan))
+    own = runup_module.dry_run(
+        wet, record.history, drive_of(plan), 0.0, runup_module.numerics_of(plan), "long_wave"
+    )
     assert own is not None and own.layer_mass.sum() == 0.0
     assert np.array_equal(own.amplitude, record.amplitude_dry)
     # Second order in the step: both are within a hundredth of each other where steps differ by halves.

@@ -1,0 +1,1 @@
+"""Compiled steps in time of a rotor and what it carries."""

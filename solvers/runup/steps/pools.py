@@ -1,0 +1,139 @@
+"""Liquid in two layers through a time step of the rotor that it is coupled to [theory: pool, eq. 18-19]."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from solvers.layer.finite_volume import COMPILED
+from solvers.layer.records import records
+from solvers.layer.step import copy
+from solvers.layer.two_layer_step import advance as advance_pool
+from solvers.layer.two_layer_step import measure as measure_pool
+from solvers.layer.two_layer_step import stands
+from solvers.layer.two_layers import FLOWS, STREAM, TAKEN
+from solvers.machine_code import (
+    BLOCKS,
+    FLAG,
+    NOTHING,
+    REAL,
+    ROW,
+    ROWS,
+    WHOLE,
+    handed,
+    handed_type,
+    machine_code,
+    type_of,
+)
+
+_jit: Any = machine_code(**COMPILED)
+
+# No wave of a pool is faster, rad/s.
+_FASTEST = 1e9
+
+
+@_jit
+def move_pools(
+    pools,
+    tables,
+    two_layers,
+    rings,
+    kept,
+    gravity,
+    angles,
+    spins,
+    axis,
+    dt,
+    guess,
+    before,
+    after,
+    inertia,
+    taken,
+    first,
+    last,
+    work,
+):
+    """Move all pools one step under the guessed accelerations; whether they could [theory: pool, eq. 19].
+
+    `axis` is the row of the first pool among those of all liquids; the pools begin as they are `kept`.
+    """
+    spin = 0.5 * (spins[0] + spins[1])
+    copy(kept, two_layers)
+    for j in range(pools.shape[0]):
+        pool, own, gone = pools[j], axis + j, taken[j]
+        x = (gravity[0] - guess[own, 0]) / pool.radius
+        y = (gravity[1] - guess[own, 1]) / pool.radius
+        gone.torque, gone.heat, gone.baffles = 0.0, 0.0, 0.0
+        fastest = advance_pool(
+            two_layers[j], spin, x, y, rings[j], dt, angles, pool, tables[j], work[j], gone
+        )
+        if not fastest < _FASTEST:
+            return False
+        begin, end = first[j], last[j]
+        measure_pool(two_layers[j], angles, pool.full, pool.slot, spins[1], work[j], end)
+        before[own, 0], before[own, 1] = pool.weight * begin.flow_x, pool.weight * begin.flow_y
+        after[own, 0], after[own, 1] = pool.weight * end.flow_x, pool.weight * end.flow_y
+        scale = 0.5 * pool.weight / pool.radius
+        inertia[own, 0] = scale * (begin.xx + end.xx)
+        inertia[own, 1] = scale * (begin.xy + end.xy)
+        inertia[own, 2] = scale * (begin.yy + end.yy)
+    return True
+
+
+@_jit
+def begin_pools(pools, two_layers, rings, kept, gravity, angles, spin, axis, push, first, work):
+    """Measure the pools at the beginning of a step; rings that their own rotation holds no more fall."""
+    for j in range(pools.shape[0]):
+        pool = pools[j]
+        x = (gravity[0] - push[axis + j, 0, 0]) / pool.radius
+        y = (gravity[1] - push[axis + j, 0, 1]) / pool.radius
+        rings[j] = rings[j] and stands(two_layers[j], x, y, pool.full)
+        measure_pool(two_layers[j], angles, pool.full, pool.slot, spin, work[j], first[j])
+    copy(two_layers, kept)
+
+
+@_jit
+def no_pools(
+    pools,
+    tables,
+    two_layers,
+    rings,
+    kept,
+    gravity,
+    angles,
+    spins,
+    axis,
+    dt,
+    guess,
+    before,
+    after,
+    inertia,
+    taken,
+    first,
+    last,
+    work,
+):
+    """Stands for `move_pools` where there are none."""
+    return True
+
+
+@_jit
+def begin_no_pools(pools, two_layers, rings, kept, gravity, angles, spin, axis, push, first, work):
+    """Stands for `begin_pools` where there are none."""
+
+
+_POOLS, _FLOWS, _FLAGS = type_of(records(STREAM)), type_of(records(FLOWS)), FLAG[::1]
+# Of `move_pools` and of `begin_pools`.
+MOVE_POOLS: Any = handed_type(
+    *(FLAG, _POOLS, BLOCKS, BLOCKS, _FLAGS, BLOCKS, ROW, ROWS, ROW, WHOLE, REAL, ROWS, ROWS, ROWS, ROWS),
+    *(type_of(records(TAKEN)), _FLOWS, _FLOWS, BLOCKS),
+)
+BEGIN_POOLS: Any = handed_type(
+    *(NOTHING, _POOLS, BLOCKS, _FLAGS, BLOCKS, ROW, ROWS, REAL, WHOLE, BLOCKS, _FLOWS, BLOCKS)
+)
+
+
+def pools_of(moves: bool) -> tuple[Any, Any]:
+    """How pools, if any liquid of the machine may be one, begin a step and move, handed over."""
+    if moves:
+        return handed(begin_pools, BEGIN_POOLS), handed(move_pools, MOVE_POOLS)
+    return handed(begin_no_pools, BEGIN_POOLS), handed(no_pools, MOVE_POOLS)
