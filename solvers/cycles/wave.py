@@ -221,14 +221,27 @@ class StandingWave(LayerWave):
 
         None where one breaks down.
         """
-        from solvers.cycles.stretch import advance_each
+        from solvers.cycles.stretch import ADVANCE_EACH, advance_each
+        from solvers.layer.step import stepper
+        from solvers.machine_code import entry
 
         n = self.cells
         areas, momenta = moved[:, :n].copy(), moved[:, n:].copy()
         loads: Any = np.zeros(len(moved), LOADS)
         drive, wall, most = self._posed(given, time, _LONGEST)
         done = compiled(
-            *(advance_each, areas, momenta, records(PACE), start, time, self._parts, drive, wall),
+            *(
+                entry(advance_each, *ADVANCE_EACH),
+                *stepper(wall, NOTHING, False)[1:],
+                areas,
+                momenta,
+                records(PACE),
+                start,
+                time,
+                self._parts,
+                drive,
+                wall,
+            ),
             *(self._angles, NOTHING, _LONGEST, most, self._scratch, loads.view(np.recarray)),
         )
         if not done:
@@ -252,12 +265,22 @@ class StandingWave(LayerWave):
 
     def _advance(self, state: Array, given: Whirling, time: float) -> Answer | None:
         """Advance a state, in place, in as long steps as it allows."""
-        from solvers.layer.step import advance
+        from solvers.layer.step import stepper
 
         n, pace, loads = self.cells, records(PACE), records(LOADS)
         drive, wall, most = self._posed(given, time, _COURANT)
         outcome, _ = compiled(
-            *(advance, state[:n], state[n:], np.empty(0), pace, time, drive, wall, self._angles),
+            *(
+                *stepper(wall, NOTHING, False),
+                state[:n],
+                state[n:],
+                np.empty(0),
+                pace,
+                time,
+                drive,
+                wall,
+                self._angles,
+            ),
             *(NOTHING, _COURANT, most, self._scratch, loads),
         )
         if outcome != Outcome.DONE:

@@ -27,7 +27,7 @@ from solvers.layer.baffles import (
     take,
     wall_beds,
 )
-from solvers.machine_code import BARE, FLAG, REAL, ROW, ROWS, handed, handed_type, machine_code
+from solvers.machine_code import BARE, FLAG, REAL, ROW, ROWS, handed_type, machine_code
 
 # Products and sums may be contracted, zeros lose their signs; the order of sums stays. Views of arrays need
 # no reference counts here: less to compile.
@@ -121,17 +121,17 @@ def faded_velocity(area: float, q: float, spin: float) -> float:
 
 
 @_face_jit
-def primitives(area, q, spin, held, pull, full, slot, velocity, head, surface):
+def primitives(area, q, spin, held, pull, full, slot, first, velocity, head, surface):
     """Fill velocity, head in the field of a rotation `held` and radius of the surface of each cell.
 
-    Arrays of one shape. Beyond the area `full` the head rises by `slot` times what is more [theory:
-    long_wave, eq. 18].
+    The first cell stands at `first` in the last three arrays. Beyond the area `full` the head rises by `slot`
+    times what is more [theory: long_wave, eq. 18].
     """
     for i in range(area.size):
-        surface[i] = _surface(area[i])
-        velocity[i] = faded_velocity(area[i], q[i], spin)
+        rim = _surface(area[i])
+        surface[i + first], velocity[i + first] = rim, faded_velocity(area[i], q[i], spin)
         pressed = slot * np.maximum(area[i] - full, 0.0)
-        head[i] = _head(area[i], surface[i], held, pull[i]) + pressed
+        head[i + first] = _head(area[i], rim, held, pull[i]) + pressed
 
 
 @_face_jit
@@ -175,21 +175,19 @@ def half_slopes(
     are the means of what a cell has at its two faces by parabolas, which make faces right to third order
     [theory: long_wave, eq. 20]; None: the slopes are straight.
     """
-    n, skew = half_head.size, 0.0
+    skew = 0.0
     if bent_head is not None:
         skew = THIRD
-    area_b, area_m, area_a = area[:n], area[1 : n + 1], area[2 : n + 2]
-    head_b, head_m, head_a = head[:n], head[1 : n + 1], head[2 : n + 2]
-    velocity_b, velocity_m, velocity_a = velocity[:n], velocity[1 : n + 1], velocity[2 : n + 2]
-    for i in range(n):
-        least, most = min(area_b[i], area_m[i], area_a[i]), max(area_b[i], area_m[i], area_a[i])
+    for i in range(1, area.size - 1):
+        here, before, after = area[i], area[i - 1], area[i + 1]
+        least, most = min(before, here, after), max(before, here, after)
         wet = least > DRY and (most <= full or least > full)
-        r = np.maximum(surface[i + 1], NEAREST)
-        log[i], inverse = log_and_inverse(area_m[i], r)
+        r = np.maximum(surface[i], NEAREST)
+        log[i], inverse = log_and_inverse(here, r)
         # In a film the split has no digits, and it is not used.
         length = log[i] if wet else 1.0
-        _, half = _celerity(velocity_m[i] * inverse, length, spin)
-        stiff = slot if area_m[i] > full else 0.0
+        _, half = _celerity(velocity[i] * inverse, length, spin)
+        stiff = slot if here > full else 0.0
         half = np.sqrt(half * half + length * stiff) if stiff > 0.0 else half
         # Velocity over head of the wave that runs ahead and of the other one, times Omega^2 L; the inverse of
         # their difference.
@@ -197,17 +195,17 @@ def half_slopes(
         ahead, behind = carried + half, carried - half
         quotient = 1.0 / (half * weight)
         share = 0.5 * weight * quotient
-        head_1, head_2 = head_m[i] - head_b[i], head_a[i] - head_m[i]
-        velocity_1 = weight * (velocity_m[i] - velocity_b[i])
-        velocity_2 = weight * (velocity_a[i] - velocity_m[i])
+        head_1, head_2 = head[i] - head[i - 1], head[i + 1] - head[i]
+        velocity_1 = weight * (velocity[i] - velocity[i - 1])
+        velocity_2 = weight * (velocity[i + 1] - velocity[i])
         first, first_bend = _limited(velocity_1 - behind * head_1, velocity_2 - behind * head_2, skew)
         second, second_bend = _limited(ahead * head_1 - velocity_1, ahead * head_2 - velocity_2, skew)
         half_head[i] = (first + second) * share if wet else 0.0
         half_velocity[i] = 0.5 * (ahead * first + behind * second) * quotient if wet else 0.0
         if bent_head is not None:
             bend = 0.5 * (ahead * first_bend + behind * second_bend) * quotient
-            bent_head[i] = head_m[i] + ((first_bend + second_bend) * share if wet else 0.0)
-            bent_velocity[i] = velocity_m[i] + (bend if wet else 0.0)
+            bent_head[i] = head[i] + ((first_bend + second_bend) * share if wet else 0.0)
+            bent_velocity[i] = velocity[i] + (bend if wet else 0.0)
 
 
 @_face_jit
@@ -220,10 +218,9 @@ def beds(pull_face, area, pull, bed):
     for i in range(n):
         bed[i] = pull_face[i]
     bed[n] = pull_face[0]
-    area_l, area_r, pull_l, pull_r = area[1:], area[2:], pull[1:], pull[2:]
     for i in range(n + 1):
-        wet = np.minimum(area_l[i], area_r[i]) > DRY
-        bed[i] = bed[i] if wet else np.minimum(pull_l[i], pull_r[i])
+        wet = np.minimum(area[i + 1], area[i + 2]) > DRY
+        bed[i] = bed[i] if wet else np.minimum(pull[i + 1], pull[i + 2])
 
 
 @_face_jit
@@ -234,6 +231,8 @@ def side(
     velocity,
     half_velocity,
     bed,
+    faces,
+    first,
     way,
     spin,
     held,
@@ -249,22 +248,23 @@ def side(
 ):
     """State and fluxes on one side of each face, and its characteristic speeds; the results stand last.
 
-    `way` is 1 for the cell before the face, -1 for the one after it; head and velocity are the means of a
-    cell's two faces, `bed` the radial force at the faces, `push` the pressure's share of the flux of
-    momentum.
+    The cell of the first face stands at `first`; `way` is 1 for the cell before the face, -1 after it; head
+    and velocity are the means of a cell's two faces, `bed` the radial force at the faces, `push` the
+    pressure's share of the flux of momentum.
     """
     rim = np.sqrt(np.maximum(1.0 - 2.0 * full, 0.0)) if full < 0.5 else -1.0
-    for i in range(bed.size):
-        wet = cell_area[i] > DRY
+    for i in range(faces):
+        k = i + first
+        wet = cell_area[k] > DRY
         # Where the push exceeds the centrifugal force no surface has this head: the least radius stands in.
-        here = head[i] + way * half_head[i]
+        here = head[k] + way * half_head[k]
         level = np.maximum(_at_head(here, held, bed[i]), NEAREST)
         # Beyond the full gap the head is that of the slot, on a straight line.
         beyond = here - held * held * full + rim * bed[i]
         pressed = full + beyond / (slot + held * held + bed[i] / rim)
         level = np.sqrt(np.maximum(1.0 - 2.0 * pressed, NEAREST * NEAREST)) if level < rim else level
         r = level if wet else 1.0
-        u = velocity[i] + way * half_velocity[i] if wet else 0.0
+        u = velocity[k] + way * half_velocity[k] if wet else 0.0
         a = 0.5 * (1.0 - r) * (1.0 + r)
         log, inverse = log_and_inverse(a, r)
         area[i], momentum[i] = a, u * a - spin * a * a
@@ -275,15 +275,15 @@ def side(
         mean, half = _celerity(u * inverse, log, spin)
         # Where the gap fills and empties from step to step the waves in it count twice as fast. A cell with
         # less than half of a full gap fills it at no face: its state there is deep by the steep bed alone.
-        quick = stiff if 2.0 * cell_area[i] > full else 0.0
+        quick = stiff if 2.0 * cell_area[k] > full else 0.0
         half = np.sqrt(half * half + 4.0 * log * quick) if quick > 0.0 else half
         back[i], ahead[i] = mean - half, mean + half
 
 
 @_face_jit
-def signals(area_l, area_r, back_l, back_r, ahead_l, ahead_r, slow, fast):
+def signals(area_l, area_r, back_l, back_r, ahead_l, ahead_r, faces, slow, fast):
     """Slowest and fastest wave from each face, at most and at least zero [theory: long_wave, eq. 3]."""
-    for i in range(slow.size):
+    for i in range(faces):
         back, ahead = np.minimum(back_l[i], back_r[i]), np.maximum(ahead_l[i], ahead_r[i])
         # A front on a dry bed runs ahead of the liquid at twice the waves' speed relative to it.
         back = 1.5 * back_r[i] - 0.5 * ahead_r[i] if area_l[i] == 0.0 else back
@@ -292,9 +292,9 @@ def signals(area_l, area_r, back_l, back_r, ahead_l, ahead_r, slow, fast):
 
 
 @_face_jit
-def hll(slow, fast, mass_l, mass_r, flow_l, flow_r, area_l, area_r, q_l, q_r, mass, flow):
+def hll(slow, fast, mass_l, mass_r, flow_l, flow_r, area_l, area_r, q_l, q_r, faces, mass, flow):
     """Fluxes of Harten, Lax and van Leer from the two sides' fluxes and states."""
-    for i in range(mass.size):
+    for i in range(faces):
         width = 1.0 / (fast[i] - slow[i] + _NOTHING)
         left, right, both = fast[i] * width, slow[i] * width, fast[i] * slow[i] * width
         mass[i] = left * mass_l[i] - right * mass_r[i] + both * (area_r[i] - area_l[i])
@@ -302,10 +302,10 @@ def hll(slow, fast, mass_l, mass_r, flow_l, flow_r, area_l, area_r, q_l, q_r, ma
 
 
 @_sum_jit
-def _greatest(slow, fast):
+def _greatest(slow, fast, faces):
     """Largest speed either way; any number where one is not a number."""
     found = 0.0
-    for i in range(slow.size):
+    for i in range(faces):
         speed = fast[i] if fast[i] > -slow[i] else -slow[i]
         found = speed if speed > found else found
     return found
@@ -321,12 +321,12 @@ def most(values):
 
 
 @_face_jit
-def largest(slow, fast):
+def largest(slow, fast, faces):
     """Largest speed either way; a speed that is not a number counts as infinite."""
     bad = 0
-    for i in range(slow.size):
+    for i in range(faces):
         bad += 0 if fast[i] - slow[i] < np.inf else 1
-    return _greatest(slow, fast) if bad == 0 else np.inf
+    return _greatest(slow, fast, faces) if bad == 0 else np.inf
 
 
 _jit: Any = machine_code(**COMPILED)
@@ -388,11 +388,11 @@ def plain_rates(
     d_energy,
 ):
     """`rates` of a ring without baffles whose waves neither disperse nor leave fluctuations behind them."""
-    pressed, held, inner = slot * spin * spin, _held(area, q, spin), slice(1, area.size + 3)
+    pressed, held = slot * spin * spin, _held(area, q, spin)
     _cells(area, q, spin, held, pull_cell, full, pressed, work)
     half_slopes(
         *(work[_AREA], work[_HEAD], work[VELOCITY], work[SURFACE], spin, held, full, pressed),
-        *(work[_HALF_HEAD, inner], work[_HALF_VELOCITY, inner], work[LOG, inner], None, None),
+        *(work[_HALF_HEAD], work[_HALF_VELOCITY], work[LOG], None, None),
     )
     beds(pull_face, work[_AREA], work[_PULL], work[_BED])
     fastest = _faces(pull_face, spin, held, full, pressed, _HEAD, VELOCITY, work, None)
@@ -428,19 +428,19 @@ def rates(
     of change of the spin; `plates`, `full` and `slot` as in `solvers.layer.inside.Inside`; `dt` the time step
     in which no cell may lose more than it has, `work` scratch, (WORK, n + 2 GHOSTS).
     """
-    pressed, held, inner = slot * spin * spin, _held(area, q, spin), slice(1, area.size + 3)
+    pressed, held = slot * spin * spin, _held(area, q, spin)
     _cells(area, q, spin, held, pull_cell, full, pressed, work)
     # Only where waves disperse are the equations good enough for parabolas to show.
     if dispersion:
         half_slopes(
             *(work[_AREA], work[_HEAD], work[VELOCITY], work[SURFACE], spin, held, full, pressed),
-            *(work[_HALF_HEAD, inner], work[_HALF_VELOCITY, inner], work[LOG, inner]),
-            *(work[_BENT_HEAD, inner], work[_BENT_VELOCITY, inner]),
+            *(work[_HALF_HEAD], work[_HALF_VELOCITY], work[LOG]),
+            *(work[_BENT_HEAD], work[_BENT_VELOCITY]),
         )
     else:
         half_slopes(
             *(work[_AREA], work[_HEAD], work[VELOCITY], work[SURFACE], spin, held, full, pressed),
-            *(work[_HALF_HEAD, inner], work[_HALF_VELOCITY, inner], work[LOG, inner], None, None),
+            *(work[_HALF_HEAD], work[_HALF_VELOCITY], work[LOG], None, None),
         )
     slope_aside(plates, area, full, work[_HEAD], work[_HALF_HEAD], GHOSTS)
     slope_aside(plates, area, full, work[VELOCITY], work[_HALF_VELOCITY], GHOSTS)
@@ -475,8 +475,8 @@ RATES: Any = handed_type(
 
 
 def rates_of(plates: Array, dispersion: bool, enstrophy: bool) -> Any:
-    """The rates of rings with these features, handed over."""
-    return handed(rates if plates.shape[-2] or dispersion or enstrophy else plain_rates, RATES)
+    """The rates of rings with these features."""
+    return rates if plates.shape[-2] or dispersion or enstrophy else plain_rates
 
 
 @_face_jit
@@ -487,10 +487,7 @@ def _cells(area, q, spin, held, pull, full, slot, work):
     for i in range(n):
         work[_AREA, i + GHOSTS] = area[i]
         work[_PULL, i + GHOSTS] = pull[i]
-    cells = slice(GHOSTS, end)
-    primitives(
-        area, q, spin, held, pull, full, slot, work[VELOCITY, cells], work[_HEAD, cells], work[SURFACE, cells]
-    )
+    primitives(area, q, spin, held, pull, full, slot, GHOSTS, work[VELOCITY], work[_HEAD], work[SURFACE])
     for row in range(SURFACE + 1):
         for i in range(GHOSTS):
             work[row, i] = work[row, n + i]
@@ -504,52 +501,28 @@ def _faces(pull_face, spin, held, full, slot, head, velocity, work, rolling):
     `head` and `velocity`: rows of what the cells have at their faces on the whole; `rolling`: energy of their
     fluctuations with ghosts, or None.
     """
-    n = pull_face.size
-    m = n + 1
-    bed, wide = work[_BED, :m], work[_AREA]
+    m, bed, wide, slow, fast = pull_face.size + 1, work[_BED], work[_AREA], work[_SLOW], work[_FAST]
     for k in range(2):
         # First the cell after each face, then the one before it.
-        cells, row, way = slice(2 - k, m + 2 - k), _AFTER + k * _ROWS, 2.0 * k - 1.0
+        row, way = _AFTER + k * _ROWS, 2.0 * k - 1.0
         side(
-            wide[cells],
-            work[head, cells],
-            work[_HALF_HEAD, cells],
-            work[velocity, cells],
-            work[_HALF_VELOCITY, cells],
-            bed,
-            way,
-            spin,
-            held,
-            full,
-            slot,
-            work[row],
-            work[row + 1],
-            work[row + 2],
-            work[row + 3],
-            work[row + 4],
-            work[row + 5],
-            work[row + 6],
+            *(wide, work[head], work[_HALF_HEAD], work[velocity], work[_HALF_VELOCITY], bed, m, 2 - k, way),
+            *(spin, held, full, slot, work[row], work[row + 1], work[row + 2], work[row + 3], work[row + 4]),
+            *(work[row + 5], work[row + 6]),
         )
         if rolling is not None and rolling.size > 0:
-            lifted(rolling[cells], work[row], work[row + 3], work[row + 5], work[row + 6], m)
+            lifted(rolling[2 - k :], work[row], work[row + 3], work[row + 5], work[row + 6], m)
     after, before = _AFTER, _BEFORE
-    slow, fast = work[_SLOW, :m], work[_FAST, :m]
+    area_l, area_r = work[before], work[after]
     signals(
-        work[before],
-        work[after],
-        work[before + 5],
-        work[after + 5],
-        work[before + 6],
-        work[after + 6],
-        slow,
-        fast,
+        *(area_l, area_r, work[before + 5], work[after + 5], work[before + 6], work[after + 6], m, slow, fast)
     )
     hll(
-        *(slow, fast, work[before + 2], work[after + 2], work[before + 3], work[after + 3]),
-        *(work[before], work[after], work[before + 1], work[after + 1], work[_MASS, :m], work[_FLOW, :m]),
+        *(slow, fast, work[before + 2], work[after + 2], work[before + 3], work[after + 3], area_l, area_r),
+        *(work[before + 1], work[after + 1], m, work[_MASS], work[_FLOW]),
     )
     quicker = PRESSED if most(wide) > full else 1.0
-    return quicker * largest(slow, fast)
+    return quicker * largest(slow, fast, m)
 
 
 @_face_jit
@@ -561,13 +534,13 @@ def _gather(area, euler, spin, held, step, work, d_area, d_q):
     than the drum's rise by what it adds as well.
     """
     n, more = area.size, 0.5 * (held - spin) * (held + spin)
-    mass, flow, bend = work[_MASS], work[_FLOW], work[_HALF_HEAD, GHOSTS : n + GHOSTS]
+    mass, flow, bend = work[_MASS], work[_FLOW], work[_HALF_HEAD]
     area_l, push_l = work[_BEFORE], work[_BEFORE + 4]
     area_r, push_r = work[_AFTER], work[_AFTER + 4]
     for i in range(n):
         through = (flow[i + 1] - push_l[i + 1]) - (flow[i] - push_r[i])
         most = 2.0 * area[i]
-        rise = bend[i] - more * (area_l[i + 1] - area_r[i])
+        rise = bend[i + GHOSTS] - more * (area_l[i + 1] - area_r[i])
         within = (np.minimum(area_l[i + 1], most) + np.minimum(area_r[i], most)) * rise
         d_q[i] = -euler * area[i] - (through + within) / step
         d_area[i] = (mass[i] - mass[i + 1]) / step

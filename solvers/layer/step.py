@@ -33,7 +33,7 @@ from solvers.layer.finite_volume import (
 )
 from solvers.layer.inside import NOTHING, Inside
 from solvers.layer.records import LOADS, PACE, Drive, Outcome, Record, Wall, records
-from solvers.machine_code import BARE, REAL, ROW, ROWS, WHOLE, entry, machine_code, type_of
+from solvers.machine_code import BARE, REAL, ROW, ROWS, WHOLE, entry, handed, machine_code, type_of
 from solvers.slices import FASTEST, RUNAWAY, compiled, slices, step_budget
 
 _jit: Any = machine_code(**COMPILED)
@@ -384,7 +384,7 @@ def advance(
 
 
 # Of `advance`.
-_ADVANCE = (
+ADVANCE = (
     *(RATES, FRICTION, ROW, ROW, ROW, type_of(records(PACE)), REAL, type_of(Drive(*[0.0] * 6))),
     *(type_of(Wall(0, 0.0, 0.0, False)), ROWS, type_of(NOTHING), REAL, WHOLE, ROWS, type_of(records(LOADS))),
 )
@@ -392,8 +392,8 @@ _ADVANCE = (
 
 def stepper(wall: Wall, inside: Inside, enstrophy: bool) -> tuple[Any, Any, Any]:
     """`advance` and its first two arguments for a layer with these features."""
-    rates = rates_of(inside.plates, wall.dispersion, enstrophy)
-    return entry(advance, *_ADVANCE), rates, friction_of(wall.law)
+    rates = handed(rates_of(inside.plates, wall.dispersion, enstrophy), RATES)
+    return entry(advance, *ADVANCE), rates, friction_of(wall.law)
 
 
 def march(

@@ -26,7 +26,7 @@ from fluid.friction.wall import WallDrag, wall_shear
 from meshes.arrays import Array, Complex, Flags
 from meshes.errors import InputError
 from solvers.layer.baffles import FACE, OPEN
-from solvers.layer.finite_volume import DRY, GHOSTS, WORK, rates
+from solvers.layer.finite_volume import DRY, GHOSTS, WORK, rates_of
 from solvers.layer.inside import SLOT_SPEED, Inside
 from solvers.layer.places import fewest_cells
 from solvers.layer.records import Outcome
@@ -277,8 +277,10 @@ class _Layer:
             force.real * self.angles[k] + force.imag * self.angles[k + 1] for k in (0, 2)
         )  # fmt: skip
         d_a, d_q, work = np.zeros(n), np.zeros(n), np.zeros((WORK, n + 2 * GHOSTS))
-        still = self.a, self.q, spin, 0.0, cell, face, self.inside
-        rates(*still, 2.0 * math.pi / n, 0.0, layer.dispersion, work, d_a, d_q)
+        none, step = np.empty(0), 2.0 * math.pi / n
+        still = self.a, self.q, none, spin, 0.0, cell, face, *self.inside, step, 0.0
+        going = rates_of(self.inside.plates, bool(layer.dispersion), False)
+        going(*still, layer.dispersion, work, d_a, d_q, none)
         d_q -= self.shear
         self.d_area, self.d_momentum = d_a * layer.radius**2, d_q * layer.radius**4
         self.momentum_rate = self._momentum_rate(d_a, d_q)

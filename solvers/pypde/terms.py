@@ -24,7 +24,7 @@ from fluid.friction.laws import NO_FRICTION, Friction, FrictionLaw, damping_rate
 from fluid.friction.wall import WallDrag, wall_drag, wall_shear
 from meshes.arrays import Array, Complex
 from meshes.errors import InputError, require_not_negative
-from solvers.layer.finite_volume import DRY, FULL, GHOSTS, THIN, WORK, rates
+from solvers.layer.finite_volume import DRY, FULL, GHOSTS, THIN, WORK, rates_of
 from solvers.layer.inside import SLOT_SPEED, full_area, inside_of
 from solvers.layer.records import LOADS, Drive, Outcome, Record, Wall, records
 from solvers.layer.state import means, ring
@@ -112,9 +112,11 @@ def layer_rates(terms: LongWaveTerms, area: Array, momentum: Array, time: float)
     if is_layer(terms, area, momentum):
         cell, face = radial_force(terms, n, time)
         work, step = np.zeros((WORK, n + 2 * GHOSTS)), 2.0 * math.pi / n
+        inside, none = inside_of(terms.fill, n), np.empty(0)
+        going = rates_of(inside.plates, terms.dispersion, False)
         compiled(
-            *(rates, a, q, spin, terms.spin_rate, cell, face, inside_of(terms.fill, n)),
-            *(step, 0.0, terms.dispersion, work, d_area, d_q),
+            *(going, a, q, none, spin, terms.spin_rate, cell, face, *inside),
+            *(step, 0.0, terms.dispersion, work, d_area, d_q, none),
         )
         d_q -= _shear(terms, a, q, spin)
     return d_area * radius**2, d_q * radius**4

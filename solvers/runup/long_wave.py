@@ -118,7 +118,7 @@ class Coupled(CoupledRotor):
     def steps(self) -> tuple[Any, ...]:
         """The compiled steps and the parts of them that this machine has, handed over."""
         from solvers.layer.drag import friction_of
-        from solvers.layer.finite_volume import rates_of
+        from solvers.layer.finite_volume import RATES, rates_of
         from solvers.machine_code import entry, handed
         from solvers.runup.steps.balls import balls_of
         from solvers.runup.steps.coupled import ADVANCE, advance
@@ -127,9 +127,10 @@ class Coupled(CoupledRotor):
 
         wet, cells = [fill for fill in self.fills if fill.volume > 0.0], self.area.shape[1]
         dispersion = bool(wet) and bool(self.layers.dispersion.any())
+        enstrophy = bool(wet) and self.rolling.shape[1] > 0
         return (
             entry(advance, *ADVANCE),
-            rates_of(tables_of(wet, cells), dispersion, bool(wet) and self.rolling.shape[1] > 0),
+            handed(rates_of(tables_of(wet, cells), dispersion, enstrophy), RATES),
             friction_of(self.friction.law.number),
             handed(layer_step, LAYER_STEP),
             *pools_of(bool(self.swings.any())),

@@ -99,7 +99,7 @@ def over_speeds(quick: bool = False) -> list[Growth]:
 
 def right_hand_side(cells: int) -> float:
     """Time of one right-hand side of the long waves on a moving layer that is not uniform, s."""
-    from solvers.layer.finite_volume import GHOSTS, WORK, rates
+    from solvers.layer.finite_volume import GHOSTS, WORK, plain_rates
     from solvers.layer.inside import NOTHING
 
     step = 2.0 * np.pi / cells
@@ -108,11 +108,12 @@ def right_hand_side(cells: int) -> float:
     q = 0.01 * np.sin(2.0 * middle) * area - area**2
     pull = 0.003 * np.cos(middle)
     work, d_area, d_q = np.zeros((WORK, cells + 2 * GHOSTS)), np.zeros(cells), np.zeros(cells)
-    times = max(1, 200_000 // cells)
+    none, times = np.empty(0), max(1, 200_000 // cells)
+    more = False, work, d_area, d_q, none
 
     def run() -> None:
         for _ in range(times):
-            rates(area, q, 1.0, 0.0, pull, pull, NOTHING, step, 1e-4 * step, 0.0, work, d_area, d_q)
+            plain_rates(*(area, q, none, 1.0, 0.0, pull, pull, *NOTHING, step, 1e-4 * step), *more)
 
     return best(run, 5) / times
 

@@ -303,11 +303,9 @@ def _tally(
         sums.profile += scale * gain.missed
     for j in range(pools.shape[0]):
         pool, gone, own = pools[j], taken[j], layers.shape[0] + j
-        drive, heat, lost = (
-            spin * pool.inertia * gone.torque,
-            pool.inertia * gone.heat,
-            pool.inertia * gone.baffles,
-        )
+        drive = spin * pool.inertia * gone.torque
+        heat = pool.inertia * gone.heat
+        lost = pool.inertia * gone.baffles
         x, y = last[j].moment_x - first[j].moment_x, last[j].moment_y - first[j].moment_y
         fallen = pool.weight * (gravity[0] * x + gravity[1] * y)
         sums.drive += drive

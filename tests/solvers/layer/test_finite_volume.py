@@ -11,10 +11,11 @@ import pytest
 from numba import njit
 
 from fluid import long_wave as lw
+from solvers.layer.drag import kept_speed
 from solvers.layer.finite_volume import DRY, FULL, GHOSTS, WORK, log_and_inverse, rates, solve_ring
 from solvers.layer.inside import NOTHING
 from solvers.layer.records import LOADS, Drive, Outcome, Wall, records
-from solvers.layer.step import kept_speed, march, scratch
+from solvers.layer.step import march, scratch
 
 SPIN = 1.0
 
@@ -353,7 +354,8 @@ def test_euler_force_spins_the_liquid_back() -> None:
     area = np.full(n, 0.08)
     q, work = -SPIN * area**2, np.zeros((WORK, n + 2 * GHOSTS))
     d_area, d_q, still = np.zeros(n), np.zeros(n), np.zeros(n)
-    rates(area, q, SPIN, 0.7, still, still, NOTHING, 2 * np.pi / n, 1e-3, False, work, d_area, d_q)
+    none, step = np.empty(0), 2 * np.pi / n
+    rates(area, q, none, SPIN, 0.7, still, still, *NOTHING, step, 1e-3, False, work, d_area, d_q, none)
     np.testing.assert_allclose(d_q, -0.7 * area, rtol=1e-13)
     np.testing.assert_allclose(d_area, 0.0, atol=1e-15)
     assert DRY < 1e-12

@@ -13,12 +13,12 @@ from fluid.liquid import Liquid
 from meshes.baffles import Baffles
 from meshes.chamber import Chamber
 from solvers.layer import baffles, finite_volume
-from solvers.layer.inside import Inside
+from solvers.layer.drag import friction_of
 from solvers.layer.records import Outcome, records
 from solvers.layer.state import ring
 from solvers.layer.step import calm
-from solvers.runup import kernel
 from solvers.runup.state import GAINS, LAYER, MEASURES
+from solvers.runup.steps import layer as kernel
 from tests.mutants import kills
 
 SPIN = 1.3
@@ -45,8 +45,9 @@ def rates(
         pull.real * np.cos(angle) + pull.imag * np.sin(angle)
         for angle in (middles(n), middles(n) - 0.5 * step)
     )
+    none = np.empty(0)
     finite_volume.rates(
-        area, q, SPIN, 0.0, cell, face, Inside(plates, 1.0, 0.0), step, dt, False, work, d_area, d_q
+        *(area, q, none, SPIN, 0.0, cell, face, plates, 1.0, 0.0, step, dt, False, work, d_area, d_q, none)
     )
     return d_area, d_q, work[finite_volume._MASS, : n + 1].copy()
 
@@ -132,8 +133,8 @@ def test_compartments_keep_their_liquid() -> None:
     np.testing.assert_allclose(area.reshape(4, 8).sum(axis=1), held, rtol=1e-13)
 
 
-@kills("solvers.layer.finite_volume:_faces", "i >= 0 and shut", "i < 0 and shut")
-@kills("solvers.layer.finite_volume:_faces", "bed[n] = bed[0]", "bed[n] = bed[1]")
+@kills("solvers.layer.baffles:wall_beds", "i >= 0 and shut", "i < 0 and shut")
+@kills("solvers.layer.baffles:wall_beds", "bed[n] = bed[0]", "bed[n] = bed[1]")
 def test_a_wall_bears_its_liquid_beside_dry_cells() -> None:
     """Liquid at rest in one compartment between dry ones: its baffles take the torque of the body force."""
     pull, gaps = 0.2, []
@@ -259,8 +260,8 @@ def test_heat_at_baffles_is_none_behind_bores() -> None:
         q, pull = 0.2 * area - SPIN * area**2, np.zeros(n)
         step, d_area, d_q, d_energy = 2.0 * np.pi / n, np.empty(n), np.empty(n), np.empty(n)
         work = np.zeros((finite_volume.WORK, n + 2 * finite_volume.GHOSTS))
-        finite_volume.ring_rates(
-            *(area, q, np.zeros(n), SPIN, 0.0, pull, pull, Inside(plates, 1.0, 0.0), step, 0.0, False, work),
+        finite_volume.rates(
+            *(area, q, np.zeros(n), SPIN, 0.0, pull, pull, plates, 1.0, 0.0, step, 0.0, False, work),
             *(d_area, d_q, d_energy),
         )
 
@@ -273,9 +274,9 @@ def test_heat_at_baffles_is_none_behind_bores() -> None:
         assert step * d_energy.sum() == pytest.approx(lost - heat, rel=1e-6, abs=1e-9 * heat)
 
 
-@kills("solvers.runup.kernel:layer_step", "gains.torque -= 0.5 * dt * held", "pass")
-@kills("solvers.runup.kernel:layer_step", "gains.baffles += 0.5 * dt * power", "pass")
-@kills("solvers.runup.kernel:layer_step", "(spin * held + power)", "power")
+@kills("solvers.runup.steps.layer:layer_step", "gains.torque -= 0.5 * dt * held", "pass")
+@kills("solvers.runup.steps.layer:layer_step", "gains.baffles += 0.5 * dt * power", "pass")
+@kills("solvers.runup.steps.layer:layer_step", "(spin * held + power)", "power")
 @kills("solvers.layer.baffles:obstruct", "max(held, 0.0) * abs(passed) * passed * passed", "0.5 * abs(held)")
 def test_gains() -> None:
     """The drum gets what the layer loses of angular momentum; its work goes into the layer and into heat."""
@@ -286,8 +287,8 @@ def test_gains() -> None:
     plates = table([0, 8, 16, 24], 0.03)
     kernel.measure(area, q, SPIN, ring(n), plates, spare, ends[0])
     done = kernel.layer_step(
-        *(area, q, area[:0], spins, np.zeros(4), records(LAYER)[0], 0.0, 0.0, NO_TABLE, 0.02, ring(n)),
-        *(Inside(plates, 1.0, 0.0), spare, gains),
+        *(finite_volume.rates, friction_of(0), area, q, area[:0], spins, np.zeros(4), records(LAYER)[0]),
+        *(0.0, 0.0, NO_TABLE, 0.02, ring(n), plates, 1.0, 0.0, spare, gains),
     )
     assert done[0] == Outcome.DONE
     kernel.measure(area, q, SPIN, ring(n), plates, spare, ends[1])
@@ -306,12 +307,12 @@ def rotor_part(area: np.ndarray, q: np.ndarray, plates: np.ndarray) -> np.record
     return out
 
 
-@kills("solvers.runup.kernel:_held_back", "out.flow_x -= flow * x", "pass")
-@kills("solvers.runup.kernel:_held_back", "out.flow_y -= flow * y", "out.flow_y += flow * y")
-@kills("solvers.runup.kernel:_held_back", "j = (i - 1 + side) % n", "j = (i + side) % n")
-@kills("solvers.runup.kernel:_held_back", "out.xy +=", "out.xy -=")
-@kills("solvers.runup.kernel:_held_back", "out.xx +=", "out.xx -=")
-@kills("solvers.runup.kernel:_held_back", "out.yy +=", "out.yy -=")
+@kills("solvers.runup.steps.layer:_held_back", "out.flow_x -= flow * x", "pass")
+@kills("solvers.runup.steps.layer:_held_back", "out.flow_y -= flow * y", "out.flow_y += flow * y")
+@kills("solvers.runup.steps.layer:_held_back", "j = (i - 1 + side) % n", "j = (i + side) % n")
+@kills("solvers.runup.steps.layer:_held_back", "out.xy +=", "out.xy -=")
+@kills("solvers.runup.steps.layer:_held_back", "out.xx +=", "out.xx -=")
+@kills("solvers.runup.steps.layer:_held_back", "out.yy +=", "out.yy -=")
 def test_a_closed_baffle_keeps_momentum_from_the_rotor() -> None:
     """Of a ring cut by walls the momentum is the rate of the first moment: nothing passes the walls.
 

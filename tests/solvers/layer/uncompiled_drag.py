@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from fluid.friction.laws import Friction
+from fluid.friction.laws import WALL, Friction
 from fluid.friction.wall import WallDrag, mean_rates, wall_drag, wall_shear
 from solvers.layer.drag import wall_kept
 from tests.mutants import kills
@@ -27,7 +27,7 @@ def layer() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 def step(known: WallDrag, area: np.ndarray, velocity: np.ndarray, dt: float) -> np.ndarray:
     kept, pushed = np.empty(N), np.empty(N)
     wall = known.lid, known.plates, known.thin, known.top, known.table
-    wall_kept(area, velocity, np.sqrt(1.0 - 2.0 * area), known.coefficient, wall, dt, kept, pushed)
+    wall_kept(area, velocity, np.sqrt(1.0 - 2.0 * area), WALL, known.coefficient, *wall, dt, kept, pushed)
     return velocity * kept + pushed
 
 

@@ -302,11 +302,15 @@ def test_synchronous_circle_stays(options: dict[str, Any], amplitude: float) -> 
     assert relative(final.data[0], state.data[0]) < 1e-12
 
 
-@kills("solvers.pypde.terms:layer_rates", "rates, a, q, spin, terms.spin_rate", "rates, a, q, spin, 0.0")
 @kills(
     "solvers.pypde.terms:layer_rates",
-    "rates, a, q, spin, terms.spin_rate",
-    "rates, a, q, spin, -terms.spin_rate",
+    "going, a, q, none, spin, terms.spin_rate",
+    "going, a, q, none, spin, 0.0",
+)
+@kills(
+    "solvers.pypde.terms:layer_rates",
+    "going, a, q, none, spin, terms.spin_rate",
+    "going, a, q, none, spin, -terms.spin_rate",
 )
 @kills("solvers.pypde.terms:angular_momentum", "* fill.chamber.radius**2 * area", "* area")
 def test_spin_up_without_friction_leaves_angular_momentum() -> None:

@@ -14,14 +14,14 @@ from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import RotorSystem
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
 from solvers.runup.balls import Balls, ball_records, balls_energy, balls_inertia, race_planes
-from solvers.runup.kernel import tally_ball
 from solvers.runup.long_wave import Coupled, couple
 from solvers.runup.machine import Motor, Ramp
 from solvers.runup.runup import RunupNumerics, run_up
 from solvers.runup.state import BALL, SUMS
+from solvers.runup.steps.balls import tally_ball
 from tests.mutants import kills
 
-_ADD = "solvers.runup.kernel:add_ball"
+_ADD = "solvers.runup.steps.balls:add_ball"
 ROTOR = Jeffcott(4.0, 4.4e4, 84.0, 6e-4)
 PLANES = TwoPlane(
     10.0, 0.5, 0.1,
@@ -102,12 +102,12 @@ def test_resistance_brings_a_ball_along() -> None:
     assert 1.0 / float(made.read().ball_speed[0]) == pytest.approx(0.1 - 0.05 / 1.4 * 0.2, rel=3e-4)
 
 
-@kills("solvers.runup.kernel:ball_dragged", "- rate - 0.5 * change", "- rate - change")
-@kills("solvers.runup.kernel:ball_turned", "+ ball.driven * gained", "- ball.driven * gained")
-@kills("solvers.runup.kernel:ball_turned", "- ball.carried * change", "+ ball.carried * change")
-@kills("solvers.runup.kernel:tally_ball", "(spin - mean) * ball_dragged", "(spin - rate) * ball_dragged")
+@kills("solvers.runup.steps.balls:ball_dragged", "- rate - 0.5 * change", "- rate - change")
+@kills("solvers.runup.steps.balls:ball_turned", "+ ball.driven * gained", "- ball.driven * gained")
+@kills("solvers.runup.steps.balls:ball_turned", "- ball.carried * change", "+ ball.carried * change")
+@kills("solvers.runup.steps.balls:tally_ball", "(spin - mean) * ball_dragged", "(spin - rate) * ball_dragged")
 @kills(
-    "solvers.runup.kernel:tally_ball",
+    "solvers.runup.steps.balls:tally_ball",
     "ball.mass * ball.radius * mean * pull",
     "ball.mass * ball.radius * mean",
 )
@@ -133,7 +133,7 @@ def test_the_energy_is_accounted_for_to_second_order(drive: Ramp | Motor) -> Non
     assert left[0] / left[1] > 3.0
 
 
-@kills("solvers.runup.kernel:tally_ball", "spins, dt), 0.0)", "spins, dt), -1.0)")
+@kills("solvers.runup.steps.balls:tally_ball", "spins, dt), 0.0)", "spins, dt), -1.0)")
 def test_a_ball_whose_slip_turns_round_makes_no_cold() -> None:
     """Slip 1, then -0.4: the resistance is that of the end and pushes against the mean; no heat, none lost.
 

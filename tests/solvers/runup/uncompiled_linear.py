@@ -20,7 +20,7 @@ from solvers.rotor.balls.balancers import BallRace
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.runup.balls import Balls
 from solvers.runup.linear import LinearCoupled, couple_linear, plate_curves
-from solvers.runup.linear_kernel import plate_drag
+from solvers.runup.steps.linear import plate_drag
 from solvers.whirl.growth import asynchronous_growth
 from tests.mutants import kills
 
@@ -36,18 +36,18 @@ def machine(cells: int, friction: float = 2.0, gravity: float = 0.0) -> LinearCo
 
 
 @kills(
-    "solvers.runup.linear_kernel:_assemble",
+    "solvers.runup.steps.linear:_assemble",
     "2.0 * kappa * (after - before) / dt",
     "0.0 * (after - before) / dt",
 )
-@kills("solvers.runup.linear_kernel:_assemble", "m.gravity[part] - forces", "-m.gravity[part] - forces")
+@kills("solvers.runup.steps.linear:_assemble", "gravity[part] - forces", "-gravity[part] - forces")
 @kills(
-    "solvers.runup.linear_kernel:_rotor_rows",
-    "spins[0] * (m.unbalance[i] * first).imag",
-    "spins[0] * (m.unbalance[i] * last).imag",
+    "solvers.runup.steps.coupled:load_rotor",
+    "first = unbalance[i] * complex(turn[0], turn[1])",
+    "first = unbalance[i] * complex(turn[2], turn[3])",
 )
-@kills("solvers.runup.linear_kernel:_carry", "m.carried[j] * (1.0 - share)", "m.carried[j]")
-@kills("solvers.runup.linear_kernel:_tally", "(x * q - y * p)", "(x * p + y * q)")
+@kills("solvers.runup.steps.linear:_carry", "carried * (1.0 - share)", "carried")
+@kills("solvers.runup.steps.linear:_tally", "(x * q - y * p)", "(x * p + y * q)")
 @kills(
     "solvers.runup.linear:LinearCoupled.energy",
     "0.5 * layer.inertia * m.carried",
@@ -68,19 +68,19 @@ def test_energy() -> None:
 
 
 @kills(
-    "solvers.runup.linear_kernel:_assemble",
+    "solvers.runup.steps.linear:_assemble",
     "mass * (b[0, i] * b[0, k] + b[1, i] * b[1, k])",
     "mass * b[0, i] * b[0, k]",
 )
-@kills("solvers.runup.linear_kernel:_assemble", "4.0 * kappa * whole * sign", "2.0 * kappa * whole * sign")
+@kills("solvers.runup.steps.linear:_assemble", "4.0 * kappa * whole * sign", "2.0 * kappa * whole * sign")
 @kills(
-    "solvers.runup.linear_kernel:_assemble",
+    "solvers.runup.steps.linear:_assemble",
     "whole * friction + 2.0 * kappa",
     "-whole * friction + 2.0 * kappa",
 )
-@kills("solvers.runup.linear_kernel:_assemble", "-2.0 * kappa * whole * whole", "2.0 * kappa * whole * whole")
+@kills("solvers.runup.steps.linear:_assemble", "-2.0 * kappa * whole * whole", "2.0 * kappa * whole * whole")
 @kills(
-    "solvers.runup.linear_kernel:_assemble", "1.0 + kappa + 0.5 * dt * friction", "1.0 + 0.5 * dt * friction"
+    "solvers.runup.steps.linear:_assemble", "1.0 + kappa + 0.5 * dt * friction", "1.0 + 0.5 * dt * friction"
 )
 def test_growth() -> None:
     """A machine let go grows, or dies, as its characteristic equation says."""
@@ -99,18 +99,18 @@ def test_growth() -> None:
 
 
 @kills(
-    "solvers.runup.linear_kernel:_tally",
-    "sums.unbalance -= m.swing[i] * mean",
-    "sums.unbalance += m.swing[i] * mean",
+    "solvers.runup.steps.linear:advance_linear",
+    "sums.unbalance -= swing[i] * mean",
+    "sums.unbalance += swing[i] * mean",
 )
-@kills("solvers.runup.linear_kernel:_tally", "u + whole * y, v - whole * x", "u - whole * y, v + whole * x")
+@kills("solvers.runup.steps.linear:_tally", "u + whole * y, v - whole * x", "u - whole * y, v + whole * x")
 @kills(
-    "solvers.runup.linear_kernel:_tally",
+    "solvers.runup.steps.linear:_tally",
     "layer.inertia * spin * gained",
     "layer.inertia * whole * gained",
 )
-@kills("solvers.runup.linear_kernel:_tally", "m.gravity[0] * u + m.gravity[1] * v", "m.gravity[0] * v")
-@kills("solvers.runup.linear_kernel:_tally", "held * (spin - whole) ** 2", "held * (spin - whole)")
+@kills("solvers.runup.steps.linear:_tally", "gravity[0] * u + gravity[1] * v", "gravity[0] * v")
+@kills("solvers.runup.steps.linear:_tally", "held * (spin - whole) ** 2", "held * (spin - whole)")
 def test_tallies() -> None:
     """Works and heats are the integrals of their powers over what is sampled."""
     found = machine(64, gravity=3.0)
@@ -137,13 +137,13 @@ def test_tallies() -> None:
         assert found.sums[name] == pytest.approx(value, rel=1e-2, abs=1e-5)
 
 
-@kills("solvers.runup.linear_kernel:advance_linear", "load -= m.change[i]", "load += m.change[i]")
+@kills("solvers.runup.steps.linear:advance_linear", "load -= change[i]", "load += change[i]")
 @kills(
-    "solvers.runup.linear_kernel:advance_linear",
-    "load += m.layers[j].inertia * gained",
-    "load -= m.layers[j].inertia * gained",
+    "solvers.runup.steps.linear:advance_linear",
+    "load += layers[j].inertia * (turning",
+    "load -= layers[j].inertia * (turning",
 )
-@kills("solvers.runup.linear_kernel:_tally", "sums.motor += dt * spin", "sums.motor += dt")
+@kills("solvers.runup.steps.linear:advance_linear", "sums.motor += dt * spin", "sums.motor += dt")
 def test_motor() -> None:
     """Torque of the motor, less what spins the liquid and what the unbalance takes."""
     found = couple_linear(
@@ -181,9 +181,9 @@ def test_inertia() -> None:
     assert layer.curvature == pytest.approx((0.25 / inner) ** 2, rel=1e-12)
 
 
-@kills("solvers.runup.linear_kernel:_mean_drag", "lag /= 1.0 + 0.5 * dt * first", "pass")
-@kills("solvers.runup.linear_kernel:_wall_drag", "rate * layer.sides", "rate")
-@kills("solvers.runup.linear_kernel:_mean_drag", "0.5 * dt * first", "1.5 * dt * first")
+@kills("solvers.runup.steps.linear:_mean_drag", "lag /= 1.0 + 0.5 * dt * first", "pass")
+@kills("solvers.runup.steps.linear:_wall_drag", "rate * layer.sides", "rate")
+@kills("solvers.runup.steps.linear:_mean_drag", "0.5 * dt * first", "1.5 * dt * first")
 @kills("solvers.layer.drag:mean_rate", "else 1.0)) * last", "else 1.0))")
 @kills("solvers.layer.drag:mean_rate", "* beyond * top", "* beyond")
 @kills("solvers.runup.linear:_layer", "1.0 / depth + layer.lid", "1.0 / depth")
@@ -205,9 +205,9 @@ def test_the_law_of_the_wall_carries_the_layer_along() -> None:
 
 @kills("solvers.runup.linear:plate_curves", "(4.0 * math.pi * fill", "(2.0 * math.pi * fill")
 @kills("solvers.runup.linear:plate_curves", "baffles.count * middle", "baffles.count")
-@kills("solvers.runup.linear_kernel:_mean_drag", "0.5 * dt * first", "1.5 * dt * first")
-@kills("solvers.runup.linear_kernel:_tally", "layer.inertia * blocked", "layer.inertia * held")
-@kills("solvers.runup.linear_kernel:plate_drag", "return lag *", "return spin *")
+@kills("solvers.runup.steps.linear:_mean_drag", "0.5 * dt * first", "1.5 * dt * first")
+@kills("solvers.runup.steps.linear:_tally", "layer.inertia * blocked", "layer.inertia * held")
+@kills("solvers.runup.steps.linear:plate_drag", "return lag *", "return spin *")
 def test_smeared_baffles_decelerate_a_lag() -> None:
     """With a constant loss du/dt = -zeta N u|u|/(4 pi R): 1/u rises in a straight line; the heat is told.
 
@@ -229,7 +229,7 @@ def test_smeared_baffles_decelerate_a_lag() -> None:
     assert work == pytest.approx(found.energy() - before, rel=1e-2)
 
 
-@kills("solvers.runup.linear_kernel:plate_drag", "(place - k) * (curve", "0.0 * (curve")
+@kills("solvers.runup.steps.linear:plate_drag", "(place - k) * (curve", "0.0 * (curve")
 def test_smeared_baffles_follow_the_law() -> None:
     """The torque on a lagging layer is that of the law, the pile-up included; compartments are refused."""
     chamber = Chamber(0.25, 0.04, baffles=Baffles(6, 0.24))
@@ -249,12 +249,12 @@ def test_smeared_baffles_follow_the_law() -> None:
 RACE = BallRace(0.0, 0.2, (0.1, 0.15), 2.0, carried=0.43, driven=0.46)
 
 
-@kills("solvers.runup.kernel:add_ball", "+ b[1, i] * b[1, k]", "+ 0.0 * b[1, k]")
-@kills("solvers.runup.kernel:add_ball", "+ b[1, i] * slope_y", "- b[1, i] * slope_y")
-@kills("solvers.runup.kernel:ball_turned", "- ball.carried * change", "+ ball.carried * change")
-@kills("solvers.runup.kernel:tally_ball", "(spin - mean) * ball_dragged", "spin * ball_dragged")
-@kills("solvers.runup.linear_kernel:advance_linear", "m.balls[j], m.races[j]", "m.balls[0], m.races[j]")
-@kills("solvers.runup.linear_kernel:_tally", "m.change[row], spins, dt, sums", "0.0, spins, dt, sums")
+@kills("solvers.runup.steps.balls:add_ball", "+ b[1, i] * b[1, k]", "+ 0.0 * b[1, k]")
+@kills("solvers.runup.steps.balls:add_ball", "+ b[1, i] * slope_y", "- b[1, i] * slope_y")
+@kills("solvers.runup.steps.balls:ball_turned", "- ball.carried * change", "+ ball.carried * change")
+@kills("solvers.runup.steps.balls:tally_ball", "(spin - mean) * ball_dragged", "spin * ball_dragged")
+@kills("solvers.runup.steps.balls:add_balls", "balls[j], races[j]", "balls[0], races[j]")
+@kills("solvers.runup.steps.linear:advance_linear", "change[row], spins, dt, sums", "0.0, spins, dt, sums")
 def test_balls_energy() -> None:
     """The balance of rotor, layer and balls closes with the square of the step."""
     left = []

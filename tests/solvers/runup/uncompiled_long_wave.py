@@ -14,16 +14,17 @@ from fluid.friction.wall import NO_TABLE
 from fluid.liquid import Liquid
 from meshes.chamber import Chamber
 from solvers.layer import finite_volume
+from solvers.layer.drag import friction_of
 from solvers.layer.inside import NOTHING, Inside
 from solvers.layer.records import Outcome, records
 from solvers.layer.state import ring
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import RotorSystem
-from solvers.runup import kernel as coupled_layer
-from solvers.runup import kernel as coupled_parts
-from solvers.runup.kernel import driven
 from solvers.runup.long_wave import Coupled, couple
 from solvers.runup.state import GAINS, LAYER, MEASURES
+from solvers.runup.steps import coupled as coupled_parts
+from solvers.runup.steps import layer as coupled_layer
+from solvers.runup.steps.coupled import driven
 from tests.mutants import kills
 
 SPIN, TURNED = 2.0, 0.4
@@ -50,18 +51,21 @@ def rates(area: np.ndarray, q: np.ndarray, push: complex = 0j) -> tuple[np.ndarr
     d_area, d_q = np.empty(n), np.empty(n)
     work = np.zeros((finite_volume.WORK, n + 2 * finite_volume.GHOSTS))
     cell, face = (push.real * angles[k] + push.imag * angles[k + 1] for k in (0, 2))
-    finite_volume.rates(area, q, SPIN, 0.0, cell, face, NOTHING, step, 0.0, 0.0, work, d_area, d_q)
+    none = np.empty(0)
+    finite_volume.rates(
+        *(area, q, none, SPIN, 0.0, cell, face, *NOTHING, step, 0.0, False, work, d_area, d_q, none)
+    )
     return d_area, d_q
 
 
 @kills("solvers.layer.step:profile", "= faded_velocity(area[i], q[i], spin)", "= 0.0")
-@kills("solvers.runup.kernel:_moments", "moment_y += lever * sine[i]", "moment_y += lever * cosine[i]")
-@kills("solvers.runup.kernel:_moments", "area[i] * (1.0 - area[i]), q[i]", "area[i], q[i]")
-@kills("solvers.runup.kernel:_moments", "0.5 * spin * spin * whole", "spin * spin * whole")
-@kills("solvers.runup.kernel:_moments", "+ 0.5 * u * u * log[i]", "+ 0.5 * u * u * area[i]")
-@kills("solvers.runup.kernel:_flows", "flow_x += flow * x", "flow_x -= flow * x")
-@kills("solvers.runup.kernel:_flows", "xy += log[i] * x * y", "xy -= log[i] * x * y")
-@kills("solvers.runup.kernel:measure_profile", "across[0], along[0],", "across[0], across[0],")
+@kills("solvers.runup.steps.layer:_moments", "moment_y += lever * sine[i]", "moment_y += lever * cosine[i]")
+@kills("solvers.runup.steps.layer:_moments", "area[i] * (1.0 - area[i]), q[i]", "area[i], q[i]")
+@kills("solvers.runup.steps.layer:_moments", "0.5 * spin * spin * whole", "spin * spin * whole")
+@kills("solvers.runup.steps.layer:_moments", "+ 0.5 * u * u * log[i]", "+ 0.5 * u * u * area[i]")
+@kills("solvers.runup.steps.layer:_flows", "flow_x += flow * x", "flow_x -= flow * x")
+@kills("solvers.runup.steps.layer:_flows", "xy += log[i] * x * y", "xy -= log[i] * x * y")
+@kills("solvers.runup.steps.layer:measure_profile", "across[0], along[0],", "across[0], across[0],")
 def test_measures() -> None:
     """Moment, angular momentum and energy by quadrature over the depth; rates of change by the volumes'."""
     n = 96
@@ -101,24 +105,26 @@ def layer_run(law: int, push: complex, n: int = 32) -> tuple[np.ndarray, np.ndar
     layer = records(LAYER)[0]
     layer.law, layer.coefficient = law, 0.5
     status, _ = coupled_layer.layer_step(
-        *(area, q, area[:0], np.array([SPIN, SPIN])),
+        *(finite_volume.rates, friction_of(law), area, q, area[:0], np.array([SPIN, SPIN])),
         np.array([push.real, push.imag, there.real, there.imag]),
-        *(layer, layer.coefficient, 0.0, NO_TABLE, 0.02, ring(n), NOTHING, spare, gains),
+        *(layer, layer.coefficient, 0.0, NO_TABLE, 0.02, ring(n), *NOTHING, spare, gains),
     )
     assert status == Outcome.DONE
     return area, q, gains
 
 
-@kills("solvers.runup.kernel:_rub", "(0.5 * spin * area", "(spin * area")
+@kills("solvers.runup.steps.layer:_rub", "(0.5 * spin * area", "(spin * area")
 @kills(
-    "solvers.runup.kernel:_rub", "before += still + spin * (held[i] - q[i]) + lost", "before += still + lost"
+    "solvers.runup.steps.layer:_rub",
+    "before += still + spin * (held[i] - q[i]) + lost",
+    "before += still + lost",
 )
-@kills("solvers.runup.kernel:_power", "rate_y + spin * moment_x", "rate_y - spin * moment_x")
-@kills("solvers.runup.kernel:_rub", "torque += q[i] - held[i]", "torque += q[i]")
-@kills("solvers.runup.kernel:_rub", "lost = 0.5 * log[i]", "lost = log[i]")
-@kills("solvers.runup.kernel:_half_friction", "layer.lid, 0.5 * dt", "layer.lid, dt")
-@kills("solvers.runup.kernel:_half_friction", "decelerate(area, q, spin, kept)", "pass")
-@kills("solvers.runup.kernel:layer_step", "gains.loss -= energy + gains.missed", "gains.loss += energy")
+@kills("solvers.runup.steps.layer:_power", "rate_y + spin * moment_x", "rate_y - spin * moment_x")
+@kills("solvers.runup.steps.layer:_rub", "torque += q[i] - held[i]", "torque += q[i]")
+@kills("solvers.runup.steps.layer:_rub", "lost = 0.5 * log[i]", "lost = log[i]")
+@kills("solvers.runup.steps.layer:_half_friction", "(0.5 * dt, kept", "(dt, kept")
+@kills("solvers.runup.steps.layer:_half_friction", "decelerate(area, q, spin, kept, pushed)", "pass")
+@kills("solvers.runup.steps.layer:layer_step", "gains.loss -= energy + gains.missed", "gains.loss += energy")
 def test_layer_gains() -> None:
     """Wall torque and heat are what the angular momentum and the energy lose; the rest is small."""
     push = 0.3 + 0.2j
@@ -185,20 +191,22 @@ def momentum(found: Coupled) -> np.ndarray:
 
 
 @kills(
-    "solvers.runup.kernel:_move_rotor",
-    "room.spins[0] * first.imag - room.spins[1] * last.imag",
-    "room.spins[1] * last.imag - room.spins[0] * first.imag",
+    "solvers.runup.steps.coupled:load_rotor",
+    "spins[0] * first.imag - spins[1] * last.imag",
+    "spins[1] * last.imag - spins[0] * first.imag",
 )
 @kills(
-    "solvers.runup.kernel:_move_rotor",
+    "solvers.runup.steps.coupled:load_rotor",
     "left[i, k] += (mass - xx) * b[0, i] * b[0, k]",
     "left[i, k] += (mass + xx) * b[0, i] * b[0, k]",
 )
-@kills("solvers.runup.kernel:_move_rotor", "right[i] -= b[0, i] * given_x", "right[i] += b[0, i] * given_x")
 @kills(
-    "solvers.runup.kernel:_accept",
-    "shaft.angle += 0.5 * (room.spins[0] + room.spins[1]) * dt",
-    "shaft.angle += room.spins[1] * dt",
+    "solvers.runup.steps.coupled:load_rotor", "right[i] -= b[0, i] * given_x", "right[i] += b[0, i] * given_x"
+)
+@kills(
+    "solvers.runup.steps.coupled:advance",
+    "shaft.angle += 0.5 * (spins[0] + spins[1]) * dt",
+    "shaft.angle += spins[1] * dt",
 )
 def test_momentum() -> None:
     """Momentum of a machine without support stays to rounding: rotor, liquid and unbalance."""
@@ -210,19 +218,23 @@ def test_momentum() -> None:
     np.testing.assert_allclose(momentum(free), before, atol=1e-13)
 
 
-@kills("solvers.runup.kernel:relative_momentum", "- spin * measures.moment_y", "+ spin * measures.moment_y")
 @kills(
-    "solvers.runup.kernel:relative_momentum",
+    "solvers.runup.steps.layer:relative_momentum", "- spin * measures.moment_y", "+ spin * measures.moment_y"
+)
+@kills(
+    "solvers.runup.steps.layer:relative_momentum",
     "scale * (x * sine + y * cosine)",
     "scale * (y * cosine - x * sine)",
 )
-@kills("solvers.runup.kernel:_tally", "sums.drive += scale * gains.work", "sums.drive -= scale * gains.work")
-@kills("solvers.runup.kernel:_tally", "sums.friction += scale", "sums.friction -= scale")
+@kills(
+    "solvers.runup.steps.coupled:_tally", "sums.drive += scale * gain.work", "sums.drive -= scale * gain.work"
+)
+@kills("solvers.runup.steps.coupled:_tally", "sums.friction += scale", "sums.friction -= scale")
 @kills("solvers.runup.long_wave:Coupled.energy", "0.5 * layer.mass * rate @ rate + momentum", "momentum")
 @kills(
-    "solvers.runup.kernel:_move_layers",
-    "machine.gravity[0] - room.guess[j, 0]",
-    "machine.gravity[0] + room.guess[j, 0]",
+    "solvers.runup.steps.coupled:advance",
+    "gravity[0] - guess[j, 0]",
+    "gravity[0] + guess[j, 0]",
 )
 def test_energy() -> None:
     """The remainder of the energy balance goes down with the square of the step and the cell."""
@@ -239,16 +251,14 @@ def test_energy() -> None:
     assert left[1] < 0.35 * left[0]
 
 
-@kills("solvers.runup.kernel:_power", "missed += velocity", "missed -= velocity")
+@kills("solvers.runup.steps.layer:_power", "missed += velocity", "missed -= velocity")
 @kills(
-    "solvers.runup.kernel:_tally",
-    "sums.unbalance -= room.swing[i] * mean",
-    "sums.unbalance += room.swing[i] * mean",
+    "solvers.runup.steps.coupled:_tally",
+    "sums.unbalance -= swing[i] * mean",
+    "sums.unbalance += swing[i] * mean",
 )
-@kills("solvers.runup.kernel:_lowered", "- begin.moment_x * turn[0]", "+ begin.moment_x * turn[0]")
-@kills(
-    "solvers.runup.kernel:_tally", "dt * mean * machine.matrices[1, i, k]", "mean * machine.matrices[1, i, k]"
-)
+@kills("solvers.runup.steps.coupled:_lowered", "- begin.moment_x * turn[0]", "+ begin.moment_x * turn[0]")
+@kills("solvers.runup.steps.coupled:_tally", "dt * mean * matrices[1, i, k]", "mean * matrices[1, i, k]")
 def test_tallies() -> None:
     """Works and heats are the integrals of their powers over what is sampled."""
     found = machine(12, 0.5)
@@ -274,12 +284,12 @@ def test_tallies() -> None:
     assert s.profile < 0.0
 
 
-@kills("solvers.runup.kernel:layer_step", "force[2 * stage], force[2 * stage + 1]", "force[0], force[1]")
-@kills("solvers.runup.kernel:_move_rotor", "stiffness * (x + 0.5 * dt * v)", "stiffness * x")
+@kills("solvers.runup.steps.layer:layer_step", "force[2 * stage], force[2 * stage + 1]", "force[0], force[1]")
+@kills("solvers.runup.steps.coupled:load_rotor", "stiffness * (x + 0.5 * dt * v)", "stiffness * x")
 @kills(
-    "solvers.runup.kernel:_accept",
-    "dt * (state.rate[i] + 0.5 * room.change[i])",
-    "dt * state.rate[i]",
+    "solvers.runup.steps.coupled:advance",
+    "dt * (rate[i] + 0.5 * change[i])",
+    "dt * rate[i]",
 )
 def test_order() -> None:
     """Halving the step leaves a quarter of the error."""
@@ -292,8 +302,8 @@ def test_order() -> None:
     assert 3.0 < ratio < 5.5
 
 
-@kills("solvers.runup.kernel:_move_rotor", "spin * machine.matrices[2, i, k]", "machine.matrices[2, i, k]")
-@kills("solvers.runup.kernel:_move_rotor", "0.25 * dt * dt * stiffness", "0.5 * dt * dt * stiffness")
+@kills("solvers.runup.steps.coupled:load_rotor", "spin * matrices[2, i, k]", "matrices[2, i, k]")
+@kills("solvers.runup.steps.coupled:load_rotor", "0.25 * dt * dt * stiffness", "0.5 * dt * dt * stiffness")
 def test_gyroscope() -> None:
     """A turn with gyroscopic coupling keeps the energy, and precesses as it must."""
     one, cross = np.eye(2), np.array([[0.0, 1.0], [-1.0, 0.0]])
@@ -313,17 +323,17 @@ def test_gyroscope() -> None:
 
 
 @kills(
-    "solvers.runup.kernel:_spin_after",
-    "load -= room.change[i] * middle.imag",
-    "load += room.change[i] * middle.imag",
+    "solvers.runup.steps.coupled:_spin_after",
+    "load -= change[i] * middle.imag",
+    "load += change[i] * middle.imag",
 )
 @kills(
-    "solvers.runup.kernel:_spin_after",
-    "layer.radius**4 * room.gains[j].torque",
-    "layer.radius**3 * room.gains[j].torque",
+    "solvers.runup.steps.coupled:_spin_after",
+    "layers[j].radius ** 4 * gains[j].torque",
+    "layers[j].radius ** 3 * gains[j].torque",
 )
-@kills("solvers.runup.kernel:driven", "shaft.spin - load * weight", "shaft.spin + load * weight")
-@kills("solvers.runup.kernel:_tally", "sums.motor += dt * spin", "sums.motor += dt")
+@kills("solvers.runup.steps.coupled:driven", "shaft.spin - load * weight", "shaft.spin + load * weight")
+@kills("solvers.runup.steps.coupled:_tally", "sums.motor += dt * spin", "sums.motor += dt")
 def test_motor() -> None:
     """The motor's torque goes into the spin, less what the unbalance and the liquid take."""
     rotor = Jeffcott(3.0, 3.0 * 15.0**2, 6.0, 0.05)
@@ -362,7 +372,7 @@ def test_motor() -> None:
 
 @kills("solvers.runup.state:at_rest", "np.array([-gravity, 0.0])", "np.array([gravity, 0.0])")
 @kills(
-    "solvers.runup.kernel:_move_layers",
+    "solvers.runup.steps.coupled:advance",
     "x * cosine + y * sine, y * cosine - x * sine",
     "x * cosine - y * sine, y * cosine + x * sine",
 )
@@ -379,7 +389,7 @@ def test_gravity() -> None:
     assert abs(relative[1]) < 0.1 * abs(relative[0])
 
 
-@kills("solvers.runup.kernel:_move_layers", "root = np.sqrt(", "root = (")
+@kills("solvers.runup.steps.coupled:advance", "root = np.sqrt(", "root = (")
 @kills(
     "solvers.runup.long_wave:couple",
     "momentum=-spin * np.square(area)",
@@ -409,18 +419,20 @@ def test_stokes() -> None:
 
 
 @kills(
-    "solvers.runup.kernel:flow_inertia",
+    "solvers.runup.steps.layer:flow_inertia",
     "out[1] = c * s * (xx - yy) + (c * c - s * s) * xy",
     "out[1] = c * s * (xx + yy)",
 )
 @kills(
-    "solvers.runup.kernel:flow_inertia",
+    "solvers.runup.steps.layer:flow_inertia",
     "scale = layer.weight * layer.radius**2",
     "scale = layer.weight * layer.radius**4",
 )
-@kills("solvers.runup.kernel:solve", "factor = matrix[i, k] / matrix[k, k]", "factor = matrix[i, k]")
+@kills("solvers.runup.steps.coupled:solve", "factor = matrix[i, k] / matrix[k, k]", "factor = matrix[i, k]")
 @kills(
-    "solvers.runup.kernel:motor_torque", "part * (curve[1, k + 1] - curve[1, k])", "part * curve[1, k + 1]"
+    "solvers.runup.steps.coupled:motor_torque",
+    "part * (curve[1, k + 1] - curve[1, k])",
+    "part * curve[1, k + 1]",
 )
 def test_small_parts() -> None:
     """Elimination, straight lines, turned tensors."""
@@ -440,12 +452,12 @@ def test_small_parts() -> None:
     turn = np.array([[math.cos(0.6), -math.sin(0.6)], [math.sin(0.6), math.cos(0.6)]])
     whole = turn @ np.array([[2.0, 0.7], [0.7, 1.0]]) @ turn.T
     out = np.zeros(3)
-    coupled_parts.flow_inertia(measures, layer, math.cos(0.6), math.sin(0.6), out)
+    coupled_layer.flow_inertia(measures, layer, math.cos(0.6), math.sin(0.6), out)
     np.testing.assert_allclose(out, 3.0 * 0.25 * np.array([whole[0, 0], whole[0, 1], whole[1, 1]]))
 
 
-@kills("solvers.runup.kernel:_rub", "0.5 * slot * pressed * pressed", "slot * pressed * pressed")
-@kills("solvers.runup.kernel:_half_friction", "inside.slot * spin * spin", "inside.slot * spin")
+@kills("solvers.runup.steps.layer:_rub", "0.5 * slot * pressed * pressed", "slot * pressed * pressed")
+@kills("solvers.runup.steps.layer:_half_friction", "slot * spin * spin", "slot * spin")
 def test_energy_of_a_full_gap() -> None:
     """What is pressed into the slot comes out again: the loss of a smooth step is small beside its change."""
     n, full = 32, 0.12
@@ -458,8 +470,8 @@ def test_energy_of_a_full_gap() -> None:
     pressed = 0.5 * 64.0 * SPIN**2 * np.square(area - full).sum() * 2.0 * np.pi / n
     layer = records(LAYER)[0]
     status, _ = coupled_layer.layer_step(
-        *(area, q, area[:0], np.array([SPIN, SPIN]), np.zeros(4)),
-        *(layer, 0.0, 0.0, NO_TABLE, 0.005, ring(n), pipe, spare, gains),
+        *(finite_volume.rates, friction_of(0), area, q, area[:0], np.array([SPIN, SPIN]), np.zeros(4)),
+        *(layer, 0.0, 0.0, NO_TABLE, 0.005, ring(n), *pipe, spare, gains),
     )
     assert status == Outcome.DONE
     after = 0.5 * 64.0 * SPIN**2 * np.square(area - full).sum() * 2.0 * np.pi / n
@@ -468,8 +480,8 @@ def test_energy_of_a_full_gap() -> None:
     assert abs(gains.loss) < 0.3 * abs(after - pressed)
 
 
-@kills("solvers.runup.kernel:resisted", "(1.0 + weight * slope)", "(1.0 - weight * slope)")
-@kills("solvers.runup.kernel:driven", "2.0 * middle - shaft.spin", "middle")
+@kills("solvers.runup.steps.coupled:resisted", "(1.0 + weight * slope)", "(1.0 - weight * slope)")
+@kills("solvers.runup.steps.coupled:driven", "2.0 * middle - shaft.spin", "middle")
 def test_a_steep_motor_does_not_run_away() -> None:
     """Torque falling with the spin takes (1 - x)/(1 + x) of the distance to its load, x = -T' dt/(2 J)."""
     for x in (1e-3, 0.5, 3.0, 1e6):

@@ -105,8 +105,9 @@ class _Ring:
         from solvers.layer.finite_volume import rates
 
         d_area, d_q, still = np.empty_like(area), np.empty_like(q), self.none
-        given = area, q, 1.0, 0.0, still, still, self.inside, self.step, dt, False, self.work
-        fastest = rates(*given, d_area, d_q)
+        none = np.empty(0)
+        given = area, q, none, 1.0, 0.0, still, still, *self.inside, self.step, dt, False, self.work
+        fastest = rates(*given, d_area, d_q, none)
         d_q -= self.drive * area * (1.0 - area)
         return d_area, d_q, float(fastest), -float(self.inside.plates[:, TORQUE].sum())
 
