@@ -85,7 +85,8 @@ type_of: Any = numba.typeof
 
 def pair(first: Any, second: Any) -> Any:
     """Type of a pair of these."""
-    return numba.types.Tuple((first, second))
+    types: Any = numba.types
+    return types.Tuple((first, second))
 
 
 class Handed:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -23,8 +23,10 @@ from solvers.runup.balls import NO_BALLS, Balls, ball_records, balls_energy, bal
 from solvers.runup.machine import Handover, Reading, Transfer
 from solvers.runup.state import (
     CREST,
+    LINEAR_LAYER,
     SUMS,
     CoupledRotor,
+    LinearMachine,
     at_rest,
     layer_drag,
     layer_properties,
@@ -32,9 +34,6 @@ from solvers.runup.state import (
     wall_tables,
 )
 from solvers.slices import compiled, slices
-
-if TYPE_CHECKING:
-    from solvers.runup.steps.linear import LinearMachine
 
 _LAGS = 129  # of the curves of smeared baffles
 
@@ -78,6 +77,22 @@ class LinearCoupled(CoupledRotor):
             if outcome is not Outcome.RAN_OUT:
                 break
         return outcome
+
+    @property
+    def settled(self) -> bool:
+        """Never: its legs are gone one by one."""
+        return False
+
+    def through(
+        self,
+        stops: Array,
+        rates: Array,
+        courant: float,
+        most: int,
+        progress: Callable[[float], object],
+    ) -> tuple[Outcome, dict[str, Array], Array]:
+        """Not asked for."""
+        raise NotImplementedError
 
     @cached_property
     def steps(self) -> tuple[Any, ...]:
@@ -221,8 +236,6 @@ def couple_linear(
     `cells` sets the length of the steps alone; the exact linear theory has all dispersion and no bores.
     Liquid at the bottom of a lying drum is a mass at rest there, whatever the `handover`: long waves move it.
     """
-    from solvers.runup.steps.linear import LINEAR_LAYER, LinearMachine
-
     rest = at_rest(system, fills, spin, gravity, position)
     n, count = len(system.coordinates), len(fills)
     size = n + 2 * count + len(balls.places)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -96,23 +96,69 @@ class Coupled(CoupledRotor):
 
     def advance(self, stop: float, rate: float, courant: float, most: int) -> Outcome:
         """Advance to a time while the spin changes at a rate, in at most so many steps."""
-        if not self.machine.curve.size:  # a free spin goes on from its last step
-            self.shaft.rate = rate
-        outcome, resumed = Outcome.RAN_OUT, False
-        rows = self.state.trace.shape[0]
-        for steps in slices(most, max(1, self.state.area.size), rows):
-            found, _ = compiled(
-                *(*self.steps, *self.machine, *self.state, *self.room),
-                *(stop, courant, steps, resumed),
-            )
-            outcome, resumed = Outcome(found), True
-            self._collect()
-            if outcome is not Outcome.RAN_OUT:
-                break
+        nothing = np.zeros((0, 0))
+        legs = np.array([stop]), np.array([rate])
+        outcome, _ = self._along(legs, (nothing, nothing), courant, most, lambda _: None)
         self.area[self.active], self.momentum[self.active] = self.state.area, self.state.momentum
         self.rolling[self.active] = self.state.rolling
         self.two_layers[self.pooled], self.rings[self.pooled] = self.state.two_layers, self.state.rings
         return outcome
+
+    def _along(
+        self,
+        legs: tuple[Array, Array],
+        kept: tuple[Array, Array],
+        courant: float,
+        most: int,
+        progress: Callable[[float], object],
+    ) -> tuple[Outcome, int]:
+        """Go through times at rates of the spin, shape (k,), with rows for each; how many were reached."""
+        outcome, leg, resumed = Outcome.RAN_OUT, 0, False
+        rows = self.state.trace.shape[0]
+        try:
+            for steps in slices(most, max(1, self.state.area.size), rows):
+                found, leg = compiled(
+                    *(*self.steps, *self.machine, *self.state, *self.room),
+                    *(*legs, leg, *kept, courant, steps, resumed),
+                )
+                outcome, resumed = Outcome(found), True
+                self._collect()
+                progress(leg / legs[0].size)
+                if outcome is not Outcome.RAN_OUT:
+                    break
+        except KeyboardInterrupt:
+            outcome = Outcome.INTERRUPTED
+        return outcome, leg
+
+    @property
+    def settled(self) -> bool:
+        """Whether each liquid stays the layer or the mass that it is, whatever the speed, beside no ball."""
+        if self.balls.size:
+            return False
+        if self.handover is not Handover.RIDING:
+            return not (self.swings | self.rests).any()
+        return bool(np.isin(self.capture, (0.0, np.inf)).all())
+
+    def through(
+        self,
+        stops: Array,
+        rates: Array,
+        courant: float,
+        most: int,
+        progress: Callable[[float], object],
+    ) -> tuple[Outcome, dict[str, Array], Array]:
+        """See `solvers.runup.machine.RunupMachine.through`."""
+        n, (count, cells), k = self.state.place.size, self.state.area.shape, stops.size
+        moments, rings = np.zeros((k, 6 + n)), np.zeros((k, 2 * count * cells))
+        outcome, reached = self._along((stops, rates), (moments, rings), courant, most, progress)
+        self.area[self.active], self.momentum[self.active] = self.state.area, self.state.momentum
+        self.rolling[self.active] = self.state.rolling
+        area = np.zeros((reached, len(self.fills), cells))
+        area[:, ~self.active] = self.area[~self.active]
+        momentum = area.copy()
+        both = rings[:reached].reshape(reached, 2, count, cells)
+        area[:, self.active], momentum[:, self.active] = both[:, 0], both[:, 1]
+        return outcome, self._readings(moments[:reached], area, momentum), self._depths(area)
 
     @cached_property
     def steps(self) -> tuple[Any, ...]:
@@ -409,64 +455,83 @@ class Coupled(CoupledRotor):
 
     def _offsets(self, swinging: Swinging | None = None) -> Complex:
         """Centre of mass of each liquid from its chamber's axis, standing frame, complex, m, shape (l,)."""
-        angle, angles = float(self.shaft.angle), self.machine.angles
-        surface = np.sqrt(np.maximum(1.0 - 2.0 * self.area, 0.0))
-        lever = (1.0 - surface) * (1.0 + surface + np.square(surface)) / 3.0
-        whole = np.maximum(self.area.sum(axis=1), 1e-300)
-        turn = complex(math.cos(angle), math.sin(angle))
-        moved = self.layers.radius * (lever @ angles[0] + 1j * (lever @ angles[1])) / whole * turn
-        found = np.where(self.active, moved, self.pool_offset)
+        found = self._ring_offsets(self.area, np.array(float(self.shaft.angle)))
         for _, _, j, flows in self._swinging() if swinging is None else swinging:
             found[j] = self.streams[j].weight * complex(flows.moment_x, flows.moment_y) / self.masses[j]
-        return np.asarray(found)
+        return found
+
+    def _ring_offsets(self, area: Array, angle: Array) -> Complex:
+        """The same of layers of these areas, shape (..., l, c), at these angles, shape (...)."""
+        angles = self.machine.angles
+        surface = np.sqrt(np.maximum(1.0 - 2.0 * area, 0.0))
+        lever = (1.0 - surface) * (1.0 + surface + np.square(surface)) / 3.0
+        whole = np.maximum(area.sum(axis=-1), 1e-300)
+        turn = (np.cos(angle) + 1j * np.sin(angle))[..., None]
+        moved = self.layers.radius * (lever @ angles[0] + 1j * (lever @ angles[1])) / whole * turn
+        return np.asarray(np.where(self.active, moved, self.pool_offset))
 
     def read(self) -> Reading:
         """The moment as the history keeps it."""
-        x, angle = self.state.place.copy(), float(self.shaft.angle)
-        deflection = np.array([complex(*(plane @ x)) for plane in self.seen])
-        surface = np.sqrt(np.maximum(1.0 - 2.0 * self.area, 0.0))
-        whole, radius = np.maximum(self.area.sum(axis=1), 1e-300), self.layers.radius
-        velocity = np.divide(self.momentum, self.area, out=np.zeros_like(surface), where=self.area > 0.0)
-        velocity += self.spin * self.area
-        flow = velocity * -np.log(np.maximum(surface, 1e-300))
-        wet, lifted = self._shares()
+        shaft, crest = self.shaft, self.crest
+        moment = (*(shaft.time, shaft.spin, shaft.angle, crest.amplitude, crest.speed, crest.time),)
+        found = self._readings(np.array([[*moment, *self.state.place]]), self.area[None], self.momentum[None])
+        read: dict[str, Any] = {name: values[0] for name, values in found.items()}
         swinging = self._swinging()
-        slow = self.pooled * (self._turning(swinging)[1] - self.spin) if swinging else 0.0
-        nothing = np.full(len(self.fills), np.nan)
+        if swinging:
+            slow = self.pooled * (self._turning(swinging)[1] - self.spin)
+            read["mean_rotation"] = np.where(self.active, read["mean_rotation"], slow)
+            read["offset"] = self._offsets(swinging)
+            for j in np.flatnonzero(self.pooled).tolist():
+                area, up = self.two_layers[j, :2].sum(axis=0), self.machine.angles[0]
+                read["wet_share"][j] = np.mean(area > _FILM)
+                read["lifted_share"][j] = area[up > 0.0].sum() / max(float(area.sum()), 1e-300)
         return Reading(
-            time=self.time,
-            speed=self.spin,
-            angle=angle,
-            coordinates=x,
-            deflection=deflection,
-            **self.largest(abs(deflection[0])),
-            offset=self._offsets(swinging),
+            **read,
             captured=self.active.copy(),
-            depth_min=np.where(self.active, radius * (1.0 - surface.max(axis=1, initial=0.0)), nothing),
-            depth_max=np.where(self.active, radius * (1.0 - surface.min(axis=1, initial=1.0)), nothing),
-            mean_rotation=np.where(self.active, flow.sum(axis=1) / whole, slow),
-            wet_share=wet,
-            lifted_share=lifted,
-            ball_angle=self.state.roll - angle,
+            ball_angle=self.state.roll - float(shaft.angle),
             ball_speed=self.state.roll_rate.copy(),
         )
 
-    def _shares(self) -> tuple[Array, Array]:
-        """Share of the outer wall that is wet and of the liquid above the axis, shape (l,) each."""
-        wet, lifted, angles = self.resting_wet.copy(), np.zeros(len(self.fills)), self.machine.angles
-        for j in np.flatnonzero(self.active | self.pooled).tolist():
-            if self.active[j]:
-                area = self.area[j]
-                up = math.cos(self.shaft.angle) * angles[0] - math.sin(self.shaft.angle) * angles[1]
-            else:
-                area, up = self.two_layers[j, :2].sum(axis=0), angles[0]
-            wet[j] = np.mean(area > _FILM)
-            lifted[j] = area[up > 0.0].sum() / max(float(area.sum()), 1e-300)
-        return wet, lifted
+    def _readings(self, moments: Array, area: Array, momentum: Array) -> dict[str, Any]:
+        """Fields of readings, of k moments as the steps wrote them and of areas and momenta, (k, l, c)."""
+        time, spin, angle, largest, largest_speed, largest_time = moments[:, :6].T
+        coordinates, angles, on = moments[:, 6:], self.machine.angles, self.active
+        parts = np.einsum("lin,kn->kli", self.seen, coordinates)
+        deflection = parts[:, :, 0] + 1j * parts[:, :, 1]
+        # As the steps take it: numpy's modulus of many numbers at once may differ in the last digit.
+        amplitude = np.hypot(deflection[:, 0].real, deflection[:, 0].imag)
+        later = amplitude >= largest
+        surface = np.sqrt(np.maximum(1.0 - 2.0 * area, 0.0))
+        whole, radius = np.maximum(area.sum(axis=2), 1e-300), self.layers.radius
+        velocity = np.divide(momentum, area, out=np.zeros_like(surface), where=area > 0.0)
+        velocity += spin[:, None, None] * area
+        flow = (velocity * -np.log(np.maximum(surface, 1e-300))).sum(axis=2) / whole
+        up = np.cos(angle)[:, None] * angles[0] - np.sin(angle)[:, None] * angles[1] > 0.0
+        lifted = np.einsum("klc,kc->kl", area, up) / whole
+        return {
+            "time": time,
+            "speed": spin,
+            "angle": angle,
+            "coordinates": coordinates,
+            "deflection": deflection,
+            "largest": np.where(later, amplitude, largest),
+            "largest_speed": np.where(later, spin, largest_speed),
+            "largest_time": np.where(later, time, largest_time),
+            "offset": self._ring_offsets(area, angle),
+            "depth_min": np.where(on, radius * (1.0 - surface.max(axis=2, initial=0.0)), np.nan),
+            "depth_max": np.where(on, radius * (1.0 - surface.min(axis=2, initial=1.0)), np.nan),
+            "mean_rotation": np.where(on, flow, 0.0),
+            "wet_share": np.where(on, (area > _FILM).mean(axis=2), self.resting_wet),
+            "lifted_share": np.where(on, lifted, 0.0),
+        }
 
     def depth(self) -> Array:
         """Depth of the layers cell by cell, m, nan where the liquid is none, shape (l, c)."""
-        surface = np.sqrt(np.maximum(1.0 - 2.0 * self.area, 0.0))
+        return self._depths(self.area)
+
+    def _depths(self, area: Array) -> Array:
+        """The same of layers of these areas, shape (..., l, c)."""
+        surface = np.sqrt(np.maximum(1.0 - 2.0 * area, 0.0))
         return np.where(self.active[:, None], self.layers.radius[:, None] * (1.0 - surface), np.nan)
 
 

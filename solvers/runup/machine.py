@@ -5,7 +5,7 @@ A liquid model is a function that makes a rotor with its liquid at one moment, a
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Annotated, Any, Protocol
@@ -194,6 +194,23 @@ class RunupMachine(Protocol):
 
     def advance(self, stop: float, rate: float, courant: float, most: int) -> Outcome:
         """Advance to a time while the spin changes at a rate, in at most so many steps."""
+
+    @property
+    def settled(self) -> bool:
+        """Whether each liquid stays the layer or the mass that it is, whatever the speed."""
+
+    def through(
+        self,
+        stops: Array,
+        rates: Array,
+        courant: float,
+        most: int,
+        progress: Callable[[float], object],
+    ) -> tuple[Outcome, dict[str, Array], Array]:
+        """Go through k times, to each at a rate of the spin, in at most so many steps, if it is `settled`.
+
+        Returns fields of `Reading` and depths of the layers at the times that were reached, shapes (k, ...).
+        """
 
     def switch(self) -> float:
         """Catch liquid that can ride with the drum by now, let go what cannot; energy brought in, J."""

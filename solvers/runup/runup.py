@@ -32,7 +32,7 @@ from solvers.runup.machine import (
     Transfer,
 )
 from solvers.runup.path import Recorder, RotorPath, fastest_frequency
-from solvers.runup.samples import highest, legs, marked
+from solvers.runup.samples import highest, known_legs, legs, marked
 from solvers.runup.shedding import Shedding
 from solvers.runup.state import WORKS
 from solvers.slices import step_budget
@@ -384,6 +384,11 @@ def _march(
     readings, stages, left, limited = [machine.read()], [0], [shedding.left], [False]
     if recorder is not None:
         recorder.begin(machine)
+    known = None
+    if machine.settled and not shedding.left.size and recorder is None:
+        known = known_legs(drive, machine, numerics.samples)
+    if known is not None:
+        return _at_once(machine, known, max(machine.spin, top), numerics, progress, (energy, wanted))
     for leg in legs(drive, machine, numerics.samples):
         machine.watch()
         try:
@@ -415,37 +420,97 @@ def _march(
             depths.append(machine.depth())
         if len(readings) % 64 == 2:
             progress(min(leg.stop / last, 1.0))
-    when = f"at {machine.time:.6g} s, {machine.spin:.6g} rad/s"
-    sums = machine.sums
-    audit = EnergyAudit(
-        captured=captured + shedding.brought,
-        change=machine.energy() - energy,
-        **{name: float(sums[name]) for name in WORKS},
-    )
     shots = LayerSnapshots(np.array(kept, dtype=np.intp), machine.theta, np.array(depths)) if wanted else None
     read: dict[str, Any] = {
         field.name: np.array([getattr(reading, field.name) for reading in readings])
         for field in fields(Reading)
     }
+    return _history(
+        machine,
+        read,
+        (captured + shedding.brought, machine.energy() - energy),
+        outcome,
+        numerics,
+        snapshots=shots,
+        stage=np.array(stages),
+        limited=np.array(limited),
+        left=np.array(left),
+        path=None if recorder is None else recorder.path([each.time for each in machine.transfers]),
+    )
+
+
+def _at_once(
+    machine: RunupMachine,
+    known: tuple[Array, Array],
+    fastest: float,
+    numerics: RunupNumerics,
+    progress: Callable[[float], object],
+    given: tuple[float, list[float]],
+) -> RunupHistory:
+    """Run a settled machine through all its samples in one compiled call; digits as sample by sample.
+
+    `given`: its energy, J, and the times of snapshots, s.
+    """
+    (stops, rates), (energy, wanted) = known, given
+    first, depths = machine.read(), [machine.depth()] if 0.0 in wanted else []
+    machine.watch()
+    most = sum(
+        step_budget(time, fastest, numerics.cells, numerics.courant)
+        for time in np.diff(stops, prepend=machine.time).tolist()
+    )
+    outcome, found, layers = machine.through(stops, rates, numerics.courant, most, progress)
+    count = len(layers)
+    kept = np.flatnonzero(np.isin(stops[:count], wanted))
+    shots = None
+    if wanted:
+        sample = np.concatenate((np.zeros(len(depths), dtype=np.intp), kept + 1))
+        shots = LayerSnapshots(sample, machine.theta, np.array([*depths, *layers[kept]]))
+    last = machine.read()  # what does not change on the way
+    read = {}
+    for name in (each.name for each in fields(Reading)):
+        own = np.array([getattr(first, name)])
+        later = found[name] if name in found else np.array([getattr(last, name)] * count)
+        read[name] = np.concatenate((own, later))
+    return _history(
+        machine,
+        read,
+        (0.0, machine.energy() - energy),
+        outcome,
+        numerics,
+        snapshots=shots,
+        stage=np.zeros(count + 1, dtype=int),
+        limited=np.zeros(count + 1, dtype=bool),
+        left=np.ones((count + 1, 0)),
+        path=None,
+    )
+
+
+def _history(
+    machine: RunupMachine,
+    read: dict[str, Any],
+    gained: tuple[float, float],
+    outcome: Outcome,
+    numerics: RunupNumerics,
+    **known: Any,
+) -> RunupHistory:
+    """The run of a machine from what was read on the way; `gained`: energy captured and left, J."""
+    when, sums = f"at {machine.time:.6g} s, {machine.spin:.6g} rad/s", machine.sums
+    works = {name: float(sums[name]) for name in WORKS}
     return RunupHistory(
         **read,
+        **known,
         layer_mass=machine.masses,
         mass_error=machine.mass_error(),
         error_estimate=math.nan,
         handover_estimate=math.nan,
-        audit=audit,
+        audit=EnergyAudit(captured=gained[0], change=gained[1], **works),
         steps=int(sums.steps),
         layer_steps=int(sums.layer_steps),
         disagreement=float(sums.disagreement),
         outcome=outcome,
         reason="" if outcome is Outcome.DONE else f"{outcome.message} {when}",
-        snapshots=shots,
-        stage=np.array(stages),
-        limited=np.array(limited),
-        left=np.array(left),
         transfers=tuple(machine.transfers),
         handover=numerics.handover,
-        path=None if recorder is None else recorder.path([each.time for each in machine.transfers]),
     )
 
 

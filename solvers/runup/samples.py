@@ -58,6 +58,14 @@ def legs(drive: Drive, machine: RunupMachine, samples: int) -> Iterator[Leg]:
         yield Leg(stop, slope, 0)
 
 
+def known_legs(drive: Drive, machine: RunupMachine, samples: int) -> tuple[Array, Array] | None:
+    """Times and rates of all legs where they are known beforehand, shape (k,); None of a programme."""
+    if isinstance(drive, Programme):
+        return None
+    made = list(legs(drive, machine, samples))
+    return np.array([leg.stop for leg in made]), np.array([leg.rate for leg in made])
+
+
 _GIVEN = np.zeros((2, 0))  # the torque curve of a speed that is given
 
 

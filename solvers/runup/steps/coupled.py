@@ -435,236 +435,279 @@ def advance(
     turn,
     force,
     spare,
-    stop,
+    stops,
+    rates_of_spin,
+    leg,
+    moments,
+    cells,
     courant,
     most,
     resumed,
 ):
-    """Advance rotor and layers to a time, in place: Outcome, and the steps tried.
+    """Advance rotor and layers to one time after another, in place: Outcome, and the leg that was reached.
 
     What a scene has is handed over: `RATES` of its rings, `FRICTION`, `LAYER_STEP`, `BEGIN_POOLS`,
     `MOVE_POOLS` and `ADD_BALLS`; then come the fields of `solvers.runup.state.Machine`, `State` and `Room`.
-    The rotor turns in a step by at most the Courant number's share of a cell. `resumed`: the call before
-    ended with RAN_OUT, and nothing has changed since. Every step goes into the state's trace if that has
-    rows. NOT_COUPLED: the accelerations did not agree in the shortest steps; STOPPED: the motor stands.
+    The rotor turns in a step by at most the Courant number's share of a cell. `leg` is the first of the
+    stops, k, that is not reached; the spin changes on the way to each at its rate. At each stop the moment
+    goes into a row of `moments`, if that has rows: time, speed, angle, largest amplitude since the stop
+    before with its speed and time, coordinates; and areas and momenta of the layers into one of `cells`.
+    `resumed`: the call before ended with RAN_OUT, and nothing has changed since. Every step goes into the
+    state's trace if that has rows. NOT_COUPLED: the accelerations did not agree in the shortest steps;
+    STOPPED: the motor stands.
     """
     shaft, pace, sums, crest = shaft[0], pace[0], sums[0], crest[0]
     n, rings_, axes = change.size, layers.shape[0], planes.shape[0]
     cell, tried_steps, free = 2.0 * np.pi / angles.shape[1], 0, curve.shape[1] > 0
     longest, pooled = swing_time(pools, gravity), pools.shape[0] > 0
-    if not resumed:
-        for j in range(rings_):
-            measure(area[j], momentum[j], shaft.spin, angles, plates[j], spare[j], begin[j])
-    while shaft.time < stop:
-        if shaft.spin <= 0.0:
-            return Outcome.STOPPED, tried_steps
-        if tried_steps >= most:
-            return Outcome.RAN_OUT, tried_steps
-        tried_steps += 1
-        remaining = stop - shaft.time
-        dt = pace.share * min(courant * cell / max(1.1 * pace.fastest, shaft.spin), longest)
-        # The last two steps share what is left, so that none is a sliver.
-        if dt >= remaining:
-            dt = remaining
-        elif dt > 0.5 * remaining:
-            dt = 0.5 * remaining
-        copy(area, kept_area)
-        copy(momentum, kept_momentum)
-        copy(rolling, kept_rolling)
-        begin_pools(
-            pools, two_layers, rings, kept_pools, gravity, angles, shaft.spin, rings_, push, first, work
-        )
-        # Mean accelerations of the step to come, on a line through the last two steps'.
-        ahead = min((dt + pace.last) / max(pace.last + pace.before, 1e-300), 2.0)
-        for j in range(axes):
-            for i in range(2):
-                guess[j, i] = push[j, 0, i] + ahead * (push[j, 0, i] - push[j, 1, i])
-        # The step is tried until rotor and layers agree.
-        spin, angle, fastest, gap, status = shaft.spin, shaft.angle, 0.0, 0.0, Outcome.DONE + 0
-        spins[0], spins[1] = spin, spin + shaft.rate * dt
-        if free:
-            spins[1] = max(spins[1], 0.5 * spin)
-        share, last_given, last_after = 1.0, 0.0, 0.0
-        for tried in range(_ROUNDS):
-            turned = angle + 0.5 * (spin + spins[1]) * dt
-            turn[0], turn[1] = np.cos(angle), np.sin(angle)
-            turn[2], turn[3] = np.cos(turned), np.sin(turned)
-            copy(kept_area, area)
-            copy(kept_momentum, momentum)
-            copy(kept_rolling, rolling)
-            fastest, gap = 0.0, 0.0
-            moved = move_pools(
-                *(pools, pool_tables, two_layers, rings, kept_pools, gravity, angles, spins, rings_, dt),
-                *(guess, before, after, inertia, taken, first, last, work),
-            )
-            if not moved:
-                status = Outcome.AT_AXIS + 0
-                break
+    count = rings_ * angles.shape[1]
+    while leg < stops.size:
+        stop = stops[leg]
+        if not resumed:
+            if leg > 0:
+                crest.amplitude = 0.0
+            if not free:  # a free spin goes on from its last step
+                shaft.rate = rates_of_spin[leg]
             for j in range(rings_):
-                layer = layers[j]
-                x, y = (gravity[0] - guess[j, 0]) / layer.radius, (gravity[1] - guess[j, 1]) / layer.radius
-                for k in range(2):
-                    cosine, sine = turn[2 * k], turn[2 * k + 1]
-                    force[2 * k], force[2 * k + 1] = x * cosine + y * sine, y * cosine - x * sine
-                coefficient, thin = layer.coefficient, layer.thin
-                if layer.law == STOKES or layer.law == WALL:
-                    # Stokes' friction at the frequency of a natural sloshing wave goes with the root of the
-                    # spin.
-                    root = np.sqrt(0.5 * (spins[0] + spins[1]))
-                    coefficient, thin = coefficient * root, thin / root
-                status, speed = layer_step(
-                    *(
-                        rates,
-                        friction,
-                        area[j],
-                        momentum[j],
-                        rolling[j],
-                        spins,
-                        force,
-                        layer,
-                        coefficient,
-                        thin,
-                    ),
-                    *(tables[j], dt, angles, plates[j], gaps[j], SLOT_SPEED * SLOT_SPEED, spare[j], gains[j]),
-                )
-                fastest = max(fastest, speed)
-                if status != Outcome.DONE:
-                    break
-            if status != Outcome.DONE:
-                break
-            _measure_layers(
-                *(layers, spins, turn, angles, plates, area, momentum, spare, begin, end, before, after),
-                inertia,
+                measure(area[j], momentum[j], shaft.spin, angles, plates[j], spare[j], begin[j])
+        resumed = False
+        while shaft.time < stop:
+            if shaft.spin <= 0.0:
+                return Outcome.STOPPED, leg
+            if tried_steps >= most:
+                return Outcome.RAN_OUT, leg
+            tried_steps += 1
+            remaining = stop - shaft.time
+            dt = pace.share * min(courant * cell / max(1.1 * pace.fastest, shaft.spin), longest)
+            # The last two steps share what is left, so that none is a sliver.
+            if dt >= remaining:
+                dt = remaining
+            elif dt > 0.5 * remaining:
+                dt = 0.5 * remaining
+            copy(area, kept_area)
+            copy(momentum, kept_momentum)
+            copy(rolling, kept_rolling)
+            begin_pools(
+                pools, two_layers, rings, kept_pools, gravity, angles, shaft.spin, rings_, push, first, work
             )
-            load_rotor(
-                *(
-                    matrices,
-                    unbalance,
-                    planes,
-                    masses,
-                    place,
-                    rate,
-                    inertia,
-                    before,
-                    after,
-                    guess,
-                    spins,
-                    turn,
-                ),
-                *(dt, swing, left, right),
-            )
-            add_balls(balls, races, gravity, n, roll, roll_rate, spins, dt, n, left, right, held)
-            solve(left, right)
-            for i in range(n):
-                change[i] = right[i]
-            for j in range(roll_change.size):
-                roll_change[j] = right[n + j]
-            sums.layer_steps += rings_
-            distance, size = _disagreement(planes, layers, gravity, spin, change, guess, dt, found)
-            gap = distance / max(size, 1e-300)
-            after_spin = _spin_after(
-                *(
-                    curve,
-                    unbalance,
-                    layers,
-                    pools,
-                    balls,
-                    shaft,
-                    roll_rate,
-                    gains,
-                    taken,
-                    change,
-                    roll_change,
-                ),
-                *(held, spins, turn, dt),
-            )
-            if after_spin <= 0.0:
-                # A long step turns the drum round where a shorter one slows it down.
-                status = (Outcome.TOO_LONG if pace.share > SHORTEST else Outcome.STOPPED) + 0
-                break
-            gap = max(gap, abs(after_spin - spins[1]) / spin)
-            if gap <= AGREED:
-                # Steps that change a free spin by less than that must change it all the same.
-                spins[1] = after_spin
-                break
-            if tried == _ROUNDS - 1:
-                status = Outcome.NOT_COUPLED + 0
-                if free and last_after < 0.5 * spin and pace.share <= SHORTEST:
-                    # Half of its speed in the shortest step: it stands.
-                    status = Outcome.STOPPED + 0
-                break
-            share = _relaxed(guess, found, miss, share) if tried >= _STRAIGHT else 1.0
+            # Mean accelerations of the step to come, on a line through the last two steps'.
+            ahead = min((dt + pace.last) / max(pace.last + pace.before, 1e-300), 2.0)
             for j in range(axes):
                 for i in range(2):
-                    miss[j, i] = found[j, i] - guess[j, i]
-                    guess[j, i] += share * miss[j, i]
-            given, spins[1] = spins[1], after_spin
-            if tried > 0 and given != last_given and pooled:
-                # A pool that clings to a drum as light as itself answers the spin as strongly as it does.
-                slope = (after_spin - last_after) / (given - last_given)
-                if slope < 0.9:
-                    spins[1] = max(given + (after_spin - given) / (1.0 - slope), 0.5 * spin)
-            last_given, last_after = given, after_spin
-        if status == Outcome.NOT_COUPLED:
-            passable = _PASSABLE if pace.share > _TINY or not pooled else _PASSABLE_POOL
-            passes = pace.share <= _SHORT and gap <= passable
-            apart = _apart(pools, layers, gravity, guess, found, dt)
-            if passes or (pace.share <= SHORTEST and apart <= _JUMP):
-                status = Outcome.DONE + 0
-        if status != Outcome.DONE:
-            shorter = status == Outcome.TOO_LONG or (status == Outcome.NOT_COUPLED and pace.share > SHORTEST)
-            if status == Outcome.NOT_COUPLED and not shorter:
+                    guess[j, i] = push[j, 0, i] + ahead * (push[j, 0, i] - push[j, 1, i])
+            # The step is tried until rotor and layers agree.
+            spin, angle, fastest, gap, status = shaft.spin, shaft.angle, 0.0, 0.0, Outcome.DONE + 0
+            spins[0], spins[1] = spin, spin + shaft.rate * dt
+            if free:
+                spins[1] = max(spins[1], 0.5 * spin)
+            share, last_given, last_after = 1.0, 0.0, 0.0
+            for tried in range(_ROUNDS):
+                turned = angle + 0.5 * (spin + spins[1]) * dt
+                turn[0], turn[1] = np.cos(angle), np.sin(angle)
+                turn[2], turn[3] = np.cos(turned), np.sin(turned)
+                copy(kept_area, area)
+                copy(kept_momentum, momentum)
+                copy(kept_rolling, rolling)
+                fastest, gap = 0.0, 0.0
+                moved = move_pools(
+                    *(pools, pool_tables, two_layers, rings, kept_pools, gravity, angles, spins, rings_, dt),
+                    *(guess, before, after, inertia, taken, first, last, work),
+                )
+                if not moved:
+                    status = Outcome.AT_AXIS + 0
+                    break
                 for j in range(rings_):
-                    if most_of(area[j]) > _PILED:
-                        status = Outcome.AT_AXIS + 0
-            copy(kept_area, area)
-            copy(kept_momentum, momentum)
-            copy(kept_rolling, rolling)
-            copy(kept_pools, two_layers)
-            if not shorter:
-                return status, tried_steps
-            pace.fastest, pace.share = max(pace.fastest, fastest), 0.5 * pace.share
-            if pace.share < _LEAST:
-                return status, tried_steps
-            continue
-        _tally(
-            *(matrices, layers, pools, gravity, curve, rate, change, swing, begin, end, gains, taken),
-            *(first, last, found, before, after, spins, turn, dt, sums),
-        )
-        for j in range(balls.shape[0]):
-            moving = roll[j], roll_rate[j]
-            tally_ball(balls[j], held[j], gravity, moving, roll_change[j], spins, dt, sums)
-        # The step's end becomes the state.
-        for i in range(n):
-            place[i] += dt * (rate[i] + 0.5 * change[i])
-            rate[i] += change[i]
-        for j in range(roll_change.size):
-            roll[j] += dt * (roll_rate[j] + 0.5 * roll_change[j])
-            roll_rate[j] += roll_change[j]
-        shaft.angle += 0.5 * (spins[0] + spins[1]) * dt
-        shaft.spin = spins[1]
-        for j in range(axes):
-            for i in range(2):
-                push[j, 1, i] = push[j, 0, i]
-                push[j, 0, i] = found[j, i]
-        for j in range(rings_):
-            begin[j] = end[j]
-        pace.before, pace.last, pace.fastest, pace.share = pace.last, dt, fastest, min(1.0, 1.5 * pace.share)
-        if free:
-            shaft.rate = (spins[1] - spins[0]) / dt
-        shaft.time = stop if dt == remaining else shaft.time + dt
-        sums.steps += 1.0
-        watch(watched, place, shaft, crest)
-        if trace.shape[0] > 0:
-            row = trace[int(pace.kept)]
-            row[0], row[1] = shaft.time, shaft.angle
+                    layer = layers[j]
+                    x, y = (
+                        (gravity[0] - guess[j, 0]) / layer.radius,
+                        (gravity[1] - guess[j, 1]) / layer.radius,
+                    )
+                    for k in range(2):
+                        cosine, sine = turn[2 * k], turn[2 * k + 1]
+                        force[2 * k], force[2 * k + 1] = x * cosine + y * sine, y * cosine - x * sine
+                    coefficient, thin = layer.coefficient, layer.thin
+                    if layer.law == STOKES or layer.law == WALL:
+                        # Stokes' friction at the frequency of a natural wave goes with the root of the spin.
+                        root = np.sqrt(0.5 * (spins[0] + spins[1]))
+                        coefficient, thin = coefficient * root, thin / root
+                    status, speed = layer_step(
+                        *(
+                            rates,
+                            friction,
+                            area[j],
+                            momentum[j],
+                            rolling[j],
+                            spins,
+                            force,
+                            layer,
+                            coefficient,
+                            thin,
+                        ),
+                        *(
+                            tables[j],
+                            dt,
+                            angles,
+                            plates[j],
+                            gaps[j],
+                            SLOT_SPEED * SLOT_SPEED,
+                            spare[j],
+                            gains[j],
+                        ),
+                    )
+                    fastest = max(fastest, speed)
+                    if status != Outcome.DONE:
+                        break
+                if status != Outcome.DONE:
+                    break
+                _measure_layers(
+                    *(layers, spins, turn, angles, plates, area, momentum, spare, begin, end, before, after),
+                    inertia,
+                )
+                load_rotor(
+                    *(
+                        matrices,
+                        unbalance,
+                        planes,
+                        masses,
+                        place,
+                        rate,
+                        inertia,
+                        before,
+                        after,
+                        guess,
+                        spins,
+                        turn,
+                    ),
+                    *(dt, swing, left, right),
+                )
+                add_balls(balls, races, gravity, n, roll, roll_rate, spins, dt, n, left, right, held)
+                solve(left, right)
+                for i in range(n):
+                    change[i] = right[i]
+                for j in range(roll_change.size):
+                    roll_change[j] = right[n + j]
+                sums.layer_steps += rings_
+                distance, size = _disagreement(planes, layers, gravity, spin, change, guess, dt, found)
+                gap = distance / max(size, 1e-300)
+                after_spin = _spin_after(
+                    *(
+                        curve,
+                        unbalance,
+                        layers,
+                        pools,
+                        balls,
+                        shaft,
+                        roll_rate,
+                        gains,
+                        taken,
+                        change,
+                        roll_change,
+                    ),
+                    *(held, spins, turn, dt),
+                )
+                if after_spin <= 0.0:
+                    # A long step turns the drum round where a shorter one slows it down.
+                    status = (Outcome.TOO_LONG if pace.share > SHORTEST else Outcome.STOPPED) + 0
+                    break
+                gap = max(gap, abs(after_spin - spins[1]) / spin)
+                if gap <= AGREED:
+                    # Steps that change a free spin by less than that must change it all the same.
+                    spins[1] = after_spin
+                    break
+                if tried == _ROUNDS - 1:
+                    status = Outcome.NOT_COUPLED + 0
+                    if free and last_after < 0.5 * spin and pace.share <= SHORTEST:
+                        # Half of its speed in the shortest step: it stands.
+                        status = Outcome.STOPPED + 0
+                    break
+                share = _relaxed(guess, found, miss, share) if tried >= _STRAIGHT else 1.0
+                for j in range(axes):
+                    for i in range(2):
+                        miss[j, i] = found[j, i] - guess[j, i]
+                        guess[j, i] += share * miss[j, i]
+                given, spins[1] = spins[1], after_spin
+                if tried > 0 and given != last_given and pooled:
+                    # A pool that clings to a drum as light as itself answers the spin as strongly as it does.
+                    slope = (after_spin - last_after) / (given - last_given)
+                    if slope < 0.9:
+                        spins[1] = max(given + (after_spin - given) / (1.0 - slope), 0.5 * spin)
+                last_given, last_after = given, after_spin
+            if status == Outcome.NOT_COUPLED:
+                passable = _PASSABLE if pace.share > _TINY or not pooled else _PASSABLE_POOL
+                passes = pace.share <= _SHORT and gap <= passable
+                apart = _apart(pools, layers, gravity, guess, found, dt)
+                if passes or (pace.share <= SHORTEST and apart <= _JUMP):
+                    status = Outcome.DONE + 0
+            if status != Outcome.DONE:
+                shorter = status == Outcome.TOO_LONG or (
+                    status == Outcome.NOT_COUPLED and pace.share > SHORTEST
+                )
+                if status == Outcome.NOT_COUPLED and not shorter:
+                    for j in range(rings_):
+                        if most_of(area[j]) > _PILED:
+                            status = Outcome.AT_AXIS + 0
+                copy(kept_area, area)
+                copy(kept_momentum, momentum)
+                copy(kept_rolling, rolling)
+                copy(kept_pools, two_layers)
+                if not shorter:
+                    return status, leg
+                pace.fastest, pace.share = max(pace.fastest, fastest), 0.5 * pace.share
+                if pace.share < _LEAST:
+                    return status, leg
+                continue
+            _tally(
+                *(matrices, layers, pools, gravity, curve, rate, change, swing, begin, end, gains, taken),
+                *(first, last, found, before, after, spins, turn, dt, sums),
+            )
+            for j in range(balls.shape[0]):
+                moving = roll[j], roll_rate[j]
+                tally_ball(balls[j], held[j], gravity, moving, roll_change[j], spins, dt, sums)
+            # The step's end becomes the state.
             for i in range(n):
-                row[2 + i] = place[i]
+                place[i] += dt * (rate[i] + 0.5 * change[i])
+                rate[i] += change[i]
+            for j in range(roll_change.size):
+                roll[j] += dt * (roll_rate[j] + 0.5 * roll_change[j])
+                roll_rate[j] += roll_change[j]
+            shaft.angle += 0.5 * (spins[0] + spins[1]) * dt
+            shaft.spin = spins[1]
+            for j in range(axes):
+                for i in range(2):
+                    push[j, 1, i] = push[j, 0, i]
+                    push[j, 0, i] = found[j, i]
             for j in range(rings_):
-                row[2 + n + 2 * j], row[3 + n + 2 * j] = begin[j].moment_x, begin[j].moment_y
-            pace.kept += 1.0
-        sums.disagreement = max(sums.disagreement, gap)
-    return Outcome.DONE + 0, tried_steps
+                begin[j] = end[j]
+            pace.before, pace.last, pace.fastest, pace.share = (
+                pace.last,
+                dt,
+                fastest,
+                min(1.0, 1.5 * pace.share),
+            )
+            if free:
+                shaft.rate = (spins[1] - spins[0]) / dt
+            shaft.time = stop if dt == remaining else shaft.time + dt
+            sums.steps += 1.0
+            watch(watched, place, shaft, crest)
+            if trace.shape[0] > 0:
+                row = trace[int(pace.kept)]
+                row[0], row[1] = shaft.time, shaft.angle
+                for i in range(n):
+                    row[2 + i] = place[i]
+                for j in range(rings_):
+                    row[2 + n + 2 * j], row[3 + n + 2 * j] = begin[j].moment_x, begin[j].moment_y
+                pace.kept += 1.0
+            sums.disagreement = max(sums.disagreement, gap)
+        if moments.shape[0] > 0:
+            row = moments[leg]
+            row[0], row[1], row[2] = shaft.time, shaft.spin, shaft.angle
+            row[3], row[4], row[5] = crest.amplitude, crest.speed, crest.time
+            for i in range(n):
+                row[6 + i] = place[i]
+            copy(area, cells[leg, :count])
+            copy(momentum, cells[leg, count:])
+        leg += 1
+    return Outcome.DONE + 0, leg
 
 
 _BALLS, _FLOWS, _ENDS = type_of(records(BALL)), type_of(records(FLOWS)), type_of(records(MEASURES))
@@ -677,5 +720,5 @@ ADVANCE: Any = (
     *(type_of(records(SUMS)), type_of(records(CREST)), ROWS, ROW, ROW),
     *(ROWS, ROWS, ROWS, BLOCKS, type_of(records(TAKEN)), _FLOWS, _FLOWS, BLOCKS, _ENDS, _ENDS),
     *(type_of(records(GAINS)), ROWS, ROWS, ROWS, ROWS, ROWS, ROWS, ROW, ROW, ROWS, ROW, ROW, ROW, ROW, ROW),
-    *(ROW, BLOCKS, REAL, REAL, WHOLE, FLAG),
+    *(ROW, BLOCKS, ROW, ROW, WHOLE, ROWS, ROWS, REAL, WHOLE, FLAG),
 )

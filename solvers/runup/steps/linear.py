@@ -2,63 +2,20 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from meshes.arrays import Array
 from solvers.layer.drag import mean_rate
 from solvers.layer.finite_volume import COMPILED
-from solvers.layer.records import Outcome, Record, floats, records
+from solvers.layer.records import Outcome, records
 from solvers.machine_code import BARE, BLOCKS, REAL, ROW, ROWS, TURNING, WHOLE, machine_code, type_of
-from solvers.runup.state import BALL, CREST, SHAFT, SUMS
+from solvers.runup.state import BALL, CREST, LINEAR_LAYER, SHAFT, SUMS
 from solvers.runup.steps.balls import ADD_BALLS, ball_turned, tally_ball
 from solvers.runup.steps.coupled import AGREED, SHORTEST, driven, load_rotor, motor_torque, solve, watch
 
 _jit: Any = machine_code(**COMPILED)
 _part: Any = machine_code(**(COMPILED | BARE))
-
-# Of a layer: mass, curvature, friction rate of its waves and of it as a whole, power of the spin that they go
-# with, moment of inertia; under the law of the wall last velocity of its table, R/h + 2 R/h_c, otherwise 0
-# both.
-LINEAR_LAYER = floats("mass", "curvature", "rate", "whole", "power", "inertia", "top", "sides")
-
-
-class LinearMachine(NamedTuple):
-    """Rotor, l linear layers and b balls; n coordinates, N = n + 2 l + b."""
-
-    matrices: Array  #: M, C, G, K of the rotor, shape (4, n, n)
-    unbalance: NDArray[np.complex128]  #: U, complex, shape (n,)
-    planes: Array  #: displacement of each layer's axis for unit coordinates, shape (l, 2, n)
-    layers: Record  #: records LINEAR_LAYER, shape (l,)
-    tables: Array  #: of the law of the wall, shape (l, m, 2); m = 0 under other laws
-    #: smeared baffles, zeta N r_m/(4 pi R) at lags that rise evenly from 0 to the spin, shape (l, p); p = 0
-    #: where no layer has any
-    plates: Array
-    active: Array  #: 1 for a layer, 0 for liquid that lies at the bottom or is solid, shape (l,)
-    gravity: Array  #: across the axis, shape (2,)
-    curve: Array  #: the motor's, shape (2, k)
-    watched: Array  #: displacement of the axis whose amplitude counts, for unit coordinates, shape (2, n)
-    #: place and rate: rotor's coordinates, the layers' offsets, two parts each, and the balls' angles in the
-    #: standing frame, and their rates, shape (N,)
-    place: Array
-    rate: Array
-    shaft: Record  #: record SHAFT of `solvers.runup.state`, shape (1,)
-    carried: Array  #: rotation of each layer as a whole, rad/s, shape (l,)
-    sums: Record  #: record SUMS, shape (1,)
-    crest: Record  #: record CREST of `solvers.runup.state`, shape (1,)
-    #: balls and races: as in `solvers.runup.state.Machine`, shapes (b,) and (b, 2, n)
-    balls: Record
-    races: Array
-    #: left, change, swing and held: scratch, shapes (N, N), (N,), (n,), (b,)
-    left: Array
-    change: Array
-    swing: Array
-    held: Array
-    #: speed, and cosine and sine of the angle turned, at both ends of the step, shapes (2,) and (4,)
-    spins: Array
-    turn: Array
 
 
 @_part
