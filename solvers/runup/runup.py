@@ -469,7 +469,7 @@ def _at_once(
     read = {}
     for name in (each.name for each in fields(Reading)):
         own = np.array([getattr(first, name)])
-        later = found[name] if name in found else np.array([getattr(last, name)] * count)
+        later = found[name] if name in found else np.repeat([getattr(last, name)], count, axis=0)
         read[name] = np.concatenate((own, later))
     return _history(
         machine,

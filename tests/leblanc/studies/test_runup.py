@@ -752,9 +752,9 @@ def test_figures_of_dull_histories(layers: int) -> None:
 
 @kills("leblanc.studies.runup.study:runup_frames", "turn = np.exp(-1j", "turn = np.exp(1j")
 @kills(
-    "solvers.runup.long_wave:Coupled.depth",
-    "np.maximum(1.0 - 2.0 * self.area, 0.0)",
-    "np.maximum(1.0 - self.area, 0.0)",
+    "solvers.runup.long_wave:Coupled._depths",
+    "np.maximum(1.0 - 2.0 * area, 0.0)",
+    "np.maximum(1.0 - area, 0.0)",
 )
 def test_film() -> None:
     """The frames hold the record's deflections in the drum frame and all of the liquid."""

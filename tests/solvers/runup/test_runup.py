@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import fields, replace
 from functools import cache
 
 import numpy as np
@@ -18,9 +18,10 @@ from meshes.chamber import Chamber
 from meshes.errors import InputError
 from solvers.layer.records import Outcome
 from solvers.rotor.jeffcott import Jeffcott
+from solvers.runup import long_wave
 from solvers.runup.linear import couple_linear
 from solvers.runup.long_wave import couple
-from solvers.runup.machine import Handover, Motor, Ramp, RunupModel
+from solvers.runup.machine import Handover, Motor, Ramp, Reading, RunupModel
 from solvers.runup.runup import RunupHistory, RunupNumerics, run_up
 from solvers.synchronous.response import response
 from tests.mutants import kills
@@ -363,17 +364,19 @@ def test_switching_keeps_the_momentum() -> None:
 
 
 @kills(
-    "solvers.runup.long_wave:Coupled._offsets",
+    "solvers.runup.long_wave:Coupled._ring_offsets",
     "(1.0 + surface + np.square(surface)) / 3.0",
     "(1.0 + surface) / 2.0",
 )
-@kills("solvers.runup.long_wave:Coupled._offsets", "1j * (lever @ angles[1])", "1j * (lever @ angles[0])")
 @kills(
-    "solvers.runup.long_wave:Coupled.read",
-    "velocity += self.spin * self.area",
-    "velocity -= self.spin * self.area",
+    "solvers.runup.long_wave:Coupled._ring_offsets", "1j * (lever @ angles[1])", "1j * (lever @ angles[0])"
 )
-@kills("solvers.runup.long_wave:Coupled.read", "1.0 - surface.max(axis=1", "1.0 - surface.min(axis=1")
+@kills(
+    "solvers.runup.long_wave:Coupled._readings",
+    "velocity += spin[:, None, None] * area",
+    "velocity -= spin[:, None, None] * area",
+)
+@kills("solvers.runup.long_wave:Coupled._readings", "1.0 - surface.max(axis=2", "1.0 - surface.min(axis=2")
 def test_reading() -> None:
     """Offset, depths and rotation of a layer that is known."""
     machine = couple(ROTOR.system(), [layer(2e-3)], 20.0, Friction(), 0.0, 64, False)
@@ -709,3 +712,25 @@ def test_a_weak_motor_gets_through_with_dispersion(cells: int) -> None:
         ends.append((history.speed[-1], history.amplitude.max()))
     # What disperses is a part of the waves' height, and that a part of the amplitude.
     np.testing.assert_allclose(ends[1], ends[0], rtol=1e-3)
+
+
+@kills("solvers.runup.runup:_at_once", "kept + 1", "kept")
+@kills("solvers.runup.runup:_at_once", "np.concatenate((own, later))", "np.concatenate((later, own))")
+def test_all_samples_at_once_have_the_digits_of_one_by_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two chambers, one of them empty, a ramp and a motor: in one compiled call and leg by leg."""
+    fills = [layer(2e-3), layer(0.0)]
+    motor = Motor(5.0, 0.5, (0.0, 90.0), (4.0, 1.0), 3.0)
+    for drive in (RAMP, motor):
+        given = ROTOR.system(), fills, drive, Friction("linear", 1.0), 0.0, replace(ALONE, samples=60)
+        at_once = run_up(*given, snapshots=(0.0, 1.0))
+        with monkeypatch.context() as patch:
+            patch.setattr(long_wave.Coupled, "settled", False)
+            one_by_one = run_up(*given, snapshots=(0.0, 1.0))
+        assert at_once.steps == one_by_one.steps and at_once.audit == one_by_one.audit
+        for name in (each.name for each in fields(Reading)):
+            found, wanted = getattr(at_once, name), getattr(one_by_one, name)
+            # Sums over many samples at once may take the cells in another order.
+            np.testing.assert_allclose(found, wanted, rtol=1e-14, atol=1e-300)
+        assert at_once.snapshots is not None and one_by_one.snapshots is not None
+        np.testing.assert_array_equal(at_once.snapshots.depth, one_by_one.snapshots.depth)
+        np.testing.assert_array_equal(at_once.snapshots.sample, one_by_one.snapshots.sample)
