@@ -101,7 +101,7 @@ class LinearCoupled(CoupledRotor):
         from solvers.runup.steps.balls import balls_of
         from solvers.runup.steps.linear import ADVANCE_LINEAR, advance_linear
 
-        return entry(advance_linear, *ADVANCE_LINEAR), balls_of(self.machine.balls.size)
+        return entry(advance_linear, *ADVANCE_LINEAR), *balls_of(self.machine.balls.size)
 
     def follow(self, rows: int) -> None:
         """See `solvers.runup.long_wave.Coupled.follow`."""

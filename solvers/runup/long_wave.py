@@ -113,12 +113,20 @@ class Coupled(CoupledRotor):
         progress: Callable[[float], object],
     ) -> tuple[Outcome, int]:
         """Go through times at rates of the spin, shape (k,), with rows for each; how many were reached."""
+        from solvers.runup.steps.spin import spin_of
+
         outcome, leg, resumed = Outcome.RAN_OUT, 0, False
         rows = self.state.trace.shape[0]
         try:
             for steps in slices(most, max(1, self.state.area.size), rows):
                 found, leg = compiled(
-                    *(*self.steps, *self.machine, *self.state, *self.room),
+                    *(
+                        *self.steps,
+                        *spin_of(self.machine.curve.size > 0),
+                        *self.machine,
+                        *self.state,
+                        *self.room,
+                    ),
                     *(*legs, leg, *kept, courant, steps, resumed),
                 )
                 outcome, resumed = Outcome(found), True
@@ -180,7 +188,7 @@ class Coupled(CoupledRotor):
             friction_of(self.friction.law.number),
             handed(layer_step, LAYER_STEP),
             *pools_of(bool(self.swings.any())),
-            balls_of(self.balls.size),
+            *balls_of(self.balls.size),
         )
 
     def follow(self, rows: int) -> None:

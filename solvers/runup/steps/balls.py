@@ -21,7 +21,7 @@ from solvers.machine_code import (
     machine_code,
     type_of,
 )
-from solvers.runup.state import BALL
+from solvers.runup.state import BALL, SUMS
 
 _jit: Any = machine_code(**COMPILED)
 _unwrapped: Any = machine_code(**(COMPILED | BARE))
@@ -104,12 +104,28 @@ def no_balls(balls, races, gravity, first, roll, roll_rate, spins, dt, n, left, 
     """Stands for `add_balls` where there are none."""
 
 
-# Of `add_balls`.
-ADD_BALLS: Any = handed_type(
-    *(NOTHING, type_of(records(BALL)), BLOCKS, ROW, WHOLE, ROW, ROW, ROW, REAL, WHOLE, ROWS, ROW, ROW)
+@_jit
+def tally_balls(balls, held, gravity, first, roll, roll_rate, change, spins, dt, sums):
+    """Add the works of one step of all balls, which stand from `first` on, to `sums`, a record SUMS."""
+    for j in range(balls.shape[0]):
+        k = first + j
+        tally_ball(balls[j], held[j], gravity, (roll[k], roll_rate[k]), change[k], spins, dt, sums)
+
+
+@_jit
+def tally_no_balls(balls, held, gravity, first, roll, roll_rate, change, spins, dt, sums):
+    """Stands for `tally_balls` where there are none."""
+
+
+_BALLS = type_of(records(BALL))
+# Of `add_balls` and of `tally_balls`.
+BALLS: Any = (
+    handed_type(NOTHING, _BALLS, BLOCKS, ROW, WHOLE, ROW, ROW, ROW, REAL, WHOLE, ROWS, ROW, ROW),
+    handed_type(NOTHING, _BALLS, ROW, ROW, WHOLE, ROW, ROW, ROW, ROW, REAL, type_of(records(SUMS)[0])),
 )
 
 
-def balls_of(count: int) -> Any:
-    """Rows and columns of so many balls, handed over."""
-    return handed(add_balls if count else no_balls, ADD_BALLS)
+def balls_of(count: int) -> tuple[Any, Any]:
+    """What moves so many balls, handed over."""
+    made = (add_balls, tally_balls) if count else (no_balls, tally_no_balls)
+    return handed(made[0], BALLS[0]), handed(made[1], BALLS[1])

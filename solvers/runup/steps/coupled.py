@@ -32,7 +32,7 @@ from solvers.machine_code import (
     type_of,
 )
 from solvers.runup.state import BALL, CREST, GAINS, LAYER, MEASURES, PACE, SHAFT, SUMS
-from solvers.runup.steps.balls import ADD_BALLS, ball_turned, tally_ball
+from solvers.runup.steps.balls import BALLS
 from solvers.runup.steps.layer import (
     LAYER_STEP,
     flow_inertia,
@@ -40,7 +40,8 @@ from solvers.runup.steps.layer import (
     measure_profile,
     relative_momentum,
 )
-from solvers.runup.steps.pools import BEGIN_POOLS, MOVE_POOLS
+from solvers.runup.steps.pools import POOLS
+from solvers.runup.steps.spin import SPIN
 
 _jit: Any = machine_code(**COMPILED)
 _unwrapped: Any = machine_code(**(COMPILED | BARE))
@@ -68,51 +69,6 @@ def solve(matrix, right):
         for j in range(k + 1, n):
             right[k] -= matrix[k, j] * right[j]
         right[k] /= matrix[k, k]
-
-
-@_jit
-def motor_torque(curve, spin):
-    """Torque at a speed, by straight lines between the points of the motor's curve."""
-    last = curve.shape[1] - 1
-    if spin <= curve[0, 0]:
-        return curve[1, 0]
-    for k in range(last):
-        if spin <= curve[0, k + 1]:
-            part = (spin - curve[0, k]) / (curve[0, k + 1] - curve[0, k])
-            return curve[1, k] + part * (curve[1, k + 1] - curve[1, k])
-    return curve[1, last]
-
-
-@_jit
-def resisted(curve, weight, aim):
-    """Where x + weight T(x) = aim, and the slope of T there, T by straight lines between points of a curve.
-
-    With it a torque is that of the middle of a step, not of its beginning.
-    """
-    low, high = 0, curve.shape[1] - 1
-    if aim <= curve[0, 0] + weight * curve[1, 0]:
-        return aim - weight * curve[1, 0], 0.0
-    if aim > curve[0, high] + weight * curve[1, high]:
-        return aim - weight * curve[1, high], 0.0
-    while high - low > 1:
-        middle = (low + high) // 2
-        if curve[0, middle] + weight * curve[1, middle] < aim:
-            low = middle
-        else:
-            high = middle
-    slope = (curve[1, high] - curve[1, low]) / (curve[0, high] - curve[0, low])
-    return curve[0, low] + (aim - curve[0, low] - weight * curve[1, low]) / (1.0 + weight * slope), slope
-
-
-@_jit
-def driven(curve, shaft, load, dt):
-    """Spin at the end of a step under the motor's torque at the middle, however steep its curve.
-
-    `load`: impulse of the torque of liquid and whirl on the drum.
-    """
-    weight = 0.5 / shaft.inertia
-    middle, _ = resisted(curve, -dt * weight, shaft.spin - load * weight)
-    return 2.0 * middle - shaft.spin
 
 
 # A step is done once two estimates of the mean accelerations differ by this, relative to the largest. Where
@@ -220,40 +176,6 @@ def _disagreement(planes, layers, gravity, spin, change, guess, dt, found):
 
 
 @_unwrapped
-def _spin_after(
-    curve,
-    unbalance,
-    layers,
-    pools,
-    balls,
-    shaft,
-    roll_rate,
-    gains,
-    taken,
-    change,
-    roll_change,
-    held,
-    spins,
-    turn,
-    dt,
-):
-    """Spin at the end of the step: on its ramp, or by the motor [theory: coupling, eq. 6]."""
-    if curve.shape[1] == 0:
-        return shaft.spin + shaft.rate * dt
-    load = 0.0
-    for i in range(change.size):
-        middle = 0.5 * unbalance[i] * complex(turn[0] + turn[2], turn[1] + turn[3])
-        load -= change[i] * middle.imag
-    for j in range(layers.shape[0]):
-        load += layers[j].weight * layers[j].radius ** 4 * gains[j].torque
-    for j in range(pools.shape[0]):
-        load += pools[j].inertia * taken[j].torque
-    for j in range(balls.shape[0]):
-        load += ball_turned(balls[j], held[j], roll_rate[j], roll_change[j], spins, dt)
-    return driven(curve, shaft, load, dt)
-
-
-@_unwrapped
 def _lowered(gravity, layer, begin, end, turn):
     """Work of gravity on a layer over a step: its weight on the way of its centre of mass."""
     x = end.moment_x * turn[2] - end.moment_y * turn[3] - begin.moment_x * turn[0] + begin.moment_y * turn[1]
@@ -262,31 +184,9 @@ def _lowered(gravity, layer, begin, end, turn):
 
 
 @_unwrapped
-def _tally(
-    matrices,
-    layers,
-    pools,
-    gravity,
-    curve,
-    rate,
-    change,
-    swing,
-    begin,
-    end,
-    gains,
-    taken,
-    first,
-    last,
-    found,
-    before,
-    after,
-    spins,
-    turn,
-    dt,
-    sums,
-):
-    """Add one step's work and losses of all but the balls [theory: coupling, eq. 9-10]."""
-    n, spin = change.size, 0.5 * (spins[0] + spins[1])
+def _tally(matrices, layers, gravity, rate, change, swing, begin, end, gains, turn, dt, sums):
+    """Add one step's work and losses of rotor and layers [theory: coupling, eq. 9-10]."""
+    n = change.size
     for i in range(n):
         mean = rate[i] + 0.5 * change[i]
         sums.unbalance -= swing[i] * mean
@@ -301,25 +201,6 @@ def _tally(
         sums.lost += scale * gain.loss
         sums.baffles += scale * gain.baffles
         sums.profile += scale * gain.missed
-    for j in range(pools.shape[0]):
-        pool, gone, own = pools[j], taken[j], layers.shape[0] + j
-        drive = spin * pool.inertia * gone.torque
-        heat = pool.inertia * gone.heat
-        lost = pool.inertia * gone.baffles
-        x, y = last[j].moment_x - first[j].moment_x, last[j].moment_y - first[j].moment_y
-        fallen = pool.weight * (gravity[0] * x + gravity[1] * y)
-        sums.drive += drive
-        sums.friction += heat
-        sums.baffles += lost
-        sums.gravity += fallen
-        # Jumps, mixing and what the layers rub on one another: what is left of its balance in its own frame.
-        sums.lost += pool.inertia * (first[j].energy - last[j].energy) + fallen + drive - heat - lost
-        for i in range(2):
-            sums.lost -= 0.5 * dt * found[own, i] * (before[own, i] + after[own, i])
-    # Bores give nothing back: what the scheme does is no heat, the balance leaves it.
-    sums.bores = max(sums.bores, sums.lost)
-    if curve.shape[1] > 0:
-        sums.motor += dt * spin * motor_torque(curve, spin)
 
 
 @_unwrapped
@@ -376,7 +257,11 @@ def advance(
     layer_step,
     begin_pools,
     move_pools,
+    tally_pools,
     add_balls,
+    tally_balls,
+    spin_after,
+    motor_power,
     matrices,
     unbalance,
     planes,
@@ -446,15 +331,15 @@ def advance(
 ):
     """Advance rotor and layers to one time after another, in place: Outcome, and the leg that was reached.
 
-    What a scene has is handed over: `RATES` of its rings, `FRICTION`, `LAYER_STEP`, `BEGIN_POOLS`,
-    `MOVE_POOLS` and `ADD_BALLS`; then come the fields of `solvers.runup.state.Machine`, `State` and `Room`.
-    The rotor turns in a step by at most the Courant number's share of a cell. `leg` is the first of the
-    stops, k, that is not reached; the spin changes on the way to each at its rate. At each stop the moment
-    goes into a row of `moments`, if that has rows: time, speed, angle, largest amplitude since the stop
-    before with its speed and time, coordinates; and areas and momenta of the layers into one of `cells`.
-    `resumed`: the call before ended with RAN_OUT, and nothing has changed since. Every step goes into the
-    state's trace if that has rows. NOT_COUPLED: the accelerations did not agree in the shortest steps;
-    STOPPED: the motor stands.
+    What a scene has is handed over: `RATES` of its rings, `FRICTION`, `LAYER_STEP`, what moves pools
+    (`pools_of`), balls (`balls_of`) and the spin (`spin_of`); then come the fields of
+    `solvers.runup.state.Machine`, `State` and `Room`. The rotor turns in a step by at most the Courant
+    number's share of a cell. `leg` is the first of the stops, k, that is not reached; the spin changes on the
+    way to each at its rate. At each stop the moment goes into a row of `moments`, if that has rows: time,
+    speed, angle, largest amplitude since the stop before with its speed and time, coordinates; and areas and
+    momenta of the layers into one of `cells`. `resumed`: the call before ended with RAN_OUT, and nothing has
+    changed since. Every step goes into the state's trace if that has rows. NOT_COUPLED: the accelerations did
+    not agree in the shortest steps; STOPPED: the motor stands.
     """
     shaft, pace, sums, crest = shaft[0], pace[0], sums[0], crest[0]
     n, rings_, axes = change.size, layers.shape[0], planes.shape[0]
@@ -589,7 +474,7 @@ def advance(
                 sums.layer_steps += rings_
                 distance, size = _disagreement(planes, layers, gravity, spin, change, guess, dt, found)
                 gap = distance / max(size, 1e-300)
-                after_spin = _spin_after(
+                after_spin = spin_after(
                     *(
                         curve,
                         unbalance,
@@ -656,13 +541,15 @@ def advance(
                 if pace.share < _LEAST:
                     return status, leg
                 continue
-            _tally(
-                *(matrices, layers, pools, gravity, curve, rate, change, swing, begin, end, gains, taken),
-                *(first, last, found, before, after, spins, turn, dt, sums),
+            _tally(matrices, layers, gravity, rate, change, swing, begin, end, gains, turn, dt, sums)
+            tally_pools(
+                *(pools, gravity, spins, rings_, dt, found, before, after, taken, first, last, sums),
             )
-            for j in range(balls.shape[0]):
-                moving = roll[j], roll_rate[j]
-                tally_ball(balls[j], held[j], gravity, moving, roll_change[j], spins, dt, sums)
+            # Bores give nothing back: what the scheme does is no heat, the balance leaves it.
+            sums.bores = max(sums.bores, sums.lost)
+            tally_balls(balls, held, gravity, 0, roll, roll_rate, roll_change, spins, dt, sums)
+            if free:
+                sums.motor += dt * motor_power(curve, spins)
             # The step's end becomes the state.
             for i in range(n):
                 place[i] += dt * (rate[i] + 0.5 * change[i])
@@ -713,7 +600,7 @@ def advance(
 _BALLS, _FLOWS, _ENDS = type_of(records(BALL)), type_of(records(FLOWS)), type_of(records(MEASURES))
 # Of `advance`: what is handed over, then machine, state, scratch, and how far.
 ADVANCE: Any = (
-    *(RATES, FRICTION, LAYER_STEP, BEGIN_POOLS, MOVE_POOLS, ADD_BALLS),
+    *(RATES, FRICTION, LAYER_STEP, *POOLS, *BALLS, *SPIN),
     *(BLOCKS, TURNING, BLOCKS, ROW, type_of(records(LAYER)), type_of(records(STREAM)), BLOCKS, BLOCKS, ROW),
     *(ROWS, ROWS, ROWS, BLOCKS, ROW, _BALLS, BLOCKS),
     *(ROW, ROW, type_of(records(SHAFT)), ROWS, ROWS, ROWS, BLOCKS, FLAG[::1], BLOCKS, type_of(records(PACE))),

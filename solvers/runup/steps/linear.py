@@ -11,8 +11,9 @@ from solvers.layer.finite_volume import COMPILED
 from solvers.layer.records import Outcome, records
 from solvers.machine_code import BARE, BLOCKS, REAL, ROW, ROWS, TURNING, WHOLE, machine_code, type_of
 from solvers.runup.state import BALL, CREST, LINEAR_LAYER, SHAFT, SUMS
-from solvers.runup.steps.balls import ADD_BALLS, ball_turned, tally_ball
-from solvers.runup.steps.coupled import AGREED, SHORTEST, driven, load_rotor, motor_torque, solve, watch
+from solvers.runup.steps.balls import BALLS, ball_turned
+from solvers.runup.steps.coupled import AGREED, SHORTEST, load_rotor, solve, watch
+from solvers.runup.steps.spin import driven, motor_torque
 
 _jit: Any = machine_code(**COMPILED)
 _part: Any = machine_code(**(COMPILED | BARE))
@@ -116,6 +117,7 @@ _PLAIN, _SECANT = 6, 12
 @_jit
 def advance_linear(
     add_balls,
+    tally_balls,
     matrices,
     unbalance,
     planes,
@@ -146,8 +148,8 @@ def advance_linear(
 ):
     """Advance rotor and layers to a time, by at most `angle_step` rad a step, in at most so many steps.
 
-    `add_balls`: see `solvers.runup.steps.balls`; then come the fields of `LinearMachine`. Outcome.DONE,
-    RAN_OUT, STOPPED where the motor stands, or NOT_COUPLED where its load grows without bound.
+    `add_balls` and `tally_balls`: see `solvers.runup.steps.balls`; then come the fields of `LinearMachine`.
+    Outcome.DONE, RAN_OUT, STOPPED where the motor stands, or NOT_COUPLED where its load grows without bound.
     """
     shaft, sums, crest, taken, share = shaft[0], sums[0], crest[0], 0, 1.0
     none = left[:0]  # liquid that has no momentum of its own
@@ -248,9 +250,7 @@ def advance_linear(
                     *(dt, sums),
                 )
             carried[j] = turning
-        for j in range(balls.shape[0]):
-            row = rows + j
-            tally_ball(balls[j], held[j], gravity, (place[row], rate[row]), change[row], spins, dt, sums)
+        tally_balls(balls, held, gravity, rows, place, rate, change, spins, dt, sums)
         if free:
             sums.motor += dt * spin * motor_torque(curve, spin)
         for i in range(change.size):
@@ -265,7 +265,7 @@ def advance_linear(
 
 # Of `advance_linear`.
 ADVANCE_LINEAR: Any = (
-    *(ADD_BALLS, BLOCKS, TURNING, BLOCKS, type_of(records(LINEAR_LAYER)), BLOCKS, ROWS, ROW, ROW, ROWS, ROWS),
+    *(*BALLS, BLOCKS, TURNING, BLOCKS, type_of(records(LINEAR_LAYER)), BLOCKS, ROWS, ROW, ROW, ROWS, ROWS),
     *(ROW, ROW, type_of(records(SHAFT)), ROW, type_of(records(SUMS)), type_of(records(CREST))),
     *(type_of(records(BALL)), BLOCKS, ROWS, ROW, ROW, ROW, ROW, ROW, REAL, REAL, WHOLE),
 )

@@ -24,6 +24,7 @@ from solvers.machine_code import (
     machine_code,
     type_of,
 )
+from solvers.runup.state import SUMS
 
 _jit: Any = machine_code(**COMPILED)
 
@@ -121,19 +122,52 @@ def begin_no_pools(pools, two_layers, rings, kept, gravity, angles, spin, axis, 
     """Stands for `begin_pools` where there are none."""
 
 
+@_jit
+def tally_pools(pools, gravity, spins, axis, dt, found, before, after, taken, first, last, sums):
+    """Add one step's work and losses of the pools to `sums`, a record SUMS [theory: coupling, eq. 9-10]."""
+    spin = 0.5 * (spins[0] + spins[1])
+    for j in range(pools.shape[0]):
+        pool, gone, own = pools[j], taken[j], axis + j
+        drive = spin * pool.inertia * gone.torque
+        heat = pool.inertia * gone.heat
+        lost = pool.inertia * gone.baffles
+        x, y = last[j].moment_x - first[j].moment_x, last[j].moment_y - first[j].moment_y
+        fallen = pool.weight * (gravity[0] * x + gravity[1] * y)
+        sums.drive += drive
+        sums.friction += heat
+        sums.baffles += lost
+        sums.gravity += fallen
+        # Jumps, mixing and what the layers rub on one another: what is left of its balance in its own frame.
+        sums.lost += pool.inertia * (first[j].energy - last[j].energy) + fallen + drive - heat - lost
+        for i in range(2):
+            sums.lost -= 0.5 * dt * found[own, i] * (before[own, i] + after[own, i])
+
+
+@_jit
+def tally_no_pools(pools, gravity, spins, axis, dt, found, before, after, taken, first, last, sums):
+    """Stands for `tally_pools` where there are none."""
+
+
 _POOLS, _FLOWS, _FLAGS = type_of(records(STREAM)), type_of(records(FLOWS)), FLAG[::1]
-# Of `move_pools` and of `begin_pools`.
-MOVE_POOLS: Any = handed_type(
+_TAKEN = type_of(records(TAKEN))
+_MOVE: Any = handed_type(
     *(FLAG, _POOLS, BLOCKS, BLOCKS, _FLAGS, BLOCKS, ROW, ROWS, ROW, WHOLE, REAL, ROWS, ROWS, ROWS, ROWS),
-    *(type_of(records(TAKEN)), _FLOWS, _FLOWS, BLOCKS),
+    *(_TAKEN, _FLOWS, _FLOWS, BLOCKS),
 )
-BEGIN_POOLS: Any = handed_type(
+_BEGIN: Any = handed_type(
     *(NOTHING, _POOLS, BLOCKS, _FLAGS, BLOCKS, ROW, ROWS, REAL, WHOLE, BLOCKS, _FLOWS, BLOCKS)
 )
 
 
-def pools_of(moves: bool) -> tuple[Any, Any]:
-    """How pools, if any liquid of the machine may be one, begin a step and move, handed over."""
-    if moves:
-        return handed(begin_pools, BEGIN_POOLS), handed(move_pools, MOVE_POOLS)
-    return handed(begin_no_pools, BEGIN_POOLS), handed(no_pools, MOVE_POOLS)
+_TALLY: Any = handed_type(
+    *(NOTHING, _POOLS, ROW, ROW, WHOLE, REAL, ROWS, ROWS, ROWS, _TAKEN, _FLOWS, _FLOWS),
+    type_of(records(SUMS)[0]),
+)
+# Of `begin_pools`, `move_pools` and `tally_pools`.
+POOLS: Any = (_BEGIN, _MOVE, _TALLY)
+
+
+def pools_of(moves: bool) -> tuple[Any, ...]:
+    """What moves pools, if any liquid of the machine may be one, handed over."""
+    made = (begin_pools, move_pools, tally_pools) if moves else (begin_no_pools, no_pools, tally_no_pools)
+    return tuple(handed(part, types) for part, types in zip(made, POOLS, strict=True))

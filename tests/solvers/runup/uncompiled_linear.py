@@ -254,7 +254,7 @@ RACE = BallRace(0.0, 0.2, (0.1, 0.15), 2.0, carried=0.43, driven=0.46)
 @kills("solvers.runup.steps.balls:ball_turned", "- ball.carried * change", "+ ball.carried * change")
 @kills("solvers.runup.steps.balls:tally_ball", "(spin - mean) * ball_dragged", "spin * ball_dragged")
 @kills("solvers.runup.steps.balls:add_balls", "balls[j], races[j]", "balls[0], races[j]")
-@kills("solvers.runup.steps.linear:advance_linear", "change[row], spins, dt, sums", "0.0, spins, dt, sums")
+@kills("solvers.runup.steps.balls:tally_balls", "change[k], spins, dt, sums", "0.0, spins, dt, sums")
 def test_balls_energy() -> None:
     """The balance of rotor, layer and balls closes with the square of the step."""
     left = []

@@ -24,7 +24,7 @@ from solvers.runup.long_wave import Coupled, couple
 from solvers.runup.state import GAINS, LAYER, MEASURES
 from solvers.runup.steps import coupled as coupled_parts
 from solvers.runup.steps import layer as coupled_layer
-from solvers.runup.steps.coupled import driven
+from solvers.runup.steps.spin import driven, motor_torque
 from tests.mutants import kills
 
 SPIN, TURNED = 2.0, 0.4
@@ -323,17 +323,17 @@ def test_gyroscope() -> None:
 
 
 @kills(
-    "solvers.runup.steps.coupled:_spin_after",
+    "solvers.runup.steps.spin:free_spin",
     "load -= change[i] * middle.imag",
     "load += change[i] * middle.imag",
 )
 @kills(
-    "solvers.runup.steps.coupled:_spin_after",
+    "solvers.runup.steps.spin:free_spin",
     "layers[j].radius ** 4 * gains[j].torque",
     "layers[j].radius ** 3 * gains[j].torque",
 )
-@kills("solvers.runup.steps.coupled:driven", "shaft.spin - load * weight", "shaft.spin + load * weight")
-@kills("solvers.runup.steps.coupled:_tally", "sums.motor += dt * spin", "sums.motor += dt")
+@kills("solvers.runup.steps.spin:driven", "shaft.spin - load * weight", "shaft.spin + load * weight")
+@kills("solvers.runup.steps.spin:motor_power", "spin * motor_torque", "motor_torque")
 def test_motor() -> None:
     """The motor's torque goes into the spin, less what the unbalance and the liquid take."""
     rotor = Jeffcott(3.0, 3.0 * 15.0**2, 6.0, 0.05)
@@ -430,7 +430,7 @@ def test_stokes() -> None:
 )
 @kills("solvers.runup.steps.coupled:solve", "factor = matrix[i, k] / matrix[k, k]", "factor = matrix[i, k]")
 @kills(
-    "solvers.runup.steps.coupled:motor_torque",
+    "solvers.runup.steps.spin:motor_torque",
     "part * (curve[1, k + 1] - curve[1, k])",
     "part * curve[1, k + 1]",
 )
@@ -445,7 +445,7 @@ def test_small_parts() -> None:
     np.testing.assert_allclose(found, wanted, rtol=1e-12)
     curve = np.array([[1.0, 2.0, 5.0], [3.0, 4.0, -2.0]])
     for spin in (0.5, 1.0, 1.7, 3.0, 5.0, 7.0):
-        assert coupled_parts.motor_torque(curve, spin) == pytest.approx(np.interp(spin, *curve))
+        assert motor_torque(curve, spin) == pytest.approx(np.interp(spin, *curve))
     measures, layer = records(MEASURES)[0], records(LAYER)[0]
     measures.xx, measures.xy, measures.yy = 2.0, 0.7, 1.0
     layer.radius, layer.weight = 0.5, 3.0
@@ -480,8 +480,8 @@ def test_energy_of_a_full_gap() -> None:
     assert abs(gains.loss) < 0.3 * abs(after - pressed)
 
 
-@kills("solvers.runup.steps.coupled:resisted", "(1.0 + weight * slope)", "(1.0 - weight * slope)")
-@kills("solvers.runup.steps.coupled:driven", "2.0 * middle - shaft.spin", "middle")
+@kills("solvers.runup.steps.spin:resisted", "(1.0 + weight * slope)", "(1.0 - weight * slope)")
+@kills("solvers.runup.steps.spin:driven", "2.0 * middle - shaft.spin", "middle")
 def test_a_steep_motor_does_not_run_away() -> None:
     """Torque falling with the spin takes (1 - x)/(1 + x) of the distance to its load, x = -T' dt/(2 J)."""
     for x in (1e-3, 0.5, 3.0, 1e6):

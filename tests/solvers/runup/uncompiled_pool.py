@@ -77,12 +77,12 @@ def test_light_rotors_agree_with_their_liquid() -> None:
 
 
 @kills(
-    "solvers.runup.steps.coupled:_tally",
+    "solvers.runup.steps.pools:tally_pools",
     "sums.lost -= 0.5 * dt * found[own, i]",
     "sums.lost += 0.5 * dt * found[own, i]",
 )
 @kills(
-    "solvers.runup.steps.coupled:_tally",
+    "solvers.runup.steps.pools:tally_pools",
     "pool.inertia * (first[j].energy - last[j].energy) + fallen",
     "pool.inertia * (first[j].energy - last[j].energy) - fallen",
 )
@@ -100,12 +100,12 @@ def test_energy() -> None:
     assert sums.friction > 0.0 and sums.baffles > 0.0 and sums.lost > 0.0 and sums.bores == sums.lost
 
 
-@kills("solvers.runup.steps.coupled:_tally", "heat = pool.inertia * gone.heat", "heat = 0.5 * gone.heat")
+@kills("solvers.runup.steps.pools:tally_pools", "heat = pool.inertia * gone.heat", "heat = 0.5 * gone.heat")
 @kills(
-    "solvers.runup.steps.coupled:_tally", "lost = pool.inertia * gone.baffles", "lost = 0.5 * pool.inertia"
+    "solvers.runup.steps.pools:tally_pools", "lost = pool.inertia * gone.baffles", "lost = 0.5 * pool.inertia"
 )
 @kills(
-    "solvers.runup.steps.coupled:_tally",
+    "solvers.runup.steps.pools:tally_pools",
     "drive = spin * pool.inertia",
     "drive = 0.5 * spin * pool.inertia",
 )
@@ -126,7 +126,7 @@ def test_works_are_those_of_the_layers() -> None:
 
 
 @kills(
-    "solvers.runup.steps.coupled:_spin_after",
+    "solvers.runup.steps.spin:free_spin",
     "load += pools[j].inertia * taken[j].torque",
     "load += 0.0",
 )
