@@ -276,9 +276,12 @@ class Answer(ABC):
         """Write it as a netCDF file, from which `leblanc.open` makes it again."""
         called("leblanc.core.disk:save")(self, Path(path))
 
-    def write(self, folder: str | PathLike[str]) -> None:
-        """Write the files of its command into a folder: data, pictures, report."""
-        called("leblanc.core.disk:write")(self, Path(folder))
+    def write(self, folder: str | PathLike[str], png: bool = False) -> None:
+        """Write the files of its command into a folder: data, pictures, report.
+
+        Pictures are SVG, with `png` PNG as well; one alone is `plot().savefig("it.png")`.
+        """
+        called("leblanc.core.disk:write")(self, Path(folder), png=png)
 
     def plot(self, ax: Any = None) -> Any:
         """The main figure, a `matplotlib.figure.Figure`; one of a single axes on somebody else's `ax`.
