@@ -30,6 +30,7 @@ from solvers.held.cost import hold_seconds
 from solvers.held.state import HoldNumerics
 from solvers.liquid_model import ROUNDING, LiquidModel, Whirls
 from solvers.rotor.jeffcott import Jeffcott
+from solvers.runup.machine import largest_wave
 from solvers.sloshing.model import REST_ERROR
 from solvers.synchronous.errors import GravityError, LinearError, error_estimate, machine_errors
 from solvers.synchronous.response import distance, response
@@ -461,8 +462,6 @@ def runup_outlook(scene: Scene) -> str:
     liquid, tolerance = scene.model.liquid, scene.model.tolerance
     if scene.speed_plan is None or not scene.fills:
         return ""
-    from solvers.runup.runup import largest_wave
-
     if liquid not in ("auto", *RUNUP_MODELS):
         return f"none: {liquid} does not go through time; ask for auto, long_wave or linear"
     if liquid != "auto":
@@ -478,8 +477,6 @@ def runup_outlook(scene: Scene) -> str:
 
 def ruled_out_linear(scene: Scene) -> str:
     """Why linear layers are not tried for the run-up of a scene, or nothing."""
-    from solvers.runup.runup import largest_wave
-
     if _lies(scene):
         return "liquid lies at the bottom at first, and linear layers do not move it"
     if any(fill.uneven for fill in scene.fills):

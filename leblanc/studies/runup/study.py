@@ -46,11 +46,10 @@ from solvers.runup.ensemble import EnsembleTask, Member, Spread, member_of, run_
 from solvers.runup.ensemble import ensemble as made_ensemble
 from solvers.runup.linear import couple_linear
 from solvers.runup.long_wave import couple
-from solvers.runup.machine import Drive, Handover, RunupModel
+from solvers.runup.machine import MOST_WAVE, Drive, Handover, RunupModel
 from solvers.runup.programme import Programme
 from solvers.runup.runup import (
     MOST_LAG,
-    MOST_WAVE,
     LinearRunError,
     RunupHistory,
     RunupNumerics,
