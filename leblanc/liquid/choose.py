@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -422,8 +423,13 @@ def balance_from(scene: Scene, fill: Fill) -> float | None:
     gravity = across_gravity(scene)
     if gravity == 0.0 or fill.chamber.section is not None or fill.compartments > 1:
         return None
-    pool = pool_of(fill)
-    return None if pool is None else centrifuging_speed(fill, scene.model.friction, gravity)
+    return _balance(fill, scene.model.friction, gravity)
+
+
+@lru_cache(maxsize=128)
+def _balance(fill: Fill, friction: Friction, gravity: float) -> float | None:
+    """`balance_from` of a chamber, the same whatever else of its machine changes."""
+    return None if pool_of(fill) is None else centrifuging_speed(fill, friction, gravity)
 
 
 def carried_from(scene: Scene) -> float | None:

@@ -392,6 +392,27 @@ def unstable_bands(
     return _bands(rotor, rows, row[order], points[order], rate[order], friction)
 
 
+def any_growth(
+    rotor: Rotor, rows: Sequence[Sequence[Fill]], speed: ArrayLike, friction: Waves = NO_FRICTION
+) -> Flags:
+    """Whether `unstable_bands` finds a band, of each row of fills: without looking for edges.
+
+    Rows in which a whirl grows at one of the first speeds are not looked into any further.
+    """
+    grid = np.asarray(speed, dtype=float)
+    first, last = float(grid[0]), float(grid[-1])
+    own = [_first_speeds(rotor, fills, first, last) for fills in rows]
+    row, points = np.repeat(np.arange(len(rows)), [part.size for part in own]), np.concatenate(own)
+    grows = growth_at(rotor, rows, row, points, friction)[0] > 0.0
+    found = np.zeros(len(rows), dtype=bool)
+    found[row[grows]] = True
+    calm = np.flatnonzero(~found)
+    if calm.size:
+        row, _, rate = looks(rotor, [rows[k] for k in calm.tolist()], first, last, friction)
+        found[calm[row[rate > 0.0]]] = True
+    return found
+
+
 def _contradicts(bands: Bands, speed: Array, growth: Array) -> Flags:
     """Speeds inside bands at which nothing grows or outside at which something does, shape (n,)."""
     inside, edge = np.zeros(speed.shape, dtype=bool), np.zeros(speed.shape, dtype=bool)

@@ -19,7 +19,7 @@ from solvers.rotor.system import Rotor
 from solvers.rotor.tub import Mount, Tub
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
 from solvers.whirl import edges as whirl_edges
-from solvers.whirl.edges import _changes, _first_speeds, looks, unstable_bands
+from solvers.whirl.edges import _changes, _first_speeds, any_growth, looks, unstable_bands
 from solvers.whirl.growth import asynchronous_growth, planar_layers
 from solvers.whirl.system import coupled_matrices, linear_modes
 from tests.mutants import kills
@@ -228,6 +228,18 @@ def test_meetings_in_one_plane() -> None:
     own, general = (_first_speeds(one, fills, 20.0, 3000.0) for one in (rotor, rotor.system()))
     for found, other in ((own, general), (general, own)):
         assert (np.abs(found[:, None] - other).min(axis=1) <= 1e-12 * found).all()
+
+
+@kills("solvers.whirl.edges:any_growth", "found[calm[row[rate > 0.0]]] = True", "pass")
+def test_growth_without_edges(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Some whirl grows where bands are found; a film's band is seen only when it is looked for."""
+    monkeypatch.setattr(whirl_edges, "_first_speeds", lambda *_: np.geomspace(31.0, 401.0, 33))
+    rotor, speed = Jeffcott(6.0, 6e4, 0.0, 0.0), np.array([31.0, 401.0])
+    volumes = math.pi * 0.02 * (0.1**2 - (0.1 - 0.1 * np.array([0.0, 1e-6, 1e-4, 0.3])) ** 2)
+    rows = [[Fill(Chamber(0.1, 0.02), WATER, float(volume))] for volume in volumes]
+    for law in (NO_FRICTION, Friction(FrictionLaw.STOKES)):
+        bands = unstable_bands(rotor, rows, speed, law)
+        np.testing.assert_array_equal(any_growth(rotor, rows, speed, law), [bool(own) for own in bands])
 
 
 @kills("solvers.whirl.edges:_changes", "spread[1] < _SIDE_BY_SIDE", "spread[1] < 0.0")
