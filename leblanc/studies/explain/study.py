@@ -136,7 +136,7 @@ def _whirl(machine: Prepared, bands: Later) -> WhirlOutlook | None:
     scene, range_ = machine.scene, (float(machine.speed.min()), float(machine.speed.max()))
     if not scene.fills or range_[0] == range_[1] or isinstance(machine.waves, CheckedModel):
         return None
-    most = largest_estimate(machine.rotor, scene.fills, range_, scene.model.friction, bands())
+    most = largest_estimate(machine.rotor, scene.fills, range_, scene.model.friction, bands)
     if most is None:
         return None
     return WhirlOutlook(most.spin, most.amplitude, most.whirl_speed, most.lag)

@@ -489,7 +489,7 @@ def whirl_on_the_way(scene: Scene, bands: Bands | None) -> tuple[float, float] |
     if not bands or across_gravity(scene) > 0.0:
         return None
     range_ = bands[0][0], bands[-1][1]
-    found = largest_estimate(dry_rotor(scene), scene.fills, range_, scene.model.friction, bands)
+    found = largest_estimate(dry_rotor(scene), scene.fills, range_, scene.model.friction, lambda: bands)
     return None if found is None else (found.amplitude, found.spin)
 
 
