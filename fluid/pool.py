@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -72,14 +73,21 @@ def sloshing_number(half_angle: float) -> float:
 
     For half of the wetted arc, rad: 1 for a shallow pool, 1.3557 for a half full cylinder.
     """
+    number, unit = _strip()
+    scale = 1.0 / np.sqrt(0.5 * _STRIP * number * np.tanh(number * half_angle))
+    matrix = scale[:, None] * (math.sin(half_angle) * unit) * scale
+    return 1.0 / float(np.linalg.eigvalsh(matrix)[-1])
+
+
+@cache
+def _strip() -> tuple[Array, Array]:
+    """Wave numbers of the shape functions, and their products over the surface, by Gauss's rule."""
     point, weight = np.polynomial.legendre.leggauss(_POINTS)
     place = 0.5 * _STRIP * (point + 1.0)
     number = (np.arange(_TERMS) + 0.5) * math.pi / _STRIP
     shape = np.sin(np.outer(number, place))
-    metric = 0.25 * _STRIP * weight * math.sin(half_angle) / np.square(np.cosh(0.5 * place))
-    scale = 1.0 / np.sqrt(0.5 * _STRIP * number * np.tanh(number * half_angle))
-    matrix = scale[:, None] * ((shape * metric) @ shape.T) * scale
-    return 1.0 / float(np.linalg.eigvalsh(matrix)[-1])
+    metric = 0.25 * _STRIP * weight / np.square(np.cosh(0.5 * place))
+    return np.asarray(number, dtype=float), np.asarray((shape * metric) @ shape.T)
 
 
 def wall_torque(fill: Fill, pool: Pool, friction: Friction, rotation: ArrayLike) -> Array:

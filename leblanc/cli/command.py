@@ -38,6 +38,7 @@ if TYPE_CHECKING:
 
 _OUT = "Folder for the files [default: out/<{} name>]."
 _ONLY_OUT = "Folder for the figure; without it none is written."
+_PNG = "Write figures as PNG as well."
 _JSON = "Print one JSON object instead of words."
 _FOLDER = ("folder", "out")  # of a study
 _LOADED: Mapping[Any, Callable[[Path], Any]] = {SCENE: load, STUDY: load_study}
@@ -65,9 +66,10 @@ def command(question: Callable[..., Any]) -> Callable[..., None]:
     if files:
         help_of_out = _OUT.format(subject.name) if subject is not None and whole else _ONLY_OUT
         options.append(_parameter("out", Path | None, typer.Option(help=help_of_out), None))
+        options.append(_parameter("png", bool, typer.Option("--png", help=_PNG), False))
     options.append(_parameter("json", bool, typer.Option("--json", help=_JSON), False))
 
-    def run(json: bool, out: Path | None = None, **given: Any) -> None:
+    def run(json: bool, out: Path | None = None, png: bool = False, **given: Any) -> None:
         given |= {name: not given[name] for name, one in asked.items() if _usual(one)}
         machine, folder, where = None, None, f"leblanc {question.__name__}"
         if subject is not None and given[subject.name] is not None:
@@ -92,7 +94,7 @@ def command(question: Callable[..., Any]) -> Callable[..., None]:
                 raise _of_option(error, asked) from error
         line = _command_line(question.__name__, list(own.values()), given)
         object.__setattr__(answer, "typed", replace(typed, command=line))
-        finish(answer, where, json, folder, machine)
+        finish(answer, where, json, folder, machine, png)
 
     run.__doc__ = (question.__doc__ or "").partition("\n")[0]
     made = signature(question).replace(parameters=options, return_annotation=None)
@@ -106,9 +108,10 @@ def finish(
     json: bool,
     folder: Path | None = None,
     machine: Scene | None = None,
+    png: bool = False,
 ) -> None:
     """Write the files of an answer into a folder, show it, and end as it asks for; faults name `where`."""
-    drawn = [] if folder is None else called("leblanc.core.disk:write")(answer, folder, machine)
+    drawn = [] if folder is None else called("leblanc.core.disk:write")(answer, folder, machine, png)
     answer.after()
     if json:
         print_json(answer.to_json())
@@ -118,7 +121,7 @@ def finish(
             print(_closing(answer, folder, drawn))
     if not (answer.page or answer.data):
         for one in drawn:
-            say(f"wrote {one.png}")
+            say(f"wrote {one.svg}")
     if answer.interrupted:
         raise KeyboardInterrupt
     fault = answer.fault(where)
@@ -204,7 +207,7 @@ def _command_line(name: str, asked: Sequence[Asked], given: Mapping[str, Any]) -
 
 def _closing(answer: Answer, folder: Path, drawn: Sequence[Any]) -> str:
     """Where to look now."""
-    seen = f"See {drawn[0].png}" if drawn else ""
+    seen = f"See {drawn[0].svg}" if drawn else ""
     first = f"Read {folder / answer.page}" if answer.page else seen
     data = f"the data are in {folder / answer.data}" if answer.data else ""
     return "; ".join(part for part in (first, data) if part)

@@ -9,7 +9,7 @@ from abc import ABC, abstractmethod
 from base64 import b64encode
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields, is_dataclass
-from functools import cache, wraps
+from functools import cache, partial, wraps
 from hashlib import sha256
 from importlib import metadata
 from os import PathLike
@@ -165,6 +165,30 @@ def _plain(to_json: Callable[[Any], dict[str, Any]]) -> Any:
     return made
 
 
+class Later:
+    """A value of an answer that is worked out when it is first read; several values may stand on it.
+
+    Of two threads both may work it out, to the same value.
+    """
+
+    def __init__(self, function: Callable[..., Any], *given: Any) -> None:
+        self._call: Callable[[], Any] | None = partial(function, *given)
+        self._value: Any = None
+
+    def __call__(self) -> Any:
+        """The value."""
+        call = self._call
+        if call is not None:
+            self._value = call()
+            self._call = None
+        return self._value
+
+
+def later(function: Callable[..., Any], *given: Any) -> Any:
+    """`Later`, in place of a value of any type."""
+    return Later(function, *given)
+
+
 class Answer(ABC):
     """Base of a frozen dataclass whose fields and properties are declared by `Q`."""
 
@@ -234,7 +258,16 @@ class Answer(ABC):
 
     def __getattribute__(self, name: str) -> Any:
         """As of any object; an array that is computed anew is read-only as well."""
-        return _read_only(object.__getattribute__(self, name))
+        found = object.__getattribute__(self, name)
+        if type(found) is Later:
+            found = found()
+            called("leblanc.core.quantities:seal")(found)
+            object.__setattr__(self, name, found)
+        return _read_only(found)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """All of its values, none of them for later."""
+        return {name: getattr(self, name) for name in vars(self)}
 
     def __getattr__(self, name: str) -> Any:
         """A quantity of one of its parts; None where it has no such part."""
@@ -276,9 +309,12 @@ class Answer(ABC):
         """Write it as a netCDF file, from which `leblanc.open` makes it again."""
         called("leblanc.core.disk:save")(self, Path(path))
 
-    def write(self, folder: str | PathLike[str]) -> None:
-        """Write the files of its command into a folder: data, pictures, report."""
-        called("leblanc.core.disk:write")(self, Path(folder))
+    def write(self, folder: str | PathLike[str], png: bool = False) -> None:
+        """Write the files of its command into a folder: data, pictures, report.
+
+        Pictures are SVG, with `png` PNG as well; one alone is `plot().savefig("it.png")`.
+        """
+        called("leblanc.core.disk:write")(self, Path(folder), png=png)
 
     def plot(self, ax: Any = None) -> Any:
         """The main figure, a `matplotlib.figure.Figure`; one of a single axes on somebody else's `ax`.

@@ -35,12 +35,15 @@ _MOST = 1 << 30  # bytes of that text
 _PLAIN = {each.__name__: each for each in (tuple, list, frozenset, set)}
 
 
-def write(answer: Answer, folder: Path, machine: Any = None) -> list[Any]:
-    """Data file, pictures and report of an answer, about its machine; the files of the pictures."""
+def write(answer: Answer, folder: Path, machine: Any = None, png: bool = False) -> list[Any]:
+    """Data file, pictures and report of an answer, about its machine; the files of the pictures.
+
+    Pictures are drawn as SVG, with `png` as PNG as well.
+    """
     if answer.data:
         save(answer, folder / answer.data)
     pictures = (block for block in flat(answer.blocks(), "page") if isinstance(block, Picture))
-    figures = {one.name: drawing(answer, one, folder) for one in pictures}
+    figures = {one.name: drawing(answer, one, folder, png) for one in pictures}
     if answer.page:
         typed = answer.typed
         if machine is None:
@@ -53,10 +56,10 @@ def write(answer: Answer, folder: Path, machine: Any = None) -> list[Any]:
     return list(figures.values())
 
 
-def drawing(answer: Answer, picture: Picture, folder: Path) -> Any:
+def drawing(answer: Answer, picture: Picture, folder: Path, png: bool = False) -> Any:
     """Files of a picture of an answer, drawn."""
     save_figure = called("leblanc.plotting.page:save")
-    return save_figure(called(picture.draw)(answer), folder, picture.name, picture.title)
+    return save_figure(called(picture.draw)(answer), folder, picture.name, picture.title, png)
 
 
 def save(answer: Answer, path: Path) -> None:

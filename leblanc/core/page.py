@@ -36,7 +36,6 @@ PACKAGES = (
 )  # fmt: skip
 AUTHORS = "The leblanc developers"
 TITLE = "leblanc: passive liquid balancers and rotors partly filled with liquid"
-LIGHT = 300_000  # bytes up to which a drawing is kept as lines; beyond it the smaller of the two files
 TYPES = {".svg": "image/svg+xml", ".png": "image/png"}
 
 
@@ -217,8 +216,7 @@ def _one(block: Block, figures: Mapping[str, Any], numbers: Iterator[int]) -> It
 
 def picture(files: Any, alt: str = "") -> dict[str, Any]:
     """A figure on disk as a page shows it, its caption as text; the drawn caption is cut off."""
-    lightest = min((files.svg, files.png), key=lambda file: file.stat().st_size)
-    chosen = files.svg if files.svg.stat().st_size <= LIGHT else lightest
+    chosen = files.shown
     content = base64.b64encode(chosen.read_bytes()).decode("ascii")
     return {
         "title": files.title,

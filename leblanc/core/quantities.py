@@ -317,7 +317,11 @@ def _arrays(value: Any, seen: set[int]) -> Iterator[np.ndarray[Any, Any]]:
 
 def _parts(value: Any) -> Iterator[Any]:
     if is_dataclass(value) and not isinstance(value, type):
-        yield from (getattr(value, each.name) for each in fields(value))
+        # Of an answer what is worked out later is not asked for: it is sealed then.
+        known = vars(value) if hasattr(value, "__dict__") else {}
+        yield from (
+            known[one.name] if one.name in known else getattr(value, one.name) for one in fields(value)
+        )
     elif isinstance(value, Mapping):
         yield from value.values()
     elif isinstance(value, list | tuple):

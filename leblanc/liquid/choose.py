@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -30,6 +31,7 @@ from solvers.held.cost import hold_seconds
 from solvers.held.state import HoldNumerics
 from solvers.liquid_model import ROUNDING, LiquidModel, Whirls
 from solvers.rotor.jeffcott import Jeffcott
+from solvers.runup.machine import largest_wave
 from solvers.sloshing.model import REST_ERROR
 from solvers.synchronous.errors import GravityError, LinearError, error_estimate, machine_errors
 from solvers.synchronous.response import distance, response
@@ -421,8 +423,13 @@ def balance_from(scene: Scene, fill: Fill) -> float | None:
     gravity = across_gravity(scene)
     if gravity == 0.0 or fill.chamber.section is not None or fill.compartments > 1:
         return None
-    pool = pool_of(fill)
-    return None if pool is None else centrifuging_speed(fill, scene.model.friction, gravity)
+    return _balance(fill, scene.model.friction, gravity)
+
+
+@lru_cache(maxsize=128)
+def _balance(fill: Fill, friction: Friction, gravity: float) -> float | None:
+    """`balance_from` of a chamber, the same whatever else of its machine changes."""
+    return None if pool_of(fill) is None else centrifuging_speed(fill, friction, gravity)
 
 
 def carried_from(scene: Scene) -> float | None:
@@ -461,8 +468,6 @@ def runup_outlook(scene: Scene) -> str:
     liquid, tolerance = scene.model.liquid, scene.model.tolerance
     if scene.speed_plan is None or not scene.fills:
         return ""
-    from solvers.runup.runup import largest_wave
-
     if liquid not in ("auto", *RUNUP_MODELS):
         return f"none: {liquid} does not go through time; ask for auto, long_wave or linear"
     if liquid != "auto":
@@ -478,8 +483,6 @@ def runup_outlook(scene: Scene) -> str:
 
 def ruled_out_linear(scene: Scene) -> str:
     """Why linear layers are not tried for the run-up of a scene, or nothing."""
-    from solvers.runup.runup import largest_wave
-
     if _lies(scene):
         return "liquid lies at the bottom at first, and linear layers do not move it"
     if any(fill.uneven for fill in scene.fills):

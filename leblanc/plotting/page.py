@@ -19,7 +19,6 @@ import matplotlib
 import matplotlib.figure
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import ListedColormap
 from matplotlib.font_manager import findfont, get_font
 from matplotlib.patches import ConnectionPatch, PathPatch, Polygon
@@ -41,6 +40,7 @@ LEGEND_ROW, CAPTION_ROW, MARGIN = 0.145, 0.125, 0.06
 CAPTION_SIZE, MOST_LINES = 7.0, 4  # points; lines of the caption
 LEGEND_CHARACTERS = 100  # in one row
 FILM_DPI = 100
+LIGHT = 300_000  # bytes of lines that a browser shows at once
 
 
 @dataclass(frozen=True)
@@ -102,11 +102,18 @@ class FigureFiles:
 
     name: str  #: stem of its files
     title: str  #: what it shows
-    png: Path  #: its files
-    svg: Path
+    svg: Path  #: its file
+    png: Path | None = None  #: the same in pixels, where it was asked for or the lines are heavy
     caption: Caption = field(default=Caption(""))  #: as of `Figure`
     alt: str = ""
     drawn: tuple[float, float] | None = None
+
+    @property
+    def shown(self) -> Path:
+        """The file that a report shows: lines, unless they are heavy and pixels are lighter."""
+        if self.png is None or self.svg.stat().st_size <= LIGHT:
+            return self.svg
+        return min((self.svg, self.png), key=lambda file: file.stat().st_size)
 
 
 @contextmanager
@@ -125,22 +132,19 @@ def _sheet() -> matplotlib.RcParams:
         return matplotlib.rc_params_from_file(path, use_default_template=False)
 
 
-def save(figure: Figure, directory: Path, name: str, title: str) -> FigureFiles:
-    """Write one figure as PNG and SVG, without the time of writing."""
-    files = FigureFiles(
-        *(name, title, directory / f"{name}.png", directory / f"{name}.svg"),
-        caption=figure.caption,
-        alt=figure.alt,
-        drawn=figure.drawn,
-    )
-    save_png(figure, directory, name, title)
-    with style(), writing(files.svg) as path:
+def save(figure: Figure, directory: Path, name: str, title: str, png: bool = False) -> FigureFiles:
+    """Write one figure as SVG, without the time of writing; as PNG where asked for or where that is heavy."""
+    svg = directory / f"{name}.svg"
+    with style(), writing(svg) as path:
         figure.savefig(path, format="svg", metadata={"Date": None, "Creator": "leblanc", "Title": title})
-    return files
+    pixels = save_png(figure, directory, name, title) if png or svg.stat().st_size > LIGHT else None
+    return FigureFiles(name, title, svg, pixels, figure.caption, figure.alt, figure.drawn)
 
 
 def save_png(figure: Figure, directory: Path, name: str, title: str) -> Path:
     """Write one figure as PNG alone; parameters as for `save`."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
     FigureCanvasAgg(figure)
     with style(), writing(directory / f"{name}.png") as path:
         metadata = {"Software": None, "Title": title}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -22,7 +23,9 @@ from solvers.rotor.loads.frame import frame_of
 from solvers.rotor.system import RotorSystem, Shed
 from solvers.runup import programme
 from solvers.runup.machine import Drive, Handover, Motor, Ramp
-from solvers.runup.runup import RunupHistory, RunupNumerics
+
+if TYPE_CHECKING:
+    from solvers.runup.runup import RunupHistory, RunupNumerics
 
 
 def planned(scene: Scene) -> Runup | Programme:
@@ -76,6 +79,8 @@ def numerics_of(
     plan: Runup | Programme, cells: int | None = None, samples: int | None = None, check: bool = True
 ) -> RunupNumerics:
     """Resolution of a run-up; the scene's where nothing else is given."""
+    from solvers.runup.runup import RunupNumerics
+
     return RunupNumerics(
         cells=plan.cells if cells is None else cells,
         samples=plan.samples if samples is None else samples,

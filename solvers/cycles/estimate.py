@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -134,20 +134,20 @@ def largest_estimate(
     fills: Sequence[Fill],
     range_: tuple[float, float],
     friction: Friction,
-    bands: Bands | None = None,
+    bands: Callable[[], Bands] | None = None,
 ) -> Estimate | None:
     """The largest of the whirls in the middles of the bands, by rule; None where nothing grows by itself.
 
     The middle of what a band shares with an undamped one, next to whose upper edge [theory: whirl, eq. 31]
-    leaps, as growth vanishes there. `bands` in which some whirl grows, rad/s; solved for if None.
+    leaps, as growth vanishes there. `bands` gives those in which some whirl grows, rad/s;
+    they are solved for if None.
     """
     machine = _settling(rotor, fills, friction)
     if machine is None:
         return None
-    if bands is None:
-        (bands,) = unstable_bands(rotor, [fills], np.array(range_), friction)
-    free = list(undamped_bands(rotor, fills, (_BELOW * range_[0], _ABOVE * range_[1]))) if bands else []
-    shared = [(max(low, lower), min(high, upper)) for low, high in bands for lower, upper, _ in free]
+    own = unstable_bands(rotor, [fills], np.array(range_), friction)[0] if bands is None else bands()
+    free = list(undamped_bands(rotor, fills, (_BELOW * range_[0], _ABOVE * range_[1]))) if own else []
+    shared = [(max(low, lower), min(high, upper)) for low, high in own for lower, upper, _ in free]
     middles = np.array(sorted(0.5 * (low + high) for low, high in shared if low < high))
     found = _by_rule(rotor, fills, machine, free, middles, friction)
     return max((whirl for whirl in found if whirl), key=lambda whirl: whirl.amplitude, default=None)

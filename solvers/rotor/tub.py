@@ -5,6 +5,7 @@ from __future__ import annotations
 import cmath
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -85,6 +86,11 @@ class Tub:
 
     def system(self) -> RotorSystem:
         """Equations of motion for the displacement x, y, z of the tub and its turns alpha, beta, gamma."""
+        return self._system
+
+    @cached_property
+    def _system(self) -> RotorSystem:
+        """The same, which many steps of one answer ask for."""
         across, along = self.drum_transverse_inertia, self.drum_polar_inertia
         drum = displacement(self.drum_position)
         inertia = np.diag([self.tub_mass] * 3 + list(self.tub_inertia))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import cmath
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -84,6 +85,11 @@ class TwoPlane:
 
     def system(self) -> RotorSystem:
         """Equations of motion for x, y of the centre of mass and the turns alpha, beta about x and y."""
+        return self._system
+
+    @cached_property
+    def _system(self) -> RotorSystem:
+        """The same, which many steps of one answer ask for."""
         stiffness, damping, gyroscopic = np.zeros((3, 4, 4))
         for support in self.supports:
             axis, (spring, damper) = _axis(support.position), support.across

@@ -23,6 +23,9 @@ from solvers.layer.records import Outcome
 from solvers.rotor.system import RotorSystem
 from solvers.runup.long_wave import couple
 from solvers.runup.machine import (
+    FLOOR,
+    MOST_WAVE,
+    WAVE,
     Drive,
     Handover,
     LayerSnapshots,
@@ -530,10 +533,7 @@ def _advance(
 
 
 # Found from random run-ups with both models: see the theory page.
-FLOOR = 0.006
-_WAVE = 2.0
 _LAG = 2.0
-MOST_WAVE = 0.5
 MOST_LAG = 0.08
 
 
@@ -545,11 +545,6 @@ class LinearRunError:
     wave: float  #: largest rise of a surface over its layer's mean depth
     lag: float  #: largest lag of a layer's rotation behind its drum over the spin
     touches: bool  #: a surface came to an inner wall
-
-
-def largest_wave(tolerance: float) -> float:
-    """Rise of a surface over its depth at which a run without lag reaches a tolerance; 0 where none does."""
-    return min(math.sqrt(max(tolerance - FLOOR, 0.0) / _WAVE), MOST_WAVE)
 
 
 def linear_run_error(history: RunupHistory, fills: Sequence[Fill]) -> LinearRunError:
@@ -566,5 +561,5 @@ def linear_run_error(history: RunupHistory, fills: Sequence[Fill]) -> LinearRunE
         inner = fill.chamber.inner_radius
         touches |= inner > 0.0 and crest >= fill.chamber.radius - inner
     lost = not history.converged or touches or wave > MOST_WAVE or lag > MOST_LAG
-    estimate = np.inf if lost else FLOOR + _WAVE * wave**2 + _LAG * lag**2
+    estimate = np.inf if lost else FLOOR + WAVE * wave**2 + _LAG * lag**2
     return LinearRunError(float(estimate), wave, lag, touches)

@@ -14,8 +14,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fluid.paraboloid import Moments, steepness
-from meshes.arrays import Array
+from fluid.paraboloid import CYLINDER_STEEPNESS, Moments, steepness
+from meshes.arrays import Array, Flags
 from meshes.chamber import Chamber, Chambers
 from meshes.errors import InputError
 
@@ -38,6 +38,24 @@ def _integrals(
     found = np.zeros((rows, e.size))
     kernel(*_sizes(chamber, e.size), e.ravel(), steep.ravel(), zeta.ravel(), found)
     return tuple(row.reshape(e.shape) for row in found)
+
+
+# How near to a wall, relatively, a cylinder is left to the kernel.
+_CLEAR = 1e-9
+
+
+def _clear_of_walls(chamber: AnyChamber, volume: Array, e: Array, steep: Array) -> Flags:
+    """Where the surface is a cylinder about the rotation axis that meets no wall, shape (...,).
+
+    Closed forms hold there [theory: statics, eq. 3 and 9], without a compiled kernel.
+    """
+    radius, inner = np.asarray(chamber.radius), np.asarray(chamber.inner_radius)
+    film = volume / (np.pi * np.asarray(chamber.height))
+    surface = np.sqrt(np.maximum(np.square(radius) - film, 0.0))
+    away = e + _CLEAR * radius
+    return np.asarray(
+        (steep >= CYLINDER_STEEPNESS) & (away <= film / (radius + surface)) & (away <= surface - inner)
+    )
 
 
 def moments(
@@ -97,6 +115,7 @@ class Equilibrium:
     nearest_depth: Array
     volume: Array  #: liquid volume reached, m^3
     converged: NDArray[np.bool_]  #: the volume was met to rounding
+    clear: Flags  #: a cylinder that meets no wall: the liquid adds the mass of a full chamber
 
     @property
     def dry_patch(self) -> NDArray[np.bool_]:
@@ -127,23 +146,35 @@ class Equilibrium:
         """Moments of the liquid about the rotation axis and the floor, over the density."""
         return moments(self.chamber, self.eccentricity, self.steepness, self.wetted_height)
 
+    @property
+    def _disc(self) -> Array:
+        """Volume of the cylinder inside the outer wall, m^3."""
+        return np.asarray(np.pi * np.square(self.chamber.radius) * self.chamber.height)
+
     def first_moment(self) -> Array:
         """First moment of the liquid about the rotation axis, m^4, shape (...,)."""
+        full = self._disc * self.eccentricity
+        if self.clear.all():
+            return full
         from solvers.statics import kernel
 
         state = self.eccentricity, self.steepness, self.wetted_height
-        return _integrals(kernel.first_moments, 1, self.chamber, *state)[0]
+        return np.where(self.clear, full, _integrals(kernel.first_moments, 1, self.chamber, *state)[0])
 
     def unbalance(self) -> tuple[Array, Array]:
         """First moment of the liquid about the rotation axis, m^4, and its slope in e at fixed volume, m^3.
 
         The slope is V + 2 beta times the spread of the free surface's plan [theory: statics, eq. 17].
         """
+        line = self._disc * self.eccentricity, np.broadcast_to(self._disc, self.eccentricity.shape)
+        if self.clear.all():
+            return line[0], line[1].copy()
         x, plan, plan_x, plan_xx = plan_moments(
             self.chamber, self.eccentricity, self.steepness, self.wetted_height
         )
         mean = np.divide(plan_x, plan, out=np.zeros_like(plan), where=plan > 0.0)
-        return x, self.volume + 2.0 * np.maximum(plan_xx - mean * plan_x, 0.0)
+        slope = self.volume + 2.0 * np.maximum(plan_xx - mean * plan_x, 0.0)
+        return np.where(self.clear, line[0], x), np.where(self.clear, line[1], slope)
 
 
 def equilibrium(
@@ -170,9 +201,17 @@ def equilibrium(
         allowed = f"at most the chamber's capacity ({capacity.flat[worst]:g} m^3)"
         raise InputError("volume", float(v.flat[worst]), allowed)
     steep = steepness(spin, g, chamber.radius, chamber.height)
-    zeta, reached, converged = _solve(chamber, np.minimum(v, capacity), e, steep)
-    nearest = zeta - 4.0 * steep * e / chamber.radius
-    return Equilibrium(chamber, e, steep, zeta, nearest, reached, converged)
+    v = np.minimum(v, capacity)
+    clear = _clear_of_walls(chamber, v, e, steep)
+    eps = e / np.asarray(chamber.radius)
+    disc = np.pi * np.square(chamber.radius) * np.asarray(chamber.height)
+    zeta, reached, converged = steep * (v / disc + eps * (2.0 + eps)), v.copy(), np.ones(v.shape, dtype=bool)
+    if not clear.all():
+        found = _solve(chamber, v, e, steep)
+        whole = zeta, reached, converged
+        zeta, reached, converged = (np.where(clear, x, y) for x, y in zip(whole, found, strict=True))
+    nearest = zeta - 4.0 * steep * eps
+    return Equilibrium(chamber, e, steep, zeta, nearest, reached, converged, clear)
 
 
 def optimal_volume(
@@ -192,7 +231,18 @@ def optimal_volume(
     _check("speed", spin)
     _check("gravity", g)
     steep = steepness(spin, g, chamber.radius, chamber.height)
-    return volume_under(chamber, e, steep, 4.0 * steep * e / chamber.radius)
+    clear = _inside_both(chamber, e, steep)
+    # A cylinder about the rotation axis that touches the near wall from within.
+    ring = np.pi * np.asarray(chamber.height) * e * (2.0 * np.asarray(chamber.radius) - e)
+    if clear.all():
+        return np.asarray(ring)
+    return np.where(clear, ring, volume_under(chamber, e, steep, 4.0 * steep * e / chamber.radius))
+
+
+def _inside_both(chamber: AnyChamber, e: Array, steep: Array) -> Flags:
+    """Where cylinders that touch one wall from within do not meet the other, shape (...,)."""
+    free = np.asarray(chamber.radius) * (1.0 - _CLEAR) - chamber.inner_radius
+    return np.asarray((steep >= CYLINDER_STEEPNESS) & (2.0 * e <= free))
 
 
 class WallVolumes(NamedTuple):
@@ -218,8 +268,14 @@ def wall_volumes(
     radius, inner = (np.asarray(x, dtype=float) for x in (chamber.radius, chamber.inner_radius))
     steep, upright = steepness(spin, g, radius, chamber.height), g > 0.0
     foot = steep * (radius - inner) * (radius + inner + 2.0 * e) / radius**2
-    heights = np.ones_like(e), foot, 1.0 + 4.0 * steep * e / radius
-    lid, reached, full = (volume_under(chamber, e, steep, height) for height in heights)
+    clear = _inside_both(chamber, e, steep)
+    # The cylinder that holds the inner wall and touches its foot.
+    reached = np.pi * np.asarray(chamber.height) * (radius - inner - e) * (radius + inner + e)
+    lid, full = wetting, np.full(e.shape, np.nan)
+    if not (clear & ~upright).all():
+        heights = np.ones_like(e), foot, 1.0 + 4.0 * steep * e / radius
+        lid, met, full = (volume_under(chamber, e, steep, height) for height in heights)
+        reached = np.where(clear, reached, met)
     return WallVolumes(
         wetting,
         np.where(upright, lid, np.nan),

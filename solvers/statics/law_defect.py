@@ -111,15 +111,15 @@ def _moved_moment(surfaces: Surfaces, eps: Array) -> Array:
 
 def _air(surfaces: Surfaces, floor: Array, eps: Array) -> tuple[Array, Array]:
     """Volume of the air over R^2 h, and the moment that it takes from the full chamber, over R^3 h."""
-    inner = np.sqrt(surfaces.inner)
-    volume, moment = _under(surfaces, floor, eps, np.ones_like(eps))
-    rows = np.flatnonzero(inner > 0.0)
-    if rows.size:
-        wall = inner[rows]
-        held, pushed = _under(surfaces.at(rows), floor[rows], eps[rows], wall)
-        volume[rows] -= held
-        moment[rows] += np.pi * np.square(wall) * eps[rows] - pushed
-    return volume, moment
+    rows = np.flatnonzero(surfaces.inner > 0.0)
+    count, wall = eps.size, np.sqrt(surfaces.inner[rows])
+    # Inside the outer walls, then inside the inner ones.
+    both = np.concatenate([np.arange(count), rows])
+    walls = np.concatenate([np.ones(count), wall])
+    volume, moment = _under(surfaces.at(both), floor[both], eps[both], walls)
+    volume[rows] -= volume[count:]
+    moment[rows] += np.pi * np.square(wall) * eps[rows] - moment[count:]
+    return volume[:count], moment[:count]
 
 
 def _under(surfaces: Surfaces, floor: Array, eps: Array, wall: Array) -> tuple[Array, Array]:

@@ -82,13 +82,14 @@ def _path(pairs: Complex, region: Region) -> tuple[Complex, Index]:
     Left of the end of a cut the path goes along its lower side to the end and back along the upper one.
     """
     paths, owners = [], []
+    scale = region.scale
+    fastest = np.where(np.isfinite(pairs), pairs.imag, 0.0).max(axis=1, initial=0.0)
+    far = _FAR * np.maximum(region.far, np.maximum(fastest, scale))
+    around = np.outer(scale, np.unique(np.concatenate([1.0 + _FIRST, 1.0 - _FIRST, [1.0]])))
+    heights = np.sort(np.hstack([around, np.geomspace(1e-2 * scale, far, 12).T]), axis=1)
     for k in range(region.line.size):
-        left, size = float(region.line[k]), float(region.scale[k])
-        fastest = np.nanmax(pairs[k].imag, initial=size, where=np.isfinite(pairs[k]))
-        far = _FAR * max(float(region.far[k]), float(fastest))
-        around = [size * (1.0 + _FIRST), size * (1.0 - _FIRST), [size]]
-        height = np.concatenate([*around, np.geomspace(1e-2 * size, far, 12)])
-        height = np.unique(height[height > 0.0])
+        left, size, height = float(region.line[k]), float(scale[k]), heights[k]
+        height = height[height > 0.0]
         lip, past = _LIP * size, _END * size
         back, parts, passed = left * (1.0 - _FIRST), list[Any](), 0.0
         for tip in region.tips[k].tolist() if left < past else ():

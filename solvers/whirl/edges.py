@@ -9,6 +9,7 @@ followed.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Any
@@ -20,7 +21,8 @@ from fluid.fill import Fill
 from fluid.friction.laws import NO_FRICTION
 from fluid.whirl import plane_layer
 from meshes.arrays import Array, Complex, Flags, Index
-from solvers.rotor.system import Rotor, RotorSystem
+from solvers.rotor.jeffcott import Jeffcott
+from solvers.rotor.system import Rotor
 from solvers.rotor.vibration import critical_speeds
 from solvers.whirl.growth import Waves, growth_at, modes_at
 
@@ -67,7 +69,7 @@ def looks(
     def at(row: Index, speed: Array) -> Looks:
         return _looked(rotor, rows, row, speed, friction)
 
-    own = [_first_speeds(rotor.system(), fills, first, last) for fills in rows]
+    own = [_first_speeds(rotor, fills, first, last) for fills in rows]
     row, speed = np.repeat(np.arange(len(rows)), [part.size for part in own]), np.concatenate(own)
     seen = at(row, speed)
     inside = seen.row[1:] == seen.row[:-1]
@@ -92,7 +94,7 @@ def looks(
     return row[order], speed[order], growth[order]
 
 
-def _first_speeds(system: RotorSystem, fills: Sequence[Fill], first: float, last: float) -> Array:
+def _first_speeds(rotor: Rotor, fills: Sequence[Fill], first: float, last: float) -> Array:
     """Ends of the range, speeds between at even ratios, and those where a wave meets a rotor's mode.
 
     A wave of a clear ring goes round at c = 1 + T -+ sqrt(T^2 + T) times the spin in space: it meets a mode,
@@ -104,13 +106,19 @@ def _first_speeds(system: RotorSystem, fills: Sequence[Fill], first: float, last
     found[0][[0, -1]] = first, last
     layers = [(fill.chamber.plane, plane_layer(fill, NO_FRICTION)) for fill in fills]
     waves = [(plane, layer) for plane, layer in layers if layer is not None]
-    heavy = sum((x.mass * system.at(z).T @ system.at(z) for z, x in waves), np.zeros(system.mass.shape))
-    for ratio in {
-        sense * (1.0 + x.layer_tanh + way * np.sqrt(x.layer_tanh * (x.layer_tanh + 1.0)))
+    ratios = {
+        1.0 + x.layer_tanh + way * math.sqrt(x.layer_tanh * (x.layer_tanh + 1.0))
         for _, x in waves
         for way in (1.0, -1.0)
-        for sense in (1.0, -1.0)
-    }:
+    }
+    if isinstance(rotor, Jeffcott):
+        masses = (rotor.mass, rotor.mass + sum(x.mass for _, x in waves))
+        found += [math.sqrt(rotor.stiffness / mass) / np.array(sorted(ratios)) for mass in masses]
+        every = np.unique(np.concatenate(found))
+        return every[(every >= first) & (every <= last)]
+    system = rotor.system()
+    heavy = sum((x.mass * system.at(z).T @ system.at(z) for z, x in waves), np.zeros(system.mass.shape))
+    for ratio in (sense * ratio for ratio in ratios for sense in (1.0, -1.0)):
         for mass in (system.mass, system.mass + heavy):
             turned = replace(system, mass=ratio**2 * mass, gyroscopic=ratio * system.gyroscopic)
             found.append(critical_speeds(turned)[0])
@@ -382,6 +390,27 @@ def unstable_bands(
     row, points, rate = (np.concatenate([x, y[other]]) for x, y in zip((row, points, rate), own, strict=True))
     order = np.lexsort((points, row))
     return _bands(rotor, rows, row[order], points[order], rate[order], friction)
+
+
+def any_growth(
+    rotor: Rotor, rows: Sequence[Sequence[Fill]], speed: ArrayLike, friction: Waves = NO_FRICTION
+) -> Flags:
+    """Whether `unstable_bands` finds a band, of each row of fills: without looking for edges.
+
+    Rows in which a whirl grows at one of the first speeds are not looked into any further.
+    """
+    grid = np.asarray(speed, dtype=float)
+    first, last = float(grid[0]), float(grid[-1])
+    own = [_first_speeds(rotor, fills, first, last) for fills in rows]
+    row, points = np.repeat(np.arange(len(rows)), [part.size for part in own]), np.concatenate(own)
+    grows = growth_at(rotor, rows, row, points, friction)[0] > 0.0
+    found = np.zeros(len(rows), dtype=bool)
+    found[row[grows]] = True
+    calm = np.flatnonzero(~found)
+    if calm.size:
+        row, _, rate = looks(rotor, [rows[k] for k in calm.tolist()], first, last, friction)
+        found[calm[row[rate > 0.0]]] = True
+    return found
 
 
 def _contradicts(bands: Bands, speed: Array, growth: Array) -> Flags:

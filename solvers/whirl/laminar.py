@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -29,6 +30,8 @@ Placed = tuple[float, Layer]
 
 _EPS = float(np.finfo(float).eps)
 _BLOCK = 128  # speeds whose arrays fit the processor's cache
+_APART = 1.05  # of two speeds: from the modes at one those at the other are found
+_FEW = 32
 _SWEEPS = 60
 _OWN = 8  # steps to the waves with floor and lid at their own frequencies
 _WAVE = 1e-9  # relative: a step after which such a wave is exact
@@ -52,6 +55,40 @@ class _Problem:
     weights: Array  #: of each layer, how often the poles of its waves stand in the determinant
     degree: int  #: of the determinant without its poles, far away
 
+    @cached_property
+    def circles(self) -> _Circles:
+        """Numbers of the layers for circles along the spin, then against it."""
+        kinds = [
+            (1.0 if side == 0 else -1.0, *(x.mass, x.layer_tanh, x.rate, x.stokes, x.lids), weight)
+            for side in (0, 1)
+            for (_, x), weight in zip(self.layers, self.weights, strict=True)
+        ]
+        places = [
+            np.outer(at.T @ _AXES[:, side], _CIRCLES[side] @ at)
+            for side in (0, 1)
+            for at in (self.system.at(plane) for plane, _ in self.layers)
+        ]
+        system = self.system
+        parts = [system.mass, system.damping, system.gyroscopic, system.stiffness, *places]
+        sense, mass, tanh, rate, stokes, lids, weight = np.array(kinds).T[:, :, None]
+        each = np.array(parts, dtype=complex).reshape(len(parts), -1)
+        return _Circles(sense, mass, tanh, rate, stokes, lids, weight, each)
+
+
+@dataclass(frozen=True)
+class _Circles:
+    """Layers in circles along the spin, then against it, shape (2 L, 1)."""
+
+    sense: Array  #: 1 along the spin, -1 against it
+    mass: Array  #: as of `fluid.whirl.Layer`
+    tanh: Array
+    rate: Array
+    stokes: Array
+    lids: Array
+    weight: Array  #: as of `_Problem`
+    #: M, C, G and K of the rotor, then what a force on each circle does, shape (4 + 2 L, N^2)
+    parts: Complex
+
 
 def laminar_modes(system: RotorSystem, layers: Sequence[Placed], speed: Array) -> SystemModes:
     """Modes with laminar friction, whose drag depends on the mode [theory: whirl, eq. 12-14].
@@ -66,16 +103,60 @@ def laminar_modes(system: RotorSystem, layers: Sequence[Placed], speed: Array) -
         weights[members] = rank / len(members)
     degree = 2 * len(system.coordinates) + 4 * sum(rank for _, rank in groups)
     problem = _Problem(system, layers, weights, degree)
-    parts = [
-        _certain(problem, groups, speed[first : first + _BLOCK]) for first in range(0, speed.size, _BLOCK)
+    apart, of = _anchors(speed)
+    modes = _in_blocks(problem, groups, speed[apart])
+    beside = np.setdiff1d(np.arange(speed.size), apart)
+    if beside.size:
+        # Modes hardly differ from those at a speed close by: from there few sweeps lead to them.
+        near = np.where(modes.found & modes.complete[:, None], modes.root, complex(np.nan, np.nan))
+        more = _in_blocks(problem, groups, speed[beside], near[of[beside]])
+        width = max(modes.root.shape[1], more.root.shape[1])
+        whole = joined([part.widened(width, _GONE) for part in (modes, more)])
+        modes = whole.at(np.argsort(np.concatenate([apart, beside])))
+    waves = [
+        _layer_waves(problem.layers[members[0]][1], speed) for members, rank in groups if rank < len(members)
     ]
+    return _with_waves(modes, waves, speed)
+
+
+def _anchors(speed: Array) -> tuple[Index, Index]:
+    """Speeds some way apart by their indices, and for each speed which of them is next below it.
+
+    All of few speeds, whose sweeps cost the same whatever they start from.
+    """
+    if speed.size <= _FEW:
+        return np.arange(speed.size), np.arange(speed.size)
+    order = np.argsort(speed, kind="stable")
+    kept: list[int] = []
+    of = np.zeros(speed.size, dtype=np.intp)
+    for k in order.tolist():
+        if not kept or speed[k] > _APART * speed[kept[-1]]:
+            kept.append(k)
+        of[k] = len(kept) - 1
+    return np.array(kept, dtype=np.intp), of
+
+
+def _in_blocks(
+    problem: _Problem, groups: Sequence[tuple[list[int], int]], speed: Array, near: Complex | None = None
+) -> SystemModes:
+    """Modes at speeds, some at a time; `near` as of `_certain`."""
+    cuts = [slice(first, first + _BLOCK) for first in range(0, speed.size, _BLOCK)]
+    parts = [_certain(problem, groups, speed[cut], None if near is None else near[cut]) for cut in cuts]
     width = max((part.root.shape[1] for part in parts), default=0)
     return joined([part.widened(width, _GONE) for part in parts])
 
 
-def _certain(problem: _Problem, groups: Sequence[tuple[list[int], int]], speed: Array) -> SystemModes:
-    """Modes of a block of speeds; where some were missed, from all of them at once."""
+def _certain(
+    problem: _Problem, groups: Sequence[tuple[list[int], int]], speed: Array, near: Complex | None = None
+) -> SystemModes:
+    """Modes of a block of speeds; where some were missed, from all of them at once.
+
+    `near`: those at speeds close by, nan where they are not known.
+    """
     start = _starts(problem, groups, speed)
+    if near is not None and near.shape[1] == start.shape[1]:
+        known = (np.isfinite(near) | np.isnan(start)).all(axis=1)
+        start[known] = near[known]
     # Of the rotor alone, and where the drag of a layer, stokes lambda^1.5, equals lambda^2.
     fastest = np.nanmax(np.abs(start), axis=1)
     fastest = np.maximum(fastest, max(layer.stokes for _, layer in problem.layers) ** 2)
@@ -86,10 +167,7 @@ def _certain(problem: _Problem, groups: Sequence[tuple[list[int], int]], speed: 
         again = all_modes(problem.system, problem.layers, speed[missed])
         others = _counted(problem, _aberth(problem, again, speed[missed]), speed[missed], fastest[missed])
         modes = modes.replaced(missed, others, _GONE)
-    waves = [
-        _layer_waves(problem.layers[members[0]][1], speed) for members, rank in groups if rank < len(members)
-    ]
-    return _with_waves(modes, waves, speed)
+    return modes
 
 
 def _starts(problem: _Problem, groups: Sequence[tuple[list[int], int]], speed: Array) -> Complex:
@@ -117,7 +195,7 @@ def _counted(problem: _Problem, modes: SystemModes, speed: Array, fastest: Array
 
     def determinant(own: Index) -> Characteristic:
         def at(points: Complex, owner: Index) -> Complex:
-            here = _eliminate(problem, points, speed[own[owner]])
+            here = _eliminate(problem, points, speed[own[owner]], slopes=False)
             unit, size = np.linalg.slogdet(here.matrix)
             return np.asarray(size + 1j * np.angle(unit) + here.waves)
 
@@ -242,10 +320,10 @@ def _sense(problem: _Problem, root: Complex, spin: Array) -> Array:
     # One step of inverse iteration: next to its zero the matrix hardly leaves anything but the mode.
     vector = _solve(here.matrix, np.exp(1j * np.arange(here.matrix.shape[-1]))[:, None])[..., 0]
     vector = vector / np.abs(vector).max(axis=-1, keepdims=True)
-    sizes = []
+    sizes, count = [], len(problem.layers)
     for side in (0, 1):
-        total = np.zeros(root.shape)
-        for (plane, _), share in zip(problem.layers, here.shares[side], strict=True):
+        total, shares = np.zeros(root.shape), here.shares[side * count : (side + 1) * count]
+        for (plane, _), share in zip(problem.layers, shares, strict=True):
             circle = np.abs(vector @ (_CIRCLES[side] @ problem.system.at(plane)))
             total += (1.0 + np.square(np.abs(share))) * np.square(circle)
         sizes.append(total)
@@ -272,40 +350,35 @@ class _Eliminated:
     #: log of the product of the layers' waves, which are the poles of det T, and its derivative, shape (k,)
     waves: Complex
     poles: Complex
-    #: offset of each layer over the deflection of its drum, along and against the spin, each (k,)
-    shares: tuple[list[Complex], list[Complex]]
+    #: offset of each layer over the deflection of its drum, along the spin, then against it, shape (2 L, k)
+    shares: Complex
 
 
-def _eliminate(problem: _Problem, root: Complex, spin: Array) -> _Eliminated:
-    """Rotor and layers at values of lambda [theory: whirl, eq. 14]."""
-    system, at = problem.system, root[:, None, None]
-    damping = system.damping + spin[:, None, None] * system.gyroscopic
-    matrix = at * (at * system.mass + damping) + system.stiffness
-    slope = 2.0 * at * system.mass + damping
-    waves, poles = np.zeros_like(root), np.zeros_like(root)
-    shares: tuple[list[Complex], list[Complex]] = ([], [])
-    for (plane, layer), weight in zip(problem.layers, problem.weights, strict=True):
-        t, place = layer.layer_tanh, system.at(plane)
-        for side, sense in enumerate((1.0, -1.0)):
-            shape = np.outer(place.T @ _AXES[:, side], _CIRCLES[side] @ place)
-            turned = root - 1j * sense * spin
-            friction = stokes_rate(layer.stokes, -1j * turned)
-            plates, rise = plate_terms(t, sense * spin, -1j * turned)
-            rate = layer.rate + layer.lids * plates
-            # W, in the slip, where films keep their digits, and its slope; W d = -(1 - T)/2 lambda^2 w.
-            wave = turned * (turned - 2j * sense * t * spin + rate + friction) + t * np.square(spin)
-            bend = 2.0 * turned - 2j * sense * t * spin + rate + 1.5 * friction
-            bend = bend - 1j * layer.lids * rise * turned
-            wave = np.where(wave == 0.0, _EPS * np.square(spin), wave)
-            share = 0.5 * (1.0 - t) * np.square(root) / wave
-            force = layer.mass * np.square(root) * (1.0 - share)
-            change = layer.mass * root * (2.0 - 4.0 * share + root * share * bend / wave)
-            matrix = matrix + force[:, None, None] * shape
-            slope = slope + change[:, None, None] * shape
-            waves = waves + weight * np.log(wave)
-            poles = poles + weight * bend / wave
-            shares[side].append(np.asarray(share, dtype=complex))
-    return _Eliminated(matrix, slope, waves, poles, shares)
+def _eliminate(problem: _Problem, root: Complex, spin: Array, slopes: bool = True) -> _Eliminated:
+    """Rotor and layers at values of lambda [theory: whirl, eq. 14]; without slopes those are 0."""
+    c, size = problem.circles, len(problem.system.coordinates)
+    turned = root - 1j * c.sense * spin
+    friction = stokes_rate(c.stokes, -1j * turned)
+    plates, rise = plate_terms(c.tanh, c.sense * spin, -1j * turned)
+    rate = c.rate + c.lids * plates
+    # W, in the slip, where films keep their digits, and its slope; W d = -(1 - T)/2 lambda^2 w.
+    coriolis = 2j * c.sense * c.tanh * spin
+    wave = turned * (turned - coriolis + rate + friction) + c.tanh * np.square(spin)
+    wave = np.where(wave == 0.0, _EPS * np.square(spin), wave)
+    share: Complex = np.asarray(0.5 * (1.0 - c.tanh) * np.square(root) / wave, dtype=complex)
+    force = c.mass * np.square(root) * (1.0 - share)
+    waves: Complex = np.asarray(c.weight[:, 0] @ np.log(wave), dtype=complex)
+    # Of the rotor's matrices and of the layers' places, in one product.
+    powers = np.concatenate([[np.square(root), root, root * spin, np.ones_like(root)], force])
+    matrix = (powers.T @ c.parts).reshape(-1, size, size)
+    if not slopes:
+        nothing = np.zeros_like(root)
+        return _Eliminated(matrix, np.zeros_like(matrix), waves, nothing, share)
+    bend = 2.0 * turned - coriolis + rate + 1.5 * friction - 1j * c.lids * rise * turned
+    change = c.mass * root * (2.0 - 4.0 * share + root * share * bend / wave)
+    powers = np.concatenate([[2.0 * root, np.ones_like(root), spin, np.zeros_like(root)], change])
+    slope = (powers.T @ c.parts).reshape(-1, size, size)
+    return _Eliminated(matrix, slope, waves, c.weight[:, 0] @ (bend / wave), share)
 
 
 def all_modes(system: RotorSystem, layers: Sequence[Placed], speed: Array) -> Complex:

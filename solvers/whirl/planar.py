@@ -19,6 +19,7 @@ from meshes.arrays import Array, Complex, Flags
 
 _CHUNK = 4096  # points whose arrays fit the processor's cache
 _THREADS = 4
+_FEW = 128  # points up to which all pairs of roots are worked out in one step
 _SWEEPS = 90
 _CHECK = 2  # sweeps between looks at who is done
 _OWN = 24  # sweeps of modes with floor and lid at their own frequency
@@ -221,18 +222,23 @@ def _polynomial(scaled: _Scaled, x: Complex) -> tuple[Complex, Complex]:
     slope = (1j * scaled.damping - 2.0 * scaled.mass * omega) * ds
     quartic = np.square(np.square(omega))
     steep = 4.0 * omega * omega * omega * ds
-    free, free_slope = np.ones_like(x), np.zeros_like(x)
+    many, square = len(scaled.tanh) > 1, x * x
+    unit = 1.0 / (1.0 + np.square(s.real) + np.square(s.imag)) if many else 1.0
+    if many:
+        quartic, steep = quartic * unit, steep * unit
+    free: Complex | float = 1.0
+    free_slope: Complex | float = 0.0
     layers = scaled.tanh, scaled.linear, scaled.bent, scaled.stokes, scaled.coupling
     for t, b, c, drag, pull in zip(*layers, strict=True):
-        wave, bend = s * (s - b) - t, (2.0 * s - b - s * c) * ds
+        rest = s - b
+        wave, bend = s * rest - t, (s + rest - s * c) * ds
         if scaled.laminar:
-            wave, bend = wave - drag * x * x * x, bend - 3.0 * drag * x * x
+            wave, bend = wave - drag * (square * x), bend - 3.0 * drag * square
+        if many:
+            wave, bend = wave * unit, bend * unit
         slope = slope * wave + value * bend + pull * (steep * free + quartic * free_slope)
-        value = value * wave + pull * quartic * free
+        value = value * wave + pull * (quartic * free)
         free_slope, free = free_slope * wave + free * bend, free * wave
-        if len(scaled.tanh) > 1:
-            unit = 1.0 / (1.0 + np.square(s.real) + np.square(s.imag))
-            value, slope, free, free_slope = value * unit, slope * unit, free * unit, free_slope * unit
     return value, slope
 
 
@@ -263,17 +269,29 @@ def _noise(scaled: _Scaled, x: Complex) -> Array:
 
 def _pairs(x: Complex) -> tuple[Complex, Array]:
     """Sum of 1/(x_i - x_j) over the other roots, and the distance of the nearest, shape (m, p)."""
+    if x.shape[1] <= _FEW:
+        every = np.arange(x.shape[0])
+        gap = x[:, None] - x
+        gap[every, every] = np.inf
+        if not gap.all():
+            gap = np.where(gap == 0.0, np.sign(every[:, None] - every)[:, :, None] * _apart(x)[:, None], gap)
+        return (1.0 / gap).sum(axis=1), np.abs(gap).min(axis=1)
+    # Of many points each pair is worked out once, in arrays that stay in the cache.
     total, nearest = np.zeros_like(x), np.full(x.shape, np.inf)
     for i in range(1, x.shape[0]):
         gap = x[i] - x[:i]
-        # Two iterates that met are moved apart by less than their rounding.
-        gap = np.where(gap == 0.0, _EPS * np.abs(x[i]) + 1e-150, gap)
+        gap = np.where(gap == 0.0, _apart(x[i]), gap)
         inverse, size = 1.0 / gap, np.abs(gap)
         total[i] += inverse.sum(axis=0)
         total[:i] -= inverse
         nearest[i] = np.minimum(nearest[i], size.min(axis=0))
         nearest[:i] = np.minimum(nearest[:i], size)
     return total, nearest
+
+
+def _apart(x: Complex) -> Array:
+    """Distance, less than their rounding, by which two iterates that met are moved apart."""
+    return np.asarray(_EPS * np.abs(x) + 1e-150)
 
 
 def _aberth(scaled: _Scaled, x: Complex, modes: Flags | None = None) -> tuple[Complex, Flags]:

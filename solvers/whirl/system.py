@@ -73,6 +73,10 @@ class SystemModes:
     #: no mode is missing that grows more than the one of those found that grows most, shape (n,)
     complete: Flags
 
+    def at(self, which: Index) -> SystemModes:
+        """Modes at some speeds."""
+        return SystemModes(*(getattr(self, part.name)[which] for part in fields(self)))
+
     def widened(self, width: int, gone: float) -> SystemModes:
         """Modes with others not found appended, up to `width` at each speed, lambda there `gone`."""
         more = ((0, 0), (0, width - self.root.shape[1]))

@@ -42,10 +42,10 @@ class Figure(matplotlib.figure.Figure):
 def write(path):
     figure = Figure()
     figure.subplots().imshow(np.random.default_rng(1).normal(size=(400, 400)))
-    save(figure, path.parent, path.stem, "x")
+    save(figure, path.parent, path.stem, "x", png=path.suffix == ".png")
 """,
 }
-ENDING = {"netcdf": ".nc", "text": ".html", "png": ".png", "figure": ".png"}
+ENDING = {"netcdf": ".nc", "text": ".html", "png": ".png", "figure": ".svg"}
 MAIN = """
 import resource, sys
 from pathlib import Path

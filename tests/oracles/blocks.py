@@ -61,7 +61,7 @@ def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
     """Commands write pictures of nothing, where what they say and which files they write is asked."""
     draw = disk.drawing
 
-    def drawing(answer: Answer, picture: Picture, folder: Path) -> Any:
-        return draw(answer, replace(picture, draw=f"{__name__}:{nothing.__name__}"), folder)
+    def drawing(answer: Answer, picture: Picture, folder: Path, png: bool = False) -> Any:
+        return draw(answer, replace(picture, draw=f"{__name__}:{nothing.__name__}"), folder, png)
 
     monkeypatch.setattr(disk, "drawing", drawing)

@@ -599,6 +599,6 @@ def test_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest
     assert shown == json.loads((tmp_path / "trade.json").read_text(encoding="utf-8"))
     assert main(["trade", path, "--out", out]) == 0
     assert "recommended" in capsys.readouterr().out
-    assert {"trade.png", "trade.svg", "trade.json", "contents.json"} == {p.name for p in tmp_path.iterdir()}
+    assert {"trade.svg", "trade.json", "contents.json"} == {p.name for p in tmp_path.iterdir()}
     assert main(["trade", path, "--repeats", "1", "--out", out]) == 2
     assert inspect.signature(trade_command).parameters["repeats"].default == REPEATS

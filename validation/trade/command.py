@@ -27,6 +27,7 @@ def trade(
     out: Annotated[
         Path | None, typer.Option(help="Folder for the files [default: out/<scene name>].")
     ] = None,
+    png: Annotated[bool, typer.Option("--png", help="Write the figure as PNG as well.")] = False,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> None:
     """Accuracy against cost of every model and resolution. The best choices among them, a figure."""
@@ -57,13 +58,13 @@ def trade(
         from json import dumps
 
         path.write_text(dumps(found, indent=1) + "\n", encoding="utf-8")
-    files = save(trade_figure(record), folder, "trade", "Accuracy against cost")
+    files = save(trade_figure(record), folder, "trade", "Accuracy against cost", png)
     if json:
         print_json(found)
     else:
         print("\n".join(trade_lines(record)))
         if layer is None and not names_waves(machine) and machine.chambers:
             print("Solvers of py-pde on a layer of it alone, their cost and error: --layer")
-        print(f"Look at {files.png}; the numbers are in {folder / 'trade.json'}")
+        print(f"Look at {files.svg}; the numbers are in {folder / 'trade.json'}")
     count = sum(len(comparison.rows) for comparison in record.comparisons)
     say(f"{record.name}: {count} models and resolutions done")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -17,7 +17,7 @@ from leblanc.studies.explain.answer import Cure
 from leblanc.studies.map.study import fills_over_volume
 from meshes.arrays import Array
 from solvers.rotor.jeffcott import Jeffcott
-from solvers.whirl.edges import Bands, unstable_bands
+from solvers.whirl.edges import Bands, any_growth, unstable_bands
 
 _VOLUMES = 25  # from none to what fits
 _THICKER = 10.0 ** (0.25 * np.arange(1, 13))  # times the viscosity
@@ -29,8 +29,10 @@ _SECTORS = range(2, 13)
 _MM2 = 1e6
 
 
-def cures(machine: Prepared) -> tuple[Cure, ...]:
+def cures(machine: Prepared, bands: Callable[[], Bands]) -> tuple[Cure, ...]:
     """Each alone, computed; none of a rotor that tilts, of a model of one's own, or where no whirl grows.
+
+    `bands` gives those of the machine as it is, between its first and its last speed.
 
     Walls by the rule that no whirl grows once the liquid's wave is seen from the drum at the spin or faster.
     """
@@ -40,7 +42,7 @@ def cures(machine: Prepared) -> tuple[Cure, ...]:
     ends = machine.speed[[0, -1]]
     if ends[0] == ends[1]:
         return ()
-    (own,) = unstable_bands(rotor, [fills], ends, law)
+    own = bands()
     if not own:
         return ()
     found = [*_by_volume(rotor, fills, law, ends), *_by_viscosity(rotor, fills, law, ends)]
@@ -53,8 +55,8 @@ def _by_volume(rotor: Jeffcott, fills: tuple[Fill, ...], law: Friction, ends: Ar
     grid = [sum(fill.volume for fill in row) for row in fills_over_volume(fills, _VOLUMES)]
     volumes = sorted({*grid, *(own * _LESS).tolist()})
     rows = fills_over_volume(fills, volumes)
-    calm = [not bands for bands in unstable_bands(rotor, rows, ends, law)]
-    free = [volume for volume, ends_it in zip(volumes, calm, strict=True) if ends_it]
+    grows = any_growth(rotor, rows, ends, law)
+    free = [volume for volume, some in zip(volumes, grows, strict=True) if not some]
     for kind, side in (
         ("less liquid", [v for v in free if v < own]),
         ("more liquid", [v for v in free if v > own]),
@@ -80,7 +82,7 @@ def _by_viscosity(rotor: Jeffcott, fills: tuple[Fill, ...], law: Friction, ends:
         )
         for times in _THICKER.tolist()
     ]
-    calm = [k for k, bands in enumerate(unstable_bands(rotor, rows, ends, law)) if not bands]
+    calm = np.flatnonzero(~any_growth(rotor, rows, ends, law)).tolist()
     if not calm:
         yield Cure("viscosity", math.nan, (), f"not up to {number(_THICKER[-1])} times it")
         return
@@ -110,13 +112,13 @@ def _by_damping(
     if not 0.0 < rotor.damping_ratio < _MOST_DAMPED:
         return
 
-    def left(times: float) -> Bands:
-        return unstable_bands(replace(rotor, damping=rotor.damping * times), [fills], ends, law)[0]
+    def damped(times: float) -> Jeffcott:
+        return replace(rotor, damping=rotor.damping * times)
 
     def width(bands: Bands) -> float:
         return sum(high - low for low, high in bands)
 
-    twice = left(2.0)
+    (twice,) = unstable_bands(damped(2.0), [fills], ends, law)
     change = width(twice) - width(own)
     how = (
         "as wide as before" if abs(change) < _ALIKE * width(own) else "wider" if change > 0.0 else "narrower"
@@ -130,7 +132,7 @@ def _by_damping(
     ratio, tried = 2.0 * rotor.damping_ratio, False
     while ratio < _MOST_DAMPED or not tried:
         ratio, tried = min(ratio * _FIRMER, _MOST_DAMPED), True
-        if not left(ratio / rotor.damping_ratio):
+        if not any_growth(damped(ratio / rotor.damping_ratio), [fills], ends, law)[0]:
             yield Cure("damping", ratio, (), f"a damping ratio of {number(ratio)} ends it")
             return
     yield Cure("damping", math.nan, (), f"no damping ratio up to {number(_MOST_DAMPED)} ends it")

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -14,7 +15,8 @@ from fluid.friction.laws import FrictionLaw
 from fluid.friction.pipe import hydraulic_diameter, regime, spin_up_time, steady_lag
 from fluid.numbers import layer_numbers
 from fluid.whirl import is_full
-from leblanc.liquid.choice import model_spans, speed_estimates
+from leblanc.core.answer import Later, later
+from leblanc.liquid.choice import Choice, HeldCost, model_spans, speed_estimates
 from leblanc.liquid.choose import (
     Prepared,
     balance_from,
@@ -40,12 +42,14 @@ from leblanc.studies.explain.cures import cures
 from leblanc.studies.run.motion import RestMode
 from leblanc.studies.run.study import rest_modes
 from leblanc.studies.volume.study import volumes_over_speed
+from meshes.arrays import Array
 from solvers.checked_model import CheckedModel
 from solvers.cycles.estimate import largest_estimate
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import moving_mass
 from solvers.rotor.vibration import axis_is_free, critical_speeds, modes, orbit, unbalance_response
 from solvers.synchronous.response import critical_speed, main_critical_speeds, wet_critical_speeds
+from solvers.whirl.edges import Bands, unstable_bands
 from solvers.whirl.growth import asynchronous_growth
 
 
@@ -54,8 +58,8 @@ def explain_scene(scene: Scene) -> ExplainAnswer:
     scene = scene.as_read()
     machine = prepare(scene, free=True)
     gravity, (choice,) = machine.axial_gravity, choose_all([machine])
-    growth = asynchronous_growth(machine.rotor, scene.fills, machine.speed, machine.waves)[0]
-    choice = costed(machine, choice, growth)
+    # What no other number needs is worked out when it is read.
+    grown, bands = later(_grown, machine, choice), later(_bands, machine)
     ends = np.array([scene.speeds.start, scene.speeds.stop])
     moved = unbalance_response(machine.system, machine.speed)
     dry = [np.abs(orbit(machine.system, moved, fill.chamber.plane).forward) for fill in scene.fills]
@@ -89,23 +93,42 @@ def explain_scene(scene: Scene) -> ExplainAnswer:
         speed_ratio=(ends[0] / bare.critical_speed, ends[1] / bare.critical_speed),
         captured_from=choice.captured_from,
         layers=tuple(layers),
-        models=model_spans(choice, machine.speed) if scene.fills else (),
-        estimates=speed_estimates(choice, machine.speed) if scene.fills else (),
+        models=later(_by_speed, machine, grown, model_spans) if scene.fills else (),
+        estimates=later(_by_speed, machine, grown, speed_estimates) if scene.fills else (),
         tolerance=choice.tolerance,
         modes=bare.modes,
         runup=runup_outlook(scene),
-        whirl=_whirl(machine),
-        cures=cures(machine),
-        held=held_cost(machine, choice, growth),
+        whirl=later(_whirl, machine, bands),
+        cures=later(cures, machine, bands),
+        held=later(_held, machine, grown),
         source=scene.source,
         assumed=scene.assumed,
         digest=scene.digest,
-        closed_forms=closed_forms(machine),
+        closed_forms=later(closed_forms, machine),
         wall_volumes=volumes,
     )
 
 
-def _whirl(machine: Prepared) -> WhirlOutlook | None:
+def _grown(machine: Prepared, choice: Choice) -> tuple[Choice, Array]:
+    """The choice with what it takes to hold waves in time, and the growth of small whirls at each speed."""
+    growth = asynchronous_growth(machine.rotor, machine.scene.fills, machine.speed, machine.waves)[0]
+    return costed(machine, choice, growth), growth
+
+
+def _bands(machine: Prepared) -> Bands:
+    """Bands of self-excited whirl between the machine's first and last speed."""
+    return unstable_bands(machine.rotor, [machine.scene.fills], machine.speed, machine.waves)[0]
+
+
+def _by_speed(machine: Prepared, grown: Later, told: Callable[[Choice, Array], tuple[Any, ...]]) -> Any:
+    return told(grown()[0], machine.speed)
+
+
+def _held(machine: Prepared, grown: Later) -> HeldCost | None:
+    return held_cost(machine, *grown())
+
+
+def _whirl(machine: Prepared, bands: Later) -> WhirlOutlook | None:
     """Size of the self-excited whirl between the scene's first and last speed, of an even layer.
 
     None where there is none; the rule knows no model of one's own.
@@ -113,7 +136,7 @@ def _whirl(machine: Prepared) -> WhirlOutlook | None:
     scene, range_ = machine.scene, (float(machine.speed.min()), float(machine.speed.max()))
     if not scene.fills or range_[0] == range_[1] or isinstance(machine.waves, CheckedModel):
         return None
-    most = largest_estimate(machine.rotor, scene.fills, range_, scene.model.friction)
+    most = largest_estimate(machine.rotor, scene.fills, range_, scene.model.friction, bands)
     if most is None:
         return None
     return WhirlOutlook(most.spin, most.amplitude, most.whirl_speed, most.lag)

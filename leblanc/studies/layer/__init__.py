@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from leblanc.scene.scene import SceneOrPath
     from leblanc.studies.layer.answer import AnyLayerAnswer
 
-FILES = ("wave.svg", "wave.png", "periods.svg", "periods.png", "layer.nc")
+FILES = ("wave.svg", "periods.svg", "layer.nc")
 _FILM = Reader("leblanc.plotting.page:film_path")
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -25,7 +26,9 @@ from solvers.rotor.rolling_bearing import (
 )
 from solvers.rotor.vibration import unbalance_response
 from solvers.runup.loads import bearing_impulses, drive_torque, held_extremes, path_extremes
-from solvers.runup.runup import RunupHistory
+
+if TYPE_CHECKING:
+    from solvers.runup.runup import RunupHistory
 
 _HOUR = 3600.0  # s
 

@@ -11,7 +11,7 @@ from leblanc.core.units import ANGULAR_SPEED, LENGTH, VOLUME
 if TYPE_CHECKING:
     from leblanc.studies.modes.answer import ModesAnswer
 
-FILES = ("modes.svg", "modes.png")
+FILES = ("modes.svg",)
 _UNIT = Reader("leblanc.studies.modes.study:length_of_unit")
 
 

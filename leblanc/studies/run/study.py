@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fluid.fill import Fill
 from fluid.whirl import plane_layer, slower_slip
+from leblanc.core.answer import Later, later
 from leblanc.core.notes import Note
 from leblanc.core.progress import update
 from leblanc.liquid.choice import HELD_MODELS, Choice, model_spans
@@ -220,26 +222,25 @@ def run_scene(scene: Scene, holding: Holding = HERE, cycles: bool = False) -> Ru
     )
     if motion is not None:
         motion = replace(motion, refined_forward=_at_chambers(machine.system, scene.fills, refined))
-    loads = _loads(scene, answer, refined, states)
     moved = _moved(machine, answer, motion)
-    volumes = volumes_over_speed(scene.fills, answer.speed, moved, machine.axial_gravity)
-    walls = _walls(machine, answer, moved, volumes)
-    obstructed = any(fill.uneven and fill.volume > 0.0 for fill in scene.fills)
-    stands = () if loads is None else (notes.loads(obstructed), *_skidding(loads, answer))
+    # What nothing else of the answer depends on is worked out when it is read.
+    loads = later(_loads, scene, answer, refined, states)
+    volumes = later(volumes_over_speed, scene.fills, answer.speed, moved, machine.axial_gravity)
+    said = machine, choice, answer, refined, motion, whirl, held
     return RunAnswer(
         name=scene.name,
         source=scene.source,
         assumed=scene.assumed,
-        inputs=input_rows(scene),
+        inputs=later(input_rows, scene),
         digest=scene.digest,
         response=answer,
         liquid_mass=sum(fill.mass for fill in scene.fills),
-        notes=(*_notes(machine, choice, answer, refined, motion, whirl, held, walls), *grown, *stands),
+        notes=later(_every_note, said, grown, loads, moved, volumes),
         axis=scene.rotor.axis,
         chambers=tuple(_chamber(fill, motion) for fill in scene.fills),
         capture_speed=choice.captured_from,
-        carried_from=carried_from(scene),
-        closed_forms=closed_forms(machine, answer),
+        carried_from=later(carried_from, scene),
+        closed_forms=later(closed_forms, machine, answer),
         critical_speed_dry=dry,
         critical_speed_wet=wet,
         motion=motion,
@@ -252,8 +253,25 @@ def run_scene(scene: Scene, holding: Holding = HERE, cycles: bool = False) -> Ru
         held=held,
         loads=loads,
         wall_volumes=volumes,
-        **_balance(machine, answer),
+        balance_quality=later(_balance, machine, answer.speed, answer.coordinates),
+        balance_quality_dry=later(_balance, machine, answer.speed),
     )
+
+
+_Said = tuple[Prepared, Choice, Response, Response, Motion | None, SelfExcited, Held | None]
+
+
+def _every_note(
+    said: _Said, grown: tuple[Note, ...], loads: Later, moved: Array, volumes: Later
+) -> tuple[Note, ...]:
+    """Limits of validity and findings, those of large whirls and of loads among them."""
+    machine, answer = said[0], said[2]
+    walls = _walls(machine, answer, moved, volumes())
+    found = (*_notes(said, walls), *grown)
+    if loads() is None:
+        return found
+    obstructed = any(fill.uneven and fill.volume > 0.0 for fill in machine.scene.fills)
+    return (*found, notes.loads(obstructed), *_skidding(loads(), answer))
 
 
 def _loads(
@@ -282,13 +300,11 @@ def _skidding(loads: MachineLoads, answer: Response) -> list[Note]:
     return [note for note in found if note is not None]
 
 
-def _balance(machine: Prepared, answer: Response) -> dict[str, Array]:
-    """Balance quality with the liquid and without; nothing where no mass spins or its planes are unknown."""
+def _balance(machine: Prepared, *motion: Any) -> Array | None:
+    """Balance quality of a motion, or without liquid; None where no mass spins or its planes are unknown."""
     if not isinstance(machine.rotor, Jeffcott | TwoPlane | Tub) or not tolerance_planes(machine.rotor):
-        return {}
-    wet = balance_quality(machine.rotor, answer.speed, answer.coordinates)
-    dry = balance_quality(machine.rotor, answer.speed)
-    return {"balance_quality": wet, "balance_quality_dry": dry}
+        return None
+    return balance_quality(machine.rotor, *motion)
 
 
 def _chamber(fill: Fill, motion: Motion | None) -> FilledChamber:
@@ -307,17 +323,9 @@ def _chamber(fill: Fill, motion: Motion | None) -> FilledChamber:
     )
 
 
-def _notes(
-    machine: Prepared,
-    choice: Choice,
-    answer: Response,
-    refined: Response,
-    motion: Motion | None,
-    whirl: SelfExcited,
-    held: Held | None,
-    walls: list[Note],
-) -> tuple[Note, ...]:
+def _notes(said: _Said, walls: list[Note]) -> tuple[Note, ...]:
     """Limits of validity and findings."""
+    machine, choice, answer, refined, motion, whirl, held = said
     cost = held_cost(machine, choice, whirl.growth)
     found = [notes.tolerance_missed(choice, machine.speed, cost)]
     if machine.scene.fills:

@@ -46,11 +46,10 @@ from solvers.runup.ensemble import EnsembleTask, Member, Spread, member_of, run_
 from solvers.runup.ensemble import ensemble as made_ensemble
 from solvers.runup.linear import couple_linear
 from solvers.runup.long_wave import couple
-from solvers.runup.machine import Drive, Handover, RunupModel
+from solvers.runup.machine import MOST_WAVE, Drive, Handover, RunupModel
 from solvers.runup.programme import Programme
 from solvers.runup.runup import (
     MOST_LAG,
-    MOST_WAVE,
     LinearRunError,
     RunupHistory,
     RunupNumerics,
@@ -492,7 +491,7 @@ def whirl_on_the_way(scene: Scene, bands: Bands | None) -> tuple[float, float] |
     if not bands or across_gravity(scene) > 0.0:
         return None
     range_ = bands[0][0], bands[-1][1]
-    found = largest_estimate(dry_rotor(scene), scene.fills, range_, scene.model.friction, bands)
+    found = largest_estimate(dry_rotor(scene), scene.fills, range_, scene.model.friction, lambda: bands)
     return None if found is None else (found.amplitude, found.spin)
 
 

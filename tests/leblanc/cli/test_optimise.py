@@ -145,9 +145,7 @@ def test_json_and_files(scene_file: Path, tmp_path: Path, capsys: pytest.Capture
         *(
             "contents.json",
             "optimum.nc",
-            "objective.png",
             "objective.svg",
-            "front.png",
             "front.svg",
             "optimise.html",
         )

@@ -70,9 +70,9 @@ RIG = "examples/horizontal_rig.toml"
     [
         # Bands are looked for where waves meet critical speeds, which scipy.linalg finds.
         [(["map", RIG, "--volumes", "5", "--speeds", "11"], ["numba", "scipy.sparse"])],
-        [(["explain", RIG], ["matplotlib", "h5py", "jinja2"])],
+        [(["explain", RIG], ["matplotlib", "h5py", "jinja2", "numba"])],
         [
-            (["run", RIG], ["scipy.sparse"]),  # numba, by which liquid at rest is found, loads scipy.linalg
+            (["run", RIG], ["scipy.sparse", "numba"]),
             (["optimise", "examples/centrifuge.toml", "--no-front"], []),
             (["runup", "examples/runup.toml", "--cells", "16", "--samples", "50", "--no-check"], []),
         ],

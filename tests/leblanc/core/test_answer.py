@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import json
+import pickle
 from dataclasses import fields, replace
 from typing import Any
 
@@ -12,9 +13,11 @@ import numpy as np
 import pytest
 
 import leblanc as lb
+from leblanc.core.answer import Later, later
 from leblanc.core.quantities import alike, seal
 from meshes.errors import InputError
 from tests.leblanc.core.answers import ASKED, answer
+from tests.mutants import kills
 
 
 @pytest.mark.usefixtures("_exciter_once")
@@ -129,3 +132,29 @@ def test_a_wrong_argument_is_named(question: str, given: dict[str, Any], name: s
 def test_numbers_of_numpy_are_numbers() -> None:
     own = lb.bearing(**BEARING | {"balls": np.int64(9), "speed": np.float64(200.0)})
     assert own == lb.bearing(**BEARING)
+
+
+@kills("leblanc.core.answer:Later.__call__", "self._value = call()", "pass")
+@kills("leblanc.core.answer:Answer.__getstate__", "getattr(self, name)", "vars(self)[name]")
+def test_what_is_worked_out_later() -> None:
+    """Once, when it is first read, for all that stand on it; a copy has the value, which is read-only."""
+    scene = lb.example("centrifuge")
+    calls: list[int] = []
+
+    def quality() -> np.ndarray:
+        calls.append(1)
+        return np.arange(3.0)
+
+    known = lb.run(scene)
+    shared = later(quality)
+    found = replace(known, balance_quality=shared, balance_quality_dry=shared)
+    seal(found)
+    assert not calls and isinstance(vars(found)["balance_quality"], Later)
+    assert np.asarray(found.balance_quality).tolist() == [0.0, 1.0, 2.0]
+    assert found.balance_quality is found.balance_quality_dry and len(calls) == 1
+    with pytest.raises(ValueError, match="read-only"):
+        found.balance_quality[0] = 1.0
+    fresh = lb.run(scene)
+    assert any(isinstance(value, Later) for value in vars(fresh).values())
+    assert not any(isinstance(value, Later) for value in vars(pickle.loads(pickle.dumps(fresh))).values())
+    assert pickle.loads(pickle.dumps(fresh)) == known

@@ -297,7 +297,7 @@ def test_same_record_same_bytes_whatever_the_user_sets(tmp_path: Path):
     }
 
     def drawn(folder: Path) -> list[FigureFiles]:
-        return [save(draw(folded()), folder, name, name) for name, draw in figures.items()]
+        return [save(draw(folded()), folder, name, name, png=True) for name, draw in figures.items()]
 
     first = drawn(tmp_path / "a")
     with matplotlib.rc_context({"lines.linewidth": 9.0, "font.size": 30.0, "svg.hashsalt": "other"}):

@@ -202,7 +202,10 @@ def test_same_history_same_film_whatever_the_user_sets(tmp_path: Path):
 
 
 def test_same_record_same_figure(tmp_path: Path):
-    one, other = (page.save(wave.wave_figure(bore()), tmp_path / name, "wave", "W") for name in "ab")
+    one, other = (
+        page.save(wave.wave_figure(bore()), tmp_path / name, "wave", "W", png=True) for name in "ab"
+    )
+    assert one.png is not None and other.png is not None
     assert one.png.read_bytes() == other.png.read_bytes()
     assert one.svg.read_bytes() == other.svg.read_bytes()
 

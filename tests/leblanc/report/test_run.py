@@ -17,10 +17,10 @@ import leblanc as lb
 from leblanc.cli import main
 from leblanc.core.blocks import Notes
 from leblanc.core.notes import Note
-from leblanc.core.page import LIGHT, all_versions, citation, picture
+from leblanc.core.page import all_versions, citation, picture
 from leblanc.core.units import number, ranges
 from leblanc.liquid.filled import FilledChamber
-from leblanc.plotting.page import FigureFiles
+from leblanc.plotting.page import LIGHT, FigureFiles
 from leblanc.scene.scene import load_scene
 from leblanc.studies.run import words as words
 from leblanc.studies.run.answer import RunAnswer
@@ -43,8 +43,9 @@ def drawing(tmp_path: Path) -> FigureFiles:
 
 
 def figure(folder: Path, name: str, svg: str, png: bytes = PNG) -> FigureFiles:
-    files = FigureFiles(name, f"Title of {name}", folder / f"{name}.png", folder / f"{name}.svg", alt=ALT)
+    files = FigureFiles(name, f"Title of {name}", folder / f"{name}.svg", folder / f"{name}.png", alt=ALT)
     files.svg.write_text(svg, encoding="utf-8")
+    assert files.png is not None
     files.png.write_bytes(png)
     return files
 

@@ -144,7 +144,6 @@ def test_the_command_writes_what_it_prints(tmp_path: Path, capsys: Capture) -> N
     assert [one["model"] for one in said["models"]] == ["kdv", "linear", "statics"]
     assert {path.name for path in (tmp_path / "out").iterdir()} == {
         "compare.nc",
-        "compare.png",
         "compare.svg",
         "contents.json",
     }

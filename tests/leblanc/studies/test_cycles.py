@@ -113,7 +113,7 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     main(["map", str(path), "--cycles", "--volumes", "2", "--speeds", "5", "--out", str(tmp_path), "--json"])
     told = json.loads(capsys.readouterr().out)
     assert told["folds"] and {"speed", "amplitude", "whirl_speed", "lag", "stable"} <= set(told["cycles"][0])
-    assert (tmp_path / "cycles.png").exists() and "self-excited whirls over speed" in (
+    assert (tmp_path / "cycles.svg").exists() and "self-excited whirls over speed" in (
         tmp_path / "map.html"
     ).read_text()
 

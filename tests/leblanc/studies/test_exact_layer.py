@@ -177,5 +177,5 @@ def test_figures_and_films(tmp_path: Path) -> None:
         assert ("Angle from the crest" in text) is (name == "free")
         assert ("force coefficient" in text) is (name == "held")
     assert main([*LAYER, "--free", "1.2", "--mode", "3", "--model", "linear", "--out", str(tmp_path)]) == 0
-    assert (tmp_path / "wave.png").is_file()
+    assert (tmp_path / "wave.svg").is_file()
     assert free.to_dataset()["whirl_speed"].size == 2

@@ -197,7 +197,7 @@ def test_the_command_answers_an_exciter(capsys: pytest.CaptureFixture[str], tmp_
     wanted = 0.0105 * speed**2 / (stiffness - whole * speed**2 + 1j * damping * speed)
     np.testing.assert_allclose(answer["amplitude_dry"], np.abs(wanted), rtol=1e-6)
     np.testing.assert_allclose(answer["phase"], np.angle(wanted), rtol=1e-6, atol=1e-9)
-    assert (tmp_path / "exciter.png").stat().st_size > 10_000 and (tmp_path / "exciter.svg").exists()
+    assert (tmp_path / "exciter.svg").stat().st_size > 10_000
     assert "Vibratory table" in (tmp_path / "summary.html").read_text(encoding="utf-8")
 
 

@@ -583,7 +583,7 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     assert {"residual_rms", "correlation", "accepted"} <= found.keys()
     assert found["accepted"] is True and found["noise"] == "absolute"
     assert found["parameters"][UNKNOWN[0]]["value"] == pytest.approx(TRUTH[0], rel=0.01)
-    assert {"fit.nc", "fit.png", "fit.svg"} <= {file.name for file in out.iterdir()}
+    assert {"fit.nc", "fit.svg"} <= {file.name for file in out.iterdir()}
     for unknown in ("rotor.masse", "name", "rotor"):
         assert main([*asked, "--unknown", unknown]) == 2
         assert capsys.readouterr().err.count("\n") == 1

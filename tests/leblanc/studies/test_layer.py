@@ -300,7 +300,7 @@ def test_wave_figure_and_film(capsys: pytest.CaptureFixture[str], tmp_path: Path
     options = ["--whirl-speed", "34", "--friction", "linear:1", "--cells", "64", "--out", str(tmp_path)]
     assert main([*LONG_WAVE, *options, "--animate", str(film)]) == 0
     assert film.read_bytes()[:6] == b"GIF89a"
-    assert (tmp_path / "wave.png").stat().st_size > 10_000
+    assert (tmp_path / "wave.svg").stat().st_size > 10_000
 
 
 def test_steady_film_runs_with_the_whirl() -> None:

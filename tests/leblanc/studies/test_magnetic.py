@@ -193,7 +193,7 @@ def test_the_commands(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> Non
     out = tmp_path / "out"
     assert main(["run", str(changed), "--out", str(out)]) == 0
     assert "Delay margin, least" in capsys.readouterr().out
-    assert {"summary.html", "response.nc", "magnetic.png", "magnetic.svg"} <= {p.name for p in out.iterdir()}
+    assert {"summary.html", "response.nc", "magnetic.svg"} <= {p.name for p in out.iterdir()}
     page = (out / "summary.html").read_text(encoding="utf-8")
     assert "Faster than coils are" in page and "Bias current" in page
     assert main(["explain", str(changed)]) == 0

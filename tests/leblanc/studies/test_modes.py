@@ -168,7 +168,7 @@ def test_figure_and_table(tmp_path: Path, capsys: pytest.CaptureFixture[str]) ->
     assert main([*CALL, "--count", "7", "--segments", "24", "--baffles", "3", "--out", str(out)]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert lines[0].startswith("Round chamber, R = 150 mm, 3 baffles from the wall through the surface")
-    assert (out / "modes.png").stat().st_size > 20_000 and (out / "modes.svg").is_file()
+    assert (out / "modes.svg").stat().st_size > 20_000
 
 
 @pytest.mark.parametrize(

@@ -230,7 +230,7 @@ def test_examples(name: str, capsys: pytest.CaptureFixture[str], tmp_path: Path)
         np.testing.assert_allclose(data["amplitude"], answer["amplitude"])
         np.testing.assert_allclose(data["natural_frequency"], answer["natural_frequency"])
     for figure in ("amplitude", "liquid", "phase", "chamber", "campbell"):
-        assert (tmp_path / f"{figure}.png").stat().st_size > 10_000
+        assert (tmp_path / f"{figure}.svg").stat().st_size > 10_000
     summary = (tmp_path / "summary.html").read_text(encoding="utf-8")
     assert "Natural frequencies at rest" in summary and "whirl against the spin" in summary
     compared = comparisons(record)[0]

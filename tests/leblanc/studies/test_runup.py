@@ -887,7 +887,7 @@ def _toml(value: Any) -> str:
     return json.dumps(value)
 
 
-PICTURES = {f"runup_{name}.{kind}" for name in ("speed", "time", "energy") for kind in ("png", "svg")}
+PICTURES = {f"runup_{name}.svg" for name in ("speed", "time", "energy")}
 FILES = {*PICTURES, "runup.nc", "runup.html", "contents.json"}
 
 

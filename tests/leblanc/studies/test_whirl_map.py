@@ -157,7 +157,7 @@ def test_json_and_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> N
         assert np.shape(found[name]) == (5, 30)
     assert len(found["edges"]) == 5 and all(len(band) == 2 for row in found["edges"] for band in row)
     assert found["friction"] == "linear, 0.5 1/s"
-    files = {"map.nc", "map.png", "map.svg", "map.html", "contents.json"}
+    files = {"map.nc", "map.svg", "map.html", "contents.json"}
     assert {file.name for file in tmp_path.iterdir()} == files
 
 

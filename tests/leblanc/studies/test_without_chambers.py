@@ -169,4 +169,4 @@ def test_commands(scene: Scene, tmp_path: Path, capsys: pytest.CaptureFixture[st
         assert "with liquid" not in (told := capsys.readouterr().out) and "iquid model" not in told
     assert main(["explain", path]) == 0
     assert "liquid model" not in capsys.readouterr().out
-    assert not (tmp_path / "liquid.png").exists() and (tmp_path / "amplitude.png").exists()
+    assert not (tmp_path / "liquid.svg").exists() and (tmp_path / "amplitude.svg").exists()

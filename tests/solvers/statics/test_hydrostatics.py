@@ -12,7 +12,8 @@ from mpmath import mp, mpf
 
 from meshes.chamber import Chamber, Chambers
 from meshes.errors import InputError
-from solvers.statics.hydrostatics import equilibrium, optimal_volume
+from solvers.statics import hydrostatics
+from solvers.statics.hydrostatics import equilibrium, optimal_volume, wall_volumes
 from tests.mutants import kills
 from tests.oracles.statics import LiquidReference, liquid_reference
 
@@ -340,3 +341,48 @@ def test_whole_box_at_four_corners() -> None:
 def test_optimal_volumes_of_one_chamber() -> None:
     found = optimal_volume(Chamber(0.2, 0.05), np.array([1e-3, 3e-3, 10e-3]), 90.0, GRAVITY) * 1e6
     np.testing.assert_allclose(found, (54.43957239, 178.3088703, 603.5171603), rtol=6e-10)  # ten digits
+
+
+H = "solvers.statics.hydrostatics"
+
+
+@kills(f"{H}:_clear_of_walls", "away <= surface - inner", "away <= surface")
+@kills(f"{H}:_clear_of_walls", "away <= film / (radius + surface)", "away <= film / surface")
+@kills(f"{H}:equilibrium", "eps * (2.0 + eps)", "eps * (2.0 - eps)")
+@kills(f"{H}:Equilibrium.unbalance", "np.where(self.clear, line[1], slope)", "np.where(self.clear, x, slope)")
+@kills(
+    f"{H}:optimal_volume",
+    "e * (2.0 * np.asarray(chamber.radius) - e)",
+    "e * 2.0 * np.asarray(chamber.radius)",
+)
+@kills(
+    f"{H}:wall_volumes", "(radius - inner - e) * (radius + inner + e)", "(radius - inner) * (radius + inner)"
+)
+@kills(f"{H}:_inside_both", "2.0 * e <= free", "e <= free")
+def test_cylinders_clear_of_the_walls_are_those_of_the_kernel(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without gravity along the axis closed forms answer where no wall is met, the kernel elsewhere."""
+    count = 400
+    rng = np.random.default_rng(5)
+    radius, height = rng.uniform(0.05, 0.3, count), rng.uniform(0.01, 0.2, count)
+    chamber = Chambers(radius, height, radius * rng.choice([0.0, 0.3, 0.8], count))
+    volume = chamber.capacity * rng.uniform(0.01, 0.99, count)
+    e = radius * 10.0 ** rng.uniform(-6.0, -0.1, count)
+    speed, gravity = rng.uniform(1.0, 500.0, count), np.where(rng.random(count) < 0.1, GRAVITY, 0.0)
+
+    def answers() -> list[np.ndarray]:
+        state = equilibrium(chamber, volume, e, speed, gravity)
+        assert state.converged.all()
+        walls = wall_volumes(chamber, e, speed, gravity)
+        height_ratio = state.wetted_height / np.maximum(state.steepness, 1.0)
+        return [height_ratio, state.volume, state.first_moment(), *state.unbalance(), *walls]
+
+    clear = equilibrium(chamber, volume, e, speed, gravity).clear
+    assert 0.3 * count < np.count_nonzero(clear) < 0.8 * count
+    found = answers()
+    nowhere = lambda *_: np.zeros(count, dtype=bool)  # noqa: E731
+    for name in ("_clear_of_walls", "_inside_both"):
+        monkeypatch.setattr(hydrostatics, name, nowhere)
+    for one, other in zip(found, answers(), strict=True):
+        # The kernel finds the volume to some roundings, its integrals to fourteen digits; what is small in
+        # the chamber's own size keeps fewer.
+        np.testing.assert_allclose(one, other, rtol=1e-11)

@@ -19,7 +19,7 @@ from solvers.rotor.system import Rotor
 from solvers.rotor.tub import Mount, Tub
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
 from solvers.whirl import edges as whirl_edges
-from solvers.whirl.edges import _changes, _first_speeds, looks, unstable_bands
+from solvers.whirl.edges import _changes, _first_speeds, any_growth, looks, unstable_bands
 from solvers.whirl.growth import asynchronous_growth, planar_layers
 from solvers.whirl.system import coupled_matrices, linear_modes
 from tests.mutants import kills
@@ -192,7 +192,9 @@ def test_films_from_even_speeds(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @kills("solvers.whirl.edges:_first_speeds", "mass=ratio**2 * mass", "mass=ratio * mass")
 @kills("solvers.whirl.edges:_first_speeds", "gyroscopic=ratio * system", "gyroscopic=system")
-@kills("solvers.whirl.edges:_first_speeds", "way * np.sqrt(x.layer_tanh", "way * np.sqrt(2.0 * x.layer_tanh")
+@kills(
+    "solvers.whirl.edges:_first_speeds", "way * math.sqrt(x.layer_tanh", "way * math.sqrt(2.0 * x.layer_tanh"
+)
 def test_meetings_of_waves() -> None:
     """Where a wave meets a mode both have one frequency, that of the layer alone and of the rotor alone."""
     system = GAPPED.system()
@@ -215,6 +217,29 @@ def test_meetings_of_waves() -> None:
         off = np.abs(np.abs(modes)[:, None] - np.abs(1.0 + slips) * speed).min()
         # Eigenvalues to some hundred roundings of the largest.
         assert off <= 1e-9 * speed
+
+
+@kills("solvers.whirl.edges:_first_speeds", "rotor.mass + sum(x.mass", "rotor.mass - sum(x.mass")
+@kills("solvers.whirl.edges:_first_speeds", "rotor.stiffness / mass) /", "rotor.stiffness / mass) *")
+def test_meetings_in_one_plane() -> None:
+    """A planar rotor has the speeds that its equations of motion in two directions have."""
+    rotor = Jeffcott(6.0, 6e4, 20.0, 0.0)
+    fills = [HALF, replace(HALF, volume=0.1 * HALF.volume)]
+    own, general = (_first_speeds(one, fills, 20.0, 3000.0) for one in (rotor, rotor.system()))
+    for found, other in ((own, general), (general, own)):
+        assert (np.abs(found[:, None] - other).min(axis=1) <= 1e-12 * found).all()
+
+
+@kills("solvers.whirl.edges:any_growth", "found[calm[row[rate > 0.0]]] = True", "pass")
+def test_growth_without_edges(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Some whirl grows where bands are found; a film's band is seen only when it is looked for."""
+    monkeypatch.setattr(whirl_edges, "_first_speeds", lambda *_: np.geomspace(31.0, 401.0, 33))
+    rotor, speed = Jeffcott(6.0, 6e4, 0.0, 0.0), np.array([31.0, 401.0])
+    volumes = math.pi * 0.02 * (0.1**2 - (0.1 - 0.1 * np.array([0.0, 1e-6, 1e-4, 0.3])) ** 2)
+    rows = [[Fill(Chamber(0.1, 0.02), WATER, float(volume))] for volume in volumes]
+    for law in (NO_FRICTION, Friction(FrictionLaw.STOKES)):
+        bands = unstable_bands(rotor, rows, speed, law)
+        np.testing.assert_array_equal(any_growth(rotor, rows, speed, law), [bool(own) for own in bands])
 
 
 @kills("solvers.whirl.edges:_changes", "spread[1] < _SIDE_BY_SIDE", "spread[1] < 0.0")

@@ -332,7 +332,9 @@ def laminar_function(system: Jeffcott, fill: Fill, spin: float, s: np.ndarray) -
 
 
 @kills("solvers.whirl.planar:_scaled", "problem.stokes / np.sqrt(spin)", "problem.stokes / spin")
-@kills("solvers.whirl.planar:_polynomial", "wave - drag * x * x * x, bend", "wave + drag * x * x * x, bend")
+@kills(
+    "solvers.whirl.planar:_polynomial", "wave - drag * (square * x), bend", "wave + drag * (square * x), bend"
+)
 @kills("solvers.whirl.planar:_chunk", "admitted = x.real > 0.0", "admitted = x.imag > 0.0")
 @kills(
     "solvers.whirl.planar:_chunk",
@@ -376,11 +378,15 @@ def test_laminar() -> None:
 )
 @kills(
     "solvers.whirl.laminar:_eliminate",
-    "turned = root - 1j * sense * spin",
-    "turned = root + 1j * sense * spin",
+    "turned = root - 1j * c.sense * spin",
+    "turned = root + 1j * c.sense * spin",
 )
-@kills("solvers.whirl.laminar:_eliminate", "share = 0.5 * (1.0 - t) * np", "share = 0.5 * (1.0 + t) * np")
-@kills("solvers.whirl.laminar:_eliminate", "+ t * np.square(spin)", "- t * np.square(spin)")
+@kills(
+    "solvers.whirl.laminar:_eliminate",
+    "asarray(0.5 * (1.0 - c.tanh) * np",
+    "asarray(0.5 * (1.0 + c.tanh) * np",
+)
+@kills("solvers.whirl.laminar:_eliminate", "+ c.tanh * np.square(spin)", "- c.tanh * np.square(spin)")
 def test_any_rotor() -> None:
     """The solver of any rotor with laminar friction finds what the one for one plane does."""
     speeds = np.array([50.0, 118.0, 130.0, 250.0])

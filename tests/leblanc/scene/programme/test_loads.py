@@ -37,8 +37,8 @@ def push(scene: Scene) -> np.ndarray:
     return dry_rotor(scene).system().unbalance
 
 
-@kills("solvers.rotor.tub:Tub.system", "cmath.exp(1j * load.angle)", "cmath.exp(-1j * load.angle)")
-@kills("solvers.rotor.tub:Tub.system", "centre + load.position * lean", "centre - load.position * lean")
+@kills("solvers.rotor.tub:Tub._system", "cmath.exp(1j * load.angle)", "cmath.exp(-1j * load.angle)")
+@kills("solvers.rotor.tub:Tub._system", "centre + load.position * lean", "centre - load.position * lean")
 def test_loads_add_up() -> None:
     """One load is the unbalance at its place; two alike are twice it; opposite ones leave a couple.
 

@@ -335,7 +335,7 @@ def test_the_command_writes_and_prints(tmp_path: Path, capsys: pytest.CaptureFix
     assert told["volume"] == []
     assert told["unit"] == "kg"
     names = {path.name for path in (tmp_path / "a").iterdir()}
-    assert {"design.png", "design.svg", "optimise.html", "optimum.nc"} <= names
+    assert {"design.svg", "optimise.html", "optimum.nc"} <= names
     page = (tmp_path / "a" / "optimise.html").read_text(encoding="utf-8")
     assert "balls of" in page
     assert main(["optimise", str(file), "--out", str(tmp_path / "b")]) == 0

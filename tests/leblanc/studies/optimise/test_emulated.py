@@ -88,7 +88,7 @@ def test_command(swept: tuple[Scene, Path], tmp_path: Path, capsys: pytest.Captu
     assert main(arguments) == 0
     found = json.loads(capsys.readouterr().out)
     assert found["feasible"] and found["emulator"]["error"]["samples"] == 48
-    assert (tmp_path / "objective.png").exists() and (tmp_path / "front.png").exists()
+    assert (tmp_path / "objective.svg").exists() and (tmp_path / "front.svg").exists()
     assert main([*arguments, "--objective", "robust"]) == 2
     assert "--objective" in capsys.readouterr().err
     assert SCENE in scene.read_text()

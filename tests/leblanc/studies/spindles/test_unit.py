@@ -133,7 +133,7 @@ def test_files_and_json(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> N
     assert kept["wanted_imag"] == pytest.approx([pair[1] for pair in told["compliance"]["wanted"]])
     assert kept["mode_shape"].shape == (5, 23)
     names = {path.name for path in (tmp_path / "out").iterdir()}
-    assert {"summary.html", "response.nc", "compliance.png", "shapes.svg"} <= names
+    assert {"summary.html", "response.nc", "compliance.svg", "shapes.svg"} <= names
     page = (tmp_path / "out" / "summary.html").read_text(encoding="utf-8")
     assert "33, 335" in page
     assert main(["run", str(scene), "--out", str(tmp_path / "out")]) == 0
