@@ -59,8 +59,8 @@ CHILD = """if True:
         from leblanc.plotting.page import Figure
 
         draw, nothing = disk.drawing, lambda _: Figure(figsize=(1.0, 1.0))
-        disk.drawing = lambda answer, picture, folder: draw(
-            answer, replace(picture, draw="__main__:nothing"), folder
+        disk.drawing = lambda answer, picture, folder, png: draw(
+            answer, replace(picture, draw="__main__:nothing"), folder, png
         )
     os.dup2(told, 100)  # above the streams, of which some are closed here
     os.close(told)
