@@ -30,6 +30,9 @@ from numba.core.errors import NumbaExperimentalFeatureWarning
 
 # Options of what only compiled code calls: it needs no wrappers.
 BARE: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+# Of what is handed over alone, and of what Python alone calls.
+HANDED: dict[str, Any] = {"no_cpython_wrapper": True}
+CALLED: dict[str, Any] = {"no_cfunc_wrapper": True}
 _HERE = Path(__file__)
 # What a module imports of the layers up to this one, indented or not, in brackets or not.
 _OURS = r"((?:meshes|fluid|solvers)\b[\w.]*)"

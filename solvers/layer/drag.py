@@ -12,9 +12,20 @@ import numpy as np
 
 from fluid.friction import laws
 from solvers.layer.finite_volume import COMPILED, DRY, SUMMED
-from solvers.machine_code import BARE, NOTHING, REAL, ROW, ROWS, WHOLE, handed, handed_type, machine_code
+from solvers.machine_code import (
+    BARE,
+    HANDED,
+    NOTHING,
+    REAL,
+    ROW,
+    ROWS,
+    WHOLE,
+    handed,
+    handed_type,
+    machine_code,
+)
 
-_part: Any = machine_code(**COMPILED)
+_handed: Any = machine_code(**(COMPILED | HANDED))
 _inner_part: Any = machine_code(**(COMPILED | BARE))
 _sum_part: Any = machine_code(**(SUMMED | BARE))
 _sum_jit: Any = machine_code(**SUMMED)
@@ -115,7 +126,7 @@ def _weigh(area, velocity, surface, coefficient, plates, thin, dt, kept, gone):
     return momentum, mass
 
 
-@_part
+@_handed
 def wall_kept(area, velocity, surface, law, coefficient, lid, plates, thin, top, table, dt, kept, pushed):
     """What the law of the wall makes of each cell's velocity in a time dt: kept u + pushed.
 
@@ -130,7 +141,7 @@ def wall_kept(area, velocity, surface, law, coefficient, lid, plates, thin, top,
         pushed[i] = gone * mean
 
 
-@_part
+@_handed
 def plain_kept(area, velocity, surface, law, coefficient, lid, plates, thin, top, table, dt, kept, pushed):
     """The same by any other law, or none; nothing is pushed."""
     if law == laws.NONE:

@@ -11,6 +11,7 @@ from solvers.layer.records import records
 from solvers.machine_code import (
     BARE,
     BLOCKS,
+    HANDED,
     NOTHING,
     REAL,
     ROW,
@@ -23,7 +24,7 @@ from solvers.machine_code import (
 )
 from solvers.runup.state import BALL, SUMS
 
-_jit: Any = machine_code(**COMPILED)
+_handed: Any = machine_code(**(COMPILED | HANDED))
 _unwrapped: Any = machine_code(**(COMPILED | BARE))
 
 # Share of the spin by which a ball that sticks may creep.
@@ -91,7 +92,7 @@ def tally_ball(ball, held, gravity, moving, change, spins, dt, sums):
     sums.gravity += dt * ball.mass * ball.radius * mean * pull
 
 
-@_jit
+@_handed
 def add_balls(balls, races, gravity, first, roll, roll_rate, spins, dt, n, left, right, held):
     """Rows and columns of all balls from row `first` on, and their rolling resistance `held`."""
     for j in range(balls.shape[0]):
@@ -99,12 +100,12 @@ def add_balls(balls, races, gravity, first, roll, roll_rate, spins, dt, n, left,
         held[j] = add_ball(balls[j], races[j], gravity, first + j, moving, spins, dt, n, left, right)
 
 
-@_jit
+@_handed
 def no_balls(balls, races, gravity, first, roll, roll_rate, spins, dt, n, left, right, held):
     """Stands for `add_balls` where there are none."""
 
 
-@_jit
+@_handed
 def tally_balls(balls, held, gravity, first, roll, roll_rate, change, spins, dt, sums):
     """Add the works of one step of all balls, which stand from `first` on, to `sums`, a record SUMS."""
     for j in range(balls.shape[0]):
@@ -112,7 +113,7 @@ def tally_balls(balls, held, gravity, first, roll, roll_rate, change, spins, dt,
         tally_ball(balls[j], held[j], gravity, (roll[k], roll_rate[k]), change[k], spins, dt, sums)
 
 
-@_jit
+@_handed
 def tally_no_balls(balls, held, gravity, first, roll, roll_rate, change, spins, dt, sums):
     """Stands for `tally_balls` where there are none."""
 

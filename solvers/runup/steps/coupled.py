@@ -22,6 +22,7 @@ from solvers.layer.two_layers import FLOWS, STREAM, TAKEN
 from solvers.machine_code import (
     BARE,
     BLOCKS,
+    CALLED,
     FLAG,
     REAL,
     ROW,
@@ -44,6 +45,7 @@ from solvers.runup.steps.pools import POOLS
 from solvers.runup.steps.spin import SPIN
 
 _jit: Any = machine_code(**COMPILED)
+_called: Any = machine_code(**(COMPILED | CALLED))
 _unwrapped: Any = machine_code(**(COMPILED | BARE))
 
 
@@ -250,7 +252,7 @@ def swing_time(pools, gravity):
     return longest
 
 
-@_jit
+@_called
 def advance(
     rates,
     friction,

@@ -26,10 +26,22 @@ from solvers.layer.step import (
     profile,
     stage_rates,
 )
-from solvers.machine_code import BARE, REAL, ROW, ROWS, WHOLE, handed_type, machine_code, pair, type_of
+from solvers.machine_code import (
+    BARE,
+    HANDED,
+    REAL,
+    ROW,
+    ROWS,
+    WHOLE,
+    handed_type,
+    machine_code,
+    pair,
+    type_of,
+)
 from solvers.runup.state import GAINS, LAYER
 
 _jit: Any = machine_code(**COMPILED)
+_handed: Any = machine_code(**(COMPILED | HANDED))
 _unwrapped: Any = machine_code(**(COMPILED | BARE))
 _summed: Any = machine_code(**(SUMMED | BARE))
 
@@ -227,7 +239,7 @@ def _half_friction(friction, area, q, spin, layer, drags, dt, full, slot, spare,
     return before * step, after * step
 
 
-@_jit
+@_handed
 def layer_step(
     rates,
     friction,

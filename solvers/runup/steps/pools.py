@@ -14,6 +14,7 @@ from solvers.layer.two_layers import FLOWS, STREAM, TAKEN
 from solvers.machine_code import (
     BLOCKS,
     FLAG,
+    HANDED,
     NOTHING,
     REAL,
     ROW,
@@ -26,13 +27,13 @@ from solvers.machine_code import (
 )
 from solvers.runup.state import SUMS
 
-_jit: Any = machine_code(**COMPILED)
+_handed: Any = machine_code(**(COMPILED | HANDED))
 
 # No wave of a pool is faster, rad/s.
 _FASTEST = 1e9
 
 
-@_jit
+@_handed
 def move_pools(
     pools,
     tables,
@@ -80,7 +81,7 @@ def move_pools(
     return True
 
 
-@_jit
+@_handed
 def begin_pools(pools, two_layers, rings, kept, gravity, angles, spin, axis, push, first, work):
     """Measure the pools at the beginning of a step; rings that their own rotation holds no more fall."""
     for j in range(pools.shape[0]):
@@ -92,7 +93,7 @@ def begin_pools(pools, two_layers, rings, kept, gravity, angles, spin, axis, pus
     copy(two_layers, kept)
 
 
-@_jit
+@_handed
 def no_pools(
     pools,
     tables,
@@ -117,12 +118,12 @@ def no_pools(
     return True
 
 
-@_jit
+@_handed
 def begin_no_pools(pools, two_layers, rings, kept, gravity, angles, spin, axis, push, first, work):
     """Stands for `begin_pools` where there are none."""
 
 
-@_jit
+@_handed
 def tally_pools(pools, gravity, spins, axis, dt, found, before, after, taken, first, last, sums):
     """Add one step's work and losses of the pools to `sums`, a record SUMS [theory: coupling, eq. 9-10]."""
     spin = 0.5 * (spins[0] + spins[1])
@@ -143,7 +144,7 @@ def tally_pools(pools, gravity, spins, axis, dt, found, before, after, taken, fi
             sums.lost -= 0.5 * dt * found[own, i] * (before[own, i] + after[own, i])
 
 
-@_jit
+@_handed
 def tally_no_pools(pools, gravity, spins, axis, dt, found, before, after, taken, first, last, sums):
     """Stands for `tally_pools` where there are none."""
 

@@ -7,11 +7,12 @@ from typing import Any
 from solvers.layer.finite_volume import COMPILED
 from solvers.layer.records import records
 from solvers.layer.two_layers import STREAM, TAKEN
-from solvers.machine_code import REAL, ROW, ROWS, TURNING, handed, handed_type, machine_code, type_of
+from solvers.machine_code import HANDED, REAL, ROW, ROWS, TURNING, handed, handed_type, machine_code, type_of
 from solvers.runup.state import BALL, GAINS, LAYER, SHAFT
 from solvers.runup.steps.balls import ball_turned
 
 _jit: Any = machine_code(**COMPILED)
+_handed: Any = machine_code(**(COMPILED | HANDED))
 
 
 @_jit
@@ -59,7 +60,7 @@ def driven(curve, shaft, load, dt):
     return 2.0 * middle - shaft.spin
 
 
-@_jit
+@_handed
 def free_spin(
     curve,
     unbalance,
@@ -91,7 +92,7 @@ def free_spin(
     return driven(curve, shaft, load, dt)
 
 
-@_jit
+@_handed
 def given_spin(
     curve,
     unbalance,
@@ -113,14 +114,14 @@ def given_spin(
     return shaft.spin + shaft.rate * dt
 
 
-@_jit
+@_handed
 def motor_power(curve, spins):
     """Power of the motor at the middle of a step."""
     spin = 0.5 * (spins[0] + spins[1])
     return spin * motor_torque(curve, spin)
 
 
-@_jit
+@_handed
 def no_power(curve, spins):
     """Stands for `motor_power` where the spin is given."""
     return 0.0
