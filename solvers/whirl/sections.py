@@ -496,7 +496,7 @@ def standing_determinant(
     """
     count, spin = len(system.coordinates), speed[owner]
     own = slice(0, count)
-    rotor: Complex = np.square(root) * found.mass[own, own, None]
+    rotor = np.asarray(np.square(root) * found.mass[own, own, None], dtype=complex)
     rotor += root * np.moveaxis(found.damping[owner, own, own], 0, -1)
     rotor += np.moveaxis(found.stiffness[owner, own, own], 0, -1)
     total = np.zeros(root.shape, dtype=complex)
