@@ -492,7 +492,7 @@ def standing_determinant(
     """log det T(lambda) at points, shape (k,), each layer eliminated in its own circles.
 
     A circle with the spin and one against it do not mix, and each acts on the rotor by one number
-    [theory: sections, eq. 10]; the phase but for whole turns.
+    [theory: sections, eq. 12]; the phase but for whole turns.
     """
     count, spin = len(system.coordinates), speed[owner]
     own = slice(0, count)
