@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -22,7 +23,7 @@ from meshes.chamber_section import ChamberSection, liquid_of
 
 if TYPE_CHECKING:
     from meshes.liquid_section import LiquidSection
-    from solvers.sloshing.sector import Slip
+    from solvers.sloshing.sector import SectorSystem, Slip
     from solvers.sloshing.system import LiquidSystem
 
 # Slip at which the thickness of the layer at edges is taken, rad/s: twice as thick a layer changes the drag
@@ -219,10 +220,10 @@ def _few_baffles(surface_radius: float, baffles: Baffles, cut: float) -> tuple[R
 @lru_cache(maxsize=256)
 def _sector(surface_radius: float, baffles: Baffles) -> tuple[ReducedLiquid, Slip]:
     """Motions from one of three sectors and more, and what they do along the walls."""
-    from solvers.sloshing.sector import condense_sector, reduced_motions
+    from solvers.sloshing.sector import condense_sector
 
     system = condense_sector(1.0, surface_radius, baffles)
-    motions = reduced_motions(system, KEPT, _DISTINCT)
+    motions = _driven(system)
     gyration, surface = (motions.conj().T @ form @ motions for form in (system.gyration, system.surface))
     p = system.moment @ motions
     liquid = ReducedLiquid(
@@ -234,7 +235,24 @@ def _sector(surface_radius: float, baffles: Baffles) -> tuple[ReducedLiquid, Sli
         liquid_area=system.liquid_area,
         enclosed_area=system.enclosed_area,
     )
-    return liquid, system.slip(motions)
+    slip = system.slip(motions)
+    gc.collect(0)  # meshes and bases of scikit-fem refer to each other, a megabyte each time
+    return liquid, slip
+
+
+def _driven(system: SectorSystem) -> Complex:
+    """Motions of unit inertia that span the answers to a force in either sense, shape (m, k)."""
+    root = scipy.linalg.cholesky(system.inertia, lower=True)
+    half = scipy.linalg.solve_triangular(root, np.eye(len(root)), lower=True)
+    gyration, surface = (half @ form @ half.conj().T for form in (system.gyration, system.surface))
+    drive = half @ system.moment.conj()[:, None]
+    answers = [drive, np.linalg.solve(surface, drive)]
+    answers += [
+        np.linalg.solve(-s * s * np.eye(len(root)) + 2j * s * gyration + surface, drive)
+        for point in KEPT
+        for s in (point, -point.conjugate())
+    ]
+    return np.asarray(half.conj().T @ spanned(np.hstack(answers)))
 
 
 def over_parts(matrix: Any) -> Array:

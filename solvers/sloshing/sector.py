@@ -7,12 +7,10 @@ rays are joined by that phase has all of it, in complex unknowns [theory: sectio
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import scipy
 from scipy.sparse import coo_array, csc_array, csr_array
 from scipy.sparse.linalg import splu
 
@@ -140,23 +138,3 @@ def _joined(sector: RingSector, phase: complex) -> tuple[csr_array, Indices]:
     touched = section.surface.ravel()
     outside = np.flatnonzero(np.isin(unknowns, owner[touched[~held[touched]]]))
     return joined, outside
-
-
-def reduced_motions(system: SectorSystem, points: Sequence[complex], distinct: float) -> Complex:
-    """Motions of unit inertia that span the answers to a force, shape (m, k), as `reduce_liquid` keeps them.
-
-    `points` are s/Omega, of a force in the one sense; those in the other are at minus their conjugates.
-    """
-    from solvers.sloshing.reduced import spanned
-
-    root = scipy.linalg.cholesky(system.inertia, lower=True)
-    half = scipy.linalg.solve_triangular(root, np.eye(len(root)), lower=True)
-    gyration, surface = (half @ form @ half.conj().T for form in (system.gyration, system.surface))
-    drive = half @ system.moment.conj()[:, None]
-    answers = [drive, np.linalg.solve(surface, drive)]
-    answers += [
-        np.linalg.solve(-s * s * np.eye(len(root)) + 2j * s * gyration + surface, drive)
-        for point in points
-        for s in (point, -point.conjugate())
-    ]
-    return np.asarray(half.conj().T @ spanned(np.hstack(answers), distinct))

@@ -29,7 +29,7 @@ Placed = tuple[float, SectionLayer]
 
 _TURN = np.array([[0.0, -1.0], [1.0, 0.0]])  # a quarter turn with the spin: multiplies by i
 _ALIKE = 1e-3  # of the answer, that may go in the other sense: what an uneven mesh makes of even walls
-_DISTINCT = 1e-7  # of an answer that must stand across the others
+_DISTINCT = 1e-3  # of an answer that must stand across the others: waves slower than the spin to 3e-5
 _SLOW = 0.3  # frequency of slow waves over the spin
 _FOLLOWED = 6  # modes at a speed whose laminar friction is computed at their own frequency
 _STEPS = 30
@@ -39,8 +39,8 @@ _SHARE = 1e-7  # of the spin: how far left of the mode that grows most the other
 _ASIDE = 1e-4  # of the spin: how far left of that the others start at least
 _SAME = 1e-9  # of the spin: modes as near as that are one
 _GONE = -1e300  # lambda of a mode that there is not, 1/s
+_FEW = 48  # matrices of a mode that are solved at once
 _BLOCK = 512  # points whose matrices fit the processor's cache
-_PIVOT = 0.1  # over the largest of its column, below which another row is taken
 _RESOLVED = 1e-11  # of the frequencies, below which growth is rounding
 
 
@@ -294,6 +294,17 @@ def _followed(
     From starts above the real axis.
     """
     root, owner = start.astype(complex).ravel(), np.repeat(at, start.shape[1])
+    found = np.zeros(root.shape, dtype=bool)
+    for first in range(0, root.size, _FEW):
+        part = slice(first, first + _FEW)
+        root[part], shape[part], found[part] = _by_newton(search, root[part], owner[part], shape[part])
+    return root.reshape(start.shape), shape.reshape(*start.shape, shape.shape[-1]), found.reshape(start.shape)
+
+
+def _by_newton(
+    search: MostGrowing, root: Complex, owner: Index, shape: Complex
+) -> tuple[Complex, Complex, Flags]:
+    """See `_followed`, of a few modes whose matrices fit the processor's cache, shape (k,)."""
     on, found = np.arange(root.size), np.zeros(root.shape, dtype=bool)
     for _ in range(_STEPS):
         # A mode met to rounding makes the matrix singular to rounding, which is wanted; so little away it is
@@ -311,7 +322,7 @@ def _followed(
         on = on[~settled]
         if on.size == 0:
             break
-    return root.reshape(start.shape), shape.reshape(*start.shape, shape.shape[-1]), found.reshape(start.shape)
+    return root, shape, found
 
 
 @dataclass(frozen=True, eq=False)
@@ -510,24 +521,26 @@ def standing_determinant(
             pull = at.T @ np.array([1.0, sense]) / np.sqrt(2.0)
             rotor -= np.square(np.square(root)) * answer * np.outer(pull, pull.conj())[..., None]
             total += log_size
-    return np.asarray(total + _eliminated(rotor, count)[0])
+    unit, size = np.linalg.slogdet(np.moveaxis(rotor, -1, 0))
+    return np.asarray(total + size + 1j * np.angle(unit))
 
 
 def _circle_answers(circle: CircleLayer, root: Complex, spin: Array) -> list[tuple[Complex, Complex]]:
     """log det of a layer's motions and what they answer, rho p L^-1 p*, with the spin and against it."""
+    from solvers.whirl.elimination import eliminated
+
     found, m = [], len(circle.moment)
     parts = np.stack([np.eye(m), circle.gyration, circle.surface, *circle.laminar])
     for sense in (-1j, 1j):
         slip = root + sense * spin
         steady = np.stack([slip * (slip + circle.rate), 2.0 * spin * slip, np.square(spin)])
         weights = np.concatenate([steady, _shears(slip, spin)[0]])
-        bordered = np.zeros((m + 1, m + 1, root.size), dtype=complex)
-        shown = parts if sense == -1j else parts.conj()
-        bordered[:m, :m] = (shown.reshape(len(parts), -1).T @ weights).reshape(m, m, -1)
-        moment = circle.moment if sense == -1j else circle.moment.conj()
-        bordered[m, :m], bordered[:m, m] = moment[:, None], moment.conj()[:, None]
-        size, left = _eliminated(bordered, m)
-        found.append((size + m * np.log(circle.density), -circle.density * left[0, 0]))
+        shown, moment = (parts, circle.moment) if sense == -1j else (parts.conj(), circle.moment.conj())
+        bordered = np.zeros((root.size, m + 1, m + 1), dtype=complex)
+        bordered[:, :m, :m] = (weights.T @ shown.reshape(len(parts), -1)).reshape(-1, m, m)
+        bordered[:, m, :m], bordered[:, :m, m] = moment, moment.conj()
+        size, left = eliminated(bordered)
+        found.append((np.asarray(size + m * np.log(circle.density)), -circle.density * left))
     return found
 
 
@@ -536,28 +549,6 @@ def _same_circle(one: CircleLayer, other: CircleLayer) -> bool:
     return all(
         np.array_equal(getattr(one, part.name), getattr(other, part.name)) for part in fields(CircleLayer)
     )
-
-
-def _eliminated(matrices: Complex, count: int) -> tuple[Complex, Complex]:
-    """log det of the first rows and columns of k matrices, (N, N, k), and what is left without them.
-
-    All at once, in place; with rows changed where a pivot is small beside what it eliminates.
-    """
-    left, total = matrices, np.zeros(matrices.shape[-1], dtype=complex)
-    for step in range(count):
-        size = np.abs(left[: count - step, 0])
-        first = np.argmax(size, axis=0)
-        swap = np.flatnonzero(size[0] < _PIVOT * np.max(size, axis=0))
-        if swap.size:
-            other = first[swap]
-            row = left[other, :, swap].T.copy()
-            left[other, :, swap] = left[0][:, swap].T
-            left[0][:, swap] = row
-            total[swap] += 1j * np.pi
-        pivot = left[0, 0]
-        total += np.log(pivot)
-        left = left[1:, 1:] - (left[1:, :1] / pivot) * left[:1, 1:]
-    return total, left
 
 
 def _real(matrix: Any) -> Array:

@@ -40,6 +40,7 @@ from leblanc.studies.explain.cures import cures
 from leblanc.studies.run.motion import RestMode
 from leblanc.studies.run.study import rest_modes
 from leblanc.studies.volume.study import volumes_over_speed
+from meshes.arrays import Array
 from solvers.checked_model import CheckedModel
 from solvers.cycles.estimate import largest_estimate
 from solvers.rotor.jeffcott import Jeffcott
@@ -54,7 +55,7 @@ def explain_scene(scene: Scene) -> ExplainAnswer:
     scene = scene.as_read()
     machine = prepare(scene, free=True)
     gravity, (choice,) = machine.axial_gravity, choose_all([machine])
-    growth = asynchronous_growth(machine.rotor, scene.fills, machine.speed, machine.waves)[0]
+    growth = _growth(machine)
     choice = costed(machine, choice, growth)
     ends = np.array([scene.speeds.start, scene.speeds.stop])
     moved = unbalance_response(machine.system, machine.speed)
@@ -103,6 +104,33 @@ def explain_scene(scene: Scene) -> ExplainAnswer:
         closed_forms=closed_forms(machine),
         wall_volumes=volumes,
     )
+
+
+_FEW = 17  # speeds at which small whirls among baffles are looked at first
+
+
+def _growth(machine: Prepared) -> Array:
+    """Growth of the fastest-growing small whirl at each speed, 1/s, as the cost of holding asks for it.
+
+    Among baffles, where waves take finite elements, at a few speeds and where its sign changes between them;
+    elsewhere between those. A narrower band is left to `run`.
+    """
+    speed, fills = machine.speed, machine.scene.fills
+    if speed.size <= _FEW or not any(fill.uneven for fill in fills):
+        return asynchronous_growth(machine.rotor, fills, speed, machine.waves)[0]
+    found, looked = np.full(speed.size, np.nan), np.zeros(speed.size, dtype=bool)
+    at = np.unique(np.round(np.linspace(0, speed.size - 1, _FEW)).astype(np.intp))
+    while at.size:
+        found[at] = asynchronous_growth(machine.rotor, fills, speed[at], machine.waves)[0]
+        looked[at] = True
+        have = np.flatnonzero(looked)
+        grows = found[have] > 0.0
+        apart = (np.diff(have) > 1) & (grows[1:] != grows[:-1])
+        at = (have[:-1] + have[1:])[apart] // 2
+    known = np.flatnonzero(looked & ~np.isnan(found))
+    if known.size == 0:
+        return found
+    return np.where(looked, found, np.interp(np.arange(speed.size), known, found[known]))
 
 
 def _whirl(machine: Prepared) -> WhirlOutlook | None:

@@ -52,7 +52,7 @@ def reduced(liquid: ReducedLiquid, drag: Array, slip: complex) -> tuple[Complex,
 @kills(f"{SECTOR}:SectorSystem.slip", "self.count * walls.weights", "walls.weights")
 @kills(f"{SECTOR}:Slip.drag", "edge_weight(self.far, cut)", "1.0")
 @kills(f"{SECTOR}:_joined", "factor[second] = first, phase", "factor[second] = first, 1.0")
-@kills(f"{SECTOR}:reduced_motions", "(point, -point.conjugate())", "(point,)")
+@kills(f"{REDUCED}:_driven", "(point, -point.conjugate())", "(point,)")
 @kills("meshes.rings.quadrilaterals:ring_sector", "turn = 2.0 * math.pi", "turn = math.pi")
 @kills(f"{REDUCED}:over_parts", "np.kron(matrix.imag, _TURN)", "np.kron(matrix.imag, _TURN.T)")
 @pytest.mark.parametrize(("radius", "baffles"), KINDS, ids=["tip", "cut", "free", "gap"])

@@ -358,9 +358,9 @@ def test_drum_frame_and_standing_frame_agree() -> None:
 @kills("solvers.whirl.sections:standing_determinant", "(-1j, 1j), answers", "(1j, -1j), answers")
 @kills("solvers.whirl.sections:standing_determinant", "total += log_size", "total = log_size")
 @kills("solvers.whirl.sections:_circle_answers", "m * np.log(circle.density)", "np.log(circle.density)")
-@kills("solvers.whirl.sections:_circle_answers", "parts if sense == -1j else parts.conj()", "parts")
+@kills("solvers.whirl.sections:_circle_answers", "(parts.conj(), circle", "(parts, circle")
 @kills("solvers.whirl.sections:_circle_answers", "slip * (slip + circle.rate)", "slip * slip")
-@kills("solvers.whirl.sections:_eliminated", "1j * np.pi", "0.0")
+@kills("solvers.whirl.sections:_circle_answers", "-circle.density * left", "circle.density * left")
 @kills("solvers.whirl.sections:_same_circle", "return all(", "return any(")
 def test_layers_eliminated_one_by_one_leave_the_determinant(monkeypatch: pytest.MonkeyPatch) -> None:
     """log det T of rotor and layers, by LAPACK on the whole matrix, to its rounding; two layers unlike."""
