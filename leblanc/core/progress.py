@@ -59,8 +59,11 @@ class _Lines:
         threading.Thread(target=self._tell, daemon=True, name="progress").start()
 
     def show(self, done: float | None = None, total: float | None = None, what: str | None = None) -> None:
+        if done is not None and total:
+            self.share = done / total
+        elif what is not None:  # something else, of which it is not known how far it has come
+            self.share = 0.0
         self.what = self.what if what is None else what
-        self.share = self.share if done is None or not total else done / total
 
     def _tell(self) -> None:
         for pause in chain(_PAUSES, repeat(_PAUSES[-1])):

@@ -210,12 +210,12 @@ differently in two directions"
         if (away := rest_offset(section, area)) > _BALANCED * fill.surface_radius:
             allowed = f"balanced about the axis: the liquid at rest would lie {away:.3g} m off it"
             raise InputError(f"chambers.{k}.section", section.name, allowed)
-    if is_cut(scene) and scene.model.liquid not in ("auto", "fem"):
+    if is_cut(scene) and scene.model.liquid not in ("auto", "linear", "fem"):
         drawn = any(fill.chamber.section is not None for fill in scene.fills)
         if drawn or scene.model.liquid != "long_wave":
             allowed = (
-                "auto or fem where baffles cut the liquid into compartments (or long_wave), or the section "
-                "is no circle"
+                "auto, linear or fem where baffles cut the liquid into compartments (or long_wave), or the "
+                "section is no circle"
             )
             raise InputError("model.liquid", scene.model.liquid, allowed)
 

@@ -86,7 +86,7 @@ def parted(chamber: int, count: int, volume: float) -> Note:
     """Baffles cut the liquid of a chamber into compartments up to some volume, m^3."""
     text = (
         f"Chamber {chamber + 1}: below {with_unit(volume, VOLUME)} its {count} baffles cut the liquid into "
-        "compartments. There the steady answer is that of finite elements for small deflections, with an "
+        "compartments. There the steady answer is that of linear theory for small deflections, with an "
         "error that is not known."
     )
     return Note(OptimumCode.PARTED, {"chamber": chamber, "count": count, "volume": volume}, text)

@@ -30,7 +30,6 @@ _SPARING = SearchPlan(
     edge=3e-2,
     sections=4,
     polish=4,
-    digits=8,
 )
 # Where it takes some speeds to know a value.
 _FEW = SearchPlan(
@@ -38,6 +37,7 @@ _FEW = SearchPlan(
 )
 # Sets of volumes at once where an answer costs much: all together cost less, but nobody hears of them.
 _AT_ONCE, _RUNUPS = 16, 4
+_DIGITS = 8  # binary ones of volumes, where each new one costs much
 _CLOSER = 6  # of the best that a cheaper vibration found are evaluated again
 
 
@@ -86,7 +86,8 @@ def best_volumes(
     starts, alike = _starts(scene, problem, low.size), _alike(scene, low, high)
     plan = plan_of(problem)
     if problem.costly:
-        plan = replace(plan, at_once=costly)
+        # Finite elements of each new fill: volumes that no answer tells apart are one.
+        plan = replace(plan, at_once=costly, digits=_DIGITS if slow else 0)
     with stopping():
         return search(judge, low, high, problem.density, starts, alike, plan, stage)
 
