@@ -68,7 +68,7 @@ def best_volumes(
     def say(more: int) -> None:
         nonlocal count
         count += more
-        update(done, 1.0, f"{count} sets of volumes evaluated{slow}")
+        update(done, 1.0, f"{count} sets{slow}" if slow else f"{count} sets of volumes evaluated")
 
     def stage(share: float) -> None:
         nonlocal done
@@ -95,7 +95,7 @@ def best_volumes(
 def slowed_by(scene: Scene) -> str:
     """What makes an answer slow, after a colon; empty where nothing does."""
     counts = [fill.chamber.baffles.count for fill in scene.fills if fill.chamber.baffles is not None]
-    return f": {max(counts)} baffles, waves of each fill by finite elements" if counts else ""
+    return f": {max(counts)} baffles by finite elements" if counts else ""
 
 
 def plan_of(problem: Problem) -> SearchPlan:
