@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import itertools
 import math
+import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
@@ -54,6 +55,47 @@ def joined(parts: Sequence[Judgement]) -> Judgement:
 Judge = Callable[[Array], Judgement]  # takes points, shape (m, n)
 
 
+class Enough(Exception):  # noqa: N818  # no error
+    """Ends a search with what it has; raised by a judge that was asked for more than it may answer.
+
+    `said`: of the first of the points that it was asked for, None where it answered for none of them.
+    """
+
+    def __init__(self, why: str, said: Judgement | None = None) -> None:
+        super().__init__(why)
+        self.said = said
+
+
+class Budget:
+    """What a search may spend: evaluations, and seconds from now; None where it may take any number."""
+
+    def __init__(self, evaluations: int | None = None, seconds: float | None = None) -> None:
+        self.left = math.inf if evaluations is None else evaluations
+        self.until = math.inf if seconds is None else time.monotonic() + seconds
+        self.begun = False
+        self.words = "" if evaluations is None else f"{evaluations} evaluations"  # which of both ended it
+        self._seconds = "" if seconds is None else f"{seconds:g} s"
+
+    def take(self, count: int) -> int:
+        """How many of some evaluations may be made; `Enough` where none may.
+
+        The first are made whatever the time: without any there is no answer.
+        """
+        if self.begun:
+            self.look()
+        if self.left <= 0:
+            raise Enough(self.words)
+        self.begun, count = True, int(min(count, self.left))
+        self.left -= count
+        return count
+
+    def look(self) -> None:
+        """`Enough` where the time is over."""
+        if time.monotonic() > self.until:
+            self.words = self._seconds
+            raise Enough(self.words)
+
+
 @dataclass(frozen=True)
 class SearchPlan:
     """How much a search tries."""
@@ -71,6 +113,10 @@ class SearchPlan:
     edge: float = 1e-6
     sections: int = 32  #: into which such an edge is closed in at once
     polish: int = 20  #: sweeps in changing directions, at most
+    #: binary digits to which points between the corners are rounded, so that neighbours that no answer tells
+    #: apart are judged once; 0: they are not
+    digits: int = 0
+    at_once: int = 0  #: points that a judge is asked for at once, at most; 0: any number
 
 
 def best_of(judged: Judgement, cost: Array, margin: float = 1e-6, tie: float | None = None) -> int:
@@ -100,7 +146,8 @@ class Found:
     excess: float
     points: Array  #: all that were judged, shape (m, n)
     judged: Judgement  #: what was said of them
-    interrupted: bool = False  #: from the keyboard: the best of what was judged until then
+    interrupted: bool = False  #: by a signal: the best of what was judged until then
+    stopped: str = ""  #: why the judge answered no more, which ended the search likewise
 
     @property
     def feasible(self) -> bool:
@@ -123,22 +170,24 @@ def search(
     `cost` decides between points of equal objective; `starts` are points where an edge or a kink is expected,
     whose coordinates become levels; coordinates of a group in `alike` may be exchanged without a change and
     are ordered by falling value. No point that was judged beats the answer in the order of `best_of`. A
-    Ctrl-C ends the search with what it has.
+    Ctrl-C and `Enough` end the search with what it has.
     """
     plan = plan or SearchPlan()
     if not (np.all(np.isfinite(low)) and np.all(np.isfinite(high)) and np.all(low <= high)):
         raise InputError("bounds", [low.tolist(), high.tolist()], "finite, low at most high")
-    ask, interrupted = _Log(judge), False
+    ask, interrupted, stopped = _Log(judge, low, high, plan), False, ""
     try:
         _searched(ask, low, high, cost, starts, alike, plan, stage or (lambda _: None))
         k = _answer(ask, cost, alike, plan)
-    except KeyboardInterrupt:
+    except (KeyboardInterrupt, Enough) as why:
         if not ask.kept:
             raise
         points, said = ask.all()
-        k, interrupted = best_of(said, points @ cost, plan.margin, _EQUAL), True
+        k = best_of(said, points @ cost, plan.margin, _EQUAL)
+        interrupted, stopped = isinstance(why, KeyboardInterrupt), str(why)
     every, judged = ask.all()
-    return Found(every[k], float(judged.objective[k]), float(judged.excess[k]), every, judged, interrupted)
+    value, over = float(judged.objective[k]), float(judged.excess[k])
+    return Found(every[k], value, over, every, judged, interrupted, stopped)
 
 
 def _searched(
@@ -172,18 +221,54 @@ def _searched(
 class _Log:
     """Asks the judge and keeps what it said."""
 
-    def __init__(self, judge: Judge) -> None:
-        self.judge = judge
+    def __init__(self, judge: Judge, low: Array, high: Array, plan: SearchPlan) -> None:
+        self.judge, self.low, self.high, self.plan = judge, low, high, plan
         self.kept: list[tuple[Array, Judgement]] = []
+        self._place: dict[bytes, int] = {}  # of points in the order in which they are kept
 
     def __call__(self, points: Array) -> Judgement:
         """Judgement of points, shape (m, n); what is not a number counts as infinite."""
-        said = self.judge(points)
+        if not self.plan.digits:
+            return self._asked(points)
+        rows = np.ascontiguousarray(self._rounded(points))
+        keys = [row.tobytes() for row in rows]
+        fresh = {key: k for k, key in reversed(list(enumerate(keys))) if key not in self._place}
+        new = sorted(fresh.values())
+        if new:
+            self._asked(rows[new])
+        at = np.array([self._place[key] for key in keys])
+        _, every = self.all()
+        details = {name: value[at] for name, value in every.details.items()}
+        return Judgement(every.objective[at], every.excess[at], details)
+
+    def _asked(self, points: Array) -> Judgement:
+        """What the judge says of points, of which it hears a few at once."""
+        few, parts = self.plan.at_once or max(points.shape[0], 1), []
+        for first in range(0, max(points.shape[0], 1), few):
+            rows = points[first : first + few]
+            try:
+                parts.append(self._keep(rows, self.judge(rows)))
+            except Enough as end:
+                if end.said is not None:
+                    self._keep(rows[: end.said.objective.size], end.said)
+                raise
+        return joined(parts)
+
+    def _keep(self, rows: Array, said: Judgement) -> Judgement:
+        """A judgement with numbers only, which is remembered."""
         objective = np.where(np.isnan(said.objective), np.inf, said.objective)
         said = Judgement(objective, np.where(np.isnan(said.excess), np.inf, said.excess), said.details)
+        self._place |= {row.tobytes(): len(self._place) + k for k, row in enumerate(rows)}
         # Whoever asks may change them afterwards.
-        self.kept.append((points.copy(), Judgement(objective.copy(), said.excess.copy(), said.details)))
+        self.kept.append((rows.copy(), Judgement(objective.copy(), said.excess.copy(), said.details)))
         return said
+
+    def _rounded(self, points: Array) -> Array:
+        """Points with so many binary digits as the plan has; corners of the box stay where they are."""
+        part, power = np.frexp(points)
+        size = 2.0**self.plan.digits
+        near = np.clip(np.ldexp(np.round(part * size) / size, power), self.low, self.high)
+        return np.asarray(np.where((points == self.low) | (points == self.high), points, near))
 
     def all(self) -> tuple[Array, Judgement]:
         """Every point and what was said of it."""

@@ -16,6 +16,7 @@ from leblanc.cli.terminal.output import load, load_study, processes
 from leblanc.core.answer import Answer
 from leblanc.core.contents import results_dir
 from leblanc.core.files import out_dir, path_text
+from leblanc.core.interrupts import raise_stopped
 from leblanc.core.progress import working
 from leblanc.core.question import (
     SCENE,
@@ -123,7 +124,7 @@ def finish(
         for one in drawn:
             say(f"wrote {one.svg}")
     if answer.interrupted:
-        raise KeyboardInterrupt
+        raise_stopped()
     fault = answer.fault(where)
     if fault is not None:
         raise fault

@@ -55,6 +55,12 @@ class _Holding:
     depth, number = 0, 0
 
 
+class _Stopping:
+    """Whether somebody keeps what it has at an interrupt of either kind, and whether it was SIGTERM."""
+
+    depth, terminated = 0, False
+
+
 # What is to be done before the process is ended from another thread: files removed that are half written.
 at_forced_end: list[Callable[[], object]] = []
 
@@ -76,6 +82,9 @@ def heard() -> Iterator[None]:
             _Holding.number = number
             return
         ears.last = time.monotonic()
+        if number == signal.SIGTERM and _Stopping.depth:
+            _Stopping.terminated = True
+            raise KeyboardInterrupt
         raise KeyboardInterrupt if number == signal.SIGINT else Terminated(TERMINATED)
 
     def raise_again(what: sys.UnraisableHookArgs) -> None:
@@ -127,6 +136,24 @@ def held() -> Iterator[None]:
         if number and not _Holding.depth:
             _Holding.number = 0
             signal.raise_signal(number)
+
+
+@contextmanager
+def stopping() -> Iterator[None]:
+    """Hear SIGTERM as KeyboardInterrupt: who works inside keeps what it has at either.
+
+    `raise_stopped` then ends the command as the signal that came.
+    """
+    _Stopping.depth += 1
+    try:
+        yield
+    finally:
+        _Stopping.depth -= 1
+
+
+def raise_stopped() -> NoReturn:
+    """The interrupt at which a command kept what it had, once that is written."""
+    raise Terminated(TERMINATED) if _Stopping.terminated else KeyboardInterrupt
 
 
 @contextmanager

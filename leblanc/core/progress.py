@@ -1,4 +1,4 @@
-"""What a command is doing while it takes its time: on stderr, on a terminal only.
+"""What a command is doing while it takes its time, on stderr: a bar on a terminal, else a line now and then.
 
 A study says how far it has come by `update`; who listens, if anybody does, is the business of who asked.
 """
@@ -7,12 +7,16 @@ from __future__ import annotations
 
 import os
 import sys
+import threading
+import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from contextvars import ContextVar
+from itertools import chain, repeat
 
 from leblanc.core.interrupts import at_forced_end
 
+_PAUSES = (2.0, 3.0, 5.0, 10.0, 20.0, 30.0)  # s, between lines where there is no terminal
 _SHOW_CURSOR = b"\x1b[?25h\n"
 
 Update = Callable[..., None]
@@ -46,6 +50,32 @@ def heard(progress: Callable[[float, float], object]) -> Update:
     return listener
 
 
+class _Lines:
+    """Lines about work that takes its time, where there is no terminal: the first soon, then ever fewer."""
+
+    def __init__(self, what: str) -> None:
+        self.what, self.share, self.begun = what, 0.0, time.monotonic()
+        self.over = threading.Event()
+        threading.Thread(target=self._tell, daemon=True, name="progress").start()
+
+    def show(self, done: float | None = None, total: float | None = None, what: str | None = None) -> None:
+        if done is not None and total:
+            self.share = done / total
+        elif what is not None:  # something else, of which it is not known how far it has come
+            self.share = 0.0
+        self.what = self.what if what is None else what
+
+    def _tell(self) -> None:
+        for pause in chain(_PAUSES, repeat(_PAUSES[-1])):
+            if self.over.wait(pause):
+                return
+            spent = time.monotonic() - self.begun
+            far = f", {100.0 * self.share:.0f} %" if self.share > 0.0 else ""
+            left = f", about {spent * (1.0 / self.share - 1.0):.0f} s left" if self.share > 0.05 else ""
+            with suppress(OSError, ValueError):  # nobody reads any more
+                os.write(2, f"{self.what}, {spent:.0f} s{far}{left}\n".encode())
+
+
 @contextmanager
 def working(what: str) -> Iterator[Update]:
     """Show what is done, for how long by now, and how far it has come where that is known.
@@ -59,7 +89,12 @@ def working(what: str) -> Iterator[Update]:
     Function of `done` and `total`, in any unit, and of `what` is done now; all may be left out
     """
     if not sys.stderr.isatty():
-        yield lambda *_, **__: None
+        lines = _Lines(what)
+        try:
+            with told(lines.show):
+                yield lines.show
+        finally:
+            lines.over.set()
         return
     from rich.console import Console
     from rich.progress import (

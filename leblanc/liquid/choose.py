@@ -144,7 +144,7 @@ def choose_all(machines: Sequence[Prepared]) -> list[Choice]:
 def models_of(scene: Scene) -> tuple[str, ...]:
     """Names of the liquid models that may answer a scene at some speed."""
     if is_cut(scene):
-        return ("fem",)
+        return (_beginning(scene),)
     return ("linear", "statics") if scene.model.liquid == "auto" else (_beginning(scene),)
 
 
@@ -152,8 +152,8 @@ def _beginning(scene: Scene) -> str:
     """The model that answers first: dearer ones begin with the exact equilibrium, or with compartments."""
     if scene.model.liquid not in LIQUID_MODELS:
         return scene.model.liquid
-    if is_cut(scene):
-        return "fem"
+    if is_cut(scene):  # at rest in the drum each compartment keeps its volume: a mass in closed form
+        return "fem" if scene.model.liquid == "fem" else "linear"
     if scene.model.liquid == "potential":  # a circle with the spin is one of small waves too, at any height
         return "linear"
     dear = scene.model.liquid == "long_wave" or by_elements(scene)
@@ -212,12 +212,12 @@ differently in two directions"
         if (away := rest_offset(section, area)) > _BALANCED * fill.surface_radius:
             allowed = f"balanced about the axis: the liquid at rest would lie {away:.3g} m off it"
             raise InputError(f"chambers.{k}.section", section.name, allowed)
-    if is_cut(scene) and scene.model.liquid not in ("auto", "fem"):
+    if is_cut(scene) and scene.model.liquid not in ("auto", "linear", "fem"):
         drawn = any(fill.chamber.section is not None for fill in scene.fills)
         if drawn or scene.model.liquid != "long_wave":
             allowed = (
-                "auto or fem where baffles cut the liquid into compartments (or long_wave), or the section "
-                "is no circle"
+                "auto, linear or fem where baffles cut the liquid into compartments (or long_wave), or the "
+                "section is no circle"
             )
             raise InputError("model.liquid", scene.model.liquid, allowed)
 
@@ -346,9 +346,7 @@ def _choice(machine: Prepared, linear: LinearError, gravity: GravityError) -> Ch
     enough = linear.wet & (linear.worst <= tolerance)
     cut = is_cut(scene)
     own = machine.waves if isinstance(machine.waves, CheckedModel) else None
-    small = (
-        "fem" if cut or liquid == "fem" else "kdv" if liquid == "kdv" else "linear" if own is None else liquid
-    )
+    small = liquid if own is not None or liquid in ("fem", "kdv") else "linear"
     if cut or liquid != "auto":
         enough = np.full(speed.shape, liquid != "statics")
     models = np.where(enough, small, "statics")

@@ -8,14 +8,16 @@ order of convergence where a flow turns round it.
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 
 from meshes.arrays import Array, Indices
 from meshes.baffles import Baffles
 from meshes.errors import InputError, require_few_nodes, require_positive
-from meshes.liquid_section import LiquidSection, liquid_section
+from meshes.liquid_section import SIDES, LiquidSection, liquid_section
 from meshes.rings.triangles import open_slits
 
 # Distances from the edge of a baffle grow as this power of the cell's number. The flow there goes as the root
@@ -55,10 +57,85 @@ def ring(
     for name, value in (("towards_surface", towards_surface), ("towards_wall", towards_wall)):
         if not 1.0 <= value <= 6.0:
             raise InputError(name, value, "1 to 6")
+    towards = towards_surface, towards_wall
+    radii, angles, span = _layout(radius, surface_radius, around, across, order, baffles, times, towards)
+    points, cells = _grid(radii, angles, order)
+    if span is not None and baffles is not None:
+        sides = _baffle_sides(radii, span, baffles.count, len(angles) - 1, order)
+        points, cells = open_slits(points, cells, sides)
+    return liquid_section(points, cells, surface_radius)
+
+
+@dataclass(frozen=True, eq=False)
+class RingSector:
+    """The liquid between two neighbouring baffles of a ring, the first of them at angle 0."""
+
+    section: LiquidSection  #: of the sector alone; its walls are the ring's and the sides of both baffles
+    rays: Indices  #: nodes on the first baffle's ray and those opposite on the second one's, shape (P, 2)
+    baffle: NDArray[np.bool_]  #: whether those stand on the baffles, shape (P,)
+    free: bool  #: the baffles stand free of the wall
+    edges: Array  #: where baffles end in the liquid, shape (E, 2), m
+
+
+def ring_sector(
+    radius: float, surface_radius: float, around: int, across: int, baffles: Baffles
+) -> RingSector:
+    """One sector of the `ring` with baffles, of the same cells with nine nodes."""
+    _check(radius, surface_radius, around, across, 2, 1)
+    radii, angles, span = _layout(radius, surface_radius, around, across, 2, baffles, 1, (1.0, 1.0))
+    if span is None:
+        raise InputError("baffles", baffles.tip_radius, "in the liquid")
+    columns = (len(angles) - 1) // baffles.count
+    points, cells = _grid(radii, angles[: columns + 1] - baffles.first_angle, 2, turns=False)
+    inner, outer = (int(np.argmin(np.abs(radii - r))) for r in span)
+    rows = cells.reshape(len(radii) - 1, columns, 9)
+    first, wall, last, surface = (
+        rows[part][..., side]
+        for part, side in zip(
+            ((slice(inner, outer), 0), (-1,), (slice(inner, outer), -1), (0,)), SIDES[9], strict=True
+        )
+    )
+    width = 2 * columns + 1
+    ray = np.arange(2 * len(radii) - 1) * width
+    on = (np.arange(ray.size) >= 2 * inner) & (np.arange(ray.size) <= 2 * outer)
+    free = span[1] < radius
+    piece = np.repeat([0, 1], [len(wall), 2 * len(first)]) if free else np.zeros(len(wall) + 2 * len(first))
+    edges = [r for r in span if surface_radius < r < radius]
+    turn = 2.0 * math.pi / baffles.count
+    return RingSector(
+        section=LiquidSection(
+            points=points,
+            cells=cells,
+            surface=surface,
+            wall=np.concatenate([wall, first, last]),
+            wall_piece=piece.astype(np.int64),
+            fixed_piece=np.array([True, False])[: 1 + free],
+            surface_radius=surface_radius,
+        ),
+        rays=np.stack([ray, ray + width - 1], axis=1),
+        baffle=on,
+        free=free,
+        edges=np.array([(r * math.cos(t), r * math.sin(t)) for r in edges for t in (0.0, turn)]).reshape(
+            -1, 2
+        ),
+    )
+
+
+def _layout(
+    radius: float,
+    surface_radius: float,
+    around: int,
+    across: int,
+    order: int,
+    baffles: Baffles | None,
+    times: int,
+    towards: tuple[float, float],
+) -> tuple[Array, Array, tuple[float, float] | None]:
+    """Radii of the circles of cells, angles of the rays, and the radii between which baffles are wet."""
     span = baffles.wetted_span(radius, surface_radius) if baffles else None
     edges = [edge for edge in span or () if surface_radius < edge < radius]
     power = _POWER[order] if edges else 1.0
-    stops = [(surface_radius, towards_surface), *((edge, power) for edge in edges), (radius, towards_wall)]
+    stops = [(surface_radius, towards[0]), *((edge, power) for edge in edges), (radius, towards[1])]
     marks = [(math.log(r / surface_radius), grade) for r, grade in stops]
     log_radii = _circles(marks, across, times, power)
     depth, gap = marks[-1][0], min(np.diff([mark for mark, _ in marks]))
@@ -66,11 +143,7 @@ def ring(
     require_few_nodes("around", around, len(log_radii) * len(angles) * order**2)
     radii = surface_radius * np.exp(log_radii)
     radii[0], radii[-1] = surface_radius, radius
-    points, cells = _grid(radii, angles, order)
-    if span is not None and baffles is not None:
-        sides = _baffle_sides(radii, span, baffles.count, len(angles) - 1, order)
-        points, cells = open_slits(points, cells, sides)
-    return liquid_section(points, cells, surface_radius)
+    return radii, angles, span
 
 
 def _baffle_sides(radii: Array, span: tuple[float, float], count: int, around: int, order: int) -> Indices:
@@ -130,17 +203,17 @@ def _between(count: int, rise: float, fall: float) -> Array:
     return np.asarray(np.power(t, rise) if fall == 1.0 else 1.0 - np.power(1.0 - t, fall))
 
 
-def _grid(radii: Array, angles: Array, order: int) -> tuple[Array, Indices]:
-    """Nodes circle by circle from the surface outwards, and cells."""
+def _grid(radii: Array, angles: Array, order: int, turns: bool = True) -> tuple[Array, Indices]:
+    """Nodes circle by circle from the surface outwards, and cells; a last angle is the first if it turns."""
     if order == 2:
         middle = np.sqrt(radii[1:] * radii[:-1])
         radii = np.append(np.stack([radii[:-1], middle], axis=1).ravel(), radii[-1])
         between = 0.5 * (angles[1:] + angles[:-1])
         angles = np.append(np.stack([angles[:-1], between], axis=1).ravel(), angles[-1])
-    r, angle = np.meshgrid(radii, angles[:-1], indexing="ij")
+    r, angle = np.meshgrid(radii, angles[:-1] if turns else angles, indexing="ij")
     points = np.stack([r * np.cos(angle), r * np.sin(angle)], axis=-1).reshape(-1, 2)
-    turn = len(angles) - 1
-    i, j = np.meshgrid(np.arange(0, len(radii) - 1, order), np.arange(0, turn, order), indexing="ij")
+    turn, last = r.shape[1], len(angles) - 1
+    i, j = np.meshgrid(np.arange(0, len(radii) - 1, order), np.arange(0, last, order), indexing="ij")
     places = [(0, 0), (order, 0), (order, order), (0, order)]
     places += [(1, 0), (2, 1), (1, 2), (0, 1), (1, 1)] if order == 2 else []
     nodes = [((i + out) * turn + (j + on) % turn).ravel() for out, on in places]

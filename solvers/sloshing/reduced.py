@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -22,6 +23,7 @@ from meshes.chamber_section import ChamberSection, liquid_of
 
 if TYPE_CHECKING:
     from meshes.liquid_section import LiquidSection
+    from solvers.sloshing.sector import SectorSystem, Slip
     from solvers.sloshing.system import LiquidSystem
 
 # Slip at which the thickness of the layer at edges is taken, rad/s: twice as thick a layer changes the drag
@@ -31,6 +33,7 @@ _SLIP = 10.0
 # rest and the limit of very fast whirl.
 KEPT = (0.2 + 0.08j, 0.45 + 0.12j, 0.75 + 0.15j, 1.1 + 0.2j, 1.6 + 0.4j)
 _DISTINCT = 1e-10  # of a new answer that must stand across the others
+_TURN = np.array([[0.0, -1.0], [1.0, 0.0]])  # a quarter turn with the spin: multiplies by i
 
 
 @dataclass(frozen=True, eq=False)
@@ -199,12 +202,62 @@ def clear_ring(radius: float, surface_radius: float) -> ReducedLiquid:
     )
 
 
-@lru_cache(maxsize=256)
 def _baffled_ring(surface_radius: float, baffles: Baffles, cut: float) -> tuple[ReducedLiquid, Array]:
     """Of a ring of unit radius; the slowest waves to 4e-5 of their frequencies."""
+    if baffles.count < 3:  # which answer differently in two directions
+        return _few_baffles(surface_radius, baffles, cut)
+    liquid, slip = _sector(surface_radius, baffles)
+    return liquid, over_parts(slip.drag(cut))
+
+
+@lru_cache(maxsize=64)
+def _few_baffles(surface_radius: float, baffles: Baffles, cut: float) -> tuple[ReducedLiquid, Array]:
     from meshes.rings.quadrilaterals import ring
 
     return _reduced(ring(1.0, surface_radius, 64, 4, baffles=baffles), cut)
+
+
+@lru_cache(maxsize=256)
+def _sector(surface_radius: float, baffles: Baffles) -> tuple[ReducedLiquid, Slip]:
+    """Motions from one of three sectors and more, and what they do along the walls."""
+    from solvers.sloshing.sector import condense_sector
+
+    system = condense_sector(1.0, surface_radius, baffles)
+    motions = _driven(system)
+    gyration, surface = (motions.conj().T @ form @ motions for form in (system.gyration, system.surface))
+    p = system.moment @ motions
+    liquid = ReducedLiquid(
+        inertia=np.eye(2 * len(p)),
+        gyration=over_parts(0.5 * (gyration - gyration.conj().T)),
+        surface=over_parts(0.5 * (surface + surface.conj().T)),
+        moment=over_parts(p[None]),
+        motions=np.zeros((0, 2 * len(p))),
+        liquid_area=system.liquid_area,
+        enclosed_area=system.enclosed_area,
+    )
+    slip = system.slip(motions)
+    gc.collect(0)  # meshes and bases of scikit-fem refer to each other, a megabyte each time
+    return liquid, slip
+
+
+def _driven(system: SectorSystem) -> Complex:
+    """Motions of unit inertia that span the answers to a force in either sense, shape (m, k)."""
+    root = scipy.linalg.cholesky(system.inertia, lower=True)
+    half = scipy.linalg.solve_triangular(root, np.eye(len(root)), lower=True)
+    gyration, surface = (half @ form @ half.conj().T for form in (system.gyration, system.surface))
+    drive = half @ system.moment.conj()[:, None]
+    answers = [drive, np.linalg.solve(surface, drive)]
+    answers += [
+        np.linalg.solve(-s * s * np.eye(len(root)) + 2j * s * gyration + surface, drive)
+        for point in KEPT
+        for s in (point, -point.conjugate())
+    ]
+    return np.asarray(half.conj().T @ spanned(np.hstack(answers)))
+
+
+def over_parts(matrix: Any) -> Array:
+    """A complex matrix over real and imaginary parts, shape (r, m) to (2 r, 2 m)."""
+    return np.asarray(np.kron(matrix.real, np.eye(2)) + np.kron(matrix.imag, _TURN))
 
 
 @lru_cache(maxsize=256)

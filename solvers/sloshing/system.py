@@ -305,7 +305,7 @@ def condense(section: LiquidSection) -> LiquidSystem:
         gyration=0.5 * (gyration - gyration.T),
         surface=0.5 * (surface + surface.T),
         moment=np.asarray(parts.moment @ basis),
-        liquid_area=_area(section.points, np.concatenate([section.surface, section.wall])),
+        liquid_area=area_within(section.points, np.concatenate([section.surface, section.wall])),
         enclosed_area=_enclosed_area(section),
         circulations=constants.shape[1] + parts.submerged,
         unknowns=parts.count,
@@ -328,7 +328,7 @@ def surface_system(section: LiquidSection) -> SurfaceSystem:
         whole=parts.whole,
         moment=parts.moment,
         steady=parts.steady,
-        liquid_area=_area(section.points, np.concatenate([section.surface, section.wall])),
+        liquid_area=area_within(section.points, np.concatenate([section.surface, section.wall])),
         enclosed_area=_enclosed_area(section),
         circulations=parts.steady.shape[1] + parts.submerged,
         unknowns=parts.count,
@@ -398,7 +398,7 @@ def _parts(section: LiquidSection) -> _Parts:
         whole=csr_array(k[outside][:, outside]),
         gyration=csr_array(c[outside][:, outside]),
         surface=csr_array(b[outside][:, outside]),
-        moment=np.asarray((_moment(section) @ reduce)[:, outside]),
+        moment=np.asarray((moment_of(section) @ reduce)[:, outside]),
         steady=steady,
         pieces=pieces,
         submerged=int(np.count_nonzero(~section.fixed_piece) - np.count_nonzero(_piercing(section))),
@@ -468,7 +468,7 @@ def _differences(
     return rise, bend, give
 
 
-def _moment(section: LiquidSection) -> Array:
+def moment_of(section: LiquidSection) -> Array:
     """P = oint (x, y) v_theta dtheta, from the gyration matrix and the nodes' positions, shape (2, N)."""
     gyration, _ = surface_forms(section)
     return np.asarray((gyration.T @ section.points).T)
@@ -521,7 +521,7 @@ def _piercing(section: LiquidSection) -> NDArray[np.bool_]:
     return found & ~section.fixed_piece
 
 
-def _area(points: Array, sides: Indices) -> float:
+def area_within(points: Array, sides: Indices) -> float:
     """Area with those sides around it, on the left, m^2."""
     start, end = points[sides[:, 0]], points[sides[:, 1]]
     twice = _cross(start, end)
@@ -533,11 +533,11 @@ def _area(points: Array, sides: Indices) -> float:
 
 def _enclosed_area(section: LiquidSection) -> float:
     """Area of the liquid and of the dry middle; where a wall is dry it is taken to be straight, m^2."""
-    liquid = _area(section.points, np.concatenate([section.surface, section.wall]))
+    liquid = area_within(section.points, np.concatenate([section.surface, section.wall]))
     start, end = section.points[section.surface[:, 0]], section.points[section.surface[:, 1]]
     order = np.argsort(-np.arctan2(end[:, 1], end[:, 0]), kind="stable")
     across = 0.5 * float(_cross(end[order], start[np.roll(order, -1)]).sum())
-    return liquid - _area(section.points, section.surface) - across
+    return liquid - area_within(section.points, section.surface) - across
 
 
 def _cross(first: Array, other: Array) -> Array:

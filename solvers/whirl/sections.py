@@ -9,7 +9,8 @@ grow most are followed, each with its own frequency.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -28,7 +29,7 @@ Placed = tuple[float, SectionLayer]
 
 _TURN = np.array([[0.0, -1.0], [1.0, 0.0]])  # a quarter turn with the spin: multiplies by i
 _ALIKE = 1e-3  # of the answer, that may go in the other sense: what an uneven mesh makes of even walls
-_DISTINCT = 1e-7  # of an answer that must stand across the others
+_DISTINCT = 1e-3  # of an answer that must stand across the others: waves slower than the spin to 3e-5
 _SLOW = 0.3  # frequency of slow waves over the spin
 _FOLLOWED = 6  # modes at a speed whose laminar friction is computed at their own frequency
 _STEPS = 30
@@ -38,7 +39,8 @@ _SHARE = 1e-7  # of the spin: how far left of the mode that grows most the other
 _ASIDE = 1e-4  # of the spin: how far left of that the others start at least
 _SAME = 1e-9  # of the spin: modes as near as that are one
 _GONE = -1e300  # lambda of a mode that there is not, 1/s
-_BLOCK = 96  # points whose matrices fit the processor's cache
+_FEW = 48  # matrices of a mode that are solved at once
+_BLOCK = 512  # points whose matrices fit the processor's cache
 _RESOLVED = 1e-11  # of the frequencies, below which growth is rounding
 
 
@@ -133,13 +135,18 @@ def drum_modes(rotor: Jeffcott, layers: Sequence[SectionLayer], speed: Array) ->
         change = _mixed(_shears(root, speed[owner])[1], laminar)
         return np.asarray(2.0 * root[:, None, None] * mass + every_damping[owner] + change)
 
+    def log_determinant(root: Complex, owner: Index) -> Complex:
+        unit, size = np.linalg.slogdet(matrix(root, owner))
+        return np.asarray(size + 1j * np.angle(unit))
+
     def every(owner: Index) -> Complex:
         return drum_roots(plain.at(owner), walls, speed[owner])
 
     fastest = _fastest(started, system.mass, system.laminar)
     slip, tips = np.abs(started.imag), np.outer(speed, [0.0, 2.0])
     return most_growing(
-        MostGrowing(started, slowly, slip, circles, matrix, slope, every, tips, fastest), speed
+        MostGrowing(started, slowly, slip, circles, matrix, slope, log_determinant, every, tips, fastest),
+        speed,
     )
 
 
@@ -170,6 +177,7 @@ class MostGrowing:
     #: T(lambda), and its derivative, shape (k, N, N), at points, (k,), of the speeds they belong to, (k,)
     matrix: Callable[[Complex, Index], Complex]
     slope: Callable[[Complex, Index], Complex]
+    log_determinant: Callable[[Complex, Index], Complex]  #: log det T, but for turns of its phase, shape (k,)
     #: all lambda at some of the speeds, nan in place of some, shape (k, m) from (k,)
     every: Callable[[Index], Complex]
     tips: Array  #: imaginary parts of the ends of the cuts of T, rad/s, shape (n, 2)
@@ -230,8 +238,7 @@ def _told(
         found = np.empty(points.shape, dtype=complex)
         for first in range(0, points.size, _BLOCK):
             part = slice(first, first + _BLOCK)
-            unit, size = np.linalg.slogdet(search.matrix(points[part], at[owner[part]]))
-            found[part] = size + 1j * np.angle(unit)
+            found[part] = search.log_determinant(points[part], at[owner[part]])
         return found
 
     # Two starts may lead to one mode.
@@ -287,6 +294,17 @@ def _followed(
     From starts above the real axis.
     """
     root, owner = start.astype(complex).ravel(), np.repeat(at, start.shape[1])
+    found = np.zeros(root.shape, dtype=bool)
+    for first in range(0, root.size, _FEW):
+        part = slice(first, first + _FEW)
+        root[part], shape[part], found[part] = _by_newton(search, root[part], owner[part], shape[part])
+    return root.reshape(start.shape), shape.reshape(*start.shape, shape.shape[-1]), found.reshape(start.shape)
+
+
+def _by_newton(
+    search: MostGrowing, root: Complex, owner: Index, shape: Complex
+) -> tuple[Complex, Complex, Flags]:
+    """See `_followed`, of a few modes whose matrices fit the processor's cache, shape (k,)."""
     on, found = np.arange(root.size), np.zeros(root.shape, dtype=bool)
     for _ in range(_STEPS):
         # A mode met to rounding makes the matrix singular to rounding, which is wanted; so little away it is
@@ -304,7 +322,7 @@ def _followed(
         on = on[~settled]
         if on.size == 0:
             break
-    return root.reshape(start.shape), shape.reshape(*start.shape, shape.shape[-1]), found.reshape(start.shape)
+    return root, shape, found
 
 
 @dataclass(frozen=True, eq=False)
@@ -385,6 +403,7 @@ class StandingMatrices:
     stiffness: Array
     laminar: Array  #: of `CircleLayer`, times the density, shape (3, N, N)
     quarter: Array  #: multiplies the liquid's complex coordinates by i, shape (N, N)
+    circles: tuple[tuple[float, CircleLayer], ...]  #: layers and their planes
 
 
 def standing_matrices(system: RotorSystem, layers: Sequence[Placed], speed: Array) -> StandingMatrices:
@@ -419,7 +438,7 @@ def standing_matrices(system: RotorSystem, layers: Sequence[Placed], speed: Arra
         )
         laminar[:, own, own] = circle.density * np.array([_real(part) for part in circle.laminar])
         quarter[own, own] = turn
-    return StandingMatrices(mass, damping, stiffness, laminar, quarter)
+    return StandingMatrices(mass, damping, stiffness, laminar, quarter, tuple(circles))
 
 
 def standing_modes(system: RotorSystem, layers: Sequence[Placed], speed: Array) -> SystemModes:
@@ -472,8 +491,63 @@ def standing_modes(system: RotorSystem, layers: Sequence[Placed], speed: Array) 
         return standing_roots(plain.at(owner), np.asarray(drags, dtype=complex), speed[owner])
 
     fastest, tips = _fastest(started, found.mass, found.laminar), np.outer(speed, [1.0, 3.0])
+    condensed = partial(standing_determinant, system, found, speed)
     return most_growing(
-        MostGrowing(started, slowly, slip, circles, matrix, slope, every, tips, fastest), speed
+        MostGrowing(started, slowly, slip, circles, matrix, slope, condensed, every, tips, fastest), speed
+    )
+
+
+def standing_determinant(
+    system: RotorSystem, found: StandingMatrices, speed: Array, root: Complex, owner: Index
+) -> Complex:
+    """log det T(lambda) at points, shape (k,), each layer eliminated in its own circles.
+
+    A circle with the spin and one against it do not mix, and each acts on the rotor by one number
+    [theory: sections, eq. 12]; the phase but for whole turns.
+    """
+    count, spin = len(system.coordinates), speed[owner]
+    own = slice(0, count)
+    rotor = np.asarray(np.square(root) * found.mass[own, own, None], dtype=complex)
+    rotor += root * np.moveaxis(found.damping[owner, own, own], 0, -1)
+    rotor += np.moveaxis(found.stiffness[owner, own, own], 0, -1)
+    total = np.zeros(root.shape, dtype=complex)
+    known: list[tuple[CircleLayer, Any]] = []
+    for plane, circle in found.circles:
+        same = [answer for other, answer in known if _same_circle(circle, other)]
+        answers = same[0] if same else _circle_answers(circle, root, spin)
+        known += [] if same else [(circle, answers)]
+        at = system.at(plane)
+        for sense, (log_size, answer) in zip((-1j, 1j), answers, strict=True):
+            pull = at.T @ np.array([1.0, sense]) / np.sqrt(2.0)
+            rotor -= np.square(np.square(root)) * answer * np.outer(pull, pull.conj())[..., None]
+            total += log_size
+    unit, size = np.linalg.slogdet(np.moveaxis(rotor, -1, 0))
+    return np.asarray(total + size + 1j * np.angle(unit))
+
+
+def _circle_answers(circle: CircleLayer, root: Complex, spin: Array) -> list[tuple[Complex, Complex]]:
+    """log det of a layer's motions and what they answer, rho p L^-1 p*, with the spin and against it."""
+    from solvers.whirl.elimination import eliminated
+
+    found, m = [], len(circle.moment)
+    parts = np.stack([np.eye(m), circle.gyration, circle.surface, *circle.laminar])
+    for sense in (-1j, 1j):
+        slip = root + sense * spin
+        steady = np.stack([slip * (slip + circle.rate), 2.0 * spin * slip, np.square(spin)])
+        weights = np.concatenate([steady, _shears(slip, spin)[0]])
+        shown, moment = (parts, circle.moment) if sense == -1j else (parts.conj(), circle.moment.conj())
+        bordered = np.zeros((root.size, m + 1, m + 1), dtype=complex)
+        bordered[:, :m, :m] = (weights.T @ shown.reshape(len(parts), -1)).reshape(-1, m, m)
+        bordered[:, m, :m], bordered[:, :m, m] = moment, moment.conj()
+        size, left = eliminated(bordered)
+        found.append((np.asarray(size + m * np.log(circle.density)), -circle.density * left))
+    return found
+
+
+def _same_circle(one: CircleLayer, other: CircleLayer) -> bool:
+    """Whether two layers are alike to the last digit."""
+    return all(
+        np.array_equal(getattr(one, part.name), getattr(other, part.name)) for part in fields(CircleLayer)
     )
 
 

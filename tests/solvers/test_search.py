@@ -202,7 +202,7 @@ def test_an_interrupt_ends_the_search_with_what_it_has() -> None:
         solve(judge, 1)
 
 
-@kills("solvers.search:_Log.__call__", "(points.copy(), ", "(points, ")
+@kills("solvers.search:_Log._keep", "(rows.copy(), ", "(rows, ")
 @pytest.mark.parametrize("count", [1, 2, 3])
 def test_what_is_kept_is_what_was_judged(count: int) -> None:
     """Every point with its own value: steps go on from arrays that were judged before."""

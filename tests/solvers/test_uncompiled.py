@@ -12,7 +12,7 @@ import pytest
 ROOT = Path(__file__).parents[2]
 
 
-@pytest.mark.parametrize("folder", ["layer", "runup", "statics"])
+@pytest.mark.parametrize("folder", ["layer", "runup", "statics", "whirl"])
 def test_compiled_lines_are_held_by_oracles(folder: str) -> None:
     files = [str(file) for file in sorted((ROOT / "tests/solvers" / folder).glob("uncompiled_*.py"))]
     assert files

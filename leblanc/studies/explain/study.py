@@ -111,8 +111,35 @@ def explain_scene(scene: Scene) -> ExplainAnswer:
 
 def _grown(machine: Prepared, choice: Choice) -> tuple[Choice, Array]:
     """The choice with what it takes to hold waves in time, and the growth of small whirls at each speed."""
-    growth = asynchronous_growth(machine.rotor, machine.scene.fills, machine.speed, machine.waves)[0]
+    growth = _growth(machine)
     return costed(machine, choice, growth), growth
+
+
+_FEW = 17  # speeds at which small whirls among baffles are looked at first
+
+
+def _growth(machine: Prepared) -> Array:
+    """Growth of the fastest-growing small whirl at each speed, 1/s, as the cost of holding asks for it.
+
+    Among baffles, where waves take finite elements, at a few speeds and where its sign changes between them;
+    elsewhere between those. A narrower band is left to `run`.
+    """
+    speed, fills = machine.speed, machine.scene.fills
+    if speed.size <= _FEW or not any(fill.uneven for fill in fills):
+        return asynchronous_growth(machine.rotor, fills, speed, machine.waves)[0]
+    found, looked = np.full(speed.size, np.nan), np.zeros(speed.size, dtype=bool)
+    at = np.unique(np.round(np.linspace(0, speed.size - 1, _FEW)).astype(np.intp))
+    while at.size:
+        found[at] = asynchronous_growth(machine.rotor, fills, speed[at], machine.waves)[0]
+        looked[at] = True
+        have = np.flatnonzero(looked)
+        grows = found[have] > 0.0
+        apart = (np.diff(have) > 1) & (grows[1:] != grows[:-1])
+        at = (have[:-1] + have[1:])[apart] // 2
+    known = np.flatnonzero(looked & ~np.isnan(found))
+    if known.size == 0:
+        return found
+    return np.where(looked, found, np.interp(np.arange(speed.size), known, found[known]))
 
 
 def _bands(machine: Prepared) -> Bands:

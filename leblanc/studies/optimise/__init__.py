@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Annotated, Any
 
 from leblanc.core.question import FILE, SCENE, Option, Quantity, ask
-from leblanc.core.units import LENGTH
+from leblanc.core.units import LENGTH, TIME
 
 if TYPE_CHECKING:
     from leblanc.studies.optimise.answer import OptimumAnswer
@@ -45,6 +45,13 @@ def optimise(
         "Processes that evaluate designs of balls where one takes its time [default: all cores].",
     ] = 1,
     front: Annotated[bool, "Leave out the trade-off (Pareto front)."] = True,
+    max_evaluations: Annotated[
+        int | None,
+        "Evaluations at most: the answer is then the best so far, and says so [default: any number].",
+    ] = None,
+    timeout: Annotated[
+        Quantity | None, TIME, "Time that the search may take, likewise, e.g. 60 s [default: any]."
+    ] = None,
     progress: Callable[[float, float], None] | None = None,
 ) -> OptimumAnswer | LayoutAnswer | BallDesignAnswer:
     """Best volume(s), balls, or layout of a tub's mounts, for an objective. Figures, data file, report.

@@ -371,6 +371,7 @@ class OptimumAnswer(Best):
     ] = None
     #: from the keyboard; the answer is the best of what was tried until then
     interrupted: Annotated[bool, Q(name="ended before its time")] = False
+    stopped: Annotated[str, Q(name="limit that ended the search", data=False)] = ""  #: likewise
 
     @property
     def candidate(self) -> Annotated[Array, Q("1", "candidate", over=_TRIED, json=False)]:
@@ -511,6 +512,8 @@ class OptimumAnswer(Best):
         found = [self.exceeded_check()]
         if self.interrupted:
             found.append(check("Interrupted", "see the notes", True))
+        if self.stopped:
+            found.append(check("Ended by a limit", self.stopped, True))
         found.append(check("A small whirl grows when operating", grows, lost or self.growth > 0.0))
         machine = [] if self.response is None else checks(self.response)
         return [*found, *machine]

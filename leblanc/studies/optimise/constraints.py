@@ -257,6 +257,6 @@ def require_known_walls(scene: Scene, task: Optimisation, low: Array, high: Arra
             text = f"{cells} or more, {FEWEST_CELLS} in each of {baffles.count} compartments; {where}"
             table = "runup" if scene.programme is None else "programme"
             raise InputError(f"{table}.cells", plan.cells, text)
-        if scene.model.liquid not in ("auto", "fem", "long_wave"):
-            text = f"auto or fem where baffles cut the liquid into compartments; {where}"
+        if scene.model.liquid not in ("auto", "linear", "fem", "long_wave"):
+            text = f"auto, linear or fem where baffles cut the liquid into compartments; {where}"
             raise InputError("model.liquid", scene.model.liquid, text)

@@ -268,5 +268,5 @@ def with_volumes(scene: Scene, volumes: Array) -> Scene:
 
 
 def model_name(scene: Scene) -> str:
-    """Liquid model that answers for a scene's volumes: finite elements where baffles cut the liquid."""
-    return "fem" if is_cut(scene) else scene.model.liquid
+    """Liquid model that answers for a scene's volumes: linear theory where baffles cut the liquid."""
+    return "linear" if is_cut(scene) and scene.model.liquid != "fem" else scene.model.liquid

@@ -86,7 +86,7 @@ def parted(chamber: int, count: int, volume: float) -> Note:
     """Baffles cut the liquid of a chamber into compartments up to some volume, m^3."""
     text = (
         f"Chamber {chamber + 1}: below {with_unit(volume, VOLUME)} its {count} baffles cut the liquid into "
-        "compartments. There the steady answer is that of finite elements for small deflections, with an "
+        "compartments. There the steady answer is that of linear theory for small deflections, with an "
         "error that is not known."
     )
     return Note(OptimumCode.PARTED, {"chamber": chamber, "count": count, "volume": volume}, text)
@@ -103,12 +103,16 @@ def no_liquid(by_mass: bool, forbidden: tuple[str, ...]) -> Note:
     return Note(OptimumCode.NO_LIQUID, {"by_mass": by_mass, "forbidden": list(forbidden)}, text)
 
 
-def interrupted(evaluations: int, what: str = "sets of volumes", searched: bool = False) -> Note:
-    """The search was interrupted after so many evaluations, or what comes after it was."""
-    text = f"INTERRUPTED after {evaluations} {what}: the best of them, not of all that would have been tried."
+def interrupted(
+    evaluations: int, what: str = "sets of volumes", searched: bool = False, limit: str = ""
+) -> Note:
+    """The search was ended after so many evaluations, by a signal or a limit, or what comes after it was."""
+    why = f"STOPPED by the limit of {limit}" if limit else "INTERRUPTED"
+    text = f"{why} after {evaluations} {what}: the best of them, not of all that would have been tried."
     if searched:
-        text = "INTERRUPTED after the search was done: the best volumes stand, the front is missing."
-    return Note(OptimumCode.INTERRUPTED, {"evaluations": evaluations, "searched": searched}, text)
+        text = f"{why} after the search was done: the best volumes stand, the front is missing."
+    data = {"evaluations": evaluations, "searched": searched} | ({"limit": limit} if limit else {})
+    return Note(OptimumCode.INTERRUPTED, data, text)
 
 
 def emulated(answer: EmulatedAnswer) -> Note:

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from leblanc.core.interrupts import stopping
 from leblanc.core.progress import update
 from leblanc.liquid.choose import axial_gravity
 from leblanc.scene.scene import JeffcottRotor, Scene, jeffcott
@@ -15,7 +16,7 @@ from leblanc.studies.optimise.objectives import Passages, PeakOver
 from leblanc.studies.optimise.problem import Problem
 from meshes.arrays import Array
 from meshes.errors import InputError
-from solvers.search import Found, Judgement, SearchPlan, best_of, joined, search
+from solvers.search import Budget, Enough, Found, Judgement, SearchPlan, best_of, search
 from solvers.statics.hydrostatics import wall_volumes
 
 # Where an answer costs tens of milliseconds and more.
@@ -36,6 +37,7 @@ _FEW = SearchPlan(
 )
 # Sets of volumes at once where an answer costs much: all together cost less, but nobody hears of them.
 _AT_ONCE, _RUNUPS = 16, 4
+_DIGITS = 8  # binary ones of volumes, where each new one costs much
 _CLOSER = 6  # of the best that a cheaper vibration found are evaluated again
 
 
@@ -56,15 +58,17 @@ def bounds_of(scene: Scene, task: Optimisation) -> tuple[Array, Array]:
     return low, np.minimum(high, capacity)
 
 
-def best_volumes(scene: Scene, problem: Problem, low: Array, high: Array, part: float = 1.0) -> Found:
+def best_volumes(
+    scene: Scene, problem: Problem, low: Array, high: Array, part: float = 1.0, budget: Budget | None = None
+) -> Found:
     """Best volumes for a problem, a search that is a part of the whole work."""
     costly = _AT_ONCE if problem.runs is None else _RUNUPS
-    count, done = 0, 0.0
+    count, done, budget, slow = 0, 0.0, budget or Budget(), slowed_by(scene)
 
     def say(more: int) -> None:
         nonlocal count
         count += more
-        update(done, 1.0, f"{count} sets of volumes evaluated")
+        update(done, 1.0, f"{count} sets{slow}" if slow else f"{count} sets of volumes evaluated")
 
     def stage(share: float) -> None:
         nonlocal done
@@ -72,15 +76,26 @@ def best_volumes(scene: Scene, problem: Problem, low: Array, high: Array, part: 
         say(0)
 
     def judge(volumes: Array) -> Judgement:
-        few = costly if problem.costly else volumes.shape[0]
-        parts = []
-        for first in range(0, volumes.shape[0], few):
-            parts.append(problem.evaluate(volumes[first : first + few]))
-            say(parts[-1].objective.size)
-        return joined(parts)
+        allowed = budget.take(volumes.shape[0])
+        said = problem.evaluate(volumes[:allowed])
+        say(allowed)
+        if allowed < volumes.shape[0]:
+            raise Enough(budget.words, said)
+        return said
 
     starts, alike = _starts(scene, problem, low.size), _alike(scene, low, high)
-    return search(judge, low, high, problem.density, starts, alike, plan_of(problem), stage)
+    plan = plan_of(problem)
+    if problem.costly:
+        # Finite elements of each new fill: volumes that no answer tells apart are one.
+        plan = replace(plan, at_once=costly, digits=_DIGITS if slow else 0)
+    with stopping():
+        return search(judge, low, high, problem.density, starts, alike, plan, stage)
+
+
+def slowed_by(scene: Scene) -> str:
+    """What makes an answer slow, after a colon; empty where nothing does."""
+    counts = [fill.chamber.baffles.count for fill in scene.fills if fill.chamber.baffles is not None]
+    return f": {max(counts)} baffles by finite elements" if counts else ""
 
 
 def plan_of(problem: Problem) -> SearchPlan:

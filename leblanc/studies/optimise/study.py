@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from fluid.whirl import is_full
 from leblanc.core.answer import Answer
+from leblanc.core.interrupts import stopping
 from leblanc.core.notes import Note
 from leblanc.core.progress import update
 from leblanc.core.units import in_rpm
@@ -47,7 +48,14 @@ from leblanc.studies.optimise.problem import (
     working_speed,
 )
 from leblanc.studies.optimise.robust import Robust, condition_table
-from leblanc.studies.optimise.search import best_volumes, bounds_of, evaluated_again, on_all_cells, plan_of
+from leblanc.studies.optimise.search import (
+    best_volumes,
+    bounds_of,
+    evaluated_again,
+    on_all_cells,
+    plan_of,
+    slowed_by,
+)
 from leblanc.studies.optimise.wetting import optimal_volume_by_search, wetting_volumes
 from leblanc.studies.run.study import run_scene
 from leblanc.studies.sweep.emulator import Emulator, emulate_store, varied_fields
@@ -55,7 +63,7 @@ from leblanc.studies.sweep.store import read_store
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
 from solvers.liquid_model import LONG
-from solvers.search import Found, Judgement, SearchPlan
+from solvers.search import Budget, Enough, Found, Judgement, SearchPlan
 from solvers.statics.hydrostatics import equilibrium
 
 _ASKED = "the scene asks for it; "
@@ -74,6 +82,8 @@ def answer(
     emulator: Path | None,
     workers: int,
     front: bool,
+    max_evaluations: int | None,
+    timeout: float | None,
 ) -> Answer:
     """Best volumes, balls where the scene has them, or layout of mounts, for its task with what is given."""
     if objective is not None and objective not in OBJECTIVES:
@@ -83,6 +93,11 @@ def answer(
             raise InputError(name, length, "from 1e-12 to 1000 m")
     if seed is not None and seed < 0:
         raise InputError("seed", seed, "a whole number, 0 or above")
+    if max_evaluations is not None and max_evaluations < 1:
+        raise InputError("max_evaluations", max_evaluations, "a whole number, 1 or above")
+    if timeout is not None and not 0.0 < timeout < 1e9:
+        raise InputError("timeout", timeout, "above 0 s")
+    budget = Budget(max_evaluations, timeout)
     given = {"objective": objective, "deflection": deflection, "vibration_limit": limit, "seed": seed}
     task = scene.optimise or Optimisation()
     task = task.altered(**{name: value for name, value in given.items() if value is not None})
@@ -90,15 +105,18 @@ def answer(
     if task.objective == "layout":
         from leblanc.studies.optimise.layout.study import optimise_layout
 
+        for name, most in (("max_evaluations", max_evaluations), ("timeout", timeout)):
+            if most is not None:
+                raise InputError(name, most, "left out for a layout, which takes some seconds")
         return optimise_layout(scene, task)
     if scene.balls:
         from leblanc.studies.optimise.balls.study import optimise_balls
 
         if emulator is not None:
             raise InputError("emulator", str(emulator), "left out with balls, whose designs it does not know")
-        return optimise_balls(scene, task, workers)
+        return optimise_balls(scene, task, workers, budget)
     surrogate = None if emulator is None else emulated_vibration(emulator, scene, task)
-    return optimise_scene(scene, task=task, front=front, emulator=surrogate)
+    return optimise_scene(scene, task=task, front=front, emulator=surrogate, budget=budget)
 
 
 def optimise_scene(
@@ -108,12 +126,13 @@ def optimise_scene(
     front: bool = True,
     emulator: EmulatedVibration | None = None,
     response: bool = True,
+    budget: Budget | None = None,
 ) -> OptimumAnswer:
     """Best volume for each chamber of a scene; its own volumes do not matter.
 
     Not feasible where no volumes meet the constraints: those that exceed them least are given then; the best
-    so far where the search is interrupted. The emulator is asked by the search in place of the solvers, which
-    then evaluate the best that it found.
+    so far where the search is interrupted or has spent its budget. The emulator is asked by the search in
+    place of the solvers, which then evaluate the best that it found.
     """
     task = task or scene.optimise or Optimisation()
     task = task if objective is None else task.altered(objective=objective)
@@ -133,10 +152,11 @@ def optimise_scene(
         return _with_response(result, scene, machine) if response else result
 
     stopped: list[Found] = []
+    budget = budget or Budget()
 
     def solve(problem: Problem) -> Found:
-        found = best_volumes(scene, problem, low, high)
-        stopped.extend([found] if found.interrupted else [])
+        found = best_volumes(scene, problem, low, high, budget=budget)
+        stopped.extend([found] if found.interrupted or found.stopped else [])
         return found
 
     problem = problem_of(scene, task, machine, solve)
@@ -144,7 +164,8 @@ def optimise_scene(
     if emulator is not None:
         low, high = emulator.inside(low, high, np.array([fill.volume for fill in scene.fills]))
         quick = replace(problem, vibration=emulator, estimated=True, costly=False)
-    chosen = stopped[0] if stopped else best_volumes(scene, quick, low, high, _SEARCH if front else 1.0)
+    part = _SEARCH if front else 1.0
+    chosen = stopped[0] if stopped else best_volumes(scene, quick, low, high, part, budget)
     if quick is not exact or stopped:
         chosen = evaluated_again(exact, chosen)
     result = _result(scene, task, exact, machine, chosen)
@@ -152,13 +173,16 @@ def optimise_scene(
         said = emulator.answer(chosen.point)
         result = replace(result, emulator=said, notes=(notes_of.emulated(said), *result.notes))
     speeds = growth_speeds(scene, task)
-    if front and not result.interrupted:
+    if front and not result.interrupted and not result.stopped:
         try:
-            edge, sweep = front_around(scene, problem, chosen, result.vibration, speeds)
+            with stopping():
+                edge, sweep = front_around(scene, problem, chosen, result.vibration, speeds, budget)
             result = replace(result, front=edge, sweep=sweep)
-        except KeyboardInterrupt:
-            note = notes_of.interrupted(result.evaluations, searched=True)
-            result = replace(result, interrupted=True, notes=(note, *result.notes))
+        except (KeyboardInterrupt, Enough) as why:
+            note = notes_of.interrupted(result.evaluations, searched=True, limit=str(why))
+            by_signal = isinstance(why, KeyboardInterrupt)
+            notes = note, *result.notes
+            result = replace(result, interrupted=by_signal, stopped=str(why), notes=notes)
     if isinstance(robust := exact.vibration, Robust):
         around = unbalances(scene, task)
         table = condition_table(
@@ -219,6 +243,7 @@ def _result(
         ),
         notes=(*_findings(problem, found), *problem.notes, *_limits(scene, problem, volume), *doubts(scene)),
         interrupted=found.interrupted,
+        stopped=found.stopped,
     )
 
 
@@ -234,8 +259,8 @@ def _exceeded(problem: Problem, said: Judgement) -> tuple[str, ...]:
 def _findings(problem: Problem, found: Found) -> Iterator[Note]:
     """What must be known of the answer: it was interrupted, or it is no liquid."""
     said = found.judged
-    if found.interrupted:
-        yield notes_of.interrupted(found.points.shape[0])
+    if found.interrupted or found.stopped:
+        yield notes_of.interrupted(found.points.shape[0], limit=found.stopped)
     if found.point.max() > 0.0 or not found.feasible:
         return
     better = said.details["vibration"] < found.objective * (1.0 - plan_of(problem).margin)
@@ -404,11 +429,11 @@ def not_dominated(values: Array) -> Flags:
 _SEARCH = 0.7  # share of the work that a search is where the front follows, as it comes on average
 _AT_ONCE = 8  # volumes of the front at once, where an answer costs much
 _SWEEP, _SPARING = 40, 12  # volumes of the dedicated sweep; where an answer costs much
-_MOST_IN_FRONT = 60  # of the points evaluated by the way
+_MOST_IN_FRONT, _FEW_IN_FRONT = 60, 12  # of the points evaluated by the way; where whirls cost much
 
 
 def front_around(
-    scene: Scene, problem: Problem, found: Found, vibration: float, speeds: Array
+    scene: Scene, problem: Problem, found: Found, vibration: float, speeds: Array, budget: Budget
 ) -> tuple[ParetoFront, ParetoFront]:
     """The trade-off (Pareto front) by rising mass, and the sweep from no liquid to the fullest chamber."""
     known = found.judged.details
@@ -420,17 +445,19 @@ def front_around(
     rows = [np.minimum(share[:, None] * room * along, high), found.point[None]]
     swept = np.unique(np.concatenate(rows), axis=0)
     exact = np.flatnonzero((known["sure"] == 1.0) & np.isfinite(known["vibration"]))
-    by_the_way = exact[_thin(known["vibration"][exact], known["mass"][exact])]
+    most = _FEW_IN_FRONT if slowed_by(scene) else _MOST_IN_FRONT
+    by_the_way = exact[_thin(known["vibration"][exact], known["mass"][exact], most)]
     volume = np.concatenate((swept, found.points[by_the_way]))
-    total, done = swept.shape[0] + volume.shape[0], 0
+    total, done, slow = swept.shape[0] + volume.shape[0], 0, slowed_by(scene)
 
     def each(value: Callable[[Array], Array], rows: Array) -> Array:
         nonlocal done
         values, few = [], _AT_ONCE if problem.costly else rows.shape[0]
         for first in range(0, rows.shape[0], few):
+            budget.look()
             values.append(value(rows[first : first + few]))
             done += values[-1].size
-            update(_SEARCH + (1.0 - _SEARCH) * done / total, 1.0, "trade-off")
+            update(_SEARCH + (1.0 - _SEARCH) * done / total, 1.0, f"trade-off{slow}")
         return np.concatenate(values)
 
     size = np.concatenate((each(problem.vibration.exact, swept), known["vibration"][by_the_way]))
@@ -444,15 +471,11 @@ def front_around(
     return edge, whole
 
 
-def _thin(vibration: Array, mass: Array) -> NDArray[np.intp]:
+def _thin(vibration: Array, mass: Array, most: int) -> NDArray[np.intp]:
     """Of the points that are not beaten in vibration and mass a few, evenly chosen."""
     kept = np.flatnonzero(not_dominated(np.stack((vibration, mass), axis=1)))
     kept = kept[np.argsort(mass[kept], kind="stable")]
-    return (
-        kept[np.unique(np.linspace(0, max(kept.size - 1, 0), _MOST_IN_FRONT).astype(int))]
-        if kept.size
-        else kept
-    )
+    return kept[np.unique(np.linspace(0, max(kept.size - 1, 0), most).astype(int))] if kept.size else kept
 
 
 class EmulatedVibration:

@@ -66,10 +66,12 @@ OF_MODELS = (RunCode.LIQUID_MODEL, RunCode.TOLERANCE_MISSED)
 def liquid_models(choice: Choice) -> Note | None:
     """How many speeds each model answers; None where the scene names the model."""
     if choice.cut:
-        if not np.any(choice.models == "fem"):
+        name = str(choice.models[0])
+        if name not in ("linear", "fem"):
             return None
-        text = "Liquid model: finite elements for small disturbances; their error is not estimated."
-        return Note(RunCode.LIQUID_MODEL, {"fem": choice.models.size}, text)
+        way = "finite elements" if name == "fem" else "linear theory of each compartment"
+        text = f"Liquid model: {way} for small disturbances; their error is not estimated."
+        return Note(RunCode.LIQUID_MODEL, {name: choice.models.size}, text)
     if choice.prescribed:
         return None
     held_model = choice.held_model

@@ -30,7 +30,7 @@ def area(points: np.ndarray, sides: np.ndarray) -> float:
 
 @kills("meshes.rings.quadrilaterals:_rays", "turns = baffles.first_angle", "turns = -baffles.first_angle")
 @kills(
-    "meshes.rings.quadrilaterals:ring",
+    "meshes.rings.quadrilaterals:_layout",
     "radii[0], radii[-1] = surface_radius, radius",
     "radii[-1] = 1.01 * radius",
 )

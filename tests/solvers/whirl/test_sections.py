@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import pytest
@@ -31,6 +32,7 @@ from solvers.sloshing.reduced import clear_ring, reduce_liquid, section_layer, s
 from solvers.sloshing.system import LiquidSystem, condense
 from solvers.statics.free_surface import solve_surface
 from solvers.synchronous.balance import backward_mass
+from solvers.whirl import sections
 from solvers.whirl.growth import asynchronous_growth, system_modes
 from solvers.whirl.sections import circle_layer, drum_matrices, drum_modes, standing_modes
 from tests.mutants import kills
@@ -351,6 +353,35 @@ def test_drum_frame_and_standing_frame_agree() -> None:
             most = np.where(modes.found, modes.root.real, -np.inf).max(axis=1)
             # The circles are told apart to 1e-7 of their size.
             np.testing.assert_allclose(most, drum_growth(fill, friction), atol=1e-6)
+
+
+@kills("solvers.whirl.sections:standing_determinant", "(-1j, 1j), answers", "(1j, -1j), answers")
+@kills("solvers.whirl.sections:standing_determinant", "total += log_size", "total = log_size")
+@kills("solvers.whirl.sections:_circle_answers", "m * np.log(circle.density)", "np.log(circle.density)")
+@kills("solvers.whirl.sections:_circle_answers", "(parts.conj(), circle", "(parts, circle")
+@kills("solvers.whirl.sections:_circle_answers", "slip * (slip + circle.rate)", "slip * slip")
+@kills("solvers.whirl.sections:_circle_answers", "-circle.density * left", "circle.density * left")
+@kills("solvers.whirl.sections:_same_circle", "return all(", "return any(")
+def test_layers_eliminated_one_by_one_leave_the_determinant(monkeypatch: pytest.MonkeyPatch) -> None:
+    """log det T of rotor and layers, by LAPACK on the whole matrix, to its rounding; two layers unlike."""
+    seen: list[Any] = []
+    monkeypatch.setattr(sections, "most_growing", lambda search, _: seen.append(search))
+    fills = [replace(HALF, volume=share * VOLUME) for share in (1.0, 1.4)]
+    # Laminar friction stands beside a linear rate here, though no law has both.
+    layers = [
+        (plane, replace(section_layer(fill, Friction("stokes")), rate=rate))
+        for plane, fill, rate in zip((0.1, -0.08, 0.02), (*fills, fills[0]), (0.4, 0.0, 0.4), strict=True)
+    ]
+    standing_modes(two_plane().system(), layers, SPIN)
+    chance = np.random.default_rng(4)
+    owner = chance.integers(0, SPIN.size, 300)
+    root = (chance.normal(0.0, 0.1, 300) + 1j * chance.uniform(0.0, 3.0, 300)) * SPIN[owner]
+    unit, size = np.linalg.slogdet(seen[0].matrix(root, owner))
+    off = seen[0].log_determinant(root, owner) - size - 1j * np.angle(unit)
+    turns = np.exp(1j * off.imag)
+    # Of N = 50 unknowns; the condition of T beside a mode takes up to four digits.
+    assert np.abs(off.real).max() < 1e-9 * np.abs(size).max()
+    assert np.abs(turns - 1.0).max() < 1e-9
 
 
 @kills("solvers.whirl.sections:standing_matrices", "pull = -circle.density", "pull = circle.density * 0.5")

@@ -118,6 +118,7 @@ class BallDesignAnswer(Best):
     response: BallsAnswer  #: what `run` says of the best balls
     #: from the keyboard; the best of what was tried until then
     interrupted: Annotated[bool, Q(name="ended before its time")]
+    stopped: Annotated[str, Q(name="limit that ended the search", data=False)] = ""  #: likewise
     notes: Annotated[tuple[Note, ...], Q(text="of the search")] = ()
 
     @property
@@ -230,6 +231,7 @@ class BallDesignAnswer(Best):
             self.exceeded_check(),
             check("No stable state where it works", "yes" if lost else "no", lost),
             check("Interrupted", "yes" if self.interrupted else "no", self.interrupted),
+            *([check("Ended by a limit", self.stopped, True)] if self.stopped else []),
         )
         head = "race", "balls", "mass of each (g)", "diameter (mm)", "drag (N s/m)", "path's radius (mm)"
         paste = [

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from leblanc.core.interrupts import stopping
 from leblanc.core.notes import Note
 from leblanc.core.progress import update
 from leblanc.liquid.validity import doubts
@@ -36,7 +37,7 @@ from leblanc.studies.optimise.balls.problem import (
 from leblanc.studies.processes import processes
 from meshes.arrays import Array
 from meshes.errors import InputError
-from solvers.search import evolve
+from solvers.search import Budget, Enough, evolve
 
 _MEMBERS, _GENERATIONS = 8, 40  # of the search: members a variable, generations at most
 _FEW_MEMBERS, _FEW_GENERATIONS = 5, 10  # where a design takes tenths of a second
@@ -64,6 +65,7 @@ class _Tried:
     problem: BallProblem  #: the search
     #: calls a function with every one of some points, as `map` does
     each: Callable[[Callable[[Array], Verdict], Iterable[Array]], Iterable[Verdict]]
+    budget: Budget  #: of evaluations and time
     share: float = 0.0  #: of the search done
     known: dict[bytes, Verdict] = field(default_factory=dict)
     points: list[Array] = field(default_factory=list)
@@ -77,11 +79,15 @@ class _Tried:
         """Verdicts on designs, in their order."""
         rows = [self.snapped(point) for point in points]
         new = list({row.tobytes(): row for row in rows if row.tobytes() not in self.known}.values())
-        for row, verdict in zip(new, self.each(self.problem.judged, new), strict=True):
+        allowed = self.budget.take(len(new)) if new else 0
+        some = new[:allowed]
+        for row, verdict in zip(some, self.each(self.problem.judged, some), strict=True):
             self.known[row.tobytes()] = verdict
             self.points.append(row)
         if new:
             update(self.share, 1.0, f"{len(self.points)} designs evaluated")
+        if allowed < len(new):
+            raise Enough(self.budget.words)
         return [self.known[row.tobytes()] for row in rows]
 
     def one(self, point: Array) -> Verdict:
@@ -94,10 +100,13 @@ class _Tried:
         return self.points[int(np.argmin(scores))]
 
 
-def optimise_balls(scene: Scene, task: Optimisation, workers: int = 1) -> BallDesignAnswer:
+def optimise_balls(
+    scene: Scene, task: Optimisation, workers: int = 1, budget: Budget | None = None
+) -> BallDesignAnswer:
     """Best balls of a scene's races within ranges [theory: races, eq. 13-15] [SP97].
 
-    The same seed gives the same balls with any number of workers.
+    The same seed gives the same balls with any number of workers; the best so far where the search is
+    interrupted or has spent its budget.
     """
     if workers < 1:
         raise InputError("workers", workers, "1 or more")
@@ -106,18 +115,19 @@ def optimise_balls(scene: Scene, task: Optimisation, workers: int = 1) -> BallDe
         raise InputError("optimise.balls", "nothing", "such that some value of the balls may change")
     shared = processes(workers) if problem.costly and workers > 1 else nullcontext()
     with shared as pool:
-        tried = _Tried(problem, map if pool is None else pool.map)
+        tried = _Tried(problem, map if pool is None else pool.map, budget or Budget())
         start = tried.snapped(start_of(scene, problem.variables))
-        interrupted = False
+        interrupted, stopped = False, ""
         try:
-            tried.one(start)
-            _evolve(tried, start)
-            best = _closer(tried)
-        except KeyboardInterrupt:
+            with stopping():
+                tried.one(start)
+                _evolve(tried, start)
+                best = _closer(tried)
+        except (KeyboardInterrupt, Enough) as why:
             if not tried.points:
                 raise
-            best, interrupted = tried.best(), True
-    return _result(problem, tried, best, interrupted)
+            best, interrupted, stopped = tried.best(), isinstance(why, KeyboardInterrupt), str(why)
+    return _result(problem, tried, best, interrupted, stopped)
 
 
 def _evolve(tried: _Tried, start: Array) -> None:
@@ -321,7 +331,9 @@ def _designed(race: BallRace) -> DesignedRace:
     )
 
 
-def _result(problem: BallProblem, tried: _Tried, best: Array, interrupted: bool) -> BallDesignAnswer:
+def _result(
+    problem: BallProblem, tried: _Tried, best: Array, interrupted: bool, stopped: str
+) -> BallDesignAnswer:
     """The best balls with all that belongs to them."""
     scene, variables = problem.scene, problem.variables
     chosen, verdict = with_balls(scene, variables, best), tried.one(best)
@@ -360,20 +372,22 @@ def _result(problem: BallProblem, tried: _Tried, best: Array, interrupted: bool)
         volume=np.array([fill.volume for fill in scene.fills]),
         response=run_balls(chosen),
         interrupted=interrupted,
+        stopped=stopped,
         notes=(
             *problem.notes,
-            *_findings(problem, best, verdict, interrupted, len(tried.points)),
+            *(
+                [notes.interrupted(len(tried.points), "designs", limit=stopped)]
+                if interrupted or stopped
+                else []
+            ),
+            *_findings(problem, best, verdict),
             *doubts(scene),
         ),
     )
 
 
-def _findings(
-    problem: BallProblem, best: Array, verdict: Verdict, interrupted: bool, count: int
-) -> Iterator[Note]:
+def _findings(problem: BallProblem, best: Array, verdict: Verdict) -> Iterator[Note]:
     """What must be known of the answer."""
-    if interrupted:
-        yield notes.interrupted(count, "designs")
     ends = []
     for variable, place, named in zip(
         problem.variables, best.tolist(), named_ranges(problem.scene, problem.variables), strict=True
