@@ -26,7 +26,10 @@ from typing import Any
 
 import numba
 import platformdirs
+from numba.core import event
 from numba.core.errors import NumbaExperimentalFeatureWarning
+
+from solvers import compiling
 
 # Options of what only compiled code calls: it needs no wrappers.
 BARE: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
@@ -84,6 +87,32 @@ REAL, WHOLE, FLAG = numba.float64, numba.int64, numba.boolean
 ROW, ROWS, BLOCKS, TURNING = REAL[::1], REAL[:, ::1], REAL[:, :, ::1], numba.complex128[::1]
 NOTHING = numba.void
 type_of: Any = numba.typeof
+
+
+_events: Any = event
+
+
+class _Heard(event.Listener):  # type: ignore[misc]
+    """Tells when numba compiles, and adds up how long it takes."""
+
+    depth, begun = 0, 0.0
+
+    def on_start(self, event: Any) -> None:
+        """Of a function, which may ask for others on its way."""
+        if self.depth == 0:
+            self.begun = time.process_time()
+            compiling.tell(True)
+        self.depth += 1
+
+    def on_end(self, event: Any) -> None:
+        """Of the same."""
+        self.depth -= 1
+        if self.depth == 0:
+            compiling.SPENT.append(time.process_time() - self.begun)
+            compiling.tell(False)
+
+
+_events.register("numba:compile", _Heard())
 
 
 def pair(first: Any, second: Any) -> Any:

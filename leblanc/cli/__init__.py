@@ -28,6 +28,7 @@ from leblanc.registry import COMMANDS as ANNOUNCED
 from leblanc.registry import announced, sound
 from leblanc.scene.schema.load import SceneError, escaped
 from meshes.errors import InputError
+from solvers.compiling import SPENT
 
 DONE, UNREAD, WRONG_INPUT, NOT_CONVERGED = 0, 1, 2, 3
 
@@ -71,6 +72,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         # Nor has a command any use of plugins of pydantic, for which it looks in every installed package.
         os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
 
+    SPENT.clear()
+
     def command() -> object:
         commands = get_command(application(given[0]))
         try:
@@ -105,10 +108,17 @@ def _recorded(command: str, action: Callable[[], object]) -> object:
 
 
 def _tell_of_compiling() -> None:
-    """Say that compiled code could be kept nowhere, where any was loaded."""
+    """Say how long it took to compile, or that it could be kept nowhere, where anything was compiled."""
     loaded = sys.modules.get("solvers.machine_code")
-    if loaded is not None and loaded.cache_folder() is None:
+    if loaded is None:
+        return
+    if loaded.cache_folder() is None:
         say("Note: compiled for this run alone, no cache can be written; NUMBA_CACHE_DIR may name a folder.")
+    elif (spent := sum(SPENT)) >= _LONG:
+        say(f"Note: {spent:.0f} s of it to compile, once for this computer; later runs take it from a cache.")
+
+
+_LONG = 1.0  # s of compiling that are worth a word
 
 
 def _tell(lines: Sequence[str]) -> None:

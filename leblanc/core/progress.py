@@ -15,6 +15,7 @@ from contextvars import ContextVar
 from itertools import chain, repeat
 
 from leblanc.core.interrupts import at_forced_end
+from solvers.compiling import LISTENERS
 
 _PAUSES = (2.0, 3.0, 5.0, 10.0, 20.0, 30.0)  # s, between lines where there is no terminal
 _SHOW_CURSOR = b"\x1b[?25h\n"
@@ -77,6 +78,25 @@ class _Lines:
 
 
 @contextmanager
+def _compiling(what: str, show: Update) -> Iterator[Update]:
+    """A listener that also says so while something is compiled, and then what is done as before."""
+    now = [what]
+
+    def shown(done: float | None = None, total: float | None = None, what: str | None = None) -> None:
+        now[0] = now[0] if what is None else what
+        show(done, total, what)
+
+    def heard(begins: bool) -> None:
+        show(what="compiling, once for this computer" if begins else now[0])
+
+    LISTENERS.append(heard)
+    try:
+        yield shown
+    finally:
+        LISTENERS.remove(heard)
+
+
+@contextmanager
 def working(what: str) -> Iterator[Update]:
     """Show what is done, for how long by now, and how far it has come where that is known.
 
@@ -91,8 +111,8 @@ def working(what: str) -> Iterator[Update]:
     if not sys.stderr.isatty():
         lines = _Lines(what)
         try:
-            with told(lines.show):
-                yield lines.show
+            with _compiling(what, lines.show) as show, told(show):
+                yield show
         finally:
             lines.over.set()
         return
@@ -124,7 +144,7 @@ def working(what: str) -> Iterator[Update]:
                 # Something new is shown at once, however short it is.
                 bar.update(task, completed=done, total=total, description=what, refresh=what is not None)
 
-            with told(show):
-                yield show
+            with _compiling(what, show) as show_all, told(show_all):
+                yield show_all
     finally:
         at_forced_end.remove(show_cursor)

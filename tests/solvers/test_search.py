@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 
 from meshes.arrays import Array
 from meshes.errors import InputError
-from solvers.search import Judge, Judgement, SearchPlan, best_of, search
+from solvers import search as searching
+from solvers.search import Budget, Enough, Judge, Judgement, SearchPlan, best_of, search
 from tests.mutants import kills
 
 
@@ -213,3 +214,60 @@ def test_what_is_kept_is_what_was_judged(count: int) -> None:
     found = solve(free(function), count)
     np.testing.assert_array_equal(found.judged.objective, function(found.points))
     assert found.objective == function(found.point[None])[0]
+
+
+@kills("solvers.search:Budget.take", "self.left -= count", "self.left -= 0")
+@kills("solvers.search:_Log._asked", "self._keep(rows[: end.said.objective.size], end.said)", "pass")
+def test_a_budget_of_evaluations_keeps_the_best_so_far() -> None:
+    """As many points are judged as were allowed, the last of them too, and the best of them is the answer."""
+    budget, asked = Budget(evaluations=11), []
+
+    def judge(points: Array) -> Judgement:
+        allowed = budget.take(points.shape[0])
+        said = free(lambda x: np.square(x - 0.37).sum(axis=1))(points[:allowed])
+        asked.append(allowed)
+        if allowed < points.shape[0]:
+            raise Enough(budget.words, said)
+        return said
+
+    found = solve(judge, 2, plan=SearchPlan(at_once=4))
+    assert found.stopped == "11 evaluations" and not found.interrupted
+    assert sum(asked) == found.points.shape[0] == 11
+    assert found.objective == found.judged.objective.min()
+    whole = solve(free(lambda x: np.square(x - 0.37).sum(axis=1)), 2)
+    assert whole.stopped == "" and whole.objective <= found.objective
+
+
+@kills("solvers.search:Budget.look", "time.monotonic() > self.until", "False")
+def test_a_budget_of_time_answers_once_at_least(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The first points are judged however late it is; then the clock decides."""
+    now = [100.0]
+    monkeypatch.setattr(searching.time, "monotonic", lambda: now[0])
+    budget = Budget(seconds=5.0)
+    now[0] = 200.0
+    assert budget.take(3) == 3
+    ended = ""
+    try:
+        budget.take(1)
+    except Enough as why:
+        ended = str(why)
+    assert ended == "5 s"
+
+
+@kills("solvers.search:_Log._rounded", "(points == self.low) | (points == self.high)", "points < 0.0")
+def test_rounded_points_are_judged_once_and_corners_stay() -> None:
+    """Eight binary digits: no two judged points are alike, the corners are as given, the best is as near."""
+    low, high, seen = np.array([0.1]), np.array([1.0 / 3.0]), []
+
+    def judge(points: Array) -> Judgement:
+        seen.append(points[:, 0].copy())
+        return free(lambda x: np.square(x[:, 0] - 0.2))(points)
+
+    found = search(judge, low, high, np.ones(1), plan=SearchPlan(digits=8))
+    every = np.concatenate(seen)
+    assert every.size == np.unique(every).size
+    assert {0.1, 1.0 / 3.0} <= set(every.tolist())
+    inner = every[(every > 0.1) & (every < 1.0 / 3.0)]
+    part, _ = np.frexp(inner)
+    np.testing.assert_array_equal(part * 256.0, np.round(part * 256.0))
+    assert abs(found.point[0] - 0.2) <= 0.2 / 256.0
