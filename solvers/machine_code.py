@@ -92,7 +92,7 @@ type_of: Any = numba.typeof
 _events: Any = event
 
 
-class _Heard(event.Listener):  # type: ignore[misc]
+class _Heard(event.Listener):
     """Tells when numba compiles, and adds up how long it takes."""
 
     depth, begun = 0, 0.0
