@@ -53,6 +53,7 @@ from solvers.liquid_model import THIN_LAYERS
 from solvers.rotor.balance_quality import balance_quality, tolerance_planes
 from solvers.rotor.campbell import campbell
 from solvers.rotor.jeffcott import Jeffcott
+from solvers.rotor.loads.machine import LoadedMachine
 from solvers.rotor.system import RotorSystem
 from solvers.rotor.tub import Tub
 from solvers.rotor.two_plane import TwoPlane
@@ -224,7 +225,7 @@ def run_scene(scene: Scene, holding: Holding = HERE, cycles: bool = False) -> Ru
         motion = replace(motion, refined_forward=_at_chambers(machine.system, scene.fills, refined))
     moved = _moved(machine, answer, motion)
     # What nothing else of the answer depends on is worked out when it is read.
-    loads = later(_loads, scene, answer, refined, states)
+    loads = later(_loads, loaded_machine(scene), scene, answer, refined, states)
     volumes = later(volumes_over_speed, scene.fills, answer.speed, moved, machine.axial_gravity)
     said = machine, choice, answer, refined, motion, whirl, held
     return RunAnswer(
@@ -275,10 +276,13 @@ def _every_note(
 
 
 def _loads(
-    scene: Scene, answer: Response, refined: Response, held: dict[float, HeldState]
+    machine: LoadedMachine | None,
+    scene: Scene,
+    answer: Response,
+    refined: Response,
+    held: dict[float, HeldState],
 ) -> MachineLoads | None:
     """Forces and clearances at the speeds of the scene and between them; None where it asks for none."""
-    machine = loaded_machine(scene)
     if machine is None:
         return None
     every = by_speed([answer, refined])

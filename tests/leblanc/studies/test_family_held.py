@@ -14,6 +14,7 @@ from leblanc.scene.scene import load_scene
 from leblanc.studies.held.held import _family_left
 from leblanc.studies.run.study import _endless, run_scene
 from meshes.errors import InputError
+from solvers.liquid_model import ROUNDING
 from solvers.synchronous.response import response
 from tests.mutants import kills
 
@@ -51,7 +52,8 @@ def test_the_error_is_the_distance_from_the_equilibrium_and_none_of_a_cycle() ->
     machine = prepare(scene)
     found = response(machine.rotor, scene.fills, machine.speed, 0.0)
     left = _family_left(machine, found, np.array([False, True]))
-    assert left[0] == pytest.approx(0.0, abs=1e-12)
+    # The same answer again, to what another order of sums leaves, which is put on top.
+    assert left[0] <= 2.0 * ROUNDING
     assert np.isnan(left[1])
     off = replace(found, deflection=1.1 * found.deflection)
     assert _family_left(machine, off, np.array([False, False])) == pytest.approx(0.1, rel=0.1)
