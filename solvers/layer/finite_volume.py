@@ -402,6 +402,71 @@ def plain_rates(
 
 
 @_jit
+def baffled_rates(
+    area,
+    q,
+    energy,
+    spin,
+    euler,
+    pull_cell,
+    pull_face,
+    plates,
+    full,
+    slot,
+    step,
+    dt,
+    dispersion,
+    work,
+    d_area,
+    d_q,
+    d_energy,
+):
+    """`rates` of a ring with baffles whose waves neither disperse nor leave fluctuations behind them."""
+    pressed, held = slot * spin * spin, _held(area, q, spin)
+    mass, flow = work[_MASS], work[_FLOW]
+    _cells(area, q, spin, held, pull_cell, full, pressed, work)
+    half_slopes(
+        *(work[_AREA], work[_HEAD], work[VELOCITY], work[SURFACE], spin, held, full, pressed),
+        *(work[_HALF_HEAD], work[_HALF_VELOCITY], work[LOG], None, None),
+    )
+    slope_aside(plates, area, full, work[_HEAD], work[_HALF_HEAD], GHOSTS)
+    slope_aside(plates, area, full, work[VELOCITY], work[_HALF_VELOCITY], GHOSTS)
+    beds(pull_face, work[_AREA], work[_PULL], work[_BED])
+    wall_beds(plates, pull_face, work[_AREA], work[_BED], GHOSTS)
+    fastest = _faces(pull_face, spin, held, full, pressed, _HEAD, VELOCITY, work, None)
+    obstruct(plates, area, spin, full, pressed, pull_face, work[_BEFORE:], work[_AFTER:], mass, flow)
+    _drain(area, step, dt, mass, flow, work[_BEFORE + 4], work[_AFTER + 4], work[_BED])
+    _gather(area, euler, spin, held, step, work, d_area, d_q)
+    take(plates, step, d_q)
+    smear(plates, area, q, spin, step, dt, d_q)
+    return fastest
+
+
+@_jit
+def no_rates(
+    area,
+    q,
+    energy,
+    spin,
+    euler,
+    pull_cell,
+    pull_face,
+    plates,
+    full,
+    slot,
+    step,
+    dt,
+    dispersion,
+    work,
+    d_area,
+    d_q,
+    d_energy,
+):
+    """Stands for `rates` where there is no ring."""
+    return 0.0
+
+
+@_jit
 def rates(
     area,
     q,
@@ -468,7 +533,7 @@ def rates(
     return fastest
 
 
-# Of `rates`, which `plain_rates` takes the place of where a ring has nothing else.
+# Of `rates`, and of those that take its place where a ring has less.
 RATES: Any = handed_type(
     *(REAL, ROW, ROW, ROW, REAL, REAL, ROW, ROW, ROWS, REAL, REAL, REAL, REAL, FLAG, ROWS, ROW, ROW, ROW)
 )
@@ -476,7 +541,9 @@ RATES: Any = handed_type(
 
 def rates_of(plates: Array, dispersion: bool, enstrophy: bool) -> Any:
     """The rates of rings with these features."""
-    return rates if plates.shape[-2] or dispersion or enstrophy else plain_rates
+    if dispersion or enstrophy:
+        return rates
+    return baffled_rates if plates.shape[-2] else plain_rates
 
 
 @_face_jit

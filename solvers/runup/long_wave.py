@@ -172,7 +172,7 @@ class Coupled(CoupledRotor):
     def steps(self) -> tuple[Any, ...]:
         """The compiled steps and the parts of them that this machine has, handed over."""
         from solvers.layer.drag import friction_of
-        from solvers.layer.finite_volume import RATES, rates_of
+        from solvers.layer.finite_volume import RATES, no_rates, rates_of
         from solvers.machine_code import entry, handed
         from solvers.runup.steps.balls import balls_of
         from solvers.runup.steps.coupled import ADVANCE, advance
@@ -184,7 +184,7 @@ class Coupled(CoupledRotor):
         enstrophy = bool(wet) and self.rolling.shape[1] > 0
         return (
             entry(advance, *ADVANCE),
-            handed(rates_of(tables_of(wet, cells), dispersion, enstrophy), RATES),
+            handed(rates_of(tables_of(wet, cells), dispersion, enstrophy) if wet else no_rates, RATES),
             friction_of(self.friction.law.number),
             handed(layer_step, LAYER_STEP),
             *pools_of(bool(self.swings.any())),

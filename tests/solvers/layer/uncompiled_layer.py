@@ -16,6 +16,7 @@ from solvers.layer import finite_volume
 from solvers.layer import finite_volume as face_flux
 from solvers.layer import state as layer_loads
 from solvers.layer import step as forced_layer
+from solvers.layer.baffles import COLUMNS, DENSITY, FACE, LOSS, OPEN, TIP
 from solvers.layer.inside import NOTHING
 from solvers.layer.records import LOADS, Drive, Outcome, Wall, records
 from tests.mutants import kills
@@ -638,3 +639,35 @@ def test_drive() -> None:
         assert abs(complex(x, y) - force) < 1e-15
         np.testing.assert_allclose(cell, (force * np.exp(-1j * middles(5))).real, atol=1e-15)
         np.testing.assert_allclose(face, (force * np.exp(-1j * (middles(5) - np.pi / 5))).real, atol=1e-15)
+
+
+@kills("solvers.layer.finite_volume:plain_rates", "_HEAD, VELOCITY, work, None", "_HEAD, _HEAD, work, None")
+@kills("solvers.layer.finite_volume:baffled_rates", "take(plates, step, d_q)", "pass")
+@kills(
+    "solvers.layer.finite_volume:baffled_rates",
+    "work[VELOCITY], work[_HALF_VELOCITY], GHOSTS",
+    "work[_HEAD], work[_HALF_HEAD], GHOSTS",
+)
+def test_rates_of_less_are_the_same_to_the_digit() -> None:
+    """Those of a plain ring, and of one with baffles at faces and smeared ones, beside those of any."""
+    n = 32
+    theta, none = middles(n), np.empty(0)
+    area = 0.06 + 0.02 * np.cos(theta) + 0.01 * np.sin(3.0 * theta)
+    area[20:24] = 0.0
+    q = (0.1 + 0.2 * np.sin(theta)) * area - SPIN * area**2
+    cell, face = PULL * np.cos(theta), PULL * np.cos(theta - np.pi / n)
+    plates = np.zeros((3, COLUMNS))
+    plates[:, FACE], plates[:, TIP], plates[:, LOSS], plates[:, OPEN] = (3, 12, -1), 0.03, -1.0, 1.0
+    plates[2, DENSITY] = 8.0 / (2.0 * np.pi)
+    pairs = (finite_volume.plain_rates, plates[:0]), (finite_volume.baffled_rates, plates)
+    for less, table in pairs:
+        found = []
+        for function in (less, finite_volume.rates):
+            out, work = np.zeros((2, n)), np.zeros((finite_volume.WORK, n + 2 * finite_volume.GHOSTS))
+            fastest = function(
+                *(area, q, none, SPIN, 0.3, cell, face, table.copy(), 0.1, 64.0, 2.0 * np.pi / n, 0.05),
+                *(False, work, *out, none),
+            )
+            found.append((fastest, out))
+        assert found[0][0] == found[1][0] > 0.0
+        np.testing.assert_array_equal(found[0][1], found[1][1])
