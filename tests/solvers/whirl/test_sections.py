@@ -104,6 +104,26 @@ def test_few_motions_answer_as_all_of_them(baffles: Baffles) -> None:
     assert off.max() < 1e-4
 
 
+@kills(
+    "solvers.whirl.sections:circle_layer",
+    "spanned(np.hstack(answers), _DISTINCT)",
+    "spanned(drive, _DISTINCT)",
+)
+@pytest.mark.parametrize("count", [3, 4, 6])
+def test_few_motions_of_a_circle_answer_as_all_of_them(count: int) -> None:
+    """What a circle drives, by the motions kept and by all, up to whirls as fast as the spin; and slowed."""
+    fill = replace(CLEAR, chamber=Chamber(WALL, HEIGHT, baffles=Baffles(count, 0.1425)))
+    layer = section_layer(fill, Friction("linear", 0.5))
+    liquid, circle = layer.liquid, circle_layer(layer)
+    drive = liquid.moment[0] - 1j * liquid.moment[1]
+    for s in np.concatenate([np.linspace(-1.0, 1.0, 21) + 0.02j, 0.3 + 1j * np.linspace(0.05, 0.5, 5)]):
+        whole = -s * s * liquid.inertia + 2j * s * liquid.gyration + liquid.surface
+        few = -s * s * np.eye(len(circle.moment)) + 2j * s * circle.gyration + circle.surface
+        wanted = 0.5 * drive.conj() @ np.linalg.solve(whole, drive)
+        found = circle.moment @ np.linalg.solve(few, circle.moment.conj())
+        assert abs(found - wanted) < 1e-6 * abs(wanted)
+
+
 def _compliance(system: LiquidSystem, s: complex) -> np.ndarray:
     matrix = -s * s * system.inertia + 2j * s * system.gyration + system.surface
     return np.asarray(system.moment @ np.linalg.solve(matrix, system.moment.T))
