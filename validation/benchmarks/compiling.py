@@ -12,7 +12,7 @@ import os
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any, Literal
 
@@ -63,11 +63,13 @@ def main(
     of: Literal["runup", "programme", "front_loader", "layer"] = "runup",
     beside: Path | None = None,
     most: int = 25,
+    repeats: int = 1,
     json: Path | None = None,
 ) -> Iterator[str]:
-    """The functions that cost most, and all of them together."""
+    """The functions that cost most, and all of them together; least times of some repeats in turns."""
     trees = [ROOT, *([] if beside is None else [beside.resolve()])]
-    found = [_compiled(tree, COMMANDS[of]) for tree in trees]
+    turns = [[_compiled(tree, COMMANDS[of]) for tree in trees] for _ in range(repeats)]
+    found = [_least(runs) for runs in zip(*turns, strict=True)]
     for (spent, whole), tree in zip(found, ("here", "beside"), strict=False):
         total = sum(spent.values())
         yield f"{of}, {tree}: {total:.1f} s of {whole:.1f} s for {len(spent)} functions"
@@ -78,6 +80,12 @@ def main(
         yield f"{of}: {ratio:.2f} of the time of the other checkout"
     if json is not None:
         write(json, [{"spent": spent, "whole": whole} for spent, whole in found])
+
+
+def _least(runs: Sequence[tuple[dict[str, float], float]]) -> tuple[dict[str, float], float]:
+    """Least time of each function over some runs, and of the command."""
+    spent = {name: min(each[name] for each, _ in runs) for name in runs[0][0]}
+    return spent, min(whole for _, whole in runs)
 
 
 def _compiled(tree: Path, command: tuple[str, ...]) -> tuple[dict[str, float], float]:
