@@ -137,9 +137,9 @@ def load_rotor(
         for k in range(right.size):
             left[i, k] = 0.0
     for i in range(n):
-        first = unbalance[i] * complex(turn[0], turn[1])
-        last = unbalance[i] * complex(turn[2], turn[3])
-        swing[i] = spins[0] * first.imag - spins[1] * last.imag
+        along, across = unbalance[i].real, unbalance[i].imag
+        first, last = along * turn[1] + across * turn[0], along * turn[3] + across * turn[2]
+        swing[i] = spins[0] * first - spins[1] * last
         right[i] = -swing[i]
         for k in range(n):
             damping = matrices[1, i, k] + spin * matrices[2, i, k]

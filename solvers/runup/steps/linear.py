@@ -208,8 +208,8 @@ def advance_linear(
             if free:
                 load = 0.0
                 for i in range(n):
-                    middle = 0.5 * unbalance[i] * complex(turn[0] + turn[2], turn[1] + turn[3])
-                    load -= change[i] * middle.imag
+                    along, across = unbalance[i].real, unbalance[i].imag
+                    load -= change[i] * 0.5 * (along * (turn[1] + turn[3]) + across * (turn[0] + turn[2]))
                 for j in range(layers.shape[0]):
                     turning = _carry(
                         layers[j], tables[j], plates[j], active[j], carried[j], spin, before, after, dt

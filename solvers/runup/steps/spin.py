@@ -81,8 +81,8 @@ def free_spin(
     """Spin at the end of the step by the motor [theory: coupling, eq. 6]."""
     load = 0.0
     for i in range(change.size):
-        middle = 0.5 * unbalance[i] * complex(turn[0] + turn[2], turn[1] + turn[3])
-        load -= change[i] * middle.imag
+        along, across = unbalance[i].real, unbalance[i].imag
+        load -= change[i] * 0.5 * (along * (turn[1] + turn[3]) + across * (turn[0] + turn[2]))
     for j in range(layers.shape[0]):
         load += layers[j].weight * layers[j].radius ** 4 * gains[j].torque
     for j in range(pools.shape[0]):

@@ -43,8 +43,8 @@ def machine(cells: int, friction: float = 2.0, gravity: float = 0.0) -> LinearCo
 @kills("solvers.runup.steps.linear:_assemble", "gravity[part] - forces", "-gravity[part] - forces")
 @kills(
     "solvers.runup.steps.coupled:load_rotor",
-    "first = unbalance[i] * complex(turn[0], turn[1])",
-    "first = unbalance[i] * complex(turn[2], turn[3])",
+    "first, last = along * turn[1]",
+    "first, last = along * turn[0]",
 )
 @kills("solvers.runup.steps.linear:_carry", "carried * (1.0 - share)", "carried")
 @kills("solvers.runup.steps.linear:_tally", "(x * q - y * p)", "(x * p + y * q)")

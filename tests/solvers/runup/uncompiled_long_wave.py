@@ -192,8 +192,8 @@ def momentum(found: Coupled) -> np.ndarray:
 
 @kills(
     "solvers.runup.steps.coupled:load_rotor",
-    "spins[0] * first.imag - spins[1] * last.imag",
-    "spins[1] * last.imag - spins[0] * first.imag",
+    "spins[0] * first - spins[1] * last",
+    "spins[1] * last - spins[0] * first",
 )
 @kills(
     "solvers.runup.steps.coupled:load_rotor",
@@ -324,8 +324,8 @@ def test_gyroscope() -> None:
 
 @kills(
     "solvers.runup.steps.spin:free_spin",
-    "load -= change[i] * middle.imag",
-    "load += change[i] * middle.imag",
+    "load -= change[i] * 0.5",
+    "load += change[i] * 0.5",
 )
 @kills(
     "solvers.runup.steps.spin:free_spin",
