@@ -170,7 +170,7 @@ def entry_result(function: Any, given: Any) -> Any:
     with _choosing, warnings.catch_warnings():
         # Functions as arguments are new in numba, which says so each time.
         warnings.simplefilter("ignore", NumbaExperimentalFeatureWarning)
-        function.compile(tuple(given))
+        compiling.with_room(function.compile, tuple(given))
     return function.overloads[tuple(given)]
 
 

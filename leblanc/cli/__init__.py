@@ -28,7 +28,7 @@ from leblanc.registry import COMMANDS as ANNOUNCED
 from leblanc.registry import announced, sound
 from leblanc.scene.schema.load import SceneError, escaped
 from meshes.errors import InputError
-from solvers.compiling import SPENT
+from solvers.compiling import SPENT, with_room
 
 DONE, UNREAD, WRONG_INPUT, NOT_CONVERGED = 0, 1, 2, 3
 
@@ -84,7 +84,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if arguments is not None:
         return exit_code(command)
     with heard():
-        code = exit_code(command)
+        code = with_room(exit_code, command)
     drop(sys.stderr)
     gc.freeze()  # nor is there any to look for as the process ends
     leave(code)
