@@ -84,7 +84,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if arguments is not None:
         return exit_code(command)
     with heard():
-        code = with_room(exit_code, command)
+        code: int = with_room(exit_code, command)
     drop(sys.stderr)
     gc.freeze()  # nor is there any to look for as the process ends
     leave(code)
