@@ -78,11 +78,6 @@ class LinearCoupled(CoupledRotor):
                 break
         return outcome
 
-    @property
-    def settled(self) -> bool:
-        """Never: its legs are gone one by one."""
-        return False
-
     def through(
         self,
         stops: Array,
@@ -90,9 +85,8 @@ class LinearCoupled(CoupledRotor):
         courant: float,
         most: int,
         progress: Callable[[float], object],
-    ) -> tuple[Outcome, dict[str, Array], Array]:
-        """Not asked for."""
-        raise NotImplementedError
+    ) -> None:
+        """None: its legs, which cost little, are gone one by one."""
 
     @cached_property
     def steps(self) -> tuple[Any, ...]:

@@ -154,8 +154,10 @@ class Coupled(CoupledRotor):
         courant: float,
         most: int,
         progress: Callable[[float], object],
-    ) -> tuple[Outcome, dict[str, Array], Array]:
+    ) -> tuple[Outcome, dict[str, Array], Array] | None:
         """See `solvers.runup.machine.RunupMachine.through`."""
+        if not self.settled:
+            return None
         n, (count, cells), k = self.state.place.size, self.state.area.shape, stops.size
         moments, rings = np.zeros((k, 6 + n)), np.zeros((k, 2 * count * cells))
         outcome, reached = self._along((stops, rates), (moments, rings), courant, most, progress)

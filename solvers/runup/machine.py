@@ -196,10 +196,6 @@ class RunupMachine(Protocol):
     def advance(self, stop: float, rate: float, courant: float, most: int) -> Outcome:
         """Advance to a time while the spin changes at a rate, in at most so many steps."""
 
-    @property
-    def settled(self) -> bool:
-        """Whether each liquid stays the layer or the mass that it is, whatever the speed."""
-
     def through(
         self,
         stops: Array,
@@ -207,10 +203,11 @@ class RunupMachine(Protocol):
         courant: float,
         most: int,
         progress: Callable[[float], object],
-    ) -> tuple[Outcome, dict[str, Array], Array]:
-        """Go through k times, to each at a rate of the spin, in at most so many steps, if it is `settled`.
+    ) -> tuple[Outcome, dict[str, Array], Array] | None:
+        """Go through k times, to each at a rate of the spin, in at most so many steps.
 
-        Returns fields of `Reading` and depths of the layers at the times that were reached, shapes (k, ...).
+        Returns fields of `Reading` and depths of the layers at the times that were reached, shapes (k, ...);
+        None of a machine that changes on the way, whose legs are gone one by one.
         """
 
     def switch(self) -> float:

@@ -387,11 +387,11 @@ def _march(
     readings, stages, left, limited = [machine.read()], [0], [shedding.left], [False]
     if recorder is not None:
         recorder.begin(machine)
-    known = None
-    if machine.settled and not shedding.left.size and recorder is None:
-        known = known_legs(drive, machine, numerics.samples)
-    if known is not None:
-        return _at_once(machine, known, max(machine.spin, top), numerics, progress, (energy, wanted))
+    known = known_legs(drive, machine, numerics.samples)
+    if known is not None and not shedding.left.size and recorder is None:
+        made = _at_once(machine, known, max(machine.spin, top), numerics, progress, (energy, wanted))
+        if made is not None:
+            return made
     for leg in legs(drive, machine, numerics.samples):
         machine.watch()
         try:
@@ -449,10 +449,10 @@ def _at_once(
     numerics: RunupNumerics,
     progress: Callable[[float], object],
     given: tuple[float, list[float]],
-) -> RunupHistory:
-    """Run a settled machine through all its samples in one compiled call; digits as sample by sample.
+) -> RunupHistory | None:
+    """Run a machine through all its samples in one compiled call; digits as sample by sample.
 
-    `given`: its energy, J, and the times of snapshots, s.
+    `given`: its energy, J, and the times of snapshots, s. None of a machine that changes on the way.
     """
     (stops, rates), (energy, wanted) = known, given
     first, depths = machine.read(), [machine.depth()] if 0.0 in wanted else []
@@ -461,7 +461,10 @@ def _at_once(
         step_budget(time, fastest, numerics.cells, numerics.courant)
         for time in np.diff(stops, prepend=machine.time).tolist()
     )
-    outcome, found, layers = machine.through(stops, rates, numerics.courant, most, progress)
+    gone = machine.through(stops, rates, numerics.courant, most, progress)
+    if gone is None:
+        return None
+    outcome, found, layers = gone
     count = len(layers)
     kept = np.flatnonzero(np.isin(stops[:count], wanted))
     shots = None
