@@ -47,6 +47,12 @@ class Recipe:
     minutes: bool = False
     needs: str = ""
 
+    @property
+    def _full(self) -> tuple[str, ...]:
+        """Program and arguments, told to draw PNG; `view` draws nothing else."""
+        told = self.program[0] == "leblanc" and self.program[1] != "view"
+        return (*self.program, "--png") if told else self.program
+
     def command(self, out: Path) -> list[str]:
         """The command line.
 
@@ -54,7 +60,7 @@ class Recipe:
         ----------
         out : folder that it draws into
         """
-        first, *rest = self.program
+        first, *rest = self._full
         if first == "leblanc":
             start = ["-c", "from leblanc.cli import main; import sys; sys.exit(main(sys.argv[1:]))"]
         else:
@@ -63,7 +69,7 @@ class Recipe:
 
     def shown(self) -> str:
         """The command as a reader types it."""
-        first, *rest = self.program
+        first, *rest = self._full
         start = first if first == "leblanc" else f"python {first if first.endswith('.py') else f'-m {first}'}"
         return " ".join([start, *(f'"{word}"' if " " in word else word for word in rest), "--out", "DIR"])
 
