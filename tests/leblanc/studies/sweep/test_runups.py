@@ -121,7 +121,7 @@ def test_no_loads_of_a_machine_without_parts() -> None:
 
 
 def test_planar_machines_have_loads_as_run_gives_them(tmp_path: Path) -> None:
-    point = {"name": "drum", "position": "0 mm", "gap": "20 mm"}
+    point = {"name": "drum", "position": [0, 0, 0], "gap": "20 mm"}
     table = {**lb.example("horizontal_rig").table(), "points": [point]}
     scene = scene_from_table(table).replace({"speeds.count": 12})
     lb.sweep({"scene": scene, "method": "grid", "vary": {"rotor.unbalance": {"linspace": [3e-4, 6e-4, 2]}}},
@@ -283,7 +283,7 @@ def test_a_study_of_run_does_not_vary_the_way_in_time() -> None:
 
 
 def test_a_machine_without_a_way_in_time_is_refused() -> None:
-    table = {key: value for key, value in short().table().items() if key != "runup"}
+    table = {key: value for key, value in short().table().items() if key not in ("runup", "assumed")}
     with pytest.raises(InputError, match="runup"):
         study_of(study(scene_from_table(table)))
 
