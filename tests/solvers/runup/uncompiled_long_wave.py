@@ -530,14 +530,14 @@ def steps_behind(spin: float, rate: float, seen: np.ndarray, known: int) -> tupl
 @kills("solvers.runup.steps.coupled:expect", "shaft.spin * (here + time)", "shaft.spin * (here - time)")
 @kills("solvers.runup.steps.coupled:expect", "linear * (ahead + first)", "linear * (ahead - first)")
 @kills("solvers.runup.steps.coupled:expect", "(-linear - bend - curve if", "(-linear - bend if")
-@pytest.mark.parametrize(("known", "degree"), [(1, 0), (2, 1), (3, 2)])
-def test_the_first_guess_follows_what_goes_round_with_the_drum(known: int, degree: int) -> None:
-    """Exact for a course of that degree in a drum whose spin rises, and wrong for one of the next."""
+def test_the_first_guess_follows_what_goes_round_with_the_drum() -> None:
+    """Exact for a course of as many terms as steps are known, in a drum whose spin rises; wrong for one more."""
     seen = np.array([3.0 + 1.0j, 20.0 - 8.0j, 400.0 + 100.0j, 9e3 - 2e3j])
-    guess, wanted = steps_behind(40.0, 25.0, seen[: degree + 1], known)
-    np.testing.assert_allclose(guess, wanted, rtol=1e-13, atol=1e-13)
-    guess, wanted = steps_behind(40.0, 25.0, seen[: degree + 2], known)
-    assert np.abs(guess - wanted).max() > 1e-4
+    for known in (1, 2, 3):
+        guess, wanted = steps_behind(40.0, 25.0, seen[:known], known)
+        np.testing.assert_allclose(guess, wanted, rtol=1e-13, atol=1e-13)
+        guess, wanted = steps_behind(40.0, 25.0, seen[: known + 1], known)
+        assert np.abs(guess - wanted).max() > 1e-4
 
 
 @kills("solvers.runup.steps.coupled:expect", "min(here, 2.0 * (first - back) - back)", "here")
