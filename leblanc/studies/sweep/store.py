@@ -36,9 +36,10 @@ from meshes.quantity import Q
 
 STORE = "sweep.zarr"
 
-_FEW, _MANY = 64, 4096  # samples of a block
-_RUNUPS = 4  # of one of run-ups, which take some tenths of a second each
-_BLOCKS = 50  # of a sweep, as long as they are neither too small nor too large
+_MANY = 4096  # samples of a block at most
+# Samples of a block at least, and blocks of a sweep as long as they are neither too small nor too large: of
+# `run`, and of run-ups, which take some tenths of a second each.
+_BLOCKS = {"run": (64, 50), "runup": (4, 1000)}
 _ANSWERS = 16_384  # samples times speeds of a block at most
 _UNFINISHED = "*.partial"  # what zarr calls a file before it is whole
 _METADATA = "zarr.json"
@@ -78,9 +79,10 @@ class Store:
         return tuple(self.arrays[name].metadata.dimension_names)
 
 
-def block_size(samples: int, speeds: int, fewest: int = _FEW) -> int:
+def block_size(samples: int, speeds: int, command: str = "run") -> int:
     """Samples of a block: of the sweep alone, so that the same sweep has the same chunks everywhere."""
-    wanted = min(max(samples // _BLOCKS, fewest), _MANY)
+    fewest, blocks = _BLOCKS[command]
+    wanted = min(max(samples // blocks, fewest), _MANY)
     return max(1, min(wanted, _ANSWERS // speeds, samples))
 
 
@@ -207,7 +209,7 @@ def _create(path: Path, sweep: Sweep) -> None:
 
     kept = sweep.kept
     samples, speeds = sweep.samples, kept.speeds
-    block = block_size(samples, speeds, fewest=_FEW if sweep.command == "run" else _RUNUPS)
+    block = block_size(samples, speeds, sweep.command)
     group = zarr.create_group(path, zarr_format=3, attributes=_attributes(sweep))
 
     def array(name: str, kind: str, over_speed: bool, fill: object, attributes: Mapping[str, Any]) -> None:

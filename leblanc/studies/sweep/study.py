@@ -85,12 +85,12 @@ def run_sweep(
             return store
         _probe(sweep)
         rows = sample_rows(sweep)
-        blocks = (_block(sweep, store, rows, number) for number in missing)
+        blocks = (block_of(sweep, store, rows, number) for number in missing)
         if workers is None:  # a single block needs no process of its own
             workers = 0 if len(missing) == 1 else min(cores(), len(missing))
         with _interrupts() as interrupted:
             for answer in answer_blocks(blocks, workers, scheduler):
-                _write(sweep, store, rows, answer)
+                write_answer(sweep, store, rows, answer)
                 start, stop = store.bounds(answer.number)
                 finished += stop - start
                 update(finished, sweep.samples)
@@ -144,7 +144,8 @@ def _probe(sweep: Sweep) -> None:
         ) from error
 
 
-def _block(sweep: Sweep, store: Store, rows: Rows, number: int) -> Block:
+def block_of(sweep: Sweep, store: Store, rows: Rows, number: int) -> Block:
+    """The samples of a block, as a worker takes them."""
     drawn = rows(*store.bounds(number))
     values = tuple(
         tuple(field.value(value) for field, value in zip(sweep.fields, row, strict=True)) for row in drawn
@@ -152,7 +153,8 @@ def _block(sweep: Sweep, store: Store, rows: Rows, number: int) -> Block:
     return Block(number, sweep.table, tuple(field.keys for field in sweep.fields), values, sweep.kept)
 
 
-def _write(sweep: Sweep, store: Store, rows: Rows, answer: BlockAnswer) -> None:
+def write_answer(sweep: Sweep, store: Store, rows: Rows, answer: BlockAnswer) -> None:
+    """Write what a worker found of a block."""
     drawn = rows(*store.bounds(answer.number))
     variables = {field.path: field_values(field, drawn[:, j]) for j, field in enumerate(sweep.fields)}
     variables |= answer.values

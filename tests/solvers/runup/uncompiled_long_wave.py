@@ -531,7 +531,7 @@ def steps_behind(spin: float, rate: float, seen: np.ndarray, known: int) -> tupl
 @kills("solvers.runup.steps.coupled:expect", "linear * (ahead + first)", "linear * (ahead - first)")
 @kills("solvers.runup.steps.coupled:expect", "(-linear - bend - curve if", "(-linear - bend if")
 def test_the_first_guess_follows_what_goes_round_with_the_drum() -> None:
-    """Exact for a course of as many terms as steps are known, in a drum whose spin rises; wrong for one more."""
+    """Exact for a course of as many terms as steps are known while the spin rises; wrong for one more."""
     seen = np.array([3.0 + 1.0j, 20.0 - 8.0j, 400.0 + 100.0j, 9e3 - 2e3j])
     for known in (1, 2, 3):
         guess, wanted = steps_behind(40.0, 25.0, seen[:known], known)

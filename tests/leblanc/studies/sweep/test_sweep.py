@@ -95,7 +95,7 @@ def test_a_sample_fails_where_its_scene_does_and_in_the_same_words(mass: float, 
 @kills("leblanc.studies.sweep.outputs:Answers.peak_growth", "np.fmax.reduce", "np.fmin.reduce")
 @kills("leblanc.studies.sweep.outputs:Answers.last_amplitude", "[:, -1]", "[:, 0]")
 @kills(
-    "leblanc.studies.sweep.study:_write",
+    "leblanc.studies.sweep.study:write_answer",
     "field_values(field, drawn[:, j])",
     "field_values(field, drawn[::-1, j])",
 )
