@@ -38,7 +38,7 @@ def test_workers_are_never_idle_while_the_first_process_is_quick(workers: int) -
 @kills(HERE, "max(clock, heapq.heappop(free))", "heapq.heappop(free)")
 @kills(HERE, "ahead * workers", "2 * workers")
 def test_workers_wait_where_nothing_is_handed_out_ahead() -> None:
-    """One block for each worker: they work while the first process writes nothing, and the other way round."""
+    """One block for each worker: it works while the first process writes nothing, and the other way round."""
     assert passed([1.0] * 5, 0.5, 1, ahead=1) == pytest.approx(5 * 1.5, rel=1e-12)
     assert passed([1.0] * 4, 0.25, 2, ahead=1) == pytest.approx(2 * 1.5, rel=1e-12)
 
