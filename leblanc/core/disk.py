@@ -50,6 +50,7 @@ def write(answer: Answer, folder: Path, machine: Any = None, png: bool = False) 
             scene: Any = called("leblanc.scene.scene:Scene")
             machine = scene.from_toml(typed.machine_file, typed.path)
         about = called("leblanc.scene.inputs:about")
+        machine = getattr(machine, "scene", machine)  # of a study, what it varies
         what = about(machine, typed.command, answer.data, answer.task, answer.unused)
         page = called("leblanc.core.page:write_page")
         page(answer.title, answer.blocks(), what, figures, folder / answer.page)

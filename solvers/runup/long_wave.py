@@ -456,7 +456,7 @@ class Coupled(CoupledRotor):
             rolling=self.rolling[active],
             two_layers=self.two_layers[pooled],
             rings=self.rings[pooled],
-            push=np.zeros((count + int(pooled.sum()), 2, 2)),
+            push=np.zeros((count + int(pooled.sum()), 3, 2)),
             pace=_fresh_pace(),
         )
         self.follow(old.trace.shape[0])
@@ -622,7 +622,7 @@ def couple(
             rolling=area[:0, :0],
             two_layers=np.zeros((0, 4, cells)),
             rings=np.zeros(0, dtype=bool),
-            push=np.zeros((0, 2, 2)),
+            push=np.zeros((0, 3, 2)),
             pace=_fresh_pace(),
             sums=sums,
             crest=crest,

@@ -117,7 +117,7 @@ GAINS = floats("torque", "work", "heat", "loss", "missed", "baffles")
 # motor; moment of inertia about the axis with a motor.
 SHAFT = floats("spin", "angle", "time", "rate", "inertia")
 # Lengths of the last two steps, the fastest wave, by what the next step is shortened; rows of the trace kept.
-PACE = floats("last", "before", "fastest", "share", "kept")
+PACE = floats("last", "before", "older", "fastest", "share", "kept")
 # The largest amplitude since the moment was last read, and the speed and time of it.
 CREST = floats("amplitude", "speed", "time")
 # A ball in a race: mass, radius of its path, inertia on it, torque of the drag over the speed in the drum,

@@ -200,6 +200,7 @@ def _sweeps() -> Iterator[Case]:
     for study in ("fill_grid", "uncertain_rig", "centrifuge_shares"):
         more = " --netcdf --emulate" if study == "uncertain_rig" else ""
         yield _case(f"sweep-{study}", f"sweep small/{study}.toml --workers 0{more} --json --out out")
+    yield _case("sweep-runups", "sweep small/uncertain_runup.toml --workers 0 --json --out out")
     yield _case("sweep-balls", "sweep small/balls_grid.toml --workers 0 --json --out out")
     yield _case("sweep-workers", "sweep small/centrifuge_shares.toml --workers 1 --json --out out")
 

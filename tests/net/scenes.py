@@ -31,6 +31,7 @@ SMALL: dict[str, tuple[str, dict[str, str]]] = {
     ),
     "fill_grid": ("examples/studies/fill_grid.toml", {}),
     "uncertain_rig": ("examples/studies/uncertain_rig.toml", {"samples": "24"}),
+    "uncertain_runup": ("examples/studies/uncertain_runup.toml", {"samples": "6"}),
     "balls": ("examples/balls.toml", {"speeds.count": "15"}),
     "balls_grid": ("examples/studies/balls_grid.toml", {}),
     "centrifuge_shares": ("examples/studies/centrifuge_shares.toml", {"samples": "4"}),

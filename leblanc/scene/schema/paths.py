@@ -14,8 +14,9 @@ from leblanc.scene.schema.rules import Entries, Refused, Several
 
 Keys = tuple[str | int, ...]
 
-# What the response at the scene's speeds depends on; all samples of a sweep have as many speeds.
-_ROOTS = ("gravity", "rotor", "chambers", "speeds", "model")
+# What an answer to each command depends on; all samples of a sweep have as many speeds.
+_MACHINE = ("gravity", "rotor", "chambers", "cabinet", "points", "model")
+ROOTS = {"run": (*_MACHINE, "speeds"), "runup": (*_MACHINE, "runup", "programme")}
 _FIXED = (("rotor", "kind"), ("speeds", "count"))
 
 
@@ -58,16 +59,17 @@ def keys_of(path: str) -> Keys:
     return tuple(int(key) if key.isdecimal() and len(key) < 7 else key for key in path.split("."))
 
 
-def rule_at(root: type[Part], table: Mapping[str, Any], path: str) -> Any:
+def rule_at(root: type[Part], table: Mapping[str, Any], path: str, command: str = "run") -> Any:
     """Rule of one value at a path such as "chambers.0.volume", in a table free of faults.
 
-    `Refused`, with what there is, where there is no single value that a study may vary.
+    `Refused`, with what there is, where there is no single value that a study of a command may vary.
     """
     keys = keys_of(path)
     pattern = tuple("*" if isinstance(key, int) else key for key in keys)
-    if keys[0] not in _ROOTS or pattern in _FIXED:
-        fixed = ", ".join(".".join(fixed_keys) for fixed_keys in _FIXED)
-        raise Refused(f"the path of a field under {', '.join(_ROOTS)}, other than {fixed}")
+    roots = ROOTS[command]
+    if keys[0] not in roots or pattern in _FIXED:
+        fixed = ", ".join(".".join(keys) for keys in _FIXED if keys[0] in roots)
+        raise Refused(f"the path of a field under {', '.join(roots)}, other than {fixed}")
     field, depth = require_field(root, table, path)
     rule = _rule_of(field, keys[depth + 1 :], field_path(keys[: depth + 1]))
     if keys[depth + 1 :]:

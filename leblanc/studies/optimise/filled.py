@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from typing import Generic, TypeVar
 
@@ -36,18 +37,25 @@ V = TypeVar("V")
 
 
 class Once(Generic[V]):
-    """Values of a function of one set of volumes, shape (c,), none of which is computed twice."""
+    """Values of a function of one set of volumes, shape (c,), none of which is computed twice.
 
-    def __init__(self, function: Callable[[Array], V]) -> None:
-        self.function = function
+    On so many threads, where the function lets others run.
+    """
+
+    def __init__(self, function: Callable[[Array], V], threads: int = 1) -> None:
+        self.function, self.threads = function, threads
         self._known: dict[bytes, V] = {}
 
     def __call__(self, volumes: Array) -> list[V]:
         """Values of m sets, shape (m, c)."""
         rows = np.ascontiguousarray(volumes)
-        for row in rows:
-            if row.tobytes() not in self._known:
-                self._known[row.tobytes()] = self.function(row)
+        new = {key: row for row in rows if (key := row.tobytes()) not in self._known}
+        if len(new) > 1 and self.threads > 1:
+            with ThreadPoolExecutor(self.threads) as pool:
+                self._known |= dict(zip(new, pool.map(self.function, new.values()), strict=True))
+        else:
+            for key, row in new.items():
+                self._known[key] = self.function(row)
         return [self._known[row.tobytes()] for row in rows]
 
 

@@ -75,9 +75,11 @@ class Passage:
 
 
 class Passages:
-    """The run-ups of a scene in time; no volumes are run twice."""
+    """The run-ups of a scene in time, several at once on threads; no volumes are run twice."""
 
-    def __init__(self, scene: Scene, cells: int | None = None, loaded: bool = False) -> None:
+    def __init__(
+        self, scene: Scene, cells: int | None = None, loaded: bool = False, threads: int = 1
+    ) -> None:
         from leblanc.liquid.choose import across_gravity
         from leblanc.studies.drives import drive_of, numerics_of, planned
         from leblanc.studies.runup.study import liquid_model
@@ -86,7 +88,7 @@ class Passages:
         self.scene, self.drive, self.gravity = scene, drive_of(plan, scene.rotor), across_gravity(scene)
         self.numerics = numerics_of(plan, cells, check=False)
         self.model, self.loaded = runup_model(liquid_model(scene)), loaded
-        self.of = Once(self._one)
+        self.of = Once(self._one, threads)
 
     def _one(self, volumes: Array) -> Passage:
         from leblanc.studies.drives import rotor_in_time

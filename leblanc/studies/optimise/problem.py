@@ -124,9 +124,13 @@ def growth_speeds(scene: Scene, task: Optimisation) -> Array:
 
 
 def problem_of(
-    scene: Scene, task: Optimisation, machine: FilledMachine, solve: Callable[[Problem], Found]
+    scene: Scene,
+    task: Optimisation,
+    machine: FilledMachine,
+    solve: Callable[[Problem], Found],
+    threads: int = 1,
 ) -> Problem:
-    """The problem that a scene poses."""
+    """The problem that a scene poses; run-ups go on so many threads."""
     if task.objective not in _MAKERS:
         raise InputError("objective", task.objective, "one of " + ", ".join(OBJECTIVES))
     speed = working_speed(scene, task)
@@ -135,7 +139,7 @@ def problem_of(
     if plan is not None and (loaded or (task.objective == "peak" and not task.steady)):
         few = min(max(_COARSE_CELLS, most_cells(scene)), plan.cells)
         notes += [notes_of.few_cells(few, plan.cells)] if few < plan.cells else []
-        runs = Passages(scene, few, loaded)
+        runs = Passages(scene, few, loaded, threads)
     # Whirls of a ring with baffles take a second each.
     plates = any(fill.chamber.baffles is not None for fill in scene.fills)
     slow = plates or task.whirl_limit is not None or limits_loads(task) or runs is not None

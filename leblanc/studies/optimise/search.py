@@ -149,7 +149,7 @@ def on_all_cells(scene: Scene, problem: Problem) -> Problem:
     coarse, plan = problem.runs, scene.speed_plan
     if plan is None or coarse is None or coarse.numerics.cells >= plan.cells:
         return problem
-    return problem.on(scene, Passages(scene, loaded=coarse.loaded))
+    return problem.on(scene, Passages(scene, loaded=coarse.loaded, threads=coarse.of.threads))
 
 
 def evaluated_again(fine: Problem, found: Found) -> Found:

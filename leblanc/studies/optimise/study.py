@@ -116,7 +116,7 @@ def answer(
             raise InputError("emulator", str(emulator), "left out with balls, whose designs it does not know")
         return optimise_balls(scene, task, workers, budget)
     surrogate = None if emulator is None else emulated_vibration(emulator, scene, task)
-    return optimise_scene(scene, task=task, front=front, emulator=surrogate, budget=budget)
+    return optimise_scene(scene, task=task, front=front, emulator=surrogate, budget=budget, workers=workers)
 
 
 def optimise_scene(
@@ -127,6 +127,7 @@ def optimise_scene(
     emulator: EmulatedVibration | None = None,
     response: bool = True,
     budget: Budget | None = None,
+    workers: int = 1,
 ) -> OptimumAnswer:
     """Best volume for each chamber of a scene; its own volumes do not matter.
 
@@ -159,7 +160,7 @@ def optimise_scene(
         stopped.extend([found] if found.interrupted or found.stopped else [])
         return found
 
-    problem = problem_of(scene, task, machine, solve)
+    problem = problem_of(scene, task, machine, solve, workers)
     exact, quick = on_all_cells(scene, problem), problem
     if emulator is not None:
         low, high = emulator.inside(low, high, np.array([fill.volume for fill in scene.fills]))
@@ -509,20 +510,27 @@ class EmulatedVibration:
 def emulated_vibration(store: Path, scene: Scene, task: Optimisation) -> EmulatedVibration:
     """Emulator of the vibration that an optimisation is after, from a sweep over the volumes."""
     found = read_store(store)
-    if found.attributes()["scene_digest"] != scene.digest:
+    said = found.attributes()
+    if said["scene_digest"] != scene.digest:
         raise InputError("emulator", str(store), "the store of a sweep of this very scene")
     matches = [_VOLUME.fullmatch(name) for name in varied_fields(found)]
     chambers = tuple(int(match[1]) for match in matches if match is not None)
     if len(chambers) != len(matches):
         raise InputError("emulator", str(store), "a sweep that varies volumes and nothing else")
-    return EmulatedVibration(emulate_store(found, _output(scene, task)), chambers)
+    return EmulatedVibration(emulate_store(found, _output(scene, task, said.get("command", "run"))), chambers)
 
 
-def _output(scene: Scene, task: Optimisation) -> str:
-    """Output of a sweep that is the vibration of the objective."""
+def _output(scene: Scene, task: Optimisation, command: str) -> str:
+    """Output of a sweep by a command that is the vibration of the objective."""
+    in_time = task.objective == "peak" and not task.steady and scene.speed_plan is not None
+    if in_time != (command == "runup"):
+        allowed = f'the store of a sweep with command = "{"runup" if in_time else "run"}" for this objective'
+        raise InputError("emulator", f'one with command = "{command}"', allowed)
+    if in_time:
+        return "peak_amplitude"
     if task.objective == "working_speed" and task.working_speed in (None, scene.speeds.stop):
         return "last_amplitude"
-    if task.objective == "peak" and (task.steady or scene.speed_plan is None):
+    if task.objective == "peak":
         return "peak_amplitude"
-    allowed = "working_speed at the last speed, or peak of the steady response, with an emulator"
+    allowed = "working_speed at the last speed, or peak, with an emulator"
     raise InputError("objective", task.objective, allowed)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -225,7 +227,7 @@ def run_scene(scene: Scene, holding: Holding = HERE, cycles: bool = False) -> Ru
         motion = replace(motion, refined_forward=_at_chambers(machine.system, scene.fills, refined))
     moved = _moved(machine, answer, motion)
     # What nothing else of the answer depends on is worked out when it is read.
-    loads = later(_loads, loaded_machine(scene), scene, answer, refined, states)
+    loads = later(loads_of, loaded_machine(scene), scene, answer, refined, states)
     volumes = later(volumes_over_speed, scene.fills, answer.speed, moved, machine.axial_gravity)
     said = machine, choice, answer, refined, motion, whirl, held
     return RunAnswer(
@@ -275,12 +277,12 @@ def _every_note(
     return (*found, notes.loads(obstructed), *_skidding(loads(), answer))
 
 
-def _loads(
+def loads_of(
     machine: LoadedMachine | None,
     scene: Scene,
     answer: Response,
     refined: Response,
-    held: dict[float, HeldState],
+    held: Mapping[float, HeldState] = MappingProxyType({}),
 ) -> MachineLoads | None:
     """Forces and clearances at the speeds of the scene and between them; None where it asks for none."""
     if machine is None:

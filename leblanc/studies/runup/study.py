@@ -29,6 +29,7 @@ from leblanc.liquid.models import RUNUP_MODELS, runup_model
 from leblanc.liquid.notes import smeared_baffles
 from leblanc.liquid.validity import doubts, require_supported
 from leblanc.scene.inputs import runup_rows
+from leblanc.scene.programme.table import Programme as Steps
 from leblanc.scene.scene import JeffcottRotor, Runup, Scene, dry_rotor, jeffcott, require_clear
 from leblanc.studies.balls.study import races_shown, started_balls
 from leblanc.studies.drives import drive_of, numerics_of, planned, rotor_in_time, unbalance_left
@@ -226,6 +227,20 @@ def _judged_by(found: LinearRunError) -> str:
     return f"{size}, beyond the {most} up to which an error is estimated"
 
 
+def require_runup(scene: Scene, cells: int | None = None) -> Runup | Steps:
+    """The way of a scene; an `InputError` where it has none, or its liquid cannot go it."""
+    plan = planned(scene)
+    require_clear(scene, "a run-up, whose waves run in a ring with circular walls", baffles=True)
+    if scene.model.liquid == "linear" and any(fill.compartments > 1 for fill in scene.fills):
+        text = "auto or long_wave where baffles cut the liquid into compartments"
+        raise InputError("model.liquid", "linear", text)
+    if cells is None and plan.cells < (fewest := fewest_cells(scene.fills)):
+        table = "runup" if scene.programme is None else "programme"
+        allowed = f"{fewest} or more, {FEWEST_CELLS} in each compartment"
+        raise InputError(f"{table}.cells", plan.cells, allowed)
+    return plan
+
+
 def runup_scene(
     scene: Scene,
     cells: int | None = None,
@@ -245,19 +260,11 @@ def runup_scene(
     if workers < 1:
         raise InputError("workers", workers, "1 or more")
     scene = scene.as_read()
-    plan = planned(scene)
-    require_clear(scene, "a run-up, whose waves run in a ring with circular walls", baffles=True)
-    if scene.model.liquid == "linear" and any(fill.compartments > 1 for fill in scene.fills):
-        text = "auto or long_wave where baffles cut the liquid into compartments"
-        raise InputError("model.liquid", "linear", text)
+    plan = require_runup(scene, cells)
     if frames is not None and not 2 <= frames <= MOST_FRAMES:
         raise InputError("frames", frames, f"from 2 to {MOST_FRAMES}")
     if frames is not None and scene.model.liquid == "linear":
         raise InputError("model.liquid", "linear", "auto or long_wave for a film")
-    if cells is None and plan.cells < (fewest := fewest_cells(scene.fills)):
-        table = "runup" if scene.programme is None else "programme"
-        allowed = f"{fewest} or more, {FEWEST_CELLS} in each compartment"
-        raise InputError(f"{table}.cells", plan.cells, allowed)
     update(what="running up")
     numerics = numerics_of(plan, cells, samples, check)
     drive, gravity = drive_of(plan, scene.rotor), across_gravity(scene)
@@ -279,7 +286,7 @@ def runup_scene(
     steps = () if scene.programme is None else tuple(step.words() for step in scene.programme.steps)
     passages, left = passages_of(history, dry, steps), unbalance_left(scene, history)
     fastest = np.flatnonzero(history.speed == history.speed.max())
-    chambers = tuple(_chamber(fill) for fill in scene.fills)
+    chambers = tuple(chamber_of(fill) for fill in scene.fills)
 
     def found() -> Iterator[Note]:
         if scene.chambers:
@@ -501,7 +508,8 @@ def _passed(speed: Array, count: int) -> Array:
     return np.linspace(low, high, count) if 0.0 < low < high else np.empty(0)
 
 
-def _chamber(fill: Fill) -> FilledChamber:
+def chamber_of(fill: Fill) -> FilledChamber:
+    """A chamber with its liquid, as answers keep it."""
     chamber, name = fill.chamber, fill.liquid.name
     sizes = chamber.radius, chamber.inner_radius, chamber.height, fill.volume, name, fill.surface_radius
     return FilledChamber(*sizes, baffles=chamber.baffles)

@@ -11,7 +11,7 @@ from leblanc.core.question import STUDY, Option, ask, called
 if TYPE_CHECKING:
     from leblanc.studies.sweep.answer import SweepAnswer
 
-FILES = ("sweep.nc",)
+FILES = ("sweep.html", "sweep.nc")
 
 
 def sweep(

@@ -11,20 +11,31 @@ import numpy as np
 from numpy.typing import NDArray
 
 from leblanc.core.answer import Answer
-from leblanc.core.blocks import Block, Notes, Table, Words
+from leblanc.core.blocks import Block, Notes, Picture, Table, Words
 from leblanc.core.netcdf import NamedArrays
 from leblanc.core.notes import one_line
-from leblanc.core.quantities import plain
+from leblanc.core.quantities import plain, quantities
 from leblanc.core.question import called
-from leblanc.core.units import ANGULAR_SPEED, LENGTH, MASS, Unit, amplitude_sentence, amplitudes_are, unit_for
+from leblanc.core.units import (
+    ANGULAR_SPEED,
+    LENGTH,
+    MASS,
+    Dimension,
+    Unit,
+    amplitude_sentence,
+    amplitudes_are,
+    unit_for,
+)
 from leblanc.scene.schema.load import SceneError, SceneFault
-from leblanc.studies.sweep.outputs import single_outputs
+from leblanc.studies.sweep.outputs import Answers, RunupAnswers
 from meshes.arrays import Array
 from meshes.quantity import Q
 
 QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
 _HEAD = ("Output", "mean", "deviation", "5 %", "50 %", "95 %", "unit")
-_SHARED = ("peak_amplitude", "last_amplitude", "peak_growth")  # whose sensitivities are shown
+_OUTPUTS = {**quantities(Answers), **quantities(RunupAnswers)}
+# Those whose sensitivities are shown.
+_SHARED = "peak_amplitude", "last_amplitude", "peak_growth", "top_speed", "walking_margin", "clearance"
 _SHOWN = 10  # kinds of reasons
 
 
@@ -118,6 +129,8 @@ class SweepAnswer(Answer):
     """
 
     command = "sweep"
+    title = "Sweep over many machines"
+    page = "sweep.html"
     figure = "leblanc.studies.sweep.figure:sweep_figure"
 
     store: Annotated[Path, Q(text="folder of the samples")]
@@ -141,6 +154,9 @@ class SweepAnswer(Answer):
     speeds: int  #: at which each sample is answered, how many
     speed: Array | None  #: of all samples, rad/s; None where it differs between them
     plane: str = ""  #: of the amplitudes, in words; empty for rotors that move in one plane
+    command_of: str = "run"  #: that answered each sample
+    #: path and words of what varies, "uniform from 3 kg to 12 kg"
+    varied: tuple[tuple[str, str], ...] = ()
     netcdf: bool = False  #: its file is written
     emulators: Annotated[
         Mapping[str, Emulated | NotEmulated] | None,
@@ -150,6 +166,10 @@ class SweepAnswer(Answer):
     @property
     def data(self) -> str:  # type: ignore[override]
         return "sweep.nc" if self.netcdf else ""
+
+    @property
+    def unused(self) -> tuple[str, ...]:  # type: ignore[override]
+        return ("speeds", "optimise") if self.command_of == "runup" else ("runup", "programme", "optimise")
 
     @property
     def faults(self) -> tuple[str, ...]:
@@ -179,6 +199,8 @@ class SweepAnswer(Answer):
         counts = [f"{one.samples} of {self.samples} samples: {one.reason}" for one in self.reasons[:_SHOWN]]
         return (
             Table(self._facts(), shown="page"),
+            *([Table(self.varied, ("Varied", "how"), shown="page")] if self.varied else []),
+            Picture("sweep", "How the amplitudes spread", self.figure),
             outputs,
             Words(amplitude_sentence(self.plane)),
             *self._shares(),
@@ -191,25 +213,28 @@ class SweepAnswer(Answer):
         rows = [
             ("Scene", one_line(self.scene)),
             ("Samples done", f"{self.done} of {self.samples}, {self.method}, seed {self.seed}"),
-            ("Varied", ", ".join(self.fields)),
+            ("Answered by", "leblanc run" if self.command_of == "run" else "leblanc runup, in time"),
             amplitudes_are(self.plane),
         ]
+        if self.command_of == "runup":
+            rows.append(("Highest speed reached", self.spread("top_speed", ANGULAR_SPEED)))
         if self.speeds > 1:
             rows.append(("Largest amplitude", self.spread("peak_amplitude")))
             rows.append(("Largest amplitude without liquid", self.spread("peak_amplitude_dry")))
-        rows.append(("Amplitude at the last speed", self.spread("last_amplitude")))
+        last = "Amplitude at the last speed" if self.command_of == "run" else "Amplitude at the end"
+        rows.append((last, self.spread("last_amplitude")))
         return [*rows, ("The same without liquid", self.spread("last_amplitude_dry"))]
 
-    def spread(self, name: str) -> str:
-        """Median of an amplitude and the range of nine samples in ten."""
+    def spread(self, name: str, dimension: Dimension = LENGTH) -> str:
+        """Median of an output and the range of nine samples in ten."""
         sizes = [float(size) for size in self.outputs[name].quantiles[[0, 2, 4]]]
-        unit = unit_for(LENGTH, *sizes)
+        unit = unit_for(dimension, *sizes)
         low, middle, high = map(unit.number, sizes)
         return f"{middle} {unit.name}, nine in ten from {low} to {high} {unit.name}"
 
     def _row(self, name: str) -> tuple[str, ...]:
         """Statistics of one output, as `_HEAD` heads them."""
-        values, written = self.outputs[name], single_outputs(balls=True)[name].unit
+        values, written = self.outputs[name], _OUTPUTS[name].unit
         numbers = [float(one) for one in (values.mean, values.deviation, *values.quantiles[[0, 2, 4]])]
         unit = Unit(written.replace("s-1", "1/s"), 1.0)
         for dimension in (LENGTH, MASS, ANGULAR_SPEED):
@@ -221,7 +246,7 @@ class SweepAnswer(Answer):
         """Shares of the variance, a row for each field."""
         found = []
         for name in _SHARED:
-            indices = self.sensitivity[name]
+            indices = self.sensitivity.get(name)
             if indices is None or (name == "peak_amplitude" and self.speeds == 1):
                 continue
             rows = []

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import fields, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -12,11 +12,11 @@ from leblanc.liquid.choose import choose_all, prepare
 from leblanc.liquid.models import synchronous_model
 from leblanc.scene.scene import JeffcottRotor, Scene
 from leblanc.studies.balls.study import run_balls
+from leblanc.studies.loads.study import loaded_machine
 from leblanc.studies.peaks import responses_between
 from leblanc.studies.run.answer import phase
-from leblanc.studies.run.study import run_scene
-from leblanc.studies.sweep.outputs import Answers, over_speed
-from meshes.arrays import Index
+from leblanc.studies.run.study import loads_of, run_scene
+from leblanc.studies.sweep.outputs import Answers, kept_of, together, worst_of
 from meshes.errors import InputError
 from solvers.synchronous.peaks import highest
 from solvers.synchronous.response import Response, joined, machine_responses
@@ -29,25 +29,14 @@ def answer_scenes(scenes: Sequence[Scene]) -> Answers:
     if len(counts) != 1:
         raise InputError("scenes", sorted(counts), "at least one, all with one number of speeds")
     if not all(scene.chambers for scene in scenes):
-        return _joined([_bare(scene) for scene in scenes])
+        return together([_bare(scene) for scene in scenes])
     if any(scene.balls for scene in scenes):
-        return _joined([_with_balls(scene) for scene in scenes])
+        return together([_with_balls(scene) for scene in scenes])
     planar = [k for k, scene in enumerate(scenes) if isinstance(scene.rotor, JeffcottRotor)]
     others = [k for k, scene in enumerate(scenes) if not isinstance(scene.rotor, JeffcottRotor)]
     parts = [_planar([scenes[k] for k in planar])] if planar else []
     parts += [_single(scenes[k]) for k in others]
-    return _joined(parts, np.argsort(np.array([*planar, *others], dtype=np.intp)))
-
-
-def _joined(parts: Sequence[Answers], order: Index | None = None) -> Answers:
-    """Answers one behind the other, or in an order; what none of them has is None."""
-    found: dict[str, Any] = {}
-    for name in (field.name for field in fields(Answers)):
-        each = [getattr(part, name) for part in parts]
-        if any(values is None for values in each):
-            continue
-        found[name] = np.concatenate(each) if order is None else np.concatenate(each)[order]
-    return Answers(**found)
+    return together(parts, np.argsort(np.array([*planar, *others], dtype=np.intp)))
 
 
 def _bare(scene: Scene) -> Answers:
@@ -63,7 +52,7 @@ def _bare(scene: Scene) -> Answers:
 def _with_balls(scene: Scene) -> Answers:
     """Answers of one scene with balls as `run` gives them: the state reported at each speed."""
     result = run_balls(scene, families=False)
-    known = {name: getattr(result, name, None) for name in over_speed(balls=True)}
+    known = {name: getattr(result, name, None) for name in kept_of(scene).over_speed}
     nothing, inside = np.full(result.speed.shape, np.nan), np.ones(result.speed.shape, dtype=bool)
     known |= {"in_range": inside} if known["in_range"] is None else {}
     found: dict[str, Any] = {
@@ -72,7 +61,7 @@ def _with_balls(scene: Scene) -> Answers:
     found["balanced_from"] = np.array([result.balanced_from])
     for name in ("amplitude", "amplitude_dry"):
         found[f"peak_{name}"] = np.fmax.reduce(found[name], axis=1)
-    return Answers(**found)
+    return Answers(**found, **worst_of(result.loads))
 
 
 def _planar(scenes: Sequence[Scene]) -> Answers:
@@ -109,7 +98,14 @@ def _planar(scenes: Sequence[Scene]) -> Answers:
     held = replace(answer, in_range=found["in_range"])
     each = [held.at(np.flatnonzero(owner == k)) for k in range(len(scenes))]
     found = {name: values.reshape(shape) for name, values in found.items()}
-    return Answers(**found, **_peaks(each, responses_between(prepared, each)))
+    between = responses_between(prepared, each)
+    loads = [
+        worst_of(loads_of(loaded_machine(one.scene), one.scene, own, refined))
+        for one, own, refined in zip(prepared, each, between, strict=True)
+    ]
+    known = set.intersection(*map(set, loads))
+    worst = {name: np.concatenate([one[name] for one in loads]) for name in known}
+    return Answers(**found, **_peaks(each, between), **worst)
 
 
 def _peaks(answers: Sequence[Response], between: Sequence[Response]) -> dict[str, Any]:
@@ -125,7 +121,8 @@ def _single(scene: Scene) -> Answers:
     """Answers of one scene as `run` gives them."""
     result = run_scene(scene)
     nothing = np.full(result.speed.shape, np.nan)
-    found: dict[str, Any] = {name: getattr(result, name) for name in over_speed(balls=False)}
+    found: dict[str, Any] = {name: getattr(result, name) for name in kept_of(scene).over_speed}
     found["peak_amplitude"] = np.array(result.peak["amplitude"])
     found["peak_amplitude_dry"] = np.array(result.peak_dry["amplitude"])
-    return Answers(**{name: (nothing if value is None else value)[None] for name, value in found.items()})
+    found = {name: (nothing if value is None else value)[None] for name, value in found.items()}
+    return Answers(**found, **worst_of(result.loads))

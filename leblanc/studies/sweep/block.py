@@ -22,27 +22,28 @@ from leblanc.scene.schema.load import SceneError, escaped
 from leblanc.scene.schema.part import Part, rule_of
 from leblanc.scene.schema.paths import Keys, tables_of, with_values
 from leblanc.scene.schema.rules import Quantity
-from leblanc.studies.sweep.outputs import Answers, blank, outputs_of
+from leblanc.studies.sweep.outputs import Answers, Kept, RunupAnswers, blank
 from meshes.errors import InputError
 
 PENDING, DONE, FAILED, NOT_CONVERGED = range(4)
 STATUS = ("pending", "done", "failed", "not_converged")
 
 
-_WORDS_ONLY = ("source", "assumed", "runup", "programme")  # no answer of a sweep depends on them
+_WORDS = "source", "assumed"  # no answer depends on them
+_IN_TIME = "runup", "programme"  # nor one over speed on these
 
 _Tables = Mapping[tuple[str, ...], type[Part]]
 
 Maker = Callable[[Sequence[Any]], Scene]
 
 
-def scene_maker(table: Mapping[str, Any], paths: Sequence[Keys]) -> Maker:
+def scene_maker(table: Mapping[str, Any], paths: Sequence[Keys], unused: Sequence[str] = _IN_TIME) -> Maker:
     """What makes one scene after the other from the same table with other values at some paths.
 
-    Each is the scene that the whole table with those values gives, at a fraction of the cost, and raises as
-    that would.
+    Each is the scene that the whole table with those values gives, but for its `unused` tables, at a fraction
+    of the cost, and raises as that would.
     """
-    base = {key: value for key, value in table.items() if key not in _WORDS_ONLY}
+    base = {key: value for key, value in table.items() if key not in (*_WORDS, *unused)}
     scene = scene_from_table(base)
     base = _in_si(base, (), tables_of(Scene, scene.rotor.kind))
     rotor_class = type(scene.rotor)
@@ -118,6 +119,7 @@ class Block:
     table: Mapping[str, Any]  #: content of the scene file that they are made from
     paths: tuple[Keys, ...]  #: keys along the path of each varied field
     rows: tuple[tuple[Any, ...], ...]  #: values of each sample at those paths
+    kept: Kept  #: of each sample
 
 
 @dataclass(frozen=True)
@@ -139,13 +141,12 @@ def answer_block(block: Block) -> BlockAnswer:
     from threadpoolctl import threadpool_limits
 
     with threadpool_limits(1):
-        scenes, reasons = make_scenes(scene_maker(block.table, block.paths), block.rows)
+        unused = _IN_TIME if block.kept.kind is Answers else ()
+        scenes, reasons = make_scenes(scene_maker(block.table, block.paths, unused), block.rows)
         kept = [k for k, scene in enumerate(scenes) if scene is not None]
-        pieces = _answer([scene for scene in scenes if scene is not None])
-    speeds = int(block.table["speeds"]["count"])
-    balls = any(chamber.get("kind") == "balls" for chamber in block.table.get("chambers", ()))
-    outputs = outputs_of(balls)
-    values = {name: blank(output, len(scenes), speeds) for name, output in outputs.items()}
+        pieces = _answer([scene for scene in scenes if scene is not None], block.kept)
+    outputs = block.kept.outputs
+    values = {name: blank(output, len(scenes), block.kept.speeds) for name, output in outputs.items()}
     status = np.full(len(scenes), FAILED, dtype=np.int8)
     done = 0
     for count, found in pieces:
@@ -156,11 +157,8 @@ def answer_block(block: Block) -> BlockAnswer:
             continue
         for name in outputs:
             values[name][places] = getattr(found, name)
-        lost = np.count_nonzero(~np.asarray(found.converged), axis=1)
-        status[places] = np.where(lost == 0, DONE, NOT_CONVERGED)
-        for k in np.flatnonzero(lost):
-            what = "state of the balls" if balls else "bounded deflection"
-            reasons[places[k]] = f"no {what} found at {lost[k]} of {speeds} speeds"
+        for place, reason in zip(places, found.reasons, strict=True):
+            status[place], reasons[place] = NOT_CONVERGED if reason else DONE, str(reason)
     return BlockAnswer(block.number, values, status, tuple(reasons), own_versions())
 
 
@@ -170,21 +168,32 @@ def own_versions() -> Mapping[str, str]:
     return versions()
 
 
-def _answer(scenes: Sequence[Scene]) -> list[tuple[int, Answers | str]]:
-    """Answers of as many scenes at once as do not fail together; the reason of one that fails alone."""
-    from leblanc.studies.sweep.batch import answer_scenes
+def answered(scenes: Sequence[Scene], kept: Kept) -> Answers | RunupAnswers:
+    """Outputs of some scenes by the command of their sweep."""
+    if kept.kind is Answers:
+        from leblanc.studies.sweep.batch import answer_scenes
 
+        return answer_scenes(scenes)
+    from leblanc.studies.sweep.runups import answer_runups
+
+    return answer_runups(scenes, kept.check)
+
+
+def _answer(scenes: Sequence[Scene], kept: Kept) -> list[tuple[int, Answers | RunupAnswers | str]]:
+    """Answers of as many scenes at once as do not fail together; the reason of one that fails alone."""
     if not scenes:
         return []
+    if kept.kind is RunupAnswers and len(scenes) > 1:  # nothing is saved by several together
+        return [_answer([scene], kept)[0] for scene in scenes]
     try:
-        return [(len(scenes), answer_scenes(scenes))]
+        return [(len(scenes), answered(scenes, kept))]
     except MemoryError:
         raise  # says nothing about the scenes
     except Exception as error:  # whatever it is, it must not take the other samples with it
         if len(scenes) == 1:
             return [(1, reason_of(error))]
         middle = len(scenes) // 2
-        return _answer(scenes[:middle]) + _answer(scenes[middle:])
+        return _answer(scenes[:middle], kept) + _answer(scenes[middle:], kept)
 
 
 def reason_of(error: Exception) -> str:

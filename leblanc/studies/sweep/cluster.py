@@ -16,7 +16,7 @@ from leblanc.core.interrupts import held
 from leblanc.studies.sweep.block import Block, BlockAnswer, answer_block, own_versions, reason_of
 from meshes.errors import InputError
 
-_AHEAD = 2  # blocks in flight for each thread: one at work, one waiting
+AHEAD = 2  # blocks in flight for each thread: one at work, one waiting
 # Of local workers: memory is given back in large pieces only. With Dask's own choice, 64 kB, a quarter of the
 # time goes into page faults.
 _ENVIRONMENT = {
@@ -37,12 +37,12 @@ def answer_blocks(
         for block in blocks:
             yield answer_block(block)
         return
-    with _client(workers, scheduler) as client:
+    with client_of(workers, scheduler) as client:
         yield from _answers(client, blocks)
 
 
 @contextmanager
-def _client(workers: int, scheduler: str | None) -> Iterator[Any]:
+def client_of(workers: int, scheduler: str | None) -> Iterator[Any]:
     """A client of local processes or of a running cluster."""
     import dask
     from distributed import Client, LocalCluster
@@ -89,7 +89,7 @@ def _client(workers: int, scheduler: str | None) -> Iterator[Any]:
 
 def require_scheduler(address: str) -> None:
     """Raise unless a cluster with a worker answers."""
-    with _client(0, address):
+    with client_of(0, address):
         pass
 
 
@@ -143,7 +143,7 @@ def _answers(client: Any, blocks: Iterable[Block]) -> Iterator[BlockAnswer]:
     while True:
         with _cluster_faults():
             threads = max(1, sum(client.nthreads().values()))  # workers come and go
-            room = max(0, _AHEAD * threads - len(flying))
+            room = max(0, AHEAD * threads - len(flying))
             flying |= {client.submit(answer_block, block, pure=False) for block in islice(waiting, room)}
             if not flying:
                 return

@@ -18,7 +18,6 @@ from numpy.typing import ArrayLike
 
 from leblanc.studies.sweep.answer import Emulated, EmulatorError, NotEmulated
 from leblanc.studies.sweep.block import DONE
-from leblanc.studies.sweep.outputs import single_outputs
 from leblanc.studies.sweep.store import Store, read_store
 from meshes.arrays import Array, Flags
 from meshes.errors import InputError
@@ -151,14 +150,11 @@ def _fit(points: Array, standard: Array) -> tuple[Any, bool]:
     return process, all("close to" in str(warning.message) for warning in ours)
 
 
-EMULATED = tuple(single_outputs(balls=False))
-
-
 def emulate_store(store: Store | Path, output: str, seed: int = 0) -> Emulator:
     """Emulator of an output that is one number a sample, over the varied fields [theory: emulator]."""
-    if output not in EMULATED:
-        raise InputError("output", output, "one of " + ", ".join(EMULATED))
     found = read_store(store) if isinstance(store, Path) else store
+    if output not in (known := single_outputs(found)):
+        raise InputError("output", output, "one of " + ", ".join(known))
     fields = varied_fields(found)
     columns = [found.read(name) for name in fields]
     for name, column in zip(fields, columns, strict=True):
@@ -171,13 +167,23 @@ def emulate_store(store: Store | Path, output: str, seed: int = 0) -> Emulator:
 def emulated_outputs(store: Store, seed: int = 0) -> dict[str, Emulated | NotEmulated]:
     """Error of an emulator of every output that is one number a sample, or the reason why there is none."""
     found: dict[str, Emulated | NotEmulated] = {}
-    for output in EMULATED:
+    for output in single_outputs(store):
         try:
             emulator = emulate_store(store, output, seed)
             found[output] = Emulated(emulator.settled, emulator.error, emulator.positive)
         except InputError as error:
             found[output] = NotEmulated(f"{error.field} must be {error.allowed}")
     return found
+
+
+def single_outputs(store: Store) -> tuple[str, ...]:
+    """Outputs of a store that are one number a sample."""
+    fields, single = varied_fields(store), ("sample",)
+    return tuple(
+        name
+        for name, array in store.arrays.items()
+        if name not in fields and store.dims(name) == single and array.dtype.kind == "f"
+    )
 
 
 def varied_fields(store: Store) -> tuple[str, ...]:

@@ -60,6 +60,9 @@ def _over_speed(figure: Figure, answer: SweepAnswer, speed: Array) -> None:
     _draw(axes, answer, (rpm, wet, dry), limits)
     add_rate_axis(axes)
     text = "Amplitude of the deflection: median and ranges of the samples at each speed."
+    if answer.command_of == "runup":
+        text = f"Largest amplitude while the spin is in each of {answer.speeds} bands: median and ranges of "
+        text += "the samples that come there."
     spans = windows([(rpm, line) for line in (*wet.T, dry)], limits)
     if not spans:
         axes.set_xlabel("Speed (rpm)")

@@ -30,7 +30,18 @@ from leblanc.scene.schema.load import (
 )
 from leblanc.scene.schema.part import Conflict, Part, allowed_at, faults_of
 from leblanc.scene.schema.paths import Keys, keys_of, rule_at
-from leblanc.scene.schema.rules import Entries, Quantity, Refused, Several, Text, Whole, one_of, whole
+from leblanc.scene.schema.rules import (
+    Entries,
+    Quantity,
+    Refused,
+    Several,
+    Text,
+    Truth,
+    Whole,
+    one_of,
+    whole,
+)
+from leblanc.studies.sweep.outputs import Kept, kept_of
 from meshes.arrays import Array
 from meshes.errors import InputError
 
@@ -197,9 +208,11 @@ FORMS: dict[str, tuple[str, str]] = {
     ),
 }
 
+COMMANDS = ("run", "runup")
 METHODS = ("grid", "latin_hypercube", "sobol", "random", "saltelli")
 MAX_SAMPLES = 10_000_000
 MAX_VARIED = 1000  # fields
+_SHOWN = 6  # options of a choice
 MAX_SEED = 2**63 - 1  # the largest whole number of TOML
 
 _EXAMPLE = '"rotor.mass" = { uniform = ["3 kg", "12 kg"] }'
@@ -223,6 +236,12 @@ class Study(Part):
     scene: Annotated[str, PlainValidator(Text(4000))] = Field(
         description="file of the base, its path counts from the study's"
     )
+    command: Annotated[str, one_of(*COMMANDS)] = Field(
+        "run", description="that answers each scene: steady motion over its speeds, or its run-up in time"
+    )
+    check: Truth = Field(
+        True, description="whether each run-up is made with half the cells as well, which tells its error"
+    )
     method: Annotated[str, one_of(*METHODS)] = Field(description="how the scenes are chosen")
     samples: Annotated[int | None, whole(1, MAX_SAMPLES)] = Field(
         None, description="how many scenes, points of the design for saltelli; left out for a grid"
@@ -234,8 +253,10 @@ class Study(Part):
 
     @classmethod
     def conflicts(cls, values: Mapping[str, Any], given: Mapping[str, Any]) -> Iterator[Conflict]:
-        """A grid has the number of its samples by its levels."""
+        """A grid has the number of its samples by its levels; only run-ups are checked."""
         method = values.get("method")
+        if values.get("command") == "run" and "check" in given:
+            yield Conflict(("check",), 'left out unless command is "runup"')
         if method == "grid" and "samples" in given:
             yield Conflict(("samples",), "left out where method is grid")
         elif method not in (None, "grid") and "samples" not in given:
@@ -263,6 +284,20 @@ class VariedField:
         """The values are texts, and samples hold their indices."""
         return isinstance(self.distribution, Choice) and self.distribution.categorical
 
+    def words(self) -> str:
+        """Its distribution as a person writes it."""
+        law, unit = self.distribution, "" if self.unit == "1" else f" {self.unit}"
+        if isinstance(law, Choice):
+            shown_options = ", ".join(shown(option) for option in law.options[:_SHOWN])
+            return f"one of {shown_options}{', ...' if len(law.options) > _SHOWN else ''}{unit}"
+        text = {
+            Uniform: "uniform from {low:.6g} to {high:.6g}",
+            Normal: "normal, mean {mean:.6g}, standard deviation {deviation:.6g}",
+            LogNormal: "lognormal, median {median:.6g}, factor {factor:.6g}",
+            Levels: "{count} levels from {first:.6g} to {last:.6g}",
+        }[type(law)]
+        return text.format(**asdict(law)) + unit
+
     def value(self, drawn: float) -> Any:
         """What the scene gets for a sampled number."""
         if isinstance(self.distribution, Choice):
@@ -283,6 +318,13 @@ class Sweep:
     seed: int  #: of the samples
     fields: tuple[VariedField, ...]  #: what varies
     text: str = ""  #: of its file, as it was typed
+    command: str = "run"  #: that answers each scene
+    check: bool = True  #: run-ups are made with half the cells as well
+
+    @property
+    def kept(self) -> Kept:
+        """What its store keeps of each sample."""
+        return kept_of(self.scene, self.command, self.check)
 
     @property
     def samples(self) -> int:
@@ -302,6 +344,8 @@ class Sweep:
                 for field in self.fields
             ],
         }
+        if self.command != "run":
+            content |= {"command": self.command, "check": self.check}
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
 
@@ -345,9 +389,13 @@ def _sweep_of(given: Mapping[str, Any], path: str | PathLike[str]) -> Sweep:
             scene = scene_from_table(content, str(scene_path), scene_text)
     try:
         require_whirl(scene)
+        if table.command == "runup":
+            from leblanc.studies.runup.study import require_runup
+
+            require_runup(scene)
     except InputError as error:
         raise ((fault_in(scene.file, error) if scene.file else None) or error) from error
-    fields = _fields(table.vary, content, table.method, file)
+    fields = _fields(table, content, file)
     points = table.samples
     if points is None:
         sizes = [int(field.distribution.levels().size) for field in fields]  # type: ignore[union-attr]
@@ -361,23 +409,23 @@ def _sweep_of(given: Mapping[str, Any], path: str | PathLike[str]) -> Sweep:
         points=points,
         seed=table.seed,
         fields=fields,
+        command=table.command,
+        check=table.check,
     )
     _check_size(sweep, file)
     return sweep
 
 
-def _fields(
-    vary: Mapping[str, Any], scene: Mapping[str, Any], method: str, file: str
-) -> tuple[VariedField, ...]:
+def _fields(study: Study, scene: Mapping[str, Any], file: str) -> tuple[VariedField, ...]:
     """The varied fields, or all faults of them."""
     faults: list[SceneFault] = []
     fields = []
-    for path, given in vary.items():
+    for path, given in study.vary.items():
         where: tuple[str, ...] = ("vary", path)
         value: object = None
         try:
-            rule = rule_at(Scene, scene, path)
-            kind = _kind(given, method)
+            rule = rule_at(Scene, scene, path, study.command)
+            kind = _kind(given, study.method)
             where, value = (*where, kind), given[kind]
             distribution = KINDS[kind](value, rule)
         except ValidationError as error:  # of a table that stands for the value, as a liquid's
@@ -392,7 +440,7 @@ def _fields(
             continue
         unit = rule.dimension.unit if isinstance(rule, Quantity | Several) else ""
         fields.append(VariedField(path, unit or "1", distribution))
-    faults = faults or _nested(vary, file)
+    faults = faults or _nested(study.vary, file)
     if faults:
         raise SceneError(faults)
     return tuple(fields)

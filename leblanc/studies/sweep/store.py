@@ -29,15 +29,17 @@ from leblanc.core.netcdf import NamedArrays, variable
 from leblanc.core.notes import one_line
 from leblanc.scene.schema.load import shown
 from leblanc.studies.sweep.block import PENDING, STATUS
-from leblanc.studies.sweep.outputs import kind_of, outputs_of
+from leblanc.studies.sweep.outputs import kind_of
 from leblanc.studies.sweep.plan import Sweep, VariedField
 from meshes.errors import InputError
 from meshes.quantity import Q
 
 STORE = "sweep.zarr"
 
-_FEW, _MANY = 64, 4096  # samples of a block
-_BLOCKS = 50  # of a sweep, as long as they are neither too small nor too large
+_MANY = 4096  # samples of a block at most
+# Samples of a block at least, and blocks of a sweep as long as they are neither too small nor too large: of
+# `run`, and of run-ups, which take some tenths of a second each.
+_BLOCKS = {"run": (64, 50), "runup": (4, 1000)}
 _ANSWERS = 16_384  # samples times speeds of a block at most
 _UNFINISHED = "*.partial"  # what zarr calls a file before it is whole
 _METADATA = "zarr.json"
@@ -77,9 +79,10 @@ class Store:
         return tuple(self.arrays[name].metadata.dimension_names)
 
 
-def block_size(samples: int, speeds: int) -> int:
+def block_size(samples: int, speeds: int, command: str = "run") -> int:
     """Samples of a block: of the sweep alone, so that the same sweep has the same chunks everywhere."""
-    wanted = min(max(samples // _BLOCKS, _FEW), _MANY)
+    fewest, blocks = _BLOCKS[command]
+    wanted = min(max(samples // blocks, fewest), _MANY)
     return max(1, min(wanted, _ANSWERS // speeds, samples))
 
 
@@ -204,8 +207,9 @@ def _create(path: Path, sweep: Sweep) -> None:
     import zarr
     from zarr.codecs import Crc32cCodec, ZstdCodec
 
-    samples, speeds = sweep.samples, sweep.scene.speeds.count
-    block = block_size(samples, speeds)
+    kept = sweep.kept
+    samples, speeds = sweep.samples, kept.speeds
+    block = block_size(samples, speeds, sweep.command)
     group = zarr.create_group(path, zarr_format=3, attributes=_attributes(sweep))
 
     def array(name: str, kind: str, over_speed: bool, fill: object, attributes: Mapping[str, Any]) -> None:
@@ -220,7 +224,7 @@ def _create(path: Path, sweep: Sweep) -> None:
             attributes=attributes,
         )
 
-    for name, output in outputs_of(bool(sweep.scene.balls)).items():
+    for name, output in kept.outputs.items():
         kind = kind_of(output)
         array(name, kind, bool(output.over), _EMPTY[kind], _output_attributes(output))
     for field in sweep.fields:
@@ -258,6 +262,7 @@ def _attributes(sweep: Sweep) -> dict[str, Any]:
         "method": sweep.method,
         "points": sweep.points,
         "seed": str(sweep.seed),
+        **({} if sweep.command == "run" else {"command": sweep.command}),
         "vary": "\n".join(f"{field.path}: {field.distribution}" for field in sweep.fields),
         "history": "written by leblanc sweep",
         **{f"version_{package}": version for package, version in used.items()},

@@ -23,9 +23,8 @@ from leblanc.scene.schema.load import SceneError, SceneFault, shown
 from leblanc.studies.held.holding import cores
 from leblanc.studies.run.notes import plane_words
 from leblanc.studies.sweep.answer import QUANTILES, Reason, Statistics, SweepAnswer
-from leblanc.studies.sweep.block import DONE, FAILED, NOT_CONVERGED, Block, BlockAnswer
+from leblanc.studies.sweep.block import DONE, FAILED, NOT_CONVERGED, Block, BlockAnswer, answered
 from leblanc.studies.sweep.cluster import answer_blocks, require_scheduler
-from leblanc.studies.sweep.outputs import single_outputs
 from leblanc.studies.sweep.plan import Sweep
 from leblanc.studies.sweep.sampling import Rows, sample_rows
 from leblanc.studies.sweep.sensitivity import sensitivity
@@ -33,8 +32,9 @@ from leblanc.studies.sweep.store import Store, field_values, locked, open_store,
 from meshes.arrays import Array
 from meshes.errors import InputError
 
-OVER_SPEED = ("amplitude", "amplitude_dry")
+OVER_SPEED = ("amplitude", "amplitude_dry", "amplitude_without")
 _VALUES = 4_000_000  # read at once
+_ROUNDING = 1e-12  # of the largest: numbers as near as this are equal
 _NUMBER = re.compile(r"(?<![\w.])[-+]?\d[\w.+-]*")
 
 
@@ -85,12 +85,12 @@ def run_sweep(
             return store
         _probe(sweep)
         rows = sample_rows(sweep)
-        blocks = (_block(sweep, store, rows, number) for number in missing)
+        blocks = (block_of(sweep, store, rows, number) for number in missing)
         if workers is None:  # a single block needs no process of its own
             workers = 0 if len(missing) == 1 else min(cores(), len(missing))
         with _interrupts() as interrupted:
             for answer in answer_blocks(blocks, workers, scheduler):
-                _write(sweep, store, rows, answer)
+                write_answer(sweep, store, rows, answer)
                 start, stop = store.bounds(answer.number)
                 finished += stop - start
                 update(finished, sweep.samples)
@@ -134,27 +134,27 @@ def _interrupts() -> Iterator[threading.Event]:
 
 def _probe(sweep: Sweep) -> None:
     """Answer the scene itself: what no sample can answer is one fault then, not as many as samples."""
-    from leblanc.studies.sweep.batch import answer_scenes
-
     if any(field.path == "model.liquid" for field in sweep.fields):
         return
     try:
-        answer_scenes([sweep.scene])
+        answered([sweep.scene], sweep.kept)
     except InputError as error:
         raise SceneError(
             [SceneFault(sweep.scene_path, error.field, shown(error.value), error.allowed)]
         ) from error
 
 
-def _block(sweep: Sweep, store: Store, rows: Rows, number: int) -> Block:
+def block_of(sweep: Sweep, store: Store, rows: Rows, number: int) -> Block:
+    """The samples of a block, as a worker takes them."""
     drawn = rows(*store.bounds(number))
     values = tuple(
         tuple(field.value(value) for field, value in zip(sweep.fields, row, strict=True)) for row in drawn
     )
-    return Block(number, sweep.table, tuple(field.keys for field in sweep.fields), values)
+    return Block(number, sweep.table, tuple(field.keys for field in sweep.fields), values, sweep.kept)
 
 
-def _write(sweep: Sweep, store: Store, rows: Rows, answer: BlockAnswer) -> None:
+def write_answer(sweep: Sweep, store: Store, rows: Rows, answer: BlockAnswer) -> None:
+    """Write what a worker found of a block."""
     drawn = rows(*store.bounds(answer.number))
     variables = {field.path: field_values(field, drawn[:, j]) for j, field in enumerate(sweep.fields)}
     variables |= answer.values
@@ -168,12 +168,11 @@ def summarise(store: Store, sweep: Sweep) -> SweepAnswer:
     drawn = sample_rows(sweep)(0, store.samples)
     categorical = [field.categorical for field in sweep.fields]
     single, shares = {}, {}
-    for name in single_outputs(bool(sweep.scene.balls)):
+    kept = sweep.kept
+    for name in kept.single:
         values = store.read(name)
         single[name] = statistics(values)
         shares[name] = sensitivity(sweep.method, drawn, categorical, values, sweep.seed)
-    speeds = sweep.scene.speeds.count
-    own_speeds = any(field.path.startswith("speeds.") for field in sweep.fields)
     return SweepAnswer(
         name=sweep.name,
         scene=sweep.scene.name,
@@ -181,22 +180,33 @@ def summarise(store: Store, sweep: Sweep) -> SweepAnswer:
         method=sweep.method,
         seed=sweep.seed,
         fields=tuple(field.path for field in sweep.fields),
-        speeds=speeds,
+        speeds=kept.speeds,
+        command_of=sweep.command,
+        varied=tuple((field.path, field.words()) for field in sweep.fields),
         samples=store.samples,
         done=int(counts[DONE]),
         failed=int(counts[FAILED]),
         not_converged=int(counts[NOT_CONVERGED]),
         reasons=_grouped(store),
-        speed=None if own_speeds else sweep.scene.speed_array(),
+        speed=_speed(store, sweep),
         outputs=single,
         over_speed={
-            name: _over_speed(store, name, speeds)
-            for name in (*OVER_SPEED, *(["amplitude_without"] if sweep.scene.balls else []))
+            name: _over_speed(store, name, kept.speeds) for name in OVER_SPEED if name in kept.outputs
         },
         sensitivity=shares,
         digest=sweep.digest,
         plane="" if sweep.scene.rotor.kind == "jeffcott" else _plane(sweep),
     )
+
+
+def _speed(store: Store, sweep: Sweep) -> Array | None:
+    """Speeds of all samples, rad/s; None where they differ."""
+    if sweep.command == "run":
+        own = any(field.path.startswith("speeds.") for field in sweep.fields)
+        return None if own else sweep.scene.speed_array()
+    found = store.read("speed")
+    known = found[np.isfinite(found).all(axis=1)]
+    return known[0] if known.size and np.all(known == known[0]) else None
 
 
 def _plane(sweep: Sweep) -> str:
@@ -213,7 +223,8 @@ def statistics(values: Array) -> Statistics:
     known = np.sort(values[np.isfinite(values)])
     if known.size == 0:
         return Statistics(0, np.nan, np.nan, np.full(len(QUANTILES), np.nan))
-    spread = known.std(ddof=1) if known.size > 1 else 0.0
+    apart = known[-1] - known[0] > _ROUNDING * np.abs(known).max()
+    spread = known.std(ddof=1) if apart else 0.0
     return Statistics(known.size, float(known.mean()), float(spread), np.quantile(known, QUANTILES))
 
 

@@ -252,6 +252,36 @@ def swing_time(pools, gravity):
     return longest
 
 
+@_unwrapped
+def expect(push, pace, shaft, dt, guess):
+    """Mean accelerations of a step to come: seen from the drum, on a parabola through the last three steps'.
+
+    In a drum that turns steadily what goes round with it stands still.
+    """
+    here, back = 0.5 * dt, 0.5 * pace.last
+    first = back + 0.5 * (pace.last + pace.before)
+    second = first + 0.5 * (pace.before + pace.older)
+    # No farther ahead than two steps like the last.
+    ahead = min(here, 2.0 * (first - back) - back)
+    linear = (ahead + back) / max(first - back, 1e-300)
+    bend = linear * (ahead + first) / max(second - back, 1e-300)
+    curve = bend * (first - back) / max(second - first, 1e-300)
+    if pace.older <= 0.0:
+        bend, curve = 0.0, 0.0
+    if pace.before <= 0.0:
+        linear = 0.0
+    for j in range(guess.shape[0]):
+        guess[j, 0], guess[j, 1] = 0.0, 0.0
+    for k in range(3):
+        time = back if k == 0 else (first if k == 1 else second)
+        weight = 1.0 + linear + bend if k == 0 else (-linear - bend - curve if k == 1 else curve)
+        turned = shaft.spin * (here + time) + 0.5 * shaft.rate * (here - time) * (here + time)
+        cosine, sine = weight * np.cos(turned), weight * np.sin(turned)
+        for j in range(guess.shape[0]):
+            guess[j, 0] += push[j, k, 0] * cosine - push[j, k, 1] * sine
+            guess[j, 1] += push[j, k, 0] * sine + push[j, k, 1] * cosine
+
+
 @_called
 def advance(
     rates,
@@ -377,11 +407,7 @@ def advance(
             begin_pools(
                 pools, two_layers, rings, kept_pools, gravity, angles, shaft.spin, rings_, push, first, work
             )
-            # Mean accelerations of the step to come, on a line through the last two steps'.
-            ahead = min((dt + pace.last) / max(pace.last + pace.before, 1e-300), 2.0)
-            for j in range(axes):
-                for i in range(2):
-                    guess[j, i] = push[j, 0, i] + ahead * (push[j, 0, i] - push[j, 1, i])
+            expect(push, pace, shaft, dt, guess)
             # The step is tried until rotor and layers agree.
             spin, angle, fastest, gap, status = shaft.spin, shaft.angle, 0.0, 0.0, Outcome.DONE + 0
             spins[0], spins[1] = spin, spin + shaft.rate * dt
@@ -563,11 +589,13 @@ def advance(
             shaft.spin = spins[1]
             for j in range(axes):
                 for i in range(2):
+                    push[j, 2, i] = push[j, 1, i]
                     push[j, 1, i] = push[j, 0, i]
                     push[j, 0, i] = found[j, i]
             for j in range(rings_):
                 begin[j] = end[j]
-            pace.before, pace.last, pace.fastest, pace.share = (
+            pace.older, pace.before, pace.last, pace.fastest, pace.share = (
+                pace.before,
                 pace.last,
                 dt,
                 fastest,

@@ -19,7 +19,7 @@ from leblanc.studies.fit.problem import answer as _answer
 from leblanc.studies.fit.study import fit_scene
 from leblanc.studies.sweep.batch import answer_scenes
 from leblanc.studies.sweep.block import scene_maker
-from leblanc.studies.sweep.outputs import outputs_of
+from leblanc.studies.sweep.outputs import kept_of
 from meshes.errors import InputError
 from solvers.rotor.balls.stability import balanced_stability
 from tests.leblanc.studies.optimise.test_balls import two_planes
@@ -125,7 +125,9 @@ def test_a_sweep_keeps_what_run_tells() -> None:
     make = scene_maker(table, [("chambers", 0, "count"), ("chambers", 0, "drag")])
     scenes = [make(values) for values in ((1, 0.1), (3, 0.4))]
     kept = answer_scenes(scenes)
-    assert set(vars(kept)) < set(outputs_of(balls=True))
+    assert {name for name, value in vars(kept).items() if value is not None} <= set(
+        kept_of(scenes[0]).outputs
+    )
     for k, scene in enumerate(scenes):
         result = lb.run(scene)
         assert isinstance(result, BallsAnswer)
@@ -135,7 +137,7 @@ def test_a_sweep_keeps_what_run_tells() -> None:
         assert kept.balanced[k].tolist() == result.balanced.tolist()
         np.testing.assert_equal(kept.balanced_from[k], result.balanced_from)
         assert kept.peak_amplitude[k] == np.nanmax(result.amplitude)
-    assert not {"state", "balanced_from"} & set(outputs_of(balls=False))
+    assert not {"state", "balanced_from"} & set(kept_of(lb.example("horizontal_rig")).outputs)
 
 
 def test_a_sweep_of_balls_from_its_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

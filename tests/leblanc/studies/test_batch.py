@@ -88,7 +88,7 @@ def alone() -> list[dict[str, np.ndarray]]:
     "zip(answers, between, strict=True)",
     "zip(answers, answers, strict=True)",
 )
-@kills("leblanc.studies.sweep.batch:_joined", "np.concatenate(each)[order]", "np.concatenate(each)")
+@kills("leblanc.studies.sweep.outputs:together", "np.concatenate(each)[order]", "np.concatenate(each)")
 def test_each_is_what_run_gives(alone: list[dict[str, np.ndarray]]) -> None:
     """Field by field, to the rounding of sums whose terms are added in another order."""
     answers = answer_scenes(mixed())

@@ -730,7 +730,7 @@ def made_up(history: RunupHistory, machine: Scene | None = None) -> RunupAnswer:
         in_range=good,
         steady=None,
         bands=((50.0, 60.0),),
-        chambers=tuple(map(runup_module._chamber, machine.fills)),
+        chambers=tuple(map(runup_module.chamber_of, machine.fills)),
         planes=tuple(fill.chamber.plane for fill in machine.fills),
         notes=notes,
     )
@@ -842,7 +842,7 @@ def test_a_round_surface_stays_round_as_drawn() -> None:
 def test_nested_chambers_share_a_drawing() -> None:
     walls = [(0.2, 0.15), (0.15, 0.1), (0.2, 0.0)]
     chambers = tuple(
-        runup_module._chamber(Fill(Chamber(outer, 0.04, inner), WATER, 1e-4)) for outer, inner in walls
+        runup_module.chamber_of(Fill(Chamber(outer, 0.04, inner), WATER, 1e-4)) for outer, inner in walls
     )
     assert film_figures.drawings(chambers, (0.0, 0.0, 0.0)) == [[0, 1], [2]]
     assert film_figures.drawings(chambers, (0.0, 0.1, 0.0)) == [[0], [2], [1]]

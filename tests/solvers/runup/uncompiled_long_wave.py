@@ -21,7 +21,7 @@ from solvers.layer.state import ring
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.rotor.system import RotorSystem
 from solvers.runup.long_wave import Coupled, couple
-from solvers.runup.state import GAINS, LAYER, MEASURES
+from solvers.runup.state import GAINS, LAYER, MEASURES, PACE, SHAFT
 from solvers.runup.steps import coupled as coupled_parts
 from solvers.runup.steps import layer as coupled_layer
 from solvers.runup.steps.spin import driven, motor_torque
@@ -496,3 +496,55 @@ def test_a_steep_motor_does_not_run_away() -> None:
         left = driven(curve, shaft, 2.0 * dt, dt) - rest
         assert left == pytest.approx((1.0 - x) / (1.0 + x) * (39.0 - rest), abs=1e-9)
         assert abs(left) <= abs(39.0 - rest)
+
+
+def steps_behind(spin: float, rate: float, seen: np.ndarray, known: int) -> tuple[np.ndarray, np.ndarray]:
+    """First guess for a step, and what it would be were the last steps' course followed exactly.
+
+    Accelerations seen from the drum are polynomials `seen` of the time, of the steps' middles; so many of the
+    last three steps are known.
+    """
+    dt, lasted = 0.011, np.array([0.012, 0.01, 0.013])
+    middle = -(np.cumsum(lasted) - 0.5 * lasted)
+
+    def mean(time: float) -> complex:
+        value = complex(np.polyval(seen[::-1], time))
+        return value * np.exp(1j * (spin * time + 0.5 * rate * time**2))
+
+    push, pace, shaft = np.zeros((1, 3, 2)), records(PACE)[0], records(SHAFT)[0]
+    for k in range(known):
+        push[0, k] = mean(middle[k]).real, mean(middle[k]).imag
+    pace.last, pace.before, pace.older = lasted * (np.arange(3) < known)
+    shaft.spin, shaft.rate = spin, rate
+    guess = np.ones((1, 2))
+    coupled_parts.expect(push, pace, shaft, dt, guess)
+    wanted = mean(0.5 * dt)
+    return guess[0], np.array([wanted.real, wanted.imag])
+
+
+@kills(
+    "solvers.runup.steps.coupled:expect",
+    "0.5 * shaft.rate * (here - time)",
+    "0.4 * shaft.rate * (here - time)",
+)
+@kills("solvers.runup.steps.coupled:expect", "shaft.spin * (here + time)", "shaft.spin * (here - time)")
+@kills("solvers.runup.steps.coupled:expect", "linear * (ahead + first)", "linear * (ahead - first)")
+@kills("solvers.runup.steps.coupled:expect", "(-linear - bend - curve if", "(-linear - bend if")
+def test_the_first_guess_follows_what_goes_round_with_the_drum() -> None:
+    """Exact for a course of as many terms as steps are known while the spin rises; wrong for one more."""
+    seen = np.array([3.0 + 1.0j, 20.0 - 8.0j, 400.0 + 100.0j, 9e3 - 2e3j])
+    for known in (1, 2, 3):
+        guess, wanted = steps_behind(40.0, 25.0, seen[:known], known)
+        np.testing.assert_allclose(guess, wanted, rtol=1e-13, atol=1e-13)
+        guess, wanted = steps_behind(40.0, 25.0, seen[: known + 1], known)
+        assert np.abs(guess - wanted).max() > 1e-4
+
+
+@kills("solvers.runup.steps.coupled:expect", "min(here, 2.0 * (first - back) - back)", "here")
+def test_a_long_step_after_short_ones_is_guessed_no_farther_ahead_than_two_of_them() -> None:
+    """Steps were short for a fault that the next one need not have: what changed in them is no trend."""
+    push, pace, shaft, guess = np.zeros((1, 3, 2)), records(PACE)[0], records(SHAFT)[0], np.zeros((1, 2))
+    push[0, :, 0] = 1.0, 0.9, 0.8
+    pace.last = pace.before = pace.older = 1e-5
+    coupled_parts.expect(push, pace, shaft, 1e-2, guess)
+    assert guess[0, 0] == pytest.approx(1.2, rel=1e-12)

@@ -47,7 +47,7 @@ CASES = (
     case("samples = 256", "samples = 10_000_001", "samples", "from 1 to 10000000"),
     case("samples = 256", "", "samples", "must be given"),
     case("seed = 11", "seed = -1", "seed = -1", "from 0 to"),
-    case("seed = 11", "sed = 11", "sed = 11", "spelled as one of: scene, method"),
+    case("seed = 11", "sed = 11", "sed = 11", "spelled as one of: scene, command"),
     case(STUDY[STUDY.index("[vary]") :], "[vary]", "vary = {}", "a table of 1 to"),
     case(STUDY[STUDY.index("[vary]") :], "vary = 3", "vary = 3", "a table of 1 to"),
     case('method = "sobol"', 'method = "grid"', "samples = 256", "left out where method is grid"),
