@@ -440,6 +440,7 @@ class ArrayRun:
     depth_min: Array
     depth_max: Array
     steps: int
+    rounds: int  #: of all steps, in which rotor and layers came to agree
     outcome: Outcome
     reason: str  #: why it did not come to the end, and when; or empty
 
@@ -617,6 +618,7 @@ def _read(lane: _Lane, *values: Any) -> ArrayRun:
         depth_min=depths[0],
         depth_max=depths[1],
         steps=int(state.steps[0]),
+        rounds=int(state.steps[2]),
         outcome=outcome,
         reason="" if outcome is Outcome.DONE else f"{outcome.message} {when}",
     )
