@@ -496,7 +496,7 @@ def runups(
         raise InputError("lanes", lanes, f"a multiple of {GROUP}")
     # A ramp has up to four corners, of which the first and the last are samples in any case.
     longest = max((task.numerics.samples for task in tasks), default=0) + 2
-    made = [_lane(task, longest) for task in tasks]
+    made = [_lane(task, f"tasks.{number}", longest) for number, task in enumerate(tasks)]
     for number, lane in enumerate(made):
         kinds = [[one.law, *map(np.shape, one.given + one.now)] for one in (lane, made[0])]
         if kinds[0] != kinds[1]:
@@ -506,8 +506,8 @@ def runups(
         return _run(made, lanes, progress or (lambda _: None)) if made else []
 
 
-def _lane(task: EnsembleTask, longest: int) -> _Lane:
-    """A machine made ready, with room for so many times."""
+def _lane(task: EnsembleTask, place: str, longest: int) -> _Lane:
+    """A machine made ready, with room for so many times; `place` is what errors name it by."""
     drive, numerics = task.drive, task.numerics
     for name, value, right, allowed in (
         ("drive", drive, isinstance(drive, Ramp), "a ramp"),
@@ -517,13 +517,13 @@ def _lane(task: EnsembleTask, longest: int) -> _Lane:
         ("sheds", task.system.sheds, not task.system.sheds, "none: the unbalance stays"),
     ):
         if not right:
-            raise InputError(name, value, allowed)
+            raise InputError(f"{place}.{name}", value, allowed)
     start = float(drive.corners()[1, 0])
     how = numerics.cells, False, False, numerics.handover
     machine = couple(task.system, task.fills, start, task.friction, task.gravity, *how)
     parts = machine.machine
     if not machine.settled or parts.plates.shape[1] or not parts.layers.size:
-        raise InputError("chambers", task.fills, "a ring of liquid on an upright wall, without baffles")
+        raise InputError(f"{place}.fills", task.fills, "a ring of liquid on an upright wall, without baffles")
     known = known_legs(drive, machine, numerics.samples)
     assert known is not None
     stops, slopes = (np.pad(each, (0, longest - each.size), mode="edge") for each in known)
