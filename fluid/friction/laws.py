@@ -104,7 +104,7 @@ def damping_rate(law: int, coefficient: float, lid: float, depth: Any, area: Any
     if law == LINEAR:
         return coefficient * depth / area
     if law == QUADRATIC:
-        return coefficient * np.abs(velocity) / area
+        return coefficient * abs(velocity) / area
     if law != NONE:
         # Stokes' law, and what is left of the law of the wall for small waves.
         return coefficient * (1.0 + lid * depth) / area

@@ -63,7 +63,7 @@ THIN = 1e-5
 # The surface of a face comes no nearer to the axis.
 NEAREST = 0.03
 # Share of its own rotation in whose field liquid counts as held.
-_HELD = 2.0 / 3.0
+HELD = 2.0 / 3.0
 # Keeps quotients of nothing by nothing at nothing.
 _NOTHING = 1e-300
 
@@ -364,7 +364,7 @@ def _held(area, q, spin):
         inertia += area[i] * (1.0 - area[i])
         relative += q[i] + spin * area[i] * area[i]
     own = spin + relative / np.maximum(inertia, _NOTHING)
-    return np.maximum(abs(spin), _HELD * abs(own))
+    return np.maximum(abs(spin), HELD * abs(own))
 
 
 @_jit

@@ -76,7 +76,7 @@ def solve(matrix, right):
 # A step is done once two estimates of the mean accelerations differ by this, relative to the largest. Where
 # the drying edge of a layer makes them jump, the guess follows by shares after some rounds; after the last
 # the step is shortened, and a short one may pass with what is left. Momentum is handed over all the same.
-AGREED, _PASSABLE, _STRAIGHT, _ROUNDS, _SHORT = 1e-6, 1e-2, 3, 16, 1.0 / 32.0
+AGREED, PASSABLE, STRAIGHT, ROUNDS, SHORT = 1e-6, 1e-2, 3, 16, 1.0 / 32.0
 # The force of a pool jumps where cells run dry: beside one, steps as short as this pass with so much left.
 _TINY, _PASSABLE_POOL = 1.0 / 256.0, 0.2
 # Steps this short that do not agree end the run: a layer on its way through the axis.
@@ -85,9 +85,9 @@ SHORTEST = 1.0 / 1024.0
 # difference in velocity.
 _JUMP = 3e-4
 # A layer of this area, whose surface is nearer to the axis than to the wall, is none where it does not agree.
-_PILED = 0.375
+PILED = 0.375
 # Steps shortened by more than this no longer follow what the layers do.
-_LEAST = 1e-6
+LEAST = 1e-6
 # Longest step beside a pool, over the time in which it swings by a radian.
 _SWING = 0.25
 
@@ -414,7 +414,7 @@ def advance(
             if free:
                 spins[1] = max(spins[1], 0.5 * spin)
             share, last_given, last_after = 1.0, 0.0, 0.0
-            for tried in range(_ROUNDS):
+            for tried in range(ROUNDS):
                 turned = angle + 0.5 * (spin + spins[1]) * dt
                 turn[0], turn[1] = np.cos(angle), np.sin(angle)
                 turn[2], turn[3] = np.cos(turned), np.sin(turned)
@@ -527,13 +527,13 @@ def advance(
                     # Steps that change a free spin by less than that must change it all the same.
                     spins[1] = after_spin
                     break
-                if tried == _ROUNDS - 1:
+                if tried == ROUNDS - 1:
                     status = Outcome.NOT_COUPLED + 0
                     if free and last_after < 0.5 * spin and pace.share <= SHORTEST:
                         # Half of its speed in the shortest step: it stands.
                         status = Outcome.STOPPED + 0
                     break
-                share = _relaxed(guess, found, miss, share) if tried >= _STRAIGHT else 1.0
+                share = _relaxed(guess, found, miss, share) if tried >= STRAIGHT else 1.0
                 for j in range(axes):
                     for i in range(2):
                         miss[j, i] = found[j, i] - guess[j, i]
@@ -546,8 +546,8 @@ def advance(
                         spins[1] = max(given + (after_spin - given) / (1.0 - slope), 0.5 * spin)
                 last_given, last_after = given, after_spin
             if status == Outcome.NOT_COUPLED:
-                passable = _PASSABLE if pace.share > _TINY or not pooled else _PASSABLE_POOL
-                passes = pace.share <= _SHORT and gap <= passable
+                passable = PASSABLE if pace.share > _TINY or not pooled else _PASSABLE_POOL
+                passes = pace.share <= SHORT and gap <= passable
                 apart = _apart(pools, layers, gravity, guess, found, dt)
                 if passes or (pace.share <= SHORTEST and apart <= _JUMP):
                     status = Outcome.DONE + 0
@@ -557,7 +557,7 @@ def advance(
                 )
                 if status == Outcome.NOT_COUPLED and not shorter:
                     for j in range(rings_):
-                        if most_of(area[j]) > _PILED:
+                        if most_of(area[j]) > PILED:
                             status = Outcome.AT_AXIS + 0
                 copy(kept_area, area)
                 copy(kept_momentum, momentum)
@@ -566,7 +566,7 @@ def advance(
                 if not shorter:
                     return status, leg
                 pace.fastest, pace.share = max(pace.fastest, fastest), 0.5 * pace.share
-                if pace.share < _LEAST:
+                if pace.share < LEAST:
                     return status, leg
                 continue
             _tally(matrices, layers, gravity, rate, change, swing, begin, end, gains, turn, dt, sums)

@@ -95,7 +95,7 @@ def smooth(n: int) -> tuple[np.ndarray, np.ndarray]:
     "bend[i + GHOSTS] + more * (area_l",
 )
 @kills("solvers.layer.finite_volume:_gather", "0.5 * (held - spin) * (held + spin)", "0.0")
-@kills("solvers.layer.finite_volume:_held", "np.maximum(abs(spin), _HELD * abs(own))", "abs(spin)")
+@kills("solvers.layer.finite_volume:_held", "np.maximum(abs(spin), HELD * abs(own))", "abs(spin)")
 def test_rates() -> None:
     """A smooth state changes as the equations say, with an error of second order.
 
