@@ -74,12 +74,13 @@ class Now(NamedTuple):
     area: Any  #: (c, l, w)
     momentum: Any
     begin: Any  #: measures of the layers at the step's beginning, (7, l, w)
-    push: Any  #: accelerations over the last step and the one before, (2, l, 2, w)
+    push: Any  #: accelerations over the last three steps, the latest first, (3, l, 2, w)
     spin: Any
     angle: Any
     time: Any
     last: Any
     before: Any
+    older: Any
     fastest: Any
     share: Any
     crest: Any  #: amplitude, speed and time, (3, w)
@@ -325,6 +326,28 @@ def change_of(given, now, inertia, gained, guess, spins, turn, dt):
     return _solved(left, right)
 
 
+def expected(now, ramp, dt):
+    """First guess of the mean accelerations, as by `solvers.runup.steps.coupled.expect`, (l, 2, w)."""
+    here, back = 0.5 * dt, 0.5 * now.last
+    first = back + 0.5 * (now.last + now.before)
+    second = first + 0.5 * (now.before + now.older)
+    ahead = jnp.minimum(here, 2.0 * (first - back) - back)
+    linear = (ahead + back) / jnp.maximum(first - back, _NOTHING)
+    bend = linear * (ahead + first) / jnp.maximum(second - back, _NOTHING)
+    curve = bend * (first - back) / jnp.maximum(second - first, _NOTHING)
+    bend, curve = (jnp.where(now.older > 0.0, each, 0.0) for each in (bend, curve))
+    linear = jnp.where(now.before > 0.0, linear, 0.0)
+    guess = 0.0
+    for k, (time, weight) in enumerate(
+        ((back, 1.0 + linear + bend), (first, -linear - bend - curve), (second, curve))
+    ):
+        turned = now.spin * (here + time) + 0.5 * ramp * (here - time) * (here + time)
+        cosine, sine = weight * jnp.cos(turned), weight * jnp.sin(turned)
+        x, y = now.push[k, :, 0], now.push[k, :, 1]
+        guess = guess + jnp.stack([x * cosine - y * sine, x * sine + y * cosine], axis=1)
+    return guess
+
+
 def round_of(given: Given, now: Now, law: int) -> Now:
     """One round of the present step of every lane [theory: coupling]: see `solvers.runup.steps.coupled`."""
     cells, lanes = now.area.shape[0], now.spin.size
@@ -335,8 +358,7 @@ def round_of(given: Given, now: Now, law: int) -> Now:
     dt = now.share * (given.courant * (2.0 * math.pi / cells) / jnp.maximum(1.1 * now.fastest, now.spin))
     dt = jnp.where(dt >= remaining, remaining, jnp.where(dt > 0.5 * remaining, 0.5 * remaining, dt))
     fresh = now.tried == 0
-    ahead = jnp.minimum((dt + now.last) / jnp.maximum(now.last + now.before, _NOTHING), 2.0)
-    guess = jnp.where(fresh, now.push[0] + ahead * (now.push[0] - now.push[1]), now.guess)
+    guess = jnp.where(fresh, expected(now, ramp, dt), now.guess)
     spins = now.spin, now.spin + ramp * dt
     turned = now.angle + 0.5 * (spins[0] + spins[1]) * dt
     turn = [(jnp.cos(angle), jnp.sin(angle)) for angle in (now.angle, turned)]
@@ -395,12 +417,13 @@ def round_of(given: Given, now: Now, law: int) -> Now:
         area=jnp.where(done, area, now.area),
         momentum=jnp.where(done, q, now.momentum),
         begin=jnp.where(done, end, now.begin),
-        push=jnp.where(done, jnp.stack([found, now.push[0]]), now.push),
+        push=jnp.where(done, jnp.stack([found, now.push[0], now.push[1]]), now.push),
         spin=jnp.where(done, spins[1], now.spin),
         angle=jnp.where(done, turned, now.angle),
         time=jnp.where(done, time, now.time),
         last=jnp.where(done, dt, now.last),
         before=jnp.where(done, now.last, now.before),
+        older=jnp.where(done, now.before, now.older),
         fastest=jnp.where(done, fastest, jnp.where(shorter, jnp.maximum(now.fastest, fastest), now.fastest)),
         share=jnp.where(done, jnp.minimum(1.0, 1.5 * now.share), share),
         crest=jnp.where(done, jnp.where(arrived, crest * jnp.array([[0.0], [1.0], [1.0]]), crest), now.crest),
@@ -549,7 +572,7 @@ def _lane(task: EnsembleTask, place: str, longest: int) -> _Lane:
     begin = [[each[2][name] for each in machine.measured()] for name in _MEASURED]
     now = Now(
         *(np.zeros(n), np.zeros(n), machine.state.area.T, machine.state.momentum.T, np.array(begin)),
-        *(np.zeros((2, count, 2)), start, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, np.zeros(3), 0, _GOING),
+        *(np.zeros((3, count, 2)), start, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, np.zeros(3), 0, _GOING),
         *(np.zeros(3, dtype=int), 0, np.zeros((count, 2)), np.zeros((count, 2)), 1.0),
         np.zeros((longest, 6 + n + 2 * count)),
     )

@@ -269,22 +269,22 @@ def reference(law: str, rate: float, first: float) -> RunupHistory:
 @kills("solvers.runup.arrays:_relative", "measures[2] - spin", "measures[2] + spin")
 @kills("solvers.runup.arrays:change_of", "0.25 * dt * dt * stiffness", "0.0 * stiffness")
 @kills("solvers.runup.arrays:change_of", "0.5 * (spins[0] + spins[1]) * gyroscopic", "0.0")
-@kills("solvers.runup.arrays:round_of", "now.push[0] - now.push[1]", "now.push[0]")
+@kills("solvers.runup.arrays:expected", "-linear - bend - curve", "-linear - bend")
 @kills("solvers.runup.arrays:round_of", "0.5 * now.share", "0.25 * now.share")
 @pytest.mark.parametrize(
     ("law", "rate", "first"),
     [
-        ("wall", 0.0, 3e-5),
+        ("wall", 0.0, 1.5e-5),
         ("linear", 2.0, 3e-5),
         ("quadratic", 0.05, 3e-5),
-        ("stokes", 0.0, 3e-5),
+        ("stokes", 0.0, 2.6e-5),
     ],
 )
 def test_line_by_line(law: str, rate: float, first: float, lines: None) -> None:
     """The lines of the program beside the compiled steps: films, full gaps, steps taken again."""
     run, history = runups([two_rings(law, rate, first)], 1)[0], reference(law, rate, first)
     assert run.steps == history.steps > 60  # some were shortened
-    # Full gaps are stiff, and rounding of 1e-16 grows there to some 1e-11.
+    # Full gaps are stiff: rounding of 1e-16 grows there to some 1e-11. With these fills it decides no round.
     assert missed(run, history) < 1e-9
 
 
