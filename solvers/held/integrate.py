@@ -129,7 +129,7 @@ def compile_kernels(machine: HeldMachine, begin: Moment) -> None:
         layers=begin.layers,
     )  # fmt: skip
     stretch = 0.0, 1e-6 / begin.spin
-    run(equation, equation.start(fewest_cells(machine.fills)), stretch, (), solver="coupled", follow=True)
+    run(equation, equation.start(fewest_cells(machine.fills)), stretch, (), solver="coupled", follow=1)
 
 
 def require_known_solver(machine: HeldMachine, spin: float, numerics: HoldNumerics) -> None:
@@ -222,9 +222,9 @@ def _march(
     state = equation.start(numerics.cells, moment.coordinates, moment.rate, moment.area, moment.momentum)
     turn = 2.0 * math.pi / moment.spin
     stretch = 0.0, (numerics.turns - watch.count) * turn
-    marks = _MARKS if numerics.solver == COUPLED else SAMPLES
-    tracker = TurnTracker(equation, turn, watch.turn, marks)
-    options = {"solver": numerics.solver, **_stepping(equation, state.grid, numerics, turn / marks)}
+    stops = 1 if numerics.solver == COUPLED else SAMPLES
+    tracker = TurnTracker(equation, turn, watch.turn, stops)
+    options = {"solver": numerics.solver, **_stepping(equation, state.grid, numerics, turn / stops)}
     state, outcome = run(equation, state, stretch, [tracker, *trackers], **options)
     watch.balances = tracker.balances
     area, momentum, place, rate = (part.copy() for part in equation.parts(state))
@@ -237,7 +237,7 @@ _MARKS = 8  # times a turn at which the layers are looked at
 def _stepping(equation: Any, grid: Any, numerics: HoldNumerics, interval: float) -> dict[str, Any]:
     """What `solve` is given with the name of a solver; an interval between two looks, s."""
     if numerics.solver == COUPLED:
-        return {"follow": True, "courant": numerics.courant}
+        return {"follow": _MARKS, "courant": numerics.courant}
     from solvers.pypde.stock import stepping
 
     return stepping(equation, grid, numerics.solver, interval)
