@@ -25,7 +25,7 @@ from fluid.friction.laws import NO_FRICTION, STOKES, WALL, Friction, damping_rat
 from fluid.friction.wall import WallDrag, wall_shear
 from meshes.arrays import Array, Complex, Flags
 from meshes.errors import InputError
-from solvers.layer.baffles import FACE, OPEN
+from solvers.layer.baffles import FACE, OPEN, tables_of
 from solvers.layer.finite_volume import DRY, GHOSTS, WORK, rates_of
 from solvers.layer.inside import SLOT_SPEED, Inside
 from solvers.layer.places import fewest_cells
@@ -35,6 +35,7 @@ from solvers.pypde.grid import CirclePDE, circle
 from solvers.pypde.terms import faded_velocity
 from solvers.rotor.system import RotorSystem
 from solvers.runup.long_wave import Coupled, couple
+from solvers.runup.state import mean_area
 from solvers.slices import step_budget
 
 _ROUNDS, _AGREED = 60, 1e-13
@@ -91,11 +92,13 @@ class RotorLayersPDE(CirclePDE):  # type: ignore[no-untyped-call]
 
         Coordinates and rates of the rotor have shape (n,), areas A, m^2, and momenta q, m^4/s, (l, cells).
         """
-        rest, n = self.machine(cells), len(self.system.coordinates)
-        square = np.square(rest.machine.layers.radius)[:, None]
+        n, fills = len(self.system.coordinates), [self.fills[j] for j in np.flatnonzero(self.layers).tolist()]
+        tables_of(fills, cells)  # refuses compartments that the cells do not resolve
+        rest = np.array([mean_area(fill) for fill in fills]).reshape(-1, 1) * np.ones(cells)
+        square = np.array([fill.chamber.radius**2 for fill in fills]).reshape(-1, 1)
         parts = [
-            rest.state.area * square if area is None else area,
-            rest.state.momentum * np.square(square) if momentum is None else momentum,
+            rest * square if area is None else area,
+            -self.spin * np.square(rest) * np.square(square) if momentum is None else momentum,
         ]
         uniform = [np.zeros(n) if part is None else part for part in (coordinates, rate)]
         return self._collection(circle(cells), *parts, *uniform)
@@ -169,10 +172,10 @@ class RotorLayersPDE(CirclePDE):  # type: ignore[no-untyped-call]
         return [_Layer(machine, j, a, q, self.spin, self.spin * t) for j, (a, q) in enumerate(pairs)]
 
     # Steps times `fastest`, by py-pde's names: as for the layers alone, but for those with rounds of their
-    # own beside the rounds of the coupling.
+    # own beside the rounds of the coupling, and one that does not go through time.
     steps: ClassVar[Mapping[str, float]] = {
         "runge-kutta": 0.5, "adams-bashforth": 0.1, "euler": 0.02, "explicit": 0.02,
-        "crank-nicolson": 0.0, "implicit": 0.0,
+        "crank-nicolson": 0.0, "implicit": 0.0, "periodic_newton": 0.0,
     }  # fmt: skip
 
     def fastest(self, grid: GridBase) -> float:
@@ -308,9 +311,9 @@ class CoupledSolver(SolverBase):  # type: ignore[no-untyped-call]
     """The compiled coupled steps of the run-up, by the name "coupled" [theory: coupling, eq. 5].
 
     Steps by the Courant number (at most 0.9), cut to land on the times of trackers; hooks after each step
-    are not called. With `follow` they land on so many times in each stretch, its end the last: `info["marks"]` are
-    the layers' areas there, m^2, (follow, l, c), and `info["followed"]` holds what every step has left: see
-    `solvers.runup.state.State.trace`.
+    are not called. With `follow` they land on so many times in each stretch, its end the last:
+    `info["marks"]` are the layers' areas there, m^2, (follow, l, c), and `info["followed"]` holds what every
+    step has left: see `solvers.runup.state.State.trace`.
     """
 
     name = "coupled"
@@ -357,6 +360,7 @@ class CoupledSolver(SolverBase):  # type: ignore[no-untyped-call]
             outcome, marks = machine.pass_by(stops, 0.0, self.courant, most)
             self.info["outcome"] = outcome
             if outcome is not Outcome.DONE:
+                self._store(machine, state)  # where the steps end
                 raise ConvergenceError(f"{outcome.message} between t = {start:g} s and {stop:g} s")
             self._store(machine, state)
             left = state.data.copy()

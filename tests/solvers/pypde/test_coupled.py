@@ -201,6 +201,17 @@ def test_turns_are_handed_on_whole() -> None:
         assert gap == 0.0
 
 
+def test_every_turn_has_as_many_steps() -> None:
+    """At rest an eighth of a turn is five steps of 0.8 cells, whatever the rounding of the time."""
+    machine, steps = RotorLayersPDE(PLANAR.system(), [layer(1e-5)], 157.3), []
+    state, turn = machine.start(32), 2.0 * math.pi / 157.3
+    for k in range(60):
+        stretch = k * turn, (k + 1) * turn
+        state = machine.solve(state, stretch, tracker=None, solver="coupled", follow=8)
+        steps.append(machine.diagnostics["solver"]["steps"])
+    assert set(steps) == {40}
+
+
 def test_a_rotor_with_two_planes_and_gyroscopic_forces() -> None:
     """Runge-Kutta and the coupled steps agree for chambers in two planes as well."""
     rotor = TwoPlane(
