@@ -32,10 +32,10 @@ from solvers.runup.state import WORKS, mean_area, planes_of
 # Turns after which a motion may be called periodic, and one that begins on an orbit that is known; a limit
 # cycle is judged over windows from `_LONG` on.
 FEW, KNOWN, _LONG = 4, 2, 32
-# Turns after which a motion that may whirl is compared with the orbit next to it, if it has not converged: it
-# decays to that where it has come closer, over pieces of so many turns, by this share of its multiplier and
-# not by more.
-_LOOKS, _PIECE, _SLOWER, _FASTER = (64, 128, 256, 512), 16, 0.5, 2.0
+# Turns after which a motion that may whirl is compared with the orbit next to it, if it has not converged and
+# its swing is smaller than three pieces of so many turns before: it decays to that where it comes closer as
+# the orbit's multiplier says, within these factors of the rate.
+_LOOKS, _PIECE, _SMALLER, _SLOWER, _FASTER = (64, 128, 256, 512), 16, 0.98, 0.5, 2.0
 _SHORT = 2  # turns of a motion that repeats, of which the path is kept
 _EVEN = 0.5  # times the tolerance, that a circle may wobble
 _ELSEWHERE = 20.0  # times the tolerance, that the axis may be off after a turn that repeats
@@ -296,9 +296,15 @@ class Watch:
         # that grows or dies within a window is through with it.
         swings = [float(part[:, 2].max() - part[:, 1].min()) for part in (late, soon)]
         moves |= not self.quick and abs(swings[0] - swings[1]) > _SWING * swings[1]
-        repeats = np.ptp(late, axis=0).max() <= self.numerics.tolerance * scale and not self._elsewhere(scale)
-        if repeats or moves or means > _MEANS * self.numerics.tolerance or ends > _ALIKE:
+        wobble = float(np.ptp(late, axis=0).max()) / scale
+        if moves or means > _MEANS * self.numerics.tolerance or ends > _ALIKE:
             return False
+        if wobble <= self.numerics.tolerance and not self._elsewhere(scale):
+            if self.slowest >= 0.0:
+                return False
+            # Where small motions decay a whirl below the tolerance that stays as it is is none.
+            self.kind, self.change, self.span = self._repeating(wobble), wobble, self.window
+            return True
         self.kind, self.change, self.span = HeldKind.LIMIT_CYCLE, float(means), self.window
         return True
 
@@ -310,7 +316,7 @@ class Watch:
         if self.near is None or self.count not in _LOOKS or len(self.sizes) < 3 * _PIECE:
             return False
         swings = np.array([high - low for _, low, high in self.sizes[-3 * _PIECE :]])
-        if not np.all(np.diff(swings.reshape(3, _PIECE).mean(axis=1)) < 0.0):
+        if swings[-_PIECE:].mean() > _SMALLER * swings[:_PIECE].mean():
             return False
         n, layers, data = self.begin.coordinates.size, self.which.size, state.data.copy()
         found = self.near(

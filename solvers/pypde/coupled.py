@@ -35,7 +35,6 @@ from solvers.pypde.grid import CirclePDE, circle
 from solvers.pypde.terms import faded_velocity
 from solvers.rotor.system import RotorSystem
 from solvers.runup.long_wave import Coupled, couple
-from solvers.runup.state import mean_area
 from solvers.slices import step_budget
 
 _ROUNDS, _AGREED = 60, 1e-13
@@ -94,7 +93,9 @@ class RotorLayersPDE(CirclePDE):  # type: ignore[no-untyped-call]
         """
         n, fills = len(self.system.coordinates), [self.fills[j] for j in np.flatnonzero(self.layers).tolist()]
         tables_of(fills, cells)  # refuses compartments that the cells do not resolve
-        rest = np.array([mean_area(fill) for fill in fills]).reshape(-1, 1) * np.ones(cells)
+        each = [2.0 * math.pi * fill.chamber.height * fill.chamber.radius**2 for fill in fills]
+        rest = np.array([fill.volume for fill in fills]) / each
+        rest = np.repeat(rest.reshape(-1, 1), cells, axis=1)
         square = np.array([fill.chamber.radius**2 for fill in fills]).reshape(-1, 1)
         parts = [
             rest * square if area is None else area,

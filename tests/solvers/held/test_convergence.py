@@ -37,7 +37,7 @@ def turns(found: Watch, count: int, lag: float) -> None:
     found.count = count
 
 
-@kills("solvers.held.convergence:Watch._bounded", "if repeats or moves", "if moves")
+@kills("solvers.held.convergence:Watch._bounded", "wobble <= self", "wobble < -self")
 @kills("solvers.held.convergence:Watch._elsewhere", "ends[1] - ends[0]", "ends[1]")
 def test_what_repeats_is_no_limit_cycle() -> None:
     """A circle that ends where it began waits for its whirl to have grown; one that does not is a whirl."""
@@ -46,6 +46,18 @@ def test_what_repeats_is_no_limit_cycle() -> None:
         turns(found, 2 * found.window, lag)
         sizes = np.array(found.sizes)
         assert found._bounded(sizes, SIZE) is bounded
+
+
+@kills("solvers.held.convergence:Watch._bounded", "self.slowest >= 0.0", "False")
+def test_a_whirl_below_the_tolerance_is_none() -> None:
+    """Where small motions decay, if it stays as it is: then the motion repeats, within the tolerance."""
+    for slowest, rate, repeats in ((-0.01, 0.0, True), (-0.01, 0.01, False), (0.01, 0.0, False)):
+        found = watch(slowest)
+        turns(found, 2 * found.window, 0.0)
+        k = np.arange(2 * found.window)
+        beat = 0.3 * NUMERICS.tolerance * SIZE * np.exp(rate * (k - k[-1])) * np.cos(0.7 * k)
+        sizes = np.stack([SIZE + beat] * 3, axis=1)
+        assert found._bounded(sizes, SIZE) is repeats
 
 
 @kills("solvers.held.convergence:Watch._bounded", "swings[0] - swings[1]", "0.0")
