@@ -7,21 +7,35 @@ axis from where it rests; their changes decide what the motion is.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
 from meshes.arrays import Array, Complex, Flags, Index
-from solvers.held.state import SHORT, HeldKind, HeldMachine, HeldState, HoldNumerics, Moment
+from solvers.held.state import (
+    SHORT,
+    HeldKind,
+    HeldMachine,
+    HeldState,
+    HoldNumerics,
+    Moment,
+    PeriodicMotion,
+)
 from solvers.layer.inside import full_area
 from solvers.layer.records import Outcome
 from solvers.runup.path import FINE, apart, evenly, fastest_frequency
 from solvers.runup.runup import EnergyAudit
 from solvers.runup.state import WORKS, mean_area, planes_of
 
-# Turns after which a motion may be called periodic; a limit cycle is judged over windows from `_LONG` on.
-_FEW, _LONG = 4, 32
+# Turns after which a motion may be called periodic, and one that begins on an orbit that is known; a limit
+# cycle is judged over windows from `_LONG` on.
+FEW, KNOWN, _LONG = 4, 2, 32
+# Turns after which a motion that may whirl is compared with the orbit next to it, if it has not converged and
+# its swing is smaller than three pieces of so many turns before: it decays to that where it comes closer as
+# the orbit's multiplier says, within these factors of the rate.
+_LOOKS, _PIECE, _SMALLER, _SLOWER, _FASTER = (64, 128, 256, 512), 16, 0.98, 0.5, 2.0
 _SHORT = 2  # turns of a motion that repeats, of which the path is kept
 _EVEN = 0.5  # times the tolerance, that a circle may wobble
 _ELSEWHERE = 20.0  # times the tolerance, that the axis may be off after a turn that repeats
@@ -60,8 +74,23 @@ class _Probe:
 class Watch:
     """What the turns have been like, and whether that is enough to judge by."""
 
-    def __init__(self, machine: HeldMachine, begin: Moment, numerics: HoldNumerics, slowest: float) -> None:
+    def __init__(
+        self,
+        machine: HeldMachine,
+        begin: Moment,
+        numerics: HoldNumerics,
+        slowest: float,
+        near: Callable[[Moment], PeriodicMotion | None] | None = None,
+        few: int = FEW,
+        guesses: bool = True,
+    ) -> None:
         self.machine, self.begin, self.numerics = machine, begin, numerics
+        #: what looks for a stable motion that repeats next to a moment; one that the motion decays to
+        self.near = near
+        self.orbit: PeriodicMotion | None = None
+        self.few = few
+        #: whether it is guessed where the motion is bound for: not where that was looked for before
+        self.guesses = guesses
         self.planes = planes_of(machine.system, machine.fills)
         self.seen = self.planes[0] if machine.fills else machine.system.centre
         # Growth in a turn.
@@ -87,7 +116,7 @@ class Watch:
         self.sizes: list[tuple[float, float, float]] = []
         self.areas: list[tuple[Array, Array]] = []
         self.marks: list[Array] = []
-        self.tries, self.span = 0, _FEW
+        self.tries, self.span = 0, self.few
         self.probe: _Probe | None = None
         self.kind, self.change = HeldKind.NOT_SETTLED, math.inf
 
@@ -107,7 +136,7 @@ class Watch:
             return self._probed(state)
         if not self._judge():
             self._accelerate(state)
-            return False
+            return self._decays(state)
         # A guess leads to an orbit whether or not that is stable: a motion that marched there is.
         if self.tries == 0 or self.kind is HeldKind.LIMIT_CYCLE:
             return True
@@ -169,7 +198,7 @@ class Watch:
 
     def _accelerate(self, state: Any) -> None:
         """Put the state where the last turns are bound for, while a stable motion still moves there."""
-        if self.slowest >= 0.0 or self.tries >= _TRIES:
+        if self.slowest >= 0.0 or self.tries >= _TRIES or not self.guesses:
             return
         self.marks.append(state.data.copy())
         if len(self.marks) <= _MARKS + 1:
@@ -198,9 +227,9 @@ class Watch:
             return True
         left = self._left(sizes, scale)
         if left <= self.numerics.tolerance:
-            wobble = float(np.ptp(sizes[-_FEW:])) / scale
+            wobble = float(np.ptp(sizes[-FEW:])) / scale
             self.kind = self._repeating(wobble)
-            self.change, self.span = left, _FEW
+            self.change, self.span = left, self.few
             # A circle that the axis does not run through in a turn is a whirl of its own.
             if self._elsewhere(scale):
                 self.kind, self.span = HeldKind.LIMIT_CYCLE, 2 * SHORT
@@ -224,10 +253,10 @@ class Watch:
     def _left(self, sizes: Array, scale: float) -> float:
         """What may still come of the amplitude's change, over its size, if the motion repeats every turn."""
         if self.slowest < 0.0:
-            if len(sizes) < _FEW:
+            if len(sizes) < self.few:
                 return math.inf
             # No motion dies more slowly than the slowest.
-            each = float(np.ptp(sizes[-_FEW:], axis=0).max()) / scale / (_FEW - 1)
+            each = float(np.ptp(sizes[-self.few :], axis=0).max()) / scale / (self.few - 1)
             return each / -math.expm1(self.slowest)
         if len(sizes) < 2 * SHORT:
             return math.inf
@@ -267,10 +296,48 @@ class Watch:
         # that grows or dies within a window is through with it.
         swings = [float(part[:, 2].max() - part[:, 1].min()) for part in (late, soon)]
         moves |= not self.quick and abs(swings[0] - swings[1]) > _SWING * swings[1]
-        repeats = np.ptp(late, axis=0).max() <= self.numerics.tolerance * scale and not self._elsewhere(scale)
-        if repeats or moves or means > _MEANS * self.numerics.tolerance or ends > _ALIKE:
+        wobble = float(np.ptp(late, axis=0).max()) / scale
+        if moves or means > _MEANS * self.numerics.tolerance or ends > _ALIKE:
             return False
+        if wobble <= self.numerics.tolerance and not self._elsewhere(scale):
+            if self.slowest >= 0.0:
+                return False
+            # Where small motions decay a whirl below the tolerance that stays as it is is none.
+            self.kind, self.change, self.span = self._repeating(wobble), wobble, self.window
+            return True
         self.kind, self.change, self.span = HeldKind.LIMIT_CYCLE, float(means), self.window
+        return True
+
+    def _decays(self, state: Any) -> bool:
+        """Whether the motion decays to a stable one that repeats, `orbit`, as the multipliers of that say.
+
+        It is then so near to it that nothing else is between them [theory: held, eq. 24].
+        """
+        if self.near is None or self.count not in _LOOKS or len(self.sizes) < 3 * _PIECE:
+            return False
+        swings = np.array([high - low for _, low, high in self.sizes[-3 * _PIECE :]])
+        if swings[-_PIECE:].mean() > _SMALLER * swings[:_PIECE].mean():
+            return False
+        n, layers, data = self.begin.coordinates.size, self.which.size, state.data.copy()
+        found = self.near(
+            replace(
+                self.begin,
+                coordinates=data[-2 * n : -n, 0],
+                rate=data[-n:, 0],
+                area=data[:layers],
+                momentum=data[layers : 2 * layers],
+                layers=np.isin(np.arange(self.begin.layers.size), self.which),
+            )
+        )
+        if found is None:
+            return False
+        ends = np.array([rows[-1, 2 : 2 + n] for rows in self.rows[-3 * _PIECE :]])
+        gaps = np.square(ends - found.moment.coordinates).reshape(3, _PIECE, n).mean(axis=(1, 2))
+        falls = 0.5 * np.diff(np.log(np.maximum(gaps, 1e-300)))
+        each = _PIECE * math.log(found.multiplier)
+        if np.any(falls > _SLOWER * each) or np.any(falls < _FASTER * each):
+            return False
+        self.orbit = found
         return True
 
     def answer(self, moment: Moment, outcome: Outcome) -> HeldState:

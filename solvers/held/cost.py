@@ -13,10 +13,12 @@ from solvers.held.state import HoldNumerics
 
 # Turns of a motion that dies, with all cells and with half of them; windows of one that does not.
 _DYING, _LIVING = np.array([[60.0], [33.0]]), np.array([[4.5], [2.0]])
+# By Newton's method, a turn with a quarter of the cells for half of one with half of them.
+_FOUND = np.array([[36.0], [48.0]])
 _SHORTEST, _LONGEST = 32.0, 512.0  # turns of a window
 _THROWN = 0.15  # of gravity over the centrifugal acceleration, from which a motion hardly ever repeats
 # Measured, s: of a turn, and of a cell in a step.
-_TURN, _CELL = 2e-3, 1e-7
+_TURN, _CELL = 4e-4, 1e-7
 # Of fully nonlinear waves: of a step's rotor, of a layer's, and of each of its nodes.
 _ROTOR, _NODES, _NODE = 2e-3, 4e-3, 1e-5
 # Of KdV-Burgers: steps in a turn, at least and by cells; of a step, and of a cell in it.
@@ -24,18 +26,20 @@ _FEWEST, _PER_CELL, _PLACE, _WAVES = 48.0, 0.6, 1.6e-3, 2e-6
 _HEAPED, _MOST = 80.0, 22.0  # by what a turn takes longer where gravity heaps the liquid up
 
 
-def settling_turns(spin: Array, growth: Array, strength: Array, numerics: HoldNumerics) -> Array:
+def settling_turns(
+    spin: Array, growth: Array, strength: Array, numerics: HoldNumerics, dying: Array = _DYING
+) -> Array:
     """Turns that motions take to converge, about, shape (2, n) [theory: held, eq. 11].
 
-    With all cells, and with half of them. `growth`: rate of the fastest-growing small whirl, 1/s,
-    nan where it is not known; `strength`: gravity across the axis over the centrifugal acceleration at
-    the surface.
+    With all cells, and with half of them; `dying` is what those that decay take. `growth`: rate of the
+    fastest-growing small whirl, 1/s, nan where it is not known; `strength`: gravity across the axis over the
+    centrifugal acceleration at the surface.
     """
     change = np.abs(np.where(np.isnan(growth), math.inf, growth)) * 2.0 * math.pi / spin
     slow = np.full(change.shape, math.inf)
     window = np.clip(np.divide(0.5, change, out=slow, where=change > 0.0), _SHORTEST, _LONGEST)
     dies = (growth < 0.0) & (strength < _THROWN)
-    return np.asarray(np.minimum(np.where(dies, _DYING, _LIVING * window), numerics.turns))
+    return np.asarray(np.minimum(np.where(dies, dying, _LIVING * window), numerics.turns))
 
 
 def hold_seconds(
@@ -64,4 +68,5 @@ def hold_seconds(
         return np.asarray((settling_turns(spin, growth, strength, numerics) * turn).sum(axis=0))
     turn = _TURN + _CELL * len(surfaces) * np.square(cells) / numerics.courant
     heaped = np.minimum(1.0 + _HEAPED * strength**4, _MOST)
-    return np.asarray((settling_turns(spin, growth, strength, numerics) * turn).sum(axis=0) * heaped)
+    turns = settling_turns(spin, growth, strength, numerics, _FOUND)
+    return np.asarray((turns * turn).sum(axis=0) * heaped)

@@ -12,8 +12,17 @@ import numpy as np
 from fluid.fill import Fill
 from meshes.arrays import Array, Complex, Flags
 from meshes.errors import InputError, require_positive
-from solvers.held.convergence import Watch
-from solvers.held.state import COUPLED, HeldKind, HeldMachine, HeldState, HoldNumerics, Moment
+from solvers.held.convergence import KNOWN, Watch
+from solvers.held.state import (
+    COUPLED,
+    SHORT,
+    HeldKind,
+    HeldMachine,
+    HeldState,
+    HoldNumerics,
+    Moment,
+    PeriodicMotion,
+)
 from solvers.layer.baffles import FACE, table_of
 from solvers.layer.places import fewest_cells, is_smeared
 from solvers.layer.records import Outcome
@@ -105,17 +114,89 @@ def hold(
     `slowest`: rate at which the slowest small motion decays or grows, 1/s, 0 where it is not known; windows
     long against it tell a limit cycle from slow decay. `trackers` of py-pde are called beside our own.
     """
-    numerics = numerics or HoldNumerics()
+    return _held(machine, begin, numerics or HoldNumerics(), slowest, trackers, marches=True)[0]
+
+
+def _held(
+    machine: HeldMachine,
+    begin: Moment,
+    numerics: HoldNumerics,
+    slowest: float,
+    trackers: Sequence[Any] = (),
+    marches: bool = False,
+) -> tuple[HeldState, Moment | None]:
+    """The state, and of a motion by Newton's method the moment with half the cells.
+
+    That is asked for at once where small motions decay, and where they may grow once a march decays; never if
+    it only `marches` [theory: held, eq. 19-24].
+    """
     require_positive("speed", begin.spin)
     require_known_solver(machine, begin.spin, numerics)
-    watch, moment = Watch(machine, begin, numerics, slowest), begin
+
+    def near(moment: Moment) -> PeriodicMotion | None:
+        return _periodic(machine, moment, numerics)
+
+    asks = not (marches or machine.exact or machine.family) and numerics.solver == COUPLED
+    later, moment = near if asks and slowest >= 0.0 else None, begin
+    watch = Watch(machine, begin, numerics, slowest, later, guesses=not asks)
+    orbit = near(begin) if asks and slowest < 0.0 else None
     while True:
+        if orbit is not None:
+            moment, rate = orbit.moment, math.log(orbit.multiplier) * begin.spin / (2.0 * math.pi)
+            known = Watch(machine, moment, numerics, rate, few=KNOWN)
+            known.count, known.steps = watch.count + orbit.turns, watch.steps
+            watch = known
         moment, outcome = _march(machine, moment, numerics, watch, trackers)
+        if watch.orbit is not None:
+            orbit = watch.orbit
+            continue
         fallen = _fallen(machine, moment, outcome, watch.down)
         if fallen is None or watch.count >= numerics.turns:
-            return watch.answer(moment, outcome)
-        moment = fallen
+            state = watch.answer(moment, outcome)
+            # An orbit that was not at rest after all has been marched on.
+            if orbit is None or not state.settled or len(watch.sizes) > SHORT:
+                return state, None
+            return replace(state, multipliers=orbit.multipliers), orbit.half
+        moment, orbit = fallen, None
         watch.forget(moment.layers)
+
+
+# Fewest cells with which a motion that repeats is looked for before it is with more, and levels of them.
+_COARSE, _LEVELS = 32, 3
+
+
+def _periodic(machine: HeldMachine, begin: Moment, numerics: HoldNumerics) -> PeriodicMotion | None:
+    """The stable motion that repeats next to a moment, from one mesh to the next finer one; None without."""
+    from solvers.pypde import PeriodicNewtonSolver, RotorLayersPDE, run
+
+    if not begin.layers.any():
+        return None
+    cells = [numerics.cells]
+    while len(cells) < _LEVELS and cells[0] % 2 == 0 and cells[0] >= 2 * _COARSE:
+        if _parted(machine, cells[0] // 2):
+            break
+        cells.insert(0, cells[0] // 2)
+    orbit: Any = None
+    moments, stretch = [], (0.0, 2.0 * math.pi / begin.spin)
+    for count in cells:
+        equation = RotorLayersPDE(
+            machine.system, machine.fills, begin.spin, friction=machine.friction, gravity=machine.gravity,
+            dispersion=numerics.dispersion, layers=begin.layers,
+        )  # fmt: skip
+        first = _resampled(machine, begin, count) if count < begin.area.shape[1] else begin
+        state = equation.start(count, first.coordinates, first.rate, first.area, first.momentum)
+        options = {"courant": numerics.courant, "known": orbit, "judged": count == numerics.cells}
+        state, _ = run(equation, state, stretch, (), solver=PeriodicNewtonSolver.name, **options)
+        orbit = equation.diagnostics["solver"].get("orbit")
+        if orbit is None or orbit.stable is False:
+            return None
+        area, momentum, place, rate = (part.copy() for part in equation.parts(state))
+        moments.append(Moment(begin.spin, place, rate, area, momentum, begin.layers))
+    if not orbit.stable:
+        return None
+    return PeriodicMotion(
+        moments[-1], moments[-2] if len(cells) > 1 else None, orbit.multipliers, orbit.turns
+    )
 
 
 def compile_kernels(machine: HeldMachine, begin: Moment) -> None:
@@ -129,7 +210,7 @@ def compile_kernels(machine: HeldMachine, begin: Moment) -> None:
         layers=begin.layers,
     )  # fmt: skip
     stretch = 0.0, 1e-6 / begin.spin
-    run(equation, equation.start(fewest_cells(machine.fills)), stretch, (), solver="coupled", follow=True)
+    run(equation, equation.start(fewest_cells(machine.fills)), stretch, (), solver="coupled", follow=1)
 
 
 def require_known_solver(machine: HeldMachine, spin: float, numerics: HoldNumerics) -> None:
@@ -159,19 +240,27 @@ def hold_with_error(
 
     No estimate with less than 16 cells, or 8 in a compartment.
     """
-    found = hold(machine, begin, numerics, slowest)
+    found, begun = _held(machine, begin, numerics, slowest)
     half = replace(numerics, cells=numerics.cells // 2)
-    parted = any(fill.compartments > 1 and is_smeared(fill, half.cells) for fill in machine.fills)
     fewest = 64 if machine.exact else 32 if machine.family else 16
-    if numerics.cells < fewest or parted or not found.settled:
+    if numerics.cells < fewest or _parted(machine, half.cells) or not found.settled:
         return found
-    # A guess would lead from a whirl to the steady motion.
+    # A guess would lead from a whirl to the steady motion; one that Newton's method has found decays as it
+    # does there.
     rate = 0.0 if found.kind is HeldKind.LIMIT_CYCLE else slowest
-    other = hold(machine, _resampled(machine, found.moment, half.cells), half, rate)
+    if found.multipliers.size:
+        rate = math.log(abs(found.multipliers[0])) * begin.spin / (2.0 * math.pi)
+    begun = _resampled(machine, found.moment, half.cells) if begun is None else begun
+    other = hold(machine, begun, half, rate)
     if not other.settled or found.largest == 0.0:
         return replace(found, error=math.inf if found.largest else 0.0)
     gap = max(abs(found.amplitude - other.amplitude), abs(found.largest - other.largest)) / found.largest
     return replace(found, error=_SHARE * gap + found.change)
+
+
+def _parted(machine: HeldMachine, cells: int) -> bool:
+    """Whether a compartment has too few of so many cells."""
+    return any(fill.compartments > 1 and is_smeared(fill, cells) for fill in machine.fills)
 
 
 def _resampled(machine: HeldMachine, moment: Moment, cells: int) -> Moment:
@@ -222,9 +311,9 @@ def _march(
     state = equation.start(numerics.cells, moment.coordinates, moment.rate, moment.area, moment.momentum)
     turn = 2.0 * math.pi / moment.spin
     stretch = 0.0, (numerics.turns - watch.count) * turn
-    marks = _MARKS if numerics.solver == COUPLED else SAMPLES
-    tracker = TurnTracker(equation, turn, watch.turn, marks)
-    options = {"solver": numerics.solver, **_stepping(equation, state.grid, numerics, turn / marks)}
+    stops = 1 if numerics.solver == COUPLED else SAMPLES
+    tracker = TurnTracker(equation, turn, watch.turn, stops)
+    options = {"solver": numerics.solver, **_stepping(equation, state.grid, numerics, turn / stops)}
     state, outcome = run(equation, state, stretch, [tracker, *trackers], **options)
     watch.balances = tracker.balances
     area, momentum, place, rate = (part.copy() for part in equation.parts(state))
@@ -237,7 +326,7 @@ _MARKS = 8  # times a turn at which the layers are looked at
 def _stepping(equation: Any, grid: Any, numerics: HoldNumerics, interval: float) -> dict[str, Any]:
     """What `solve` is given with the name of a solver; an interval between two looks, s."""
     if numerics.solver == COUPLED:
-        return {"follow": True, "courant": numerics.courant}
+        return {"follow": _MARKS, "courant": numerics.courant}
     from solvers.pypde.stock import stepping
 
     return stepping(equation, grid, numerics.solver, interval)

@@ -115,11 +115,29 @@ class HeldState:
     #: what the balance of energy of the last turns leaves, over the largest of the works of unbalance and
     #: drive and of the heats; nan where the solver does not tell it
     energy_error: float = math.nan
+    #: Floquet multipliers of a motion that Newton's method has found, the largest first; none of one that was
+    #: marched
+    multipliers: Complex = field(default_factory=lambda: np.zeros(0, dtype=complex))
 
     @property
     def settled(self) -> bool:
         """Whether it came to an answer."""
         return self.kind is not HeldKind.NOT_SETTLED
+
+
+@dataclass(frozen=True)
+class PeriodicMotion:
+    """A stable motion that repeats with the turn, found without marching."""
+
+    moment: Moment  #: at its beginning
+    half: Moment | None  #: the same with half the cells; None where these would be too few
+    multipliers: Complex  #: by which a turn takes small changes on, the largest first
+    turns: int  #: what it took on this mesh
+
+    @property
+    def multiplier(self) -> float:
+        """Size of the largest multiplier."""
+        return float(abs(self.multipliers[0]))
 
 
 @dataclass(frozen=True)

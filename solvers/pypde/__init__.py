@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from solvers.pypde.grid import circle
     from solvers.pypde.long_wave import AnnularLongWavePDE, FiniteVolumeSolver
     from solvers.pypde.one_family import ExponentialSolver, KdvBurgersPDE, SplitPDE
+    from solvers.pypde.periodic import PeriodicNewtonSolver, PeriodicOrbit
     from solvers.pypde.steady_newton import SteadyNewtonSolver
 
 __all__ = [
@@ -31,6 +32,8 @@ __all__ = [
     "ExponentialSolver",
     "FiniteVolumeSolver",
     "KdvBurgersPDE",
+    "PeriodicNewtonSolver",
+    "PeriodicOrbit",
     "RotorLayersPDE",
     "SplitPDE",
     "SteadyNewtonSolver",
@@ -44,6 +47,8 @@ logging.getLogger("pde.solvers.controller").setLevel(logging.ERROR)
 _HOMES = {
     "AnnularLongWavePDE": "long_wave",
     "FiniteVolumeSolver": "long_wave",
+    "PeriodicNewtonSolver": "periodic",
+    "PeriodicOrbit": "periodic",
     "SteadyNewtonSolver": "steady_newton",
     "circle": "grid",
 } | dict.fromkeys(("CoupledSolver", "RotorLayersPDE", "TurnTracker", "run"), "coupled")

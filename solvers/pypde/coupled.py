@@ -25,7 +25,7 @@ from fluid.friction.laws import NO_FRICTION, STOKES, WALL, Friction, damping_rat
 from fluid.friction.wall import WallDrag, wall_shear
 from meshes.arrays import Array, Complex, Flags
 from meshes.errors import InputError
-from solvers.layer.baffles import FACE, OPEN
+from solvers.layer.baffles import FACE, OPEN, tables_of
 from solvers.layer.finite_volume import DRY, GHOSTS, WORK, rates_of
 from solvers.layer.inside import SLOT_SPEED, Inside
 from solvers.layer.places import fewest_cells
@@ -91,11 +91,15 @@ class RotorLayersPDE(CirclePDE):  # type: ignore[no-untyped-call]
 
         Coordinates and rates of the rotor have shape (n,), areas A, m^2, and momenta q, m^4/s, (l, cells).
         """
-        rest, n = self.machine(cells), len(self.system.coordinates)
-        square = np.square(rest.machine.layers.radius)[:, None]
+        n, fills = len(self.system.coordinates), [self.fills[j] for j in np.flatnonzero(self.layers).tolist()]
+        tables_of(fills, cells)  # refuses compartments that the cells do not resolve
+        each = [2.0 * math.pi * fill.chamber.height * fill.chamber.radius**2 for fill in fills]
+        rest = np.array([fill.volume for fill in fills]) / each
+        rest = np.repeat(rest.reshape(-1, 1), cells, axis=1)
+        square = np.array([fill.chamber.radius**2 for fill in fills]).reshape(-1, 1)
         parts = [
-            rest.state.area * square if area is None else area,
-            rest.state.momentum * np.square(square) if momentum is None else momentum,
+            rest * square if area is None else area,
+            -self.spin * np.square(rest) * np.square(square) if momentum is None else momentum,
         ]
         uniform = [np.zeros(n) if part is None else part for part in (coordinates, rate)]
         return self._collection(circle(cells), *parts, *uniform)
@@ -169,10 +173,10 @@ class RotorLayersPDE(CirclePDE):  # type: ignore[no-untyped-call]
         return [_Layer(machine, j, a, q, self.spin, self.spin * t) for j, (a, q) in enumerate(pairs)]
 
     # Steps times `fastest`, by py-pde's names: as for the layers alone, but for those with rounds of their
-    # own beside the rounds of the coupling.
+    # own beside the rounds of the coupling, and one that does not go through time.
     steps: ClassVar[Mapping[str, float]] = {
         "runge-kutta": 0.5, "adams-bashforth": 0.1, "euler": 0.02, "explicit": 0.02,
-        "crank-nicolson": 0.0, "implicit": 0.0,
+        "crank-nicolson": 0.0, "implicit": 0.0, "periodic_newton": 0.0,
     }  # fmt: skip
 
     def fastest(self, grid: GridBase) -> float:
@@ -307,9 +311,10 @@ class _Layer:
 class CoupledSolver(SolverBase):  # type: ignore[no-untyped-call]
     """The compiled coupled steps of the run-up, by the name "coupled" [theory: coupling, eq. 5].
 
-    Steps by the Courant number (at most 0.9), cut to land on the times of trackers; hooks after each step are
-    not called. With `follow`, `info["followed"]` holds what every step of the last stretch has left: see
-    `solvers.runup.state.State.trace`.
+    Steps by the Courant number (at most 0.9), cut to land on the times of trackers; hooks after each step
+    are not called. With `follow` they land on so many times in each stretch, its end the last:
+    `info["marks"]` are the layers' areas there, m^2, (follow, l, c), and `info["followed"]` holds what every
+    step has left: see `solvers.runup.state.State.trace`.
     """
 
     name = "coupled"
@@ -321,7 +326,7 @@ class CoupledSolver(SolverBase):  # type: ignore[no-untyped-call]
         *,
         backend: str | BackendBase[Any] = "auto",
         courant: float = 0.8,
-        follow: bool = False,
+        follow: int = 0,
     ) -> None:
         super().__init__(pde, backend="numpy" if backend == "auto" else backend)
         if not isinstance(pde, RotorLayersPDE):
@@ -352,14 +357,18 @@ class CoupledSolver(SolverBase):  # type: ignore[no-untyped-call]
                 begun = machine.energy()
             steps, before = machine.sums.steps, machine.works()
             most = step_budget(stop - machine.time, machine.spin, machine.theta.size, self.courant)
-            outcome = machine.advance(stop, 0.0, self.courant, most)
+            stops = np.linspace(machine.time, stop, max(self.follow, 1) + 1)[1:]
+            outcome, marks = machine.pass_by(stops, 0.0, self.courant, most)
             self.info["outcome"] = outcome
             if outcome is not Outcome.DONE:
+                self._store(machine, state)  # where the steps end
                 raise ConvergenceError(f"{outcome.message} between t = {start:g} s and {stop:g} s")
             self._store(machine, state)
             left = state.data.copy()
             self.info["steps"] += int(machine.sums.steps - steps)
-            self.info["followed"] = machine.followed() if self.follow else None
+            if self.follow:
+                square = np.square(machine.machine.layers.radius)[:, None]
+                self.info |= {"followed": machine.followed(), "marks": marks * square}
             done, energy = machine.works() - before, machine.energy()
             self.info["balance"] = self.info["balance"] + np.append(done, energy - begun)
             begun = energy
@@ -404,9 +413,10 @@ def run(
 class TurnTracker(TrackerBase):  # type: ignore[no-untyped-call]
     """Tracker that hands the steps of each turn to `enough`, until that is true.
 
-    `enough` takes the steps of a turn (rows of `solvers.runup.state.State.trace`), the layers at its `marks`
-    (areas A, m^2, shape (marks, l, c)) and the state at its end, which it may change. The solver "coupled"
-    with `follow` gives every step, others the moments at which this is called. `balances` are works and heats
+    `enough` takes the steps of a turn (rows of `solvers.runup.state.State.trace`), the layers at its marks
+    (areas A, m^2, shape (k, l, c)) and the state at its end, which it may change. The solver "coupled" with
+    `follow` gives every step and its marks, others the moments at which this is called, `stops` times a
+    turn. `balances` are works and heats
     of each turn as `solvers.runup.state.WORKS`, and last the energy that rotor and liquid gain, J; empty
     where the solver does not give them.
     """
@@ -416,10 +426,10 @@ class TurnTracker(TrackerBase):  # type: ignore[no-untyped-call]
         equation: RotorLayersPDE,
         turn: float,
         enough: Callable[[Array, Array, Any], bool],
-        marks: int = 8,
+        stops: int = 1,
     ) -> None:
-        super().__init__(interrupts=turn / marks)
-        self.equation, self.enough, self.marks = equation, enough, marks
+        super().__init__(interrupts=turn / stops)
+        self.equation, self.enough, self.stops = equation, enough, stops
         self.steps: list[Array] = []
         self.layers: list[Array] = []
         self.balances: list[Array] = []
@@ -437,13 +447,13 @@ class TurnTracker(TrackerBase):  # type: ignore[no-untyped-call]
         if steps is None or t == 0.0:
             return
         self.steps.append(steps)
-        self.layers.append(self.equation.parts(field)[0].copy())
-        if len(self.layers) < self.marks:
+        self.layers.append(told["marks"] if "marks" in told else self.equation.parts(field)[0][None].copy())
+        if len(self.layers) < self.stops:
             return
         if "balance" in told:
             self.balances.append(told["balance"] - self._balance)
             self._balance = told["balance"]
-        turn, layers = np.concatenate(self.steps), np.stack(self.layers)
+        turn, layers = np.concatenate(self.steps), np.concatenate(self.layers)
         self.steps, self.layers = [], []
         if self.enough(turn, layers, field):
             raise FinishedSimulation("settled")

@@ -356,7 +356,8 @@ def round_of(given: Given, now: Now, law: int) -> Now:
     stop, ramp = given.stops[leg, jnp.arange(lanes)], given.rates[leg, jnp.arange(lanes)]
     remaining = stop - now.time
     dt = now.share * (given.courant * (2.0 * math.pi / cells) / jnp.maximum(1.1 * now.fastest, now.spin))
-    dt = jnp.where(dt >= remaining, remaining, jnp.where(dt > 0.5 * remaining, 0.5 * remaining, dt))
+    whole = WHOLE * dt
+    dt = jnp.where(whole >= remaining, remaining, jnp.where(whole > 0.5 * remaining, 0.5 * remaining, dt))
     fresh = now.tried == 0
     guess = jnp.where(fresh, expected(now, ramp, dt), now.guess)
     spins = now.spin, now.spin + ramp * dt

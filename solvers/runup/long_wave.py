@@ -96,13 +96,21 @@ class Coupled(CoupledRotor):
 
     def advance(self, stop: float, rate: float, courant: float, most: int) -> Outcome:
         """Advance to a time while the spin changes at a rate, in at most so many steps."""
-        nothing = np.zeros((0, 0))
-        legs = np.array([stop]), np.array([rate])
-        outcome, _ = self._along(legs, (nothing, nothing), courant, most, lambda _: None)
+        return self.pass_by(np.array([stop]), rate, courant, most)[0]
+
+    def pass_by(self, stops: Array, rate: float, courant: float, most: int) -> tuple[Outcome, Array]:
+        """`advance` to one time after another: areas of the layers at those reached, over R^2, (k, l, c)."""
+        kept = (
+            np.zeros((stops.size, 6 + self.state.place.size)),
+            np.zeros((stops.size, 2 * self.state.area.size)),
+        )
+        legs = stops, np.full(stops.size, rate)
+        outcome, reached = self._along(legs, kept, courant, most, lambda _: None)
         self.area[self.active], self.momentum[self.active] = self.state.area, self.state.momentum
         self.rolling[self.active] = self.state.rolling
         self.two_layers[self.pooled], self.rings[self.pooled] = self.state.two_layers, self.state.rings
-        return outcome
+        rows = kept[1][:reached].reshape(reached, 2, *self.state.area.shape)
+        return outcome, rows[:, 0]
 
     def _along(
         self,

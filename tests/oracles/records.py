@@ -175,6 +175,7 @@ def held_rig(count: int = 21, at: slice = slice(None)) -> RunAnswer:
         ripple=np.where(chosen, np.where(cycle, 2e-3, 1e-4), np.nan)[:, None],
         error=np.where(chosen & ~lost, 3e-3, np.nan),
         energy_error=np.where(chosen, 4e-4, np.nan),
+        multiplier=np.where(chosen & ~cycle & ~lost, 0.95, np.nan),
         state_down=np.where(late, "limit_cycle", state),
         amplitude_down=np.where(late, 3.0 * size, np.nan),
         cells=128,

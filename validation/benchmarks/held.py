@@ -1,15 +1,21 @@
 """What motions integrated in time take beside what is foretold: `python -m validation.benchmarks.held`.
 
-The motions that `held = "auto"` asks for on the shipped scenes, in one process. From them come the numbers of
-`solvers.held.cost`.
+The motions that `held = "auto"` asks for on the shipped scenes, in one process; all of them with `--liquid`.
+From them come the numbers of `solvers.held.cost`. With `--beside FOLDER` in turns with another checkout of
+this package there: the ratio of the processor times.
 """
 
 from __future__ import annotations
 
+import json
 import os
+import statistics
+import subprocess
+import sys
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Literal
 
 from validation.study import launch
@@ -29,6 +35,7 @@ from solvers.held.state import HoldNumerics  # noqa: E402
 from solvers.synchronous.response import response  # noqa: E402
 from solvers.whirl.growth import asynchronous_growth  # noqa: E402
 
+ROOT = Path(__file__).resolve().parents[2]
 SCENES = ("horizontal_rig", "washing_machine", "tub", "two_plane_rig", "runup", "vertical_rig")
 
 
@@ -82,12 +89,45 @@ def main(
     stride: int = 1,
     cells: int | None = None,
     liquid: Literal["long_wave", "potential", "kdv"] | None = None,
+    beside: Path | None = None,
+    repeats: int = 1,
 ) -> Iterator[str]:
-    """Table of shipped scenes; parameters as for `cost`."""
+    """Table of shipped scenes; parameters as for `cost`. `beside`: another checkout, in turns."""
+    if beside is not None:
+        given = stride, cells, liquid
+        for name in scenes or SCENES:
+            rounds = [[_elsewhere(tree, name, *given) for tree in (ROOT, beside)] for _ in range(repeats)]
+            ours, other = (statistics.median(each) for each in zip(*rounds, strict=True))
+            share = statistics.median(here / there for here, there in rounds)
+            yield f"{name:18}{ours:9.4g} s, beside {other:9.4g} s of processor time: {share:.2f} of it"
+        return
     yield "foretold and taken, s; each speed's ratio of them: 5 and 50 and 95 in 100; within half and twice"
     yield f"{'scene':18}{'speeds':>6}{'foretold':>10}{'taken':>9}{'carried':>9}{'ratio':>7}"
     for name in scenes or SCENES:
         yield cost(name, stride, cells, liquid).line
+
+
+CHILD = """
+import json, sys
+from validation.benchmarks.held import cost
+found = cost(*json.loads(sys.argv[1]))
+print(found.taken.sum() + found.carried)
+"""
+
+
+def _elsewhere(folder: Path, *given: str | int | None) -> float:
+    """Processor time of the motions of a scene by the package of a checkout, in a process of its own, s."""
+    tree = str(folder.resolve())
+    command = [sys.executable, "-c", CHILD, json.dumps(given)]
+    ended = subprocess.run(
+        command,
+        cwd=tree,
+        env=os.environ | {"PYTHONPATH": tree},
+        stdout=subprocess.PIPE,
+        text=True,
+        check=True,
+    )
+    return float(ended.stdout.split()[-1])
 
 
 if __name__ == "__main__":

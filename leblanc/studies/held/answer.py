@@ -87,6 +87,14 @@ class Held:
     energy_error: Annotated[
         Array, Q("1", "energy error", "what the balance of energy of the last turns leaves", _OVER)
     ]
+    multiplier: Annotated[
+        Array,
+        Q(
+            *("1", "Floquet multiplier", "size of the largest, of motions found by Newton's method", _OVER),
+            key="held_multiplier",
+            by="held, eq. 23",
+        ),
+    ]
     solver: Annotated[
         str,
         Q("1", "solver", "that held the motions, of py-pde unless it is dop853 or lawson", key="held_solver"),

@@ -301,6 +301,7 @@ def held_result(found: HeldBranches, machine: Prepared, at: Index, solver: str) 
         model=model,
         wave_error=spread(wave_errors(machine, up)),
         energy_error=spread([state.energy_error for state in up]),
+        multiplier=spread([np.abs(state.multipliers).max(initial=0.0) or np.nan for state in up]),
     )
 
 

@@ -131,7 +131,7 @@ def test_held_states_have_a_column_of_their_own() -> None:
     nobody = np.full(size, "")
     motions = Held(
         *(at, state, least, most, nothing, liquid, np.abs(liquid), some, state, nothing, 64),
-        *(nobody, nothing, nothing),
+        *(nobody, nothing, nothing, nothing),
     )
     waves = replace(steady, held=motions, error_estimate=np.where(at, 0.02, 0.001))
     found = comparison(answer("statics", steady), answer("long_wave", waves))

@@ -38,10 +38,11 @@ def wave(name: str) -> None:
     answer_layer(fill, 40.0, 32.0, 1e-5, wave_model(name, Friction("linear", 5.0), cells=16))
 
 
-# What is asked; the equation, the solver and a tracker that take it; the section of the page that names them.
+# What is asked; the equation, its solvers and a tracker; the section of the page that names them.
 WAYS: dict[str, tuple[Callable[[], object], str, str, str, str]] = {
     "a held state": (
-        lambda: run_scene(held()), "RotorLayersPDE", "CoupledSolver", "TurnTracker", "a held state",
+        lambda: run_scene(held()),
+        "RotorLayersPDE", "PeriodicNewtonSolver CoupledSolver", "TurnTracker", "a held state",
     ),
     "one family in run": (
         lambda: run_scene(family()), "KdvBurgersPDE", "SteadyNewtonSolver", "", "a held state",
@@ -64,7 +65,7 @@ def way(request: pytest.FixtureRequest) -> tuple[Callable[[], object], str, str,
 
 
 def test_the_controller_of_py_pde_drives_our_solvers(way: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    ask, equation, solver, tracker, _ = way
+    ask, equation, solvers, tracker, _ = way
     seen: Seen = []
     own = Controller.run
 
@@ -75,7 +76,7 @@ def test_the_controller_of_py_pde_drives_our_solvers(way: Any, monkeypatch: pyte
 
     monkeypatch.setattr(Controller, "run", watched)
     ask()
-    assert seen and {(pde, by) for pde, by, _ in seen} == {(equation, solver)}
+    assert seen and {(pde, by) for pde, by, _ in seen} == {(equation, solver) for solver in solvers.split()}
     assert not tracker or any(tracker in trackers for _, _, trackers in seen)
 
 
@@ -91,10 +92,10 @@ def test_without_the_controller_there_is_no_answer(way: Any, monkeypatch: pytest
 
 
 def test_the_page_names_the_classes_on_the_way(way: Any) -> None:
-    _, equation, solver, tracker, title = way
+    _, equation, solvers, tracker, title = way
     pages = "\n".join(page.read_text(encoding="utf-8") for page in PAGES)
     heads = (f"The way of {title}", f"How {title} is solved")
     (text,) = [part for part in re.split(r"^## ", pages, flags=re.M) if part.startswith(heads)]
     names = {"SteadyNewtonSolver": "steady_newton"}
-    for name in (equation, names.get(solver, solver), tracker):
+    for name in (equation, *(names.get(solver, solver) for solver in solvers.split()), tracker):
         assert name in text

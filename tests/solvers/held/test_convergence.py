@@ -13,7 +13,7 @@ from meshes.arrays import Array
 from meshes.chamber import Chamber
 from solvers.held.convergence import _NUDGE, _PROBED, Watch, _limit, _Probe
 from solvers.held.integrate import start
-from solvers.held.state import HeldKind, HeldMachine, HoldNumerics
+from solvers.held.state import HeldKind, HeldMachine, HoldNumerics, Moment, PeriodicMotion
 from solvers.rotor.jeffcott import Jeffcott
 from solvers.runup.state import WORKS
 from tests.mutants import kills
@@ -37,7 +37,7 @@ def turns(found: Watch, count: int, lag: float) -> None:
     found.count = count
 
 
-@kills("solvers.held.convergence:Watch._bounded", "if repeats or moves", "if moves")
+@kills("solvers.held.convergence:Watch._bounded", "wobble <= self", "wobble < -self")
 @kills("solvers.held.convergence:Watch._elsewhere", "ends[1] - ends[0]", "ends[1]")
 def test_what_repeats_is_no_limit_cycle() -> None:
     """A circle that ends where it began waits for its whirl to have grown; one that does not is a whirl."""
@@ -46,6 +46,18 @@ def test_what_repeats_is_no_limit_cycle() -> None:
         turns(found, 2 * found.window, lag)
         sizes = np.array(found.sizes)
         assert found._bounded(sizes, SIZE) is bounded
+
+
+@kills("solvers.held.convergence:Watch._bounded", "self.slowest >= 0.0", "False")
+def test_a_whirl_below_the_tolerance_is_none() -> None:
+    """Where small motions decay, if it stays as it is: then the motion repeats, within the tolerance."""
+    for slowest, rate, repeats in ((-0.01, 0.0, True), (-0.01, 0.01, False), (0.01, 0.0, False)):
+        found = watch(slowest)
+        turns(found, 2 * found.window, 0.0)
+        k = np.arange(2 * found.window)
+        beat = 0.3 * NUMERICS.tolerance * SIZE * np.exp(rate * (k - k[-1])) * np.cos(0.7 * k)
+        sizes = np.stack([SIZE + beat] * 3, axis=1)
+        assert found._bounded(sizes, SIZE) is repeats
 
 
 @kills("solvers.held.convergence:Watch._bounded", "swings[0] - swings[1]", "0.0")
@@ -177,3 +189,23 @@ def test_the_balance_of_the_last_turns() -> None:
     assert error < 1e-12 and faults == ()
     assert found._beyond(rest) == []
     assert "chamber 1" in "; ".join(found._beyond(rest * 0.066 / SIZE))
+
+
+@kills("solvers.held.convergence:Watch._decays", "falls > _SLOWER * each", "falls > 0.0 * each")
+@kills("solvers.held.convergence:Watch._decays", "falls < _FASTER * each", "falls < -1e3")
+def test_what_decays_to_an_orbit() -> None:
+    """A distance that falls as the multiplier says; not one that falls faster, or that comes to a stop."""
+    place, size = np.array([SIZE, 0.0]), 0.99
+    moment = Moment(SPIN, place, np.zeros(2), np.zeros((1, 8)), np.zeros((1, 8)), np.ones(1, dtype=bool))
+    orbit = PeriodicMotion(moment, None, np.array([size]), 1)
+    state = SimpleNamespace(data=np.zeros((6, 8)))
+    for rate, stays, decays in ((size, 0.0, True), (0.97, 0.0, False), (size, 1.0, False)):
+        found = watch(0.0)
+        found.near = lambda _: orbit
+        turns(found, 64, 0.0)
+        gap = 0.1 * SIZE * (rate ** np.arange(64) + stays) * np.exp(0.7j * np.arange(64))
+        ends = SIZE + gap
+        found.rows = [np.array([[0.0, 0.0, end.real, end.imag, 0.0, 0.0]] * 2) for end in ends]
+        found.sizes = [(SIZE, SIZE - abs(each), SIZE + abs(each)) for each in gap]
+        assert found._decays(state) is decays
+        assert (found.orbit is orbit) is decays

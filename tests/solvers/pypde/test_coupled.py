@@ -171,8 +171,8 @@ def test_turns_of_another_solver() -> None:
             kept.append(steps[-1])
             return len(kept) == 2
 
-        tracker = TurnTracker(machine, TURN, enough, 8 if own else 64)
-        options = {"follow": True} if own else {"dt": TURN / 128}
+        tracker = TurnTracker(machine, TURN, enough, 1 if own else 64)
+        options = {"follow": 8} if own else {"dt": TURN / 128}
         run(machine, machine.start(32), (0.0, 4.0 * TURN), [tracker], solver=solver, **options)
     ours, other = (np.array(kept) for kept in sizes.values())
     assert ours.shape == other.shape == (2, 6)
@@ -190,7 +190,7 @@ def test_turns_are_handed_on_whole() -> None:
         return len(turns) == 3
 
     tracker = TurnTracker(machine, TURN, enough)
-    options = {"solver": "coupled", "follow": True}
+    options = {"solver": "coupled", "follow": 8}
     _, outcome = run(machine, machine.start(16), (0.0, 9.0 * TURN), [tracker], **options)
     assert outcome is Outcome.DONE
     assert len(turns) == 3
@@ -199,6 +199,17 @@ def test_turns_are_handed_on_whole() -> None:
         assert last == pytest.approx((k + 1) * TURN)
         assert shape == (8, 1, 16)
         assert gap == 0.0
+
+
+def test_every_turn_has_as_many_steps() -> None:
+    """At rest an eighth of a turn is five steps of 0.8 cells, whatever the rounding of the time."""
+    machine, steps = RotorLayersPDE(PLANAR.system(), [layer(1e-5)], 157.3), []
+    state, turn = machine.start(32), 2.0 * math.pi / 157.3
+    for k in range(60):
+        stretch = k * turn, (k + 1) * turn
+        state = machine.solve(state, stretch, tracker=None, solver="coupled", follow=8)
+        steps.append(machine.diagnostics["solver"]["steps"])
+    assert set(steps) == {40}
 
 
 def test_a_rotor_with_two_planes_and_gyroscopic_forces() -> None:
@@ -253,6 +264,6 @@ def test_an_interrupt_stays_one() -> None:
     def enough(*_: Any) -> bool:
         raise KeyboardInterrupt
 
-    tracker, options = TurnTracker(machine, TURN, enough), {"solver": "coupled", "follow": True}
+    tracker, options = TurnTracker(machine, TURN, enough), {"solver": "coupled", "follow": 8}
     with pytest.raises(KeyboardInterrupt):
         run(machine, machine.start(16), (0.0, 3.0 * TURN), [tracker], **options)
