@@ -32,7 +32,17 @@ from solvers.runup.ensemble import EnsembleTask
 from solvers.runup.long_wave import Coupled, couple
 from solvers.runup.machine import Ramp
 from solvers.runup.samples import highest, known_legs
-from solvers.runup.steps.coupled import AGREED, LEAST, PASSABLE, PILED, ROUNDS, SHORT, SHORTEST, STRAIGHT
+from solvers.runup.steps.coupled import (
+    AGREED,
+    FILLS,
+    LEAST,
+    PASSABLE,
+    PILED,
+    ROUNDS,
+    SHORT,
+    SHORTEST,
+    STRAIGHT,
+)
 from solvers.slices import FASTEST, SLICE, step_budget
 
 _GOING, _NOTHING = -1, 1e-300
@@ -356,7 +366,7 @@ def round_of(given: Given, now: Now, law: int) -> Now:
     stop, ramp = given.stops[leg, jnp.arange(lanes)], given.rates[leg, jnp.arange(lanes)]
     remaining = stop - now.time
     dt = now.share * (given.courant * (2.0 * math.pi / cells) / jnp.maximum(1.1 * now.fastest, now.spin))
-    whole = WHOLE * dt
+    whole = FILLS * dt
     dt = jnp.where(whole >= remaining, remaining, jnp.where(whole > 0.5 * remaining, 0.5 * remaining, dt))
     fresh = now.tried == 0
     guess = jnp.where(fresh, expected(now, ramp, dt), now.guess)

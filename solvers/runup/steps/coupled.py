@@ -89,7 +89,7 @@ PILED = 0.375
 # Steps shortened by more than this no longer follow what the layers do.
 LEAST = 1e-6
 # What steps may be longer by to fill a stretch with a whole number of them.
-WHOLE = 1.0 + 1e-9
+FILLS = 1.0 + 1e-9
 # Longest step beside a pool, over the time in which it swings by a radian.
 _SWING = 0.25
 
@@ -400,9 +400,9 @@ def advance(
             dt = pace.share * min(courant * cell / max(1.1 * pace.fastest, shaft.spin), longest)
             # The last two steps share what is left, so that none is a sliver; a whole number of steps stays
             # one, whatever the rounding of the time.
-            if WHOLE * dt >= remaining:
+            if FILLS * dt >= remaining:
                 dt = remaining
-            elif WHOLE * dt > 0.5 * remaining:
+            elif FILLS * dt > 0.5 * remaining:
                 dt = 0.5 * remaining
             copy(area, kept_area)
             copy(momentum, kept_momentum)
