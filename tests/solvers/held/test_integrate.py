@@ -112,7 +112,7 @@ def test_between_two_walls_a_layer_falls_as_without_an_inner_one() -> None:
     At speeds at which gravity is a tenth of the centrifugal acceleration it fills its gap and rides.
     """
     chamber, numerics = Chamber(0.065, 0.02, 0.055), HoldNumerics(cells=16, turns=64)
-    for share, ratio, rides in ((0.3, 1.35, False), (0.95, 3.0, True)):
+    for share, ratio, rides in ((0.4, 1.2, False), (0.95, 3.0, True)):
         fill = Fill(chamber, WATER, share * chamber.capacity)
         machine = HeldMachine(RIG.system(), (fill,), Friction("linear", 1.0), 9.81)
         begin = start(machine, ratio * layer_capture(fill, 9.81), numerics)
