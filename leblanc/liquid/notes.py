@@ -151,6 +151,12 @@ def compartment_notes(fills: Sequence[Fill]) -> list[Note]:
     return found
 
 
+def slowed_by(fills: Sequence[Fill]) -> str:
+    """What makes the waves of a machine slow, after a colon; empty where nothing does."""
+    counts = [fill.chamber.baffles.count for fill in fills if fill.chamber.baffles is not None]
+    return f": {max(counts)} baffles by finite elements" if counts else ""
+
+
 def smeared_baffles(fills: Sequence[Fill], cells: int | None) -> list[Note]:
     """Which chambers have baffles that are a sink all over the layer, and why."""
     found = []

@@ -18,6 +18,7 @@ from leblanc.core.progress import update
 from leblanc.core.units import VOLUME, rpm_bands, with_unit
 from leblanc.liquid.choose import Prepared, prepare
 from leblanc.liquid.models import asked_with
+from leblanc.liquid.notes import slowed_by
 from leblanc.liquid.validity import doubts
 from leblanc.scene.scene import Scene, require_no_balls, require_whirl
 from leblanc.studies.cycles.answer import Cycles
@@ -196,7 +197,8 @@ def _grown(rows: Sequence[_Row], speed: Array) -> tuple[Array, Array, tuple[Band
         if not alike:
             edges += unstable_bands(some[0].rotor, [some[0].fills], speed, some[0].law, parts[-1][0])
         done += len(some)
-        update(done, len(rows), "volumes" if done < len(rows) else "edges of the bands")
+        what = "volumes" if done < len(rows) else "edges of the bands"
+        update(done, len(rows), f"{what}{slowed_by(first.fills)}")
     growth, whirl_speed = (np.concatenate([part[k] for part in parts]) for k in (0, 1))
     if alike:
         edges += unstable_bands(first.rotor, [row.fills for row in rows], speed, first.law, growth)

@@ -10,6 +10,7 @@ import numpy as np
 from leblanc.core.interrupts import stopping
 from leblanc.core.progress import update
 from leblanc.liquid.choose import axial_gravity
+from leblanc.liquid.notes import slowed_by
 from leblanc.scene.scene import JeffcottRotor, Scene, jeffcott
 from leblanc.scene.tasks import Optimisation
 from leblanc.studies.optimise.objectives import Passages, PeakOver
@@ -63,7 +64,7 @@ def best_volumes(
 ) -> Found:
     """Best volumes for a problem, a search that is a part of the whole work."""
     costly = _AT_ONCE if problem.runs is None else _RUNUPS
-    count, done, budget, slow = 0, 0.0, budget or Budget(), slowed_by(scene)
+    count, done, budget, slow = 0, 0.0, budget or Budget(), slowed_by(scene.fills)
 
     def say(more: int) -> None:
         nonlocal count
@@ -90,12 +91,6 @@ def best_volumes(
         plan = replace(plan, at_once=costly, digits=_DIGITS if slow else 0)
     with stopping():
         return search(judge, low, high, problem.density, starts, alike, plan, stage)
-
-
-def slowed_by(scene: Scene) -> str:
-    """What makes an answer slow, after a colon; empty where nothing does."""
-    counts = [fill.chamber.baffles.count for fill in scene.fills if fill.chamber.baffles is not None]
-    return f": {max(counts)} baffles by finite elements" if counts else ""
 
 
 def plan_of(problem: Problem) -> SearchPlan:

@@ -23,7 +23,7 @@ from leblanc.core.progress import update
 from leblanc.core.units import in_rpm
 from leblanc.liquid.choose import axial_gravity
 from leblanc.liquid.models import SYNCHRONOUS_MODELS
-from leblanc.liquid.notes import compartment_notes
+from leblanc.liquid.notes import compartment_notes, slowed_by
 from leblanc.liquid.validity import doubts
 from leblanc.scene.scene import Scene, Speeds, require_clear, require_no_balls, require_whirl
 from leblanc.scene.tasks import OBJECTIVES, Optimisation
@@ -54,7 +54,6 @@ from leblanc.studies.optimise.search import (
     evaluated_again,
     on_all_cells,
     plan_of,
-    slowed_by,
 )
 from leblanc.studies.optimise.wetting import optimal_volume_by_search, wetting_volumes
 from leblanc.studies.run.study import run_scene
@@ -446,10 +445,10 @@ def front_around(
     rows = [np.minimum(share[:, None] * room * along, high), found.point[None]]
     swept = np.unique(np.concatenate(rows), axis=0)
     exact = np.flatnonzero((known["sure"] == 1.0) & np.isfinite(known["vibration"]))
-    most = _FEW_IN_FRONT if slowed_by(scene) else _MOST_IN_FRONT
+    most = _FEW_IN_FRONT if slowed_by(scene.fills) else _MOST_IN_FRONT
     by_the_way = exact[_thin(known["vibration"][exact], known["mass"][exact], most)]
     volume = np.concatenate((swept, found.points[by_the_way]))
-    total, done, slow = swept.shape[0] + volume.shape[0], 0, slowed_by(scene)
+    total, done, slow = swept.shape[0] + volume.shape[0], 0, slowed_by(scene.fills)
 
     def each(value: Callable[[Array], Array], rows: Array) -> Array:
         nonlocal done

@@ -30,7 +30,7 @@ from leblanc.liquid.choose import (
 )
 from leblanc.liquid.filled import FilledChamber
 from leblanc.liquid.models import element_model, synchronous_model
-from leblanc.liquid.notes import compartment_notes, smeared_baffles
+from leblanc.liquid.notes import compartment_notes, slowed_by, smeared_baffles
 from leblanc.liquid.validity import doubts
 from leblanc.scene.inputs import input_rows
 from leblanc.scene.scene import Scene, TubRotor
@@ -192,9 +192,9 @@ def run_scene(scene: Scene, holding: Holding = HERE, cycles: bool = False) -> Ru
     in_range_too = replace(answer, in_range=answer.in_range & choice.in_range)
     (refined,) = responses_between([machine], [in_range_too], drawn=True)
     if by_elements(scene):
-        update(what="finite elements")
+        update(what=f"response{slowed_by(scene.fills)}")
         choice, answer, refined = element_answers(machine, choice, answer, refined)
-    update(what="self-excited whirl")
+    update(what=f"self-excited whirl{slowed_by(scene.fills)}")
     whirl = self_excited(machine)
     grown: tuple[Note, ...] = ()
     if cycles:

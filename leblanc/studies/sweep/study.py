@@ -19,6 +19,7 @@ import numpy as np
 
 from leblanc.core.files import out_dir
 from leblanc.core.progress import update
+from leblanc.liquid.notes import slowed_by
 from leblanc.scene.schema.load import SceneError, SceneFault, shown
 from leblanc.studies.held.holding import cores
 from leblanc.studies.run.notes import plane_words
@@ -80,7 +81,8 @@ def run_sweep(
         store = open_store(folder, sweep, fresh)
         missing = store.pending
         finished = sweep.samples - sum(stop - start for start, stop in map(store.bounds, missing))
-        update(finished, sweep.samples, "samples")
+        slow = slowed_by(sweep.scene.fills) if sweep.command == "run" else ""
+        update(finished, sweep.samples, f"samples{slow}")
         if not missing:
             return store
         _probe(sweep)

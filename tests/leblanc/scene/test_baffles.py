@@ -14,6 +14,7 @@ import pytest
 import leblanc as lb
 from fluid.fill import Fills
 from leblanc.core.notes import percent
+from leblanc.core.progress import told
 from leblanc.liquid.choose import choose
 from leblanc.liquid.notes import BaffleCode
 from leblanc.scene.scene import Scene, jeffcott, load_scene, scene_from_table
@@ -82,6 +83,17 @@ def test_wrong_baffles_are_named(baffles: dict[str, Any], told: str) -> None:
     with pytest.raises(SceneError, match=r".") as caught:
         scene(baffles)
     assert told in str(caught.value).replace('"9 kg"', "'9 kg'")
+
+
+@kills("leblanc.liquid.notes:slowed_by", "max(counts)", "len(counts)")
+def test_what_takes_long_is_told_while_it_does() -> None:
+    """Waves among baffles are by finite elements: a command says so; of a clear ring there is nothing to say."""
+    for baffles, said in ((LOW, True), (None, False)):
+        heard: list[str] = []
+        with told(lambda _, __, what, heard=heard: heard.append(what or "")):  # type: ignore[misc]
+            run_scene(scene(baffles))
+        assert ("self-excited whirl: 3 baffles by finite elements" in heard) == said
+        assert any(what.startswith("self-excited whirl") for what in heard)
 
 
 def test_baffles_that_the_liquid_can_pass_change_no_steady_answer() -> None:
