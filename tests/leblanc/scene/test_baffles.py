@@ -87,7 +87,7 @@ def test_wrong_baffles_are_named(baffles: dict[str, Any], told: str) -> None:
 
 @kills("leblanc.liquid.notes:slowed_by", "max(counts)", "len(counts)")
 def test_what_takes_long_is_told_while_it_does() -> None:
-    """Waves among baffles are by finite elements: a command says so; of a clear ring there is nothing to say."""
+    """Waves among baffles are by finite elements: a command says so; of a clear ring nothing is slow."""
     for baffles, said in ((LOW, True), (None, False)):
         heard: list[str] = []
         with told(lambda _, __, what, heard=heard: heard.append(what or "")):  # type: ignore[misc]
