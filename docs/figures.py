@@ -47,21 +47,16 @@ class Recipe:
     minutes: bool = False
     needs: str = ""
 
-    @property
-    def _full(self) -> tuple[str, ...]:
-        """Program and arguments, told to draw PNG; `view` draws nothing else."""
-        told = self.program[0] == "leblanc" and self.program[1] != "view"
-        return (*self.program, "--png") if told else self.program
-
     def command(self, out: Path) -> list[str]:
-        """The command line.
+        """The command line, told to draw PNG; `view` draws nothing else.
 
         Parameters
         ----------
         out : folder that it draws into
         """
-        first, *rest = self._full
+        first, *rest = self.program
         if first == "leblanc":
+            rest += [] if rest[0] == "view" else ["--png"]
             start = ["-c", "from leblanc.cli import main; import sys; sys.exit(main(sys.argv[1:]))"]
         else:
             start = [first] if first.endswith(".py") else ["-m", first]
@@ -69,7 +64,7 @@ class Recipe:
 
     def shown(self) -> str:
         """The command as a reader types it."""
-        first, *rest = self._full
+        first, *rest = self.program
         start = first if first == "leblanc" else f"python {first if first.endswith('.py') else f'-m {first}'}"
         return " ".join([start, *(f'"{word}"' if " " in word else word for word in rest), "--out", "DIR"])
 

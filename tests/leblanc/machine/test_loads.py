@@ -40,7 +40,7 @@ def _force(scene: lb.Scene, speed: np.ndarray, amplitude: np.ndarray) -> np.ndar
     return np.asarray(np.abs(rotor.stiffness + 1j * rotor.damping * speed) * amplitude)  # type: ignore[union-attr]
 
 
-@kills("leblanc.studies.run.study:_loads", 'np.argsort(order, kind="stable")[: answer', "order[: answer")
+@kills("leblanc.studies.run.study:loads_of", 'np.argsort(order, kind="stable")[: answer', "order[: answer")
 @kills("solvers.rotor.loads.turn:damping_power", "0.5 * np.square(speed)", "np.square(speed)")
 def test_planar_rotor_over_speed() -> None:
     """Feet, clearance and torque at every speed of the scene from its amplitude alone."""
