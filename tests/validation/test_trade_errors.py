@@ -23,6 +23,7 @@ from leblanc.core.answer import versions
 from leblanc.scene.scene import Scene, load_scene
 from leblanc.studies.drives import planned
 from leblanc.studies.run.study import run_scene
+from solvers.held.state import HoldNumerics
 from tests.mutants import kills
 from validation.trade.answers import (
     DISPERSION,
@@ -463,14 +464,17 @@ def test_a_lying_machine_is_compared_with_its_motion_held_in_time() -> None:
 def test_held_answers_are_those_of_run() -> None:
     """Mean and ripple at a speed of the rig; gravity makes the motion ripple, no steady one does."""
     machine = scene("horizontal_rig")
-    cut = at_speeds(machine, np.array([50.0]))
+    cut = at_speeds(machine, np.array([40.0]))
     found, still = (answer(cut, Case(RESPONSE, *case)) for case in (("long_wave", 16, HELD), ("statics",)))
     asked = machine.replace({"model.liquid": "long_wave", "model.cells": 16})
-    result = run_scene(at_speeds(asked, np.array([50.0])))
+    result = run_scene(at_speeds(asked, np.array([40.0])))
     assert result.held is not None and found.ripple is not None and still.ripple is not None
-    np.testing.assert_allclose(found.values, result.amplitude, rtol=1e-12)
+    # In time here and by Newton's method there, each to within its tolerance of the amplitude.
+    near = 2.0 * HoldNumerics().tolerance
+    np.testing.assert_allclose(found.values, result.amplitude, rtol=near)
     half = 0.5 * (result.held.largest - result.held.least)
-    np.testing.assert_allclose(found.ripple, half, rtol=1e-12)
+    # What still moves is a tenth of that.
+    np.testing.assert_allclose(found.ripple, half, atol=0.05 * near * float(found.values[0]))
     assert half[0] > 1e-4 * found.values[0] and (still.ripple <= 1e-12 * still.values).all()
     # Gravity leaves the mean to a half per cent or so, 16 cells another.
     np.testing.assert_allclose(still.values, found.values, rtol=0.02)

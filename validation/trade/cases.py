@@ -317,7 +317,7 @@ def exciter_question(scene: Scene, quick: bool = False) -> Question:
     from leblanc.wings.exciter.study import run_exciter
 
     found = run_exciter(scene)
-    top = found.critical if math.isfinite(found.critical) else float(found.speed[-1])
+    top = found.critical_speed if math.isfinite(found.critical_speed) else float(found.speed[-1])
     chosen = np.linspace(_EXCITED[0] * top, _EXCITED[1] * top, 5)
     steps = QUICK_STEPS if quick else STEPS
     ladder = tuple(Case(RESPONSE, "integration", n) for n in reversed(steps))
