@@ -191,14 +191,13 @@ def most_growing(search: MostGrowing, speed: Array) -> SystemModes:
     more = np.sqrt(np.maximum(search.slip / (_SLOW * speed[:, None]), 1.0))
     rate = np.where(root.real < 0.0, root.real * more, root.real)
     oscillating = np.where(root.imag > 1e-9 * speed[:, None], rate, -np.inf)
-    most = np.argsort(-oscillating, axis=1)[:, :_FOLLOWED]
-    everywhere = np.arange(speed.size)
-    modes = _told(search, _split(root, most), everywhere, speed)
+    order = np.argsort(-oscillating, axis=1)
+    modes = _told(search, _split(root, order[:, :_FOLLOWED]), np.arange(speed.size), speed)
     missed = np.flatnonzero(~modes.complete)
     if missed.size:
-        modes = modes.replaced(
-            missed, _told(search, _split(root[missed], most[missed]), missed, speed, True), _GONE
-        )
+        # What the liquid hardly damps seemed to decay more than it does.
+        starts = _split(root[missed], order[missed, : 2 * _FOLLOWED])
+        modes = modes.replaced(missed, _told(search, starts, missed, speed), _GONE)
         missed = np.flatnonzero(~modes.complete)
     if missed.size == 0:
         return modes
@@ -217,17 +216,14 @@ def _split(root: Complex, which: Index) -> tuple[Complex, Complex]:
     return np.take_along_axis(root, which, axis=1), others
 
 
-def _told(
-    search: MostGrowing, starts: tuple[Complex, Complex], at: Index, speed: Array, own: bool = False
-) -> SystemModes:
+def _told(search: MostGrowing, starts: tuple[Complex, Complex], at: Index, speed: Array) -> SystemModes:
     """Modes followed from starting values at some speeds, complete where no other grows more.
 
     Two that are almost alike part if they start from their own shapes. The other starting values only make
     smooth what is followed: a factor whose own zero is left of the line wins or loses no zero.
     """
     start, others = starts
-    plain = np.tile(_any_shape(len(search.circles.T)), (start.size, 1))
-    root, shape, found = _followed(search, start, at, _shapes(search, start, at) if own else plain)
+    root, shape, found = _followed(search, start, at, _shapes(search, start, at))
     along, against = _sizes(search.circles, shape)
     spin = speed[at]
     rate = np.where(found, root.real, -np.inf).max(axis=1)
