@@ -128,11 +128,11 @@ def _first_speeds(rotor: Rotor, fills: Sequence[Fill], first: float, last: float
 
 def _looked(rotor: Rotor, rows: Sequence[Sequence[Fill]], row: Index, speed: Array, friction: Waves) -> Looks:
     """Modes and growth at points, and slopes by a second speed close by."""
-    size = speed.size
-    both, spins = np.concatenate([row, row]), np.concatenate([speed, speed * (1.0 + _BESIDE)])
-    roots, rounding, rates = modes_at(rotor, rows, both, spins, friction)
-    roots = np.where(rounding <= _HIDDEN * spins[:, None], roots, complex(np.nan, np.nan))
-    root, beside, growth = roots[:size], roots[size:], rates[:size]
+    *tables, growth = modes_at(rotor, rows, row, speed, friction, _BESIDE)
+    root, beside = (
+        np.where(rounding <= _HIDDEN * speed[:, None], roots, complex(np.nan, np.nan))
+        for roots, rounding in tables
+    )
     change = _changes(root, beside)
     change = np.where(np.abs(change) <= _LEAP * speed[:, None], change, complex(np.nan, np.nan))
     return Looks(row, speed, growth, root, change / (_BESIDE * speed[:, None]))

@@ -90,12 +90,15 @@ class _Circles:
     parts: Complex
 
 
-def laminar_modes(system: RotorSystem, layers: Sequence[Placed], speed: Array) -> SystemModes:
+def laminar_modes(
+    system: RotorSystem, layers: Sequence[Placed], speed: Array, near: SystemModes | None = None
+) -> SystemModes:
     """Modes with laminar friction, whose drag depends on the mode [theory: whirl, eq. 12-14].
 
     From the rotor with liquid at rest and the waves of each layer on a drum at rest; waves of equal layers
     against one another do not move the rotor. All at once where the argument principle says that a mode which
-    grows more was missed.
+    grows more was missed. `near`: modes at speeds next to these, from which they are followed; others are not
+    looked for then.
     """
     groups = _groups(system, layers)
     weights = np.ones(len(layers))
@@ -103,19 +106,23 @@ def laminar_modes(system: RotorSystem, layers: Sequence[Placed], speed: Array) -
         weights[members] = rank / len(members)
     degree = 2 * len(system.coordinates) + 4 * sum(rank for _, rank in groups)
     problem = _Problem(system, layers, weights, degree)
+    waves = [
+        _layer_waves(problem.layers[members[0]][1], speed) for members, rank in groups if rank < len(members)
+    ]
+    if near is not None:
+        own = near.root.shape[1] - sum(wave.shape[1] for wave in waves)
+        start = np.where(near.found, near.root, complex(np.nan, np.nan))[:, :own]
+        return _with_waves(_aberth(problem, start, speed), waves, speed)
     apart, of = _anchors(speed)
     modes = _in_blocks(problem, groups, speed[apart])
     beside = np.setdiff1d(np.arange(speed.size), apart)
     if beside.size:
         # Modes hardly differ from those at a speed close by: from there few sweeps lead to them.
-        near = np.where(modes.found & modes.complete[:, None], modes.root, complex(np.nan, np.nan))
-        more = _in_blocks(problem, groups, speed[beside], near[of[beside]])
+        close = np.where(modes.found & modes.complete[:, None], modes.root, complex(np.nan, np.nan))
+        more = _in_blocks(problem, groups, speed[beside], close[of[beside]])
         width = max(modes.root.shape[1], more.root.shape[1])
         whole = joined([part.widened(width, _GONE) for part in (modes, more)])
         modes = whole.at(np.argsort(np.concatenate([apart, beside])))
-    waves = [
-        _layer_waves(problem.layers[members[0]][1], speed) for members, rank in groups if rank < len(members)
-    ]
     return _with_waves(modes, waves, speed)
 
 

@@ -253,7 +253,7 @@ def test_modes_side_by_side_keep_their_slopes() -> None:
     np.testing.assert_allclose(_changes(root, beside)[0, :3].imag, [0.0, -change, 0.0], atol=1e-14)
 
 
-@kills("solvers.whirl.edges:_looked", "rounding <= _HIDDEN * spins", "rounding <= np.inf * spins")
+@kills("solvers.whirl.edges:_looked", "rounding <= _HIDDEN * speed", "rounding <= np.inf * speed")
 def test_what_rounding_hides_is_not_followed() -> None:
     """On supports 1e9 times as stiff as the spin asks for, waves of a film are known to no digit."""
     supports = (Support(-0.1, 4e18, 1e4), Support(0.1, 3e18, 1e4))
