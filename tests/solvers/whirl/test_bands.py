@@ -20,7 +20,7 @@ from solvers.rotor.tub import Mount, Tub
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
 from solvers.whirl import edges as whirl_edges
 from solvers.whirl.edges import _changes, _first_speeds, any_growth, looks, unstable_bands
-from solvers.whirl.growth import asynchronous_growth, planar_layers
+from solvers.whirl.growth import asynchronous_growth, modes_at, planar_layers
 from solvers.whirl.system import coupled_matrices, linear_modes
 from tests.mutants import kills
 from tests.oracles.edges import undamped_edges
@@ -251,6 +251,36 @@ def test_modes_side_by_side_keep_their_slopes() -> None:
     np.testing.assert_allclose(_changes(root, root[:, [1, 2, 0, 3]] + change * 1j)[0, :3].imag, change)
     beside = np.array([[1.0j, (1.0 + gap - change) * 1j, 2.0j, complex(np.nan, np.nan)]])
     np.testing.assert_allclose(_changes(root, beside)[0, :3].imag, [0.0, -change, 0.0], atol=1e-14)
+
+
+@kills("solvers.whirl.growth:modes_at", "parts(speed * (1.0 + beside), first)", "parts(speed, first)")
+@kills(
+    "solvers.whirl.sections:most_growing",
+    "root[row, column], found[row, column] =",
+    "_, found[row, column] =",
+)
+def test_modes_at_a_second_speed_are_those_found_there() -> None:
+    """Followed from the first speed, by Newton's or Aberth's method, and found with a proof at the second."""
+    beside, speed = 1e-4, np.array([90.0, 140.0, 210.0])
+    cut = replace(HALF, chamber=replace(HALF.chamber, baffles=Baffles(4, 0.95 * HALF.chamber.radius)))
+    planes = TwoPlane(6.0, 0.05, 0.03, (Support(-0.1, 3e4, 10.0), Support(0.1, 4e4, 10.0)), ())
+    twins = [replace(HALF, chamber=replace(HALF.chamber, plane=z)) for z in (-0.05, 0.0, 0.08)]
+    law = Friction(FrictionLaw.STOKES)
+    for rotor, fills in (
+        (planes, [HALF]),
+        (planes, twins),
+        (planes, [cut]),
+        (Jeffcott(6.0, 6e4, 20.0, 0.0), [HALF]),
+        (Jeffcott(6.0, 6e4, 20.0, 0.0), [cut]),
+    ):
+        at = np.zeros(speed.size, dtype=np.intp)
+        _, (followed, _), _ = modes_at(rotor, [fills], at, speed, law, beside)
+        (found, rounding), _, _ = modes_at(rotor, [fills], at, speed * (1.0 + beside), law, beside)
+        gap = np.abs(followed[:, :, None] - found[:, None, :])
+        nearest = np.where(np.isnan(gap), np.inf, gap).min(axis=2)[np.isfinite(followed)]
+        # Both to rounding, of modes that go over the second speed by 1e-4.
+        assert nearest.max() < 1e-9 * speed[-1] + np.nanmax(rounding)
+        assert (np.isfinite(followed).sum(axis=1) == np.isfinite(found).sum(axis=1)).all()
 
 
 @kills("solvers.whirl.edges:_looked", "rounding <= _HIDDEN * speed", "rounding <= np.inf * speed")
