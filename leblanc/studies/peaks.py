@@ -126,8 +126,8 @@ def responses_between(
         *(lambda owner, speed: wet(owner, speed).parts, begin, asked.wet, seen, ends, drawn),
     )
     for k, answer in enumerate(answers):
-        own = by_speed([answer, *found[k]])
-        _holding(partial(wet_of, k), own, asked.wet[k].bound, captured_speed(machines[k].scene))
+        every = by_speed([answer, *found[k]])
+        _holding(partial(wet_of, k), every, asked.wet[k].bound, captured_speed(machines[k].scene))
     return [by_speed(parts) for parts in found]
 
 
