@@ -162,7 +162,7 @@ def _holding(
             break
         looks = here + np.outer(wide, _EDGE_PARTS).ravel()
         if carried_from is not None:
-            beside = carried_from * (1.0 + 0.4 * _EDGE * np.array([-1.0, 1.0]))
+            beside = carried_from * (1.0 + 0.01 * _EDGE * np.array([-1.0, 1.0]))
             looks = np.append(looks, beside[(beside > known.speed[0]) & (beside < known.speed[-1])])
             carried_from = None
         parts(np.zeros(1, dtype=np.intp), np.unique(looks))

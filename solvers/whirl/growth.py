@@ -70,7 +70,7 @@ def growth_at(
     growth, whirl_speed = np.full((2, speed.size), np.nan)
     for k in np.unique(row).tolist():
         here = np.flatnonzero(row == k)
-        modes = system_modes(rotor, rows[k], speed[here], friction)
+        modes = system_modes(rotor, rows[k], speed[here], friction, every=False)
         growth[here], whirl_speed[here] = _fastest(modes, speed[here])
     return growth, whirl_speed
 
@@ -81,8 +81,9 @@ def system_modes(
     speed: Array,
     friction: Waves = NO_FRICTION,
     near: SystemModes | None = None,
+    every: bool = True,
 ) -> SystemModes:
-    """All whirl modes of any rotor with its fills [theory: whirl, eq. 7].
+    """All whirl modes of any rotor with its fills, or those that grow most [theory: whirl, eq. 7].
 
     `near`: those at speeds next to these, from which an iteration follows them; it looks for no others then.
     """
@@ -103,7 +104,7 @@ def system_modes(
     layers = [(plane, layer) for plane, layer in rings if layer is not None]
     _require_few(len(layers))
     if any(layer.stokes > 0.0 for _, layer in layers):
-        return laminar_modes(heavy, layers, speed, near)
+        return laminar_modes(heavy, layers, speed, near, every)
     return linear_modes(coupled_matrices(heavy, layers, speed), circles_of(heavy, layers))
 
 

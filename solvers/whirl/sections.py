@@ -266,8 +266,11 @@ def _told(search: MostGrowing, starts: tuple[Complex, Complex], at: Index) -> Sy
     twice = np.tril(np.abs(root[:, :, None] - root[:, None, :]) <= _SAME * spin[:, None, None], -1)
     kept = found & ~(twice & found[:, None, :]).any(axis=2)
     left = others.real < (region.line - _ASIDE * spin)[:, None]
-    known = np.where(np.hstack([kept, left]), np.hstack([root, others]), complex(np.nan, np.nan))
-    count = missed_modes(determinant, 2 * len(search.circles.T), known, region)
+    known, rough = (
+        np.where(kept, root, complex(np.nan, np.nan)),
+        np.where(left, others, complex(np.nan, np.nan)),
+    )
+    count = missed_modes(determinant, 2 * len(search.circles.T), known, region, rough)
     scale = np.abs(root) + spin[:, None]
     sense = np.where(along >= against, 1.0, -1.0)
     return SystemModes(root, sense, _RESOLVED * scale, found, told & (count == 0.0))
