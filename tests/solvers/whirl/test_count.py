@@ -158,12 +158,6 @@ def test_what_is_near_a_mode_does_not_hide_it() -> None:
 
 
 @kills("solvers.whirl.laminar:_certain", "~modes.complete", "~(modes.complete | True)")
-@kills("solvers.whirl.laminar:_certain", "np.nanmax(start.real", "np.nanmin(start.real")
-@kills(
-    "solvers.whirl.laminar:_aberth",
-    "on &= True if followed is None else",
-    "on &= True if followed is None else ~",
-)
 def test_those_that_grow_most_serve_at_many_speeds(monkeypatch: pytest.MonkeyPatch) -> None:
     """Beside known speeds few modes are followed, and all of them where the count misses one."""
     followed: list[int] = []
