@@ -15,7 +15,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from leblanc.liquid.choose import Prepared, models_at, models_of
+from leblanc.liquid.choose import Prepared, captured_speed, models_at, models_of
 from leblanc.liquid.models import synchronous_model
 from meshes.arrays import Array, Complex, Flags, Index
 from solvers.checked_model import CheckedModel
@@ -126,14 +126,18 @@ def responses_between(
         *(lambda owner, speed: wet(owner, speed).parts, begin, asked.wet, seen, ends, drawn),
     )
     for k, answer in enumerate(answers):
-        _holding(partial(wet_of, k), by_speed([answer, *found[k]]), asked.wet[k].bound)
+        every = by_speed([answer, *found[k]])
+        _holding(partial(wet_of, k), every, asked.wet[k].bound, captured_speed(machines[k].scene))
     return [by_speed(parts) for parts in found]
 
 
-def _holding(answer: Callable[[Array], Response], known: Response, bound: float) -> None:
+def _holding(
+    answer: Callable[[Array], Response], known: Response, bound: float, carried_from: float | None
+) -> None:
     """Ask a machine for the largest amplitude of the speeds at which its answer holds.
 
-    Where that is beside a speed at which it does not hold, the edge between the two is closed in on.
+    Where that is beside a speed at which it does not hold, the edge between the two is closed in on. Mostly
+    it is where the liquid begins to ride with the drum.
     """
     out = ~known.holds & ~np.isnan(known.amplitude)
     if not out.any() or not known.holds.any():
@@ -156,7 +160,12 @@ def _holding(answer: Callable[[Array], Response], known: Response, bound: float)
         wide = [known.speed[k] - here for k in sides if abs(known.speed[k] - here) > _EDGE * here]
         if not wide:
             break
-        parts(np.zeros(1, dtype=np.intp), np.unique(here + np.outer(wide, _EDGE_PARTS)))
+        looks = here + np.outer(wide, _EDGE_PARTS).ravel()
+        if carried_from is not None:
+            beside = carried_from * (1.0 + 0.01 * _EDGE * np.array([-1.0, 1.0]))
+            looks = np.append(looks, beside[(beside > known.speed[0]) & (beside < known.speed[-1])])
+            carried_from = None
+        parts(np.zeros(1, dtype=np.intp), np.unique(looks))
 
 
 def _explored(

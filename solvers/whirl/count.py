@@ -22,7 +22,8 @@ _CROWD = 256  # steps of one path still halved, of which twenty are usual: there
 _FAR = 1e5  # over the highest frequency: where the phase is that at infinity
 _WHOLE = 0.2  # distance of a count from a whole number
 _LIP, _END = 1e-9, 1e-8  # over the spin: how far the path stays off a cut and its end
-_FIRST = np.geomspace(1e-2, 1.0, 4)  # over a frequency, of the first points below and above it
+_ALIKE = 0.01  # of the distance of a rough mode from the line: two of them so near to one another are one
+_FIRST = np.array([1e-2, 1.0])  # over a frequency, of the first points below and above it
 
 # Takes points, shape (k,), and which of the n problems each belongs to, (k,); returns log f, (k,).
 Characteristic = Callable[[Complex, Index], Complex]
@@ -39,16 +40,29 @@ class Region:
     far: Array
 
 
-def missed_modes(function: Characteristic, degree: int, known: Complex, region: Region) -> Array:
+def missed_modes(
+    function: Characteristic, degree: int, known: Complex, region: Region, rough: Complex | None = None
+) -> Array:
     """How many modes of a region are not among those known [theory: whirl, eq. 19].
 
     A conjugate pair counts as two; nan where the phase could not be followed. Far away f goes as
-    lambda^`degree`.
+    lambda^`degree`. `rough`: what is near modes above the real axis and left of the line: it makes smooth
+    what is followed, as known modes do. From afar it would hide a mode right of the line, as both together
+    make a whole turn: the path has points beside each, from which a part of that shows.
     """
     if region.line.size == 0:
         return np.zeros(0)
     pairs, alone = _upper(known, region.scale)
-    path, owner = _path(pairs, region)
+    beside = np.zeros((len(pairs), 0))
+    if rough is not None:
+        away = 0.5 * (region.line[:, None] - rough.real)
+        beside, own = np.hstack([rough.imag - away, rough.imag + away]), np.hstack([away, away])
+        order = np.argsort(beside, axis=1)
+        beside, own = np.take_along_axis(beside, order, axis=1), np.take_along_axis(own, order, axis=1)
+        # Those of two that are alike serve both.
+        beside[:, 1:][np.diff(beside, axis=1) < _ALIKE * own[:, 1:]] = np.nan
+        pairs = _packed(np.hstack([pairs, rough]))
+    path, owner = _path(pairs, region, beside)
     rise, sure = _phase(_Deflated(function, pairs, alone), path, owner, region.scale)
     held = 2 * np.isfinite(pairs).sum(axis=1) + np.isfinite(alone).sum(axis=1)
     count = 0.5 * (degree - held) - rise / np.pi
@@ -76,8 +90,10 @@ def _packed(values: Complex) -> Complex:
     return np.take_along_axis(values, order, axis=1)[:, : finite.sum(axis=1).max()]
 
 
-def _path(pairs: Complex, region: Region) -> tuple[Complex, Index]:
+def _path(pairs: Complex, region: Region, beside: Array) -> tuple[Complex, Index]:
     """Points of polylines from the real axis upwards to far away, one after the other, and whose they are.
+
+    Also at heights `beside`, nan in place of some, shape (n, r).
 
     Left of the end of a cut the path goes along its lower side to the end and back along the upper one.
     """
@@ -86,7 +102,7 @@ def _path(pairs: Complex, region: Region) -> tuple[Complex, Index]:
     fastest = np.where(np.isfinite(pairs), pairs.imag, 0.0).max(axis=1, initial=0.0)
     far = _FAR * np.maximum(region.far, np.maximum(fastest, scale))
     around = np.outer(scale, np.unique(np.concatenate([1.0 + _FIRST, 1.0 - _FIRST, [1.0]])))
-    heights = np.sort(np.hstack([around, np.geomspace(1e-2 * scale, far, 12).T]), axis=1)
+    heights = np.sort(np.hstack([around, np.geomspace(1e-2 * scale, far, 8).T, beside]), axis=1)
     for k in range(region.line.size):
         left, size, height = float(region.line[k]), float(scale[k]), heights[k]
         height = height[height > 0.0]
@@ -132,7 +148,7 @@ def _phase(function: _Deflated, points: Complex, own: Index, scale: Array) -> tu
     """Rise of the phase along each path, and whether it could be followed, shape (n,).
 
     A step counts where log f changes little and evenly from its start to its middle to its end, unlike about
-    a zero; others are halved.
+    a zero, whatever its length; others are halved.
     """
     value = function.at(points, own)
     joined = np.flatnonzero(own[1:] == own[:-1])

@@ -128,11 +128,11 @@ def _first_speeds(rotor: Rotor, fills: Sequence[Fill], first: float, last: float
 
 def _looked(rotor: Rotor, rows: Sequence[Sequence[Fill]], row: Index, speed: Array, friction: Waves) -> Looks:
     """Modes and growth at points, and slopes by a second speed close by."""
-    size = speed.size
-    both, spins = np.concatenate([row, row]), np.concatenate([speed, speed * (1.0 + _BESIDE)])
-    roots, rounding, rates = modes_at(rotor, rows, both, spins, friction)
-    roots = np.where(rounding <= _HIDDEN * spins[:, None], roots, complex(np.nan, np.nan))
-    root, beside, growth = roots[:size], roots[size:], rates[:size]
+    *tables, growth = modes_at(rotor, rows, row, speed, friction, _BESIDE)
+    root, beside = (
+        np.where(rounding <= _HIDDEN * speed[:, None], roots, complex(np.nan, np.nan))
+        for roots, rounding in tables
+    )
     change = _changes(root, beside)
     change = np.where(np.abs(change) <= _LEAP * speed[:, None], change, complex(np.nan, np.nan))
     return Looks(row, speed, growth, root, change / (_BESIDE * speed[:, None]))
@@ -356,6 +356,10 @@ Bands = tuple[tuple[float, float], ...]
 _WIDTH = 1e-10  # relative, of the bracket an edge is left in
 _AT_BOUND = 1e-8  # relative, of speeds at an edge
 _NEAR = 1e-3  # of a bracket: how closely the secant's zero is looked at
+_TRUSTED = (
+    0.1  # of a bracket: how far an interpolated zero may be off that is looked at in the secant's place
+)
+_ROUNDED = 64.0  # times as far from it the second look, where rounding hides the growth
 _BISECTIONS = 60
 
 
@@ -468,11 +472,12 @@ def _refine(
 ) -> Array:
     """Speeds at which the whirl begins or ceases to grow, between those of `low` and `high`.
 
-    Three points at a time: in the middle and closely round the secant's zero; in quarters where the whirl is
-    neutral on one side, as without damping.
+    Three points at a time: in the middle and closely round the zero of the growth by interpolation; in
+    quarters where the whirl is neutral on one side, as without damping.
     """
     low, high = low.copy(), high.copy()
     first = low[1] > 0.0
+    met = np.stack([low, high])
     for _ in range(_BISECTIONS):
         active = np.flatnonzero(high[0] - low[0] > _WIDTH * high[0])
         if active.size == 0:
@@ -481,11 +486,17 @@ def _refine(
         width, signs = b - a, at_a * at_b < 0.0
         share = np.full(a.shape, 0.5)
         np.divide(at_a, at_a - at_b, out=share, where=signs)
-        near = np.where(signs, np.maximum(_NEAR, 0.25 * _WIDTH * b / width), 0.25)
-        parts = np.sort(
-            np.clip(np.stack([share - near, share + near, np.full(a.shape, 0.5)]), 0.0, 1.0), axis=0
-        )
-        looks = a + parts * width
+        near = np.where(signs, _NEAR, 0.25)
+        zero, off = _zero(met[:, :, active])
+        better, off = (zero - a) / width, off / width
+        trusted = (np.abs(better - 0.5) < 0.5 + _NEAR) & (off < _TRUSTED)
+        share, near = np.where(trusted, np.clip(better, 0.0, 1.0), share), np.where(trusted, off, near)
+        near = np.where(signs | trusted, np.maximum(near, 0.25 * _WIDTH * b / width), near)
+        # Growth that rounding makes zero ends a little beyond the zero.
+        beyond = np.where(at_a == 0.0, 1.0, -1.0)
+        sides = np.where(trusted & ~signs, [beyond, _ROUNDED * beyond], [[-1.0], [1.0]])
+        parts = np.concatenate([share + sides * near, np.full((1, a.size), 0.5)])
+        looks = a + np.sort(np.clip(parts, 0.0, 1.0), axis=0) * width
         found = growth_at(rotor, rows, np.tile(row[active], 3), looks.ravel(), friction)[0].reshape(3, -1)
         # The ends and the looks in order; the edge is before the first that is unlike the lower end.
         points = np.concatenate([a[None], looks, b[None]])
@@ -494,4 +505,31 @@ def _refine(
         at = np.arange(active.size)
         low[:, active] = points[beyond - 1, at], rates[beyond - 1, at]
         high[:, active] = points[beyond, at], rates[beyond, at]
+        fresh = np.full((3, *low.shape), np.nan)
+        fresh[:, 0, active], fresh[:, 1, active] = looks, found
+        met = np.concatenate([met, fresh])
     return np.asarray(0.5 * (low[0] + high[0]))
+
+
+def _zero(met: Array) -> tuple[Array, Array]:
+    """Speed of no growth by interpolation through points (speed, growth), (m, 2, k); how far it may be off.
+
+    The speed is a polynomial of the growth through the three and four of least growth, without those that
+    rounding made zero; nan where all have one sign.
+    """
+    size = np.where(met[:, 1] == 0.0, np.nan, np.abs(met[:, 1]))
+    order = np.argsort(size, axis=0, kind="stable")[:4]  # nan last
+    speed, growth = (np.take_along_axis(part, order, axis=0) for part in (met[:, 0], met[:, 1]))
+    growth = np.where(
+        (growth > 0.0).any(axis=0) & (growth < 0.0).any(axis=0) & (growth != 0.0), growth, np.nan
+    )
+    found = []
+    for count in (3, 4):
+        total = np.zeros(speed.shape[1]) if count <= len(speed) else np.full(speed.shape[1], np.nan)
+        for own in range(min(count, len(speed))):
+            others = np.delete(growth[:count], own, axis=0)
+            gap = others - growth[own]
+            ratio = np.divide(others, gap, out=np.full(gap.shape, np.nan), where=gap != 0.0)
+            total += speed[own] * ratio.prod(axis=0)
+        found.append(total)
+    return found[1], np.abs(found[1] - found[0])

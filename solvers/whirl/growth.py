@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -70,15 +70,23 @@ def growth_at(
     growth, whirl_speed = np.full((2, speed.size), np.nan)
     for k in np.unique(row).tolist():
         here = np.flatnonzero(row == k)
-        modes = system_modes(rotor, rows[k], speed[here], friction)
+        modes = system_modes(rotor, rows[k], speed[here], friction, every=False)
         growth[here], whirl_speed[here] = _fastest(modes, speed[here])
     return growth, whirl_speed
 
 
 def system_modes(
-    rotor: Rotor, fills: Sequence[Fill], speed: Array, friction: Waves = NO_FRICTION
+    rotor: Rotor,
+    fills: Sequence[Fill],
+    speed: Array,
+    friction: Waves = NO_FRICTION,
+    near: SystemModes | None = None,
+    every: bool = True,
 ) -> SystemModes:
-    """All whirl modes of any rotor with its fills [theory: whirl, eq. 7]."""
+    """All whirl modes of any rotor with its fills, or those that grow most [theory: whirl, eq. 7].
+
+    `near`: those at speeds next to these, from which an iteration follows them; it looks for no others then.
+    """
     heavy, law = rotor.system(), _waves_of(fills, friction)
     if isinstance(law, CheckedModel):
         found = transfer_modes(heavy, fills, speed, law)
@@ -90,12 +98,13 @@ def system_modes(
             heavy = replace(heavy, mass=heavy.mass + fill.mass * at.T @ at)
     if any(fill.uneven for fill in fills):
         cut = [(fill.chamber.plane, section_layer(fill, law)) for fill in fills]
-        return standing_modes(heavy, [(plane, layer) for plane, layer in cut if layer is not None], speed)
+        parted = [(plane, layer) for plane, layer in cut if layer is not None]
+        return standing_modes(heavy, parted, speed, near)
     rings = [(fill.chamber.plane, plane_layer(fill, law)) for fill in fills]
     layers = [(plane, layer) for plane, layer in rings if layer is not None]
     _require_few(len(layers))
     if any(layer.stokes > 0.0 for _, layer in layers):
-        return laminar_modes(heavy, layers, speed)
+        return laminar_modes(heavy, layers, speed, near, every)
     return linear_modes(coupled_matrices(heavy, layers, speed), circles_of(heavy, layers))
 
 
@@ -142,12 +151,18 @@ def machines_growth(
 
 
 def _planar_parts(
-    machines: Sequence[PlanarMachine], frictions: Sequence[Waves], owner: Index, speed: Array
+    machines: Sequence[PlanarMachine],
+    frictions: Sequence[Waves],
+    owner: Index,
+    speed: Array,
+    near: Sequence[SystemModes | Modes] = (),
 ) -> Iterator[tuple[Index, SystemModes | Modes]]:
     """Points of planar machines with as many modes each, and those modes; arguments of `machines_growth`.
 
-    In the frame of the drum where baffles stand in the liquid [theory: sections, eq. 3].
+    In the frame of the drum where baffles stand in the liquid [theory: sections, eq. 3]. `near`: what came at
+    speeds next to these, as of `system_modes`.
     """
+    known = iter(near)
     laws = [_waves_of(fills, law) for (_, fills), law in zip(machines, frictions, strict=True)]
     apart = np.zeros(len(machines), dtype=bool)
     tables: list[tuple[float, list[Layer]]] = []
@@ -157,12 +172,15 @@ def _planar_parts(
         if isinstance(law, CheckedModel):
             tables.append((rotor.mass, []))
             if here.size:
+                next(known, None)
                 yield here, transfer_modes(rotor, fills, speed[here], law)
             continue
         tables.append(planar_layers(rotor.mass, fills, law))
         if here.size:
             solid, parted = section_layers(fills, law)
-            yield here, drum_modes(replace(rotor, mass=rotor.mass + solid), parted, speed[here])
+            close = next(known, None)
+            assert not isinstance(close, Modes)
+            yield here, drum_modes(replace(rotor, mass=rotor.mass + solid), parted, speed[here], close)
     support = np.array([(rotor.stiffness, rotor.damping) for rotor, _ in machines]).reshape(-1, 2)
     # The number of modes depends on that of the layers and on whether their drag depends on the mode.
     kinds = [(len(layers), any(layer.stokes > 0.0 for layer in layers)) for _, layers in tables]
@@ -184,37 +202,59 @@ def _planar_parts(
         yield here, planar_modes(PlanarProblem(mass, stiffness, damping, speed[here], *columns))
 
 
+Parts = list[tuple[Index, SystemModes | Modes]]
+
+
 def modes_at(
-    rotor: Rotor, rows: Sequence[Sequence[Fill]], row: Index, speed: Array, friction: Waves
-) -> tuple[Complex, Array, Array]:
-    """Modes of small whirls at points (row, speed), their rounding, and the largest growth rate.
+    rotor: Rotor, rows: Sequence[Sequence[Fill]], row: Index, speed: Array, friction: Waves, beside: float
+) -> tuple[tuple[Complex, Array], tuple[Complex, Array], Array]:
+    """Modes of small whirls and their rounding at points (row, speed) and next to them; largest growth rates.
 
     growth + i frequency, 1/s, each mode once, in a frame in which coupled modes meet where they are alike; 0
-    for a growth that is rounding, nan where a point has fewer modes, shape (n, m).
+    for a growth that is rounding, nan where a point has fewer modes, shape (n, m). Next to them: at speeds
+    larger by the share `beside`, without a proof that no mode is missing.
     """
-    parts: Iterable[tuple[Index, SystemModes | Modes]]
-    if isinstance(rotor, Jeffcott):
-        parts = _planar_parts([(rotor, fills) for fills in rows], [friction] * len(rows), row, speed)
-    else:
-        own = ((np.flatnonzero(row == k), rows[k]) for k in np.unique(row).tolist())
-        parts = ((here, system_modes(rotor, fills, speed[here], friction)) for here, fills in own)
-    growth, seen = np.full(speed.size, np.nan), []
-    for here, found in parts:
+
+    def parts(spin: Array, near: Parts) -> Parts:
+        close = [found for _, found in near]
+        if isinstance(rotor, Jeffcott):
+            machines = [(rotor, fills) for fills in rows]
+            return list(_planar_parts(machines, [friction] * len(rows), row, spin, close))
+        own = [(np.flatnonzero(row == k), rows[k]) for k in np.unique(row).tolist()]
+        known = [modes if isinstance(modes, SystemModes) else None for modes in close] or [None] * len(own)
+        return [
+            (here, system_modes(rotor, fills, spin[here], friction, modes))
+            for (here, fills), modes in zip(own, known, strict=True)
+        ]
+
+    first = parts(speed, [])
+    growth = np.full(speed.size, np.nan)
+    for here, found in first:
         if isinstance(found, SystemModes):
             growth[here] = _fastest(found, speed[here])[0]
-            known = found.found & (found.root.imag >= 0.0)
-            root, rounding = np.where(known, found.root, complex(np.nan, np.nan)), found.rounding
         else:
             most = dominant(found.slip + speed[here], found.rounding, speed[here])[0]
             growth[here] = np.where(found.converged, most, np.nan)
+    second = parts(speed * (1.0 + beside), first)
+    return _table(first, speed.size), _table(second, speed.size), growth
+
+
+def _table(parts: Parts, size: int) -> tuple[Complex, Array]:
+    """Modes of `modes_at` and their rounding from those of its parts."""
+    seen = []
+    for here, found in parts:
+        if isinstance(found, SystemModes):
+            known = found.found & (found.root.imag >= 0.0)
+            root, rounding = np.where(known, found.root, complex(np.nan, np.nan)), found.rounding
+        else:
             root, rounding = (1j * found.slip).T, found.rounding.T
         seen.append((here, np.where(np.abs(root.real) <= rounding, 1j * root.imag, root), rounding))
     width = max((part.shape[1] for _, part, _ in seen), default=0)
-    roots = np.full((speed.size, width), complex(np.nan, np.nan))
-    noise = np.full((speed.size, width), np.nan)
+    roots = np.full((size, width), complex(np.nan, np.nan))
+    noise = np.full((size, width), np.nan)
     for here, part, unsure in seen:
         roots[here, : part.shape[1]], noise[here, : part.shape[1]] = part, unsure
-    return roots, noise, growth
+    return roots, noise
 
 
 def _waves_of(fills: Sequence[Fill], waves: Waves) -> Waves:

@@ -13,7 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from fluid.whirl import Layer, plate_terms, steady_rate, stokes_rate
-from meshes.arrays import Array, Complex, Index
+from meshes.arrays import Array, Complex, Flags, Index
 from solvers.rotor.system import RotorSystem
 from solvers.whirl.count import Characteristic, Region, missed_modes
 from solvers.whirl.sheets import standing_roots
@@ -27,11 +27,13 @@ from solvers.whirl.system import (
 )
 
 Placed = tuple[float, Layer]
+Groups = Sequence[tuple[list[int], int]]  # equal layers, and in how many ways they move with the rotor
 
 _EPS = float(np.finfo(float).eps)
 _BLOCK = 128  # speeds whose arrays fit the processor's cache
 _APART = 1.05  # of two speeds: from the modes at one those at the other are found
 _FEW = 32
+_LESS = 0.03  # of the spin: modes that grow by so much less are not followed where the most growing serve
 _SWEEPS = 60
 _OWN = 8  # steps to the waves with floor and lid at their own frequencies
 _WAVE = 1e-9  # relative: a step after which such a wave is exact
@@ -40,6 +42,7 @@ _STEP = 1e-13  # relative, at which a root counts as found
 _GONE = -1e300  # lambda of what has no wave, 1/s
 _LEAST = 1e-7  # relative, which noise of the determinant may hide
 _BESIDE = (1e-7, 1e-5, 1e-3)  # of the spin: how far left of the mode that grows most the others are counted
+_ASIDE = 1e-4  # of the spin: how far left of that what is no mode starts at least
 _MOST = 40  # coordinates of a rotor with its layers, for which all modes are computed where some were missed
 # Complex displacements along and against the spin from the two real ones, and back.
 _CIRCLES = np.array([[1.0, 1.0j], [1.0, -1.0j]], dtype=complex)
@@ -90,12 +93,19 @@ class _Circles:
     parts: Complex
 
 
-def laminar_modes(system: RotorSystem, layers: Sequence[Placed], speed: Array) -> SystemModes:
+def laminar_modes(
+    system: RotorSystem,
+    layers: Sequence[Placed],
+    speed: Array,
+    near: SystemModes | None = None,
+    every: bool = True,
+) -> SystemModes:
     """Modes with laminar friction, whose drag depends on the mode [theory: whirl, eq. 12-14].
 
     From the rotor with liquid at rest and the waves of each layer on a drum at rest; waves of equal layers
     against one another do not move the rotor. All at once where the argument principle says that a mode which
-    grows more was missed.
+    grows more was missed. `near`: modes at speeds next to these, from which they are followed; others are not
+    looked for then. Without `every` only those that grow most are found at some of the speeds.
     """
     groups = _groups(system, layers)
     weights = np.ones(len(layers))
@@ -103,19 +113,22 @@ def laminar_modes(system: RotorSystem, layers: Sequence[Placed], speed: Array) -
         weights[members] = rank / len(members)
     degree = 2 * len(system.coordinates) + 4 * sum(rank for _, rank in groups)
     problem = _Problem(system, layers, weights, degree)
+    waves = [
+        _layer_waves(problem.layers[members[0]][1], speed) for members, rank in groups if rank < len(members)
+    ]
+    if near is not None:
+        own = near.root.shape[1] - sum(wave.shape[1] for wave in waves)
+        start = np.where(near.found, near.root, complex(np.nan, np.nan))[:, :own]
+        return _with_waves(_aberth(problem, start, speed), waves, speed)
     apart, of = _anchors(speed)
     modes = _in_blocks(problem, groups, speed[apart])
     beside = np.setdiff1d(np.arange(speed.size), apart)
     if beside.size:
         # Modes hardly differ from those at a speed close by: from there few sweeps lead to them.
-        near = np.where(modes.found & modes.complete[:, None], modes.root, complex(np.nan, np.nan))
-        more = _in_blocks(problem, groups, speed[beside], near[of[beside]])
+        more = _in_blocks(problem, groups, speed[beside], modes.at(of[beside]), every)
         width = max(modes.root.shape[1], more.root.shape[1])
         whole = joined([part.widened(width, _GONE) for part in (modes, more)])
         modes = whole.at(np.argsort(np.concatenate([apart, beside])))
-    waves = [
-        _layer_waves(problem.layers[members[0]][1], speed) for members, rank in groups if rank < len(members)
-    ]
     return _with_waves(modes, waves, speed)
 
 
@@ -137,40 +150,71 @@ def _anchors(speed: Array) -> tuple[Index, Index]:
 
 
 def _in_blocks(
-    problem: _Problem, groups: Sequence[tuple[list[int], int]], speed: Array, near: Complex | None = None
+    problem: _Problem,
+    groups: Groups,
+    speed: Array,
+    near: SystemModes | None = None,
+    every: bool = True,
 ) -> SystemModes:
-    """Modes at speeds, some at a time; `near` as of `_certain`."""
-    cuts = [slice(first, first + _BLOCK) for first in range(0, speed.size, _BLOCK)]
-    parts = [_certain(problem, groups, speed[cut], None if near is None else near[cut]) for cut in cuts]
+    """Modes at speeds, some at a time; `near` and `every` as of `_certain`."""
+    cuts = [np.arange(first, min(first + _BLOCK, speed.size)) for first in range(0, speed.size, _BLOCK)]
+    parts = [
+        _certain(problem, groups, speed[cut], None if near is None else near.at(cut), every) for cut in cuts
+    ]
     width = max((part.root.shape[1] for part in parts), default=0)
     return joined([part.widened(width, _GONE) for part in parts])
 
 
 def _certain(
-    problem: _Problem, groups: Sequence[tuple[list[int], int]], speed: Array, near: Complex | None = None
+    problem: _Problem,
+    groups: Groups,
+    speed: Array,
+    near: SystemModes | None = None,
+    every: bool = True,
 ) -> SystemModes:
     """Modes of a block of speeds; where some were missed, from all of them at once.
 
-    `near`: those at speeds close by, nan where they are not known.
+    `near`: those at speeds close by. Without `every` those of them are followed that grow most, up to where
+    one is missed.
     """
-    start = _starts(problem, groups, speed)
-    if near is not None and near.shape[1] == start.shape[1]:
-        known = (np.isfinite(near) | np.isnan(start)).all(axis=1)
-        start[known] = near[known]
-    # Of the rotor alone, and where the drag of a layer, stokes lambda^1.5, equals lambda^2.
-    fastest = np.nanmax(np.abs(start), axis=1)
-    fastest = np.maximum(fastest, max(layer.stokes for _, layer in problem.layers) ** 2)
-    modes = _counted(problem, _aberth(problem, start, speed), speed, fastest)
+    whole = np.zeros(speed.size, dtype=bool)
+    if near is not None:
+        whole = near.complete & (near.found | (near.root == _GONE)).all(axis=1)
+    known, unknown = np.flatnonzero(whole), np.flatnonzero(~whole)
+    parts = []
+    if unknown.size:
+        parts.append(_all_counted(problem, _starts(problem, groups, speed[unknown]), speed[unknown]))
+    if near is not None and known.size:
+        close, spin = near.at(known), speed[known]
+        start = np.where(close.found, close.root, complex(np.nan, np.nan))
+        if every:
+            parts.append(_all_counted(problem, start, spin))
+        else:
+            most = np.nanmax(start.real, axis=1) - _LESS * spin
+            followed = (start.real >= most[:, None]) & (start.imag >= 0.0)
+            modes = _counted(problem, _aberth(problem, start, spin, followed), spin, start)
+            missed = np.flatnonzero(~modes.complete)
+            if missed.size:
+                modes = modes.replaced(missed, _all_counted(problem, start[missed], spin[missed]), _GONE)
+            parts.append(modes)
+    width = max((part.root.shape[1] for part in parts), default=0)
+    modes = joined([part.widened(width, _GONE) for part in parts])
+    return modes.at(np.argsort(np.concatenate([unknown, known])))
+
+
+def _all_counted(problem: _Problem, start: Complex, speed: Array) -> SystemModes:
+    """Modes from starting values; where some were missed, from all of them at once."""
+    modes = _counted(problem, _aberth(problem, start, speed), speed, start)
     missed = np.flatnonzero(~modes.complete)
     size = len(problem.system.coordinates) + 2 * len(problem.layers)
     if missed.size and size <= _MOST:
         again = all_modes(problem.system, problem.layers, speed[missed])
-        others = _counted(problem, _aberth(problem, again, speed[missed]), speed[missed], fastest[missed])
+        others = _counted(problem, _aberth(problem, again, speed[missed]), speed[missed], start[missed])
         modes = modes.replaced(missed, others, _GONE)
     return modes
 
 
-def _starts(problem: _Problem, groups: Sequence[tuple[list[int], int]], speed: Array) -> Complex:
+def _starts(problem: _Problem, groups: Groups, speed: Array) -> Complex:
     """Rotor with its liquid at rest and the waves of each layer on a drum at rest, shape (n, m).
 
     Moved, each by its own step, so that no two start alike or on a pole.
@@ -190,8 +234,11 @@ def _starts(problem: _Problem, groups: Sequence[tuple[list[int], int]], speed: A
     return np.concatenate(started, axis=1)
 
 
-def _counted(problem: _Problem, modes: SystemModes, speed: Array, fastest: Array) -> SystemModes:
+def _counted(problem: _Problem, modes: SystemModes, speed: Array, start: Complex) -> SystemModes:
     """The modes, complete where no other grows more than the one of those found that grows most."""
+    # Of what they started from, and where the drag of a layer, stokes lambda^1.5, equals lambda^2.
+    drag = max(layer.stokes for _, layer in problem.layers) ** 2
+    fastest = np.maximum(np.nanmax(np.abs(start), axis=1), drag)
 
     def determinant(own: Index) -> Characteristic:
         def at(points: Complex, owner: Index) -> Complex:
@@ -201,7 +248,6 @@ def _counted(problem: _Problem, modes: SystemModes, speed: Array, fastest: Array
 
         return at
 
-    known = np.where(modes.found, modes.root, complex(np.nan, np.nan))
     rate = np.where(modes.found, modes.root.real, -np.inf)
     best, complete = rate.max(axis=1, initial=-np.inf), np.zeros(speed.shape, dtype=bool)
     unsure = np.flatnonzero(np.isfinite(best))
@@ -209,7 +255,11 @@ def _counted(problem: _Problem, modes: SystemModes, speed: Array, fastest: Array
     for beside in _BESIDE:
         spin = speed[unsure]
         region = Region(best[unsure] - beside * spin, np.outer(spin, _CUTS), spin, fastest[unsure])
-        count = missed_modes(determinant(unsure), problem.degree, known[unsure], region)
+        # What is near a mode only makes smooth what is followed: left of the line it wins or loses none.
+        root, found = modes.root[unsure], modes.found[unsure]
+        left = (root.real < (region.line - _ASIDE * spin)[:, None]) & (root.imag >= 0.0) & (root != _GONE)
+        known, rough = (np.where(own, root, complex(np.nan, np.nan)) for own in (found, left & ~found))
+        count = missed_modes(determinant(unsure), problem.degree, known, region, rough)
         complete[unsure] = count == 0.0
         unsure = unsure[np.isnan(count)]
         if unsure.size == 0:
@@ -278,15 +328,16 @@ def _layer_waves(layer: Layer, speed: Array) -> Complex:
     return waves
 
 
-def _aberth(problem: _Problem, start: Complex, speed: Array) -> SystemModes:
+def _aberth(problem: _Problem, start: Complex, speed: Array, followed: Flags | None = None) -> SystemModes:
     """Zeros of the determinant from starting values; nan starts stay nan.
 
-    Converged ones are left out of further sweeps, but the others keep away from them.
+    Converged ones are left out of further sweeps, but the others keep away from them. Where some are followed
+    those above the real axis take one step, and only they go on.
     """
     absent = np.isnan(start)
     root = np.where(absent, 0.0, start)
     step, last = np.full(root.shape, np.inf), np.zeros(root.shape)
-    row, column = np.nonzero(~absent)
+    row, column = np.nonzero(~absent if followed is None else ~absent & (root.imag >= 0.0))
     for _ in range(_SWEEPS):
         if row.size == 0:
             break
@@ -302,6 +353,7 @@ def _aberth(problem: _Problem, start: Complex, speed: Array) -> SystemModes:
         root[row, column] = own - moved
         last[row, column], step[row, column] = step[row, column], np.abs(moved)
         on = np.abs(moved) > _STEP * (np.abs(root[row, column]) + speed[row])
+        on &= True if followed is None else followed[row, column]
         row, column = row[on], column[on]
     scale = np.abs(root) + speed[:, None]
     found = (step <= _LEAST * scale) & ~absent

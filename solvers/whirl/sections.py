@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
-from functools import partial
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -110,10 +110,12 @@ def _mixed(weights: Complex, parts: Complex) -> Complex:
     return np.asarray((weights.T @ parts.reshape(len(parts), -1)).reshape(-1, size, size))
 
 
-def drum_modes(rotor: Jeffcott, layers: Sequence[SectionLayer], speed: Array) -> SystemModes:
+def drum_modes(
+    rotor: Jeffcott, layers: Sequence[SectionLayer], speed: Array, near: SystemModes | None = None
+) -> SystemModes:
     """Whirl modes in the drum's frame: all without laminar friction, with it those that grow most.
 
-    `sense`: the way they go round as seen from the drum.
+    `sense`: the way they go round as seen from the drum. `near`: as of `most_growing`.
     """
     system = drum_matrices(rotor, layers, speed)
     circles = _circles(layers)
@@ -122,7 +124,6 @@ def drum_modes(rotor: Jeffcott, layers: Sequence[SectionLayer], speed: Array) ->
     walls, plates = system.laminar[0], system.damping + _of_plates(system.laminar, speed)
     plain = CoupledMatrices(system.mass, plates, system.stiffness)
     slowly = replace(plain, damping=plates + np.sqrt(0.5 * _SLOW * speed)[:, None, None] * walls)
-    started = roots(slowly)
     mass, laminar, every_damping, stiffness = (
         part.astype(complex) for part in (system.mass, system.laminar, system.damping, system.stiffness)
     )
@@ -142,12 +143,9 @@ def drum_modes(rotor: Jeffcott, layers: Sequence[SectionLayer], speed: Array) ->
     def every(owner: Index) -> Complex:
         return drum_roots(plain.at(owner), walls, speed[owner])
 
-    fastest = _fastest(started, system.mass, system.laminar)
-    slip, tips = np.abs(started.imag), np.outer(speed, [0.0, 2.0])
-    return most_growing(
-        MostGrowing(started, slowly, slip, circles, matrix, slope, log_determinant, every, tips, fastest),
-        speed,
-    )
+    drag = _drag(system.mass, system.laminar)
+    search = MostGrowing(speed, 0.0, slowly, drag, circles, matrix, slope, log_determinant, every)
+    return most_growing(search, near)
 
 
 def _of_plates(laminar: Array, speed: Array) -> Array:
@@ -169,10 +167,10 @@ def roots(matrices: CoupledMatrices) -> Complex:
 class MostGrowing:
     """What the search for the modes that grow most starts from."""
 
-    #: lambda with friction at the frequency of slow waves, `_SLOW` of the spin, shape (n, m)
-    started: Complex
-    slowly: CoupledMatrices  #: with that friction
-    slip: Array  #: frequency of each over the drum, rad/s, 0 or above, shape (n, m)
+    speed: Array  #: rad/s, shape (n,)
+    turn: float  #: of the drum in the frame, over the spin: 0 in its own, 1 in the standing one
+    slowly: CoupledMatrices  #: with friction at the frequency of slow waves, `_SLOW` of the spin
+    drag: float  #: of the wall layers over the inertia, s^(-1/2)
     circles: Array  #: displacements that tell the sense of a whirl, in pairs across the axis, shape (2 c, N)
     #: T(lambda), and its derivative, shape (k, N, N), at points, (k,), of the speeds they belong to, (k,)
     matrix: Callable[[Complex, Index], Complex]
@@ -180,25 +178,45 @@ class MostGrowing:
     log_determinant: Callable[[Complex, Index], Complex]  #: log det T, but for turns of its phase, shape (k,)
     #: all lambda at some of the speeds, nan in place of some, shape (k, m) from (k,)
     every: Callable[[Index], Complex]
-    tips: Array  #: imaginary parts of the ends of the cuts of T, rad/s, shape (n, 2)
-    fastest: Array  #: rate beyond which the masses alone count, 1/s, shape (n,)
+
+    @cached_property
+    def started(self) -> Complex:
+        """lambda with that friction, shape (n, m)."""
+        return roots(self.slowly)
+
+    @cached_property
+    def fastest(self) -> Array:
+        """Rate beyond which the masses alone count, 1/s, shape (n,)."""
+        return np.asarray(np.maximum(np.abs(self.started).max(axis=1), self.drag**2))
 
 
-def most_growing(search: MostGrowing, speed: Array) -> SystemModes:
-    """The modes that grow most, each with laminar friction of its own frequency [theory: sections, eq. 6]."""
+def most_growing(search: MostGrowing, near: SystemModes | None = None) -> SystemModes:
+    """The modes that grow most, each with laminar friction of its own frequency [theory: sections, eq. 6].
+
+    `near`: those at speeds next to these, from which they are followed; others are not looked for then.
+    """
+    speed = search.speed
+    if near is not None:
+        row, column = np.nonzero(near.found)
+        start = near.root[row, column]
+        follow = _followed(search, start, row, _shapes(search.matrix(start * (1.0 + _BESIDE), row)))
+        root, found = near.root.copy(), near.found.copy()
+        root[row, column], found[row, column] = follow[0], follow[2]
+        return replace(near, root=root, found=found)
     root = search.started
-    # Fast modes have more friction than that of slow waves, in proportion to the root of their frequency.
-    more = np.sqrt(np.maximum(search.slip / (_SLOW * speed[:, None]), 1.0))
+    # Fast modes have more friction than that of slow waves, in proportion to the root of their frequency. Of
+    # the two circles of a mode the one with the spin slips less.
+    slip = np.abs(np.abs(root.imag) - search.turn * speed[:, None])
+    more = np.sqrt(np.maximum(slip / (_SLOW * speed[:, None]), 1.0))
     rate = np.where(root.real < 0.0, root.real * more, root.real)
     oscillating = np.where(root.imag > 1e-9 * speed[:, None], rate, -np.inf)
-    most = np.argsort(-oscillating, axis=1)[:, :_FOLLOWED]
-    everywhere = np.arange(speed.size)
-    modes = _told(search, _split(root, most), everywhere, speed)
+    order = np.argsort(-oscillating, axis=1)
+    modes = _told(search, _split(root, order[:, :_FOLLOWED]), np.arange(speed.size))
     missed = np.flatnonzero(~modes.complete)
     if missed.size:
-        modes = modes.replaced(
-            missed, _told(search, _split(root[missed], most[missed]), missed, speed, True), _GONE
-        )
+        # What the liquid hardly damps seemed to decay more than it does.
+        starts = _split(root[missed], order[missed, : 2 * _FOLLOWED])
+        modes = modes.replaced(missed, _told(search, starts, missed), _GONE)
         missed = np.flatnonzero(~modes.complete)
     if missed.size == 0:
         return modes
@@ -207,7 +225,7 @@ def most_growing(search: MostGrowing, speed: Array) -> SystemModes:
     most = np.argsort(-rate, axis=1)[:, : 2 * _FOLLOWED]
     start, others = _split(again, most)
     start = np.where(np.isfinite(start), start, complex(-1.0, 1.0) * speed[missed][:, None])
-    return modes.replaced(missed, _told(search, (start, others), missed, speed), _GONE)
+    return modes.replaced(missed, _told(search, (start, others), missed), _GONE)
 
 
 def _split(root: Complex, which: Index) -> tuple[Complex, Complex]:
@@ -217,22 +235,25 @@ def _split(root: Complex, which: Index) -> tuple[Complex, Complex]:
     return np.take_along_axis(root, which, axis=1), others
 
 
-def _told(
-    search: MostGrowing, starts: tuple[Complex, Complex], at: Index, speed: Array, own: bool = False
-) -> SystemModes:
+def _told(search: MostGrowing, starts: tuple[Complex, Complex], at: Index) -> SystemModes:
     """Modes followed from starting values at some speeds, complete where no other grows more.
 
-    Two that are almost alike part if they start from their own shapes. The other starting values only make
+    Each from its own shape, by which two that are almost alike part. The other starting values only make
     smooth what is followed: a factor whose own zero is left of the line wins or loses no zero.
     """
     start, others = starts
-    plain = np.tile(_any_shape(len(search.circles.T)), (start.size, 1))
-    root, shape, found = _followed(search, start, at, _shapes(search, start, at) if own else plain)
+    first, owner = start.astype(complex).ravel(), np.repeat(at, start.shape[1])
+    lam, slowly = (first * (1.0 + _BESIDE))[:, None, None], search.slowly.at(owner)
+    plain = lam * (lam * slowly.mass + slowly.damping) + slowly.stiffness
+    last, shapes, settled = _followed(search, first, owner, _shapes(plain))
+    root, found = last.reshape(start.shape), settled.reshape(start.shape)
+    shape = shapes.reshape(*start.shape, -1)
     along, against = _sizes(search.circles, shape)
-    spin = speed[at]
+    spin = search.speed[at]
     rate = np.where(found, root.real, -np.inf).max(axis=1)
     told = np.isfinite(rate)
-    region = Region(np.where(told, rate, 0.0) - _SHARE * spin, search.tips[at], spin, search.fastest[at])
+    tips = np.outer(spin, [search.turn, search.turn + 2.0])
+    region = Region(np.where(told, rate, 0.0) - _SHARE * spin, tips, spin, search.fastest[at])
 
     def determinant(points: Complex, owner: Index) -> Complex:
         found = np.empty(points.shape, dtype=complex)
@@ -245,31 +266,27 @@ def _told(
     twice = np.tril(np.abs(root[:, :, None] - root[:, None, :]) <= _SAME * spin[:, None, None], -1)
     kept = found & ~(twice & found[:, None, :]).any(axis=2)
     left = others.real < (region.line - _ASIDE * spin)[:, None]
-    known = np.where(np.hstack([kept, left]), np.hstack([root, others]), complex(np.nan, np.nan))
-    count = missed_modes(determinant, 2 * len(search.circles.T), known, region)
+    known, rough = (
+        np.where(kept, root, complex(np.nan, np.nan)),
+        np.where(left, others, complex(np.nan, np.nan)),
+    )
+    count = missed_modes(determinant, 2 * len(search.circles.T), known, region, rough)
     scale = np.abs(root) + spin[:, None]
     sense = np.where(along >= against, 1.0, -1.0)
     return SystemModes(root, sense, _RESOLVED * scale, found, told & (count == 0.0))
 
 
-def _any_shape(size: int) -> Complex:
-    """A shape that has something of every mode, shape (N,)."""
-    return np.asarray(1.0 + 0.1j * np.arange(size))
-
-
-def _shapes(search: MostGrowing, start: Complex, at: Index) -> Complex:
-    """Shapes of modes with friction at the frequency of slow waves, by which alike modes part, (n f, N)."""
-    root, owner = start.ravel() * (1.0 + _BESIDE), np.repeat(at, start.shape[1])
-    here, lam = search.slowly.at(owner), root[:, None, None]
-    plain = _any_shape(len(here.mass))[:, None]
-    shape = np.linalg.solve(lam * (lam * here.mass + here.damping) + here.stiffness, plain)[..., 0]
+def _shapes(matrix: Complex) -> Complex:
+    """Shapes of modes by matrices next to their zeros, shape (k, N): one step of inverse iteration."""
+    size = matrix.shape[-1]
+    anything = 1.0 + 0.1j * np.arange(size)  # has something of every mode
+    shape = np.linalg.solve(matrix, np.broadcast_to(anything[:, None], (len(matrix), size, 1)))[..., 0]
     return np.asarray(shape / np.abs(shape).max(axis=1, keepdims=True))
 
 
-def _fastest(started: Complex, mass: Array, laminar: Array) -> Array:
-    """Rate of the fastest mode, and where the drag equals the inertia, 1/s, shape (n,)."""
-    drag = float(np.abs(np.linalg.eigvals(np.linalg.solve(mass, laminar[0] + laminar[1]))).max())
-    return np.asarray(np.maximum(np.abs(started).max(axis=1), drag**2))
+def _drag(mass: Array, laminar: Array) -> float:
+    """Largest drag of wall layers over the inertia: it equals that at the square of this rate."""
+    return float(np.abs(np.linalg.eigvals(np.linalg.solve(mass, laminar[0] + laminar[1]))).max())
 
 
 def _circles(layers: Sequence[SectionLayer]) -> Array:
@@ -287,18 +304,17 @@ def _sizes(circles: Array, shape: Complex) -> tuple[Array, Array]:
 
 
 def _followed(
-    search: MostGrowing, start: Complex, at: Index, shape: Complex
+    search: MostGrowing, root: Complex, owner: Index, shape: Complex
 ) -> tuple[Complex, Complex, Flags]:
-    """Modes (n, f) by Newton's method, each with its own laminar friction, shapes (n, f, N), which converged.
+    """Modes by Newton's method, each with its own laminar friction, shapes (k, N), which converged.
 
-    From starts above the real axis.
+    From starts above the real axis, shape (k,), of the speeds they belong to.
     """
-    root, owner = start.astype(complex).ravel(), np.repeat(at, start.shape[1])
-    found = np.zeros(root.shape, dtype=bool)
+    root, found = root.copy(), np.zeros(root.shape, dtype=bool)
     for first in range(0, root.size, _FEW):
         part = slice(first, first + _FEW)
         root[part], shape[part], found[part] = _by_newton(search, root[part], owner[part], shape[part])
-    return root.reshape(start.shape), shape.reshape(*start.shape, shape.shape[-1]), found.reshape(start.shape)
+    return root, shape, found
 
 
 def _by_newton(
@@ -441,8 +457,13 @@ def standing_matrices(system: RotorSystem, layers: Sequence[Placed], speed: Arra
     return StandingMatrices(mass, damping, stiffness, laminar, quarter, tuple(circles))
 
 
-def standing_modes(system: RotorSystem, layers: Sequence[Placed], speed: Array) -> SystemModes:
-    """Whirl modes in the standing frame: all without laminar friction, with it those that grow most."""
+def standing_modes(
+    system: RotorSystem, layers: Sequence[Placed], speed: Array, near: SystemModes | None = None
+) -> SystemModes:
+    """Whirl modes in the standing frame: all without laminar friction, with it those that grow most.
+
+    `near`: as of `most_growing`.
+    """
     found = standing_matrices(system, layers, speed)
     rows = np.zeros((2 * len(layers), len(found.mass)))
     for k, (plane, _) in enumerate(layers):
@@ -460,9 +481,6 @@ def standing_modes(system: RotorSystem, layers: Sequence[Placed], speed: Array) 
         )
         for drag in (plates, plates + np.sqrt(0.5 * _SLOW * speed)[:, None, None] * found.laminar[0])
     )
-    # Of the two circles of a mode the one with the spin, which slips less.
-    started = roots(slowly)
-    slip = np.abs(np.abs(started.imag) - speed[:, None])
     turned = found.quarter @ found.laminar
     mass, laminar, every_damping, stiffness = (
         part.astype(complex)
@@ -490,11 +508,9 @@ def standing_modes(system: RotorSystem, layers: Sequence[Placed], speed: Array) 
         drags = 0.5 * np.stack([found.laminar[0] - 1j * turned[0], found.laminar[0] + 1j * turned[0]])
         return standing_roots(plain.at(owner), np.asarray(drags, dtype=complex), speed[owner])
 
-    fastest, tips = _fastest(started, found.mass, found.laminar), np.outer(speed, [1.0, 3.0])
-    condensed = partial(standing_determinant, system, found, speed)
-    return most_growing(
-        MostGrowing(started, slowly, slip, circles, matrix, slope, condensed, every, tips, fastest), speed
-    )
+    drag, condensed = _drag(found.mass, found.laminar), partial(standing_determinant, system, found, speed)
+    search = MostGrowing(speed, 1.0, slowly, drag, circles, matrix, slope, condensed, every)
+    return most_growing(search, near)
 
 
 def standing_determinant(

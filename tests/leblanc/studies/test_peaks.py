@@ -16,6 +16,7 @@ from leblanc.core.units import RPM
 from leblanc.liquid.choose import choose_all, liquid_models, prepare
 from leblanc.scene.scene import Scene, load_scene
 from leblanc.scene.tasks import Optimisation
+from leblanc.studies import peaks as search
 from leblanc.studies.optimise.filled import FilledMachine, with_volumes
 from leblanc.studies.optimise.objectives import PeakOver
 from leblanc.studies.optimise.study import optimise_scene
@@ -247,8 +248,6 @@ def stands(own: Scene) -> float:
 
 
 @kills("solvers.synchronous.response:Response.holds", "self.converged & self.in_range", "self.converged")
-@kills("leblanc.studies.peaks:_holding", "np.outer(wide, _EDGE_PARTS)", "0.0 * np.outer(wide, _EDGE_PARTS)")
-@kills("leblanc.studies.peaks:_holding", "not known.holds[k]]", "known.holds[k]]")
 def test_the_largest_amplitude_is_that_of_speeds_at_which_the_answer_holds() -> None:
     """An edge or a lower resonance above the speed of an annular layer, from few speeds as from many.
 
@@ -271,6 +270,18 @@ def test_the_largest_amplitude_is_that_of_speeds_at_which_the_answer_holds() -> 
             assert found[0].peak["speed"] == pytest.approx(edge, rel=1e-8)
         answers = answer_scenes([own.replace({"speeds.count": 12})])
         assert answers.peak_amplitude[0] == pytest.approx(found[0].peak["amplitude"], rel=1e-8)
+
+
+@kills("leblanc.studies.peaks:_holding", "np.outer(wide, _EDGE_PARTS)", "0.0 * np.outer(wide, _EDGE_PARTS)")
+@kills("leblanc.studies.peaks:_holding", "not known.holds[k]]", "known.holds[k]]")
+@kills("leblanc.studies.peaks:_holding", "carried_from * (1.0 + ", "carried_from * (1.1 + ")
+def test_the_edge_is_where_liquid_begins_to_ride(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Closed in on from both sides, and from the speed that holds the layer against gravity alone."""
+    own = lb.example("horizontal_rig").replace(LYING["horizontal_rig"] | {"speeds.count": 12})
+    for name, less in (("captured_speed", lambda _: None), ("_EDGE_PARTS", np.zeros(0))):
+        with monkeypatch.context() as patch:
+            patch.setattr(search, name, less)
+            assert run_scene(own).peak["speed"] == pytest.approx(stands(own), rel=1e-8)
 
 
 @cache

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -19,8 +20,8 @@ from solvers.rotor.system import Rotor
 from solvers.rotor.tub import Mount, Tub
 from solvers.rotor.two_plane import PlaneUnbalance, Support, TwoPlane
 from solvers.whirl import edges as whirl_edges
-from solvers.whirl.edges import _changes, _first_speeds, any_growth, looks, unstable_bands
-from solvers.whirl.growth import asynchronous_growth, planar_layers
+from solvers.whirl.edges import _changes, _first_speeds, _refine, _zero, any_growth, looks, unstable_bands
+from solvers.whirl.growth import asynchronous_growth, modes_at, planar_layers
 from solvers.whirl.system import coupled_matrices, linear_modes
 from tests.mutants import kills
 from tests.oracles.edges import undamped_edges
@@ -253,7 +254,71 @@ def test_modes_side_by_side_keep_their_slopes() -> None:
     np.testing.assert_allclose(_changes(root, beside)[0, :3].imag, [0.0, -change, 0.0], atol=1e-14)
 
 
-@kills("solvers.whirl.edges:_looked", "rounding <= _HIDDEN * spins", "rounding <= np.inf * spins")
+@kills("solvers.whirl.growth:modes_at", "parts(speed * (1.0 + beside), first)", "parts(speed, first)")
+@kills(
+    "solvers.whirl.sections:most_growing",
+    "root[row, column], found[row, column] =",
+    "_, found[row, column] =",
+)
+def test_modes_at_a_second_speed_are_those_found_there() -> None:
+    """Followed from the first speed, by Newton's or Aberth's method, and found with a proof at the second."""
+    beside, speed = 1e-4, np.array([90.0, 140.0, 210.0])
+    cut = replace(HALF, chamber=replace(HALF.chamber, baffles=Baffles(4, 0.95 * HALF.chamber.radius)))
+    planes = TwoPlane(6.0, 0.05, 0.03, (Support(-0.1, 3e4, 10.0), Support(0.1, 4e4, 10.0)), ())
+    twins = [replace(HALF, chamber=replace(HALF.chamber, plane=z)) for z in (-0.05, 0.0, 0.08)]
+    law = Friction(FrictionLaw.STOKES)
+    for rotor, fills in (
+        (planes, [HALF]),
+        (planes, twins),
+        (planes, [cut]),
+        (Jeffcott(6.0, 6e4, 20.0, 0.0), [HALF]),
+        (Jeffcott(6.0, 6e4, 20.0, 0.0), [cut]),
+    ):
+        at = np.zeros(speed.size, dtype=np.intp)
+        _, (followed, _), _ = modes_at(rotor, [fills], at, speed, law, beside)
+        (found, rounding), _, _ = modes_at(rotor, [fills], at, speed * (1.0 + beside), law, beside)
+        gap = np.abs(followed[:, :, None] - found[:, None, :])
+        nearest = np.where(np.isnan(gap), np.inf, gap).min(axis=2)[np.isfinite(followed)]
+        # Both to rounding, of modes that go over the second speed by 1e-4.
+        assert nearest.max() < 1e-9 * speed[-1] + np.nanmax(rounding)
+        assert (np.isfinite(followed).sum(axis=1) == np.isfinite(found).sum(axis=1)).all()
+
+
+@kills("solvers.whirl.edges:_zero", "speed[own] * ratio", "speed[own] / ratio")
+@kills("solvers.whirl.edges:_zero", "met[:, 1] == 0.0, np.nan", "met[:, 1] == 0.0, 0.0")
+@kills("solvers.whirl.edges:_zero", "(growth < 0.0).any", "(growth > 0.0).any")
+def test_the_speed_of_no_growth_by_interpolation() -> None:
+    """Exact where the speed is a cubic of the growth, whatever rounding made zero; not beyond the points."""
+    growth = np.array([-3.0, -0.5, 0.2, 1.0, 2.0])
+    speed = 7.0 + 0.2 * growth + 0.03 * growth**2 - 0.01 * growth**3
+    hidden = np.append(speed, 7.1), np.append(growth, 0.0)
+    found, off = _zero(np.stack(hidden, axis=1)[:, :, None])
+    assert found[0] == pytest.approx(7.0, rel=1e-15)
+    # What the quadratic through the three of least growth leaves, 0.01 times the product of their growths.
+    assert off[0] == pytest.approx(0.01 * 0.5 * 0.2 * 1.0, rel=1e-12)
+    assert np.isnan(_zero(np.stack([speed, np.abs(growth)], axis=1)[:, :, None])[0]).all()
+
+
+@pytest.mark.parametrize("hidden", [0.0, 1e-8])
+def test_an_edge_takes_few_calls(monkeypatch: pytest.MonkeyPatch, hidden: float) -> None:
+    """Six, also where rounding makes growth zero up to a speed beyond the edge; in quarters seventeen."""
+    calls: list[int] = []
+
+    def growth(_: Any, __: Any, ___: Any, speed: np.ndarray, ____: Any) -> tuple[np.ndarray, np.ndarray]:
+        calls.append(speed.size)
+        rate = np.sin(0.3 * (speed - 97.0)) + 0.02 * (speed - 97.0) ** 2
+        return np.where(np.abs(rate) <= hidden, 0.0, rate), speed
+
+    monkeypatch.setattr(whirl_edges, "growth_at", growth)
+    ends = np.array([[95.0], [98.0]])
+    low, high = (np.stack([end, growth(None, [], None, end, None)[0]]) for end in ends)
+    calls.clear()
+    found = _refine(Jeffcott(1.0, 1.0, 0.0, 0.0), [], np.zeros(1, dtype=np.intp), low, high, NO_FRICTION)
+    assert found[0] == pytest.approx(97.0 + hidden / 0.3, rel=1e-10)
+    assert len(calls) <= 6
+
+
+@kills("solvers.whirl.edges:_looked", "rounding <= _HIDDEN * speed", "rounding <= np.inf * speed")
 def test_what_rounding_hides_is_not_followed() -> None:
     """On supports 1e9 times as stiff as the spin asks for, waves of a film are known to no digit."""
     supports = (Support(-0.1, 4e18, 1e4), Support(0.1, 3e18, 1e4))

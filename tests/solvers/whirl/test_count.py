@@ -140,7 +140,50 @@ def test_a_mirrored_machine_grows_alike(kind: str) -> None:
         np.testing.assert_array_less(np.abs(growths[0] - growths[1]), within + 1e-9 * np.abs(growths[0]))
 
 
+@kills("solvers.whirl.count:missed_modes", "pairs, region, beside)", "pairs, region, beside[:, :0])")
+def test_what_is_near_a_mode_does_not_hide_it() -> None:
+    """A mode right of the line beside a rough one left of it is missed all the same."""
+    chance = np.random.default_rng(8)
+    size = 200
+    away = 10.0 ** chance.uniform(-4.0, -1.0, (2, size))
+    height = chance.uniform(0.1, 2.0, size)
+    near = away[0] + 1j * (height + 0.3 * chance.normal(size=size) * away.sum(axis=0))
+    # A well known mode on the line, and one right of it.
+    modes = np.stack([np.full(size, 0.5j), near], axis=1)
+    every, rough = np.hstack([modes, modes.conj()]), (-away[1] + 1j * height)[:, None]
+    unit = np.ones(size)
+    region = Region(-1e-7 * unit, np.zeros((size, 0)), unit, 5.0 * unit)
+    found = missed_modes(polynomial(every), 4, modes[:, :1], region, rough)
+    np.testing.assert_array_equal(found, 2.0)
+
+
 @kills("solvers.whirl.laminar:_certain", "~modes.complete", "~(modes.complete | True)")
+def test_those_that_grow_most_serve_at_many_speeds(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Beside known speeds few modes are followed, and all of them where the count misses one."""
+    followed: list[int] = []
+    aberth = laminar._aberth
+
+    def watched(*given: Any) -> Any:
+        followed.extend(int(flags.sum()) for flags in given[3:])
+        return aberth(*given)
+
+    monkeypatch.setattr(laminar, "_aberth", watched)
+    for kind in ("two_plane", "tub"):
+        scene = scene_from_table(MACHINES[kind])
+        rotor, speed = dry_rotor(scene), np.linspace(40.0, 300.0, 90)
+        # Of few speeds all modes are computed, each from its own start.
+        few = [asynchronous_growth(rotor, scene.fills, part, STOKES)[0] for part in np.split(speed, 3)]
+        followed.clear()
+        for less in (laminar._LESS, 1e-5, -1.0):
+            monkeypatch.setattr(laminar, "_LESS", less)
+            found = asynchronous_growth(rotor, scene.fills, speed, STOKES)[0]
+            np.testing.assert_allclose(found, np.concatenate(few), rtol=1e-9, atol=1e-10)
+        assert 0 < followed[0] < 6 * speed.size and followed[-1] == 0
+        monkeypatch.undo()
+        monkeypatch.setattr(laminar, "_aberth", watched)
+
+
+@kills("solvers.whirl.laminar:_all_counted", "~modes.complete", "~(modes.complete | True)")
 @kills("solvers.whirl.laminar:_counted", "complete[unsure] = count == 0.0", "complete[unsure] = True")
 def test_a_search_that_fails_is_seen_and_repeated(monkeypatch: pytest.MonkeyPatch) -> None:
     """Without the starts of the waves modes are missed; the count says so and all are computed at once."""

@@ -60,8 +60,8 @@ def drum_growth(fill: Fill, friction: Friction, damping_ratio: float = 0.05) -> 
     """Largest growth over the spin in the drum's frame."""
     _, layers = section_layers([fill], friction)
     modes = drum_modes(rotor(damping_ratio), layers, SPIN)
-    assert modes.found.all()
-    return np.asarray(modes.root.real.max(axis=1))
+    assert modes.complete.all()
+    return np.asarray(np.where(modes.found, modes.root.real, -np.inf).max(axis=1))
 
 
 @kills(
