@@ -215,7 +215,7 @@ def modes_at(
     larger by the share `beside`, without a proof that no mode is missing.
     """
 
-    def parts(spin: Array, near: Parts) -> Parts:
+    def parts(row: Index, spin: Array, near: Parts) -> Parts:
         close = [found for _, found in near]
         if isinstance(rotor, Jeffcott):
             machines = [(rotor, fills) for fills in rows]
@@ -227,16 +227,29 @@ def modes_at(
             for (here, fills), modes in zip(own, known, strict=True)
         ]
 
-    first = parts(speed, [])
+    size, next_to = speed.size, speed * (1.0 + beside)
+    if isinstance(rotor, Jeffcott) and not any(fill.uneven for fills in rows for fill in fills):
+        # None are followed from one speed to the other: both together cost hardly more than one.
+        spin = np.append(speed, next_to)
+        every = parts(np.tile(row, 2), spin, [])
+        root, rounding = _table(every, 2 * size)
+        growth = _growths(every, spin)[:size]
+        return (root[:size], rounding[:size]), (root[size:], rounding[size:]), growth
+    first = parts(row, speed, [])
+    second = parts(row, next_to, first)
+    return _table(first, size), _table(second, size), _growths(first, speed)
+
+
+def _growths(parts: Parts, speed: Array) -> Array:
+    """Largest growth rates from the parts of `modes_at`."""
     growth = np.full(speed.size, np.nan)
-    for here, found in first:
+    for here, found in parts:
         if isinstance(found, SystemModes):
             growth[here] = _fastest(found, speed[here])[0]
         else:
             most = dominant(found.slip + speed[here], found.rounding, speed[here])[0]
             growth[here] = np.where(found.converged, most, np.nan)
-    second = parts(speed * (1.0 + beside), first)
-    return _table(first, speed.size), _table(second, speed.size), growth
+    return growth
 
 
 def _table(parts: Parts, size: int) -> tuple[Complex, Array]:

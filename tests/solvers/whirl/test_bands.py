@@ -254,7 +254,7 @@ def test_modes_side_by_side_keep_their_slopes() -> None:
     np.testing.assert_allclose(_changes(root, beside)[0, :3].imag, [0.0, -change, 0.0], atol=1e-14)
 
 
-@kills("solvers.whirl.growth:modes_at", "parts(speed * (1.0 + beside), first)", "parts(speed, first)")
+@kills("solvers.whirl.growth:modes_at", "parts(row, next_to, first)", "parts(row, speed, first)")
 @kills(
     "solvers.whirl.sections:most_growing",
     "root[row, column], found[row, column] =",
