@@ -29,7 +29,7 @@ from leblanc.scene.schema.load import (
     with_lines,
 )
 from leblanc.scene.schema.part import Conflict, Part, allowed_at, faults_of
-from leblanc.scene.schema.paths import Keys, keys_of, rule_at
+from leblanc.scene.schema.paths import ROOTS, Keys, keys_of, rule_at
 from leblanc.scene.schema.rules import (
     Entries,
     Quantity,
@@ -208,7 +208,6 @@ FORMS: dict[str, tuple[str, str]] = {
     ),
 }
 
-COMMANDS = ("run", "runup")
 METHODS = ("grid", "latin_hypercube", "sobol", "random", "saltelli")
 MAX_SAMPLES = 10_000_000
 MAX_VARIED = 1000  # fields
@@ -236,7 +235,7 @@ class Study(Part):
     scene: Annotated[str, PlainValidator(Text(4000))] = Field(
         description="file of the base, its path counts from the study's"
     )
-    command: Annotated[str, one_of(*COMMANDS)] = Field(
+    command: Annotated[str, one_of(*ROOTS)] = Field(
         "run", description="that answers each scene: steady motion over its speeds, or its run-up in time"
     )
     check: Truth = Field(

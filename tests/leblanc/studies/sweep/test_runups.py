@@ -24,6 +24,7 @@ from leblanc.studies.sweep.runups import answer_runups, over_bands
 from leblanc.studies.sweep.store import STORE
 from meshes.arrays import Array
 from meshes.errors import InputError
+from tests.leblanc.studies.test_programme import machine
 from tests.mutants import kills
 from tests.oracles.sweeps import tree
 
@@ -68,6 +69,22 @@ def test_each_sample_is_what_runup_gives(tmp_path: Path) -> None:
         assert alone.time[0] <= float(kept.top_time) <= alone.time[-1]
         # No band has more than the peak, and the one with it has no less.
         assert float(kept.amplitude.max()) == alone.peak["amplitude"]
+
+
+@kills(f"{RUNUPS}:_one", "np.diff(run.time) @ run.limited[1:]", "np.diff(run.time) @ run.limited[:-1]")
+@kills(f"{RUNUPS}:_one", "run.speed >= nearly", "run.speed >= top")
+def test_a_motor_that_cannot_follow_its_programme() -> None:
+    """The time in which it gives less than asked, and that at which it is nearly as fast as it comes."""
+    torques = {"speeds": [0.0, 100.0], "torques": [9.0, 9.0]}
+    scene = machine(motor=torques, steps=["to 60 rad/s in 1 s", "hold 1 s"])
+    found, alone = answer_runups([scene], False), lb.run_up(scene, check=False)
+    assert alone.motor_limited is not None
+    lasts = sum(
+        alone.time[k] - alone.time[k - 1] for k in range(1, alone.time.size) if alone.motor_limited[k]
+    )
+    assert found.limited_time[0] == pytest.approx(lasts, rel=1e-12) and lasts > 0.0
+    near = alone.speed >= alone.speed.max() - 0.01 * (alone.speed.max() - alone.speed[0])
+    assert found.top_time[0] == alone.time[near].min() < alone.time[np.argmax(alone.speed)]
 
 
 def test_an_answer_does_not_depend_on_its_companions() -> None:
@@ -194,7 +211,7 @@ def test_where_the_spin_does_not_come_nothing_is_known() -> None:
 # -- store, report, faults -----------------------------------------------------------------------------------
 
 
-def written(folder: Path, scene: Scene, **given: Any) -> Path:
+def written(folder: Path, scene: Scene) -> Path:
     scene_file, path = folder / "scene.toml", folder / "study.toml"
     scene_file.write_text(scene.to_toml(), encoding="utf-8")
     lines = ['scene = "scene.toml"', 'command = "runup"', "check = false", 'method = "latin_hypercube"']
