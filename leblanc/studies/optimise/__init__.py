@@ -42,7 +42,8 @@ def optimise(
     workers: Annotated[
         int,
         Option(same=True),
-        "Processes for designs of balls, threads for run-ups, where one takes its time [default: all cores].",
+        "Processes for designs of balls and whirls with baffles, threads for run-ups, where one takes its "
+        "time [default: all cores].",
     ] = 1,
     front: Annotated[bool, "Leave out the trade-off (Pareto front)."] = True,
     max_evaluations: Annotated[

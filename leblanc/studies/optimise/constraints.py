@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
+from itertools import repeat
 
 import numpy as np
 
@@ -88,23 +90,29 @@ def whirl_friction(scene: Scene) -> Friction:
     return Friction(FrictionLaw.STOKES) if friction.law is FrictionLaw.NONE else friction
 
 
-def growth(scene: Scene, volumes: Array, speed: Array) -> Array:
+def growth(scene: Scene, volumes: Array, speed: Array, pool: ProcessPoolExecutor | None = None) -> Array:
     """Growth of the fastest-growing small whirl at any of some speeds [theory: optimum, eq. 5].
 
-    1/s, below 0 where every whirl decays, nan where the whirls were not found, shape (m,).
+    1/s, below 0 where every whirl decays, nan where the whirls were not found, shape (m,). A pool takes one
+    set of volumes at a time.
     """
+    if pool is not None and volumes.shape[0] > 1:
+        parts = pool.map(growth, repeat(scene), volumes[:, None], repeat(speed))
+        return np.concatenate(list(parts))
     rows = [with_volumes(scene, row).fills for row in volumes]
     rotor, friction = dry_rotor(scene), whirl_friction(scene)
     return np.asarray(growth_map(rotor, rows, speed, friction)[0].max(axis=1))
 
 
-def stability(scene: Scene, speed: Array, margin: float, where: str) -> Constraint:
+def stability(
+    scene: Scene, speed: Array, margin: float, where: str, pool: ProcessPoolExecutor | None = None
+) -> Constraint:
     """Every small whirl decays at some speeds, rad/s, at least at the rate of a margin, 1/s."""
     # A growth of a thousandth of the spin speed is a good measure where no margin is asked for.
     scale = max(margin, 1e-3 * float(speed.max()))
     text = f"largest growth of a small whirl {where}"
     return Constraint(
-        "stability", text, "1/s", 0.0 - margin, scale, lambda volumes: growth(scene, volumes, speed)
+        "stability", text, "1/s", 0.0 - margin, scale, lambda volumes: growth(scene, volumes, speed, pool)
     )
 
 

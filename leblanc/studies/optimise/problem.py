@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -129,8 +130,9 @@ def problem_of(
     machine: FilledMachine,
     solve: Callable[[Problem], Found],
     threads: int = 1,
+    pool: ProcessPoolExecutor | None = None,
 ) -> Problem:
-    """The problem that a scene poses; run-ups go on so many threads."""
+    """The problem that a scene poses; run-ups go on so many threads, whirls through a pool."""
     if task.objective not in _MAKERS:
         raise InputError("objective", task.objective, "one of " + ", ".join(OBJECTIVES))
     speed = working_speed(scene, task)
@@ -146,7 +148,7 @@ def problem_of(
     problem = Problem(
         vibration=AtSpeed(machine, np.array([speed]), np.ones(1)),
         density=np.array([fill.liquid.density for fill in scene.fills]),
-        constraints=tuple(_constraints(scene, task, machine, speed, runs)),
+        constraints=tuple(_constraints(scene, task, machine, speed, runs, pool)),
         meaning=f"amplitude at {in_rpm(speed)}",
         working_speed=speed,
         speeds=(speed,),
@@ -154,11 +156,16 @@ def problem_of(
         runs=runs,
         notes=tuple(notes),
     )
-    return _MAKERS[task.objective](_Scene(scene, task, machine, solve), problem)
+    return _MAKERS[task.objective](_Scene(scene, task, machine, solve, pool), problem)
 
 
 def _constraints(
-    scene: Scene, task: Optimisation, machine: FilledMachine, speed: float, runs: Passages | None
+    scene: Scene,
+    task: Optimisation,
+    machine: FilledMachine,
+    speed: float,
+    runs: Passages | None,
+    pool: ProcessPoolExecutor | None,
 ) -> Iterator[Constraint]:
     """The constraints of the task."""
     used = operating_speeds(scene, task)
@@ -166,7 +173,7 @@ def _constraints(
         yield dry_wall(machine, speed)
     if task.stable:
         speeds, where = _whirl_speeds(scene, task, speed)
-        yield stability(scene, speeds, task.stability_margin or 0.0, where)
+        yield stability(scene, speeds, task.stability_margin or 0.0, where, pool)
     if task.least_film > 0.0:
         yield wetting(scene, task.least_film)
     if not task.spill and any(fill.chamber.inner_radius > 0.0 for fill in scene.fills):
@@ -211,6 +218,7 @@ class _Scene(NamedTuple):
     task: Optimisation
     machine: FilledMachine
     solve: Callable[[Problem], Found]
+    pool: ProcessPoolExecutor | None
 
 
 def _peak(of: _Scene, problem: Problem) -> Problem:
@@ -280,7 +288,7 @@ def _robust(of: _Scene, problem: Problem) -> Problem:
 
         def grows(volumes: Array) -> Array:
             rows = filled_scenes(vibration.around, volumes)
-            return np.asarray(np.max([growth(warm, held, speeds) for warm, held in rows], axis=0))
+            return np.asarray(np.max([growth(warm, held, speeds, of.pool) for warm, held in rows], axis=0))
 
         text = "share of a chamber that its liquid takes when warmest"
         constraints = (

@@ -9,6 +9,8 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Iterator
+from concurrent.futures import ProcessPoolExecutor
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
@@ -56,6 +58,7 @@ from leblanc.studies.optimise.search import (
     plan_of,
 )
 from leblanc.studies.optimise.wetting import optimal_volume_by_search, wetting_volumes
+from leblanc.studies.processes import processes
 from leblanc.studies.run.study import run_scene
 from leblanc.studies.sweep.emulator import Emulator, emulate_store, varied_fields
 from leblanc.studies.sweep.store import read_store
@@ -64,6 +67,7 @@ from meshes.errors import InputError
 from solvers.liquid_model import LONG
 from solvers.search import Budget, Enough, Found, Judgement, SearchPlan
 from solvers.statics.hydrostatics import equilibrium
+from solvers.whirl.elimination import eliminated
 
 _ASKED = "the scene asks for it; "
 
@@ -115,7 +119,24 @@ def answer(
             raise InputError("emulator", str(emulator), "left out with balls, whose designs it does not know")
         return optimise_balls(scene, task, workers, budget)
     surrogate = None if emulator is None else emulated_vibration(emulator, scene, task)
-    return optimise_scene(scene, task=task, front=front, emulator=surrogate, budget=budget, workers=workers)
+    with whirl_pool(scene, workers) as pool:
+        return optimise_scene(
+            scene, task=task, front=front, emulator=surrogate, budget=budget, workers=workers, pool=pool
+        )
+
+
+@contextmanager
+def whirl_pool(scene: Scene, workers: int) -> Iterator[ProcessPoolExecutor | None]:
+    """Processes that work out whirls of sets of volumes, where finite elements make each costly."""
+    if workers < 1:
+        raise InputError("workers", workers, "1 or more")
+    if workers == 1 or not slowed_by(scene.fills):
+        yield None
+        return
+    # What the workers run is compiled before they start.
+    eliminated(np.eye(2, dtype=complex)[None])
+    with processes(workers) as pool:
+        yield pool
 
 
 def optimise_scene(
@@ -127,12 +148,14 @@ def optimise_scene(
     response: bool = True,
     budget: Budget | None = None,
     workers: int = 1,
+    pool: ProcessPoolExecutor | None = None,
 ) -> OptimumAnswer:
     """Best volume for each chamber of a scene; its own volumes do not matter.
 
     Not feasible where no volumes meet the constraints: those that exceed them least are given then; the best
     so far where the search is interrupted or has spent its budget. The emulator is asked by the search in
-    place of the solvers, which then evaluate the best that it found.
+    place of the solvers, which then evaluate the best that it found. Threads of `workers` make run-ups, a
+    pool works out whirls.
     """
     task = task or scene.optimise or Optimisation()
     task = task if objective is None else task.altered(objective=objective)
@@ -159,7 +182,7 @@ def optimise_scene(
         stopped.extend([found] if found.interrupted or found.stopped else [])
         return found
 
-    problem = problem_of(scene, task, machine, solve, workers)
+    problem = problem_of(scene, task, machine, solve, workers, pool)
     exact, quick = on_all_cells(scene, problem), problem
     if emulator is not None:
         low, high = emulator.inside(low, high, np.array([fill.volume for fill in scene.fills]))
@@ -176,7 +199,7 @@ def optimise_scene(
     if front and not result.interrupted and not result.stopped:
         try:
             with stopping():
-                edge, sweep = front_around(scene, problem, chosen, result.vibration, speeds, budget)
+                edge, sweep = front_around(scene, problem, chosen, result.vibration, speeds, budget, pool)
             result = replace(result, front=edge, sweep=sweep)
         except (KeyboardInterrupt, Enough) as why:
             note = notes_of.interrupted(result.evaluations, searched=True, limit=str(why))
@@ -433,7 +456,13 @@ _MOST_IN_FRONT, _FEW_IN_FRONT = 60, 12  # of the points evaluated by the way; wh
 
 
 def front_around(
-    scene: Scene, problem: Problem, found: Found, vibration: float, speeds: Array, budget: Budget
+    scene: Scene,
+    problem: Problem,
+    found: Found,
+    vibration: float,
+    speeds: Array,
+    budget: Budget,
+    pool: ProcessPoolExecutor | None = None,
 ) -> tuple[ParetoFront, ParetoFront]:
     """The trade-off (Pareto front) by rising mass, and the sweep from no liquid to the fullest chamber."""
     known = found.judged.details
@@ -462,7 +491,7 @@ def front_around(
 
     size = np.concatenate((each(problem.vibration.exact, swept), known["vibration"][by_the_way]))
     size[np.all(volume == found.point, axis=1)] = vibration
-    margin = -each(lambda rows: growth(scene, rows, speeds), volume)
+    margin = -each(lambda rows: growth(scene, rows, speeds, pool), volume)
     mass = volume @ problem.density
     part = slice(0, swept.shape[0])
     kept = np.flatnonzero(not_dominated(np.stack((size, mass, -margin), axis=1)))

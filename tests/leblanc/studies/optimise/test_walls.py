@@ -8,11 +8,13 @@ from typing import Any
 import numpy as np
 import pytest
 
+import leblanc as lb
 from leblanc.core.units import LENGTH, with_unit
 from leblanc.liquid.notes import BaffleCode
 from leblanc.scene.examples import example
 from leblanc.scene.scene import Scene, scene_from_table
 from leblanc.scene.tasks import Optimisation
+from leblanc.studies.optimise.answer import OptimumAnswer
 from leblanc.studies.optimise.constraints import freeing_volumes, most_cells
 from leblanc.studies.optimise.filled import FilledMachine, QualityAtSpeed, model_name, with_volumes
 from leblanc.studies.optimise.objectives import RunupPeak
@@ -153,6 +155,18 @@ def test_the_best_volume_with_baffles() -> None:
         for sentence in said:
             assert "baffles of 5 mm" in sentence and f"layer of {with_unit(deep, LENGTH)}" in sentence
             assert "close 8 compartments" in sentence
+
+
+def test_workers_do_not_change_volumes_with_baffles() -> None:
+    """The same sets are judged to the same whirls by one process and by two."""
+    scene = rig({"count": 3, "tip_radius": 0.05})
+    alone, shared = (lb.optimise(scene, front=False, max_evaluations=20, workers=count) for count in (1, 2))
+    assert isinstance(alone, OptimumAnswer) and isinstance(shared, OptimumAnswer)
+    np.testing.assert_array_equal(alone.candidates.volume, shared.candidates.volume)
+    np.testing.assert_array_equal(alone.candidates.excess, shared.candidates.excess)
+    assert alone.growth == shared.growth and np.unique(alone.candidates.excess).size > 2
+    with pytest.raises(InputError, match="workers"):
+        lb.optimise(scene, workers=0)
 
 
 @pytest.mark.parametrize(
