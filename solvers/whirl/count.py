@@ -61,7 +61,7 @@ def missed_modes(
         beside, own = np.take_along_axis(beside, order, axis=1), np.take_along_axis(own, order, axis=1)
         # Those of two that are alike serve both.
         beside[:, 1:][np.diff(beside, axis=1) < _ALIKE * own[:, 1:]] = np.nan
-        pairs = _packed(np.hstack([pairs, rough]))
+        pairs = packed(np.hstack([pairs, rough]))
     path, owner = _path(pairs, region, beside)
     rise, sure = _phase(_Deflated(function, pairs, alone), path, owner, region.scale)
     held = 2 * np.isfinite(pairs).sum(axis=1) + np.isfinite(alone).sum(axis=1)
@@ -80,14 +80,14 @@ def _upper(known: Complex, scale: Array) -> tuple[Complex, Complex]:
     gap = np.abs(mirrored[:, :, None] - upper[:, None, :])
     twin = (gap <= 1e-6 * (np.abs(mirrored)[:, :, None] + scale[:, None, None])).any(axis=2)
     lower = np.where(twin, nothing, mirrored)
-    return _packed(np.hstack([upper, lower])), _packed(np.where(real, known.real + 0j, nothing))
+    return packed(np.hstack([upper, lower])), packed(np.where(real, known.real + 0j, nothing))
 
 
-def _packed(values: Complex) -> Complex:
+def packed(values: Complex) -> Complex:
     """Rows with their finite entries first, without the columns that no row needs."""
     finite = np.isfinite(values)
     order = np.argsort(~finite, axis=1, kind="stable")
-    return np.take_along_axis(values, order, axis=1)[:, : finite.sum(axis=1).max()]
+    return np.take_along_axis(values, order, axis=1)[:, : finite.sum(axis=1).max(initial=0)]
 
 
 def _path(pairs: Complex, region: Region, beside: Array) -> tuple[Complex, Index]:

@@ -78,6 +78,7 @@ from solvers.synchronous.response import (
 )
 from solvers.whirl.edges import bands_not_known, unstable_bands
 from solvers.whirl.growth import asynchronous_growth
+from solvers.whirl.laminar import Met
 
 _DIAGRAM = 121  # speeds of a Campbell diagram
 
@@ -95,11 +96,12 @@ _COORDINATES = {
 def self_excited(machine: Prepared) -> SelfExcited:
     """Growth of small whirls of a machine at its speeds [theory: whirl, eq. 7]."""
     scene, speed = machine.scene, machine.speed
-    growth, whirl_speed = asynchronous_growth(machine.rotor, scene.fills, speed, machine.waves)
+    met = Met()
+    growth, whirl_speed = asynchronous_growth(machine.rotor, scene.fills, speed, machine.waves, met)
     bands: tuple[tuple[float, float], ...] = ()
     if speed[-1] > speed[0]:
         filled, known = [scene.fills], growth[None]
-        bands = unstable_bands(machine.rotor, filled, speed, machine.waves, known)[0]
+        bands = unstable_bands(machine.rotor, filled, speed, machine.waves, known, [met])[0]
     elif growth[0] > 0.0:
         bands = ((float(speed[0]), float(speed[0])),)
     return SelfExcited(growth, whirl_speed, bands, machine.drag, bands_not_known(speed, growth))
