@@ -65,7 +65,9 @@ def plate_rate(layer_tanh: ArrayLike, spin: ArrayLike, slip: ArrayLike) -> Compl
 
     Of two circles, made unlike by the Coriolis force: (1 - T)/2 of the energy goes round as e^{i s t}.
     """
-    return plate_terms(layer_tanh, spin, slip)[0]
+    s, t, twice = np.asarray(slip, dtype=complex), np.asarray(layer_tanh), 2.0 * np.asarray(spin)
+    along, against = np.sqrt(1j * (s + twice)), np.sqrt(1j * (s - twice))
+    return np.asarray(0.5 * (1.0 - t) * along + 0.5 * (1.0 + t) * against)
 
 
 def plate_terms(layer_tanh: ArrayLike, spin: ArrayLike, slip: ArrayLike) -> tuple[Complex, Complex]:

@@ -12,7 +12,7 @@ from functools import cached_property
 
 import numpy as np
 
-from fluid.whirl import Layer, plate_terms, steady_rate, stokes_rate
+from fluid.whirl import Layer, plate_rate, plate_terms, steady_rate, stokes_rate
 from meshes.arrays import Array, Complex, Flags, Index
 from solvers.rotor.system import RotorSystem
 from solvers.whirl.count import Characteristic, Region, missed_modes, packed
@@ -482,11 +482,12 @@ class _Eliminated:
 
 
 def _eliminate(problem: _Problem, root: Complex, spin: Array, slopes: bool = True) -> _Eliminated:
-    """Rotor and layers at values of lambda [theory: whirl, eq. 14]; without slopes those are 0."""
+    """Rotor and layers at values of lambda [theory: whirl, eq. 14]; without slopes there are none of those."""
     c, size = problem.circles, len(problem.system.coordinates)
     turned = root - 1j * c.sense * spin
     friction = stokes_rate(c.stokes, -1j * turned)
-    plates, rise = plate_terms(c.tanh, c.sense * spin, -1j * turned)
+    plate = c.tanh, c.sense * spin, -1j * turned
+    plates, rise = plate_terms(*plate) if slopes else (plate_rate(*plate), None)
     rate = c.rate + c.lids * plates
     # W, in the slip, where films keep their digits, and its slope; W d = -(1 - T)/2 lambda^2 w.
     coriolis = 2j * c.sense * c.tanh * spin
@@ -498,9 +499,8 @@ def _eliminate(problem: _Problem, root: Complex, spin: Array, slopes: bool = Tru
     # Of the rotor's matrices and of the layers' places, in one product.
     powers = np.concatenate([[np.square(root), root, root * spin, np.ones_like(root)], force])
     matrix = (powers.T @ c.parts).reshape(-1, size, size)
-    if not slopes:
-        nothing = np.zeros_like(root)
-        return _Eliminated(matrix, np.zeros_like(matrix), waves, nothing, share)
+    if rise is None:
+        return _Eliminated(matrix, matrix[:0], waves, root[:0], share)
     bend = 2.0 * turned - coriolis + rate + 1.5 * friction - 1j * c.lids * rise * turned
     change = c.mass * root * (2.0 - 4.0 * share + root * share * bend / wave)
     powers = np.concatenate([[2.0 * root, np.ones_like(root), spin, np.zeros_like(root)], change])
