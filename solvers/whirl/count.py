@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -139,7 +138,7 @@ class _Deflated:
         return found
 
     def _some(self, points: Complex, owner: Index) -> Complex:
-        """As `at`; one logarithm of all factors, each over a size: by how many turns it is off, nobody asks."""
+        """As `at`; one logarithm of all factors over their sizes: by how many turns it is off, none asks."""
         size = np.abs(points) + self.scale[owner]
         at, pairs, alone = points[:, None], self.pairs[owner], self.alone[owner]
         gaps = np.hstack([at - pairs, at - pairs.conj(), at - alone]) / size[:, None]

@@ -482,7 +482,7 @@ class _Eliminated:
 
 
 def _eliminate(problem: _Problem, root: Complex, spin: Array, slopes: bool = True) -> _Eliminated:
-    """Rotor and layers at values of lambda [theory: whirl, eq. 14]; without slopes there are none of those."""
+    """Rotor and layers at values of lambda [theory: whirl, eq. 14], with slopes or without."""
     c, size = problem.circles, len(problem.system.coordinates)
     turned = root - 1j * c.sense * spin
     friction = stokes_rate(c.stokes, -1j * turned)

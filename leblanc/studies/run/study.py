@@ -124,7 +124,7 @@ def motion_response(machine: Prepared, choice: Choice) -> tuple[Response, Motion
         branch_backward=found.branch_backward,
         chamber_forward=_at_chambers(system, scene.fills, found),
         modes=rest_modes(system),
-        campbell=campbell(system, np.linspace(0.0, scene.speeds.stop, _DIAGRAM)),
+        campbell=later(campbell, system, np.linspace(0.0, scene.speeds.stop, _DIAGRAM)),
         critical_speeds_dry=_directed(system, dry, dry_shape),
         critical_speeds_wet=_directed(system, wet, wet_shape),
         zero="unbalance" if isinstance(scene.rotor, TubRotor) else "angle 0 of the unbalances",
@@ -248,7 +248,7 @@ def run_scene(scene: Scene, holding: Holding = HERE, cycles: bool = False) -> Ru
         closed_forms=later(closed_forms, machine, answer),
         critical_speed_dry=dry,
         critical_speed_wet=wet,
-        motion=motion,
+        motion=None if motion is None else later(_with_diagram, motion),
         whirl=whirl,
         error_estimate=choice.error,
         models=model_spans(choice, machine.speed) if scene.fills else (),
@@ -261,6 +261,12 @@ def run_scene(scene: Scene, holding: Holding = HERE, cycles: bool = False) -> Ru
         balance_quality=later(_balance, machine, answer.speed, answer.coordinates),
         balance_quality_dry=later(_balance, machine, answer.speed),
     )
+
+
+def _with_diagram(motion: Any) -> Motion:
+    """A motion with its Campbell diagram, which few read."""
+    found: Motion = replace(motion, campbell=motion.campbell())
+    return found
 
 
 _Said = tuple[Prepared, Choice, Response, Response, Motion | None, SelfExcited, Held | None]
