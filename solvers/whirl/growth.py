@@ -277,6 +277,8 @@ def _table(parts: Parts, size: int) -> tuple[Complex, Array]:
             root, rounding = np.where(known, found.root, complex(np.nan, np.nan)), found.rounding
         else:
             root, rounding = (1j * found.slip).T, found.rounding.T
+        kept = ~np.isnan(root).all(axis=0)
+        root, rounding = root[:, kept], rounding[:, kept]
         seen.append((here, np.where(np.abs(root.real) <= rounding, 1j * root.imag, root), rounding))
     width = max((part.shape[1] for _, part, _ in seen), default=0)
     roots = np.full((size, width), complex(np.nan, np.nan))

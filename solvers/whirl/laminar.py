@@ -208,7 +208,7 @@ def laminar_modes(
         places.append(beside[cut])
         if every:
             known.add(speed[beside[cut]], parts[-1])
-    width = max((part.root.shape[1] for part in parts), default=0)
+    width = max(part.root.shape[1] for part in parts)
     modes = joined([part.widened(width, _GONE) for part in parts]).at(np.argsort(np.concatenate(places)))
     if not every:
         modes = _with_sense(problem, modes, speed)
@@ -337,7 +337,7 @@ def _groups(system: RotorSystem, layers: Sequence[Placed]) -> list[tuple[list[in
     ranks = []
     for members in found.values():
         along = np.array([_CIRCLES[0] @ system.at(layers[j][0]) for j in members])
-        ranks.append(int(np.linalg.matrix_rank(along)))
+        ranks.append(int(np.linalg.matrix_rank(along)) if len(members) > 1 else 1)
     return list(zip(found.values(), ranks, strict=True))
 
 

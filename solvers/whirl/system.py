@@ -80,6 +80,8 @@ class SystemModes:
     def widened(self, width: int, gone: float) -> SystemModes:
         """Modes with others not found appended, up to `width` at each speed, lambda there `gone`."""
         more = ((0, 0), (0, width - self.root.shape[1]))
+        if width == self.root.shape[1]:
+            return self
         return SystemModes(
             np.pad(self.root, more, constant_values=gone),
             np.pad(self.sense, more, constant_values=1.0),
@@ -91,10 +93,9 @@ class SystemModes:
     def replaced(self, which: Index, others: SystemModes, gone: float) -> SystemModes:
         """Modes with those at some speeds in place of its own, lambda `gone` where one lacks a mode."""
         width = max(self.root.shape[1], others.root.shape[1])
-        found, others = self.widened(width, gone), others.widened(width, gone)
-        for part in fields(found):
-            getattr(found, part.name)[which] = getattr(others, part.name)
-        return found
+        kept = np.setdiff1d(np.arange(len(self.root)), which)
+        found = joined([self.at(kept).widened(width, gone), others.widened(width, gone)])
+        return found.at(np.argsort(np.concatenate([kept, which])))
 
 
 def linear_modes(matrices: CoupledMatrices, circles: Array) -> SystemModes:

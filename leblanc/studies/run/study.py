@@ -187,7 +187,7 @@ def run_scene(scene: Scene, holding: Holding = HERE, cycles: bool = False) -> Ru
         gravity, rotor = machine.axial_gravity, machine.rotor
         answer = response(rotor, scene.fills, machine.speed, gravity, liquid_models(choice))
         dry = rotor.natural_frequency
-        wet = critical_speed(rotor, scene.fills, gravity, synchronous_model(choice.model))
+        wet = later(critical_speed, rotor, scene.fills, gravity, synchronous_model(choice.model))
     else:
         answer, motion, (dry, wet) = motion_response(machine, choice)
     update(what="peaks between the speeds")
