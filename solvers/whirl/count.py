@@ -140,12 +140,15 @@ class _Deflated:
     def _some(self, points: Complex, owner: Index) -> Complex:
         """As `at`; one logarithm of all factors over their sizes: by how many turns it is off, none asks."""
         size = np.abs(points) + self.scale[owner]
-        at, pairs, alone = points[:, None], self.pairs[owner], self.alone[owner]
-        gaps = np.hstack([at - pairs, at - pairs.conj(), at - alone]) / size[:, None]
-        absent = np.isnan(gaps)
-        gaps[absent] = 1.0
-        power = gaps.shape[1] - absent.sum(axis=1)
-        return np.asarray(self.function(points, owner) - np.log(gaps.prod(axis=1)) - power * np.log(size))
+        over = (1.0 / size)[:, None]
+        at, pairs, alone = points[:, None] * over, self.pairs[owner] * over, self.alone[owner] * over
+        product, power = np.ones(points.shape, dtype=complex), np.zeros(points.shape)
+        for gap, zeros in (((at - pairs) * (at - pairs.conj()), 2), (at - alone, 1)):
+            absent = np.isnan(gap)
+            gap[absent] = 1.0
+            product *= gap.prod(axis=1)
+            power += zeros * (gap.shape[1] - absent.sum(axis=1))
+        return np.asarray(self.function(points, owner) - np.log(product) - power * np.log(size))
 
 
 def _phase(function: _Deflated, points: Complex, own: Index, scale: Array) -> tuple[Array, Flags]:
