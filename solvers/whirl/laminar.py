@@ -115,6 +115,8 @@ class Met:
 
     def lead(self, speed: Array, half: Complex, found: Flags) -> None:
         """Take slopes from the same modes at speeds next to some that were added last."""
+        if self.speed.size == 0:
+            return
         at = self._nearest(speed)
         gap = speed - self.speed[at]
         row = np.flatnonzero((gap > 0.0) & (gap <= _NEXT * speed))

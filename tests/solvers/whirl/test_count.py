@@ -237,3 +237,10 @@ def test_a_search_that_fails_is_seen_and_repeated(monkeypatch: pytest.MonkeyPatc
     assert np.isnan(lost).any()
     known = ~np.isnan(lost)
     np.testing.assert_allclose(lost[known], whole[known], rtol=1e-9, atol=1e-10)
+    # Where no speed is known whole, there is nothing that others could start from.
+    monkeypatch.setattr(laminar, "_starts", lambda *given: starts(*given)[:, :4])
+    met, rotor = laminar.Met(), rotor.system()
+    layers = [(fill.chamber.plane, plane_layer(fill, STOKES)) for fill in scene.fills]
+    first = laminar.laminar_modes(rotor, layers, speed, met=met)
+    assert met.speed.size == 0
+    laminar.laminar_modes(rotor, layers, speed * (1.0 + 1e-6), near=first, met=met)
