@@ -34,11 +34,11 @@ from numba.core.registry import cpu_target
 
 from solvers import compiling
 
-# Options of what only compiled code calls: it needs no wrappers.
+# Options of what only compiled code calls, of what is handed over, and of what Python calls as well as that;
+# without any of them Python calls a function. Each wrapper is compiled too.
 BARE: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-# Of what is handed over alone, and of what Python alone calls.
-HANDED: dict[str, Any] = {"no_cpython_wrapper": True}
-CALLED: dict[str, Any] = {"no_cfunc_wrapper": True}
+HANDED: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": False}
+BOTH: dict[str, Any] = {"no_cfunc_wrapper": False}
 _HERE = Path(__file__)
 # What a module imports of the layers up to this one, indented or not, in brackets or not.
 _OURS = r"((?:meshes|fluid|solvers)\b[\w.]*)"
@@ -53,7 +53,7 @@ def machine_code(**options: Any) -> Callable[[Callable[..., Any]], Any]:
 
     What becomes part of its callers (`inline`) has no machine code of its own.
     """
-    compile_it: Any = numba.njit(**options)
+    compile_it: Any = numba.njit(**({"no_cfunc_wrapper": True} | options))
 
     def compiled(function: Callable[..., Any]) -> Any:
         made = compile_it(function)

@@ -27,7 +27,7 @@ from solvers.layer.baffles import (
     take,
     wall_beds,
 )
-from solvers.machine_code import BARE, FLAG, REAL, ROW, ROWS, handed_type, machine_code
+from solvers.machine_code import BARE, BOTH, FLAG, REAL, ROW, ROWS, handed_type, machine_code
 
 # Products and sums may be contracted, zeros lose their signs; the order of sums stays. Views of arrays need
 # no reference counts here: less to compile.
@@ -330,6 +330,7 @@ def largest(slow, fast, faces):
 
 
 _jit: Any = machine_code(**COMPILED)
+_both: Any = machine_code(**(COMPILED | BOTH))
 
 _bernoulli = _face_jit(long_wave.bernoulli)
 _CONSTANT, _CURVED, _LESS = long_wave.PADE
@@ -367,7 +368,7 @@ def _held(area, q, spin):
     return np.maximum(abs(spin), HELD * abs(own))
 
 
-@_jit
+@_both
 def plain_rates(
     area,
     q,
@@ -401,7 +402,7 @@ def plain_rates(
     return fastest
 
 
-@_jit
+@_both
 def baffled_rates(
     area,
     q,
@@ -442,7 +443,7 @@ def baffled_rates(
     return fastest
 
 
-@_jit
+@_both
 def no_rates(
     area,
     q,
@@ -466,7 +467,7 @@ def no_rates(
     return 0.0
 
 
-@_jit
+@_both
 def rates(
     area,
     q,
