@@ -48,15 +48,17 @@ _choosing = threading.RLock()
 _config: Any = numba.config
 
 
-def machine_code(**options: Any) -> Callable[[Callable[..., Any]], Any]:
+def machine_code(settled: bool = False, **options: Any) -> Callable[[Callable[..., Any]], Any]:
     """Decorator that compiles a function by `numba.njit` with some options.
 
-    What becomes part of its callers (`inline`) has no machine code of its own.
+    What becomes part of its callers (`inline`) has no machine code of its own. `settled`: of a part of others
+    the compiler chooses here, once for all callers, how it rounds.
     """
     compile_it: Any = numba.njit(**({"no_cfunc_wrapper": True} | options))
 
     def compiled(function: Callable[..., Any]) -> Any:
         made = compile_it(function)
+        made.settled = settled
         if "inline" in options or _config.DISABLE_JIT:
             return made
         folder = cache_folder(Path(inspect.getfile(function)))
@@ -104,7 +106,7 @@ class _Heard(event.Listener):
     begun, collects = 0.0, False
 
     def __init__(self) -> None:
-        self.open: list[dict[str, Any]] = []  # options of the functions that are being compiled
+        self.open: list[Any] = []  # the functions that are being compiled
 
     def on_start(self, event: Any) -> None:
         """Of a function, which may ask for others on its way."""
@@ -112,7 +114,7 @@ class _Heard(event.Listener):
             self.begun, self.collects = time.process_time(), gc.isenabled()
             gc.disable()
             compiling.tell(True)
-        self.open.append(event.data["dispatcher"].targetoptions)
+        self.open.append(event.data["dispatcher"])
 
     def on_end(self, event: Any) -> None:
         """Of the same."""
@@ -141,15 +143,14 @@ class _Parts(_Library):  # type: ignore[misc]
 
     def finalize(self) -> None:
         """Link what the function calls; if it is no part, optimise all and make its machine code."""
-        options = _heard.open[-1] if _heard.open else {}
-        if not BARE.items() <= options.items():
+        function = _heard.open[-1] if _heard.open else None
+        if function is None or not BARE.items() <= function.targetoptions.items():
             super().finalize()
             return
         for library in dict.fromkeys(self._linking_libraries):
             self._reload_init.update(library._reload_init)
             self._final_module.link_in(library._get_module_for_linking(), preserve=True)
-        if "reassoc" in options.get("fastmath", ()):
-            # The order of a sum is chosen here, for all callers.
+        if getattr(function, "settled", False):
             self._optimize_final_module()
         self._finalize_dynamic_globals()
         self._finalized = self.part = True

@@ -43,7 +43,10 @@ PRESSED = 2.0
 _face_jit: Any = machine_code(**(COMPILED | BARE))
 # Sums and largest values over a ring, in parts that the compiler chooses once and for all: the same numbers
 # give the same sum.
-SUMMED: dict[str, Any] = COMPILED | {"fastmath": {"contract", "arcp", "nsz", "reassoc", "nnan"}}
+SUMMED: dict[str, Any] = COMPILED | {
+    "fastmath": {"contract", "arcp", "nsz", "reassoc", "nnan"},
+    "settled": True,
+}
 _sum_jit: Any = machine_code(**(SUMMED | BARE))
 
 _surface = _face_jit(long_wave.free_surface_radius)
