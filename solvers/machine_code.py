@@ -172,10 +172,13 @@ class _Parts(_Library):  # type: ignore[misc]
         return library
 
 
+# Versions of numba whose libraries `_Parts` is made of, which is no public name.
+_KNOWN = ("0.68.",)
+
+
 def _leave_parts(made: Any) -> None:
-    """Have numba make `_Parts`, where its libraries are what these are made of; else it takes longer."""
-    named = ("_finalize_dynamic_globals", "_optimize_final_module", "_unserialize")
-    if not (hasattr(made, "_library_class") and all(hasattr(_Library, name) for name in named)):
+    """Have a numba that is known make `_Parts`; any other compiles as it does, which takes longer."""
+    if not numba.__version__.startswith(_KNOWN):
         return
     set_env, engine = made.set_env, made._engine
     made._library_class = _Parts
