@@ -4,8 +4,9 @@ numba keys its cache by the file of a function, not by what that calls, and rais
 nor HOME can be written. Here each state of a module and of all that it imports has a folder of its own below
 the user's caches; without one each process compiles for itself.
 
-What one compiled function calls by its name becomes a part of it and is compiled once more. Large parts, and
-those that only some scenes have, are handed over as arguments instead: `Handed`.
+What one compiled function calls by its name becomes a part of it and is optimised with it; what only compiled
+code calls (BARE) is therefore left as it is, and has no machine code of its own. Large parts, and those that
+only some scenes have, are handed over as arguments instead: `Handed`.
 """
 
 from __future__ import annotations
@@ -27,16 +28,17 @@ from typing import Any
 
 import numba
 import platformdirs
-from numba.core import event
+from numba.core import codegen, event
 from numba.core.errors import NumbaExperimentalFeatureWarning
+from numba.core.registry import cpu_target
 
 from solvers import compiling
 
-# Options of what only compiled code calls: it needs no wrappers.
+# Options of what only compiled code calls, of what is handed over, and of what Python calls as well as that;
+# without any of them Python calls a function. Each wrapper is compiled too.
 BARE: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-# Of what is handed over alone, and of what Python alone calls.
-HANDED: dict[str, Any] = {"no_cpython_wrapper": True}
-CALLED: dict[str, Any] = {"no_cfunc_wrapper": True}
+HANDED: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": False}
+BOTH: dict[str, Any] = {"no_cfunc_wrapper": False}
 _HERE = Path(__file__)
 # What a module imports of the layers up to this one, indented or not, in brackets or not.
 _OURS = r"((?:meshes|fluid|solvers)\b[\w.]*)"
@@ -46,15 +48,17 @@ _choosing = threading.RLock()
 _config: Any = numba.config
 
 
-def machine_code(**options: Any) -> Callable[[Callable[..., Any]], Any]:
+def machine_code(settled: bool = False, **options: Any) -> Callable[[Callable[..., Any]], Any]:
     """Decorator that compiles a function by `numba.njit` with some options.
 
-    What becomes part of its callers (`inline`) has no machine code of its own.
+    What becomes part of its callers (`inline`) has no machine code of its own. `settled`: of a part of others
+    the compiler chooses here, once for all callers, how it rounds.
     """
-    compile_it: Any = numba.njit(**options)
+    compile_it: Any = numba.njit(**({"no_cfunc_wrapper": True} | options))
 
     def compiled(function: Callable[..., Any]) -> Any:
         made = compile_it(function)
+        made.settled = settled
         if "inline" in options or _config.DISABLE_JIT:
             return made
         folder = cache_folder(Path(inspect.getfile(function)))
@@ -99,27 +103,91 @@ class _Heard(event.Listener):
     Meanwhile nobody searches for cyclic garbage among all that it makes, which takes a fifth of the time.
     """
 
-    depth, begun, collects = 0, 0.0, False
+    begun, collects = 0.0, False
+
+    def __init__(self) -> None:
+        self.open: list[Any] = []  # the functions that are being compiled
 
     def on_start(self, event: Any) -> None:
         """Of a function, which may ask for others on its way."""
-        if self.depth == 0:
+        if not self.open:
             self.begun, self.collects = time.process_time(), gc.isenabled()
             gc.disable()
             compiling.tell(True)
-        self.depth += 1
+        self.open.append(event.data["dispatcher"])
 
     def on_end(self, event: Any) -> None:
         """Of the same."""
-        self.depth -= 1
-        if self.depth == 0:
+        self.open.pop()
+        if not self.open:
             if self.collects:
                 gc.enable()
             compiling.SPENT.append(time.process_time() - self.begun)
             compiling.tell(False)
 
 
-_events.register("numba:compile", _Heard())
+_heard = _Heard()
+_events.register("numba:compile", _heard)
+_codegen: Any = codegen
+_Library: Any = _codegen.JITCodeLibrary
+
+
+class _Parts(_Library):  # type: ignore[misc]
+    """What the compiler makes of a function; a part of others alone is left to these.
+
+    Else each part would be optimised, and turned into machine code that nobody calls, before its callers do
+    the same with it: a quarter of the time to compile.
+    """
+
+    part = False
+
+    def finalize(self) -> None:
+        """Link what the function calls; if it is no part, optimise all and make its machine code."""
+        function = _heard.open[-1] if _heard.open else None
+        if function is None or not BARE.items() <= function.targetoptions.items():
+            super().finalize()
+            return
+        for library in dict.fromkeys(self._linking_libraries):
+            self._reload_init.update(library._reload_init)
+            self._final_module.link_in(library._get_module_for_linking(), preserve=True)
+        if getattr(function, "settled", False):
+            self._optimize_final_module()
+        self._finalize_dynamic_globals()
+        self._finalized = self.part = True
+
+    def serialize_using_object_code(self) -> Any:
+        """What is kept in the cache."""
+        if self.part:
+            return self.name, "part", self._final_module.as_bitcode()
+        return super().serialize_using_object_code()
+
+    @classmethod
+    def _unserialize(cls, made: Any, state: Any) -> Any:
+        name, kind, data = state
+        if kind != "part":
+            return super()._unserialize(made, state)
+        library = made.create_library(name)
+        library._final_module = _codegen.ll.parse_bitcode(data)
+        library._finalized = library.part = True
+        return library
+
+
+# Versions of numba whose libraries `_Parts` is made of, which is no public name.
+_KNOWN = ("0.68.",)
+
+
+def _leave_parts(made: Any) -> None:
+    """Have a numba that is known make `_Parts`; any other compiles as it does, which takes longer."""
+    if not numba.__version__.startswith(_KNOWN):
+        return
+    set_env, engine = made.set_env, made._engine
+    made._library_class = _Parts
+    # The environment of what has no machine code stands nowhere.
+    made.set_env = lambda name, env: engine.get_global_value_address(name) and set_env(name, env)
+
+
+if not _config.DISABLE_JIT:
+    _leave_parts(cpu_target.target_context.codegen())
 
 
 def pair(first: Any, second: Any) -> Any:

@@ -27,7 +27,7 @@ from solvers.layer.baffles import (
     take,
     wall_beds,
 )
-from solvers.machine_code import BARE, FLAG, REAL, ROW, ROWS, handed_type, machine_code
+from solvers.machine_code import BARE, BOTH, FLAG, REAL, ROW, ROWS, handed_type, machine_code
 
 # Products and sums may be contracted, zeros lose their signs; the order of sums stays. Views of arrays need
 # no reference counts here: less to compile.
@@ -43,7 +43,10 @@ PRESSED = 2.0
 _face_jit: Any = machine_code(**(COMPILED | BARE))
 # Sums and largest values over a ring, in parts that the compiler chooses once and for all: the same numbers
 # give the same sum.
-SUMMED: dict[str, Any] = COMPILED | {"fastmath": {"contract", "arcp", "nsz", "reassoc", "nnan"}}
+SUMMED: dict[str, Any] = COMPILED | {
+    "fastmath": {"contract", "arcp", "nsz", "reassoc", "nnan"},
+    "settled": True,
+}
 _sum_jit: Any = machine_code(**(SUMMED | BARE))
 
 _surface = _face_jit(long_wave.free_surface_radius)
@@ -330,6 +333,7 @@ def largest(slow, fast, faces):
 
 
 _jit: Any = machine_code(**COMPILED)
+_both: Any = machine_code(**(COMPILED | BOTH))
 
 _bernoulli = _face_jit(long_wave.bernoulli)
 _CONSTANT, _CURVED, _LESS = long_wave.PADE
@@ -367,7 +371,7 @@ def _held(area, q, spin):
     return np.maximum(abs(spin), HELD * abs(own))
 
 
-@_jit
+@_both
 def plain_rates(
     area,
     q,
@@ -401,7 +405,7 @@ def plain_rates(
     return fastest
 
 
-@_jit
+@_both
 def baffled_rates(
     area,
     q,
@@ -442,7 +446,7 @@ def baffled_rates(
     return fastest
 
 
-@_jit
+@_both
 def no_rates(
     area,
     q,
@@ -466,7 +470,7 @@ def no_rates(
     return 0.0
 
 
-@_jit
+@_both
 def rates(
     area,
     q,

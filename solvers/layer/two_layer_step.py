@@ -20,7 +20,8 @@ from solvers.layer.step import copy
 from solvers.machine_code import BARE, machine_code
 
 _jit: Any = machine_code(**COMPILED)
-_part: Any = machine_code(**(COMPILED | BARE))
+# A pool whose cells run dry makes much of how its parts round.
+_part: Any = machine_code(settled=True, **(COMPILED | BARE))
 
 _surface = _part(closures.surface_of)
 _static = _part(closures.static_pressure)

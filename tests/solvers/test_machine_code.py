@@ -15,6 +15,8 @@ from typing import Any
 
 import numba
 import pytest
+from numba.core import codegen
+from numba.core.registry import cpu_target
 
 from leblanc.cli import main
 from solvers import machine_code as kept
@@ -42,6 +44,34 @@ def caches(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def twice(number: float) -> float:
     return 2.0 * number
+
+
+@pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="nothing is compiled")
+@pytest.mark.parametrize("numba_as_it_is", [True, False])
+def test_parts_of_others_have_no_machine_code(
+    numba_as_it_is: bool, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """They are left to their callers, also from the cache; to a numba unknown they are not."""
+    monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path))
+    if not numba_as_it_is:
+        made: Any = cpu_target.target_context.codegen()
+        monkeypatch.setattr(made, "_library_class", codegen.JITCodeLibrary)
+
+    def parts() -> Iterator[tuple[Any, float]]:
+        for _ in range(2):
+            part: Any = machine_code(**kept.BARE)(twice)
+
+            def four_times(number: float, part: Any = part) -> float:
+                found: float = part(part(number))
+                return found
+
+            yield part, machine_code()(four_times)(1.5)
+
+    for reads, (part, answer) in enumerate(parts()):
+        (found,) = part.overloads.values()
+        assert answer == 6.0 and sum(part.stats.cache_hits.values()) == reads
+        code = found.library.get_pointer_to_function(found.fndesc.llvm_func_name)
+        assert (code == 0) == numba_as_it_is
 
 
 @posix

@@ -22,7 +22,6 @@ from solvers.layer.two_layers import FLOWS, STREAM, TAKEN
 from solvers.machine_code import (
     BARE,
     BLOCKS,
-    CALLED,
     FLAG,
     REAL,
     ROW,
@@ -45,7 +44,6 @@ from solvers.runup.steps.pools import POOLS
 from solvers.runup.steps.spin import SPIN
 
 _jit: Any = machine_code(**COMPILED)
-_called: Any = machine_code(**(COMPILED | CALLED))
 _unwrapped: Any = machine_code(**(COMPILED | BARE))
 
 
@@ -245,7 +243,7 @@ def watch(plane, place, shaft, crest):
         crest.amplitude, crest.speed, crest.time = amplitude, shaft.spin, shaft.time
 
 
-@_jit
+@_unwrapped
 def swing_time(pools, gravity):
     """Longest step that follows the pools' swinging, s."""
     longest = np.inf
@@ -284,7 +282,7 @@ def expect(push, pace, shaft, dt, guess):
             guess[j, 1] += push[j, k, 0] * sine + push[j, k, 1] * cosine
 
 
-@_called
+@_jit
 def advance(
     rates,
     friction,

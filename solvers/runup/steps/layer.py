@@ -55,7 +55,7 @@ def relative_momentum(measures, layer, spin, cosine, sine, out):
     out[0], out[1] = scale * (x * cosine - y * sine), scale * (x * sine + y * cosine)
 
 
-@_jit
+@_unwrapped
 def flow_inertia(measures, layer, c, s, out):
     """Inertia of a layer's flow under a body force, in the standing frame [theory: coupling, eq. 4]."""
     scale = layer.weight * layer.radius**2

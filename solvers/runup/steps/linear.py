@@ -9,13 +9,13 @@ import numpy as np
 from solvers.layer.drag import mean_rate
 from solvers.layer.finite_volume import COMPILED
 from solvers.layer.records import Outcome, records
-from solvers.machine_code import BARE, BLOCKS, CALLED, REAL, ROW, ROWS, TURNING, WHOLE, machine_code, type_of
+from solvers.machine_code import BARE, BLOCKS, REAL, ROW, ROWS, TURNING, WHOLE, machine_code, type_of
 from solvers.runup.state import BALL, CREST, LINEAR_LAYER, SHAFT, SUMS
 from solvers.runup.steps.balls import BALLS, ball_turned
 from solvers.runup.steps.coupled import AGREED, SHORTEST, load_rotor, solve, watch
 from solvers.runup.steps.spin import driven, motor_torque
 
-_called: Any = machine_code(**(COMPILED | CALLED))
+_jit: Any = machine_code(**COMPILED)
 _part: Any = machine_code(**(COMPILED | BARE))
 
 
@@ -114,7 +114,7 @@ def _tally(layer, table, curve, gravity, row, carried, spin, after, place, rate,
 _PLAIN, _SECANT = 6, 12
 
 
-@_called
+@_jit
 def advance_linear(
     add_balls,
     tally_balls,

@@ -7,15 +7,26 @@ from typing import Any
 from solvers.layer.finite_volume import COMPILED
 from solvers.layer.records import records
 from solvers.layer.two_layers import STREAM, TAKEN
-from solvers.machine_code import HANDED, REAL, ROW, ROWS, TURNING, handed, handed_type, machine_code, type_of
+from solvers.machine_code import (
+    BARE,
+    HANDED,
+    REAL,
+    ROW,
+    ROWS,
+    TURNING,
+    handed,
+    handed_type,
+    machine_code,
+    type_of,
+)
 from solvers.runup.state import BALL, GAINS, LAYER, SHAFT
 from solvers.runup.steps.balls import ball_turned
 
-_jit: Any = machine_code(**COMPILED)
+_part: Any = machine_code(**(COMPILED | BARE))
 _handed: Any = machine_code(**(COMPILED | HANDED))
 
 
-@_jit
+@_part
 def motor_torque(curve, spin):
     """Torque at a speed, by straight lines between the points of the motor's curve."""
     last = curve.shape[1] - 1
@@ -28,7 +39,7 @@ def motor_torque(curve, spin):
     return curve[1, last]
 
 
-@_jit
+@_part
 def resisted(curve, weight, aim):
     """Where x + weight T(x) = aim, and the slope of T there, T by straight lines between points of a curve.
 
@@ -49,7 +60,7 @@ def resisted(curve, weight, aim):
     return curve[0, low] + (aim - curve[0, low] - weight * curve[1, low]) / (1.0 + weight * slope), slope
 
 
-@_jit
+@_part
 def driven(curve, shaft, load, dt):
     """Spin at the end of a step under the motor's torque at the middle, however steep its curve.
 
