@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from leblanc.cli.terminal.output import load
+from leblanc.cli.terminal.output import SET, load
 from leblanc.core.contents import results_dir
 from leblanc.core.files import require_writable
 from leblanc.core.progress import working
@@ -58,13 +58,14 @@ def view(
     out: Annotated[
         Path | None, typer.Option(help="Folder for the files [default: out/<scene name>].")
     ] = None,
+    set_: Annotated[list[str] | None, typer.Option("--set", help=SET)] = None,
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of words.")] = False,
 ) -> None:
     """Three-dimensional picture, film or browser page."""
     from leblanc.core.units import ANGULAR_SPEED, parse_option
     from leblanc.registry import answerer
 
-    machine = load(scene)
+    machine = load(scene, set_ or ())
     spin = None if speed is None else parse_option(speed, ANGULAR_SPEED, "--speed")
     _check_choices(screenshot, animate, frames, mode, window, browser, port)
     if browser:
