@@ -19,7 +19,7 @@ from typing import Annotated, Any
 import typer
 from typer.main import get_command
 
-from leblanc.cli import new, view
+from leblanc.cli import new, schema, view
 from leblanc.core.answer import NotConverged
 from leblanc.core.contents import recording
 from leblanc.core.interrupts import INTERRUPTED, TERMINATED, Terminated, behind, heard, leave, said
@@ -36,9 +36,9 @@ DONE, UNREAD, WRONG_INPUT, NOT_CONVERGED = 0, 1, 2, 3
 # made from the signature of their call.
 NAMES = (
     *("new", "explain", "run", "compare", "fit", "map", "runup", "optimise", "sweep", "view"),
-    *("layer", "modes", "bearing", "volume", "outputs"),
+    *("layer", "modes", "bearing", "volume", "outputs", "schema"),
 )
-MODULES = {each.__name__.rpartition(".")[2]: each for each in (new, view)}
+MODULES = {each.__name__.rpartition(".")[2]: each for each in (new, schema, view)}
 ALIASES = {"run_up": "runup", "run-up": "runup"}  # names that are read as well
 
 # The current folder may hold a stranger's files: a pickle.py is not for the processes that are started from
