@@ -218,7 +218,8 @@ def _as_typed(command: Callable[..., object]) -> Callable[..., object]:
             return command(**options)
         except InputError as error:
             scene, fault = options.get("scene"), None
-            if isinstance(scene, Path):
+            changed = [text.partition("=")[0].strip() for text in options.get("set") or ()]
+            if isinstance(scene, Path) and error.field not in changed:
                 from leblanc.scene.scene import fault_in
 
                 fault = fault_in(scene, error)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any, get_origin
 
 import typer
 
-from leblanc.cli.terminal.output import SET, load, load_study, processes
+from leblanc.cli.terminal.output import FORCE, SET, load, load_study, processes
 from leblanc.core.answer import Answer
 from leblanc.core.contents import results_dir
 from leblanc.core.files import out_dir, path_text
@@ -64,6 +64,8 @@ def command(question: Callable[..., Any]) -> Callable[..., None]:
     subject = next((one for one in own.values() if one.read in _LOADED), None)
     options = [_typed(one) for one in asked.values()]
     whole = subject is not None and subject.default is Parameter.empty  # it has a folder of its own
+    if files and whole:
+        options.append(_parameter("force", bool, typer.Option("--force", help=FORCE), False))
     if files:
         help_of_out = _OUT.format(subject.name) if subject is not None and whole else _ONLY_OUT
         options.append(_parameter("out", Path | None, typer.Option(help=help_of_out), None))
@@ -73,7 +75,9 @@ def command(question: Callable[..., Any]) -> Callable[..., None]:
         options.append(_parameter("set", list[str] | None, typer.Option("--set", help=SET), None))
     options.append(_parameter("json", bool, typer.Option("--json", help=_JSON), False))
 
-    def run(json: bool, out: Path | None = None, png: bool = False, **given: Any) -> None:
+    def run(
+        json: bool, out: Path | None = None, png: bool = False, force: bool = False, **given: Any
+    ) -> None:
         given |= {name: not given[name] for name, one in asked.items() if _usual(one)}
         machine, folder, where = None, None, f"leblanc {question.__name__}"
         changes = given.pop("set", None) or ()
@@ -85,7 +89,7 @@ def command(question: Callable[..., Any]) -> Callable[..., None]:
             machine, where = loaded(source, changes) if changes else loaded(source), str(source)
             if files and whole:
                 state = getattr(machine, "scene", machine).digest
-                folder = results_dir(machine.name, out, source, state, *files)
+                folder = results_dir(machine.name, out, source, state, *files, force=force)
         if out is not None and not whole:
             folder = out_dir(question.__name__, out)
         values = {name: _value(own[name], given[name]) for name in own}

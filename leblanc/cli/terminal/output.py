@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from leblanc.studies.sweep.plan import Sweep
 
 
+FORCE = "Write into the folder of another scene of the same name."
 SET = "Another value of a key of the machine, as rotor.unbalance='120 g mm'; may be repeated."
 
 
