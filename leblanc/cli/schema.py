@@ -17,9 +17,10 @@ def schema(
     """Write the JSON schema of a machine file, by which editors complete its keys."""
     import json
 
+    from leblanc.scene.scene import Scene
     from leblanc.scene.schema.editor import machine_schema
 
-    text = json.dumps(machine_schema(), indent=1)
+    text = json.dumps(machine_schema(Scene), indent=1)
     if out is None:
         print(text)
         return

@@ -6,7 +6,6 @@ from typing import Any
 
 from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
 
-from leblanc.scene.scene import Scene
 from leblanc.scene.schema.part import Part, allowed_at, parts_of, rule_of
 from leblanc.scene.schema.paths import tables_of
 
@@ -20,12 +19,15 @@ class _Plain(GenerateJsonSchema):
         return super().default_schema(schema) if plain else self.generate_inner(schema["schema"])
 
 
-def machine_schema() -> dict[str, Any]:
-    """JSON schema of a machine file, draft 2020-12: what the models that check it say of each key."""
-    made = Scene.model_json_schema(schema_generator=_Plain)
-    tables: dict[str, type[Part]] = {"": Scene}
-    for kind in parts_of(Scene.model_fields["rotor"]):
-        tables |= {part.__name__: part for part in tables_of(Scene, kind).values()}
+def machine_schema(root: type[Part]) -> dict[str, Any]:
+    """JSON schema of a machine file, draft 2020-12: what the models that check it say of each key.
+
+    `root`: that of the whole file, `leblanc.scene.scene.Scene`.
+    """
+    made = root.model_json_schema(schema_generator=_Plain)
+    tables: dict[str, type[Part]] = {"": root}
+    for kind in parts_of(root.model_fields["rotor"]):
+        tables |= {part.__name__: part for part in tables_of(root, kind).values()}
     for name, part in tables.items():
         said = made if name == "" else made["$defs"].get(name)
         if said is None:

@@ -12,6 +12,7 @@ from jsonschema import Draft202012Validator
 
 from leblanc.cli import main
 from leblanc.scene.examples import example_names, example_path
+from leblanc.scene.scene import Scene
 from leblanc.scene.schema.editor import machine_schema
 
 SCENES = [name for name in example_names() if not name.startswith("studies/")]
@@ -22,11 +23,11 @@ def table(name: str) -> dict[str, Any]:
 
 
 def faults(content: dict[str, Any]) -> list[str]:
-    return [fault.message for fault in Draft202012Validator(machine_schema()).iter_errors(content)]
+    return [fault.message for fault in Draft202012Validator(machine_schema(Scene)).iter_errors(content)]
 
 
 def test_it_is_a_schema() -> None:
-    Draft202012Validator.check_schema(machine_schema())
+    Draft202012Validator.check_schema(machine_schema(Scene))
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -53,7 +54,7 @@ def test_what_the_models_refuse_it_refuses(place: str, key: str, value: object) 
 
 
 def test_each_key_has_its_sentence() -> None:
-    said = machine_schema()
+    said = machine_schema(Scene)
     mass = said["$defs"]["JeffcottRotor"]["properties"]["mass"]
     assert mass["type"] == ["number", "string"] and 'such as "4 kg"' in mass["description"]
     for name, part in {"": said, **said["$defs"]}.items():
@@ -65,5 +66,9 @@ def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None
     assert main(["schema"]) == 0
     printed = json.loads(capsys.readouterr().out)
     assert main(["schema", "--out", str(tmp_path / "machine.json")]) == 0
-    assert json.loads((tmp_path / "machine.json").read_text(encoding="utf-8")) == printed == machine_schema()
+    assert (
+        json.loads((tmp_path / "machine.json").read_text(encoding="utf-8"))
+        == printed
+        == machine_schema(Scene)
+    )
     assert "#:schema" in capsys.readouterr().err
