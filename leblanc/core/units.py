@@ -241,6 +241,16 @@ def with_unit(value: float, dimension: Dimension) -> str:
     return unit_for(dimension, value).text(value)
 
 
+def change_words(size: float, without: float) -> str:
+    """How much a size differs from that without something, in per cent; empty where that is not known."""
+    if not (0.0 < without < math.inf and math.isfinite(size)):
+        return ""
+    share = 100.0 * (size / without - 1.0)
+    if abs(share) < 0.05:
+        return "no change"
+    return f"{'+' if share > 0.0 else MINUS}{abs(share):.{1 if abs(share) < 10.0 else 0}f} %"
+
+
 def in_rpm(speed: float, missing: str = NOT_FOUND) -> str:
     """A speed in rad/s for print; `missing` stands in place of one that is not finite."""
     return with_unit(speed, ANGULAR_SPEED) if math.isfinite(speed) else missing

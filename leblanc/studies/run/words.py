@@ -15,10 +15,10 @@ from leblanc.core.notes import one_line, percent
 from leblanc.core.units import (
     LENGTH,
     MASS,
-    MINUS,
     NOT_FOUND,
     RPM,
     VOLUME,
+    change_words,
     in_peak,
     in_rpm,
     number,
@@ -82,24 +82,18 @@ def effect(result: RunAnswer) -> str:
     top = curve.top
     if result.chamberless or not result.liquid_mass > 0.0 or result.speed.size < 2 or top is None:
         return ""
-    at = _change(float(curve.amplitude[-1]), float(curve.amplitude_dry[-1]))
+    at = change_words(float(curve.amplitude[-1]), float(curve.amplitude_dry[-1]))
     highest = largest(curve.amplitude_dry)
-    way = "" if highest is None else _change(float(curve.amplitude[top]), float(curve.amplitude_dry[highest]))
+    way = (
+        ""
+        if highest is None
+        else change_words(float(curve.amplitude[top]), float(curve.amplitude_dry[highest]))
+    )
     if not at or not way:
         return ""
     doubts = _wrong(result, top)
     aside = f" (there {', '.join(doubts)})" if doubts else ""
     return f"With the liquid {at} at {in_rpm(float(result.speed[-1]))}, {way} on the way{aside}."
-
-
-def _change(wet: float, dry: float) -> str:
-    """Change of an amplitude in per cent; empty where it is not known or without a bound."""
-    if not (0.0 < dry < math.inf and math.isfinite(wet)):
-        return ""
-    share = 100.0 * (wet / dry - 1.0)
-    if abs(share) < 0.05:
-        return "no change"
-    return f"{'+' if share > 0.0 else MINUS}{abs(share):.{1 if abs(share) < 10.0 else 0}f} %"
 
 
 def _where_it_holds(result: RunAnswer) -> str:
