@@ -54,14 +54,14 @@ def fit_root() -> RootFit:
 
     low, high = BAND
     s = np.geomspace(low, high, _AT)
-    root = np.sqrt(1j * s)
+    root: Complex = np.asarray(np.sqrt(1j * s), dtype=complex)
     aim = np.concatenate([np.ones(_AT), np.zeros(_AT)])
 
     def fitted(wide: float, count: int) -> tuple[float, RootFit]:
         decay = np.geomspace(low / wide, high * wide, count)
         terms = 1j * s[:, None] / (1j * s[:, None] + decay) / root[:, None]
         found = RootFit(nnls(np.concatenate([terms.real, terms.imag]), aim)[0], decay)
-        return float(np.abs(found(1j * s) / root - 1.0).max()), found
+        return float(np.abs(found(np.asarray(1j * s)) / root - 1.0).max()), found
 
     for count in range(2, _MOST_TERMS + 1):
         search = minimize_scalar(
@@ -163,7 +163,7 @@ def _parts(liquid: Liquid, spin: float) -> _Parts:
 
 
 def chamber_space(liquid: Liquid, spin: float) -> StateSpace:
-    """One chamber: from the acceleration of its axis to the force of the liquid on it and the liquid's offset.
+    """One chamber: from the acceleration of its axis to the force of its liquid and the liquid's offset.
 
     The acceleration in space, m/s^2, force, N, and offset from the chamber's axis, m, along the drum's
     directions. A displacement w e^{i s t} in the drum has the acceleration -(Omega + s)^2 w.
@@ -233,7 +233,7 @@ def machine_space(rotor: Jeffcott, liquids: Sequence[Liquid], spin: float) -> St
 
 
 def layer_force(liquid: Liquid, spin: float, slip: Array) -> Complex:
-    """Force of the liquid over the acceleration of its axis at slips, kg [theory: whirl, eq. 4], shape (k,)."""
+    """Force of the liquid over its axis' acceleration at slips, kg, shape (k,) [theory: whirl, eq. 4]."""
     if not isinstance(liquid, Layer):
         return np.full(slip.shape, -float(liquid), dtype=complex)
     wave = wave_function(liquid.layer_tanh, spin, slip, layer_rate(liquid, spin, slip))

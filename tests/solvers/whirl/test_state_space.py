@@ -170,7 +170,7 @@ def test_liquid_without_a_surface_is_a_mass() -> None:
     """A full chamber, and a machine with one, have no states of liquid."""
     full = fill(1.0)
     space = chamber_space(full.mass, SPIN)
-    assert space.states == () and space.D == pytest.approx(-full.mass * np.eye(2))
+    assert space.states == () and pytest.approx(-full.mass * np.eye(2)) == space.D
     machine = machine_space(Jeffcott(5.0, 4e4, 0.0, 0.0), [full.mass], SPIN)
     poles = np.linalg.eigvals(machine.A) + 0j
     natural = math.sqrt(4e4 / (5.0 + full.mass))
