@@ -28,7 +28,7 @@ Liquid = Layer | float
 
 @dataclass(frozen=True, eq=False)
 class RootFit:
-    """sqrt(p) as the sum of c p/(p + a), c and a above 0: a drag [theory: whirl, eq. 33]."""
+    """sqrt(p) as the sum of c p/(p + a), c and a above 0: a drag [theory: whirl, eq. 36]."""
 
     weight: Array  #: c, s^(-1/2), shape (k,)
     decay: Array  #: a, 1/s, shape (k,)
@@ -126,7 +126,7 @@ class _Parts:
 
 
 def _parts(liquid: Liquid, spin: float) -> _Parts:
-    """The layer as states: offset d, rate v, those of the roots' terms [theory: whirl, eq. 32-33]."""
+    """The layer as states: offset d, rate v, those of the roots' terms [theory: whirl, eq. 35-36]."""
     if not isinstance(liquid, Layer):
         empty = np.zeros(0, dtype=complex)
         return _Parts(empty.reshape(0, 0), empty, empty, float(liquid), ())
@@ -187,7 +187,7 @@ def chamber_space(liquid: Liquid, spin: float) -> StateSpace:
 
 
 def machine_space(rotor: Jeffcott, liquids: Sequence[Liquid], spin: float) -> StateSpace:
-    """The planar machine: from a force on its axis to deflection and liquid's force [theory: whirl, eq. 34].
+    """The planar machine: from a force on its axis to deflection and liquid's force [theory: whirl, eq. 37].
 
     N and m along the drum's directions; its unbalance is the constant force U Omega^2 along x.
     """

@@ -96,7 +96,7 @@ def _exactness(liquids: list[Liquid], found: list[StateSpace], spin: float) -> N
 
 
 def content(space: StateSpace, notes: tuple[Note, ...]) -> dict[str, object]:
-    """What a file holds, by name."""
+    """What a file holds, by name; of the error and band, rad/s from the drum, see the notes."""
     units = {
         f"{kind}_units": [_unit(name) for name in getattr(space, kind)] for kind in ("inputs", "outputs")
     }
@@ -108,6 +108,8 @@ def content(space: StateSpace, notes: tuple[Note, ...]) -> dict[str, object]:
         **names,
         **units,
         "speed": space.speed,
+        "largest_error": next((note.data["error"] for note in notes if note.code is SpaceCode.FITTED), 0.0),
+        "band": [part * space.speed for part in BAND],
         "frame": frame,
         "notes": [note.text for note in notes],
     }

@@ -22,6 +22,8 @@ from meshes.errors import InputError
 
 Cell = str | float
 _GRIDS = ("speed", "time")  # what most is over, before any other dimension
+# The same once more: all speeds of the curve are among the speeds.
+_AGAIN = ("refined_speed", "curve_speed")
 _SHEET = 31  # letters of its name
 _PAIR = ("amplitude", "amplitude_dry")
 
@@ -56,7 +58,7 @@ class Table:
 def tables(scene: Scene) -> tuple[Table, ...]:
     """All of what `run` and, with a run-up or programme, `run_up` answer."""
     response = run(scene)
-    if isinstance(response, RunAnswer) and response.refined is not None and response.held is None:
+    if isinstance(response, RunAnswer) and response.refined is not None:
         # Once more at the speeds among which the peaks are: every quantity has the one grid.
         response = run(scene, speeds=response.curve.speed.tolist())
     found = list(_of_answer(response, "response", "response"))
@@ -71,10 +73,9 @@ def _of_answer(answer: Answer, name: str, what: str) -> Iterator[Table]:
     arrays = answer.named_arrays()
     every = {**arrays.coords, **arrays.variables}
     grid = next((dim for dim in _GRIDS if dim in arrays.sizes), "")
-    on_one = isinstance(answer, RunAnswer) and answer.held is None
     kept: dict[str, list[Column]] = {grid: []} if grid else {}
     for key, one in every.items():
-        if one.dims and one.dims[0] in ("refined_speed", "curve_speed") and on_one:
+        if one.dims and one.dims[0] in _AGAIN:
             continue  # among the others
         if len(one.dims) in (1, 2):
             over = grid if grid in one.dims else one.dims[0]

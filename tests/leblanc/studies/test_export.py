@@ -211,7 +211,10 @@ def test_what_a_state_space_says_of_itself(tmp_path: Path) -> None:
     assert found.notes[0].code == "state_space_exact"
     assert json.loads((tmp_path / "machine.json").read_text())["speed"] == pytest.approx(500 * math.pi / 30)
     laminar = lb.export(short().replace({"model.friction": "stokes"}), to="statespace", out=tmp_path)
-    assert laminar.notes[0].code == "state_space_fitted" and 0.0 < laminar.notes[0].data["error"] < 2e-3
+    assert laminar.notes[0].code == "state_space_fitted"
+    said = json.loads((tmp_path / "machine.json").read_text())
+    assert 0.0 < said["largest_error"] == laminar.notes[0].data["error"] < 2e-3
+    assert said["band"] == pytest.approx([0.01 * said["speed"], 10.0 * said["speed"]])
     upright = lb.example("two_plane_rig").replace({"gravity": 0.0})
     alone = lb.export(upright, to="statespace", out=tmp_path / "two")
     assert "state_space_of_chambers_alone" in [note.code for note in alone.notes]
