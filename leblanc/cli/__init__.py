@@ -37,7 +37,7 @@ DONE, UNREAD, WRONG_INPUT, NOT_CONVERGED = 0, 1, 2, 3
 # those of the others are made from the signature of their call. Those of the last groups other packages have.
 GROUPS = {
     "Begin": ("new", "explain", "schema", "diff"),
-    "What the machine does": ("run", "runup", "map", "compare", "view"),
+    "What the machine does": ("run", "runup", "map", "compare", "export", "view"),
     "Choose and measure": ("optimise", "sweep", "fit"),
     "The liquid alone, and parts": ("layer", "modes", "volume", "bearing"),
     "Results, and how far they are right": ("outputs", "validate", "trade", "notebooks", "report-bug"),
