@@ -17,6 +17,7 @@ from leblanc.scene.scene import Scene
 from leblanc.studies.runup.notes import RunupCode, numerical_error
 from leblanc.studies.runup.study import runup_scene
 from leblanc.studies.runup.words import known, peak_known, sentence
+from meshes.arrays import Array
 from meshes.baffles import Baffles
 from meshes.chamber import Chamber
 from solvers.pypde.coupled import RotorLayersPDE
@@ -31,11 +32,19 @@ def machine(*steps: str) -> Scene:
 
 
 @cache
-def peaks(cells: int) -> list[float]:
-    """Largest amplitude of each step of the way past the capture, m."""
-    found = runup_scene(machine("to 400 rpm at 40 rpm/s", "hold 1 s"), cells=cells, check=False)
-    assert found.converged
-    return [passage.amplitude for passage in found.passages]
+def peaks(cells: int) -> Array:
+    """Largest amplitude of each step of the way past the capture, m.
+
+    The middle of three runs whose unbalance differs in its tenth digit: by rounding alone the passage after
+    the capture differs by up to a tenth.
+    """
+    way, runs = machine("to 400 rpm at 40 rpm/s", "hold 1 s"), []
+    for k in range(3):
+        own = way.replace({"rotor.loads.0.size": 0.092 * (1.0 + 1e-10 * k)})
+        found = runup_scene(own, cells=cells, check=False)
+        assert found.converged
+        runs.append([passage.amplitude for passage in found.passages])
+    return np.median(runs, axis=0)
 
 
 @pytest.mark.slow
@@ -53,7 +62,7 @@ def test_peak_error_covers_more_cells() -> None:
     """
     found = runup_scene(machine("to 400 rpm at 40 rpm/s", "hold 1 s"), cells=64)
     error = found.peak_error["cells"]
-    assert abs(max(peaks(64)) - max(peaks(256))) < error < 0.1 * max(peaks(64))
+    assert abs(peaks(64).max() - peaks(256).max()) < error < 0.1 * peaks(64).max()
 
 
 @pytest.mark.slow
